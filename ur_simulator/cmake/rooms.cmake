@@ -1,0 +1,7 @@
+add_room(kinematics)
+add_room(dynamics USES sim_kinematics)
+add_room(motion USES sim_kinematics)
+add_room(world USES sim_kinematics)
+add_room(safety USES sim_kinematics)
+add_room(urscript)
+add_room(script_api USES sim_urscript sim_motion sim_world sim_safety sim_dynamics)
