@@ -1,0 +1,292 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
+#include <rosidl_typesupport_cpp/action_type_support.hpp>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "rcl_cxx/goal_id.hpp"
+#include "rcl_cxx/qos.hpp"
+
+namespace rcl_cxx {
+struct ActionClientOptions {
+  QoS goal_service_qos = QoS::services_default();
+  QoS result_service_qos = QoS::services_default();
+  QoS cancel_service_qos = QoS::services_default();
+  QoS feedback_qos = QoS::reliable(10);
+  QoS status_qos = QoS::latched(1);
+};
+
+/// Numbers are those of action_msgs/srv/CancelGoal.
+enum class CancelCode : std::int8_t { none = 0, rejected = 1, unknown_goal = 2, goal_terminated = 3 };
+
+const char * to_string(CancelCode code) noexcept;
+
+struct CancelResponse {
+  CancelCode code = CancelCode::none;
+  /// The goals that are being canceled.
+  std::vector<GoalId> goals;
+};
+
+template <typename A>
+struct ActionResult {
+  GoalId goal_id;
+  /// succeeded, canceled or aborted; unknown if the server does not know the goal (any more).
+  GoalStatus status = GoalStatus::unknown;
+  typename A::Result result;
+};
+
+namespace detail {
+class ActionClientCore;
+class ClientGoalCore;
+
+/// What the client needs to know of an action's types; one constant table per action.
+struct ActionClientOps {
+  const rosidl_action_type_support_t * (*type_support)();
+  std::shared_ptr<void> (*make_goal_request)(const GoalId &, const void * goal);
+  std::shared_ptr<void> (*make_goal_response)();
+  bool (*accepted)(const void * goal_response);
+  std::shared_ptr<void> (*make_result_request)(const GoalId &);
+  std::shared_ptr<void> (*make_result_response)();
+  std::int8_t (*status)(const void * result_response);
+  std::shared_ptr<void> (*make_feedback)();
+  GoalId (*goal_id_of_feedback)(const void * feedback_message);
+};
+
+/// All run in the executor's thread.
+struct ErasedGoalCallbacks {
+  std::function<void(const std::shared_ptr<ClientGoalCore> & or_null_if_refused)> response;
+  std::function<void(const void * feedback_message)> feedback;
+  std::function<void(const GoalId &, const void * result_response)> result;
+};
+
+template <typename A>
+struct ActionClientOpsOf {
+  using GoalRequest = typename A::Impl::SendGoalService::Request;
+  using GoalResponse = typename A::Impl::SendGoalService::Response;
+  using ResultRequest = typename A::Impl::GetResultService::Request;
+  using ResultResponse = typename A::Impl::GetResultService::Response;
+  using FeedbackMessage = typename A::Impl::FeedbackMessage;
+
+  static std::shared_ptr<void> goal_request(const GoalId & id, const void * goal)
+  {
+    auto request = std::make_shared<GoalRequest>();
+    request->goal_id.uuid = id.bytes;
+    request->goal = *static_cast<const typename A::Goal *>(goal);
+    return request;
+  }
+
+  static std::shared_ptr<void> result_request(const GoalId & id)
+  {
+    auto request = std::make_shared<ResultRequest>();
+    request->goal_id.uuid = id.bytes;
+    return request;
+  }
+
+  static constexpr ActionClientOps ops{
+      &rosidl_typesupport_cpp::get_action_type_support_handle<A>,
+      &goal_request,
+      []() -> std::shared_ptr<void> { return std::make_shared<GoalResponse>(); },
+      [](const void * response) { return bool{static_cast<const GoalResponse *>(response)->accepted}; },
+      &result_request,
+      []() -> std::shared_ptr<void> { return std::make_shared<ResultResponse>(); },
+      [](const void * response) {
+        return std::int8_t{static_cast<const ResultResponse *>(response)->status};
+      },
+      []() -> std::shared_ptr<void> { return std::make_shared<FeedbackMessage>(); },
+      [](const void * feedback) {
+        return GoalId{static_cast<const FeedbackMessage *>(feedback)->goal_id.uuid};
+      }};
+};
+}  // namespace detail
+
+/// A goal as its client sees it, once it has been accepted.
+class ClientGoalHandleBase {
+ public:
+  explicit ClientGoalHandleBase(std::shared_ptr<detail::ClientGoalCore> core);
+  virtual ~ClientGoalHandleBase();
+  ClientGoalHandleBase(const ClientGoalHandleBase &) = delete;
+  ClientGoalHandleBase & operator=(const ClientGoalHandleBase &) = delete;
+
+  const GoalId & goal_id() const noexcept;
+  /// The latest that the server has told.
+  GoalStatus status() const noexcept;
+
+  /// Asks to cancel; the future holds the answer. @throws Error if the request cannot be sent.
+  std::future<CancelResponse> cancel();
+
+ private:
+  std::shared_ptr<detail::ClientGoalCore> core_;
+};
+
+template <typename A>
+class ClientGoalHandle : public ClientGoalHandleBase {
+ public:
+  using SharedPtr = std::shared_ptr<ClientGoalHandle<A>>;
+
+  ClientGoalHandle(std::shared_ptr<detail::ClientGoalCore> core, std::shared_future<ActionResult<A>> result)
+      : ClientGoalHandleBase(std::move(core)), result_(std::move(result))
+  {
+  }
+
+  /// Ready when the goal has ended. Broken (std::future_error) if the action client is destroyed first.
+  const std::shared_future<ActionResult<A>> & result() const noexcept { return result_; }
+
+ private:
+  std::shared_future<ActionResult<A>> result_;
+};
+
+/// All optional, all run in the executor's thread.
+template <typename A>
+struct SendGoalOptions {
+  /// A null pointer if the goal was refused.
+  std::function<void(const std::shared_ptr<ClientGoalHandle<A>> &)> on_response{};
+  std::function<void(const typename A::Feedback &)> on_feedback{};
+  std::function<void(const ActionResult<A> &)> on_result{};
+};
+
+class ActionClientBase {
+ public:
+  virtual ~ActionClientBase();
+  ActionClientBase(const ActionClientBase &) = delete;
+  ActionClientBase & operator=(const ActionClientBase &) = delete;
+
+  const std::string & action_name() const noexcept;
+  bool server_is_ready() const;
+  /// False on timeout or shutdown.
+  bool wait_for_server(std::chrono::nanoseconds timeout) const;
+
+  /// Cancels a goal of anyone. @throws Error if the request cannot be sent; the same below.
+  std::future<CancelResponse> cancel_goal(const GoalId & id);
+  std::future<CancelResponse> cancel_all_goals();
+  /// All goals accepted at or before `stamp_ns` (nanoseconds since the epoch, ROS time).
+  std::future<CancelResponse> cancel_goals_before(std::int64_t stamp_ns);
+
+ protected:
+  explicit ActionClientBase(std::shared_ptr<detail::ActionClientCore> core);
+  GoalId send(const void * goal, detail::ErasedGoalCallbacks callbacks);
+  void forget(const GoalId & id) noexcept;
+  /// False at `deadline` or on shutdown.
+  template <typename Future>
+  bool wait(const Future & future, std::chrono::steady_clock::time_point deadline) const
+  {
+    return wait_until_ready(
+        [&future](std::chrono::nanoseconds slice) {
+          return future.wait_for(slice) == std::future_status::ready;
+        },
+        deadline);
+  }
+  /// Why a blocking call cannot be made from here, or does not find its server.
+  tl::expected<void, std::string> check_blocking_call(std::chrono::nanoseconds timeout) const;
+
+ private:
+  bool wait_until_ready(const std::function<bool(std::chrono::nanoseconds)> & ready_within,
+                        std::chrono::steady_clock::time_point deadline) const;
+
+  std::shared_ptr<detail::ActionClientCore> core_;
+};
+
+/// From Node::create_action_client. Thread-safe. Answers arrive through the executor that the node was added
+/// to. The result is asked for as soon as a goal is accepted.
+template <typename A>
+class ActionClient : public ActionClientBase {
+ public:
+  using SharedPtr = std::shared_ptr<ActionClient<A>>;
+  using Goal = typename A::Goal;
+  using Feedback = typename A::Feedback;
+  using Handle = ClientGoalHandle<A>;
+
+  explicit ActionClient(std::shared_ptr<detail::ActionClientCore> core) : ActionClientBase(std::move(core)) {}
+
+  /// The future holds the goal's handle, or a null pointer if the goal was refused.
+  /// @throws Error if the request cannot be sent.
+  std::future<std::shared_ptr<Handle>> send_goal(const Goal & goal, SendGoalOptions<A> options = {})
+  {
+    return start(goal, std::move(options)).response;
+  }
+
+  /// Sends and waits for the result, at most `timeout` in all; the executor must be spinning in another
+  /// thread. A goal that is running when the time is over is asked to cancel. The error says what went wrong:
+  /// no server, refused, no answer, no result, shutdown, or called from the executor's own thread.
+  tl::expected<ActionResult<A>, std::string> call(const Goal & goal, std::chrono::nanoseconds timeout,
+                                                  std::function<void(const Feedback &)> on_feedback = {});
+
+ private:
+  using ResultResponse = typename A::Impl::GetResultService::Response;
+  using FeedbackMessage = typename A::Impl::FeedbackMessage;
+
+  struct Started {
+    GoalId id;
+    std::future<std::shared_ptr<Handle>> response;
+  };
+
+  Started start(const Goal & goal, SendGoalOptions<A> options);
+};
+
+template <typename A>
+typename ActionClient<A>::Started ActionClient<A>::start(const Goal & goal, SendGoalOptions<A> options)
+{
+  auto response_promise = std::make_shared<std::promise<std::shared_ptr<Handle>>>();
+  auto result_promise = std::make_shared<std::promise<ActionResult<A>>>();
+  Started started{{}, response_promise->get_future()};
+
+  detail::ErasedGoalCallbacks callbacks;
+  callbacks.response =
+      [response_promise, result = result_promise->get_future().share(),
+       f = std::move(options.on_response)](const std::shared_ptr<detail::ClientGoalCore> & core) {
+        auto handle = core ? std::make_shared<Handle>(core, result) : nullptr;
+        response_promise->set_value(handle);
+        if (f) {
+          f(handle);
+        }
+      };
+  if (options.on_feedback) {
+    callbacks.feedback = [f = std::move(options.on_feedback)](const void * message) {
+      f(static_cast<const FeedbackMessage *>(message)->feedback);
+    };
+  }
+  callbacks.result = [result_promise, f = std::move(options.on_result)](const GoalId & goal_id,
+                                                                        const void * message) {
+    const auto & response = *static_cast<const ResultResponse *>(message);
+    ActionResult<A> result{goal_id, static_cast<GoalStatus>(response.status), response.result};
+    result_promise->set_value(result);
+    if (f) {
+      f(result);
+    }
+  };
+  started.id = send(&goal, std::move(callbacks));
+  return started;
+}
+
+template <typename A>
+tl::expected<ActionResult<A>, std::string> ActionClient<A>::call(
+    const Goal & goal, std::chrono::nanoseconds timeout, std::function<void(const Feedback &)> on_feedback)
+{
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  if (auto ready = check_blocking_call(timeout); !ready) {
+    return tl::make_unexpected(ready.error());
+  }
+  SendGoalOptions<A> options;
+  options.on_feedback = std::move(on_feedback);
+  Started started = start(goal, std::move(options));
+  if (!wait(started.response, deadline)) {
+    forget(started.id);
+    return tl::make_unexpected(action_name() + ": no answer to the goal within the time given");
+  }
+  const std::shared_ptr<Handle> handle = started.response.get();
+  if (!handle) {
+    return tl::make_unexpected(action_name() + ": goal refused (the server's log says why)");
+  }
+  if (!wait(handle->result(), deadline)) {
+    handle->cancel();
+    return tl::make_unexpected(action_name() + ": no result within the time given, cancel requested");
+  }
+  return handle->result().get();
+}
+
+}  // namespace rcl_cxx

@@ -1,0 +1,166 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <rosidl_typesupport_cpp/action_type_support.hpp>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "rcl_cxx/goal_handle.hpp"
+#include "rcl_cxx/qos.hpp"
+
+namespace rcl_cxx {
+struct ActionServerOptions {
+  QoS goal_service_qos = QoS::services_default();
+  QoS result_service_qos = QoS::services_default();
+  QoS cancel_service_qos = QoS::services_default();
+  QoS feedback_qos = QoS::reliable(10);
+  QoS status_qos = QoS::latched(1);
+  /// How long the result of an ended goal can be asked for; unset: rcl_action's default (10 s; Humble: 15
+  /// min); negative: for ever.
+  std::optional<std::chrono::nanoseconds> result_timeout{};
+};
+
+/// What a server does with its goals. All run in the executor's thread and must return soon: a goal is
+/// carried out in a thread of the user's.
+template <typename A>
+struct ActionHandlers {
+  using Goal = typename A::Goal;
+
+  /// Refuses with a reason, which is logged as a warning with the action's name. Empty: accepts everything.
+  /// An exception refuses, with its text.
+  std::function<tl::expected<void, std::string>(const GoalId &, const Goal &)> goal{};
+  /// Gets the goal, EXECUTING already. Whoever keeps the handle owes the goal a result. An exception aborts
+  /// it.
+  std::function<void(std::shared_ptr<GoalHandle<A>>)> accepted{};
+  /// Grants (true) or refuses a request to cancel an active goal. Empty: refuses. An exception refuses.
+  std::function<bool(GoalHandle<A> &)> cancel{};
+  /// Runs when the goal has become CANCELING (is_canceling() is true): the place to wake its worker.
+  /// Optional.
+  std::function<void(GoalHandle<A> &)> canceling{};
+};
+
+namespace detail {
+class ActionServerCore;
+
+/// What the server needs to know of an action's types; one constant table per action.
+struct ActionServerOps {
+  const rosidl_action_type_support_t * (*type_support)();
+  std::shared_ptr<void> (*make_goal_request)();
+  GoalId (*goal_id_of_goal_request)(const void *);
+  std::shared_ptr<void> (*make_goal_response)(bool accepted, std::int32_t sec, std::uint32_t nanosec);
+  std::shared_ptr<void> (*make_result_request)();
+  GoalId (*goal_id_of_result_request)(const void *);
+  std::shared_ptr<void> (*make_result_response)(GoalStatus);
+  std::shared_ptr<GoalHandleBase> (*make_handle)(std::shared_ptr<GoalCore>,
+                                                 std::shared_ptr<void> goal_request);
+};
+
+struct ErasedActionServer {
+  const ActionServerOps * ops;
+  std::function<tl::expected<void, std::string>(const GoalId &, const void * goal_request)> goal;
+  std::function<void(std::shared_ptr<GoalHandleBase>)> accepted;
+  std::function<bool(GoalHandleBase &)> cancel;
+  std::function<void(GoalHandleBase &)> canceling;
+};
+
+template <typename A>
+struct ActionServerOpsOf {
+  using GoalRequest = typename A::Impl::SendGoalService::Request;
+  using GoalResponse = typename A::Impl::SendGoalService::Response;
+  using ResultRequest = typename A::Impl::GetResultService::Request;
+  using ResultResponse = typename A::Impl::GetResultService::Response;
+
+  static std::shared_ptr<void> goal_response(bool accepted, std::int32_t sec, std::uint32_t nanosec)
+  {
+    auto response = std::make_shared<GoalResponse>();
+    response->accepted = accepted;
+    response->stamp.sec = sec;
+    response->stamp.nanosec = nanosec;
+    return response;
+  }
+
+  static std::shared_ptr<void> result_response(GoalStatus status)
+  {
+    auto response = std::make_shared<ResultResponse>();
+    response->status = static_cast<std::int8_t>(status);
+    return response;
+  }
+
+  static constexpr ActionServerOps ops{
+      &rosidl_typesupport_cpp::get_action_type_support_handle<A>,
+      []() -> std::shared_ptr<void> { return std::make_shared<GoalRequest>(); },
+      [](const void * request) { return GoalId{static_cast<const GoalRequest *>(request)->goal_id.uuid}; },
+      &goal_response,
+      []() -> std::shared_ptr<void> { return std::make_shared<ResultRequest>(); },
+      [](const void * request) { return GoalId{static_cast<const ResultRequest *>(request)->goal_id.uuid}; },
+      &result_response,
+      [](std::shared_ptr<GoalCore> core, std::shared_ptr<void> request) -> std::shared_ptr<GoalHandleBase> {
+        return std::make_shared<GoalHandle<A>>(std::move(core),
+                                               std::static_pointer_cast<const GoalRequest>(request));
+      }};
+};
+}  // namespace detail
+
+class ActionServerBase {
+ public:
+  /// Aborts, with empty results, the goals that have none; after that no handler runs any more. Handles that
+  /// are still held stay valid and inactive.
+  virtual ~ActionServerBase();
+  ActionServerBase(const ActionServerBase &) = delete;
+  ActionServerBase & operator=(const ActionServerBase &) = delete;
+
+  /// The resolved name, "/robot/move_l".
+  const std::string & action_name() const noexcept;
+  /// Goals without a result.
+  std::size_t active_goal_count() const;
+
+ protected:
+  explicit ActionServerBase(std::shared_ptr<detail::ActionServerCore> core);
+
+ private:
+  std::shared_ptr<detail::ActionServerCore> core_;
+};
+
+/// From Node::create_action_server. Results are cached for ActionServerOptions::result_timeout after a goal's
+/// end. When the context shuts down, what is active after its on_pre_shutdown callbacks is aborted.
+template <typename A>
+class ActionServer : public ActionServerBase {
+ public:
+  using SharedPtr = std::shared_ptr<ActionServer<A>>;
+
+  explicit ActionServer(std::shared_ptr<detail::ActionServerCore> core) : ActionServerBase(std::move(core)) {}
+
+  static detail::ErasedActionServer erase(ActionHandlers<A> handlers)
+  {
+    using GoalRequest = typename A::Impl::SendGoalService::Request;
+    using Handle = GoalHandle<A>;
+    detail::ErasedActionServer erased{&detail::ActionServerOpsOf<A>::ops, {}, {}, {}, {}};
+    if (handlers.goal) {
+      erased.goal = [f = std::move(handlers.goal)](const GoalId & id, const void * request) {
+        return f(id, static_cast<const GoalRequest *>(request)->goal);
+      };
+    }
+    if (handlers.accepted) {
+      erased.accepted = [f = std::move(handlers.accepted)](std::shared_ptr<GoalHandleBase> handle) {
+        f(std::static_pointer_cast<Handle>(std::move(handle)));
+      };
+    }
+    if (handlers.cancel) {
+      erased.cancel = [f = std::move(handlers.cancel)](GoalHandleBase & handle) {
+        return f(static_cast<Handle &>(handle));
+      };
+    }
+    if (handlers.canceling) {
+      erased.canceling = [f = std::move(handlers.canceling)](GoalHandleBase & handle) {
+        f(static_cast<Handle &>(handle));
+      };
+    }
+    return erased;
+  }
+};
+
+}  // namespace rcl_cxx

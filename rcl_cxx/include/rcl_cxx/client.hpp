@@ -1,0 +1,97 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
+#include <rosidl_typesupport_cpp/service_type_support.hpp>
+#include <string>
+#include <tl/expected.hpp>
+
+namespace rcl_cxx {
+namespace detail {
+class ClientCore;
+
+struct ErasedClient {
+  const rosidl_service_type_support_t * type_support;
+  std::shared_ptr<void> (*make_response)();
+};
+}  // namespace detail
+
+class ClientBase {
+ public:
+  /// Requests without an answer are dropped: their futures report std::future_errc::broken_promise.
+  virtual ~ClientBase();
+  ClientBase(const ClientBase &) = delete;
+  ClientBase & operator=(const ClientBase &) = delete;
+
+  const std::string & service_name() const noexcept;
+  bool service_is_ready() const;
+  /// False on timeout or shutdown.
+  bool wait_for_service(std::chrono::nanoseconds timeout) const;
+  /// Requests that have no answer yet.
+  std::size_t pending_count() const;
+
+ protected:
+  using OnResponse = std::function<void(const std::shared_ptr<void> &)>;
+
+  explicit ClientBase(std::shared_ptr<detail::ClientCore> core);
+  std::int64_t send(const void * request, OnResponse on_response);
+  tl::expected<std::shared_ptr<void>, std::string> call_and_wait(const void * request,
+                                                                 std::chrono::nanoseconds timeout);
+
+ private:
+  std::shared_ptr<detail::ClientCore> core_;
+};
+
+/// From Node::create_client. Thread-safe. Answers arrive through the executor that the node was added to.
+template <typename S>
+class Client : public ClientBase {
+ public:
+  using SharedPtr = std::shared_ptr<Client<S>>;
+  using Request = typename S::Request;
+  using Response = typename S::Response;
+
+  explicit Client(std::shared_ptr<detail::ClientCore> core) : ClientBase(std::move(core)) {}
+
+  /// `callback` runs in the executor's thread. @throws Error if the request cannot be sent.
+  void async_call(const Request & request, std::function<void(const Response &)> callback)
+  {
+    send(&request, [callback = std::move(callback)](const std::shared_ptr<void> & response) {
+      callback(*static_cast<const Response *>(response.get()));
+    });
+  }
+
+  /// @throws Error if the request cannot be sent.
+  std::future<Response> async_call(const Request & request)
+  {
+    auto promise = std::make_shared<std::promise<Response>>();
+    auto future = promise->get_future();
+    send(&request, [promise](const std::shared_ptr<void> & response) {
+      promise->set_value(*static_cast<const Response *>(response.get()));
+    });
+    return future;
+  }
+
+  /// Waits for service and answer together at most `timeout`; the executor must be spinning in another
+  /// thread. The error says what was missing: no such service, no answer, shutdown, or called from the
+  /// executor's own thread.
+  tl::expected<Response, std::string> call(const Request & request, std::chrono::nanoseconds timeout)
+  {
+    auto response = call_and_wait(&request, timeout);
+    if (!response) {
+      return tl::make_unexpected(std::move(response.error()));
+    }
+    return std::move(*static_cast<Response *>(response->get()));
+  }
+};
+
+template <typename S>
+constexpr detail::ErasedClient erase_client()
+{
+  return {rosidl_typesupport_cpp::get_service_type_support_handle<S>(),
+          []() -> std::shared_ptr<void> { return std::make_shared<typename S::Response>(); }};
+}
+
+}  // namespace rcl_cxx

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <fmt/core.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace rcl_cxx {
+/// Values are rcutils' severities.
+enum class LogLevel { debug = 10, info = 20, warn = 30, error = 40, fatal = 50 };
+
+/// Where a log statement stands.
+struct LogLocation {
+  const char * function;
+  const char * file;
+  std::size_t line;
+};
+
+/// A named logger. Messages go to console, log file and /rosout, as --log-level and rcl's settings say;
+/// /rosout only for a node's logger and its children. Cheap to copy, thread-safe. Use through the RCL_CXX_…
+/// macros:
+///
+///     RCL_CXX_INFO(node->logger(), "connected to {} in {:.1f} s", host, seconds);
+///     RCL_CXX_WARN_THROTTLE(logger, std::chrono::seconds(1), "{} packages lost", n);
+class Logger {
+ public:
+  explicit Logger(std::string name);
+
+  const std::string & name() const noexcept { return *name_; }
+
+  /// "<name>.<suffix>"; keeps appearing in the node's /rosout while any copy of it lives.
+  Logger child(std::string_view suffix) const;
+
+  bool is_enabled(LogLevel level) const noexcept;
+  void set_level(LogLevel level) const;
+
+  /// Writes `text`, whatever the level. Never throws.
+  void write(LogLevel level, const LogLocation & location, std::string_view text) const noexcept;
+  /// Formats and writes; a formatting error is written in place of the text. Never throws.
+  void write_formatted(LogLevel level, const LogLocation & location, fmt::string_view format,
+                       fmt::format_args arguments) const noexcept;
+
+  template <typename... T>
+  void log(LogLevel level, const LogLocation & location, fmt::format_string<T...> format,
+           T &&... arguments) const noexcept
+  {
+    write_formatted(level, location, format, fmt::make_format_args(arguments...));
+  }
+
+ private:
+  std::shared_ptr<const std::string> name_;
+  std::shared_ptr<const void> registration_;  // the child's entry in the node's /rosout
+};
+
+namespace detail {
+/// True at most once a `period` (steady clock), over all threads.
+bool throttle_passes(std::atomic<std::int64_t> & last_ns, std::chrono::nanoseconds period) noexcept;
+}  // namespace detail
+
+}  // namespace rcl_cxx
+
+#define RCL_CXX_LOG(level, logger, ...)                                                             \
+  do {                                                                                              \
+    const auto & rcl_cxx_logger = (logger);                                                         \
+    if (rcl_cxx_logger.is_enabled(level)) {                                                         \
+      rcl_cxx_logger.log(level, ::rcl_cxx::LogLocation{__func__, __FILE__, __LINE__}, __VA_ARGS__); \
+    }                                                                                               \
+  } while (false)
+
+#define RCL_CXX_LOG_ONCE(level, logger, ...)      \
+  do {                                            \
+    static std::atomic<bool> rcl_cxx_done{false}; \
+    if (!rcl_cxx_done.exchange(true)) {           \
+      RCL_CXX_LOG(level, logger, __VA_ARGS__);    \
+    }                                             \
+  } while (false)
+
+#define RCL_CXX_LOG_THROTTLE(level, logger, period, ...)              \
+  do {                                                                \
+    static std::atomic<std::int64_t> rcl_cxx_last{INT64_MIN};         \
+    if (::rcl_cxx::detail::throttle_passes(rcl_cxx_last, (period))) { \
+      RCL_CXX_LOG(level, logger, __VA_ARGS__);                        \
+    }                                                                 \
+  } while (false)
+
+#define RCL_CXX_DEBUG(logger, ...) RCL_CXX_LOG(::rcl_cxx::LogLevel::debug, logger, __VA_ARGS__)
+#define RCL_CXX_INFO(logger, ...) RCL_CXX_LOG(::rcl_cxx::LogLevel::info, logger, __VA_ARGS__)
+#define RCL_CXX_WARN(logger, ...) RCL_CXX_LOG(::rcl_cxx::LogLevel::warn, logger, __VA_ARGS__)
+#define RCL_CXX_ERROR(logger, ...) RCL_CXX_LOG(::rcl_cxx::LogLevel::error, logger, __VA_ARGS__)
+#define RCL_CXX_FATAL(logger, ...) RCL_CXX_LOG(::rcl_cxx::LogLevel::fatal, logger, __VA_ARGS__)
+
+#define RCL_CXX_INFO_ONCE(logger, ...) RCL_CXX_LOG_ONCE(::rcl_cxx::LogLevel::info, logger, __VA_ARGS__)
+#define RCL_CXX_WARN_ONCE(logger, ...) RCL_CXX_LOG_ONCE(::rcl_cxx::LogLevel::warn, logger, __VA_ARGS__)
+
+/// `period` is a std::chrono duration.
+#define RCL_CXX_INFO_THROTTLE(logger, period, ...) \
+  RCL_CXX_LOG_THROTTLE(::rcl_cxx::LogLevel::info, logger, period, __VA_ARGS__)
+#define RCL_CXX_WARN_THROTTLE(logger, period, ...) \
+  RCL_CXX_LOG_THROTTLE(::rcl_cxx::LogLevel::warn, logger, period, __VA_ARGS__)
+#define RCL_CXX_ERROR_THROTTLE(logger, period, ...) \
+  RCL_CXX_LOG_THROTTLE(::rcl_cxx::LogLevel::error, logger, period, __VA_ARGS__)

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "rcl_cxx/parameter_value.hpp"
+
+namespace rcl_cxx {
+struct Parameter {
+  std::string name;
+  ParameterValue value;
+
+  bool operator==(const Parameter &) const = default;
+};
+
+/// from <= value <= to; with a step > 0, (value - from) is a whole multiple of it, or value is `to`.
+struct FloatingPointRange {
+  double from;
+  double to;
+  double step = 0.0;
+};
+
+struct IntegerRange {
+  std::int64_t from;
+  std::int64_t to;
+  std::uint64_t step = 0;
+};
+
+/// What rcl_interfaces/msg/ParameterDescriptor says about a parameter.
+struct ParameterOptions {
+  std::string description{};
+  std::string additional_constraints{};
+  bool read_only = false;
+  std::optional<FloatingPointRange> floating_point_range{};
+  std::optional<IntegerRange> integer_range{};
+  /// The type may change by setting. Otherwise it is that of the default.
+  bool dynamic_typing = false;
+  /// Take the default even if command line or parameter file say otherwise.
+  bool ignore_override = false;
+};
+
+/// Nothing, or the reason of a refusal.
+using ParameterResult = tl::expected<void, std::string>;
+
+/// Looks at a set of parameters before any of them is set; a refusal refuses all of them, with its reason.
+using OnSetParameters = std::function<ParameterResult(const std::vector<Parameter> &)>;
+/// Told of parameters that have been set.
+using OnParametersSet = std::function<void(const std::vector<Parameter> &)>;
+
+/// Keeps a parameter callback registered. Destroying it unregisters.
+using ParameterCallbackHandle = std::shared_ptr<void>;
+
+}  // namespace rcl_cxx

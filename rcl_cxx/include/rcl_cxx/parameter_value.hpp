@@ -1,0 +1,164 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+namespace rcl_cxx {
+/// Numbers are those of rcl_interfaces/msg/ParameterType.
+enum class ParameterType : std::uint8_t {
+  not_set = 0,
+  boolean = 1,
+  integer = 2,
+  real = 3,
+  string = 4,
+  byte_array = 5,
+  boolean_array = 6,
+  integer_array = 7,
+  real_array = 8,
+  string_array = 9
+};
+
+/// As rclcpp writes them in messages: "not set", "bool", "integer", "double", "string", "byte_array", …
+std::string_view to_string(ParameterType type) noexcept;
+
+/// The value of a parameter; empty means not set.
+class ParameterValue {
+ public:
+  /// In the order of ParameterType.
+  using Variant = std::variant<std::monostate, bool, std::int64_t, double, std::string,
+                               std::vector<std::uint8_t>, std::vector<bool>, std::vector<std::int64_t>,
+                               std::vector<double>, std::vector<std::string>>;
+
+  ParameterValue() = default;
+  ParameterValue(bool value) : value_(value) {}
+  template <std::integral T>
+    requires(!std::same_as<T, bool>)
+  ParameterValue(T value) : value_(to_integer(value))
+  {
+  }
+  template <std::floating_point T>
+  ParameterValue(T value) : value_(static_cast<double>(value))
+  {
+  }
+  ParameterValue(const char * value) : value_(std::string(value)) {}
+  ParameterValue(std::string_view value) : value_(std::string(value)) {}
+  ParameterValue(std::string value) : value_(std::move(value)) {}
+  ParameterValue(std::vector<std::uint8_t> value) : value_(std::move(value)) {}
+  ParameterValue(std::vector<bool> value) : value_(std::move(value)) {}
+  ParameterValue(std::vector<std::int64_t> value) : value_(std::move(value)) {}
+  ParameterValue(std::vector<double> value) : value_(std::move(value)) {}
+  ParameterValue(std::vector<std::string> value) : value_(std::move(value)) {}
+  ParameterValue(const std::vector<int> & value)
+      : value_(std::vector<std::int64_t>(value.begin(), value.end()))
+  {
+  }
+  ParameterValue(const std::vector<float> & value) : value_(std::vector<double>(value.begin(), value.end()))
+  {
+  }
+
+  ParameterType type() const noexcept { return static_cast<ParameterType>(value_.index()); }
+  const Variant & variant() const noexcept { return value_; }
+  /// For messages: `12`, `'text'`, `[1.0, 2.0]`, `not set`.
+  std::string to_string() const;
+
+  /// T is bool, an integer or floating-point type, std::string, or a vector of bool, std::uint8_t, int,
+  /// std::int64_t, float, double, std::string.
+  /// @throws Error that names both types, or an integer that does not fit into T.
+  template <typename T>
+  T get() const;
+
+  bool operator==(const ParameterValue &) const = default;
+
+ private:
+  [[noreturn]] void throw_wrong_type(ParameterType wanted) const;
+  [[noreturn]] static void throw_does_not_fit(std::int64_t value, std::int64_t low, std::uint64_t high);
+  [[noreturn]] static void throw_too_large(std::uint64_t value);
+
+  template <std::integral T>
+  static std::int64_t to_integer(T value)
+  {
+    if constexpr (std::is_unsigned_v<T> && sizeof(T) == 8) {
+      if (value > static_cast<T>(std::numeric_limits<std::int64_t>::max())) {
+        throw_too_large(value);
+      }
+    }
+    return static_cast<std::int64_t>(value);
+  }
+
+  template <typename V>
+  const V & as(ParameterType wanted) const
+  {
+    if (const V * value = std::get_if<V>(&value_)) {
+      return *value;
+    }
+    throw_wrong_type(wanted);
+  }
+
+  template <typename T>
+  static T narrow(std::int64_t value)
+  {
+    if (!std::in_range<T>(value)) {
+      throw_does_not_fit(value, static_cast<std::int64_t>(std::numeric_limits<T>::min()),
+                         static_cast<std::uint64_t>(std::numeric_limits<T>::max()));
+    }
+    return static_cast<T>(value);
+  }
+
+  Variant value_;
+};
+
+/// The ParameterType of a C++ type.
+template <typename T>
+constexpr ParameterType parameter_type_of()
+{
+  if constexpr (std::is_same_v<T, bool>) {
+    return ParameterType::boolean;
+  } else if constexpr (std::is_integral_v<T>) {
+    return ParameterType::integer;
+  } else if constexpr (std::is_floating_point_v<T>) {
+    return ParameterType::real;
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    return ParameterType::string;
+  } else if constexpr (std::is_same_v<T, std::vector<std::uint8_t>>) {
+    return ParameterType::byte_array;
+  } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
+    return ParameterType::boolean_array;
+  } else if constexpr (std::is_same_v<T, std::vector<int>> || std::is_same_v<T, std::vector<std::int64_t>>) {
+    return ParameterType::integer_array;
+  } else if constexpr (std::is_same_v<T, std::vector<float>> || std::is_same_v<T, std::vector<double>>) {
+    return ParameterType::real_array;
+  } else {
+    static_assert(std::is_same_v<T, std::vector<std::string>>, "not a type that a ROS parameter can have");
+    return ParameterType::string_array;
+  }
+}
+
+template <typename T>
+T ParameterValue::get() const
+{
+  constexpr ParameterType wanted = parameter_type_of<T>();
+  if constexpr (wanted == ParameterType::integer) {
+    return narrow<T>(as<std::int64_t>(wanted));
+  } else if constexpr (wanted == ParameterType::real) {
+    return static_cast<T>(as<double>(wanted));
+  } else if constexpr (std::is_same_v<T, std::vector<int>>) {
+    std::vector<int> values;
+    for (const std::int64_t value : as<std::vector<std::int64_t>>(wanted)) {
+      values.push_back(narrow<int>(value));
+    }
+    return values;
+  } else if constexpr (std::is_same_v<T, std::vector<float>>) {
+    const auto & values = as<std::vector<double>>(wanted);
+    return std::vector<float>(values.begin(), values.end());
+  } else {
+    return as<T>(wanted);
+  }
+}
+
+}  // namespace rcl_cxx

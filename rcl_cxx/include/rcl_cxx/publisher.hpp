@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <rosidl_typesupport_cpp/message_type_support.hpp>
+#include <string>
+
+namespace rcl_cxx {
+namespace detail {
+class PublisherCore;
+}
+
+class PublisherBase {
+ public:
+  virtual ~PublisherBase();
+  PublisherBase(const PublisherBase &) = delete;
+  PublisherBase & operator=(const PublisherBase &) = delete;
+
+  /// The resolved topic, "/robot/joint_states".
+  const std::string & topic_name() const noexcept;
+  /// Matched subscriptions.
+  std::size_t subscription_count() const;
+
+ protected:
+  explicit PublisherBase(std::shared_ptr<detail::PublisherCore> core);
+  void publish_message(const void * message);
+
+ private:
+  std::shared_ptr<detail::PublisherCore> core_;
+};
+
+/// From Node::create_publisher. Thread-safe; may outlive the node object, not its context's shutdown
+/// (publishing is then a no-op).
+template <typename M>
+class Publisher : public PublisherBase {
+ public:
+  using SharedPtr = std::shared_ptr<Publisher<M>>;
+
+  explicit Publisher(std::shared_ptr<detail::PublisherCore> core) : PublisherBase(std::move(core)) {}
+
+  /// Serialises and sends in the caller's thread; this layer allocates nothing. @throws Error
+  void publish(const M & message) { publish_message(&message); }
+};
+
+}  // namespace rcl_cxx

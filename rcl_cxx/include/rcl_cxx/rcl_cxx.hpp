@@ -1,0 +1,21 @@
+#pragma once
+
+/// rcl_cxx: a small C++20 client layer on rcl and rcl_action. Everything; or include what you use.
+
+#include "rcl_cxx/action_client.hpp"
+#include "rcl_cxx/action_server.hpp"
+#include "rcl_cxx/client.hpp"
+#include "rcl_cxx/context.hpp"
+#include "rcl_cxx/error.hpp"
+#include "rcl_cxx/executor.hpp"
+#include "rcl_cxx/goal_handle.hpp"
+#include "rcl_cxx/goal_id.hpp"
+#include "rcl_cxx/logging.hpp"
+#include "rcl_cxx/node.hpp"
+#include "rcl_cxx/parameter.hpp"
+#include "rcl_cxx/parameter_value.hpp"
+#include "rcl_cxx/publisher.hpp"
+#include "rcl_cxx/qos.hpp"
+#include "rcl_cxx/service.hpp"
+#include "rcl_cxx/subscription.hpp"
+#include "rcl_cxx/timer.hpp"

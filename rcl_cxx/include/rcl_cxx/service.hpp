@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <rosidl_typesupport_cpp/service_type_support.hpp>
+#include <string>
+
+namespace rcl_cxx {
+namespace detail {
+class ServiceCore;
+
+struct ErasedService {
+  const rosidl_service_type_support_t * type_support;
+  std::shared_ptr<void> (*make_request)();
+  std::shared_ptr<void> (*make_response)();
+  std::function<void(const void * request, void * response)> callback;
+};
+}  // namespace detail
+
+class ServiceBase {
+ public:
+  /// No callback runs once this has returned (see SubscriptionBase).
+  virtual ~ServiceBase();
+  ServiceBase(const ServiceBase &) = delete;
+  ServiceBase & operator=(const ServiceBase &) = delete;
+
+  const std::string & service_name() const noexcept;
+
+ protected:
+  explicit ServiceBase(std::shared_ptr<detail::ServiceCore> core);
+
+ private:
+  std::shared_ptr<detail::ServiceCore> core_;
+};
+
+/// From Node::create_service. The callback fills the response, in the executor's thread. If it throws, the
+/// exception is logged and the response is sent as far as it was filled, so that no client hangs.
+template <typename S>
+class Service : public ServiceBase {
+ public:
+  using SharedPtr = std::shared_ptr<Service<S>>;
+  using Request = typename S::Request;
+  using Response = typename S::Response;
+
+  explicit Service(std::shared_ptr<detail::ServiceCore> core) : ServiceBase(std::move(core)) {}
+
+  template <typename F>
+  static detail::ErasedService erase(F && callback)
+  {
+    return {rosidl_typesupport_cpp::get_service_type_support_handle<S>(),
+            []() -> std::shared_ptr<void> { return std::make_shared<Request>(); },
+            []() -> std::shared_ptr<void> { return std::make_shared<Response>(); },
+            [f = std::forward<F>(callback)](const void * request, void * response) mutable {
+              f(*static_cast<const Request *>(request), *static_cast<Response *>(response));
+            }};
+  }
+};
+
+}  // namespace rcl_cxx
