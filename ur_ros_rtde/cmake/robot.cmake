@@ -1,0 +1,18 @@
+# ur_ros_rtde_robot: the robot side, without ROS.
+find_package(fmt REQUIRED)
+find_package(tl-expected REQUIRED)
+find_package(ur_rtde_vendor REQUIRED)
+find_package(Threads REQUIRED)
+
+file(GLOB robot_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/robot/*.cpp)
+add_library(ur_ros_rtde_robot SHARED ${robot_sources})
+target_compile_features(ur_ros_rtde_robot PUBLIC cxx_std_20)
+target_compile_options(ur_ros_rtde_robot PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+target_include_directories(ur_ros_rtde_robot
+  PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>
+  PRIVATE src)
+target_link_libraries(ur_ros_rtde_robot
+  PUBLIC ur_rtde::rtde tl::expected Threads::Threads
+  PRIVATE fmt::fmt)

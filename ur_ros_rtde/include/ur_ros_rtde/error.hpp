@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <tl/expected.hpp>
+#include <utility>
+
+namespace ur_ros_rtde {
+
+/// Why something was refused or ended early. The numbers are those of ur_ros_rtde_msgs/msg/ErrorCode.
+enum class ErrorCode : std::uint16_t {
+  none = 0,
+  invalid_goal = 1,
+  busy = 2,
+  not_ready = 3,
+  canceled = 4,
+  preempted = 5,
+  timeout = 6,
+  protective_stop = 7,
+  emergency_stop = 8,
+  safeguard_stop = 9,
+  program_stopped = 10,
+  link_lost = 11,
+  rejected_by_robot = 12,
+  not_reached = 13,
+  unreachable = 14,
+  exception = 15,
+  shutdown = 16,
+  not_supported = 17,
+  safety_violation = 18,
+};
+
+/// The enumerator's name, "unknown" for a number outside the enumeration.
+const char * to_string(ErrorCode code);
+
+/// `message` names the field or part concerned, its value, the limit, and what to do about it.
+struct Error {
+  ErrorCode code = ErrorCode::none;
+  std::string message;
+};
+
+using Status = tl::expected<void, Error>;
+template <class T>
+using Expected = tl::expected<T, Error>;
+
+inline tl::unexpected<Error> failure(ErrorCode code, std::string message)
+{
+  return tl::unexpected<Error>(Error{code, std::move(message)});
+}
+
+/// An Error as an exception, for calls that return something else.
+class RobotError : public std::runtime_error {
+ public:
+  explicit RobotError(Error error) : std::runtime_error(error.message), error_(std::move(error)) {}
+  const Error & error() const { return error_; }
+
+ private:
+  Error error_;
+};
+
+}  // namespace ur_ros_rtde

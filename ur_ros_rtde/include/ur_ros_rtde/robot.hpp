@@ -1,0 +1,127 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "ur_ros_rtde/arbiter.hpp"
+#include "ur_ros_rtde/error.hpp"
+#include "ur_ros_rtde/link.hpp"
+#include "ur_ros_rtde/locked.hpp"
+#include "ur_ros_rtde/log.hpp"
+#include "ur_ros_rtde/motion.hpp"
+#include "ur_ros_rtde/sample.hpp"
+
+namespace ur_rtde {
+class DashboardClient;
+class RTDEControlInterface;
+class RTDEIOInterface;
+class RTDEReceiveInterface;
+}  // namespace ur_rtde
+
+namespace ur_ros_rtde {
+
+enum class ControlMode {
+  upload,         ///< ur_rtde's control script is sent to the controller; needs remote control (e-Series)
+  control_urcap,  ///< the External Control URCap on the robot fetches it
+};
+
+struct RobotOptions {
+  std::string address;
+  /// Hz, of the samples; see StateReceiverOptions.
+  double frequency = 0.0;
+  ControlMode control_mode = ControlMode::upload;
+  std::uint16_t urcap_port = 50002;
+  /// Registers 24-47 instead of 0-23, beside another RTDE client that uses the lower ones. Not yet on
+  /// PolyScope 5.23 and later.
+  bool upper_range_registers = false;
+  std::chrono::milliseconds connect_timeout{1000};
+  std::chrono::milliseconds retry_interval{250};
+  std::chrono::milliseconds silence_limit{100};
+  /// The robot program stops the arm when it has had no sign of life from here for 1/watchdog_frequency s.
+  /// Hz; 0: no watchdog.
+  double watchdog_frequency = 10.0;
+  /// Start the control program again when it was stopped and the robot is ready for it (never what it was
+  /// doing).
+  bool restart_program = true;
+};
+
+enum class RobotState {
+  disconnected,  ///< no controller at the address
+  connecting,    ///< there is one; interfaces and control program are being set up
+  ready,         ///< takes motion commands
+  stopped,       ///< connected, but it cannot move: see the cause
+};
+
+const char * to_string(RobotState state);
+
+struct RobotStatus {
+  RobotState state = RobotState::disconnected;
+  ErrorCode cause = ErrorCode::none;
+  /// What is the matter and what to do about it; empty when ready.
+  std::string message;
+};
+
+/// The robot: ur_rtde's four interfaces, connected in the background in any power-up order and again after a
+/// reboot, a pulled cable, a stopped program; and what the commands share: lock, motion tracking, stop,
+/// arbiter. All methods are thread-safe. Destruction stops a motion under way, ends the control program and
+/// joins all threads.
+class Robot {
+ public:
+  /// Throws std::invalid_argument for options out of range; never for the network's sake.
+  explicit Robot(RobotOptions options, LogFunction log = {});
+  ~Robot();
+  Robot(const Robot &) = delete;
+  Robot & operator=(const Robot &) = delete;
+
+  /// Each change of status once, in order, on a thread of the robot. Set before start().
+  void on_status(std::function<void(const RobotStatus &)> function);
+  /// Each package on the receiving thread: be brief. Set before start().
+  void on_sample(std::function<void(const Sample &)> function);
+  void start();
+
+  RobotStatus status() const;
+  /// Refused with the status' cause and message.
+  Status ready_to_move() const;
+  Status wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop = {}) const;
+  std::optional<ControllerVersion> version() const;
+
+  /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) when the interface is
+  /// not there.
+  Locked<ur_rtde::RTDEControlInterface> control() const;
+  Locked<ur_rtde::RTDEReceiveInterface> receive() const;
+  Locked<ur_rtde::RTDEIOInterface> io() const;
+  Locked<ur_rtde::DashboardClient> dashboard() const;
+
+  std::optional<Sample> latest() const;
+  bool wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop = {}) const;
+
+  /// What keeps a motion from going on, now: a safety stop, a stopped program, a lost link; success when
+  /// nothing does. From the newest package, without waiting for the supervisor's next look.
+  Status motion_possible() const;
+
+  /// Taken before a motion command …
+  MotionMark mark_motion() const;
+  /// … tells afterwards how far it is. For commands without an asynchronous operation (speed_l, servo_j) only
+  /// at_rest counts.
+  MotionProgress motion_progress(const MotionMark & mark) const;
+  /// Any joint moves, or an asynchronous operation is under way.
+  bool moving() const;
+
+  /// Whatever moves: decelerates, waits for standstill by actual joint velocities. If that does not work,
+  /// stops the program by way of the dashboard server. An error means that nobody knows whether the arm
+  /// stands.
+  Expected<StopReport> stop_motion(const StopOptions & options = {});
+
+  Arbiter & arbiter();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ur_ros_rtde
