@@ -1,0 +1,98 @@
+# What the ROS 2 wheels of the Python registry need, and an installed ROS 2 does not. Given to every package of a build
+# on wheels by -DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=<this file>; the packages know nothing of it. Needs CMake >= 3.24.
+#
+# The prefix of the wheels (their virtual environment) is ROS_WHEELS_PREFIX, a CMake or environment variable.
+
+if(NOT ROS_WHEELS_PREFIX)
+  set(ROS_WHEELS_PREFIX "$ENV{ROS_WHEELS_PREFIX}")
+endif()
+if(NOT EXISTS "${ROS_WHEELS_PREFIX}/share/rcl/cmake/rclConfig.cmake")
+  message(FATAL_ERROR "ROS_WHEELS_PREFIX must name the virtual environment that holds the ROS 2 wheels, "
+    "it is `${ROS_WHEELS_PREFIX}`")
+endif()
+set(ROS_WHEELS_PREFIX "${ROS_WHEELS_PREFIX}" CACHE PATH "Virtual environment that holds the ROS 2 wheels")
+
+# --- 1. Imported targets that carry paths of the machine the wheels were built on -----------------------------------
+
+function(_ros_wheels_without target)
+  get_target_property(libraries ${target} INTERFACE_LINK_LIBRARIES)
+  if(libraries)
+    list(REMOVE_ITEM libraries ${ARGN})
+    set_target_properties(${target} PROPERTIES INTERFACE_LINK_LIBRARIES "${libraries}")
+  endif()
+endfunction()
+
+function(_ros_wheels_repair_targets)
+  get_property(targets DIRECTORY PROPERTY IMPORTED_TARGETS)
+  foreach(target IN LISTS targets)
+    if(target MATCHES "__rosidl_generator_py$")
+      # The include folders of that machine's Python and numpy.
+      set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "")
+    elseif(target MATCHES "^fast(dds|rtps)$")
+      _ros_wheels_without(${target} /usr/lib64/libtinyxml2.so)
+    elseif(target STREQUAL "tracetools::tracetools")
+      # Bundled with the wheels under a mangled name; libtracetools.so names it itself.
+      _ros_wheels_without(${target} lttng-ust lttng-ust::lttng-ust)
+    endif()
+  endforeach()
+endfunction()
+
+# A macro, so that what find_package() sets reaches its caller.
+macro(_ros_wheels_find_package _ros_wheels_method _ros_wheels_package)
+  find_package(${_ros_wheels_package} ${ARGN} BYPASS_PROVIDER)
+  _ros_wheels_repair_targets()
+endmacro()
+
+cmake_language(SET_DEPENDENCY_PROVIDER _ros_wheels_find_package SUPPORTED_METHODS FIND_PACKAGE)
+
+# --- 2. Python's symbols in C++ programs ----------------------------------------------------------------------------
+# librcl.so depends on the *__rosidl_generator_py.so, which refer to the Python interpreter and name no library that
+# has it. Nothing calls into them in a C++ program, so one library of zeros under those names, in every program and
+# in no shared library, lets it link and load. (In a Python process the interpreter's own symbols are there.)
+
+function(_ros_wheels_build_python_symbols library)
+  find_program(ROS_WHEELS_NM nm REQUIRED)
+  find_program(ROS_WHEELS_CC NAMES $ENV{CC} cc gcc clang REQUIRED)
+  file(GLOB users "${ROS_WHEELS_PREFIX}/lib/lib*__rosidl_generator_py.so")
+  execute_process(COMMAND "${ROS_WHEELS_NM}" -D --undefined-only ${users}
+    OUTPUT_VARIABLE undefined COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "U _?Py[A-Za-z0-9_]+" symbols "${undefined}")
+  list(REMOVE_DUPLICATES symbols)
+  set(code "")
+  foreach(symbol IN LISTS symbols)
+    string(REGEX REPLACE "^U (.+)$" "char \\1[64];\n" line "${symbol}")
+    string(APPEND code "${line}")
+  endforeach()
+  file(WRITE "${CMAKE_BINARY_DIR}/ros_wheels/python_symbols.c" "${code}")
+  execute_process(
+    COMMAND "${ROS_WHEELS_CC}" -shared -fPIC -Wl,-soname,libros_wheels_python_symbols.so
+      -o "${CMAKE_BINARY_DIR}/ros_wheels/python_symbols.so" "${CMAKE_BINARY_DIR}/ros_wheels/python_symbols.c"
+    COMMAND_ERROR_IS_FATAL ANY)
+  # Renamed into place: builds of several packages may get here at the same time.
+  string(RANDOM LENGTH 8 suffix)
+  file(COPY_FILE "${CMAKE_BINARY_DIR}/ros_wheels/python_symbols.so" "${library}.${suffix}")
+  file(RENAME "${library}.${suffix}" "${library}")
+endfunction()
+
+set(_ros_wheels_python_symbols "${ROS_WHEELS_PREFIX}/lib/libros_wheels_python_symbols.so")
+if(NOT EXISTS "${_ros_wheels_python_symbols}")
+  _ros_wheels_build_python_symbols("${_ros_wheels_python_symbols}")
+endif()
+set(_ros_wheels_is_program "$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>")
+add_link_options(
+  "$<${_ros_wheels_is_program}:-Wl,--push-state,--no-as-needed,${_ros_wheels_python_symbols},--pop-state>")
+
+# --- 3. Finding the wheels' libraries, when linking and when running ------------------------------------------------
+# DT_RPATH, not RUNPATH: it holds for libraries of libraries and for those opened at run time, so that a program
+# needs no environment variable.
+
+file(GLOB _ros_wheels_bundled LIST_DIRECTORIES true "${ROS_WHEELS_PREFIX}/lib/python3.*/site-packages/ros_*.libs")
+set(_ros_wheels_folders "${ROS_WHEELS_PREFIX}/lib" ${_ros_wheels_bundled})
+add_link_options(-Wl,--disable-new-dtags)
+foreach(_ros_wheels_folder IN LISTS _ros_wheels_folders)
+  add_link_options("-Wl,-rpath-link,${_ros_wheels_folder}")
+endforeach()
+set(CMAKE_BUILD_RPATH ${_ros_wheels_folders})
+# Programs are installed in lib/<package> and bin, libraries in lib.
+set(CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/.." "$ORIGIN/../lib" ${_ros_wheels_folders})
+set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
