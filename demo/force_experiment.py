@@ -1,0 +1,148 @@
+"""The force experiment: the arm goes down, two pushes by hand are ignored, the contact stops it.
+
+Needs a running simulator and the nodes (`./ur demo` starts both); leaves a CSV and a picture.
+"""
+
+import argparse
+import math
+import sys
+import time
+from pathlib import Path
+
+import rclpy
+from force_figure import JOINTS, draw
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from recorder import Recorder, mark_events, write_csv
+from ur_ros_rtde_tutorials.action import MoveDownUntilForce
+
+from control_port import ControlPort
+
+DISCOVERY_LIMIT = 20.0  # s
+STANDSTILL = 0.002  # rad/s
+AFTERWARDS = 0.8  # s recorded after the standstill
+
+
+class Experiment:
+    def __init__(self, node, control, options):
+        self.node, self.control, self.options = node, control, options
+        self.recorder = Recorder(node)
+        self.client = ActionClient(node, MoveDownUntilForce, "move_down_until_force")
+        self.goal_handle = self.result = None
+        self.pushes = []
+
+    def wait(self, condition, limit, what):
+        """Serves the node until the condition holds."""
+        deadline = time.monotonic() + limit
+        while not condition():
+            if time.monotonic() > deadline:
+                raise SystemExit(f"waited {limit:g} s for {what}: see the logs of the nodes")
+            rclpy.spin_once(self.node, timeout_sec=0.02)
+
+    def prepare(self):
+        self.wait(self.client.server_is_ready, DISCOVERY_LIMIT, "the action move_down_until_force")
+        self.wait(self.recorder.complete, DISCOVERY_LIMIT, "joint_states, wrench and tcp_pose")
+        self.start_height = self.recorder.height
+        table = self.start_height - self.options.drop
+        self.control.request("clear_surfaces")
+        self.control.request("place_surface", point=[0.0, 0.0, table], normal=[0.0, 0.0, 1.0], stiffness=15000.0, damping=80.0)
+        print(f"table placed {self.options.drop:.2f} m below the tool (z = {table:.3f} m)")
+
+    def send_goal(self):
+        goal = MoveDownUntilForce.Goal(
+            force=self.options.threshold, distance=min(1.0, self.options.drop + 0.1), speed=self.options.speed
+        )
+        print(f"goal: down {goal.distance:.2f} m at {goal.speed:g} m/s until {goal.force:g} N along the flange Z axis")
+        sent = self.client.send_goal_async(goal, feedback_callback=self.on_feedback)
+        self.wait(sent.done, 10.0, "the answer to the goal")
+        self.goal_handle = sent.result()
+        if not self.goal_handle.accepted:
+            raise SystemExit("goal refused: the reason is in the log of command_server and on the topic goal_refusals")
+        self.recorder.start()
+        print("goal accepted")
+        self.result = self.goal_handle.get_result_async()
+
+    def on_feedback(self, message):
+        done = max(0.0, min(1.0, (self.start_height - self.recorder.height) / self.options.drop))
+        bar = "#" * round(30 * done)
+        force = self.recorder.force()
+        print(f"\r  going down [{bar:<30}] {self.start_height - self.recorder.height:5.3f} m, "
+              f"force x {force[0]:6.1f} y {force[1]:6.1f} z {force[2]:6.1f} N ", end="", flush=True)
+
+    def push(self, axis):
+        """By hand, along one axis of the flange, half as strong again as the threshold."""
+        wrench = [0.0] * 6
+        wrench["xyz".index(axis)] = 1.5 * self.options.threshold
+        self.control.request("push", wrench=wrench, duration=0.4, frame="tool")
+        self.pushes.append((self.recorder.now(), axis))
+        print(f"\n  push along {axis.upper()}: {wrench['xyz'.index(axis)]:g} N for 0.4 s (must be ignored)")
+
+    def run(self):
+        self.send_goal()
+        limit = 10.0 + 2.0 * self.options.drop / self.options.speed
+        for axis, fraction in (("x", 0.3), ("y", 0.6)):
+            height = self.start_height - fraction * self.options.drop
+            self.wait(lambda h=height: self.recorder.height < h or self.result.done(), limit, "the arm to go down")
+            if self.result.done():
+                break
+            self.push(axis)
+        self.wait(self.result.done, limit, "the result")
+        print()
+        end = self.recorder.now() + AFTERWARDS
+        self.wait(lambda: self.recorder.now() > end, 10.0 * AFTERWARDS, "the end of the recording")
+        return self.result.result().result
+
+    def events(self):
+        return mark_events(self.recorder.rows, self.pushes, self.options.threshold)
+
+    def report(self, result, events):
+        ignored = [event for event in events if event[1].startswith("ignored")]
+        stops = [event for event in events if event[1].startswith("stop")]
+        for index, kind in ignored:
+            row, axis = self.recorder.rows[index], kind[-1]
+            print(f"ignored:    {row[f'force_{axis}']:.1f} N along {axis.upper()} at t = {row['time']:.3f} s")
+        if stops:
+            row = self.recorder.rows[stops[0][0]]
+            standstill = next((later["time"] for later in self.recorder.rows[stops[0][0]:]
+                               if max(abs(later[joint]) for joint in JOINTS) < STANDSTILL), math.nan)
+            print(f"stop:       {row['force_z']:.1f} N along Z at t = {row['time']:.3f} s; "
+                  f"standstill {1000 * (standstill - row['time']):.0f} ms later")
+        print(f"distance:   {self.start_height - self.recorder.height:.3f} m")
+        print(f"result:     {'success' if result.success else 'failure'} ({result.error_code}): {result.message}")
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--address", default="127.0.0.1", help="of the simulator")
+    parser.add_argument("--model", default="UR10e", help="for the title")
+    parser.add_argument("--threshold", type=float, default=20.0, help="N along the flange Z axis")
+    parser.add_argument("--speed", type=float, default=0.1, help="m/s")
+    parser.add_argument("--drop", type=float, default=0.3, help="m between the tool and the table")
+    parser.add_argument("--output", type=Path, default=Path("."), help="folder of the CSV and the picture")
+    return parser.parse_args()
+
+
+def main():
+    options = parse_arguments()
+    rclpy.init()
+    node = Node("force_experiment")
+    try:
+        with ControlPort(options.address) as control:
+            experiment = Experiment(node, control, options)
+            experiment.prepare()
+            result = experiment.run()
+            events = experiment.events()
+            experiment.report(result, events)
+            csv_path, png_path = (options.output / f"force_experiment.{kind}" for kind in ("csv", "png"))
+            write_csv(csv_path, experiment.recorder.rows, events)
+            draw(csv_path, png_path, options.threshold,
+                 f"MoveDownUntilForce on a simulated {options.model}: only a force along the flange Z axis stops it")
+            print(f"written:    {csv_path} ({len(experiment.recorder.rows)} samples), {png_path}")
+            return 0 if result.success and len(events) == 3 else 1
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
