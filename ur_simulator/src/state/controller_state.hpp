@@ -17,7 +17,8 @@ struct Registers {
   std::array<double, 48> doubles{};
 };
 
-/// Digital bits 0-7 standard, 8-15 configurable, 16-17 tool; analog 0-1, current loop 4-20 mA (A) or voltage 0-10 V.
+/// Digital bits 0-7 standard, 8-15 configurable, 16-17 tool; analog 0-1, current loop 4-20 mA (A) or voltage
+/// 0-10 V.
 struct Io {
   std::uint64_t digital_inputs = 0;
   std::uint64_t digital_outputs = 0;
@@ -32,9 +33,9 @@ struct Io {
 };
 
 struct Payload {
-  double mass = 0.0;                          ///< kg
+  double mass = 0.0;                            ///< kg
   Vector3 center_of_gravity = Vector3::Zero();  ///< m, in the flange frame
-  Vector6 inertia = Vector6::Zero();          ///< Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m^2
+  Vector6 inertia = Vector6::Zero();            ///< Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m^2
 };
 
 struct JointState {
@@ -45,8 +46,9 @@ struct JointState {
   Vector6 torque = Vector6::Zero();        ///< N m
 };
 
-/// Everything that one control cycle reads and writes; its only owner is the controller's thread. Poses, twists and wrenches
-/// are those of the TCP in the robot's base frame; forces are what the surroundings exert on the tool.
+/// Everything that one control cycle reads and writes; its only owner is the controller's thread. Poses,
+/// twists and wrenches are those of the TCP in the robot's base frame; forces are what the surroundings exert
+/// on the tool.
 struct ControllerState {
   std::uint64_t cycle = 0;
   double timestamp = 0.0;  ///< s since start, cycle * cycle time: the clock of the simulation
@@ -54,27 +56,33 @@ struct ControllerState {
   JointState target;
   JointState actual;
   Vector6 joint_temperatures = Vector6::Constant(28.0);  ///< deg C
-  std::array<std::int32_t, 6> joint_modes{};              ///< 253 RUNNING, 255 IDLE, 239 POWER_OFF, …
+  std::array<std::int32_t, 6> joint_modes{};             ///< 253 RUNNING, 255 IDLE, 239 POWER_OFF, …
 
   Vector6 target_tcp_pose = Vector6::Zero();
   Vector6 target_tcp_speed = Vector6::Zero();
   Vector6 actual_tcp_pose = Vector6::Zero();
   Vector6 actual_tcp_speed = Vector6::Zero();
   Vector6 actual_tcp_force = Vector6::Zero();  ///< filtered, payload subtracted, zeroed: as get_tcp_force()
-  Vector6 ft_raw_wrench = Vector6::Zero();
-  Vector3 tool_acceleration = Vector3(0.0, 0.0, -9.81);
+  Vector6 ft_raw_wrench =
+      Vector6::Zero();  ///< at and in the flange frame, with the weight of the load, not zeroed
+  Vector6 contact_wrench =
+      Vector6::Zero();  ///< what surfaces and hands truly do to the tool: no noise, filter or load
+  Vector3 tool_acceleration =
+      Vector3(0.0, 0.0, -9.81);  ///< accelerometer at the flange, in flange axes, m/s^2
 
   Vector6 tcp_offset = Vector6::Zero();  ///< pose of the TCP in the flange frame
   Payload payload;
   Vector3 gravity = Vector3(0.0, 0.0, 9.82);  ///< as set_gravity(): opposes the pull
 
-  double speed_slider = 1.0;       ///< what a person or RTDE set, 0..1
-  double speed_scaling = 1.0;      ///< how fast the trajectory really runs, ramps towards the target
-  double target_speed_fraction = 1.0;
+  double speed_slider = 1.0;           ///< what a person or RTDE set, 0..1
+  double speed_scaling = 1.0;          ///< how fast the trajectory really runs, ramps towards the target
+  double target_speed_fraction = 1.0;  ///< what speed_scaling ramps to: the slider, 0 while paused
 
   RobotMode robot_mode = RobotMode::power_off;
   SafetyMode safety_mode = SafetyMode::normal;
   RuntimeState runtime_state = RuntimeState::stopped;
+  std::uint32_t robot_status_bits = 0;   ///< as RTDE's, written by Safety::step
+  std::uint32_t safety_status_bits = 0;  ///< as RTDE's, written by Safety::step
   bool freedrive = false;
   bool steady = true;
   double collision_force_ratio = 0.0;

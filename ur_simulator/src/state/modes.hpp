@@ -32,6 +32,13 @@ enum class SafetyMode : std::int32_t {
   undefined = 11,
 };
 
-enum class RuntimeState : std::uint32_t { stopping = 0, stopped = 1, playing = 2, pausing = 3, paused = 4, resuming = 5 };
+enum class RuntimeState : std::uint32_t {
+  stopping = 0,
+  stopped = 1,
+  playing = 2,
+  pausing = 3,
+  paused = 4,
+  resuming = 5
+};
 
 }  // namespace ur_simulator

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "common/types.hpp"
+#include "kinematics/robot_model.hpp"
+#include "state/controller_state.hpp"
+
+namespace ur_simulator {
+
+/// Rigid-body dynamics of one arm with a payload at its flange, by recursive Newton-Euler (Luh, Walker, Paul
+/// 1980) in DH frames. Torques in N m at the joints, behind the gears. `gravity` as set_gravity(): the upward
+/// acceleration, (0, 0, 9.82) upright.
+class Dynamics {
+ public:
+  explicit Dynamics(const RobotModel & model);
+
+  void set_payload(const Payload & payload);
+  void set_gravity(const Vector3 & gravity);
+
+  /// tau = M(q) qdd + C(q, qd) qd + g(q)
+  Vector6 inverse_dynamics(const Vector6 & q, const Vector6 & qd, const Vector6 & qdd) const;
+  Vector6 gravity_torques(const Vector6 & q) const;
+  Matrix6 mass_matrix(const Vector6 & q) const;
+  /// C(q, qd) qd: the torques of URScript's get_coriolis_and_centrifugal_torques().
+  Vector6 coriolis_torques(const Vector6 & q, const Vector6 & qd) const;
+  /// 1/2 qd' M qd and the height energy; for tests and power limits. J.
+  double kinetic_energy(const Vector6 & q, const Vector6 & qd) const;
+  double potential_energy(const Vector6 & q) const;
+  /// Motor current (A) for joint torques: torque / torque_constant.
+  Vector6 currents(const Vector6 & torques) const;
+
+ private:
+  Vector6 newton_euler(const Vector6 & q, const Vector6 & qd, const Vector6 & qdd,
+                       const Vector3 & gravity) const;
+
+  const RobotModel & model_;
+  Link last_link_;  ///< link 6 and payload as one body
+  Payload payload_;
+  Vector3 gravity_ = Vector3(0.0, 0.0, 9.82);
+};
+
+}  // namespace ur_simulator
