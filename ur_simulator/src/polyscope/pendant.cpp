@@ -1,0 +1,158 @@
+#include "polyscope/pendant.hpp"
+
+#include <fmt/format.h>
+
+namespace ur_simulator {
+namespace {
+
+constexpr std::string_view source = "pendant";
+constexpr std::string_view folder = "/programs/";
+
+/// The name inside the programs folder: clients give it with and without the folder.
+std::string file_name(std::string_view path)
+{
+  if (path.starts_with(folder)) {
+    path.remove_prefix(folder.size());
+  }
+  return std::string(path);
+}
+
+}  // namespace
+
+Pendant::Pendant(const RobotModel & model, const PendantOptions & options, ControllerState & state, Safety & safety,
+                 ProgramRunner & runner, EventLog & log)
+: model_(model),
+  options_(options),
+  state_(state),
+  safety_(safety),
+  runner_(runner),
+  log_(log),
+  remote_control_(options.remote_control)
+{
+}
+
+void Pendant::store_program(const std::string & name, const std::string & script)
+{
+  programs_.insert_or_assign(file_name(name), script);
+}
+
+tl::expected<void, Pendant::LoadError> Pendant::load_program(const std::string & name)
+{
+  const auto found = programs_.find(file_name(name));
+  if (found == programs_.end()) {
+    return tl::make_unexpected(LoadError::not_found);
+  }
+  if (const auto compiled = runner_.check(found->second); !compiled) {
+    log_.error(source, fmt::format("'{}' cannot be loaded: {}", name, compiled.error().text()));
+    return tl::make_unexpected(LoadError::not_a_program);
+  }
+  runner_.stop("another program was loaded");
+  loaded_ = found->first;
+  return {};
+}
+
+bool Pendant::load_installation(const std::string & name)
+{
+  return file_name(name) == installation_;
+}
+
+Pendant::Answer Pendant::can_run() const
+{
+  if (state_.robot_mode != RobotMode::running) {
+    return tl::make_unexpected(fmt::format("robot mode is {}, a program needs RUNNING", to_string(state_.robot_mode)));
+  }
+  const bool safe = state_.safety_mode == SafetyMode::normal || state_.safety_mode == SafetyMode::reduced ||
+                    state_.safety_mode == SafetyMode::recovery;
+  if (!safe) {
+    return tl::make_unexpected(
+        fmt::format("safety mode is {}, a program needs NORMAL or REDUCED", to_string(state_.safety_mode)));
+  }
+  return {};
+}
+
+Pendant::Answer Pendant::start(const std::string & script)
+{
+  if (const auto started = runner_.run(script); !started) {
+    return tl::make_unexpected(started.error().text());
+  }
+  return {};
+}
+
+Pendant::Answer Pendant::run_script(std::string_view text)
+{
+  std::string script(text);
+  const bool secondary = script.starts_with("sec ");
+  Answer answer;
+  if (!remote_control_ && options_.version.is_e_series()) {
+    answer = tl::make_unexpected(std::string("the robot is in local control: switch it to remote control"));
+  } else if (!secondary) {
+    answer = can_run();
+  }
+  if (answer) {
+    answer = start(script);
+  }
+  if (!answer) {
+    log_.error("program", "script was not started: " + answer.error());
+  } else if (!secondary) {
+    last_script_ = std::move(script);
+  }
+  return answer;
+}
+
+Pendant::Answer Pendant::play()
+{
+  Answer answer = can_run();
+  if (answer && runner_.running()) {
+    answer = runner_.resume() ? Answer() : tl::make_unexpected(std::string("the program is running already"));
+  } else if (answer) {
+    const std::string & script = loaded_.empty() ? last_script_ : programs_.at(loaded_);
+    answer = script.empty() ? tl::make_unexpected(std::string("no program is loaded")) : start(script);
+  }
+  if (!answer) {
+    log_.error(source, "play was refused: " + answer.error());
+  }
+  return answer;
+}
+
+Pendant::Answer Pendant::pause()
+{
+  if (!runner_.pause()) {
+    return tl::make_unexpected(std::string("no program is running"));
+  }
+  return {};
+}
+
+void Pendant::stop() { runner_.stop("stopped by the operator"); }
+
+Pendant::Answer Pendant::logged(std::string_view action, const SafetyAnswer & answer)
+{
+  if (!answer) {
+    log_.error(source, fmt::format("{} was refused: {}", action, answer.error()));
+  }
+  return answer;
+}
+
+Pendant::Answer Pendant::power_on() { return logged("power on", safety_.power_on()); }
+
+Pendant::Answer Pendant::power_off() { return logged("power off", safety_.power_off()); }
+
+Pendant::Answer Pendant::release_brakes() { return logged("brake release", safety_.brake_release()); }
+
+Pendant::Answer Pendant::unlock_protective_stop()
+{
+  Answer answer = logged("unlock protective stop", safety_.unlock_protective_stop());
+  if (answer) {
+    safety_popup_.reset();
+  }
+  return answer;
+}
+
+Pendant::Answer Pendant::restart_safety() { return logged("restart safety", safety_.restart_safety()); }
+
+void Pendant::set_remote_control(bool remote)
+{
+  remote_control_ = remote;
+  log_.info(source, remote ? "remote control" : "local control");
+}
+
+}  // namespace ur_simulator

@@ -1,0 +1,160 @@
+#include "polyscope/program_runner.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace ur_simulator {
+namespace {
+
+constexpr std::string_view source = "program";
+constexpr std::size_t most_secondaries = 16;
+constexpr double stood_still = 1e-3;  // speed scaling below which a paused trajectory counts as standing
+
+}  // namespace
+
+ProgramRunner::ProgramRunner(const ProgramAccess & access) : access_(access) {}
+
+tl::expected<void, urscript::CompileError> ProgramRunner::check(std::string_view text) const
+{
+  auto program = urscript::compile(text, *access_.library);
+  if (!program) {
+    return tl::make_unexpected(program.error());
+  }
+  return {};
+}
+
+tl::expected<void, urscript::CompileError> ProgramRunner::run(std::string_view text)
+{
+  auto program = urscript::compile(text, *access_.library);
+  if (!program) {
+    return tl::make_unexpected(program.error());
+  }
+  urscript::MachineOptions options;
+  options.cycle_time = access_.cycle_time;
+  if (program->secondary()) {
+    if (secondaries_.size() == most_secondaries) {
+      access_.log.error(source, fmt::format("{} secondary programs run already: '{}' was not started",
+                                            most_secondaries, program->name()));
+      return {};
+    }
+    secondaries_.push_back(
+        std::make_unique<urscript::Machine>(std::move(*program), access_.library, *this, options));
+    return {};
+  }
+  if (primary_) {
+    stop("another program was started");
+  }
+  access_.arm.resume();
+  name_ = program->name();
+  primary_ = std::make_unique<urscript::Machine>(std::move(*program), access_.library, *this, options);
+  access_.state.runtime_state = RuntimeState::playing;
+  access_.log.info(source, fmt::format("program '{}' started", name_));
+  return {};
+}
+
+void ProgramRunner::stop(std::string_view why)
+{
+  if (!primary_) {
+    return;
+  }
+  primary_->stop();
+  access_.log.info(source, fmt::format("program '{}' stopped: {}", name_, why));
+  end(RuntimeState::stopping);
+}
+
+void ProgramRunner::end(RuntimeState next)
+{
+  primary_.reset();
+  popup_.reset();
+  access_.watchdog.clear();
+  access_.state.runtime_state = next;
+  access_.arm.resume();
+}
+
+bool ProgramRunner::paused() const
+{
+  const RuntimeState now = access_.state.runtime_state;
+  return now == RuntimeState::paused || now == RuntimeState::pausing;
+}
+
+bool ProgramRunner::pause()
+{
+  if (!primary_) {
+    return false;
+  }
+  if (!paused()) {
+    access_.state.runtime_state = RuntimeState::pausing;
+    access_.arm.pause();
+  }
+  return true;
+}
+
+bool ProgramRunner::resume()
+{
+  if (!primary_ || !paused()) {
+    return false;
+  }
+  access_.state.runtime_state = RuntimeState::resuming;
+  access_.arm.resume();
+  return true;
+}
+
+void ProgramRunner::cycle()
+{
+  follow_ramps();
+  if (primary_ && !paused()) {
+    run_primary();
+  }
+  run_secondaries();
+}
+
+void ProgramRunner::follow_ramps()
+{
+  RuntimeState & runtime = access_.state.runtime_state;
+  if (runtime == RuntimeState::pausing && (access_.arm.at_rest() || access_.state.speed_scaling < stood_still)) {
+    runtime = RuntimeState::paused;
+  } else if (runtime == RuntimeState::resuming) {
+    runtime = RuntimeState::playing;
+  } else if (runtime == RuntimeState::stopping && access_.arm.at_rest()) {
+    runtime = RuntimeState::stopped;
+  }
+}
+
+void ProgramRunner::run_primary()
+{
+  switch (primary_->cycle()) {
+    case urscript::MachineStatus::running:
+      return;
+    case urscript::MachineStatus::finished:
+      access_.log.info(source, fmt::format("program '{}' ended", name_));
+      break;
+    case urscript::MachineStatus::failed:
+      access_.log.error(source, fmt::format("program '{}' failed in line {}: {}", name_, primary_->error().line,
+                                            primary_->error().message));
+      break;
+  }
+  end(RuntimeState::stopping);
+}
+
+void ProgramRunner::run_secondaries()
+{
+  std::erase_if(secondaries_, [this](const std::unique_ptr<urscript::Machine> & machine) {
+    const urscript::MachineStatus status = machine->cycle();
+    if (status == urscript::MachineStatus::failed) {
+      access_.log.error(source, fmt::format("secondary program '{}' failed in line {}: {}", machine->program().name(),
+                                            machine->error().line, machine->error().message));
+    }
+    return status != urscript::MachineStatus::running;
+  });
+}
+
+void ProgramRunner::text_message(const std::string & text) { access_.log.info("textmsg", text); }
+
+void ProgramRunner::show_popup(const urscript::Popup & popup)
+{
+  popup_ = popup;
+  access_.log.info("popup", fmt::format("{}: {}", popup.title, popup.message));
+}
+
+}  // namespace ur_simulator

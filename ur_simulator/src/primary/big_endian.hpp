@@ -1,0 +1,26 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <string>
+
+namespace ur_simulator::primary {
+
+inline void put_u8(std::string & to, std::uint8_t value) { to += static_cast<char>(value); }
+
+inline void put_u32(std::string & to, std::uint32_t value)
+{
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    to += static_cast<char>(static_cast<std::uint8_t>(value >> shift));
+  }
+}
+
+inline void put_u64(std::string & to, std::uint64_t value)
+{
+  put_u32(to, static_cast<std::uint32_t>(value >> 32));
+  put_u32(to, static_cast<std::uint32_t>(value));
+}
+
+inline void put_f64(std::string & to, double value) { put_u64(to, std::bit_cast<std::uint64_t>(value)); }
+
+}  // namespace ur_simulator::primary

@@ -1,0 +1,63 @@
+#include "rtde/server.hpp"
+
+#include <fmt/format.h>
+
+#include "rtde/session.hpp"
+
+namespace ur_simulator::rtde {
+
+Server::Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, ControllerState & state,
+               const PolyscopeVersion & version, EventLog & log)
+: shared_{state, version, log, {}, nullptr},
+  listener_(io, address, port, [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
+{
+}
+
+Server::~Server()
+{
+  // The sessions' ends reach back into this object: end them while it is whole.
+  listener_.close_all();
+}
+
+void Server::accept(const std::shared_ptr<Connection> & connection)
+{
+  const std::uint64_t id = connection->id();
+  auto session = std::make_shared<Session>(connection, shared_);
+  sessions_.emplace(id, session);
+  shared_.log.info("rtde", fmt::format("client {} ({}) connected", id, connection->peer()));
+  connection->start(
+      [weak = std::weak_ptr(session)](std::string_view bytes) {
+        // Held while it works: what it receives may end it.
+        if (const auto alive = weak.lock()) {
+          alive->receive(bytes);
+        }
+      },
+      [this, id] { end(id); });
+}
+
+void Server::end(std::uint64_t id)
+{
+  const auto session = sessions_.extract(id).mapped();
+  dropped_before_ += session->dropped_packages();
+  session->leave();
+}
+
+void Server::publish()
+{
+  // A failed write ends its session, which removes it from the map: look ahead and hold it.
+  for (auto next = sessions_.begin(); next != sessions_.end();) {
+    const std::shared_ptr<Session> session = (next++)->second;
+    session->publish();
+  }
+}
+
+std::uint64_t Server::dropped_packages() const
+{
+  std::uint64_t dropped = dropped_before_;
+  for (const auto & [id, session] : sessions_) {
+    dropped += session->dropped_packages();
+  }
+  return dropped;
+}
+
+}  // namespace ur_simulator::rtde

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <unordered_map>
+
+#include "log/event_log.hpp"
+#include "net/listener.hpp"
+#include "rtde/fields.hpp"
+
+namespace ur_simulator::rtde {
+
+class Session;
+
+/// What the sessions share. An input field belongs to the client that first asked for it, until that client leaves.
+struct Shared {
+  ControllerState & state;
+  PolyscopeVersion version;
+  EventLog & log;
+  std::unordered_map<const InputField *, std::uint64_t> owners;
+  /// Called for each field of each data package (the program's watchdog counts them).
+  std::function<void(const InputField &)> fed;
+};
+
+/// The Real-Time Data Exchange server, protocol versions 1 and 2.
+class Server {
+ public:
+  Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, ControllerState & state,
+         const PolyscopeVersion & version, EventLog & log);
+  ~Server();
+
+  void on_input(std::function<void(const InputField &)> fed) { shared_.fed = std::move(fed); }
+  /// Sends the state of this cycle to every started client whose turn it is. Allocates nothing.
+  void publish();
+  Listener & listener() { return listener_; }
+  std::size_t clients() const { return sessions_.size(); }
+  /// Data packages that were dropped because a client did not read.
+  std::uint64_t dropped_packages() const;
+
+ private:
+  void accept(const std::shared_ptr<Connection> & connection);
+  void end(std::uint64_t id);
+
+  Shared shared_;
+  std::map<std::uint64_t, std::shared_ptr<Session>> sessions_;
+  std::uint64_t dropped_before_ = 0;  ///< by clients that have left
+  Listener listener_;
+};
+
+}  // namespace ur_simulator::rtde

@@ -1,0 +1,29 @@
+#include "rtde/wire.hpp"
+
+#include <array>
+
+namespace ur_simulator::rtde {
+namespace {
+
+struct TypeRow {
+  std::string_view name;
+  std::size_t size;
+};
+
+constexpr std::array<TypeRow, 9> types{{{"BOOL", 1},
+                                        {"UINT8", 1},
+                                        {"UINT32", 4},
+                                        {"UINT64", 8},
+                                        {"INT32", 4},
+                                        {"DOUBLE", 8},
+                                        {"VECTOR3D", 24},
+                                        {"VECTOR6D", 48},
+                                        {"VECTOR6INT32", 24}}};
+
+}  // namespace
+
+std::string_view name(FieldType type) { return types[static_cast<std::size_t>(type)].name; }
+
+std::size_t size(FieldType type) { return types[static_cast<std::size_t>(type)].size; }
+
+}  // namespace ur_simulator::rtde
