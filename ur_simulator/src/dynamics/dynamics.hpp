@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "common/types.hpp"
 #include "kinematics/robot_model.hpp"
 #include "state/controller_state.hpp"
@@ -18,6 +20,9 @@ class Dynamics {
 
   /// tau = M(q) qdd + C(q, qd) qd + g(q)
   Vector6 inverse_dynamics(const Vector6 & q, const Vector6 & qd, const Vector6 & qdd) const;
+  /// The same from frames already known (link_frames).
+  Vector6 inverse_dynamics(const std::array<Transform, 6> & frames, const Vector6 & qd,
+                           const Vector6 & qdd) const;
   Vector6 gravity_torques(const Vector6 & q) const;
   Matrix6 mass_matrix(const Vector6 & q) const;
   /// C(q, qd) qd: the torques of URScript's get_coriolis_and_centrifugal_torques().
@@ -29,12 +34,11 @@ class Dynamics {
   Vector6 currents(const Vector6 & torques) const;
 
  private:
-  Vector6 newton_euler(const Vector6 & q, const Vector6 & qd, const Vector6 & qdd,
+  Vector6 newton_euler(const std::array<Transform, 6> & frames, const Vector6 & qd, const Vector6 & qdd,
                        const Vector3 & gravity) const;
 
   const RobotModel & model_;
-  Link last_link_;  ///< link 6 and payload as one body
-  Payload payload_;
+  std::array<Link, 6> links_;  ///< the last one together with the payload
   Vector3 gravity_ = Vector3(0.0, 0.0, 9.82);
 };
 

@@ -16,6 +16,8 @@ Vector6 forward_tcp(const RobotModel & model, const Vector6 & joints, const Vect
 
 /// Geometric Jacobian of the TCP in the base frame: [linear; angular] velocity = J * joint velocity.
 Matrix6 jacobian(const RobotModel & model, const Vector6 & joints, const Vector6 & tcp_offset);
+/// The same from frames already known (link_frames) and the TCP's position in the base frame.
+Matrix6 jacobian(const std::array<Transform, 6> & frames, const Vector3 & tcp_position);
 /// Its derivative in time at the joint velocity given: TCP acceleration = J * qdd + dJ * qd.
 Matrix6 jacobian_time_derivative(const RobotModel & model, const Vector6 & joints, const Vector6 & velocity,
                                  const Vector6 & tcp_offset);

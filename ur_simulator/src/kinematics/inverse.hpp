@@ -32,14 +32,13 @@ InverseSolutions inverse_all(const RobotModel & model, const Transform & flange,
 tl::expected<Vector6, InverseError> inverse_nearest(const RobotModel & model, const Transform & flange,
                                                     const Vector6 & seed);
 
-/// get_inverse_kin(x, qnear, maxPositionError, maxOrientationError) with the active TCP. The tolerances
-/// belong to the iterative solver of the robot; here the solution is exact, and they decide only for a pose
-/// just out of reach: such a pose is answered by the nearest reachable one on the way to the shoulder when
-/// that is within `position_tolerance` (m).
+/// get_inverse_kin(x, qnear, maxPositionError) with the active TCP. The tolerances belong to the iterative
+/// solver of the robot; here the solution is exact. A pose just out of reach is answered by the nearest one
+/// towards the shoulder that can be reached, when that lies within `position_tolerance` (m). The orientation
+/// is always exact, so URScript's maxOrientationError has no use here.
 tl::expected<Vector6, std::string> get_inverse_kin(const RobotModel & model, const Vector6 & tcp_pose,
                                                    const Vector6 & qnear, const Vector6 & tcp_offset,
-                                                   double position_tolerance = 1e-10,
-                                                   double orientation_tolerance = 1e-10);
+                                                   double position_tolerance = 1e-10);
 
 /// How far from a singularity: 0 at one. |sin q5| (wrist), |sin q3| (elbow) and the distance of the wrist
 /// from the base's axis over the arm's reach (shoulder); the least of the three.

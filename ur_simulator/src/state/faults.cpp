@@ -1,0 +1,35 @@
+#include "state/faults.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace ur_simulator {
+
+std::string describe(const MotionFault & fault)
+{
+  static constexpr std::array<const char *, 6> names{"base",    "shoulder", "elbow",
+                                                     "wrist 1", "wrist 2",  "wrist 3"};
+  const char * joint =
+      fault.joint >= 0 && fault.joint < 6 ? names[static_cast<std::size_t>(fault.joint)] : "one joint";
+  switch (fault.kind) {
+    case MotionFault::Kind::singularity:
+      return fmt::format(
+          "the path leads through a singularity: joint {} would have to turn at {:.2f} rad/s (limit {:.2f} "
+          "rad/s); "
+          "move there with movej, or choose another path",
+          joint, fault.value, fault.limit);
+    case MotionFault::Kind::joint_position_limit:
+      return fmt::format("joint {} reached its position limit: {:.4f} rad (limit {:.4f} rad)", joint,
+                         fault.value, fault.limit);
+    case MotionFault::Kind::joint_speed_limit:
+      return fmt::format(
+          "joint {} would exceed its speed limit: {:.3f} rad/s (limit {:.3f} rad/s); move slower", joint,
+          fault.value, fault.limit);
+    case MotionFault::Kind::unreachable:
+      return "the path leads out of the robot's reach";
+  }
+  return "unknown motion fault";
+}
+
+}  // namespace ur_simulator
