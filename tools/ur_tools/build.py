@@ -1,0 +1,219 @@
+"""colcon build of the packages that changed, with progress."""
+
+import hashlib
+import os
+import pathlib
+import re
+import subprocess
+import time
+from dataclasses import dataclass
+from typing import Dict, List, Optional, Set
+
+from . import say, system_packages, venv
+from .environment import build_environment
+from .layout import ROOT, Layout
+from .packages import Package, discover, state, with_dependencies
+from .processes import end_group
+
+STAMP = "ur_stamp.txt"
+
+
+@dataclass
+class Options:
+    layout: Layout
+    packages: Optional[List[str]] = None
+    tests: bool = False
+    jobs: int = 0
+
+    def __post_init__(self) -> None:
+        self.jobs = self.jobs or len(os.sched_getaffinity(0))
+
+
+def cmake_arguments(options: Options, tests: bool) -> List[str]:
+    layout = options.layout
+    includes = [layout.provider]
+    build_type = "Release"
+    arguments = []
+    if layout.variant == "debug":
+        build_type = "Debug"
+    elif layout.variant:
+        build_type = "RelWithDebInfo"
+        includes.append(ROOT / "tools" / "cmake" / "sanitize.cmake")
+        arguments.append(f"-DUR_SANITIZE={layout.variant}")
+    return ["-GNinja", f"-DCMAKE_BUILD_TYPE={build_type}", f"-DROS_WHEELS_PREFIX={layout.venv}",
+            "-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=" + ";".join(map(str, includes)), "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+            "-DBUILD_TESTING=" + ("ON" if tests else "OFF"), "--no-warn-unused-cli", *arguments]
+
+
+class Stamps:
+    """What each package was last built from: its files, its dependencies' and the way it is built."""
+
+    def __init__(self, options: Options, packages: Dict[str, Package]):
+        self._layout = options.layout
+        how = hashlib.sha256("\0".join(cmake_arguments(options, False)[:-1]).encode())
+        for file in (*options.layout.requirements, options.layout.provider):
+            how.update(file.read_bytes())
+        self._states: Dict[str, str] = {}
+        for name, package in packages.items():
+            digest = how.copy()
+            digest.update(state(package).encode())
+            for dependency in sorted(package.depends & self._states.keys()):
+                digest.update(self._states[dependency].encode())
+            self._states[name] = digest.hexdigest()
+
+    def _file(self, name: str) -> pathlib.Path:
+        return self._layout.build / name / STAMP
+
+    def has_tests(self, name: str) -> bool:
+        file = self._file(name)
+        return file.is_file() and file.read_text().endswith(" tests")
+
+    def is_current(self, name: str, tests: bool) -> bool:
+        file = self._file(name)
+        if not (file.is_file() and (self._layout.install / "share" / name / "package.xml").is_file()):
+            return False
+        return file.read_text().split(" ")[0] == self._states[name] and (not tests or self.has_tests(name))
+
+    def write(self, name: str, tests: bool) -> None:
+        self._file(name).write_text(self._states[name] + (" tests" if tests else ""))
+
+
+class Progress:
+    """Follows colcon's output and the logs of the packages it is working on."""
+
+    _EVENT = re.compile(r"^(Starting >>>|Finished <<<|Failed\s+<<<|Aborted\s+<<<)\s+(\S+)")
+    _STEP = re.compile(r"^(\[\d+/\d+\]) (.*)$")
+
+    def __init__(self, layout: Layout, output: pathlib.Path, stamps: Stamps, tests: bool):
+        self._layout, self._output, self._stamps, self._tests = layout, output, stamps, tests
+        self._seen = 0
+        self._running: Dict[str, float] = {}
+        self._status = say.Status()
+        self.failed: List[str] = []
+        self.done: Set[str] = set()
+
+    def update(self) -> None:
+        lines = self._output.read_text(errors="replace").split("\n")
+        for text in lines[self._seen:-1]:
+            self._event(text)
+        self._seen = len(lines) - 1
+        doing = [f"{name} {time.monotonic() - start:.0f} s {self._doing(name)}" for name, start in self._running.items()]
+        if doing:
+            self._status.show("  |  ".join(doing))
+
+    def _event(self, text: str) -> None:
+        match = self._EVENT.match(text)
+        if not match:
+            return
+        name, what = match.group(2), match.group(1).split()[0]
+        start = self._running.setdefault(name, time.monotonic())
+        if what == "Starting":
+            return
+        del self._running[name]
+        if what == "Finished":
+            self._stamps.write(name, self._tests)
+            self.done.add(name)
+        elif what == "Failed":
+            self.failed.append(name)
+        self._status.keep(f"    {what.lower():8} {name} ({time.monotonic() - start:.0f} s)")
+
+    def _doing(self, name: str) -> str:
+        log = self._layout.log / "latest_build" / name / "stdout.log"
+        try:
+            with log.open("rb") as file:
+                file.seek(0, os.SEEK_END)
+                file.seek(max(0, file.tell() - 4000))
+                lines = file.read().decode(errors="replace").splitlines()
+        except OSError:
+            return ""
+        for text in reversed(lines):
+            match = self._STEP.match(text)
+            if match:
+                return f"{match.group(1)} {match.group(2).split()[0]} {pathlib.PurePath(match.group(2).split()[-1]).name}"
+        return "configuring"
+
+    def end(self) -> None:
+        self.update()
+        self._status.clear()
+
+
+def _colcon(options: Options, names: List[str], folders: List[pathlib.Path], tests: bool) -> List[str]:
+    layout = options.layout
+    return [str(layout.venv / "bin" / "colcon"), "--log-base", str(layout.log), "build", "--merge-install",
+            "--base-paths", *map(str, folders), "--packages-select", *names,
+            "--build-base", str(layout.build), "--install-base", str(layout.install),
+            "--executor", "parallel", "--parallel-workers", str(min(2, options.jobs)),
+            "--event-handlers", "console_start_end+", "console_cohesion-", "status-", "summary-", "desktop_notification-",
+            "--cmake-force-configure", "--cmake-args", *cmake_arguments(options, tests)]
+
+
+def _explain(layout: Layout, progress: Progress, output: pathlib.Path) -> say.Failure:
+    parts = []
+    for name in progress.failed:
+        log = layout.log / "latest_build" / name / "stdout_stderr.log"
+        text = log.read_text(errors="replace") if log.is_file() else ""
+        # ninja marks what failed; what comes before it are other files' warnings.
+        at = text.find("FAILED: ")
+        shown = "\n".join(text[at:].splitlines()[:40]) if at >= 0 else say.tail(text)
+        parts.append(f"{name} did not build ({log}):\n{shown}")
+    if not parts:
+        parts.append(f"colcon failed ({output}):\n{say.tail(output.read_text(errors='replace'), 20)}")
+    return say.Failure("\n\n".join(parts))
+
+
+def _forget(layout: Layout, names: List[str]) -> None:
+    """A build that is cut short must not look current."""
+    for name in names:
+        stamp = layout.build / name / STAMP
+        if stamp.exists():
+            stamp.unlink()
+
+
+def _run_colcon(options: Options, packages: Dict[str, Package], outdated: List[str], stamps: Stamps, tests: bool) -> None:
+    layout = options.layout
+    layout.log.mkdir(parents=True, exist_ok=True)
+    _forget(layout, outdated)
+    output = layout.log / "colcon.txt"
+    command = _colcon(options, outdated, [package.folder for package in packages.values()], tests)
+    with output.open("w") as file:
+        process = subprocess.Popen(command, cwd=layout.base, env=build_environment(layout, options.jobs), stdout=file,
+                                   stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True)
+    progress = Progress(layout, output, stamps, tests)
+    try:
+        while process.poll() is None:
+            progress.update()
+            time.sleep(0.2)
+    finally:
+        end_group(process)
+        progress.end()
+    if process.returncode != 0 or not set(outdated) <= progress.done:
+        raise _explain(layout, progress, output)
+
+
+def setup(layout: Layout) -> None:
+    """System packages and the virtual environment."""
+    system_packages.ensure()
+    venv.ensure(layout)
+
+
+def build(options: Options) -> Dict[str, Package]:
+    """Sets up what is missing, builds what changed; the packages that were asked for and those they need."""
+    setup(options.layout)
+    packages = discover()
+    if options.packages:
+        try:
+            packages = with_dependencies(packages, options.packages)
+        except KeyError as error:
+            raise say.Failure(str(error.args[0]))
+    stamps = Stamps(options, packages)
+    outdated = [name for name in packages if not stamps.is_current(name, options.tests)]
+    if not outdated:
+        return packages
+    # A package once built with its tests keeps them, or building and testing in turn would configure it each time.
+    tests = options.tests or any(stamps.has_tests(name) for name in outdated)
+    say.step(f"Building {', '.join(outdated)} for ROS 2 {options.layout.ros.capitalize()}"
+             + (f" ({options.layout.variant})" if options.layout.variant else ""))
+    start = time.monotonic()
+    _run_colcon(options, packages, outdated, stamps, tests)
+    say.line(f"    built in {time.monotonic() - start:.0f} s")
+    return packages

@@ -1,0 +1,60 @@
+"""Where things lie: sources in the checkout, everything that is made in .ur/."""
+
+import pathlib
+from dataclasses import dataclass
+from typing import Tuple
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+STATE = ROOT / ".ur"
+DOWNLOADS = STATE / "downloads"
+DISTRIBUTIONS = ("kilted", "jazzy")
+SANITIZERS = ("address", "undefined", "thread")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """One build: a ROS distribution and a variant ("", "debug", or a sanitizer's name)."""
+
+    ros: str = "kilted"
+    variant: str = ""
+
+    @property
+    def base(self) -> pathlib.Path:
+        return STATE / self.ros
+
+    @property
+    def venv(self) -> pathlib.Path:
+        return self.base / "venv"
+
+    @property
+    def python(self) -> pathlib.Path:
+        return self.venv / "bin" / "python"
+
+    def _variant(self, name: str) -> pathlib.Path:
+        return self.base / (f"{name}-{self.variant}" if self.variant else name)
+
+    @property
+    def build(self) -> pathlib.Path:
+        return self._variant("build")
+
+    @property
+    def install(self) -> pathlib.Path:
+        return self._variant("install")
+
+    @property
+    def log(self) -> pathlib.Path:
+        return self._variant("log")
+
+    @property
+    def requirements(self) -> Tuple[pathlib.Path, ...]:
+        return (ROOT / "wheels" / f"{self.ros}.txt", ROOT / "wheels" / "tools.txt")
+
+    @property
+    def provider(self) -> pathlib.Path:
+        return ROOT / "wheels" / "provider.cmake"
+
+    def site_packages(self, prefix: pathlib.Path) -> pathlib.Path:
+        """The site-packages folder of an installation prefix, for the Python of the virtual environment."""
+        found = sorted(self.venv.glob("lib/python3.*"))
+        version = found[0].name if found else "python3"
+        return prefix / "lib" / version / "site-packages"

@@ -1,0 +1,100 @@
+"""Checks of the sources: formatting, traces of one machine, clang-tidy."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass
+from typing import List
+
+from . import say
+from .layout import ROOT, Layout
+
+CPP = (".cpp", ".hpp", ".h", ".c")
+# Folders of one machine, and addresses of package registries, which pip and apt know by themselves.
+_TRACES = re.compile(r"/(?:work|root|tmp|home/[a-z])/[A-Za-z0-9_.-]|files\.pythonhosted|pypi\.org/simple")
+
+
+@dataclass
+class Check:
+    name: str
+    ok: bool
+    text: str = ""
+
+
+def tracked_files() -> List[pathlib.Path]:
+    """Files git has or would add; deleted ones are left out."""
+    listing = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"], cwd=ROOT, check=True,
+                             stdout=subprocess.PIPE, universal_newlines=True).stdout
+    return [path for path in (ROOT / name for name in sorted(set(listing.split("\0"))) if name) if path.is_file()]
+
+
+def cpp_files() -> List[pathlib.Path]:
+    return [path for path in tracked_files() if path.suffix in CPP]
+
+
+def _clang_format(layout: Layout, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    command = [str(layout.venv / "bin" / "clang-format"), *arguments, *map(str, cpp_files())]
+    return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+
+
+def check_format(layout: Layout) -> Check:
+    if not cpp_files():
+        return Check("sources: formatting", True)
+    result = _clang_format(layout, "--dry-run", "--Werror")
+    wrong = sorted({line.split(":")[0] for line in result.stdout.splitlines() if "clang-format-violations" in line})
+    text = "\n".join("    " + name for name in wrong) or say.tail(result.stdout, 10)
+    return Check("sources: formatting", result.returncode == 0, f"{text}\n    `./ur format` formats them")
+
+
+def check_traces() -> Check:
+    found = []
+    for path in tracked_files():
+        if path == pathlib.Path(__file__) or path.suffix in (".png", ".patch"):
+            continue
+        try:
+            lines = path.read_text().splitlines()
+        except UnicodeDecodeError:
+            continue
+        for number, line in enumerate(lines, 1):
+            if _TRACES.search(line) and not line.startswith("#!"):
+                found.append(f"    {path.relative_to(ROOT)}:{number}: {line.strip()[:100]}")
+    return Check("sources: no path of one machine, no address of a registry", not found, "\n".join(found))
+
+
+def checks(layout: Layout) -> List[Check]:
+    return [check_format(layout), check_traces()]
+
+
+def format_sources(layout: Layout) -> int:
+    result = _clang_format(layout, "-i")
+    if result.returncode:
+        raise say.Failure(result.stdout)
+    say.line(f"{len(cpp_files())} C++ files are formatted")
+    return 0
+
+
+def tidy(layout: Layout) -> List[Check]:
+    program = next((found for found in map(shutil.which, ("clang-tidy-19", "clang-tidy")) if found), None)
+    if program is None:
+        raise say.Failure("clang-tidy is not installed: sudo apt-get install -y clang-tidy")
+    found = []
+    for database in sorted(layout.build.glob("*/compile_commands.json")):
+        sources = [path for path in cpp_files() if path.suffix == ".cpp" and str(path) in database.read_text()]
+        for source in sources:
+            say.line(f"    {source.relative_to(ROOT)}")
+            result = subprocess.run([program, "--quiet", "-p", str(database.parent), str(source)], cwd=ROOT,
+                                    stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True)
+            ok = "warning:" not in result.stdout and "error:" not in result.stdout
+            found.append(Check(f"clang-tidy: {source.relative_to(ROOT)}", ok, result.stdout))
+    return found
+
+
+def run(layout: Layout, with_tidy: bool) -> int:
+    everything = checks(layout) + (tidy(layout) if with_tidy else [])
+    for check in everything:
+        if not check.ok:
+            say.line(f"FAILED  {check.name}\n{check.text}")
+    bad = sum(1 for check in everything if not check.ok)
+    say.line(f"{len(everything) - bad} checks passed, {bad} failed")
+    return 1 if bad else 0

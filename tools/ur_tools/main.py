@@ -1,0 +1,221 @@
+"""Command line of ./ur."""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+from typing import List, Optional
+
+from . import build as building
+from . import lint, say, testing
+from .environment import program, run_environment
+from .layout import DISTRIBUTIONS, ROOT, SANITIZERS, STATE, Layout
+
+DESCRIPTION = """\
+Builds, tests and shows the ROS 2 driver for Universal Robots arms and its simulated controller, on a machine with or
+without ROS 2. The first run sets everything up (a virtual environment with ROS 2 as wheels, a build), later runs
+only what changed. All of it lies in .ur/; `./ur clean` removes it.
+"""
+
+
+def _add_build_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help="ROS 2 distribution (default: kilted)")
+    parser.add_argument("-j", "--jobs", type=int, default=0, metavar="N", help="parallel jobs (default: all cores)")
+    variant = parser.add_mutually_exclusive_group()
+    variant.add_argument("--debug", action="store_true", help="a debug build, beside the release build")
+    variant.add_argument("--sanitize", choices=SANITIZERS, help="a build with a sanitizer, beside the release build")
+
+
+def _layout(options: argparse.Namespace) -> Layout:
+    return Layout(options.ros, "debug" if options.debug else options.sanitize or "")
+
+
+def _build(options: argparse.Namespace, tests: bool = False, packages: Optional[List[str]] = None) -> Layout:
+    layout = _layout(options)
+    building.build(building.Options(layout, packages, tests, options.jobs))
+    return layout
+
+
+def command_build(options: argparse.Namespace) -> int:
+    _build(options, options.tests, options.package)
+    say.line("Everything is built. `./ur shell` opens a shell in which it is found.")
+    return 0
+
+
+def command_test(options: argparse.Namespace) -> int:
+    return testing.run(testing.Options(_layout(options), options.package, options.only, options.jobs, options.timeout,
+                                       options.repeat))
+
+
+def command_sim(options: argparse.Namespace) -> int:
+    layout = _build(options, packages=["ur_simulator"])
+    simulator = str(program(layout, "ur_simulator", "ur_simulator"))
+    os.execve(simulator, [simulator, *_forwarded(options)], run_environment(layout))
+
+
+def command_shell(options: argparse.Namespace) -> int:
+    layout = _build(options)
+    env = run_environment(layout)
+    command = _forwarded(options)
+    if command:
+        return subprocess.run(command, env=env).returncode
+    shell = env.get("SHELL", "/bin/sh")
+    say.line(f"A shell with ROS 2 {layout.ros.capitalize()} and this project's packages; `exit` leaves it.")
+    if os.path.basename(shell) == "bash":
+        env["PS1"] = "(ur) \\w\\$ "
+        return subprocess.run([shell, "--norc"], env=env).returncode
+    return subprocess.run([shell], env=env).returncode
+
+
+def _python_command(name: str, options: argparse.Namespace) -> int:
+    """demo and bench use what the virtual environment has (rclpy, numpy, matplotlib), so they run in its Python."""
+    if not (ROOT / "tools" / "ur_tools" / f"{name}.py").is_file():
+        raise say.Failure(f"`./ur {name}` is not part of this checkout: tools/ur_tools/{name}.py is missing")
+    arguments = _forwarded(options)
+    layout = _layout(options)
+    asks_for_help = any(argument in ("-h", "--help") for argument in arguments)
+    if asks_for_help and not layout.python.is_file():
+        building.setup(layout)
+    if not asks_for_help:
+        _build(options)
+    env = run_environment(layout)
+    env["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tools"), env["PYTHONPATH"]])
+    env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
+    os.execve(str(layout.python), [str(layout.python), "-m", f"ur_tools.{name}", *arguments], env)
+
+
+def command_demo(options: argparse.Namespace) -> int:
+    return _python_command("demo", options)
+
+
+def command_bench(options: argparse.Namespace) -> int:
+    return _python_command("bench", options)
+
+
+def command_format(options: argparse.Namespace) -> int:
+    return lint.format_sources(_prepared(options))
+
+
+def command_lint(options: argparse.Namespace) -> int:
+    return lint.run(_prepared(options), options.tidy)
+
+
+def _prepared(options: argparse.Namespace) -> Layout:
+    layout = Layout(options.ros)
+    building.setup(layout)
+    return layout
+
+
+def command_clean(options: argparse.Namespace) -> int:
+    if options.all:
+        folders = [STATE]
+    else:
+        folders = [path for base in STATE.glob("*") for path in base.glob("*")
+                   if path.name.split("-")[0] in ("build", "install", "log", "test")]
+    for folder in folders:
+        if folder.exists():
+            say.line(f"removing {folder.relative_to(ROOT)}")
+            shutil.rmtree(folder)
+    return 0
+
+
+def _forwarded(options: argparse.Namespace) -> List[str]:
+    arguments = list(options.arguments)
+    return arguments[1:] if arguments[:1] == ["--"] else arguments
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="./ur", description=DESCRIPTION,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", metavar="command")
+
+    def add(name: str, function, text: str, **more) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", **more)
+        sub.set_defaults(function=function)
+        return sub
+
+    def add_forwarding(name: str, function, text: str) -> None:
+        # Its own options go to the program; only those before them are ours.
+        sub = add(name, function, text, add_help=name not in ("demo", "bench"))
+        _add_build_options(sub)
+        sub.add_argument("arguments", nargs=argparse.REMAINDER, help="handed on as they are")
+
+    add_forwarding("demo", command_demo, "the main job: simulator, nodes, a motion that stops on force, the figure")
+
+    test = add("test", command_test, "build and run all tests; the last line says `N passed, N failed`")
+    _add_build_options(test)
+    test.add_argument("--only", metavar="PATTERN", help="only tests whose name matches this regular expression")
+    test.add_argument("--package", action="append", metavar="NAME", help="only this package (may be repeated)")
+    test.add_argument("--timeout", type=float, default=0.0, metavar="S",
+                      help="limit of one test in seconds (default: what its package says, else 120)")
+    test.add_argument("--repeat", type=int, default=1, metavar="N", help="run each test N times (default: 1)")
+
+    build = add("build", command_build, "set up and build what changed")
+    _add_build_options(build)
+    build.add_argument("--package", action="append", metavar="NAME", help="only this package and those it needs")
+    build.add_argument("--tests", action="store_true", help="build the tests as well")
+
+    add_forwarding("sim", command_sim, "run the simulated controller; options go to ur_simulator (`./ur sim -- --help`)")
+    add_forwarding("bench", command_bench, "measure latency and load")
+    add_forwarding("shell", command_shell, "a shell, or one command, in which everything is found")
+
+    for name, function, text in (("format", command_format, "format all C++ files"),
+                                 ("lint", command_lint, "check formatting, paths and, with --tidy, clang-tidy")):
+        sub = add(name, function, text)
+        sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
+        if name == "lint":
+            sub.add_argument("--tidy", action="store_true", help="also run clang-tidy (minutes)")
+
+    clean = add("clean", command_clean, "remove what was built")
+    clean.add_argument("--all", action="store_true", help="also the virtual environments and downloads")
+    return parser
+
+
+def _parse(arguments: List[str]) -> argparse.Namespace:
+    """argparse, except that what demo and bench do not share with the other commands is theirs."""
+    parser = _parser()
+    if arguments[:1] not in (["demo"], ["bench"], ["sim"]):
+        return parser.parse_args(arguments)
+    options, unknown = parser.parse_known_args(arguments[:1] + _ours_first(arguments[1:]))
+    options.arguments = unknown + list(options.arguments)
+    return options
+
+
+def _ours_first(arguments: List[str]) -> List[str]:
+    """Puts our options in front, so that `./ur demo --model ur5e --debug` may have any order."""
+    ours: List[str] = []
+    rest: List[str] = []
+    index = 0
+    while index < len(arguments):
+        argument = arguments[index]
+        if argument == "--":
+            rest += arguments[index + 1:]
+            break
+        if argument in ("--ros", "--sanitize", "-j", "--jobs") and index + 1 < len(arguments):
+            ours += arguments[index:index + 2]
+            index += 2
+            continue
+        (ours if argument == "--debug" or argument.startswith(("--ros=", "--sanitize=", "--jobs=")) else rest).append(
+            argument)
+        index += 1
+    return ours + (["--", *rest] if rest else [])
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    arguments = sys.argv[1:] if arguments is None else arguments
+    options = _parse(arguments)
+    if options.command is None:
+        _parser().print_help()
+        return 2
+    try:
+        return options.function(options)
+    except say.Failure as failure:
+        print(f"\n{failure}", file=sys.stderr)
+        return 1
+    except FileNotFoundError as error:
+        print(f"\n{error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("\ninterrupted", file=sys.stderr)
+        return 130

@@ -1,0 +1,142 @@
+"""Starting and stopping programs so that none is left behind.
+
+    with Programs(log_folder) as programs:
+        simulator = programs.start("simulator", ["ur_simulator", "--model", "ur10e"], env)
+        programs.wait_until(lambda: port_answers(), 10.0, "the simulator's dashboard")
+        ...
+    # everything that was started has ended here, also after an exception or Ctrl-C
+
+Each program runs in a session of its own, so that Ctrl-C reaches it only through us, in order, and its children can be
+signalled with it. Its output goes to <log_folder>/<name>.log.
+"""
+
+import os
+import pathlib
+import signal
+import subprocess
+import time
+from typing import Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+
+from .say import Failure, tail
+
+# Signal and the seconds a program gets to follow it.
+GENTLY: Tuple[Tuple[int, float], ...] = ((signal.SIGINT, 5.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))
+
+
+def group_is_alive(group: int) -> bool:
+    """Whether a process of the group still runs; one that ended and waits for its parent does not count."""
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if int(fields[2]) == group and fields[0] not in "ZX":
+            return True
+    return False
+
+
+def signal_group(group: int, number: int) -> None:
+    try:
+        os.killpg(group, number)
+    except ProcessLookupError:
+        pass
+
+
+def end_group(process: "subprocess.Popen[bytes]", how: Sequence[Tuple[int, float]] = GENTLY) -> Optional[int]:
+    """Ends a program and its children, each signal with its time limit. The return code, None if it would not end."""
+    for number, limit in how:
+        if process.poll() is not None and not group_is_alive(process.pid):
+            break
+        signal_group(process.pid, number)
+        deadline = time.monotonic() + limit
+        while time.monotonic() < deadline:
+            if process.poll() is not None and not group_is_alive(process.pid):
+                return process.returncode
+            time.sleep(0.02)
+    return process.poll()
+
+
+class Program:
+    def __init__(self, name: str, process: "subprocess.Popen[bytes]", log: pathlib.Path):
+        self.name = name
+        self.process = process
+        self.log = log
+
+    @property
+    def running(self) -> bool:
+        return self.process.poll() is None
+
+    @property
+    def output(self) -> str:
+        return self.log.read_text(errors="replace")
+
+    def stop(self, how: Sequence[Tuple[int, float]] = GENTLY) -> Optional[int]:
+        return end_group(self.process, how)
+
+    def failure(self) -> Failure:
+        return Failure(
+            f"{self.name} ended with {self.process.returncode}. Its last lines ({self.log}):\n{tail(self.output)}")
+
+
+class Programs:
+    """The programs of one run, ended in the reverse order of their start."""
+
+    def __init__(self, log_folder: pathlib.Path):
+        self._folder = log_folder
+        self._programs: List[Program] = []
+        self._handlers: Dict[int, object] = {}
+
+    def __enter__(self) -> "Programs":
+        # A terminal that closes, or `kill`, must end what was started as Ctrl-C does.
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            self._handlers[number] = signal.signal(number, _interrupt)
+        return self
+
+    def __exit__(self, *_unused: object) -> None:
+        # A second Ctrl-C must not keep the rest from being ended.
+        previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            self.stop_all()
+        finally:
+            signal.signal(signal.SIGINT, previous)
+            for number, handler in self._handlers.items():
+                signal.signal(number, handler)  # type: ignore[arg-type]
+
+    def start(self, name: str, command: Sequence[str], env: Optional[Mapping[str, str]] = None,
+              cwd: Optional[pathlib.Path] = None) -> Program:
+        self._folder.mkdir(parents=True, exist_ok=True)
+        log = self._folder / f"{name}.log"
+        try:
+            with log.open("wb") as output:
+                process = subprocess.Popen([str(part) for part in command], stdin=subprocess.DEVNULL, stdout=output,
+                                           stderr=subprocess.STDOUT, env=None if env is None else dict(env), cwd=cwd,
+                                           start_new_session=True)
+        except OSError as error:
+            raise Failure(f"{name} cannot be started: {error}. The command was: {' '.join(map(str, command))}")
+        program = Program(name, process, log)
+        self._programs.append(program)
+        return program
+
+    def check(self) -> None:
+        """Raises Failure, with the end of its log, for a program that ended by itself."""
+        for program in self._programs:
+            if not program.running:
+                raise program.failure()
+
+    def wait_until(self, condition: Callable[[], bool], limit: float, what: str) -> None:
+        """Waits at most `limit` seconds; a program that ends meanwhile is a Failure at once."""
+        deadline = time.monotonic() + limit
+        while not condition():
+            self.check()
+            if time.monotonic() > deadline:
+                logs = ", ".join(str(program.log) for program in self._programs)
+                raise Failure(f"Waited {limit:g} s for {what}. Logs: {logs}")
+            time.sleep(0.02)
+
+    def stop_all(self) -> None:
+        while self._programs:
+            self._programs.pop().stop()
+
+
+def _interrupt(_number: int, _frame: object) -> None:
+    raise KeyboardInterrupt

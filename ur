@@ -1,0 +1,13 @@
+#!/usr/bin/env python3
+"""The one script of this project: ./ur --help says what it does."""
+import os
+import sys
+
+if sys.version_info < (3, 8):
+    sys.exit("./ur needs Python 3.8 or newer to start, this is " + sys.version.split()[0])
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "tools"))
+
+from ur_tools.main import main  # noqa: E402
+
+sys.exit(main())
