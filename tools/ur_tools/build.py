@@ -143,7 +143,7 @@ def _colcon(options: Options, names: List[str], folders: List[pathlib.Path], tes
             "--base-paths", *map(str, folders), "--packages-select", *names,
             "--build-base", str(layout.build), "--install-base", str(layout.install),
             "--executor", "parallel", "--parallel-workers", str(min(2, options.jobs)),
-            "--event-handlers", "console_start_end+", "console_cohesion-", "status-", "summary-", "desktop_notification-",
+            "--event-handlers", "console_start_end+", "console_cohesion-", "parallel_status-", "summary-",
             "--cmake-force-configure", "--cmake-args", *cmake_arguments(options, tests)]
 
 

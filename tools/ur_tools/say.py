@@ -36,7 +36,7 @@ class Status:
             print("\r\033[K" + text[:width], end="", flush=True)
             self._shown = True
         elif time.monotonic() - self._last >= self._interval:
-            line("    " + text)
+            line("    " + text[:116])
             self._last = time.monotonic()
 
     def keep(self, text: str) -> None:
