@@ -71,7 +71,8 @@ class Arm {
   /// Target and actual joints stand still and nothing is being executed.
   bool at_rest() const;
 
-  /// Pausing ramps the speed scaling down to 0 and keeps the motion; resuming ramps it up again.
+  /// Pausing ramps the speed scaling down to 0 and keeps the motion; resuming ramps it up again. speedj and
+  /// speedl end.
   void pause();
   void resume();
 

@@ -10,6 +10,7 @@
 #include "kinematics/robot_model.hpp"
 #include "safety/event.hpp"
 #include "safety/limits.hpp"
+#include "safety/watch.hpp"
 #include "state/controller_state.hpp"
 #include "state/faults.hpp"
 
@@ -74,36 +75,41 @@ class Safety {
   std::uint64_t dropped_events() const { return dropped_; }
 
  private:
-  enum class Target { off, idle, running };
-  struct Request;
+  enum class Power { off, idle, running };  ///< what was asked for
 
   void log(SafetyEvent::Level level, std::string message);
-  void enter(SafetyMode mode, double now);
+  void enter(RobotMode mode);
+  void enter(SafetyMode mode);
+  void stop(SafetyMode mode, SafetyEvent::Level level, std::string message);
   void stop_and_cut_power(SafetyMode mode, std::string message);
-  void advance_power(const ControllerState & state);
-  void watch(const ControllerState & state);
-  void watch_force(const ControllerState & state);
+  SafetyAnswer may_power_on() const;
+  void advance_power();
+  void advance_power_cut();
+  void watch_limits(const ControllerState & state);
+  void watch_rest(const ControllerState & state);
   void write(ControllerState & state) const;
-  bool steady(const ControllerState & state);
-  bool stopped() const;
+  bool stopped() const { return !allows_motion(safety_mode_); }
 
-  const RobotModel & model_;
   double cycle_time_;
   SafetyLimits limits_;
   SafetyTimes times_;
+  LimitWatch watch_;
 
   RobotMode robot_mode_ = RobotMode::power_off;
   SafetyMode safety_mode_ = SafetyMode::normal;
-  Target target_ = Target::off;
-  double now_ = 0.0;
+  Power wanted_ = Power::off;
   std::uint64_t cycle_ = 0;
-  double mode_since_ = 0.0;
-  double stop_since_ = 0.0;
-  double filtered_force_ = 0.0;
-  double still_for_ = 0.0;
-  bool cut_power_when_still_ = false;
+  double now_ = 0.0;
+  double mode_since_ = 0.0;  ///< when robot_mode_ was entered
+  double stop_since_ = 0.0;  ///< when safety_mode_ was entered
+  double restart_until_ = -1.0;
+  double still_for_;
+  double cut_since_ = 0.0;
+  double release_since_ = 0.0;
+  bool releasing_ = false;
+  bool cutting_power_ = false;
+  bool reduced_ = false;
   bool button_pressed_ = false;
-  bool safeguard_open_ = false;
   SafetyOrders orders_;
   std::deque<SafetyEvent> events_;
   std::uint64_t dropped_ = 0;
@@ -113,8 +119,5 @@ class Safety {
 /// Source: UR, "Real-Time Data Exchange (RTDE) Guide", output variables of these names.
 std::uint32_t robot_status_bits(RobotMode mode, RuntimeState runtime, bool freedrive);
 std::uint32_t safety_status_bits(SafetyMode mode);
-/// POWER_OFF, RUNNING, …, NORMAL, PROTECTIVE_STOP, … as the dashboard spells them.
-std::string_view to_string(RobotMode mode);
-std::string_view to_string(SafetyMode mode);
 
 }  // namespace ur_simulator

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace ur_simulator {
 
@@ -40,5 +41,13 @@ enum class RuntimeState : std::uint32_t {
   paused = 4,
   resuming = 5
 };
+
+/// POWER_OFF, RUNNING, …, NORMAL, PROTECTIVE_STOP, … as the dashboard spells them.
+std::string_view to_string(RobotMode mode);
+std::string_view to_string(SafetyMode mode);
+std::string_view to_string(RuntimeState state);
+
+/// Does this safety mode let the arm move?
+bool allows_motion(SafetyMode mode);
 
 }  // namespace ur_simulator

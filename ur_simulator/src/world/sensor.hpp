@@ -23,8 +23,8 @@ class ForceTorqueSensor {
   Vector6 noise();
 
   double filter_gain_;
-  double force_noise_;
-  double torque_noise_;
+  double force_noise_ = 0.5;
+  double torque_noise_ = 0.02;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   Vector6 filtered_ = Vector6::Zero();

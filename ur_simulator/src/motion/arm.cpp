@@ -1,0 +1,325 @@
+#include "motion/arm.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "common/pose.hpp"
+#include "kinematics/inverse.hpp"
+#include "motion/arm_state.hpp"
+#include "motion/cartesian_path.hpp"
+#include "motion/follower.hpp"
+#include "motion/joint_move.hpp"
+#include "motion/joint_servo.hpp"
+#include "motion/joint_speed.hpp"
+#include "motion/linear_move.hpp"
+#include "motion/linear_speed.hpp"
+#include "motion/refusal.hpp"
+
+namespace ur_simulator {
+namespace {
+
+constexpr double scaling_rate = 2.0;  // 1/s: a slider moved from 0 to 1 takes half a second to take effect
+constexpr double fault_deceleration = 20.0;  // rad/s^2
+
+/// Room for any motion, in place: motions start within the control cycle, where nothing is allocated.
+using MotionSlot = std::variant<std::monostate, JointMove, LinearMove, JointServo, JointSpeed, LinearSpeed>;
+
+Motion * motion_in(MotionSlot & slot)
+{
+  return std::visit(
+      [](auto & held) -> Motion * {
+        if constexpr (std::is_base_of_v<Motion, std::decay_t<decltype(held)>>) {
+          return &held;
+        } else {
+          return nullptr;
+        }
+      },
+      slot);
+}
+
+}  // namespace
+
+struct Arm::Impl {
+  Impl(const RobotModel & robot_model, double cycle, const Vector6 & position)
+      : model(robot_model), cycle_time(cycle), follower(cycle, position), writer(robot_model, cycle)
+  {
+    setpoint.position = position;
+  }
+
+  const RobotModel & model;
+  double cycle_time;
+  Setpoint setpoint;
+  Follower follower;
+  ArmStateWriter writer;
+  MotionSlot slot;
+  MotionId last_id = 0;   // of the motion in the slot, and the highest given away
+  bool given_up = false;  // the motion in the slot only brakes any more
+  bool is_stop = false;   // it is a stop: that it cannot go on straight is no fault
+  bool paused = false;
+  Vector6 tcp_offset = Vector6::Zero();
+  RobotMode robot_mode = RobotMode::power_off;
+  SafetyMode safety_mode = SafetyMode::normal;
+  std::optional<MotionFault> fault;
+
+  Motion * motion() { return motion_in(slot); }
+
+  bool may_move() const { return robot_mode == RobotMode::running && allows_motion(safety_mode); }
+
+  Refusal not_ready(std::string_view call) const
+  {
+    if (may_move()) {
+      return std::nullopt;
+    }
+    return fmt::format("{}: the robot cannot move: its mode is {}, its safety mode {}", call,
+                       to_string(robot_mode), to_string(safety_mode));
+  }
+
+  Refusal unreachable(std::string_view call, const Vector6 & tcp_pose) const
+  {
+    const auto solution = get_inverse_kin(model, tcp_pose, setpoint.position, tcp_offset);
+    return solution ? std::nullopt : Refusal(fmt::format("{}: {}", call, solution.error()));
+  }
+
+  template <typename M>
+  MotionId begin(M && motion, bool stop = false)
+  {
+    slot = std::forward<M>(motion);
+    given_up = false;
+    is_stop = stop;
+    return ++last_id;
+  }
+
+  CartesianPath path() const { return {model, tcp_offset}; }
+
+  void ramp_scaling(ControllerState & state) const;
+  void advance(const Tick & tick);
+  void brake_hard(double deceleration);
+};
+
+void Arm::Impl::ramp_scaling(ControllerState & state) const
+{
+  const double slider = std::isfinite(state.speed_slider) ? std::clamp(state.speed_slider, 0.0, 1.0) : 0.0;
+  state.target_speed_fraction = paused ? 0.0 : slider;
+  const double step = scaling_rate * cycle_time;
+  state.speed_scaling += std::clamp(state.target_speed_fraction - state.speed_scaling, -step, step);
+}
+
+void Arm::Impl::brake_hard(double deceleration)
+{
+  slot = JointSpeed::stop(model, deceleration);
+  given_up = true;
+  is_stop = true;
+}
+
+Arm::Arm(const RobotModel & model, double cycle_time, const Vector6 & initial_position)
+{
+  if (!(std::isfinite(cycle_time) && cycle_time > 0.0)) {
+    throw std::invalid_argument(fmt::format("Arm: cycle time must be greater than 0, is {}", cycle_time));
+  }
+  if (const auto refusal = first_of({not_finite("Arm", "position", initial_position),
+                                     beyond_joint_limits("Arm", model, initial_position)})) {
+    throw std::invalid_argument(*refusal);
+  }
+  impl_ = std::make_unique<Impl>(model, cycle_time, initial_position);
+}
+
+Arm::~Arm() = default;
+
+void Arm::set_tcp(const Vector6 & tcp_offset)
+{
+  impl_->tcp_offset = tcp_offset;
+}
+
+MotionStart Arm::move_joint(const Vector6 & target, const MoveOptions & options)
+{
+  if (const auto refusal =
+          first_of({impl_->not_ready("movej"), not_finite("movej", "target", target),
+                    bad_options("movej", options), beyond_joint_limits("movej", impl_->model, target)})) {
+    return tl::unexpected(*refusal);
+  }
+  return impl_->begin(JointMove(impl_->model, impl_->setpoint, target, options));
+}
+
+MotionStart Arm::move_linear(const Vector6 & tcp_pose, const MoveOptions & options)
+{
+  if (const auto refusal = first_of({impl_->not_ready("movel"), not_finite("movel", "pose", tcp_pose),
+                                     bad_options("movel", options)})) {
+    return tl::unexpected(*refusal);
+  }
+  if (const auto refusal = impl_->unreachable("movel", tcp_pose)) {
+    return tl::unexpected(*refusal);
+  }
+  return impl_->begin(LinearMove(impl_->path(), impl_->setpoint, tcp_pose, options));
+}
+
+MotionStart Arm::servo_joint(const Vector6 & target, double time, double lookahead, double gain)
+{
+  if (const auto refusal = first_of({impl_->not_ready("servoj"), not_finite("servoj", "target", target),
+                                     not_within("servoj", "time", time, 0.0, 1e9),
+                                     not_within("servoj", "lookahead_time", lookahead, 0.03, 0.2),
+                                     not_within("servoj", "gain", gain, 100.0, 2000.0),
+                                     beyond_joint_limits("servoj", impl_->model, target)})) {
+    return tl::unexpected(*refusal);
+  }
+  return impl_->begin(JointServo(impl_->model, target, time, lookahead, gain));
+}
+
+MotionStart Arm::speed_joint(const Vector6 & velocity, double acceleration, double time)
+{
+  if (const auto refusal = first_of({impl_->not_ready("speedj"), not_finite("speedj", "velocity", velocity),
+                                     not_positive("speedj", "acceleration", acceleration),
+                                     not_within("speedj", "time", time, 0.0, 1e9)})) {
+    return tl::unexpected(*refusal);
+  }
+  return impl_->begin(JointSpeed(impl_->model, velocity, acceleration, time));
+}
+
+MotionStart Arm::speed_linear(const Vector6 & tcp_twist, double acceleration, double time)
+{
+  if (const auto refusal = first_of({impl_->not_ready("speedl"), not_finite("speedl", "velocity", tcp_twist),
+                                     not_positive("speedl", "acceleration", acceleration),
+                                     not_within("speedl", "time", time, 0.0, 1e9)})) {
+    return tl::unexpected(*refusal);
+  }
+  return impl_->begin(LinearSpeed(impl_->path(), impl_->setpoint, tcp_twist, acceleration, time));
+}
+
+MotionStart Arm::stop_joint(double deceleration)
+{
+  if (const auto refusal =
+          first_of({impl_->not_ready("stopj"), not_positive("stopj", "deceleration", deceleration)})) {
+    return tl::unexpected(*refusal);
+  }
+  return impl_->begin(JointSpeed::stop(impl_->model, deceleration), true);
+}
+
+MotionStart Arm::stop_linear(double deceleration)
+{
+  if (const auto refusal =
+          first_of({impl_->not_ready("stopl"), not_positive("stopl", "deceleration", deceleration)})) {
+    return tl::unexpected(*refusal);
+  }
+  return impl_->begin(LinearSpeed(impl_->path(), impl_->setpoint, Vector6::Zero(), deceleration, 0.0), true);
+}
+
+bool Arm::finished(MotionId motion) const
+{
+  const Motion * running = impl_->motion();
+  return motion != impl_->last_id || running == nullptr || impl_->given_up || running->released();
+}
+
+bool Arm::active(MotionId motion) const
+{
+  return motion == impl_->last_id && impl_->motion() != nullptr && !(impl_->given_up && impl_->is_stop);
+}
+
+void Arm::abandon(MotionId motion)
+{
+  if (motion == impl_->last_id) {
+    abandon_all();
+  }
+}
+
+void Arm::abandon_all()
+{
+  if (Motion * running = impl_->motion()) {
+    running->brake();
+    impl_->given_up = true;
+  }
+}
+
+void Arm::halt(double deceleration)
+{
+  const bool sane = std::isfinite(deceleration) && deceleration > 0.0;
+  impl_->brake_hard(sane ? deceleration : fault_deceleration);
+}
+
+bool Arm::at_rest() const
+{
+  return impl_->motion() == nullptr && impl_->setpoint.velocity.isZero(0.0) &&
+         impl_->follower.velocity().isZero(1e-6);
+}
+
+void Arm::pause()
+{
+  impl_->paused = true;
+  const bool by_speed =
+      std::holds_alternative<JointSpeed>(impl_->slot) || std::holds_alternative<LinearSpeed>(impl_->slot);
+  if (by_speed) {
+    abandon_all();  // it follows no path in time that could stand still
+  }
+}
+
+void Arm::resume()
+{
+  impl_->paused = false;
+}
+
+std::optional<MotionFault> Arm::take_fault()
+{
+  return std::exchange(impl_->fault, std::nullopt);
+}
+
+void Arm::Impl::advance(const Tick & tick)
+{
+  Motion * running = motion();
+  if (running == nullptr) {
+    return;
+  }
+  if (const auto found = running->advance(tick, setpoint)) {
+    if (!is_stop && !fault) {
+      fault = found;
+    }
+    brake_hard(fault_deceleration);
+    running = motion();
+    running->advance(tick, setpoint);
+  }
+  if (running->done()) {
+    slot = std::monostate();
+  }
+}
+
+void Arm::step(ControllerState & state)
+{
+  Impl & arm = *impl_;
+  arm.tcp_offset = state.tcp_offset;
+  arm.robot_mode = state.robot_mode;
+  arm.safety_mode = state.safety_mode;
+  arm.ramp_scaling(state);
+  if (arm.robot_mode != RobotMode::running) {
+    // The brakes are on: whatever was moving stands where it is.
+    arm.slot = std::monostate();
+    arm.follower.freeze();
+    arm.setpoint = {arm.follower.position(), Vector6::Zero()};
+  } else {
+    if (!arm.may_move() && arm.motion() != nullptr && !(arm.is_stop && arm.given_up)) {
+      arm.brake_hard(fault_deceleration);
+    }
+    arm.advance({arm.cycle_time, state.speed_scaling});
+    arm.follower.advance(arm.setpoint.position);
+  }
+  arm.writer.write(arm.setpoint, arm.follower, state);
+}
+
+void Arm::teleport(const Vector6 & position, ControllerState & state)
+{
+  if (const auto refusal = first_of({not_finite("teleport", "position", position),
+                                     beyond_joint_limits("teleport", impl_->model, position)})) {
+    throw std::invalid_argument(*refusal);
+  }
+  impl_->slot = std::monostate();
+  impl_->setpoint = {position, Vector6::Zero()};
+  impl_->follower.jump_to(position);
+  impl_->tcp_offset = state.tcp_offset;
+  impl_->robot_mode = state.robot_mode;
+  impl_->safety_mode = state.safety_mode;
+  impl_->writer.forget();
+  impl_->writer.write(impl_->setpoint, impl_->follower, state);
+}
+
+}  // namespace ur_simulator

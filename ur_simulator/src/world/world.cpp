@@ -1,0 +1,149 @@
+#include "world/world.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/pose.hpp"
+
+namespace ur_simulator {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+void require(bool granted, const std::string & complaint)
+{
+  if (!granted) {
+    throw std::invalid_argument(complaint);
+  }
+}
+
+void require_within(const char * field, double value, double least, double most)
+{
+  require(value >= least && value <= most,
+          fmt::format("{} must be in [{}, {}], is {}", field, least, most, value));
+}
+
+Surface checked(const Surface & surface)
+{
+  require(is_finite(surface.point), "surface: point must be three finite numbers");
+  require(is_finite(surface.normal) && surface.normal.norm() > 1e-9,
+          "surface: normal must be three finite numbers, not all 0");
+  require_within("surface: stiffness (N/m)", surface.stiffness, 0.0, 1e7);
+  require_within("surface: damping (N s/m)", surface.damping, 0.0, 1e5);
+  require_within("surface: friction", surface.friction, 0.0, 10.0);
+  Surface result = surface;
+  result.normal.normalize();
+  return result;
+}
+
+/// Spring and damper along the normal, never pulling; Coulomb friction across it, smooth through standstill.
+Vector3 surface_force(const Surface & surface, const Vector3 & point, const Vector3 & velocity)
+{
+  const double depth = -surface.normal.dot(point - surface.point);
+  if (depth <= 0.0) {
+    return Vector3::Zero();
+  }
+  const double approach = -surface.normal.dot(velocity);
+  const double normal_force = std::max(0.0, surface.stiffness * depth + surface.damping * approach);
+  const Vector3 sliding = velocity + approach * surface.normal;
+  constexpr double full_friction_speed = 1e-3;  // m/s
+  return normal_force * surface.normal -
+         surface.friction * normal_force / std::max(sliding.norm(), full_friction_speed) * sliding;
+}
+
+}  // namespace
+
+World::World(double cycle_time, std::uint64_t seed) : cycle_time_(cycle_time), sensor_(cycle_time, seed)
+{
+  surfaces_.reserve(max_surfaces);
+  pushes_.reserve(max_pushes);
+}
+
+std::uint32_t World::place_surface(const Surface & surface)
+{
+  require(surfaces_.size() < max_surfaces,
+          fmt::format("surface: there are {} already, no more fit", max_surfaces));
+  surfaces_.push_back({next_id_, checked(surface)});
+  return next_id_++;
+}
+
+bool World::remove_surface(std::uint32_t id)
+{
+  return std::erase_if(surfaces_, [id](const PlacedSurface & placed) { return placed.id == id; }) > 0;
+}
+
+void World::clear_surfaces()
+{
+  surfaces_.clear();
+}
+
+void World::push(const Push & push)
+{
+  require(pushes_.size() < max_pushes, fmt::format("push: {} go on already, no more fit", max_pushes));
+  require(is_finite(push.wrench), "push: wrench must be six finite numbers");
+  require_within("push: force (N)", push.wrench.head<3>().norm(), 0.0, 1e4);
+  require_within("push: torque (N m)", push.wrench.tail<3>().norm(), 0.0, 1e4);
+  require_within("push: duration (s)", push.duration, cycle_time_, 3600.0);
+  pushes_.push_back({push});
+}
+
+void World::clear_pushes()
+{
+  pushes_.clear();
+}
+
+void World::attach_load(const Payload & load)
+{
+  require_within("load: mass (kg)", load.mass, 0.0, 1000.0);
+  require(is_finite(load.center_of_gravity) && load.center_of_gravity.norm() <= 10.0,
+          "load: centre of gravity must be three finite numbers, at most 10 m from the flange");
+  require(is_finite(load.inertia), "load: inertia must be six finite numbers");
+  load_ = load;
+}
+
+void World::zero_sensor()
+{
+  sensor_.zero();
+}
+
+void World::set_sensor_noise(double force, double torque)
+{
+  require_within("sensor noise: force (N)", force, 0.0, 1000.0);
+  require_within("sensor noise: torque (N m)", torque, 0.0, 1000.0);
+  sensor_.set_noise(force, torque);
+}
+
+Vector6 World::contact(const ControllerState & state) const
+{
+  Vector6 wrench = Vector6::Zero();
+  for (const PlacedSurface & placed : surfaces_) {
+    wrench.head<3>() +=
+        surface_force(placed.surface, state.actual_tcp_pose.head<3>(), state.actual_tcp_speed.head<3>());
+  }
+  return wrench;
+}
+
+Vector6 World::advance_pushes(const ControllerState & state)
+{
+  Vector6 sum = Vector6::Zero();
+  for (ActivePush & active : pushes_) {
+    active.elapsed += cycle_time_;
+    const double phase = std::min(1.0, active.elapsed / active.push.duration);
+    const Vector6 wrench = std::sin(pi * phase) * active.push.wrench;
+    sum +=
+        active.push.tool_frame ? rotate_pair(to_rotation(state.actual_tcp_pose.tail<3>()), wrench) : wrench;
+  }
+  std::erase_if(pushes_, [](const ActivePush & active) { return active.elapsed >= active.push.duration; });
+  return sum;
+}
+
+void World::step(ControllerState & state)
+{
+  state.contact_wrench = contact(state) + advance_pushes(state);
+  sensor_.step(load_, state);
+}
+
+}  // namespace ur_simulator
