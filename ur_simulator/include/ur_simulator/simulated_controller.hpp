@@ -1,12 +1,13 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
-
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 namespace ur_simulator {
 
@@ -22,16 +23,23 @@ struct Ports {
 
 struct SimulatorOptions {
   std::string address = "127.0.0.1";
-  std::string model = "ur10e";             ///< ur3 ur5 ur10 ur3e ur5e ur7e ur10e ur12e ur15 ur16e ur18 ur20 ur30 …
-  std::string polyscope_version = "5.25.1";  ///< "3.15.8" makes a CB3 controller (125 Hz)
+  std::string model = "ur10e";  ///< ur3 ur5 ur10 ur3e ur5e ur7e ur10e ur12e ur15 ur16e ur18 ur20 ur30 …
+  /// "3.15.8" for a CB3 controller (125 Hz), 5.x for the others (500 Hz); empty: 5.25.1, or 3.15.8 for CB3 models.
+  std::string polyscope_version;
   Ports ports;
-  bool start_running = true;   ///< powered on, brakes released; false: power off, as after boot
+  /// Where the joints stand at first, rad; nothing: tool down above the table in front of the robot.
+  std::optional<std::array<double, 6>> initial_joints;
+  bool start_running = true;  ///< powered on, brakes released; false: power off, as after boot
   bool remote_control = true;
-  std::uint64_t seed = 1;      ///< of the sensor noise
+  std::uint64_t seed = 1;  ///< of the sensor noise
+  bool realtime_priority = false;  ///< try SCHED_FIFO for the controller's thread; goes on without when not permitted
 };
 
-/// A simulated controller that runs in a thread of its own, from construction to destruction. All methods are thread-safe.
-/// Throws std::runtime_error naming address and port when a port cannot be bound.
+/// A simulated controller that runs in a thread of its own, from construction to destruction. All methods are thread-safe and
+/// must not be called from a condition of wait_until().
+///
+/// The constructor throws std::runtime_error: address and port when a port cannot be bound, the known ones when model or
+/// version are unknown, value and limit when joints are out of range.
 class SimulatedController {
  public:
   explicit SimulatedController(const SimulatorOptions & options = {});
@@ -39,14 +47,16 @@ class SimulatedController {
   SimulatedController(const SimulatedController &) = delete;
   SimulatedController & operator=(const SimulatedController &) = delete;
 
+  const std::string & address() const;
   Ports ports() const;
-  /// One request of the control port ({"command": "push", …}), answered in the same JSON: {"ok": true, …} or {"ok": false, "error": …}.
+  /// One request of the control port ({"command": "push", …}), answered in the same JSON: {"ok": true, …} or {"ok": false,
+  /// "error": …}. Carried out between two cycles.
   nlohmann::json control(const nlohmann::json & request);
   /// The state after the last cycle, as the control port's "state" reports it.
   nlohmann::json state();
-  /// Evaluated after every control cycle on the controller's thread with the state in JSON only when `every_cycles` have passed;
-  /// returns whether it became true within `limit` of wall-clock time.
-  bool wait_until(const std::function<bool(const nlohmann::json &)> & condition, std::chrono::milliseconds limit);
+  /// Evaluates the condition on the state now and after every further control cycle, on the controller's thread; true as soon
+  /// as it holds, false when it has not become true within `limit` of wall-clock time. What it throws is thrown here.
+  bool wait_until(const std::function<bool(const nlohmann::json & state)> & condition, std::chrono::milliseconds limit);
 
  private:
   struct Impl;

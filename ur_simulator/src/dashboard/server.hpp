@@ -17,6 +17,7 @@ class Server {
   Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, Pendant & pendant);
   ~Server();
   Listener & listener() { return listener_; }
+  const Listener & listener() const { return listener_; }
 
  private:
   struct Client {

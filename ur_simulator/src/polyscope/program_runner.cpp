@@ -63,6 +63,13 @@ void ProgramRunner::stop(std::string_view why)
   end(RuntimeState::stopping);
 }
 
+void ProgramRunner::shut_down()
+{
+  stop("the controller switches off");
+  secondaries_.clear();
+  popup_.reset();
+}
+
 void ProgramRunner::end(RuntimeState next)
 {
   primary_.reset();

@@ -39,6 +39,8 @@ class ProgramRunner final : public urscript::Host {
   tl::expected<void, urscript::CompileError> check(std::string_view text) const;
   /// Ends the program; the arm decelerates.
   void stop(std::string_view why);
+  /// Ends all programs at once, `sec` programs too (the controller switches off).
+  void shut_down();
   /// Ramp down and wait, or go on; false when no program runs (is paused).
   bool pause();
   bool resume();

@@ -38,8 +38,7 @@ void ScriptServer::receive(Client & client, std::string_view bytes)
   report_dropped(client);
   while (const auto script = client.reader.next()) {
     // A refusal is in the log and reaches the clients as an error message.
-    const auto answer = pendant_.run_script(*script);
-    static_cast<void>(answer);
+    pendant_.run_script(*script);
   }
 }
 

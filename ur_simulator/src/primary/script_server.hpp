@@ -24,6 +24,7 @@ class ScriptServer {
   /// Sends a whole message to every client that keeps up.
   void broadcast(std::string_view message);
   Listener & listener() { return listener_; }
+  const Listener & listener() const { return listener_; }
   bool has_clients() const { return !clients_.empty(); }
 
  private:

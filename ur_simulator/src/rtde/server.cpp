@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "rtde/session.hpp"
 
 namespace ur_simulator::rtde {
@@ -48,6 +50,22 @@ void Server::publish()
   for (auto next = sessions_.begin(); next != sessions_.end();) {
     const std::shared_ptr<Session> session = (next++)->second;
     session->publish();
+  }
+}
+
+std::size_t Server::clients(ClientRole role) const
+{
+  return static_cast<std::size_t>(
+      std::ranges::count_if(sessions_, [role](const auto & entry) { return entry.second->role() == role; }));
+}
+
+void Server::for_each(ClientRole role, const std::function<void(Connection &)> & action)
+{
+  for (auto next = sessions_.begin(); next != sessions_.end();) {
+    const std::shared_ptr<Session> session = (next++)->second;
+    if (session->role() == role) {
+      action(session->connection());
+    }
   }
 }
 

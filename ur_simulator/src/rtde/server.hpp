@@ -16,6 +16,10 @@ namespace ur_simulator::rtde {
 
 class Session;
 
+/// What a client uses the link for, as its recipes tell: ur_rtde's interfaces are `receive` (outputs only), `io` (inputs only)
+/// and `control` (both).
+enum class ClientRole : std::uint8_t { undecided, receive, io, control };
+
 /// What the sessions share. An input field belongs to the client that first asked for it, until that client leaves.
 struct Shared {
   ControllerState & state;
@@ -37,7 +41,10 @@ class Server {
   /// Sends the state of this cycle to every started client whose turn it is. Allocates nothing.
   void publish();
   Listener & listener() { return listener_; }
+  const Listener & listener() const { return listener_; }
   std::size_t clients() const { return sessions_.size(); }
+  std::size_t clients(ClientRole role) const;
+  void for_each(ClientRole role, const std::function<void(Connection &)> & action);
   /// Data packages that were dropped because a client did not read.
   std::uint64_t dropped_packages() const;
 

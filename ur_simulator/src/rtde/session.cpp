@@ -44,6 +44,14 @@ void Session::leave()
   shared_.log.info("rtde", fmt::format("client {} disconnected", connection_->id()));
 }
 
+ClientRole Session::role() const
+{
+  if (inputs_.empty()) {
+    return outputs_.empty() ? ClientRole::undecided : ClientRole::receive;
+  }
+  return outputs_.empty() ? ClientRole::io : ClientRole::control;
+}
+
 void Session::receive(std::string_view bytes)
 {
   received_.append(bytes);

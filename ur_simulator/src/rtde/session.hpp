@@ -23,6 +23,8 @@ class Session {
   /// The connection has ended: gives the input fields back.
   void leave();
   std::uint64_t dropped_packages() const { return dropped_packages_; }
+  ClientRole role() const;
+  Connection & connection() { return *connection_; }
 
  private:
   struct InputRecipe {

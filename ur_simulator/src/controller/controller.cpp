@@ -1,0 +1,328 @@
+#include "controller/controller.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/asio/post.hpp>
+#include <exception>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "control_port/commands.hpp"
+#include "primary/messages.hpp"
+
+namespace ur_simulator {
+namespace {
+
+namespace asio = boost::asio;
+using Clock = std::chrono::steady_clock;
+
+// A late host is caught up with up to this many cycles in a row; beyond, the simulated time falls behind instead of the
+// sockets starving.
+constexpr int most_cycles_to_catch_up = 10;
+
+const RobotModel & model_of(const SimulatorOptions & options)
+{
+  const auto model = find_robot_model(options.model);
+  if (!model) {
+    throw std::runtime_error(model.error());
+  }
+  return model->get();
+}
+
+PolyscopeVersion version_of(const SimulatorOptions & options, const RobotModel & model)
+{
+  const bool cb3 = model.series == Series::cb3;
+  const std::string text = options.polyscope_version.empty() ? (cb3 ? "3.15.8" : "5.25.1") : options.polyscope_version;
+  const auto version = PolyscopeVersion::parse(text);
+  if (!version || (version->major != 3 && version->major != 5)) {
+    throw std::runtime_error(
+        fmt::format("PolyScope version '{}' (--polyscope) is not known: give 3.x or 5.x, such as 5.25.1", text));
+  }
+  if (version->is_e_series() == cb3) {
+    throw std::runtime_error(fmt::format("model {} does not run PolyScope {}: CB3 models (ur3, ur5, ur10) run 3.x, all "
+                                         "others 5.x (--model, --polyscope)",
+                                         model.name, text));
+  }
+  return *version;
+}
+
+Vector6 joints_of(const SimulatorOptions & options, const RobotModel & model)
+{
+  if (!options.initial_joints) {
+    return default_position(model);
+  }
+  const Vector6 joints(options.initial_joints->data());
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    if (!(joints[i] >= model.position_min[i] && joints[i] <= model.position_max[i])) {
+      throw std::runtime_error(fmt::format("initial joint {} is {} rad: model {} allows {} to {}", i, joints[i], model.name,
+                                           model.position_min[i], model.position_max[i]));
+    }
+  }
+  return joints;
+}
+
+LogLevel level_of(SafetyEvent::Level level)
+{
+  switch (level) {
+    case SafetyEvent::Level::information:
+      return LogLevel::info;
+    case SafetyEvent::Level::warning:
+      return LogLevel::warning;
+    case SafetyEvent::Level::error:
+      return LogLevel::error;
+  }
+  return LogLevel::error;
+}
+
+}  // namespace
+
+Controller::Controller(const SimulatorOptions & options)
+: model_(model_of(options)),
+  version_(version_of(options, model_)),
+  options_(options),
+  period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(version_.cycle_time()))),
+  initial_joints_(joints_of(options, model_)),
+  arm_(std::in_place, model_, version_.cycle_time(), initial_joints_),
+  world_(std::in_place, version_.cycle_time(), options.seed),
+  safety_(std::in_place, model_, version_.cycle_time()),
+  runner_(std::in_place, program_access()),
+  pendant_(std::in_place, model_, PendantOptions{version_, options.remote_control}, state_, *safety_, *runner_, log_),
+  primary_(io_, options.address, options.ports.primary, *pendant_, primary::version_message(version_)),
+  secondary_(io_, options.address, options.ports.secondary, *pendant_, primary::version_message(version_)),
+  realtime_(io_, options.address, options.ports.realtime, *pendant_, ""),
+  realtime_packet_(version_),
+  rtde_(io_, options.address, options.ports.rtde, state_, version_, log_),
+  dashboard_(io_, options.address, options.ports.dashboard, *pendant_),
+  bench_{state_,
+         *arm_,
+         *world_,
+         *safety_,
+         *pendant_,
+         log_,
+         rtde_,
+         {{"primary", &primary_.listener()},
+          {"secondary", &secondary_.listener()},
+          {"realtime", &realtime_.listener()},
+          {"rtde", &rtde_.listener()},
+          {"dashboard", &dashboard_.listener()}},
+         missed_cycles_,
+         [this](double duration) { reboot(duration); }},
+  control_(io_, options.address, options.ports.control, [this](const nlohmann::json & request) { return control(request); })
+{
+  rtde_.on_input([this](const rtde::InputField & field) { watchdog_.fed(field.name, state_.timestamp); });
+  log_.add_listener([this](const LogEntry & entry) { primary_.broadcast(primary::message_for(entry)); });
+  arm_->teleport(initial_joints_, state_);
+  if (options_.start_running) {
+    safety_->start_running(state_);
+  }
+}
+
+RobotAccess Controller::access()
+{
+  ScriptRequests requests;
+  requests.power_down = [this] { requests_.power_down = true; };
+  requests.protective_stop = [this] { requests_.protective_stop = true; };
+  requests.set_speed_slider = [this](double fraction) { state_.speed_slider = fraction; };
+  return {state_, *arm_, *world_, model_, watchdog_, std::move(requests), version_.cycle_time()};
+}
+
+ProgramAccess Controller::program_access()
+{
+  return {state_, *arm_, watchdog_, log_, make_robot_library(access()), version_.cycle_time()};
+}
+
+Ports Controller::ports() const
+{
+  Ports ports;
+  ports.primary = primary_.listener().port();
+  ports.secondary = secondary_.listener().port();
+  ports.realtime = realtime_.listener().port();
+  ports.rtde = rtde_.listener().port();
+  ports.dashboard = dashboard_.listener().port();
+  ports.control = control_.listener().port();
+  return ports;
+}
+
+nlohmann::json Controller::control(const nlohmann::json & request) { return control_port::handle(bench_, request); }
+
+// ---- the loop
+
+void Controller::run()
+{
+  deadline_ = Clock::now() + period_;
+  wait_for_next_cycle();
+  while (!stopping_) {
+    try {
+      io_.run();
+      return;
+    } catch (const std::exception & error) {
+      // A defect: said loudly, but it takes no robot down.
+      log_.error("controller", fmt::format("internal error: {}", error.what()));
+      if (timer_.expiry() <= Clock::now()) {
+        wait_for_next_cycle();
+      }
+    }
+  }
+}
+
+void Controller::stop()
+{
+  asio::post(io_, [this] {
+    stopping_ = true;
+    io_.stop();
+  });
+}
+
+void Controller::wait_for_next_cycle()
+{
+  timer_.expires_at(deadline_);
+  timer_.async_wait([this](const boost::system::error_code & error) {
+    if (error || stopping_) {
+      return;
+    }
+    keep_pace();
+    wait_for_next_cycle();
+  });
+}
+
+void Controller::keep_pace()
+{
+  const Clock::time_point now = Clock::now();
+  for (int i = 0; i < most_cycles_to_catch_up && deadline_ <= now; ++i) {
+    deadline_ += period_;
+    cycle();
+  }
+  if (deadline_ <= now) {
+    const auto missed = (now - deadline_) / period_ + 1;
+    missed_cycles_ += static_cast<std::uint64_t>(missed);
+    deadline_ += missed * period_;
+  }
+}
+
+void Controller::cycle()
+{
+  const Clock::time_point begin = Clock::now();
+  ++state_.cycle;
+  state_.timestamp = static_cast<double>(state_.cycle) * version_.cycle_time();
+  log_.set_time(state_.timestamp);
+  if (boots_at_) {
+    if (state_.timestamp >= *boots_at_) {
+      power_switch(true);
+    }
+  } else {
+    step_robot();
+    publish();
+  }
+  observers_.remove_if([](const Observer & observer) { return observer(); });
+  state_.actual_execution_time = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+void Controller::step_robot()
+{
+  if (const auto action = watchdog_.expired(state_.timestamp)) {
+    log_.error("program", "RTDE watchdog: no data package with the watched variable came in time");
+    if (*action == Watchdog::Action::stop) {
+      runner_->stop("RTDE watchdog");
+    } else if (*action == Watchdog::Action::pause) {
+      runner_->pause();
+    }
+  }
+  runner_->cycle();
+  act_on_requests();
+  arm_->step(state_);
+  if (const auto fault = arm_->take_fault()) {
+    safety_->trip(*fault);
+  }
+  world_->step(state_);
+  obey(safety_->step(state_));
+  take_safety_events();
+  if (pendant_->shutdown_requested()) {
+    pendant_->request_shutdown(false);
+    power_switch(false);
+  }
+}
+
+void Controller::act_on_requests()
+{
+  const Requests requests = std::exchange(requests_, {});
+  if (requests.protective_stop) {
+    safety_->trip("the program called protective_stop()");
+  }
+  if (requests.power_down) {
+    pendant_->power_off();
+  }
+}
+
+void Controller::obey(const SafetyOrders & orders)
+{
+  if (orders.stop_program) {
+    runner_->stop("stopped by the safety system");
+  }
+  if (orders.pause_program) {
+    runner_->pause();
+  }
+  if (orders.halt) {
+    arm_->halt(*orders.halt);
+  }
+  if (orders.resume_program) {
+    runner_->resume();
+  }
+}
+
+void Controller::take_safety_events()
+{
+  while (const auto event = safety_->take_event()) {
+    log_.add(level_of(event->level), "safety", event->message);
+    if (event->level == SafetyEvent::Level::error) {
+      pendant_->show_safety_popup(event->message);
+    }
+  }
+}
+
+void Controller::publish()
+{
+  rtde_.publish();
+  if (realtime_.has_clients()) {
+    realtime_.broadcast(realtime_packet_.encode(state_));
+  }
+}
+
+// ---- switching off and on
+
+void Controller::power_switch(bool on)
+{
+  for (const auto & [name, link] : bench_.links) {
+    if (!on) {
+      link->close_all();
+    }
+    link->set_accepting(on);
+  }
+  if (on) {
+    boots_at_.reset();
+    log_.info("controller", "switched on");
+  } else {
+    runner_->shut_down();
+    boots_at_ = std::numeric_limits<double>::infinity();
+    log_.info("controller", "switched off");
+  }
+}
+
+void Controller::reboot(double duration)
+{
+  for (const auto & [name, link] : bench_.links) {
+    link->for_each([](Connection & connection) { connection.reset(); });
+  }
+  power_switch(false);
+  const Vector6 where = state_.actual.position;
+  state_ = ControllerState();
+  requests_ = {};
+  // In place: everything that refers to these goes on referring to the new ones.
+  arm_.emplace(model_, version_.cycle_time(), where);
+  arm_->teleport(where, state_);
+  safety_.emplace(model_, version_.cycle_time());
+  safety_->step(state_);
+  boots_at_ = duration;
+}
+
+}  // namespace ur_simulator

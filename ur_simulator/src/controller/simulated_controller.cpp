@@ -1,0 +1,122 @@
+#include "ur_simulator/simulated_controller.hpp"
+
+#include <pthread.h>
+#include <sched.h>
+
+#include <boost/asio/post.hpp>
+#include <exception>
+#include <future>
+#include <thread>
+#include <utility>
+
+#include "controller/controller.hpp"
+
+namespace ur_simulator {
+namespace {
+
+void try_realtime_priority()
+{
+  sched_param parameters{};
+  parameters.sched_priority = 80;
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+}
+
+}  // namespace
+
+struct SimulatedController::Impl {
+  explicit Impl(const SimulatorOptions & options_) : options(options_), controller(options_)
+  {
+    thread = std::thread([this] {
+      if (options.realtime_priority) {
+        try_realtime_priority();
+      }
+      controller.run();
+    });
+  }
+  ~Impl()
+  {
+    controller.stop();
+    thread.join();
+  }
+  Impl(const Impl &) = delete;
+  Impl & operator=(const Impl &) = delete;
+
+  /// Runs the function on the controller's thread and returns what it returns or throws.
+  template <typename Function>
+  auto call(Function function)
+  {
+    std::packaged_task<decltype(function())()> task(std::move(function));
+    auto result = task.get_future();
+    boost::asio::post(controller.io(), [&task] { task(); });
+    return result.get();
+  }
+
+  SimulatorOptions options;
+  Controller controller;
+  std::thread thread;
+};
+
+SimulatedController::SimulatedController(const SimulatorOptions & options) : impl_(std::make_unique<Impl>(options)) {}
+
+SimulatedController::~SimulatedController() = default;
+
+const std::string & SimulatedController::address() const { return impl_->options.address; }
+
+Ports SimulatedController::ports() const { return impl_->controller.ports(); }
+
+nlohmann::json SimulatedController::control(const nlohmann::json & request)
+{
+  return impl_->call([&] { return impl_->controller.control(request); });
+}
+
+nlohmann::json SimulatedController::state()
+{
+  return impl_->call([&] { return impl_->controller.state(); });
+}
+
+bool SimulatedController::wait_until(const std::function<bool(const nlohmann::json &)> & condition,
+                                     std::chrono::milliseconds limit)
+{
+  // Shared with the observer, which may outlast this call by a cycle.
+  struct Wait {
+    std::promise<void> reached;
+    std::function<bool(const nlohmann::json &)> condition;
+    bool given_up = false;  // of the controller's thread
+  };
+  auto wait = std::make_shared<Wait>();
+  wait->condition = condition;
+  auto reached = wait->reached.get_future();
+  Controller & controller = impl_->controller;
+  const auto observe = [wait, &controller] {
+    if (wait->given_up) {
+      return true;
+    }
+    try {
+      if (!wait->condition(controller.state())) {
+        return false;
+      }
+      wait->reached.set_value();
+    } catch (...) {
+      wait->reached.set_exception(std::current_exception());
+    }
+    return true;
+  };
+  impl_->call([&] {
+    if (!observe()) {
+      controller.observe(observe);
+    }
+  });
+  if (reached.wait_for(limit) == std::future_status::ready) {
+    reached.get();
+    return true;
+  }
+  // From here on the condition, and what it refers to, is not used any more.
+  impl_->call([&] { wait->given_up = true; });
+  const bool meanwhile = reached.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  if (meanwhile) {
+    reached.get();
+  }
+  return meanwhile;
+}
+
+}  // namespace ur_simulator

@@ -1,0 +1,99 @@
+#include "primary/realtime_packet.hpp"
+
+#include "primary/big_endian.hpp"
+
+namespace ur_simulator::primary {
+namespace {
+
+std::size_t packet_size(const PolyscopeVersion & version)
+{
+  if (!version.is_e_series()) {
+    return 1060;
+  }
+  return version >= PolyscopeVersion{5, 10, 0, 0} ? 1220 : 1116;
+}
+
+}  // namespace
+
+RealtimePacket::RealtimePacket(const PolyscopeVersion & version) : size_(packet_size(version)) { bytes_.reserve(2 * size_); }
+
+void RealtimePacket::put(double value) { put_f64(bytes_, value); }
+
+template <typename Derived>
+void RealtimePacket::put(const Eigen::MatrixBase<Derived> & values)
+{
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    put(static_cast<double>(values[i]));
+  }
+}
+
+void RealtimePacket::put_zeros(int count)
+{
+  for (int i = 0; i < count; ++i) {
+    put(0.0);
+  }
+}
+
+std::string_view RealtimePacket::encode(const ControllerState & state)
+{
+  bytes_.clear();
+  put_u32(bytes_, static_cast<std::uint32_t>(size_));
+  put_motion(state);
+  put_status(state);
+  // Later versions append; what a version does not have yet is cut off.
+  bytes_.resize(size_, '\0');
+  return bytes_;
+}
+
+void RealtimePacket::put_motion(const ControllerState & s)
+{
+  put(s.timestamp);
+  put(s.target.position);
+  put(s.target.velocity);
+  put(s.target.acceleration);
+  put(s.target.current);
+  put(s.target.torque);
+  put(s.actual.position);
+  put(s.actual.velocity);
+  put(s.actual.current);
+  put(s.target.current);  // joint control currents
+  put(s.actual_tcp_pose);
+  put(s.actual_tcp_speed);
+  put(s.actual_tcp_force);
+  put(s.target_tcp_pose);
+  put(s.target_tcp_speed);
+  put(static_cast<double>(s.io.digital_inputs));
+  put(s.joint_temperatures);
+  put(s.actual_execution_time);
+  put(0.0);  // test value
+}
+
+void RealtimePacket::put_status(const ControllerState & s)
+{
+  const bool powered = (s.robot_status_bits & 1u) != 0;
+  put(static_cast<double>(s.robot_mode));
+  for (const std::int32_t mode : s.joint_modes) {
+    put(static_cast<double>(mode));
+  }
+  put(static_cast<double>(s.safety_mode));
+  put_zeros(6);  // internal
+  put(s.tool_acceleration);
+  put_zeros(6);  // internal
+  put(s.speed_scaling);
+  put(s.payload.mass * s.actual_tcp_speed.head<3>().norm());  // linear momentum norm
+  put_zeros(2);                                               // internal
+  put(48.0);                                                  // main voltage
+  put(powered ? 48.0 : 0.0);                                  // robot voltage
+  put(powered ? 0.6 : 0.0);                                   // robot current
+  put(Vector6::Constant(powered ? 48.0 : 0.0));               // joint voltages
+  put(static_cast<double>(s.io.digital_outputs));
+  put(static_cast<double>(s.runtime_state));
+  put_zeros(6);  // elbow position and velocity are not modelled
+  put(static_cast<double>(s.safety_mode));  // safety status
+  put_zeros(3);                             // internal
+  put(s.payload.mass);
+  put(s.payload.center_of_gravity);
+  put(s.payload.inertia);
+}
+
+}  // namespace ur_simulator::primary

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "state/controller_state.hpp"
+#include "version/polyscope_version.hpp"
+
+namespace ur_simulator::primary {
+
+/// The packet that port 30003 sends each cycle: doubles, big-endian, behind a 4-byte size. UR, "Client Interface", sheets
+/// "RealTime 3.5" (1060 bytes), "RealTime 5.4" (1116) and "RealTime 5.10" (1220).
+class RealtimePacket {
+ public:
+  explicit RealtimePacket(const PolyscopeVersion & version);
+  /// Valid until the next call.
+  std::string_view encode(const ControllerState & state);
+
+ private:
+  void put(double value);
+  template <typename Derived>
+  void put(const Eigen::MatrixBase<Derived> & values);
+  void put_zeros(int count);
+  void put_motion(const ControllerState & state);
+  void put_status(const ControllerState & state);
+
+  std::size_t size_;
+  std::string bytes_;
+};
+
+}  // namespace ur_simulator::primary
