@@ -1,0 +1,229 @@
+// The unmodified ur_rtde library against the simulator, over real sockets.
+#include <ur_rtde/dashboard_client.h>
+#include <ur_rtde/rtde_control_interface.h>
+#include <ur_rtde/rtde_io_interface.h>
+#include <ur_rtde/rtde_receive_interface.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/simulator_test.hpp"
+
+namespace ur_simulator::testing {
+namespace {
+
+using Joints = std::vector<double>;
+
+double distance(const Joints & a, const Joints & b)
+{
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    largest = std::max(largest, std::abs(a[i] - b.at(i)));
+  }
+  return largest;
+}
+
+Joints joints_of(SimulatedController & controller)
+{
+  return controller.state()["actual"]["position"].get<Joints>();
+}
+
+bool wait_for_rest(SimulatedController & controller)
+{
+  return controller.wait_until([](const json & state) { return state["at_rest"].get<bool>(); }, seconds(10));
+}
+
+bool wait_for_tcp_speed(SimulatedController & controller, std::size_t axis, double speed, double tolerance)
+{
+  return controller.wait_until(
+      [=](const json & state) { return std::abs(state["actual_tcp_speed"][axis].get<double>() - speed) < tolerance; },
+      seconds(10));
+}
+
+TEST(UrRtdeReceive, reads_the_state)
+{
+  SimulatedController controller(on_own_address());
+  ur_rtde::RTDEReceiveInterface receive(controller.address());
+  ASSERT_TRUE(receive.isConnected());
+  EXPECT_EQ(receive.getRobotMode(), 7);
+  EXPECT_EQ(receive.getSafetyMode(), 1);
+  EXPECT_LT(distance(receive.getActualQ(), joints_of(controller)), 1e-6);
+  EXPECT_EQ(receive.getActualTCPPose().size(), 6u);
+  EXPECT_GT(receive.getTimestamp(), 0.0);
+  EXPECT_EQ(receive.getFtRawWrench().size(), 6u);
+}
+
+TEST(UrRtdeReceive, follows_a_cb3_controller_at_125_hertz)
+{
+  SimulatorOptions options;
+  options.model = "ur5";
+  SimulatedController controller(on_own_address(options));
+  ur_rtde::RTDEReceiveInterface receive(controller.address());
+  EXPECT_EQ(receive.getRobotMode(), 7);
+}
+
+TEST(UrRtdeIo, sets_outputs_slider_and_registers)
+{
+  SimulatedController controller(on_own_address());
+  ur_rtde::RTDEIOInterface io(controller.address());
+  EXPECT_TRUE(io.setStandardDigitalOut(3, true));
+  EXPECT_TRUE(io.setConfigurableDigitalOut(1, true));
+  EXPECT_TRUE(io.setToolDigitalOut(0, true));
+  EXPECT_TRUE(io.setSpeedSlider(0.5));
+  EXPECT_TRUE(io.setAnalogOutputVoltage(0, 0.25));
+  EXPECT_TRUE(io.setInputIntRegister(18, 42));
+  EXPECT_TRUE(controller.wait_until(
+      [](const json & state) {
+        return state["io"]["digital_outputs"] == (1u << 3 | 1u << 9 | 1u << 16) && state["speed_slider"] == 0.5 &&
+               state["io"]["analog_outputs"][0] == 2.5;
+      },
+      seconds(5)))
+      << controller.state().dump(2);
+  EXPECT_EQ(controller.control({{"command", "registers"}})["inputs"]["integers"][18], 42);
+}
+
+TEST(UrRtdeDashboard, powers_the_robot_on)
+{
+  SimulatorOptions options;
+  options.start_running = false;
+  SimulatedController controller(on_own_address(options));
+  ur_rtde::DashboardClient dashboard(controller.address());
+  dashboard.connect();
+  EXPECT_EQ(dashboard.polyscopeVersion(), "5.25.1.0");
+  EXPECT_EQ(dashboard.robotmode(), "Robotmode: POWER_OFF");
+  dashboard.powerOn();
+  dashboard.brakeRelease();
+  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "RUNNING"; }, seconds(20)));
+  EXPECT_TRUE(dashboard.isInRemoteControl());
+  EXPECT_FALSE(dashboard.running());
+  EXPECT_TRUE(dashboard.isProgramSaved());
+  EXPECT_NO_THROW(dashboard.stop());
+  EXPECT_THROW(dashboard.play(), std::runtime_error);
+}
+
+/// The control interface with its script running.
+class UrRtdeControl : public SimulatorTest {
+ protected:
+  ur_rtde::RTDEControlInterface control{controller.address(), -1.0, ur_rtde::RTDEControlInterface::FLAGS_DEFAULT, 50002, -1};
+  Joints start = joints_of(controller);
+
+  Joints shifted(double by) const
+  {
+    Joints joints = start;
+    for (double & joint : joints) {
+      joint += by;
+    }
+    return joints;
+  }
+};
+
+TEST_F(UrRtdeControl, uploads_its_script_and_finds_it_running)
+{
+  EXPECT_TRUE(control.isConnected());
+  EXPECT_TRUE(control.isProgramRunning());
+  EXPECT_EQ(controller.state()["program"]["state"], "PLAYING");
+}
+
+TEST_F(UrRtdeControl, moves_to_joint_positions)
+{
+  const Joints target = shifted(0.2);
+  EXPECT_TRUE(control.moveJ(target, 1.0, 2.0));
+  EXPECT_LT(distance(joints_of(controller), target), 1e-3);
+  EXPECT_TRUE(control.moveJ(start, 1.0, 2.0));
+  EXPECT_LT(distance(joints_of(controller), start), 1e-3);
+}
+
+TEST_F(UrRtdeControl, moves_linearly_and_stops_on_request)
+{
+  Joints pose = controller.state()["actual_tcp_pose"].get<Joints>();
+  const double height = pose[2];
+  pose[2] -= 0.3;
+  ASSERT_TRUE(control.moveL(pose, 0.2, 0.5, true));
+  ASSERT_TRUE(wait_for_tcp_speed(controller, 2, -0.2, 0.01));
+  control.stopL(2.0);
+  ASSERT_TRUE(wait_for_rest(controller));
+  const double reached = controller.state()["actual_tcp_pose"][2];
+  EXPECT_LT(reached, height - 0.01);
+  EXPECT_GT(reached, height - 0.25);
+}
+
+TEST_F(UrRtdeControl, reports_progress_of_asynchronous_motions)
+{
+  ASSERT_TRUE(control.moveJ(shifted(0.3), 1.0, 2.0, true));
+  ASSERT_TRUE(controller.wait_until([](const json & state) { return !state["at_rest"].get<bool>(); }, seconds(5)));
+  EXPECT_GE(control.getAsyncOperationProgress(), 0);
+  ASSERT_TRUE(wait_for_rest(controller));
+  EXPECT_LT(distance(joints_of(controller), shifted(0.3)), 1e-3);
+}
+
+TEST_F(UrRtdeControl, follows_a_servo_stream)
+{
+  Joints target = start;
+  for (int i = 0; i < 250; ++i) {
+    const auto begin = control.initPeriod();
+    target[5] = start[5] + 0.1 * std::sin(0.002 * i * std::numbers::pi);
+    ASSERT_TRUE(control.servoJ(target, 0.5, 0.5, 0.002, 0.1, 300));
+    control.waitPeriod(begin);
+  }
+  control.servoStop();
+  ASSERT_TRUE(wait_for_rest(controller));
+  EXPECT_NEAR(joints_of(controller)[5], target[5], 0.01);
+}
+
+TEST_F(UrRtdeControl, moves_at_a_cartesian_speed_until_told_to_stop)
+{
+  ASSERT_TRUE(control.speedL({0.0, 0.0, -0.1, 0.0, 0.0, 0.0}, 0.5));
+  EXPECT_TRUE(wait_for_tcp_speed(controller, 2, -0.1, 0.005));
+  EXPECT_TRUE(control.speedStop());
+  EXPECT_TRUE(wait_for_rest(controller));
+}
+
+TEST_F(UrRtdeControl, forward_and_inverse_kinematics_agree)
+{
+  const Joints pose = control.getForwardKinematics(start, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_LT(distance(pose, controller.state()["actual_tcp_pose"].get<Joints>()), 1e-6);
+  EXPECT_LT(distance(control.getInverseKinematics(pose), start), 1e-6);
+}
+
+TEST_F(UrRtdeControl, zeroes_the_force_sensor_and_sets_payload_and_tcp)
+{
+  EXPECT_TRUE(control.zeroFtSensor());
+  EXPECT_TRUE(control.setPayload(1.5, {0.0, 0.0, 0.05}));
+  EXPECT_TRUE(control.setTcp({0.0, 0.0, 0.1, 0.0, 0.0, 0.0}));
+  EXPECT_TRUE(controller.wait_until(
+      [](const json & state) { return state["payload"]["mass"] == 1.5 && state["tcp_offset"][2] == 0.1; }, seconds(5)));
+}
+
+TEST_F(UrRtdeControl, a_motion_ends_on_a_protective_stop)
+{
+  ASSERT_TRUE(control.moveJ(shifted(0.5), 0.5, 1.0, true));
+  ASSERT_TRUE(controller.wait_until([](const json & state) { return !state["at_rest"].get<bool>(); }, seconds(5)));
+  controller.control({{"command", "protective_stop"}});
+  ASSERT_TRUE(wait_for_rest(controller));
+  EXPECT_EQ(controller.state()["safety_mode"], "PROTECTIVE_STOP");
+  EXPECT_GT(distance(joints_of(controller), shifted(0.5)), 0.05);
+}
+
+TEST_F(UrRtdeControl, stops_its_script)
+{
+  control.stopScript();
+  EXPECT_TRUE(wait_for_program(controller, "STOPPED"));
+}
+
+TEST_F(UrRtdeControl, shares_the_controller_with_receive_and_io)
+{
+  ur_rtde::RTDEReceiveInterface receive(controller.address());
+  ur_rtde::RTDEIOInterface io(controller.address());
+  ASSERT_TRUE(io.setSpeedSlider(0.5));
+  EXPECT_TRUE(control.moveJ(shifted(0.1), 1.0, 2.0));
+  EXPECT_LT(distance(receive.getActualQ(), shifted(0.1)), 1e-2);
+}
+
+TEST_F(UrRtdeControl, a_second_control_interface_finds_the_registers_in_use)
+{
+  EXPECT_THROW(ur_rtde::RTDEControlInterface(controller.address(), -1.0, ur_rtde::RTDEControlInterface::FLAGS_DEFAULT, 50002, -1),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace ur_simulator::testing
