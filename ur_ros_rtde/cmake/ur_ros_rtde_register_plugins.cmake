@@ -1,0 +1,18 @@
+# ur_ros_rtde_register_plugins(<target> <plugins.xml>)
+#
+# Makes the plugins of the shared library <target> known to the servers of ur_ros_rtde: installs the library into lib,
+# and <plugins.xml> with an entry in the ament index. The same files and the same entry as
+# pluginlib_export_plugin_description_file(ur_ros_rtde <plugins.xml>) makes, without needing pluginlib.
+# Once for each package; call it before ament_package().
+function(ur_ros_rtde_register_plugins target description)
+  if(NOT TARGET ${target})
+    message(FATAL_ERROR "ur_ros_rtde_register_plugins: there is no target ${target}")
+  endif()
+  get_filename_component(name "${description}" NAME)
+  if(NOT EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${description}")
+    message(FATAL_ERROR "ur_ros_rtde_register_plugins: there is no file ${CMAKE_CURRENT_SOURCE_DIR}/${description}")
+  endif()
+  install(TARGETS ${target} LIBRARY DESTINATION lib ARCHIVE DESTINATION lib RUNTIME DESTINATION bin)
+  install(FILES "${description}" DESTINATION share/${PROJECT_NAME})
+  ament_index_register_resource(ur_ros_rtde__pluginlib__plugin CONTENT "share/${PROJECT_NAME}/${name}\n")
+endfunction()

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <geometry_msgs/msg/pose.hpp>
+#include <geometry_msgs/msg/twist.hpp>
+#include <geometry_msgs/msg/vector3.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ur_ros_rtde/arm_limits.hpp"
+#include "ur_ros_rtde/error.hpp"
+
+namespace ur_ros_rtde {
+
+class Robot;
+
+/// What a check may ask the robot; the base class of the commands provides it.
+class Preflight {
+ public:
+  virtual ~Preflight() = default;
+  /// The robot takes this command now, and nothing else is in its way.
+  virtual Status prepare() = 0;
+  virtual const ArmLimits & limits() const = 0;
+  virtual Robot & robot() = 0;
+};
+
+/// Looks at a goal before it is accepted. Each function looks at one thing; the first that is wrong becomes
+/// the error, and the functions after it do nothing. Messages name field, value and limit.
+///
+///     check.joints("joint_positions", goal.joint_positions);
+///     check.above_zero("speed", goal.speed, 3.14, "rad/s");
+class Check {
+ public:
+  /// Without `preflight`, what concerns the robot passes.
+  explicit Check(Preflight * preflight = nullptr) : preflight_(preflight) {}
+
+  /// Six finite values within the position limits of the arm. rad
+  Check & joints(std::string_view field, const std::vector<double> & values);
+  Check & in_range(std::string_view field, double value, double low, double high, std::string_view unit = "");
+  /// 0 < value <= high
+  Check & above_zero(std::string_view field, double value, double high, std::string_view unit = "");
+  /// Finite; a quaternion that has a direction.
+  Check & pose(std::string_view field, const geometry_msgs::msg::Pose & pose);
+  /// Each component finite and at most `limit` in size.
+  Check & vector(std::string_view field, const geometry_msgs::msg::Vector3 & vector, double limit,
+                 std::string_view unit = "");
+  /// |linear| <= 3 m/s, |angular| <= 3.14 rad/s, not both zero.
+  Check & twist(std::string_view field, const geometry_msgs::msg::Twist & twist);
+  /// Not empty, one line, no control characters, at most `longest` bytes.
+  Check & line(std::string_view field, std::string_view text, std::size_t longest);
+  Check & that(bool holds, std::string message, ErrorCode code = ErrorCode::invalid_goal);
+
+  /// From here on the robot is asked: it takes this command now, and nothing else is in its way.
+  Check & ready();
+  /// The arm can get the TCP there from where it is, within its safety limits: the controller answers. Some
+  /// milliseconds.
+  Check & reachable(std::string_view field, const geometry_msgs::msg::Pose & pose);
+  /// No joint has to go faster than it can on the way to `positions` in `time`, when its highest speed is
+  /// `peak` times the mean one.
+  Check & reachable_in(std::string_view field, const std::vector<double> & positions, double time, double peak);
+
+  bool ok() const { return !error_; }
+  const std::optional<Error> & error() const { return error_; }
+
+ private:
+  void fail(ErrorCode code, std::string message);
+  ArmLimits limits() const;
+
+  Preflight * preflight_;
+  std::optional<Error> error_;
+};
+
+/// A field of a goal that is a pose, for ur_rtde: position (m) and rotation vector (rad). Throws RobotError
+/// (invalid_goal) for a quaternion without a direction.
+std::vector<double> to_ur(const geometry_msgs::msg::Pose & pose);
+std::vector<double> to_ur(const geometry_msgs::msg::Twist & twist);
+
+/// "shoulder_pan_joint", … in the order of ur_rtde.
+const std::array<std::string, 6> & joint_names();
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <memory>
+#include <rcl_cxx/node.hpp>
+#include <string>
+
+#include "ur_ros_rtde/command_goals.hpp"
+#include "ur_ros_rtde/plugin.hpp"
+
+namespace ur_ros_rtde {
+
+/// A robot command as an action of type `A`: what is left to write is what the goal may be, and what to do.
+///
+///     class MoveL : public Command<ur_ros_rtde_msgs::action::MoveL> {
+///       void check(const Goal & goal, Check & check) const override
+///       {
+///         check.pose("pose", goal.pose).above_zero("speed", goal.speed, 3.0, "m/s").reachable("pose", goal.pose);
+///       }
+///       Outcome run(const Goal & goal, Run & run) override
+///       {
+///         run.control()->moveL(to_ur(goal.pose), goal.speed, goal.acceleration, true);
+///         return run.until_pose_reached(to_ur(goal.pose));
+///       }
+///     };
+///     UR_ROS_RTDE_EXPORT(MoveL, "move_l")
+///
+/// The base class does the rest: goals are refused with the reason before they are accepted; one command
+/// moves the arm at a time; run() has a thread of its own; however it ends (it may throw), the arm is brought
+/// to a standstill by decelerating, and then the goal gets its one result. `A`'s result begins `bool success,
+/// uint16 error_code, string message`; a field `ArmState final_state` in it and a field `MotionFeedback
+/// motion` in the feedback are filled in if there are such.
+template <typename A>
+class Command : public CommandPlugin {
+ public:
+  using Action = A;
+  using Goal = typename A::Goal;
+  using Result = typename A::Result;
+  using Feedback = typename A::Feedback;
+  using Run = GoalRun<A>;
+
+  /// What the goal's fields may be; then what needs the robot. Runs in the server's thread: no waiting.
+  virtual void check(const Goal &, Check &) const {}
+  virtual Outcome run(const Goal & goal, Run & run) = 0;
+
+  /// What nobody else may use meanwhile. `motion`, the default, for whatever moves the arm or must not happen
+  /// while it moves; `none` for what may happen at any time.
+  virtual Resource resource() const { return Resource::motion; }
+  /// Never refused for being busy: who is in the way has to end.
+  virtual bool takes_over() const { return false; }
+  /// How the arm is stopped if run() ends, or has to end, while it moves.
+  virtual StopOptions stop_options(const Goal &) const { return {}; }
+
+  void start_action_server(CommandHost & host, const std::string & name) override;
+  void stop_action_server() override { server_.reset(); }
+
+ private:
+  using Handle = rcl_cxx::GoalHandle<A>;
+  void carry_out(Handle & handle, GoalBook::Ticket & ticket);
+  void conclude(Handle & handle, Run & run, const Outcome & outcome);
+
+  std::unique_ptr<CommandGoals> goals_;
+  typename rcl_cxx::ActionServer<A>::SharedPtr server_;
+};
+
+template <typename A>
+void Command<A>::start_action_server(CommandHost & host, const std::string & name)
+{
+  goals_ = std::make_unique<CommandGoals>(host, host.node().resolve_service_name(name),
+                                          CommandTraits{resource(), takes_over()});
+  rcl_cxx::ActionHandlers<A> handlers;
+  handlers.goal = [this](const rcl_cxx::GoalId & id, const Goal & goal) {
+    return goals_->admit(id, [&](Check & result) { check(goal, result); });
+  };
+  handlers.accepted = [this](std::shared_ptr<Handle> handle) {
+    const Status started =
+        goals_->start(handle->goal_id(), [this, handle](std::shared_ptr<GoalBook::Ticket> ticket) {
+          carry_out(*handle, *ticket);
+        });
+    if (!started) {
+      Run run(goals_->host().robot(), std::make_shared<Interrupt>(), false, {});
+      conclude(*handle, run, started);
+    }
+  };
+  handlers.cancel = [](Handle &) { return true; };
+  handlers.canceling = [this](Handle & handle) { goals_->cancel(handle.goal_id()); };
+  server_ = host.node().template create_action_server<A>(name, std::move(handlers));
+}
+
+template <typename A>
+void Command<A>::carry_out(Handle & handle, GoalBook::Ticket & ticket)
+{
+  Run goal_run(goals_->host().robot(), ticket.interrupt, goals_->moves(),
+               [&handle](const Feedback & feedback) { handle.publish_feedback(feedback); });
+  const Outcome outcome = goals_->carry_out(handle.goal_id(), ticket, stop_options(handle.goal()),
+                                            [&] { return run(handle.goal(), goal_run); });
+  conclude(handle, goal_run, outcome);
+}
+
+template <typename A>
+void Command<A>::conclude(Handle & handle, Run & run, const Outcome & outcome)
+{
+  Result & result = run.result();
+  result.success = static_cast<bool>(outcome);
+  result.error_code = static_cast<std::uint16_t>(outcome.code());
+  result.message = outcome.message();
+  if constexpr (requires { result.final_state; }) {
+    result.final_state = run.arm_state();
+  }
+  goals_->finish(handle.goal_id(), outcome);
+  if (outcome) {
+    handle.succeed(result);
+  } else if (outcome.code() == ErrorCode::canceled && handle.is_canceling()) {
+    handle.canceled(result);
+  } else {
+    handle.abort(result);
+  }
+}
+
+}  // namespace ur_ros_rtde

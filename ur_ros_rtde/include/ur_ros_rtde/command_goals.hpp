@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <rcl_cxx/goal_id.hpp>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde/goal_book.hpp"
+#include "ur_ros_rtde/run.hpp"
+
+namespace ur_ros_rtde {
+
+/// What a command needs, for all of its goals.
+struct CommandTraits {
+  Resource resource = Resource::motion;
+  /// Is never refused for being busy: whoever is in the way has to end. Needs the link only.
+  bool takes_over = false;
+};
+
+/// The part of Command<A> that is compiled once: the goals of a command, their arbitration, and the standstill
+/// at their end.
+class CommandGoals {
+ public:
+  CommandGoals(CommandHost & host, std::string action, CommandTraits traits);
+
+  CommandHost & host() { return host_; }
+  bool moves() const { return traits_.resource == Resource::motion || traits_.resource == Resource::script; }
+
+  tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id,
+                                        const std::function<void(Check &)> & check);
+  /// In a thread of the goal's own.
+  Status start(const rcl_cxx::GoalId & id, std::function<void(std::shared_ptr<GoalBook::Ticket>)> work)
+  {
+    return book_.start(id, std::move(work));
+  }
+  void cancel(const rcl_cxx::GoalId & id) { book_.cancel(id); }
+  /// Gets what the command needs, runs `body`, and brings the arm to a standstill if `body` has not.
+  Outcome carry_out(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket, const StopOptions & stop,
+                    const std::function<Outcome()> & body);
+  void finish(const rcl_cxx::GoalId & id, const Outcome & outcome) { book_.finish(id, outcome); }
+
+ private:
+  class RobotPreflight;
+
+  Claim claim(const rcl_cxx::GoalId & id, const GoalBook::Ticket & ticket) const;
+  Status readiness() const;
+  Status take(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket, const StopOptions & stop);
+  Outcome settle(Outcome outcome, const GoalBook::Ticket & ticket, StopOptions stop);
+
+  CommandHost & host_;
+  const CommandTraits traits_;
+  GoalBook book_;
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <rcl_cxx/goal_id.hpp>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "ur_ros_rtde/arbiter.hpp"
+#include "ur_ros_rtde/interrupt.hpp"
+#include "ur_ros_rtde/plugin_host.hpp"
+
+namespace ur_ros_rtde {
+
+/// The goals of one action, whatever its type: admission, threads, cancel, end. Thread-safe.
+class GoalBook {
+ public:
+  struct Ticket {
+    std::shared_ptr<Interrupt> interrupt = std::make_shared<Interrupt>();
+    Lease lease;
+    bool started = false;
+  };
+
+  /// `action` is the resolved name.
+  GoalBook(PluginHost & host, std::string action) : host_(host), action_(std::move(action)) {}
+  GoalBook(const GoalBook &) = delete;
+  GoalBook & operator=(const GoalBook &) = delete;
+
+  const std::string & action() const { return action_; }
+
+  /// Whether the goal may be accepted: `examine` decides. A refusal is published, and returned for the log.
+  tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id,
+                                        const std::function<Status(Ticket &)> & examine);
+  /// Runs `work`, which must not throw, for an admitted goal in a thread of its own.
+  Status start(const rcl_cxx::GoalId & id, std::function<void(std::shared_ptr<Ticket>)> work);
+  void cancel(const rcl_cxx::GoalId & id);
+  /// Before the result is sent: what was held is free, the goal is forgotten, and its end logged.
+  void finish(const rcl_cxx::GoalId & id, const Outcome & outcome);
+  /// `body`'s outcome, or what it threw as one; if the goal was to end, that is the outcome of a failure.
+  Outcome guarded(const Interrupt & interrupt, const std::function<Outcome()> & body) const;
+
+ private:
+  void forget_unaccepted();
+
+  PluginHost & host_;
+  const std::string action_;
+  mutable std::mutex mutex_;
+  std::map<rcl_cxx::GoalId, std::shared_ptr<Ticket>> tickets_;
+};
+
+}  // namespace ur_ros_rtde

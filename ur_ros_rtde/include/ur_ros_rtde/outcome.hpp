@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "ur_ros_rtde/error.hpp"
+
+namespace ur_ros_rtde {
+
+/// Why a goal has to end early: canceled, preempted, shutdown, a stop of the robot, a lost link, timeout.
+using Interruption = Error;
+
+/// How a goal ended. An Error (and so an Interruption) is one, too.
+class Outcome {
+ public:
+  Outcome(Error error) : error_(std::move(error)) {}
+  Outcome(const Status & status) : error_(status ? Error{} : status.error()) {}
+
+  /// `message` is for people: what was done.
+  static Outcome success(std::string message = {})
+  {
+    return Outcome(Error{ErrorCode::none, std::move(message)});
+  }
+  static Outcome failure(ErrorCode code, std::string message)
+  {
+    return Outcome(Error{code, std::move(message)});
+  }
+
+  explicit operator bool() const { return error_.code == ErrorCode::none; }
+  ErrorCode code() const { return error_.code; }
+  const std::string & message() const { return error_.message; }
+
+ private:
+  Error error_;
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <rcl_cxx/node.hpp>
+#include <string>
+#include <ur_ros_rtde_msgs/msg/goal_refused.hpp>
+
+#include "ur_ros_rtde/arm_limits.hpp"
+#include "ur_ros_rtde/error.hpp"
+#include "ur_ros_rtde/goal_threads.hpp"
+#include "ur_ros_rtde/motion.hpp"
+
+namespace ur_ros_rtde {
+
+class DashboardLink;
+class Robot;
+
+/// What the server gives to every plugin.
+class PluginHost {
+ public:
+  explicit PluginHost(rcl_cxx::Node & node);
+
+  rcl_cxx::Node & node() { return node_; }
+  GoalThreads & goals() { return goals_; }
+  /// Tells everyone why a goal was not accepted, on the topic goal_refusals.
+  void publish_refusal(const std::string & action, const rcl_cxx::GoalId & id, const Error & why);
+
+ private:
+  rcl_cxx::Node & node_;
+  rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::GoalRefused>::SharedPtr refusals_;
+  GoalThreads goals_;
+};
+
+class CommandHost : public PluginHost {
+ public:
+  struct Options {
+    bool preempt_when_busy = false;
+    ArmLimits limits = widest_arm_limits();
+  };
+
+  CommandHost(rcl_cxx::Node & node, Robot & robot, const Options & options)
+      : PluginHost(node), robot_(robot), options_(options)
+  {
+  }
+
+  Robot & robot() { return robot_; }
+  bool preempts_when_busy() const { return options_.preempt_when_busy; }
+  const ArmLimits & limits() const { return options_.limits; }
+
+  /// How a goal that gives way is to decelerate, when the one that takes over says so.
+  void set_takeover_stop(std::optional<StopOptions> options);
+  std::optional<StopOptions> takeover_stop() const;
+
+ private:
+  Robot & robot_;
+  Options options_;
+  mutable std::mutex mutex_;
+  std::optional<StopOptions> takeover_stop_;
+};
+
+class DashboardHost : public PluginHost {
+ public:
+  DashboardHost(rcl_cxx::Node & node, DashboardLink & link) : PluginHost(node), link_(link) {}
+  DashboardLink & link() { return link_; }
+
+ private:
+  DashboardLink & link_;
+};
+
+}  // namespace ur_ros_rtde

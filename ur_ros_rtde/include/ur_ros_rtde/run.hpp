@@ -1,0 +1,127 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <ur_ros_rtde_msgs/msg/arm_state.hpp>
+#include <ur_ros_rtde_msgs/msg/motion_feedback.hpp>
+#include <vector>
+
+#include "ur_ros_rtde/interfaces.hpp"
+#include "ur_ros_rtde/interrupt.hpp"
+#include "ur_ros_rtde/outcome.hpp"
+
+namespace ur_ros_rtde {
+
+/// What a command has in hand while it carries out a goal, in the goal's own thread.
+///
+/// The waits return early, with the reason, when the goal is to end: canceled, preempted, the node shuts
+/// down, and for a command that moves the arm also when the robot stopped or the link is lost. Then return
+/// that reason; the arm is stopped by the base class. Feedback is published from within the waits.
+class Run {
+ public:
+  Run(Robot & robot, std::shared_ptr<Interrupt> interrupt, bool moves);
+  virtual ~Run() = default;
+  Run(const Run &) = delete;
+  Run & operator=(const Run &) = delete;
+
+  /// ur_rtde's interfaces, shared by all commands; `->` locks one for that call. Throw RobotError when one is
+  /// not connected; what a command does not catch ends its goal with that error. Call only what returns soon:
+  /// motions asynchronously.
+  Locked<ur_rtde::RTDEControlInterface> control();
+  Locked<ur_rtde::RTDEReceiveInterface> receive() const { return robot_.receive(); }
+  Locked<ur_rtde::RTDEIOInterface> io() const { return robot_.io(); }
+  Locked<ur_rtde::DashboardClient> dashboard() const { return robot_.dashboard(); }
+  Robot & robot() const { return robot_; }
+
+  /// The newest package of the controller. Throws RobotError (link_lost) before the first.
+  Sample state() const;
+  ur_ros_rtde_msgs::msg::ArmState arm_state() const;
+  /// What the surroundings exert on the tool: N and Nm at the TCP, in the orientation of the TCP; with the
+  /// TCP's offset not rotated, as is usual, that is the orientation of the flange: [2] is the force along the
+  /// flange's Z axis.
+  Vector6 flange_force() const;
+
+  /// Why the goal has to end now, if it has to.
+  std::optional<Interruption> interruption() const;
+  /// Nothing if the time has passed.
+  [[nodiscard]] std::optional<Interruption> sleep_for(std::chrono::nanoseconds duration);
+  /// Looks at `condition` with each package of the controller (each 10 ms without link). Nothing if it
+  /// holds; timeout.
+  [[nodiscard]] std::optional<Interruption> until(const std::function<bool()> & condition, std::chrono::nanoseconds timeout);
+
+  /// Until the asynchronous move begun by the last call through control() has ended and the arm stands still.
+  /// A failure, if the control program did not begin it, or after `limit`.
+  [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds limit = std::chrono::minutes(10));
+  /// The same, with progress, and a failure (not_reached) if it ended elsewhere. ur_rtde's values: rad; m and
+  /// rotation vector.
+  [[nodiscard]] Outcome until_joints_reached(const std::vector<double> & positions);
+  [[nodiscard]] Outcome until_pose_reached(const std::vector<double> & pose);
+  /// The last asynchronous move has ended, or nothing of it began within a second.
+  bool motion_ended() const;
+  /// The arm stands still (by its joints' velocities). Nothing if it does; timeout.
+  [[nodiscard]] std::optional<Interruption> until_standstill(std::chrono::nanoseconds limit = std::chrono::seconds(5));
+
+  /// For the feedback; 0 to 1.
+  void progress(double fraction) { progress_ = fraction; }
+  double progress() const { return progress_; }
+  std::chrono::nanoseconds elapsed() const { return std::chrono::steady_clock::now() - begin_; }
+  /// For the feedback; nothing while no package has come.
+  std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> motion_feedback() const;
+
+ protected:
+  /// 20 times a second while the goal waits.
+  virtual void publish_feedback() {}
+
+ private:
+  Outcome until_reached(const std::function<double(const Sample &)> & distance, double tolerance,
+                        const char * unit);
+  std::optional<Interruption> wait(const std::function<bool()> & condition,
+                                   std::chrono::steady_clock::time_point deadline);
+  void feed_back();
+
+  Robot & robot_;
+  std::shared_ptr<Interrupt> interrupt_;
+  bool moves_;
+  double progress_ = 0.0;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point next_feedback_ = begin_;
+  std::chrono::steady_clock::time_point last_call_ = begin_;
+  MotionMark mark_;
+};
+
+/// Run, with the result and the feedback of action `A`.
+template <typename A>
+class GoalRun : public Run {
+ public:
+  using Publish = std::function<void(const typename A::Feedback &)>;
+
+  GoalRun(Robot & robot, std::shared_ptr<Interrupt> interrupt, bool moves, Publish publish)
+      : Run(robot, std::move(interrupt), moves), publish_(std::move(publish))
+  {
+  }
+
+  /// For fields of your own; success, error_code, message and final_state are filled in for you.
+  typename A::Result & result() { return result_; }
+  /// For fields of your own; `motion` is filled in for you.
+  typename A::Feedback & feedback() { return feedback_; }
+
+ private:
+  void publish_feedback() override
+  {
+    if constexpr (requires(typename A::Feedback & feedback) { feedback.motion; }) {
+      if (auto motion = motion_feedback()) {
+        feedback_.motion = *motion;
+        publish_(feedback_);
+      }
+    }
+  }
+
+  typename A::Result result_;
+  typename A::Feedback feedback_;
+  Publish publish_;
+};
+
+}  // namespace ur_ros_rtde

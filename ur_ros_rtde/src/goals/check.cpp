@@ -1,0 +1,217 @@
+#include "ur_ros_rtde/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ur_ros_rtde/conversions.hpp"
+#include "ur_ros_rtde/interfaces.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+std::string with_unit(std::string_view unit)
+{
+  return unit.empty() ? std::string() : fmt::format(" {}", unit);
+}
+
+double length(const geometry_msgs::msg::Vector3 & v)
+{
+  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+Expected<Vector3> rotation_vector_of(const geometry_msgs::msg::Pose & pose)
+{
+  const auto & q = pose.orientation;
+  return rotation_vector(Quaternion{q.x, q.y, q.z, q.w});
+}
+}  // namespace
+
+const std::array<std::string, 6> & joint_names()
+{
+  static const std::array<std::string, 6> names{"shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
+                                                "wrist_1_joint",      "wrist_2_joint",       "wrist_3_joint"};
+  return names;
+}
+
+std::vector<double> to_ur(const geometry_msgs::msg::Pose & pose)
+{
+  const auto rotation = rotation_vector_of(pose);
+  if (!rotation) {
+    throw RobotError(rotation.error());
+  }
+  return {pose.position.x, pose.position.y, pose.position.z, (*rotation)[0], (*rotation)[1], (*rotation)[2]};
+}
+
+std::vector<double> to_ur(const geometry_msgs::msg::Twist & twist)
+{
+  return {twist.linear.x, twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y, twist.angular.z};
+}
+
+void Check::fail(ErrorCode code, std::string message)
+{
+  error_ = Error{code, std::move(message)};
+}
+
+ArmLimits Check::limits() const
+{
+  return preflight_ != nullptr ? preflight_->limits() : widest_arm_limits();
+}
+
+Check & Check::that(bool holds, std::string message, ErrorCode code)
+{
+  if (ok() && !holds) {
+    fail(code, std::move(message));
+  }
+  return *this;
+}
+
+Check & Check::joints(std::string_view field, const std::vector<double> & values)
+{
+  if (!ok()) {
+    return *this;
+  }
+  if (values.size() != 6) {
+    fail(ErrorCode::invalid_goal, fmt::format("{} has {} values, it takes 6: {}", field, values.size(),
+                                              fmt::join(joint_names(), ", ")));
+    return *this;
+  }
+  const ArmLimits arm = limits();
+  for (std::size_t i = 0; i < 6; ++i) {
+    in_range(fmt::format("{}[{}] ({})", field, i, joint_names()[i]), values[i], -arm.position[i],
+             arm.position[i], "rad");
+  }
+  return *this;
+}
+
+Check & Check::in_range(std::string_view field, double value, double low, double high, std::string_view unit)
+{
+  if (ok() && !(std::isfinite(value) && value >= low && value <= high)) {
+    fail(ErrorCode::invalid_goal, fmt::format("{} is {:.6g}{}, it may be {:.6g} to {:.6g}{}", field, value,
+                                              with_unit(unit), low, high, with_unit(unit)));
+  }
+  return *this;
+}
+
+Check & Check::above_zero(std::string_view field, double value, double high, std::string_view unit)
+{
+  if (ok() && !(std::isfinite(value) && value > 0.0 && value <= high)) {
+    fail(ErrorCode::invalid_goal, fmt::format("{} is {:.6g}{}, it must be above 0 and at most {:.6g}{}", field,
+                                              value, with_unit(unit), high, with_unit(unit)));
+  }
+  return *this;
+}
+
+Check & Check::pose(std::string_view field, const geometry_msgs::msg::Pose & pose)
+{
+  if (!ok()) {
+    return *this;
+  }
+  const double reach = limits().reach;
+  const auto & p = pose.position;
+  const double distance = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+  if (!std::isfinite(distance)) {
+    fail(ErrorCode::invalid_goal, fmt::format("{}.position is ({}, {}, {}) m, it must be finite", field, p.x,
+                                              p.y, p.z));
+  } else if (const auto rotation = rotation_vector_of(pose); !rotation) {
+    fail(ErrorCode::invalid_goal, fmt::format("{}.orientation: {}", field, rotation.error().message));
+  } else if (distance > reach + 1.0) {  // a tool may add a metre
+    fail(ErrorCode::unreachable,
+         fmt::format("{}.position is {:.3f} m from the base, the arm reaches {:.3f} m without its tool", field,
+                     distance, reach));
+  }
+  return *this;
+}
+
+Check & Check::vector(std::string_view field, const geometry_msgs::msg::Vector3 & vector, double limit,
+                      std::string_view unit)
+{
+  return in_range(fmt::format("{}.x", field), vector.x, -limit, limit, unit)
+      .in_range(fmt::format("{}.y", field), vector.y, -limit, limit, unit)
+      .in_range(fmt::format("{}.z", field), vector.z, -limit, limit, unit);
+}
+
+Check & Check::twist(std::string_view field, const geometry_msgs::msg::Twist & twist)
+{
+  return in_range(fmt::format("the length of {}.linear", field), length(twist.linear), 0.0, 3.0, "m/s")
+      .in_range(fmt::format("the length of {}.angular", field), length(twist.angular), 0.0, 3.14, "rad/s")
+      .that(length(twist.linear) > 0.0 || length(twist.angular) > 0.0,
+            fmt::format("{} is zero: nothing would move", field));
+}
+
+Check & Check::line(std::string_view field, std::string_view text, std::size_t longest)
+{
+  if (!ok()) {
+    return *this;
+  }
+  if (text.empty() || text.size() > longest) {
+    fail(ErrorCode::invalid_goal,
+         fmt::format("{} has {} bytes, it may have 1 to {}", field, text.size(), longest));
+    return *this;
+  }
+  const auto control = std::find_if(text.begin(), text.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+  });
+  if (control != text.end()) {
+    fail(ErrorCode::invalid_goal,
+         fmt::format("{} has a control character (0x{:02x}) at byte {}, it must be one line of text", field,
+                     static_cast<unsigned>(static_cast<unsigned char>(*control)), control - text.begin()));
+  }
+  return *this;
+}
+
+Check & Check::ready()
+{
+  if (ok() && preflight_ != nullptr) {
+    if (Status status = preflight_->prepare(); !status) {
+      error_ = status.error();
+    }
+  }
+  return *this;
+}
+
+Check & Check::reachable(std::string_view field, const geometry_msgs::msg::Pose & pose)
+{
+  if (!ready().ok() || preflight_ == nullptr || preflight_->robot().moving()) {
+    return *this;  // while another motion is being preempted, only the move itself can tell
+  }
+  const std::vector<double> target = to_ur(pose);
+  auto control = preflight_->robot().control();
+  if (control->isPoseWithinSafetyLimits(target)) {
+    return *this;
+  }
+  const auto & p = pose.position;
+  const std::string where = fmt::format("{} ({:.3f}, {:.3f}, {:.3f}) m", field, p.x, p.y, p.z);
+  if (control->getInverseKinematicsHasSolution(target)) {
+    fail(ErrorCode::safety_violation, fmt::format("{} is outside the robot's safety limits", where));
+  } else {
+    fail(ErrorCode::unreachable,
+         fmt::format("{} cannot be reached in that orientation: no joint positions lead there", where));
+  }
+  return *this;
+}
+
+Check & Check::reachable_in(std::string_view field, const std::vector<double> & positions, double time,
+                            double peak)
+{
+  if (!ready().ok() || preflight_ == nullptr) {
+    return *this;
+  }
+  const auto sample = preflight_->robot().latest();
+  if (!sample) {
+    fail(ErrorCode::not_ready, "the robot has not told its joint positions yet: try again");
+    return *this;
+  }
+  const ArmLimits arm = limits();
+  for (std::size_t i = 0; i < 6 && ok(); ++i) {
+    const double angle = std::abs(positions[i] - sample->actual_q[i]);
+    const double needed = peak * angle / time;
+    that(needed <= arm.velocity[i],
+         fmt::format("{}[{}] ({}) would need {:.3f} rad/s to get there in {:.3f} s, its limit is {:.3f} rad/s: "
+                     "use a time of at least {:.3f} s",
+                     field, i, joint_names()[i], needed, time, arm.velocity[i], peak * angle / arm.velocity[i]));
+  }
+  return *this;
+}
+
+}  // namespace ur_ros_rtde

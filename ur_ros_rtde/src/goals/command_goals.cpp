@@ -1,0 +1,151 @@
+#include "ur_ros_rtde/command_goals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ur_ros_rtde {
+namespace {
+/// For whoever gives way: longer than a stop that needs its last means.
+constexpr std::chrono::milliseconds takeover_limit{6000};
+/// A shutdown has less patience with a stop that does not work than a goal has.
+constexpr std::chrono::milliseconds shutdown_stop_limit{1500};
+
+bool gives_way(ErrorCode code)
+{
+  return code == ErrorCode::preempted;
+}
+}  // namespace
+
+/// Gets ready when the first check asks the robot something.
+class CommandGoals::RobotPreflight : public Preflight {
+ public:
+  RobotPreflight(CommandGoals & goals, const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket)
+      : goals_(goals), id_(id), ticket_(ticket)
+  {
+  }
+
+  Status prepare() override
+  {
+    if (Status ready = goals_.readiness(); !ready) {
+      return ready;
+    }
+    const CommandTraits & traits = goals_.traits_;
+    if (ticket_.lease || traits.resource == Resource::none || traits.takes_over ||
+        goals_.host_.preempts_when_busy()) {
+      return {};
+    }
+    auto lease = robot().arbiter().acquire(goals_.claim(id_, ticket_));
+    if (!lease) {
+      return tl::unexpected(lease.error());
+    }
+    ticket_.lease = std::move(*lease);
+    return {};
+  }
+  const ArmLimits & limits() const override { return goals_.host_.limits(); }
+  Robot & robot() override { return goals_.host_.robot(); }
+
+ private:
+  CommandGoals & goals_;
+  const rcl_cxx::GoalId & id_;
+  GoalBook::Ticket & ticket_;
+};
+
+CommandGoals::CommandGoals(CommandHost & host, std::string action, CommandTraits traits)
+    : host_(host), traits_(traits), book_(host, std::move(action))
+{
+}
+
+Claim CommandGoals::claim(const rcl_cxx::GoalId & id, const GoalBook::Ticket & ticket) const
+{
+  return {traits_.resource, book_.action(), id.short_string(),
+          [interrupt = ticket.interrupt](const std::string & by) {
+            interrupt->request(Error{ErrorCode::preempted, fmt::format("{} took over", by)});
+          }};
+}
+
+Status CommandGoals::readiness() const
+{
+  if (moves() && !traits_.takes_over) {
+    return host_.robot().ready_to_move();
+  }
+  const RobotStatus status = host_.robot().status();
+  if (status.state == RobotState::disconnected || status.state == RobotState::connecting) {
+    return failure(status.cause == ErrorCode::none ? ErrorCode::not_ready : status.cause, status.message);
+  }
+  return {};
+}
+
+tl::expected<void, std::string> CommandGoals::admit(const rcl_cxx::GoalId & id,
+                                                    const std::function<void(Check &)> & check)
+{
+  return book_.admit(id, [&](GoalBook::Ticket & ticket) -> Status {
+    RobotPreflight preflight(*this, id, ticket);
+    Check result(&preflight);
+    check(result);
+    result.ready();
+    return result.ok() ? Status() : tl::unexpected(*result.error());
+  });
+}
+
+Status CommandGoals::take(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket, const StopOptions & stop)
+{
+  if (ticket.lease || traits_.resource == Resource::none) {
+    return {};
+  }
+  if (traits_.takes_over) {
+    host_.set_takeover_stop(stop);
+  }
+  auto lease = host_.robot().arbiter().acquire_preempting(claim(id, ticket), takeover_limit);
+  if (traits_.takes_over) {
+    host_.set_takeover_stop(std::nullopt);
+  }
+  if (!lease) {
+    return tl::unexpected(lease.error());
+  }
+  ticket.lease = std::move(*lease);
+  return {};
+}
+
+Outcome CommandGoals::carry_out(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket,
+                                const StopOptions & stop, const std::function<Outcome()> & body)
+{
+  const auto whole = [&]() -> Outcome {
+    if (Status taken = take(id, ticket, stop); !taken) {
+      return taken;
+    }
+    if (auto why = ticket.interrupt->requested()) {
+      return *why;
+    }
+    return body();
+  };
+  Outcome outcome = book_.guarded(*ticket.interrupt, whole);
+  if (!moves() || !ticket.lease) {
+    return outcome;
+  }
+  return book_.guarded(Interrupt(), [&] { return settle(outcome, ticket, stop); });
+}
+
+Outcome CommandGoals::settle(Outcome outcome, const GoalBook::Ticket &, StopOptions stop)
+{
+  if (outcome && !host_.robot().moving()) {
+    return outcome;
+  }
+  if (gives_way(outcome.code())) {
+    stop = host_.takeover_stop().value_or(stop);
+  } else if (outcome.code() == ErrorCode::shutdown) {
+    stop.limit = std::min(stop.limit, shutdown_stop_limit);
+  }
+  const auto stopped = host_.robot().stop_motion(stop);
+  if (stopped) {
+    return outcome;
+  }
+  const std::string warning = fmt::format("whether the arm stands still is not known: {}",
+                                          stopped.error().message);
+  if (outcome) {
+    return Outcome::failure(stopped.error().code, warning);
+  }
+  return Outcome::failure(outcome.code(), fmt::format("{}; {}", outcome.message(), warning));
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,98 @@
+#include "ur_ros_rtde/goal_threads.hpp"
+
+#include <algorithm>
+
+namespace ur_ros_rtde {
+
+GoalThreads::~GoalThreads()
+{
+  close(Error{ErrorCode::shutdown, "the node is shut down"}, std::chrono::milliseconds(0));
+  // What is left joins here, however long it takes: nothing that its code refers to may go first.
+  std::list<Entry> entries;
+  {
+    const std::lock_guard lock(mutex_);
+    entries.swap(entries_);
+  }
+  for (Entry & entry : entries) {
+    entry.thread.join();
+  }
+}
+
+Status GoalThreads::can_start() const
+{
+  const std::lock_guard lock(mutex_);
+  return can_start_locked();
+}
+
+Status GoalThreads::can_start_locked() const
+{
+  if (closed_) {
+    return failure(ErrorCode::shutdown, "the node is being shut down");
+  }
+  const auto running = std::count_if(entries_.begin(), entries_.end(), [](const Entry & e) { return !e.done; });
+  if (static_cast<std::size_t>(running) >= limit) {
+    return failure(ErrorCode::busy, std::to_string(limit) +
+                                        " goals are running, more are not taken: wait for one to end");
+  }
+  return {};
+}
+
+Status GoalThreads::start(std::string name, std::shared_ptr<Interrupt> interrupt, std::function<void()> work)
+{
+  std::unique_lock lock(mutex_);
+  if (Status status = can_start_locked(); !status) {
+    return status;
+  }
+  join_finished(lock);
+  Entry & entry = entries_.emplace_back();
+  entry.name = std::move(name);
+  entry.interrupt = std::move(interrupt);
+  try {
+    entry.thread = std::jthread([this, &entry, work = std::move(work)]() mutable {
+      work();
+      work = nullptr;  // what it holds goes before the thread counts as done
+      const std::lock_guard done_lock(mutex_);
+      entry.done = true;
+      changed_.notify_all();
+    });
+  } catch (const std::system_error & error) {
+    entries_.pop_back();
+    return failure(ErrorCode::exception, std::string("no thread for the goal: ") + error.what());
+  }
+  return {};
+}
+
+std::vector<std::string> GoalThreads::close(const Interruption & why, std::chrono::milliseconds wait_limit)
+{
+  std::unique_lock lock(mutex_);
+  closed_ = true;
+  for (const Entry & entry : entries_) {
+    entry.interrupt->request(why);
+  }
+  changed_.wait_for(lock, wait_limit, [this] {
+    return std::all_of(entries_.begin(), entries_.end(), [](const Entry & entry) { return entry.done; });
+  });
+  join_finished(lock);
+  std::vector<std::string> names;
+  for (const Entry & entry : entries_) {
+    names.push_back(entry.name);
+  }
+  return names;
+}
+
+void GoalThreads::join_finished(std::unique_lock<std::mutex> & lock)
+{
+  std::list<Entry> finished;
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    const auto next = std::next(entry);
+    if (entry->done) {
+      finished.splice(finished.end(), entries_, entry);
+    }
+    entry = next;
+  }
+  lock.unlock();  // their last step takes it
+  finished.clear();
+  lock.lock();
+}
+
+}  // namespace ur_ros_rtde

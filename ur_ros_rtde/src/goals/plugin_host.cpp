@@ -1,0 +1,35 @@
+#include "ur_ros_rtde/plugin_host.hpp"
+
+namespace ur_ros_rtde {
+
+PluginHost::PluginHost(rcl_cxx::Node & node)
+    : node_(node),
+      refusals_(node.create_publisher<ur_ros_rtde_msgs::msg::GoalRefused>("goal_refusals",
+                                                                          rcl_cxx::QoS::reliable(100)))
+{
+}
+
+void PluginHost::publish_refusal(const std::string & action, const rcl_cxx::GoalId & id, const Error & why)
+{
+  ur_ros_rtde_msgs::msg::GoalRefused refusal;
+  refusal.stamp = node_.now();
+  refusal.action = action;
+  refusal.goal_id.uuid = id.bytes;
+  refusal.error_code = static_cast<std::uint16_t>(why.code);
+  refusal.message = why.message;
+  refusals_->publish(refusal);
+}
+
+void CommandHost::set_takeover_stop(std::optional<StopOptions> options)
+{
+  const std::lock_guard lock(mutex_);
+  takeover_stop_ = std::move(options);
+}
+
+std::optional<StopOptions> CommandHost::takeover_stop() const
+{
+  const std::lock_guard lock(mutex_);
+  return takeover_stop_;
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,250 @@
+#include "ur_ros_rtde/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ur_ros_rtde/conversions.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds feedback_period{50};
+constexpr milliseconds longest_nap{10};
+/// Within which the control program begins a move after it has acknowledged it: two cycles, with reserve.
+constexpr std::chrono::seconds begin_limit{1};
+constexpr double joint_tolerance = 0.005;     // rad
+constexpr double position_tolerance = 0.002;  // m
+constexpr double rotation_share = 0.2;        // m/rad: what a rotation counts as, so that 0.01 rad is 2 mm
+
+geometry_msgs::msg::Pose to_ros(const Vector6 & pose)
+{
+  const Quaternion q = quaternion(rotation(pose));
+  geometry_msgs::msg::Pose message;
+  message.position.x = pose[0];
+  message.position.y = pose[1];
+  message.position.z = pose[2];
+  message.orientation.x = q.x;
+  message.orientation.y = q.y;
+  message.orientation.z = q.z;
+  message.orientation.w = q.w;
+  return message;
+}
+
+Vector6 unknown()
+{
+  Vector6 values;
+  values.fill(std::numeric_limits<double>::quiet_NaN());
+  return values;
+}
+
+ur_ros_rtde_msgs::msg::ArmState to_arm_state(const std::optional<Sample> & sample)
+{
+  ur_ros_rtde_msgs::msg::ArmState state;
+  state.joint_positions = sample ? sample->actual_q : unknown();
+  state.tcp_pose = to_ros(sample ? sample->actual_tcp_pose : unknown());
+  return state;
+}
+
+/// m, with rotation counted in.
+double pose_distance(const Vector6 & a, const Vector6 & b)
+{
+  const Vector6 difference = pose_trans(pose_inverse(a), b);
+  return std::hypot(difference[0], difference[1], difference[2]) +
+         rotation_share * std::hypot(difference[3], difference[4], difference[5]);
+}
+
+Vector6 to_array(const std::vector<double> & values)
+{
+  if (values.size() != 6) {
+    throw std::invalid_argument(fmt::format("6 values are needed, not {}", values.size()));
+  }
+  Vector6 array;
+  std::copy(values.begin(), values.end(), array.begin());
+  return array;
+}
+}  // namespace
+
+Run::Run(Robot & robot, std::shared_ptr<Interrupt> interrupt, bool moves)
+    : robot_(robot), interrupt_(std::move(interrupt)), moves_(moves), mark_(robot.mark_motion())
+{
+}
+
+Locked<ur_rtde::RTDEControlInterface> Run::control()
+{
+  mark_ = robot_.mark_motion();
+  last_call_ = Clock::now();
+  return robot_.control();
+}
+
+Sample Run::state() const
+{
+  if (auto sample = robot_.latest()) {
+    return *sample;
+  }
+  throw RobotError(Error{ErrorCode::link_lost, "the robot has not told its state yet"});
+}
+
+ur_ros_rtde_msgs::msg::ArmState Run::arm_state() const
+{
+  return to_arm_state(robot_.latest());
+}
+
+Vector6 Run::flange_force() const
+{
+  return tcp_frame_force(state());
+}
+
+std::optional<Interruption> Run::interruption() const
+{
+  if (auto why = interrupt_->requested()) {
+    return why;
+  }
+  if (moves_) {
+    if (Status possible = robot_.motion_possible(); !possible) {
+      return possible.error();
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Interruption> Run::wait(const std::function<bool()> & condition, Clock::time_point deadline)
+{
+  Sample last = robot_.latest().value_or(Sample{});
+  while (true) {
+    if (auto why = interruption()) {
+      return why;
+    }
+    if (condition()) {
+      return std::nullopt;
+    }
+    feed_back();
+    const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
+    if (left <= milliseconds(0)) {
+      return Error{ErrorCode::timeout, "the time was over"};
+    }
+    robot_.wait_for_next(last, std::min(left, longest_nap), interrupt_->token());
+  }
+}
+
+std::optional<Interruption> Run::sleep_for(std::chrono::nanoseconds duration)
+{
+  auto why = wait([] { return false; }, Clock::now() + duration);
+  return why && why->code == ErrorCode::timeout ? std::nullopt : why;
+}
+
+std::optional<Interruption> Run::until(const std::function<bool()> & condition,
+                                       std::chrono::nanoseconds timeout)
+{
+  auto why = wait(condition, Clock::now() + timeout);
+  if (why && why->code == ErrorCode::timeout) {
+    why->message = fmt::format("nothing came of it within {:.1f} s",
+                               std::chrono::duration<double>(timeout).count());
+  }
+  return why;
+}
+
+std::optional<Interruption> Run::until_standstill(std::chrono::nanoseconds limit)
+{
+  auto why = until([this] { return robot_.motion_progress(mark_).at_rest; }, limit);
+  if (why && why->code == ErrorCode::timeout) {
+    why->message = "the arm did not come to a standstill: " + why->message;
+  }
+  return why;
+}
+
+bool Run::motion_ended() const
+{
+  const MotionProgress motion = robot_.motion_progress(mark_);
+  return motion.finished() || (!motion.started && Clock::now() - last_call_ > begin_limit);
+}
+
+Outcome Run::until_motion_ends(std::chrono::nanoseconds limit)
+{
+  if (auto why = until([this] { return motion_ended(); }, limit)) {
+    return *why;
+  }
+  if (!robot_.motion_progress(mark_).started) {
+    return Outcome::failure(ErrorCode::rejected_by_robot,
+                            "the control program on the robot did not begin the move: the log on the teach "
+                            "pendant may say why");
+  }
+  return Outcome::success();
+}
+
+Outcome Run::until_reached(const std::function<double(const Sample &)> & distance, double tolerance,
+                           const char * unit)
+{
+  const double whole = distance(state());
+  const auto look = [&] {
+    const double left = distance(state());
+    progress(whole > tolerance ? std::clamp(1.0 - left / whole, 0.0, 1.0) : 1.0);
+    return motion_ended();
+  };
+  if (auto why = until(look, std::chrono::minutes(10))) {
+    return *why;
+  }
+  const double left = distance(state());
+  if (left <= tolerance) {
+    progress(1.0);
+    return Outcome::success();
+  }
+  if (Outcome ended = until_motion_ends(); !ended) {
+    return ended;
+  }
+  return Outcome::failure(ErrorCode::not_reached,
+                          fmt::format("the arm stopped {:.4f} {} before the target", left, unit));
+}
+
+Outcome Run::until_joints_reached(const std::vector<double> & positions)
+{
+  const Vector6 target = to_array(positions);
+  const auto distance = [&target](const Sample & sample) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < target.size(); ++i) {
+      largest = std::max(largest, std::abs(target[i] - sample.actual_q[i]));
+    }
+    return largest;
+  };
+  return until_reached(distance, joint_tolerance, "rad");
+}
+
+Outcome Run::until_pose_reached(const std::vector<double> & pose)
+{
+  const Vector6 target = to_array(pose);
+  return until_reached(
+      [&target](const Sample & sample) { return pose_distance(sample.actual_tcp_pose, target); },
+      position_tolerance, "m");
+}
+
+std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> Run::motion_feedback() const
+{
+  const auto sample = robot_.latest();
+  if (!sample) {
+    return std::nullopt;
+  }
+  ur_ros_rtde_msgs::msg::MotionFeedback feedback;
+  feedback.progress = progress_;
+  const std::chrono::nanoseconds since = elapsed();
+  const auto whole = std::chrono::floor<std::chrono::seconds>(since);
+  feedback.elapsed.sec = static_cast<std::int32_t>(whole.count());
+  feedback.elapsed.nanosec = static_cast<std::uint32_t>((since - whole).count());
+  feedback.state = to_arm_state(sample);
+  return feedback;
+}
+
+void Run::feed_back()
+{
+  const auto now = Clock::now();
+  if (now < next_feedback_) {
+    return;
+  }
+  next_feedback_ = std::max(next_feedback_ + feedback_period, now);
+  publish_feedback();
+}
+
+}  // namespace ur_ros_rtde

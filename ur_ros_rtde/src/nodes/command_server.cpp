@@ -1,0 +1,45 @@
+#include "nodes/command_server.hpp"
+
+#include <fmt/format.h>
+
+#include "nodes/node_log.hpp"
+#include "plugins/plugin_selection.hpp"
+
+namespace ur_ros_rtde {
+
+CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
+    : node_(std::make_shared<rcl_cxx::Node>(context, "command_server"))
+{
+  const CommandServerParameters parameters = declare_command_server(*node_);
+  choice_ = declare_plugin_choice(*node_);
+  robot_ = std::make_unique<Robot>(parameters.robot, log_into(node_->logger()));
+  host_ = std::make_unique<CommandHost>(
+      *node_, *robot_, CommandHost::Options{parameters.preempt_when_busy, parameters.limits});
+}
+
+CommandServer::~CommandServer()
+{
+  close();
+  plugins_.stop();
+}
+
+void CommandServer::start()
+{
+  robot_->start();
+  const auto report = [this](const std::string & problem) {
+    if (node_->context()->ok()) {  // in a shutdown everything fails
+      RCL_CXX_ERROR(node_->logger(), "{}", problem);
+    }
+  };
+  plugins_.start(
+      select_plugins(find_plugins(report), command_base, choice_.plugins, choice_.blacklist, report), *host_,
+      report);
+  RCL_CXX_INFO(node_->logger(), "commands: {}", fmt::join(plugins_.names(), ", "));
+}
+
+std::vector<std::string> CommandServer::close()
+{
+  return host_->goals().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
+}
+
+}  // namespace ur_ros_rtde

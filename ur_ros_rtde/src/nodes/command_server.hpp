@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+
+#include "nodes/parameters.hpp"
+#include "nodes/server.hpp"
+#include "plugins/plugin_set.hpp"
+#include "ur_ros_rtde/plugin_host.hpp"
+#include "ur_ros_rtde/robot.hpp"
+
+namespace ur_ros_rtde {
+
+/// The node command_server: the robot, and the command plugins.
+class CommandServer : public Server {
+ public:
+  explicit CommandServer(const rcl_cxx::Context::SharedPtr & context);
+  ~CommandServer() override;
+
+  rcl_cxx::Node & node() override { return *node_; }
+  Robot & robot() { return *robot_; }
+  void start() override;
+  std::vector<std::string> close() override;
+
+ private:
+  PluginSet<CommandPlugin, CommandHost> plugins_;  // its libraries go last
+  rcl_cxx::Node::SharedPtr node_;
+  std::unique_ptr<Robot> robot_;
+  std::unique_ptr<CommandHost> host_;
+  PluginChoice choice_;
+};
+
+}  // namespace ur_ros_rtde

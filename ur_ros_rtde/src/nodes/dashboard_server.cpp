@@ -1,0 +1,45 @@
+#include "nodes/dashboard_server.hpp"
+
+#include <fmt/format.h>
+
+#include "nodes/node_log.hpp"
+#include "plugins/plugin_selection.hpp"
+
+namespace ur_ros_rtde {
+
+DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context)
+    : node_(std::make_shared<rcl_cxx::Node>(context, "dashboard_server"))
+{
+  DashboardLinkOptions options;
+  options.address = declare_robot_ip(*node_);
+  choice_ = declare_plugin_choice(*node_);
+  link_ = std::make_unique<DashboardLink>(options, log_into(node_->logger()));
+  host_ = std::make_unique<DashboardHost>(*node_, *link_);
+}
+
+DashboardServer::~DashboardServer()
+{
+  close();
+  plugins_.stop();
+}
+
+void DashboardServer::start()
+{
+  link_->start();
+  const auto report = [this](const std::string & problem) {
+    if (node_->context()->ok()) {  // in a shutdown everything fails
+      RCL_CXX_ERROR(node_->logger(), "{}", problem);
+    }
+  };
+  plugins_.start(
+      select_plugins(find_plugins(report), dashboard_base, choice_.plugins, choice_.blacklist, report), *host_,
+      report);
+  RCL_CXX_INFO(node_->logger(), "dashboard commands: {}", fmt::join(plugins_.names(), ", "));
+}
+
+std::vector<std::string> DashboardServer::close()
+{
+  return host_->goals().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
+}
+
+}  // namespace ur_ros_rtde

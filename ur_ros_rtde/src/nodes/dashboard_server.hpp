@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "nodes/parameters.hpp"
+#include "nodes/server.hpp"
+#include "plugins/plugin_set.hpp"
+#include "ur_ros_rtde/dashboard_link.hpp"
+#include "ur_ros_rtde/plugin_host.hpp"
+
+namespace ur_ros_rtde {
+
+/// The node dashboard_server: the connection to the dashboard server, and the dashboard plugins.
+class DashboardServer : public Server {
+ public:
+  explicit DashboardServer(const rcl_cxx::Context::SharedPtr & context);
+  ~DashboardServer() override;
+
+  rcl_cxx::Node & node() override { return *node_; }
+  void start() override;
+  std::vector<std::string> close() override;
+
+ private:
+  PluginSet<DashboardPlugin, DashboardHost> plugins_;  // its libraries go last
+  rcl_cxx::Node::SharedPtr node_;
+  std::unique_ptr<DashboardLink> link_;
+  std::unique_ptr<DashboardHost> host_;
+  PluginChoice choice_;
+};
+
+}  // namespace ur_ros_rtde

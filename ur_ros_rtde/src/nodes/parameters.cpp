@@ -1,0 +1,138 @@
+#include "nodes/parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace ur_ros_rtde {
+namespace {
+rcl_cxx::ParameterOptions described(std::string description)
+{
+  rcl_cxx::ParameterOptions options;
+  options.description = std::move(description);
+  options.read_only = true;
+  return options;
+}
+
+double declare_number(rcl_cxx::Node & node, const std::string & name, double value, double low, double high,
+                      std::string description)
+{
+  auto options = described(std::move(description));
+  options.floating_point_range = rcl_cxx::FloatingPointRange{low, high};
+  return node.declare_parameter(name, value, options);
+}
+
+std::string declare_choice(rcl_cxx::Node & node, const std::string & name, const std::string & value,
+                           const std::vector<std::string> & choices, std::string description)
+{
+  auto options = described(std::move(description));
+  options.additional_constraints = fmt::format("one of: {}", fmt::join(choices, ", "));
+  const auto chosen = node.declare_parameter(name, value, options);
+  if (std::find(choices.begin(), choices.end(), chosen) == choices.end()) {
+    throw rcl_cxx::ParameterError(
+        name, fmt::format("parameter {} is \"{}\", it may be {}", name, chosen, fmt::join(choices, ", ")));
+  }
+  return chosen;
+}
+
+/// Part of a name: letters, digits, '_' and '/', the latter as the official driver's prefixes may have it.
+std::string declare_tf_prefix(rcl_cxx::Node & node)
+{
+  auto options = described("Put before the names of joints and frames, as in the URDF: \"left_\" makes "
+                           "left_shoulder_pan_joint, left_base, left_tool0_controller");
+  options.additional_constraints = "letters, digits, '_' and '/'";
+  const auto prefix = node.declare_parameter("tf_prefix", "", options);
+  const auto wrong = std::find_if(prefix.begin(), prefix.end(), [](unsigned char c) {
+    return std::isalnum(c) == 0 && c != '_' && c != '/';
+  });
+  if (wrong != prefix.end()) {
+    throw rcl_cxx::ParameterError(
+        "tf_prefix", fmt::format("parameter tf_prefix is \"{}\", it may have letters, digits, '_' and '/'",
+                                 prefix));
+  }
+  return prefix;
+}
+
+ArmLimits declare_arm_limits(rcl_cxx::Node & node)
+{
+  auto options = described("Model of the arm, for the speed limits of its joints and its reach: ur3, ur5, ur10, "
+                           "ur3e, ur5e, ur10e, …; empty: what holds for every model");
+  const auto model = node.declare_parameter("ur_type", "", options);
+  if (model.empty()) {
+    return widest_arm_limits();
+  }
+  if (const auto limits = arm_limits(model)) {
+    return *limits;
+  }
+  throw rcl_cxx::ParameterError(
+      "ur_type", fmt::format("parameter ur_type is \"{}\", and there is no such model: ur3, ur5, ur10, ur3e, "
+                             "ur5e, ur10e, …, or empty for any",
+                             model));
+}
+}  // namespace
+
+std::string declare_robot_ip(rcl_cxx::Node & node)
+{
+  const auto address =
+      node.declare_parameter("robot_ip", "", described("Address or host name of the robot's controller"));
+  if (address.empty()) {
+    throw rcl_cxx::ParameterError(
+        "robot_ip",
+        "parameter robot_ip is not set: give the address of the robot's controller, for example with "
+        "--ros-args -p robot_ip:=192.168.0.10");
+  }
+  return address;
+}
+
+PluginChoice declare_plugin_choice(rcl_cxx::Node & node)
+{
+  const std::vector<std::string> none;
+  return {node.declare_parameter(
+              "plugins", none,
+              described("Names of the plugins to load, which are those of their actions; empty: all found")),
+          node.declare_parameter("plugins_blacklist", none, described("Names of plugins not to load"))};
+}
+
+RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node)
+{
+  RobotStateReceiver::Options options;
+  options.tf_prefix = declare_tf_prefix(node);
+  options.qos = declare_choice(node, "qos", "reliable", rcl_cxx::QoS::names(),
+                               "Quality of service of the published state, by name");
+  options.frequency = declare_number(node, "rtde_frequency", 500.0, 1.0, 500.0,
+                                     "Hz, of the published state; a CB3 controller gives at most 125");
+  return options;
+}
+
+CommandServerParameters declare_command_server(rcl_cxx::Node & node)
+{
+  CommandServerParameters parameters;
+  RobotOptions & robot = parameters.robot;
+  robot.address = declare_robot_ip(node);
+  robot.control_mode =
+      declare_choice(node, "control_mode", "upload", {"upload", "control_urcap"},
+                     "Where the control program comes from: sent to the robot (an e-Series robot must be in "
+                     "remote control), or fetched by the External Control URCap") == "upload"
+          ? ControlMode::upload
+          : ControlMode::control_urcap;
+  auto port = described("Port at which the External Control URCap finds this node");
+  port.integer_range = rcl_cxx::IntegerRange{1, 65535};
+  robot.urcap_port = static_cast<std::uint16_t>(node.declare_parameter<int>("urcap_port", 50002, port));
+  robot.watchdog_frequency =
+      declare_number(node, "watchdog_frequency", robot.watchdog_frequency, 0.0, 100.0,
+                     "Hz: the robot stops the arm after 1/watchdog_frequency s without a sign of life of this "
+                     "node; 0: no watchdog");
+  robot.restart_program =
+      node.declare_parameter("restart_program", true,
+                             described("Start the control program again after it was stopped, never what it was "
+                                       "doing"));
+  parameters.preempt_when_busy =
+      declare_choice(node, "on_busy", "refuse", {"refuse", "preempt"},
+                     "What happens to a motion that comes while another runs: it is refused, or the other is "
+                     "stopped for it") == "preempt";
+  parameters.limits = declare_arm_limits(node);
+  return parameters;
+}
+
+}  // namespace ur_ros_rtde

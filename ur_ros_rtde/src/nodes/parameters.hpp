@@ -1,0 +1,34 @@
+#pragma once
+
+#include <rcl_cxx/node.hpp>
+#include <string>
+#include <vector>
+
+#include "nodes/robot_state_receiver.hpp"
+#include "ur_ros_rtde/arm_limits.hpp"
+#include "ur_ros_rtde/robot.hpp"
+
+namespace ur_ros_rtde {
+
+/// Parameters are read once, at the start, and read-only from then on. These functions declare and check
+/// them; they throw rcl_cxx::ParameterError with name, value and what it may be.
+
+std::string declare_robot_ip(rcl_cxx::Node & node);
+
+struct PluginChoice {
+  std::vector<std::string> plugins;
+  std::vector<std::string> blacklist;
+};
+PluginChoice declare_plugin_choice(rcl_cxx::Node & node);
+
+/// tf_prefix, qos, rtde_frequency
+RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node);
+
+struct CommandServerParameters {
+  RobotOptions robot;
+  bool preempt_when_busy = false;
+  ArmLimits limits;
+};
+CommandServerParameters declare_command_server(rcl_cxx::Node & node);
+
+}  // namespace ur_ros_rtde

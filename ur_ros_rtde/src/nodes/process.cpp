@@ -1,0 +1,78 @@
+#include "nodes/process.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <rcl_cxx/error.hpp>
+#include <rcl_cxx/executor.hpp>
+#include <string>
+#include <thread>
+
+namespace ur_ros_rtde {
+namespace {
+void end_goals(const Servers & servers)
+{
+  std::vector<std::string> left;
+  for (auto server = servers.rbegin(); server != servers.rend(); ++server) {
+    for (std::string & name : (*server)->close()) {
+      left.push_back(std::move(name));
+    }
+  }
+  if (left.empty()) {
+    return;
+  }
+  for (const std::string & name : left) {
+    RCL_CXX_FATAL(servers.front()->node().logger(), "goal {} does not end, the process ends without it", name);
+  }
+  // Its thread cannot be joined, and what it uses cannot be destroyed under it. The robot's watchdog stops
+  // the arm.
+  std::_Exit(1);
+}
+
+void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers)
+{
+  const auto callback = context->on_pre_shutdown([&servers] { end_goals(servers); });
+  {
+    std::vector<std::unique_ptr<rcl_cxx::Executor>> executors;
+    std::vector<std::jthread> threads;
+    for (const auto & server : servers) {
+      // One each: a check that waits for the robot must not keep the other nodes.
+      rcl_cxx::Executor & executor = *executors.emplace_back(std::make_unique<rcl_cxx::Executor>(context));
+      executor.add_node(server->node());
+      threads.emplace_back([&executor] { executor.spin(); });
+    }
+    try {
+      for (const auto & server : servers) {
+        server->start();
+      }
+    } catch (...) {
+      context->shutdown("a node could not start");
+      throw;
+    }
+  }
+  context->remove_callback(callback);
+}
+}  // namespace
+
+int run_process(int argc, char ** argv, const MakeServers & make)
+{
+  rcl_cxx::Context::SharedPtr context;
+  try {
+    context = std::make_shared<rcl_cxx::Context>(argc, argv);
+    Servers servers = make(context);
+    serve(context, servers);
+    while (!servers.empty()) {
+      servers.pop_back();
+    }
+    return 0;
+  } catch (const std::exception & error) {
+    if (context && !context->ok()) {
+      return 0;  // a signal came while it was starting, and what was being made then could not be
+    }
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return dynamic_cast<const rcl_cxx::Error *>(&error) != nullptr ? 2 : 1;
+  }
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,146 @@
+#include "nodes/robot_state_receiver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ur_ros_rtde {
+namespace {
+using Clock = std::chrono::steady_clock;
+namespace srv = ur_ros_rtde_msgs::srv;
+
+/// A package that has not come after this many periods, and at least this time, does not come.
+constexpr double missing_periods = 5.0;
+constexpr double least_age = 0.5;  // s
+}  // namespace
+
+RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options)
+    : node_(node), options_(std::move(options)), newest_(options_.tf_prefix), shown_(newest_.joint_state)
+{
+  const rcl_cxx::QoS qos = rcl_cxx::QoS::from_name(options_.qos);
+  joint_states_ = node_.create_publisher<sensor_msgs::msg::JointState>("joint_states", qos);
+  tcp_pose_ = node_.create_publisher<geometry_msgs::msg::PoseStamped>("tcp_pose", qos);
+  wrench_ = node_.create_publisher<geometry_msgs::msg::WrenchStamped>("wrench", qos);
+  io_state_ = node_.create_publisher<ur_ros_rtde_msgs::msg::IOState>("io_state", qos);
+
+  get_joint_state_ = serve<srv::GetJointState>("get_joint_state", &StateMessages::joint_state,
+                                               &srv::GetJointState::Response::joint_state);
+  get_tcp_pose_ =
+      serve<srv::GetTcpPose>("get_tcp_pose", &StateMessages::tcp_pose, &srv::GetTcpPose::Response::tcp_pose);
+  get_wrench_ = serve<srv::GetWrench>("get_wrench", &StateMessages::wrench, &srv::GetWrench::Response::wrench);
+  get_io_state_ =
+      serve<srv::GetIOState>("get_io_state", &StateMessages::io_state, &srv::GetIOState::Response::io_state);
+
+  publish_fake_ = node_.create_service<std_srvs::srv::SetBool>(
+      "publish_fake_joint_states",
+      [this](const auto & request, auto & response) { set_faking(request, response); });
+  fake_joint_states_ = node_.create_subscription<sensor_msgs::msg::JointState>(
+      "fake_joint_states", rcl_cxx::QoS::reliable(10),
+      [this](const sensor_msgs::msg::JointState & message) { take_fake(message); });
+}
+
+template <typename S, typename M>
+typename rcl_cxx::Service<S>::SharedPtr RobotStateReceiver::serve(const std::string & name,
+                                                                  M StateMessages::* source,
+                                                                  M S::Response::* destination)
+{
+  return node_.create_service<S>(name, [this, source, destination](const auto &, auto & response) {
+    const std::lock_guard lock(mutex_);
+    const Status fresh = freshness();
+    response.success = fresh.has_value();
+    response.error_code = static_cast<std::uint16_t>(fresh ? ErrorCode::none : fresh.error().code);
+    response.message = fresh ? "" : fresh.error().message;
+    response.*destination = newest_.*source;
+  });
+}
+
+Status RobotStateReceiver::freshness() const
+{
+  const auto problem = [this] { return options_.link_problem ? options_.link_problem() : std::string(); };
+  if (!received_) {
+    return failure(ErrorCode::link_lost, fmt::format("the robot has not told its state yet: {}", problem()));
+  }
+  const double age = std::chrono::duration<double>(Clock::now() - *received_).count();
+  if (age > std::max(least_age, missing_periods / options_.frequency)) {
+    return failure(ErrorCode::link_lost,
+                   fmt::format("the robot told its state {:.1f} s ago for the last time: {}", age, problem()));
+  }
+  return {};
+}
+
+bool RobotStateReceiver::is_due(const Sample & sample)
+{
+  const double period = 1.0 / options_.frequency;
+  const double cycle = 0.001;  // half of the shortest control cycle
+  if (sample.link != link_ || sample.controller_time > next_due_ + period) {
+    link_ = sample.link;
+    next_due_ = sample.controller_time;
+  }
+  if (sample.controller_time + cycle < next_due_) {
+    return false;
+  }
+  next_due_ += period;
+  return true;
+}
+
+void RobotStateReceiver::publish(const Sample & sample)
+{
+  const bool due = is_due(sample);
+  {
+    const std::lock_guard lock(mutex_);
+    newest_.fill(sample);
+    received_ = sample.received;
+  }
+  if (!due) {
+    return;
+  }
+  // Only this thread writes newest_, so it may be read here without the lock.
+  shown_.header.stamp = newest_.joint_state.header.stamp;
+  if (fake_.apply(shown_)) {
+    joint_states_->publish(shown_);
+  } else {
+    joint_states_->publish(newest_.joint_state);
+  }
+  tcp_pose_->publish(newest_.tcp_pose);
+  wrench_->publish(newest_.wrench);
+  io_state_->publish(newest_.io_state);
+}
+
+void RobotStateReceiver::set_faking(const std_srvs::srv::SetBool::Request & request,
+                                    std_srvs::srv::SetBool::Response & response)
+{
+  if (request.data) {
+    const std::lock_guard lock(mutex_);
+    fake_.begin(newest_.joint_state);
+    response.message = "joint_states shows the positions of now, until fake_joint_states gives others";
+  } else {
+    fake_.end();
+    response.message = "joint_states shows the robot";
+  }
+  response.success = true;
+  RCL_CXX_INFO(node_.logger(), "{}", response.message);
+}
+
+void RobotStateReceiver::take_fake(const sensor_msgs::msg::JointState & message)
+{
+  if (const auto taken = fake_.set(message); !taken) {
+    RCL_CXX_WARN_THROTTLE(node_.logger(), std::chrono::seconds(1), "fake_joint_states: a message is ignored: {}",
+                          taken.error());
+    return;
+  }
+  // Without a robot there are no packages to publish with.
+  sensor_msgs::msg::JointState shown;
+  {
+    const std::lock_guard lock(mutex_);
+    if (freshness()) {
+      return;
+    }
+    shown = newest_.joint_state;
+  }
+  shown.header.stamp = node_.now();
+  if (fake_.apply(shown)) {
+    joint_states_->publish(shown);
+  }
+}
+
+}  // namespace ur_ros_rtde

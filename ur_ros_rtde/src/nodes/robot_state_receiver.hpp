@@ -1,0 +1,74 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <rcl_cxx/node.hpp>
+#include <std_srvs/srv/set_bool.hpp>
+#include <string>
+#include <ur_ros_rtde_msgs/srv/get_io_state.hpp>
+#include <ur_ros_rtde_msgs/srv/get_joint_state.hpp>
+#include <ur_ros_rtde_msgs/srv/get_tcp_pose.hpp>
+#include <ur_ros_rtde_msgs/srv/get_wrench.hpp>
+
+#include "nodes/fake_joints.hpp"
+#include "nodes/state_messages.hpp"
+#include "ur_ros_rtde/error.hpp"
+#include "ur_ros_rtde/sample.hpp"
+
+namespace ur_ros_rtde {
+
+/// The node robot_state_receiver: publishes each package of the controller, and answers from the newest.
+/// Where the packages come from is its owner's business: a StateReceiver, or the Robot of a command_server in
+/// the same process.
+class RobotStateReceiver {
+ public:
+  struct Options {
+    std::string tf_prefix;
+    std::string qos = "reliable";
+    /// Hz
+    double frequency = 500.0;
+    /// What is the matter with the link, for the answers when nothing comes.
+    std::function<std::string()> link_problem;
+  };
+
+  RobotStateReceiver(rcl_cxx::Node & node, Options options);
+
+  /// In the thread that receives; allocates nothing.
+  void publish(const Sample & sample);
+
+ private:
+  template <typename S, typename M>
+  typename rcl_cxx::Service<S>::SharedPtr serve(const std::string & name, M StateMessages::* source,
+                                                M S::Response::* destination);
+  Status freshness() const;
+  bool is_due(const Sample & sample);
+  void set_faking(const std_srvs::srv::SetBool::Request & request,
+                  std_srvs::srv::SetBool::Response & response);
+  void take_fake(const sensor_msgs::msg::JointState & message);
+
+  rcl_cxx::Node & node_;
+  const Options options_;
+  mutable std::mutex mutex_;
+  StateMessages newest_;  ///< always the real state
+  std::optional<std::chrono::steady_clock::time_point> received_;
+  std::uint32_t link_ = 0;
+  double next_due_ = 0.0;
+  FakeJoints fake_;
+  sensor_msgs::msg::JointState shown_;
+
+  rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr joint_states_;
+  rcl_cxx::Publisher<geometry_msgs::msg::PoseStamped>::SharedPtr tcp_pose_;
+  rcl_cxx::Publisher<geometry_msgs::msg::WrenchStamped>::SharedPtr wrench_;
+  rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::IOState>::SharedPtr io_state_;
+  rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetJointState>::SharedPtr get_joint_state_;
+  rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetTcpPose>::SharedPtr get_tcp_pose_;
+  rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetWrench>::SharedPtr get_wrench_;
+  rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetIOState>::SharedPtr get_io_state_;
+  rcl_cxx::Service<std_srvs::srv::SetBool>::SharedPtr publish_fake_;
+  rcl_cxx::Subscription<sensor_msgs::msg::JointState>::SharedPtr fake_joint_states_;
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "nodes/robot_state_receiver.hpp"
+#include "nodes/server.hpp"
+#include "ur_ros_rtde/state_receiver.hpp"
+
+namespace ur_ros_rtde {
+
+class Robot;
+
+/// The node robot_state_receiver, with a connection of its own.
+class StateServer : public Server {
+ public:
+  explicit StateServer(const rcl_cxx::Context::SharedPtr & context);
+  rcl_cxx::Node & node() override { return *node_; }
+  void start() override { source_->start(); }
+
+ private:
+  rcl_cxx::Node::SharedPtr node_;
+  std::unique_ptr<RobotStateReceiver> receiver_;
+  std::unique_ptr<StateReceiver> source_;
+};
+
+/// The same, with the packages of a Robot in the same process; construct before the robot is started.
+class SharedStateServer : public Server {
+ public:
+  SharedStateServer(const rcl_cxx::Context::SharedPtr & context, Robot & robot);
+  rcl_cxx::Node & node() override { return *node_; }
+  void start() override {}
+
+ private:
+  rcl_cxx::Node::SharedPtr node_;
+  std::unique_ptr<RobotStateReceiver> receiver_;
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,71 @@
+#include "plugins/plugin_library.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace ur_ros_rtde {
+namespace {
+std::string symbol_of(const std::string & type)
+{
+  const auto colon = type.rfind(':');
+  return "ur_ros_rtde_plugin_" + (colon == std::string::npos ? type : type.substr(colon + 1));
+}
+}  // namespace
+
+Expected<rcpputils::SharedLibrary *> PluginLibraries::load(const std::string & path)
+{
+  const auto known = libraries_.find(path);
+  if (known != libraries_.end()) {
+    return known->second.get();
+  }
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    return failure(ErrorCode::exception, fmt::format("there is no library {}", path));
+  }
+  try {
+    auto library = std::make_unique<rcpputils::SharedLibrary>(path);
+    return libraries_.emplace(path, std::move(library)).first->second.get();
+  } catch (const std::exception & error) {
+    return failure(ErrorCode::exception, fmt::format("its library cannot be loaded: {}", error.what()));
+  }
+}
+
+Expected<const PluginDescriptor *> PluginLibraries::describe(const PluginEntry & entry)
+{
+  const auto library = load(entry.library);
+  if (!library) {
+    return tl::unexpected(library.error());
+  }
+  const std::string symbol = symbol_of(entry.type);
+  if (!(*library)->has_symbol(symbol)) {
+    return failure(ErrorCode::exception,
+                   fmt::format("{} has no symbol {}: UR_ROS_RTDE_EXPORT({}, \"{}\") is missing there",
+                               entry.library, symbol, symbol.substr(sizeof("ur_ros_rtde_plugin_") - 1),
+                               entry.name));
+  }
+  using Entry = const PluginDescriptor * (*)();
+  const auto function = reinterpret_cast<Entry>((*library)->get_symbol(symbol));
+  const PluginDescriptor * descriptor = function();
+  if (descriptor == nullptr || descriptor->abi_version != plugin_abi_version) {
+    return failure(ErrorCode::exception,
+                   fmt::format("{} was built for version {} of the plugin interface, this is version {}: build "
+                               "it again with this driver",
+                               entry.library, descriptor == nullptr ? 0 : descriptor->abi_version,
+                               plugin_abi_version));
+  }
+  if (descriptor->name != entry.name) {
+    return failure(ErrorCode::exception,
+                   fmt::format("{} calls it \"{}\" in UR_ROS_RTDE_EXPORT, plugins.xml calls it \"{}\"",
+                               entry.library, descriptor->name, entry.name));
+  }
+  const bool command = entry.base == command_base;
+  if ((command ? static_cast<bool>(descriptor->create_command) : static_cast<bool>(descriptor->create_dashboard)) ==
+      false) {
+    return failure(ErrorCode::exception, fmt::format("{} does not derive from {}, as plugins.xml says", entry.type,
+                                                     entry.base));
+  }
+  return descriptor;
+}
+
+}  // namespace ur_ros_rtde
