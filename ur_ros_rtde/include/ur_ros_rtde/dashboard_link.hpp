@@ -18,7 +18,7 @@ namespace ur_ros_rtde {
 
 struct DashboardLinkOptions {
   std::string address;
-  std::chrono::milliseconds connect_timeout{1000};
+  std::chrono::milliseconds connect_timeout{500};
   std::chrono::milliseconds retry_interval{500};
   /// How often an idle connection is asked for a sign of life.
   std::chrono::milliseconds heartbeat{1000};
@@ -36,6 +36,9 @@ class DashboardLink {
   /// Called on the link's thread when the connection comes or goes. Set before start().
   void on_link(std::function<void(const LinkStatus &)> function);
   void start();
+  /// Ends the thread and with it all callbacks; takes as long as a step of connecting at most. The destructor
+  /// does it, too.
+  void stop();
 
   LinkStatus link() const;
   /// From PolyScope 5.6 on; refreshed with each heartbeat. None: unknown, or the controller has no such

@@ -39,7 +39,7 @@ struct RobotOptions {
   /// Registers 24-47 instead of 0-23, beside another RTDE client that uses the lower ones. Not yet on
   /// PolyScope 5.23 and later.
   bool upper_range_registers = false;
-  std::chrono::milliseconds connect_timeout{1000};
+  std::chrono::milliseconds connect_timeout{500};
   std::chrono::milliseconds retry_interval{250};
   std::chrono::milliseconds silence_limit{100};
   /// The robot program stops the arm when it has had no sign of life from here for 1/watchdog_frequency s.

@@ -52,6 +52,10 @@ class Run {
   /// holds; timeout.
   [[nodiscard]] std::optional<Interruption> until(const std::function<bool()> & condition, std::chrono::nanoseconds timeout);
 
+  /// Waits for the first package of the controller after `sample` and puts it there: for loops that follow
+  /// the controller's cycle.
+  [[nodiscard]] std::optional<Interruption> next(Sample & sample);
+
   /// Until the asynchronous move begun by the last call through control() has ended and the arm stands still.
   /// A failure, if the control program did not begin it, or after `limit`.
   [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds limit = std::chrono::minutes(10));

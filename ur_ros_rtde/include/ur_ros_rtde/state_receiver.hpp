@@ -25,7 +25,7 @@ struct StateReceiverOptions {
   /// controller can.
   double frequency = 0.0;
   /// For one step of connecting. A controller answers in milliseconds.
-  std::chrono::milliseconds connect_timeout{1000};
+  std::chrono::milliseconds connect_timeout{500};
   /// From one failed try to the next.
   std::chrono::milliseconds retry_interval{250};
   /// Silence after which the link counts as lost though the socket is open; at rates below 50 Hz, five
@@ -55,6 +55,9 @@ class StateReceiver {
   /// Called on the receiver's thread when the link comes or goes. Set before start().
   void on_link(LinkFunction function);
   void start();
+  /// Ends the thread and with it all callbacks; takes as long as a step of connecting at most. The destructor
+  /// does it, too.
+  void stop();
 
   LinkStatus link() const;
   /// Of the controller last connected to.

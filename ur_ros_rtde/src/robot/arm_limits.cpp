@@ -1,0 +1,60 @@
+#include "ur_ros_rtde/arm_limits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <numbers>
+#include <string_view>
+
+namespace ur_ros_rtde {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double full_turn = 2.0 * std::numbers::pi;
+constexpr Vector6 two_turns{full_turn, full_turn, full_turn, full_turn, full_turn, full_turn};
+
+constexpr Vector6 degrees(double base, double shoulder, double elbow, double wrist_1, double wrist_2,
+                          double wrist_3)
+{
+  return {base * degree,    shoulder * degree, elbow * degree,
+          wrist_1 * degree, wrist_2 * degree,  wrist_3 * degree};
+}
+
+struct Model {
+  std::string_view name;
+  ArmLimits limits;
+};
+
+// Universal Robots' technical specifications of the arms (working range, joint speeds, reach).
+constexpr std::array models{
+    Model{"ur3", {two_turns, degrees(180, 180, 180, 360, 360, 360), 0.5}},
+    Model{"ur5", {two_turns, degrees(180, 180, 180, 180, 180, 180), 0.85}},
+    Model{"ur10", {two_turns, degrees(120, 120, 180, 180, 180, 180), 1.3}},
+    Model{"ur3e", {two_turns, degrees(180, 180, 180, 360, 360, 360), 0.5}},
+    Model{"ur5e", {two_turns, degrees(180, 180, 180, 180, 180, 180), 0.85}},
+    Model{"ur7e", {two_turns, degrees(180, 180, 180, 180, 180, 180), 0.85}},
+    Model{"ur10e", {two_turns, degrees(120, 120, 180, 180, 180, 180), 1.3}},
+    Model{"ur12e", {two_turns, degrees(120, 120, 180, 180, 180, 180), 1.3}},
+    Model{"ur16e", {two_turns, degrees(120, 120, 180, 180, 180, 180), 0.9}},
+    Model{"ur20", {two_turns, degrees(120, 120, 150, 210, 210, 210), 1.75}},
+    Model{"ur30", {two_turns, degrees(120, 120, 150, 210, 210, 210), 1.3}},
+};
+
+}  // namespace
+
+std::optional<ArmLimits> arm_limits(const std::string & model)
+{
+  std::string name = model;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const auto found =
+      std::find_if(models.begin(), models.end(), [&](const Model & m) { return m.name == name; });
+  return found == models.end() ? std::nullopt : std::optional(found->limits);
+}
+
+ArmLimits widest_arm_limits()
+{
+  return {two_turns, degrees(360, 360, 360, 360, 360, 360), 1.75};
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,151 @@
+#include "robot/interface_links.hpp"
+
+#include <fmt/format.h>
+#include <ur_rtde/rtde_control_interface.h>
+#include <ur_rtde/rtde_io_interface.h>
+
+#include <utility>
+
+#include "robot/ports.hpp"
+#include "robot/tcp_stream.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using ur_rtde::RTDEControlInterface;
+using ur_rtde::RTDEIOInterface;
+
+/// ur_rtde must not change the priority of our thread: it would, to SCHED_FIFO 90, on a real-time kernel.
+constexpr int keep_priority = -1;
+constexpr double controllers_frequency = -1.0;
+
+std::uint16_t control_flags(const RobotOptions & options)
+{
+  unsigned flags = options.control_mode == ControlMode::upload
+                       ? RTDEControlInterface::FLAG_UPLOAD_SCRIPT
+                       : RTDEControlInterface::FLAG_USE_EXT_UR_CAP | RTDEControlInterface::FLAG_NO_WAIT;
+  // Looked at before by the supervisor, whose message says more.
+  flags |= RTDEControlInterface::FLAG_DISABLE_REMOTE_CONTROL_CHECK;
+  if (options.upper_range_registers) {
+    flags |= RTDEControlInterface::FLAG_UPPER_RANGE_REGISTERS;
+  }
+  return static_cast<std::uint16_t>(flags);
+}
+
+}  // namespace
+
+Status InterfaceLinks::ensure_io()
+{
+  {
+    const std::lock_guard lock(mutex_);
+    if (io_ && io_->isConnected()) {
+      return {};
+    }
+  }
+  if (const auto reachable = TcpStream::connect(options_.address, rtde_port, options_.connect_timeout);
+      !reachable) {
+    return tl::unexpected(reachable.error());
+  }
+  try {
+    auto io = std::make_shared<RTDEIOInterface>(options_.address, false, options_.upper_range_registers,
+                                                keep_priority);
+    const std::lock_guard lock(mutex_);
+    io_ = std::move(io);
+    return {};
+  } catch (const std::exception & error) {
+    return failure(ErrorCode::not_ready, fmt::format("the robot refuses the IO interface: {}", error.what()));
+  }
+}
+
+Status InterfaceLinks::start_watchdog(RTDEControlInterface & control) const
+{
+  if (options_.watchdog_frequency > 0.0 && !control.setWatchdog(options_.watchdog_frequency)) {
+    return failure(ErrorCode::not_ready,
+                   "the control program does not answer: look at the log of the pendant for what ended it");
+  }
+  return {};
+}
+
+Status InterfaceLinks::start_control()
+{
+  for (const auto port : {rtde_port, script_port}) {
+    if (const auto reachable = TcpStream::connect(options_.address, port, options_.connect_timeout);
+        !reachable) {
+      return tl::unexpected(reachable.error());
+    }
+  }
+  try {
+    auto control = std::make_shared<RTDEControlInterface>(
+        options_.address, controllers_frequency, control_flags(options_), options_.urcap_port, keep_priority);
+    {
+      // From here on the watchdog is fed, which must have begun when the program starts to watch.
+      const std::lock_guard lock(mutex_);
+      control_ = control;
+    }
+    auto started = start_watchdog(*control);
+    if (!started) {
+      drop_control();
+    }
+    return started;
+  } catch (const std::exception & error) {
+    drop_control();
+    return failure(ErrorCode::not_ready,
+                   fmt::format("the control program cannot be started: {}", error.what()));
+  }
+}
+
+void InterfaceLinks::drop_control()
+{
+  std::shared_ptr<RTDEControlInterface> control;
+  {
+    const std::lock_guard lock(mutex_);
+    control = std::exchange(control_, nullptr);
+  }
+  if (!control) {
+    return;
+  }
+  // The robot lets each input register have one client: the connection must be gone before the next one, even
+  // if somebody else still holds the interface.
+  for (int attempt = 0; attempt < 50; ++attempt) {
+    control->abandonCommand();
+    if (control_lock_->try_lock_for(std::chrono::milliseconds(20))) {
+      control->disconnect();
+      control_lock_->unlock();
+      return;
+    }
+  }
+}
+
+void InterfaceLinks::drop()
+{
+  drop_control();
+  const std::lock_guard lock(mutex_);
+  io_.reset();
+}
+
+std::shared_ptr<RTDEControlInterface> InterfaceLinks::control_pointer() const
+{
+  const std::lock_guard lock(mutex_);
+  return control_;
+}
+
+std::optional<Locked<RTDEControlInterface>> InterfaceLinks::control() const
+{
+  const std::lock_guard lock(mutex_);
+  return control_ ? std::optional(Locked(control_, control_lock_, "control interface")) : std::nullopt;
+}
+
+std::optional<Locked<RTDEIOInterface>> InterfaceLinks::io() const
+{
+  const std::lock_guard lock(mutex_);
+  return io_ ? std::optional(Locked(io_, io_lock_, "IO interface")) : std::nullopt;
+}
+
+void InterfaceLinks::kick_watchdog()
+{
+  if (const auto control = control_pointer()) {
+    control->kickWatchdog();
+  }
+}
+
+}  // namespace ur_ros_rtde

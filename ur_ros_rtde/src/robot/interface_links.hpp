@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "ur_ros_rtde/robot.hpp"
+
+namespace ur_ros_rtde {
+
+/// Makes and drops ur_rtde's control and IO interfaces. Each is constructed outside of locks, after a look at
+/// the ports it needs; whatever it throws becomes an Error. Thread-safe.
+class InterfaceLinks {
+ public:
+  explicit InterfaceLinks(const RobotOptions & options) : options_(options) {}
+  ~InterfaceLinks() { drop(); }
+
+  /// Takes as long as the connect timeout; does nothing when there is one that works.
+  Status ensure_io();
+  /// Uploads and starts the control program, then its watchdog. Up to some seconds if the robot does not
+  /// start it. The program that ran before must have been stopped.
+  Status start_control();
+  /// Ends the connection; a command that waits in it returns. Returns when the robot can take another control
+  /// interface.
+  void drop_control();
+  void drop();
+
+  std::shared_ptr<ur_rtde::RTDEControlInterface> control_pointer() const;
+  std::optional<Locked<ur_rtde::RTDEControlInterface>> control() const;
+  std::optional<Locked<ur_rtde::RTDEIOInterface>> io() const;
+  const std::shared_ptr<InterfaceLock> & control_lock() const { return control_lock_; }
+  /// A sign of life for the control program's watchdog. Does not wait for a command under way.
+  void kick_watchdog();
+
+ private:
+  Status start_watchdog(ur_rtde::RTDEControlInterface & control) const;
+
+  const RobotOptions options_;
+  mutable std::mutex mutex_;
+  std::shared_ptr<ur_rtde::RTDEControlInterface> control_;
+  std::shared_ptr<ur_rtde::RTDEIOInterface> io_;
+  std::shared_ptr<InterfaceLock> control_lock_ = std::make_shared<InterfaceLock>();
+  std::shared_ptr<InterfaceLock> io_lock_ = std::make_shared<InterfaceLock>();
+};
+
+}  // namespace ur_ros_rtde

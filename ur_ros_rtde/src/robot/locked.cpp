@@ -1,0 +1,50 @@
+#include "ur_ros_rtde/locked.hpp"
+
+#include <fmt/format.h>
+
+#include "ur_ros_rtde/error.hpp"
+
+namespace ur_ros_rtde {
+
+bool InterfaceLock::try_lock_for(std::chrono::milliseconds limit)
+{
+  const auto self = std::this_thread::get_id();
+  std::unique_lock lock(mutex_);
+  if (depth_ != 0 && owner_ == self) {
+    ++depth_;
+    return true;
+  }
+  if (!released_.wait_for(lock, limit, [this] { return depth_ == 0; })) {
+    return false;
+  }
+  owner_ = self;
+  depth_ = 1;
+  return true;
+}
+
+void InterfaceLock::unlock()
+{
+  {
+    const std::lock_guard lock(mutex_);
+    if (--depth_ != 0) {
+      return;
+    }
+    owner_ = {};
+  }
+  released_.notify_one();
+}
+
+std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> acquire(InterfaceLock & lock, const char * what,
+                                                                  std::chrono::milliseconds limit)
+{
+  if (!lock.try_lock_for(limit)) {
+    throw RobotError(
+        {ErrorCode::busy,
+         fmt::format("another call of the {} has been running for {} ms: try again when it has ended, or "
+                     "use the asynchronous form of that call",
+                     what, limit.count())});
+  }
+  return {&lock, [](InterfaceLock * held) { held->unlock(); }};
+}
+
+}  // namespace ur_ros_rtde

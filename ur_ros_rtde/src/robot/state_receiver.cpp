@@ -1,0 +1,286 @@
+#include "ur_ros_rtde/state_receiver.hpp"
+
+#include <fmt/format.h>
+#include <ur_rtde/rtde_receive_interface.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "robot/ports.hpp"
+#include "robot/reporter.hpp"
+#include "robot/rtde_probe.hpp"
+#include "robot/sample_reader.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double highest_frequency = 500.0;
+
+/// ur_rtde must not change the priority of our thread: it would, to SCHED_FIFO 90, on a real-time kernel.
+constexpr int keep_priority = -1;
+
+void check(const StateReceiverOptions & options)
+{
+  if (options.address.empty()) {
+    throw std::invalid_argument("the robot's address is empty: give its IP address or host name");
+  }
+  const double frequency = options.frequency;
+  if (!(frequency == 0.0 || (frequency >= 1.0 && frequency <= highest_frequency))) {
+    throw std::invalid_argument(
+        fmt::format("frequency is {} Hz: it must be from 1 to {} Hz, or 0 for the controller's own",
+                    frequency, highest_frequency));
+  }
+}
+
+}  // namespace
+
+class StateReceiver::Impl {
+ public:
+  Impl(StateReceiverOptions options, LogFunction log) : options_(std::move(options)), report_(std::move(log))
+  {
+    check(options_);
+    link_.error = {ErrorCode::link_lost, fmt::format("connecting to {}", options_.address)};
+  }
+
+  void run(const std::stop_token & stop);
+  Locked<ur_rtde::RTDEReceiveInterface> receive() const;
+
+  SampleFunction sample_function_;
+  LinkFunction link_function_;
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable_any changed_;
+  LinkStatus link_;
+  std::optional<ControllerVersion> version_;
+  double frequency_ = 0.0;
+  Sample latest_{};
+  std::shared_ptr<ur_rtde::RTDEReceiveInterface> interface_;
+
+  std::jthread thread_;  ///< last: it uses all of the above
+
+ private:
+  Status connect();
+  Error follow(const std::stop_token & stop);
+  void publish(Sample & sample, const SampleReader & reader, Clock::time_point arrival);
+  void set_link(LinkStatus status);
+  double choose_frequency(const ControllerVersion & version);
+
+  const StateReceiverOptions options_;
+  Reporter report_;
+  bool frequency_reported_ = false;
+  std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
+};
+
+double StateReceiver::Impl::choose_frequency(const ControllerVersion & version)
+{
+  if (options_.frequency == 0.0) {
+    return version.frequency();
+  }
+  if (options_.frequency > version.frequency() && !std::exchange(frequency_reported_, true)) {
+    report_.say(LogLevel::warn,
+                fmt::format("frequency {} Hz is more than a controller of version {} can: using {} Hz",
+                            options_.frequency, to_string(version), version.frequency()));
+  }
+  return std::min(options_.frequency, version.frequency());
+}
+
+Status StateReceiver::Impl::connect()
+{
+  const auto version = probe_rtde(options_.address, options_.connect_timeout);
+  if (!version) {
+    return tl::unexpected(version.error());
+  }
+  const double frequency = choose_frequency(*version);
+  try {
+    auto interface = std::make_shared<ur_rtde::RTDEReceiveInterface>(
+        options_.address, frequency, std::vector<std::string>{}, false, options_.upper_range_registers,
+        keep_priority);
+    if (!interface->isConnected()) {
+      return failure(ErrorCode::link_lost,
+                     fmt::format("{}:{} accepts the set-up but sends no data", options_.address, rtde_port));
+    }
+    const std::lock_guard lock(mutex_);
+    interface_ = std::move(interface);
+    version_ = *version;
+    frequency_ = frequency;
+    return {};
+  } catch (const std::exception & error) {
+    return failure(ErrorCode::link_lost,
+                   fmt::format("the RTDE server at {}:{} does not do what it should: {}", options_.address,
+                               rtde_port, error.what()));
+  }
+}
+
+void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader, Clock::time_point arrival)
+{
+  reader.read(sample);
+  ++sample.sequence;
+  sample.received = arrival;
+  sample.stamp = std::chrono::system_clock::now() -
+                 std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - arrival);
+  {
+    const std::lock_guard lock(mutex_);
+    latest_ = sample;
+  }
+  changed_.notify_all();
+  if (sample_function_) {
+    sample_function_(sample);
+  }
+}
+
+Error StateReceiver::Impl::follow(const std::stop_token & stop)
+{
+  const auto interface = interface_;
+  const auto state = interface->robotState();
+  const SampleReader reader(state, options_.upper_range_registers ? 24 : 0);
+  const auto silence_limit =
+      std::max(options_.silence_limit,
+               std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
+  Sample sample = latest_;
+  ++sample.link;
+  std::uint64_t packages = 0;
+  while (!stop.stop_requested()) {
+    if (state->waitForPackage(packages, std::chrono::milliseconds(10))) {
+      publish(sample, reader, state->getPackageTime());
+    } else if (!interface->isConnected()) {
+      return {ErrorCode::link_lost, fmt::format("{} closed the RTDE connection", options_.address)};
+    } else if (Clock::now() - state->getPackageTime() > silence_limit &&
+               // This host may have been busy, not the controller: let ur_rtde's thread read what may lie
+               // there.
+               !state->waitForPackage(packages, std::chrono::milliseconds(10))) {
+      return {ErrorCode::link_lost,
+              fmt::format("no RTDE package from {} for {} ms: the link or the controller hangs",
+                          options_.address, silence_limit.count())};
+    }
+  }
+  return {ErrorCode::shutdown, "shutting down"};
+}
+
+void StateReceiver::Impl::set_link(LinkStatus status)
+{
+  bool changed = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!status.connected) {
+      interface_.reset();
+    }
+    changed = link_.connected != status.connected || link_.error.message != status.error.message;
+    link_ = status;
+  }
+  changed_.notify_all();
+  if (changed && link_function_) {
+    link_function_(status);
+  }
+}
+
+void StateReceiver::Impl::run(const std::stop_token & stop)
+{
+  while (!stop.stop_requested()) {
+    if (const auto connected = connect(); connected) {
+      report_.forget();
+      report_.say(LogLevel::info, fmt::format("connected to {}: PolyScope {}, {} Hz", options_.address,
+                                              to_string(*version_), frequency_));
+      set_link({true, {}});
+      const Error end = follow(stop);
+      set_link({false, end});
+      if (!stop.stop_requested()) {
+        report_.once(LogLevel::error, fmt::format("{}; trying to connect again", end.message));
+      }
+    } else {
+      const auto again = std::chrono::duration<double>(options_.retry_interval).count();
+      report_.once(LogLevel::error,
+                   fmt::format("{}. Trying again every {} s", connected.error().message, again));
+      set_link({false, connected.error()});
+    }
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, options_.retry_interval, [] { return false; });
+  }
+}
+
+Locked<ur_rtde::RTDEReceiveInterface> StateReceiver::Impl::receive() const
+{
+  const std::lock_guard lock(mutex_);
+  if (!link_.connected || !interface_) {
+    throw RobotError(link_.error);
+  }
+  return {interface_, lock_, "receive interface"};
+}
+
+StateReceiver::StateReceiver(StateReceiverOptions options, LogFunction log)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(log)))
+{
+}
+
+StateReceiver::~StateReceiver() = default;
+
+void StateReceiver::on_sample(SampleFunction function)
+{
+  impl_->sample_function_ = std::move(function);
+}
+
+void StateReceiver::on_link(LinkFunction function)
+{
+  impl_->link_function_ = std::move(function);
+}
+
+void StateReceiver::start()
+{
+  if (!impl_->thread_.joinable()) {
+    impl_->thread_ = std::jthread([impl = impl_.get()](const std::stop_token & stop) { impl->run(stop); });
+  }
+}
+
+void StateReceiver::stop()
+{
+  if (impl_->thread_.joinable()) {
+    impl_->thread_.request_stop();
+    impl_->thread_.join();
+  }
+}
+
+LinkStatus StateReceiver::link() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->link_;
+}
+
+std::optional<ControllerVersion> StateReceiver::version() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->version_;
+}
+
+double StateReceiver::frequency() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->frequency_;
+}
+
+std::optional<Sample> StateReceiver::latest() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->latest_.sequence == 0 ? std::nullopt : std::optional(impl_->latest_);
+}
+
+bool StateReceiver::wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop) const
+{
+  std::unique_lock lock(impl_->mutex_);
+  const bool newer =
+      impl_->changed_.wait_for(lock, stop, limit, [&] { return impl_->latest_.sequence > last.sequence; });
+  if (newer) {
+    last = impl_->latest_;
+  }
+  return newer;
+}
+
+Locked<ur_rtde::RTDEReceiveInterface> StateReceiver::receive() const
+{
+  return impl_->receive();
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,253 @@
+#include "robot/supervisor.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "robot/condition.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using std::chrono::milliseconds;
+
+RobotStatus stopped(const Error & error)
+{
+  return {RobotState::stopped, error.code, error.message};
+}
+
+/// All that the supervisor decides by, in one number.
+std::uint64_t modes(const Sample & sample)
+{
+  return static_cast<std::uint64_t>(sample.safety_status_bits) << 32U |
+         static_cast<std::uint64_t>(static_cast<std::uint32_t>(sample.robot_mode) & 0xFFU) << 16U |
+         static_cast<std::uint64_t>(sample.runtime_state) << 8U | (sample.link & 0xFFU);
+}
+
+}  // namespace
+
+const char * to_string(RobotState state)
+{
+  switch (state) {
+    case RobotState::disconnected:
+      return "disconnected";
+    case RobotState::connecting:
+      return "connecting";
+    case RobotState::ready:
+      return "ready";
+    case RobotState::stopped:
+      return "stopped";
+  }
+  return "unknown";
+}
+
+Supervisor::Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard,
+                       InterfaceLinks & links, LogFunction log)
+    : options_(options), state_(state), dashboard_(dashboard), links_(links), report_(std::move(log))
+{
+  status_ = {RobotState::disconnected, ErrorCode::link_lost,
+             fmt::format("connecting to {}", options_.address)};
+}
+
+void Supervisor::start()
+{
+  thread_ = std::jthread([this](const std::stop_token & stop) { run(stop); });
+}
+
+void Supervisor::stop()
+{
+  if (thread_.joinable()) {
+    thread_.request_stop();
+    thread_.join();
+  }
+}
+
+RobotStatus Supervisor::status() const
+{
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+Status Supervisor::wait_until_ready(milliseconds limit, std::stop_token stop) const
+{
+  std::unique_lock lock(mutex_);
+  if (changed_.wait_for(lock, stop, limit, [this] { return status_.state == RobotState::ready; })) {
+    return {};
+  }
+  return failure(stop.stop_requested() ? ErrorCode::canceled : status_.cause, status_.message);
+}
+
+void Supervisor::add(const Sample & sample)
+{
+  if (program_ours_ && !sample.program_running()) {
+    program_ours_ = false;
+  }
+  if (const auto now = modes(sample); now != seen_) {
+    seen_ = now;
+    look_now();
+  }
+}
+
+void Supervisor::look_now()
+{
+  {
+    const std::lock_guard lock(mutex_);
+    look_requested_ = true;
+  }
+  changed_.notify_all();
+}
+
+void Supervisor::set(const RobotStatus & status)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    if (status_.state == status.state && status_.cause == status.cause && status_.message == status.message) {
+      return;
+    }
+    status_ = status;
+  }
+  changed_.notify_all();
+  if (status.state == RobotState::ready) {
+    report_.say(LogLevel::info, "the robot is ready");
+  } else if (status.state == RobotState::stopped) {
+    report_.say(LogLevel::warn, fmt::format("the robot cannot move: {}", status.message));
+  }
+  if (status_function) {
+    status_function(status);
+  }
+}
+
+void Supervisor::run(const std::stop_token & stop)
+{
+  while (!stop.stop_requested()) {
+    RobotStatus now;
+    try {
+      now = look();
+    } catch (const std::exception & error) {
+      now = {RobotState::connecting, ErrorCode::exception, error.what()};
+    }
+    if (stop.stop_requested()) {
+      return;
+    }
+    set(now);
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, options_.retry_interval, [this] { return look_requested_; });
+    look_requested_ = false;
+  }
+}
+
+RobotStatus Supervisor::look()
+{
+  const auto link = state_.link();
+  const auto sample = state_.latest();
+  if (!link.connected || !sample) {
+    program_ours_ = false;
+    links_.drop();
+    return {RobotState::disconnected, ErrorCode::link_lost, link.error.message};
+  }
+  if (std::exchange(link_, sample->link) != sample->link) {
+    program_ours_ = false;
+    program_ended_ = false;
+    links_.drop();
+  }
+  if (!program_ours_ && links_.control_pointer()) {
+    // Whatever ended it, it must not go on from where it was: not after a protective stop is unlocked, not on
+    // the pendant's play.
+    program_ended_ = true;
+    links_.drop_control();
+  }
+  const auto condition = robot_condition(*sample);
+  if (!program_ours_ && program_ended_ && sample->runtime_state != RuntimeState::stopped &&
+      !sample->program_running()) {
+    if (const auto ended = stop_other_program(*sample); !ended && !condition) {
+      return stopped(ended.error());
+    }
+  }
+  if (const auto io = links_.ensure_io(); !io) {
+    return {RobotState::connecting, io.error().code, io.error().message};
+  }
+  if (condition) {
+    return stopped(*condition);
+  }
+  return look_at_program(*sample);
+}
+
+RobotStatus Supervisor::look_at_program(const Sample & sample)
+{
+  if (program_ours_) {
+    return {RobotState::ready, ErrorCode::none, {}};
+  }
+  if (const auto dashboard = dashboard_.link(); !dashboard.connected) {
+    return {RobotState::connecting, dashboard.error.code, dashboard.error.message};
+  }
+  if (options_.control_mode == ControlMode::upload && dashboard_.in_remote_control() == false) {
+    return stopped(
+        {ErrorCode::not_ready,
+         "the robot is in local control and takes no program from here: choose remote control on the pendant "
+         "(enabled under Settings, System, Remote Control)"});
+  }
+  if (program_ended_ && sample.program_running()) {
+    return stopped(
+        {ErrorCode::program_stopped,
+         "another program runs on the robot and has replaced the control program: stop it (dashboard/stop)"});
+  }
+  if (program_ended_ && !options_.restart_program) {
+    return stopped({ErrorCode::program_stopped,
+                    "the control program was stopped, and restart_program is off: start the driver again"});
+  }
+  if (const auto ended = stop_other_program(sample); !ended) {
+    return stopped(ended.error());
+  }
+  return start_program();
+}
+
+Status Supervisor::stop_other_program(const Sample & sample)
+{
+  if (sample.runtime_state == RuntimeState::stopped) {
+    return {};
+  }
+  if (sample.program_running()) {
+    report_.say(LogLevel::warn,
+                "a program was running on the robot: stopped it to start the control program");
+  }
+  if (auto status = stop_program(options_.address, milliseconds(500)); !status) {
+    return failure(ErrorCode::program_stopped,
+                   fmt::format("a program of the robot ({}) cannot be stopped: {}",
+                               to_string(sample.runtime_state), status.error().message));
+  }
+  if (!wait_for_runtime(RuntimeState::stopped, milliseconds(1000))) {
+    return failure(ErrorCode::program_stopped, "the robot does not stop its program: stop it on the pendant");
+  }
+  return {};
+}
+
+RobotStatus Supervisor::start_program()
+{
+  set({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
+  if (const auto started = links_.start_control(); !started) {
+    return {RobotState::connecting, started.error().code, started.error().message};
+  }
+  if (!wait_for_runtime(RuntimeState::playing, milliseconds(500))) {
+    links_.drop_control();
+    return {RobotState::connecting, ErrorCode::not_ready,
+            "the control program ended at once: look at the pendant's log"};
+  }
+  program_ours_ = true;
+  program_ended_ = false;
+  return {RobotState::ready, ErrorCode::none, {}};
+}
+
+bool Supervisor::wait_for_runtime(RuntimeState runtime, milliseconds limit) const
+{
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  Sample sample = state_.latest().value_or(Sample{});
+  while (sample.runtime_state != runtime) {
+    if (std::chrono::steady_clock::now() > deadline || !state_.link().connected) {
+      return false;
+    }
+    state_.wait_for_next(sample, milliseconds(50));
+  }
+  return true;
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "robot/interface_links.hpp"
+#include "robot/motion_stopper.hpp"
+#include "robot/reporter.hpp"
+#include "ur_ros_rtde/dashboard_link.hpp"
+#include "ur_ros_rtde/robot.hpp"
+#include "ur_ros_rtde/state_receiver.hpp"
+
+namespace ur_ros_rtde {
+
+/// Brings the robot to `ready` whenever that is possible, and says why it is not. Looks at once when
+/// something changes, and every retry interval.
+class Supervisor {
+ public:
+  Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard,
+             InterfaceLinks & links, LogFunction log);
+  ~Supervisor() { stop(); }
+
+  std::function<void(const RobotStatus &)> status_function;  ///< set before start()
+  void start();
+  void stop();
+
+  RobotStatus status() const;
+  Status wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop) const;
+  /// Every sample, on the receiving thread.
+  void add(const Sample & sample);
+  void look_now();
+
+ private:
+  void run(const std::stop_token & stop);
+  RobotStatus look();
+  RobotStatus look_at_program(const Sample & sample);
+  RobotStatus start_program();
+  Status stop_other_program(const Sample & sample);
+  bool wait_for_runtime(RuntimeState runtime, std::chrono::milliseconds limit) const;
+  void set(const RobotStatus & status);
+
+  const RobotOptions options_;
+  StateReceiver & state_;
+  DashboardLink & dashboard_;
+  InterfaceLinks & links_;
+  Reporter report_;
+
+  /// Our control program was seen to run, and not seen to end.
+  std::atomic<bool> program_ours_{false};
+  /// It has ended since the link was made: a program that plays now is somebody else's.
+  bool program_ended_ = false;
+  std::uint32_t link_ = 0;
+  std::uint64_t seen_ = 0;  ///< modes of the sample before, receiving thread only
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable_any changed_;
+  RobotStatus status_;
+  bool look_requested_ = false;
+  std::jthread thread_;
+};
+
+}  // namespace ur_ros_rtde

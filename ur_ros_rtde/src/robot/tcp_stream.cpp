@@ -1,0 +1,181 @@
+#include "robot/tcp_stream.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace ur_ros_rtde {
+namespace {
+
+std::string system_text(int error)
+{
+  return std::generic_category().message(error);
+}
+
+/// IPv4 only, as ur_rtde.
+Expected<sockaddr_in> resolve(const std::string & address, std::uint16_t port)
+{
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo * found = nullptr;
+  if (const int error = getaddrinfo(address.c_str(), nullptr, &hints, &found); error != 0) {
+    return failure(ErrorCode::link_lost,
+                   fmt::format("the address `{}` cannot be resolved ({}): check the robot's address", address,
+                               gai_strerror(error)));
+  }
+  const std::unique_ptr<addrinfo, void (*)(addrinfo *)> keep(found, freeaddrinfo);
+  sockaddr_in result{};
+  std::copy_n(reinterpret_cast<const char *>(found->ai_addr), sizeof(result),
+              reinterpret_cast<char *>(&result));
+  result.sin_port = htons(port);
+  return result;
+}
+
+int milliseconds_to(TcpStream::Clock::time_point deadline)
+{
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - TcpStream::Clock::now()).count();
+  return static_cast<int>(std::clamp<std::chrono::milliseconds::rep>(left, 0, 60'000));
+}
+
+}  // namespace
+
+TcpStream::TcpStream(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
+
+TcpStream::TcpStream(TcpStream && other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), name_(std::move(other.name_))
+{
+}
+
+TcpStream & TcpStream::operator=(TcpStream && other) noexcept
+{
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(name_, other.name_);
+  return *this;
+}
+
+TcpStream::~TcpStream()
+{
+  if (descriptor_ >= 0) {
+    ::close(descriptor_);
+  }
+}
+
+Expected<TcpStream> TcpStream::connect(const std::string & address, std::uint16_t port,
+                                       std::chrono::milliseconds limit)
+{
+  const auto deadline = Clock::now() + limit;
+  const auto target = resolve(address, port);
+  if (!target) {
+    return tl::unexpected(target.error());
+  }
+  TcpStream stream(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
+                   fmt::format("{}:{}", address, port));
+  const auto refused = [&](int error) {
+    return failure(ErrorCode::link_lost,
+                   fmt::format("no connection to {}: {}", stream.name_, system_text(error)));
+  };
+  if (stream.descriptor_ < 0) {
+    return refused(errno);
+  }
+  const int on = 1;
+  ::setsockopt(stream.descriptor_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  if (::connect(stream.descriptor_, reinterpret_cast<const sockaddr *>(&*target), sizeof(*target)) != 0) {
+    if (errno != EINPROGRESS) {
+      return refused(errno);
+    }
+    if (!stream.wait_for(POLLOUT, deadline)) {
+      return failure(ErrorCode::link_lost, fmt::format("no connection to {}: nobody answered within {} ms",
+                                                       stream.name_, limit.count()));
+    }
+    int error = 0;
+    socklen_t size = sizeof(error);
+    ::getsockopt(stream.descriptor_, SOL_SOCKET, SO_ERROR, &error, &size);
+    if (error != 0) {
+      return refused(error);
+    }
+  }
+  return stream;
+}
+
+Status TcpStream::wait_for(short events, Clock::time_point deadline) const
+{
+  pollfd descriptor{descriptor_, events, 0};
+  int ready = 0;
+  do {
+    ready = ::poll(&descriptor, 1, milliseconds_to(deadline));
+  } while (ready < 0 && errno == EINTR);
+  if (ready > 0) {
+    return {};
+  }
+  return failure(ErrorCode::link_lost, fmt::format("{} does not answer", name_));
+}
+
+Status TcpStream::write(std::span<const std::byte> data, Clock::time_point deadline)
+{
+  while (!data.empty()) {
+    const auto sent = ::send(descriptor_, data.data(), data.size(), MSG_NOSIGNAL);
+    if (sent > 0) {
+      data = data.subspan(static_cast<std::size_t>(sent));
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      if (auto ready = wait_for(POLLOUT, deadline); !ready) {
+        return ready;
+      }
+    } else if (errno != EINTR) {
+      return failure(ErrorCode::link_lost, fmt::format("{}: {}", name_, system_text(errno)));
+    }
+  }
+  return {};
+}
+
+Status TcpStream::write(std::string_view text, Clock::time_point deadline)
+{
+  return write(std::as_bytes(std::span(text.data(), text.size())), deadline);
+}
+
+Status TcpStream::read(std::span<std::byte> data, Clock::time_point deadline)
+{
+  while (!data.empty()) {
+    if (auto ready = wait_for(POLLIN, deadline); !ready) {
+      return ready;
+    }
+    const auto got = ::recv(descriptor_, data.data(), data.size(), 0);
+    if (got > 0) {
+      data = data.subspan(static_cast<std::size_t>(got));
+    } else if (got == 0) {
+      return failure(ErrorCode::link_lost, fmt::format("{} closed the connection", name_));
+    } else if (errno != EINTR && errno != EAGAIN && errno != EWOULDBLOCK) {
+      return failure(ErrorCode::link_lost, fmt::format("{}: {}", name_, system_text(errno)));
+    }
+  }
+  return {};
+}
+
+Expected<std::string> TcpStream::read_line(Clock::time_point deadline)
+{
+  std::string line;
+  while (line.size() < 1000) {
+    std::byte character{};
+    if (auto status = read(std::span(&character, 1), deadline); !status) {
+      return tl::unexpected(status.error());
+    }
+    if (character == std::byte{'\n'}) {
+      return line;
+    }
+    line.push_back(static_cast<char>(character));
+  }
+  return failure(ErrorCode::link_lost, fmt::format("{} sent 1,000 bytes without an end of line", name_));
+}
+
+}  // namespace ur_ros_rtde
