@@ -24,7 +24,8 @@ struct CompileError {
 /// Limits that keep a hostile text from exhausting the controller.
 struct CompileLimits {
   std::size_t text_bytes = 4U << 20U;
-  std::size_t nesting = 128;  ///< of expressions and blocks
+  std::size_t nesting = 128;   ///< of expressions and blocks
+  std::size_t nodes = 500000;  ///< of the syntax tree
   std::size_t instructions = 1U << 20U;
 };
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "common/types.hpp"
@@ -42,33 +41,42 @@ struct Structure;
 class Value {
  public:
   Value() = default;
-  Value(bool value) : data_(value) {}  // NOLINT(google-explicit-constructor): literals of the language
-  Value(std::int32_t value) : data_(value) {}  // NOLINT(google-explicit-constructor)
-  Value(double value) : data_(value) {}        // NOLINT(google-explicit-constructor)
-  Value(std::string value);                    // NOLINT(google-explicit-constructor)
-  Value(const char * value);                   // NOLINT(google-explicit-constructor)
-  Value(List value);                           // NOLINT(google-explicit-constructor)
-  Value(Matrix value);                         // NOLINT(google-explicit-constructor)
-  Value(Structure value);                      // NOLINT(google-explicit-constructor)
+  Value(bool value) : type_(Type::boolean)
+  {
+    scalar_.boolean = value;
+  }  // NOLINT(google-explicit-constructor)
+  Value(std::int32_t value) : type_(Type::integer)
+  {
+    scalar_.integer = value;
+  }  // NOLINT(google-explicit-constructor)
+  Value(double value) : type_(Type::floating)
+  {
+    scalar_.floating = value;
+  }  // NOLINT(google-explicit-constructor)
+  Value(std::string value);   // NOLINT(google-explicit-constructor)
+  Value(const char * value);  // NOLINT(google-explicit-constructor)
+  Value(List value);          // NOLINT(google-explicit-constructor)
+  Value(Matrix value);        // NOLINT(google-explicit-constructor)
+  Value(Structure value);     // NOLINT(google-explicit-constructor)
   /// p[x, y, z, rx, ry, rz] in m and rad (rotation vector).
   static Value pose(const Vector6 & pose);
   /// A list of six numbers (joint positions, a wrench, …).
   static Value list(const Vector6 & values);
   static Value list(const Vector3 & values);
 
-  Type type() const { return static_cast<Type>(data_.index()); }
-  bool is(Type type) const { return this->type() == type; }
-  bool is_number() const { return is(Type::integer) || is(Type::floating); }
+  Type type() const { return type_; }
+  bool is(Type type) const { return type_ == type; }
+  bool is_number() const { return type_ == Type::integer || type_ == Type::floating; }
 
   /// The following require the right type (see type()).
-  bool boolean() const { return std::get<bool>(data_); }
-  std::int32_t integer() const { return std::get<std::int32_t>(data_); }
-  double floating() const { return std::get<double>(data_); }
-  const std::string & string() const { return *std::get<std::shared_ptr<std::string>>(data_); }
-  const Vector6 & pose() const { return *std::get<std::shared_ptr<Vector6>>(data_); }
-  const List & list() const { return *std::get<std::shared_ptr<List>>(data_); }
-  const Matrix & matrix() const { return *std::get<std::shared_ptr<Matrix>>(data_); }
-  const Structure & structure() const { return *std::get<std::shared_ptr<Structure>>(data_); }
+  bool boolean() const { return scalar_.boolean; }
+  std::int32_t integer() const { return scalar_.integer; }
+  double floating() const { return scalar_.floating; }
+  const std::string & string() const { return get<std::string>(); }
+  const Vector6 & pose() const { return get<Vector6>(); }
+  const List & list() const { return get<List>(); }
+  const Matrix & matrix() const { return get<Matrix>(); }
+  const Structure & structure() const { return get<Structure>(); }
 
   /// As above, for writing: detached from every other value that shares the storage.
   Vector6 & own_pose() { return own<Vector6>(); }
@@ -88,20 +96,30 @@ class Value {
 
  private:
   template <typename T>
+  Value(Type type, std::shared_ptr<T> shared) : type_(type), shared_(std::move(shared))
+  {
+  }
+  template <typename T>
+  const T & get() const
+  {
+    return *static_cast<const T *>(shared_.get());
+  }
+  template <typename T>
   T & own()
   {
-    auto & shared = std::get<std::shared_ptr<T>>(data_);
-    if (shared.use_count() != 1) {
-      shared = std::make_shared<T>(*shared);
+    if (shared_.use_count() != 1) {
+      shared_ = std::make_shared<T>(get<T>());
     }
-    return *shared;
+    return *static_cast<T *>(shared_.get());
   }
 
-  // In the order of Type.
-  std::variant<std::monostate, bool, std::int32_t, double, std::shared_ptr<std::string>,
-               std::shared_ptr<Vector6>, std::shared_ptr<List>, std::shared_ptr<Matrix>,
-               std::shared_ptr<Structure>>
-      data_;
+  Type type_ = Type::none;
+  union {
+    bool boolean;
+    std::int32_t integer;
+    double floating = 0.0;
+  } scalar_;
+  std::shared_ptr<void> shared_;  ///< of the type that type_ says, null for scalars
 };
 
 struct Structure {

@@ -1,0 +1,455 @@
+#include "urscript/interpreter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "urscript/containers.hpp"
+
+namespace ur_simulator::urscript {
+
+namespace {
+
+// A builtin does more than an instruction; weights keep a cycle's work within its time whatever the program
+// calls.
+constexpr std::uint32_t builtin_cost = 10;
+constexpr std::uint32_t container_cost = 4;
+constexpr std::size_t stack_limit = 100000;
+
+}  // namespace
+
+Interpreter::Interpreter(const Code & code, const Library & library, const MachineOptions & options)
+    : code_(code), library_(library), options_(options), globals_(code.global_names.size())
+{
+}
+
+Thread & Interpreter::start(std::uint32_t function, std::span<Value> arguments)
+{
+  const Function & entry = code_.functions[function];
+  auto thread = std::make_unique<Thread>();
+  thread->handle = next_handle_++;
+  thread->next = entry.entry;
+  thread->stack.reserve(64);
+  thread->stack.assign(arguments.begin(), arguments.end());
+  thread->stack.resize(entry.locals);
+  thread->frames.push_back({function, 0, 0});
+  threads_.push_back(std::move(thread));
+  return *threads_.back();
+}
+
+Thread * Interpreter::find(std::int32_t handle)
+{
+  for (const auto & thread : threads_) {
+    if (thread->handle == handle && thread->state != ThreadState::ended) {
+      return thread.get();
+    }
+  }
+  return nullptr;
+}
+
+void Interpreter::end(Thread & thread)
+{
+  thread.abandon();
+  if (critical_owner_ == thread.handle) {
+    critical_owner_ = 0;
+  }
+}
+
+void Interpreter::remove_ended()
+{
+  std::erase_if(threads_, [](const auto & thread) { return thread->state == ThreadState::ended; });
+}
+
+void Interpreter::fail(std::int32_t line, std::string message)
+{
+  if (!error_) {
+    error_ = RunTimeError{line, std::move(message)};
+  }
+}
+
+std::int32_t Interpreter::line_of(const Thread & thread) const
+{
+  return code_.lines[thread.next == 0 ? 0 : thread.next - 1];
+}
+
+const std::string & Interpreter::name_of(const Thread & thread) const
+{
+  return code_.functions[thread.frames.empty() ? 0 : thread.frames.front().function].name;
+}
+
+const Value * Interpreter::global(const std::string & name) const
+{
+  for (std::size_t i = 0; i < code_.global_names.size(); ++i) {
+    if (code_.global_names[i] == name) {
+      return globals_[i].is(Type::none) ? nullptr : &globals_[i];
+    }
+  }
+  return nullptr;
+}
+
+std::uint32_t Interpreter::run(Thread & thread, std::uint32_t share, CallContext & context)
+{
+  thread_ = &thread;
+  context_ = &context;
+  cost_ = 0;
+  const Instruction * instructions = code_.instructions.data();
+  while (cost_ < share) {
+    ++cost_;
+    if (execute(instructions[thread.next++]) == Next::leave) {
+      break;
+    }
+  }
+  return cost_;
+}
+
+Interpreter::Next Interpreter::fail_here(std::string message)
+{
+  fail(line_of(*thread_), std::move(message));
+  return Next::leave;
+}
+
+Value Interpreter::pop()
+{
+  Value value = std::move(thread_->stack.back());
+  thread_->stack.pop_back();
+  return value;
+}
+
+Interpreter::Next Interpreter::replace(std::size_t count, tl::expected<Value, std::string> result)
+{
+  if (!result) {
+    return fail_here(std::move(result.error()));
+  }
+  drop(count - 1);
+  thread_->stack.back() = std::move(*result);
+  return Next::go_on;
+}
+
+// Instructions on containers take time in proportion to what these hold.
+void Interpreter::charge(const Value & value)
+{
+  if (value.type() > Type::floating) {
+    const std::size_t size = value.is(Type::string) ? value.string().size() / 16 : weight(value);
+    cost_ += static_cast<std::uint32_t>(size) / container_cost;
+  }
+}
+
+void Interpreter::charge(std::span<const Value> values)
+{
+  for (const Value & value : values) {
+    charge(value);
+  }
+}
+
+Interpreter::Next Interpreter::load(const Value & value, const std::string & name)
+{
+  if (value.is(Type::none)) {
+    return fail_here(fmt::format("The variable '{}' has no value", name));
+  }
+  thread_->stack.push_back(value);
+  return Next::go_on;
+}
+
+// What runs most; the rest is in execute_rare.
+Interpreter::Next Interpreter::execute(const Instruction & instruction)
+{
+  std::vector<Value> & stack = thread_->stack;
+  switch (instruction.op) {
+    case Op::push_constant:
+      stack.push_back(code_.constants[instruction.a]);
+      return Next::go_on;
+    case Op::load_global:
+      return load(globals_[instruction.a], code_.global_names[instruction.a]);
+    case Op::load_local:
+      return load(local(instruction.a),
+                  code_.functions[thread_->frames.back().function].local_names[instruction.a]);
+    case Op::load_free: {
+      const Value & global = globals_[instruction.a];
+      return load(global.is(Type::none) ? local(instruction.b) : global, code_.global_names[instruction.a]);
+    }
+    case Op::store_global:
+      globals_[instruction.a] = pop();
+      return Next::go_on;
+    case Op::store_local:
+      local(instruction.a) = pop();
+      return Next::go_on;
+    case Op::store_free: {
+      Value & global = globals_[instruction.a];
+      (global.is(Type::none) ? local(instruction.b) : global) = pop();
+      return Next::go_on;
+    }
+    case Op::binary:
+      charge(*(stack.end() - 2));
+      charge(stack.back());
+      return replace(2, binary(static_cast<Operator>(instruction.a), *(stack.end() - 2), stack.back()));
+    case Op::jump:
+      thread_->next = instruction.a;
+      return Next::go_on;
+    case Op::jump_if_false: {
+      const auto condition = truth(stack.back());
+      if (!condition) {
+        return fail_here(condition.error());
+      }
+      stack.pop_back();
+      thread_->next = *condition ? thread_->next : instruction.a;
+      return Next::go_on;
+    }
+    case Op::call:
+      return call(instruction);
+    case Op::call_builtin:
+      return call_builtin(instruction);
+    case Op::return_value:
+      return return_value();
+    case Op::index:
+      return replace(instruction.a + 1, element(*(stack.end() - 1 - instruction.a), top(instruction.a)));
+    default:
+      return execute_rare(instruction);
+  }
+}
+
+Interpreter::Next Interpreter::execute_rare(const Instruction & instruction)
+{
+  std::vector<Value> & stack = thread_->stack;
+  switch (instruction.op) {
+    case Op::push_none:
+      stack.emplace_back();
+      return Next::go_on;
+    case Op::pop:
+      stack.pop_back();
+      return Next::go_on;
+    case Op::make_list: {
+      charge(top(instruction.a));
+      stack.emplace_back();  // so that an empty list has a place too
+      std::rotate(stack.end() - 1 - instruction.a, stack.end() - 1, stack.end());
+      return replace(instruction.a + 1, make_list(top(instruction.a)));
+    }
+    case Op::make_pose:
+      return replace(6, make_pose(top(6)));
+    case Op::make_structure: {
+      const auto & shape = code_.shapes[instruction.a];
+      charge(top(shape.size()));
+      stack.emplace_back();
+      std::rotate(stack.end() - 1 - static_cast<std::ptrdiff_t>(shape.size()), stack.end() - 1, stack.end());
+      return replace(shape.size() + 1, make_structure(shape, top(shape.size())));
+    }
+    case Op::member:
+      return replace(1, member(stack.back(), code_.names[instruction.a]));
+    case Op::store_path:
+      return store_path(instruction);
+    case Op::method_of_path:
+    case Op::method_of_value:
+      return method(instruction);
+    case Op::negate:
+      return replace(1, negate(stack.back()));
+    case Op::logical_not:
+      return replace(1, truth(stack.back()).map([](bool value) { return Value(!value); }));
+    case Op::to_boolean:
+      return replace(1, truth(stack.back()).map([](bool value) { return Value(value); }));
+    case Op::jump_if_true_keep:
+      return jump_keep(instruction, true);
+    case Op::jump_if_false_keep:
+      return jump_keep(instruction, false);
+    case Op::default_argument:
+      thread_->next = local(instruction.b).is(Type::none) ? thread_->next : instruction.a;
+      return Next::go_on;
+    case Op::run:
+      return run_thread(instruction);
+    case Op::kill:
+      return kill_or_join(false);
+    case Op::join:
+      return kill_or_join(true);
+    case Op::enter_critical:
+      ++thread_->critical;
+      critical_owner_ = thread_->handle;
+      return Next::go_on;
+    case Op::exit_critical:
+      return leave_critical();
+    default:
+      halted_ = true;
+      return Next::leave;
+  }
+}
+
+Interpreter::Next Interpreter::jump_keep(const Instruction & instruction, bool leaves_when)
+{
+  const auto condition = truth(thread_->stack.back());
+  if (!condition) {
+    return fail_here(condition.error());
+  }
+  if (*condition == leaves_when) {
+    thread_->stack.back() = Value(leaves_when);
+    thread_->next = instruction.a;
+  } else {
+    thread_->stack.pop_back();
+  }
+  return Next::go_on;
+}
+
+Interpreter::Next Interpreter::call(const Instruction & instruction)
+{
+  const Function & callee = code_.functions[instruction.a];
+  if (thread_->frames.size() >= options_.call_depth || thread_->stack.size() > stack_limit) {
+    return fail_here(
+        fmt::format("more than {} calls inside each other at '{}'", options_.call_depth, callee.name));
+  }
+  const auto base = static_cast<std::uint32_t>(thread_->stack.size() - instruction.b);
+  thread_->frames.push_back({instruction.a, base, thread_->next});
+  thread_->stack.resize(base + callee.locals);
+  thread_->next = callee.entry;
+  return Next::go_on;
+}
+
+Interpreter::Next Interpreter::return_value()
+{
+  const Frame frame = thread_->frames.back();
+  if (thread_->frames.size() == 1) {
+    end(*thread_);
+    return Next::leave;
+  }
+  Value result = pop();
+  thread_->frames.pop_back();
+  thread_->stack.resize(frame.base);
+  thread_->stack.push_back(std::move(result));
+  thread_->next = frame.return_to;
+  return Next::go_on;
+}
+
+Interpreter::Next Interpreter::call_builtin(const Instruction & instruction)
+{
+  cost_ += builtin_cost;
+  const Builtin & builtin = library_[instruction.a];
+  const auto arguments = top(instruction.b);
+  charge(arguments);
+  for (std::size_t i = 0; i < builtin.required; ++i) {
+    if (arguments[i].is(Type::none)) {
+      return fail_here(
+          fmt::format("{}: the argument '{}' has no value", builtin.name, builtin.parameters[i].name));
+    }
+  }
+  context_->line = line_of(*thread_);
+  Outcome outcome = builtin.function(*context_, arguments);
+  if (auto * failure = std::get_if<Failure>(&outcome)) {
+    return fail_here(builtin.name + ": " + failure->message);
+  }
+  return take(std::move(outcome), instruction.b);
+}
+
+Interpreter::Next Interpreter::take(Outcome outcome, std::size_t arguments)
+{
+  const bool waits = std::holds_alternative<NextCycle>(outcome) ||
+                     std::holds_alternative<std::unique_ptr<Operation>>(outcome);
+  if (waits && context_->secondary) {
+    if (auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome)) {
+      (*operation)->abandon();
+    }
+    return fail_here("a secondary program cannot call what takes physical time");
+  }
+  drop(arguments);
+  if (auto * value = std::get_if<Value>(&outcome)) {
+    thread_->stack.push_back(std::move(*value));
+    return Next::go_on;
+  }
+  if (auto * next = std::get_if<NextCycle>(&outcome)) {
+    thread_->state = ThreadState::next_cycle;
+    thread_->pending = std::move(next->value);
+  } else if (auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome)) {
+    thread_->state = ThreadState::operation;
+    thread_->operation = std::move(*operation);
+  } else {
+    halted_ = true;
+  }
+  return Next::leave;
+}
+
+Value & Interpreter::variable(const Path & path)
+{
+  const bool global = path.storage == Storage::global ||
+                      (path.storage == Storage::free && !globals_[path.global_slot].is(Type::none));
+  return global ? globals_[path.global_slot] : local(path.local_slot);
+}
+
+Interpreter::Next Interpreter::store_path(const Instruction & instruction)
+{
+  const Path & path = code_.paths[instruction.a];
+  Value & target = variable(path);
+  if (target.is(Type::none)) {
+    return fail_here(fmt::format("The variable '{}' has no value", path.name));
+  }
+  charge(target);
+  Value value = pop();
+  const auto stored = assign(target, path, top(path.indices), std::move(value));
+  if (!stored) {
+    return fail_here(stored.error());
+  }
+  drop(path.indices);
+  return Next::go_on;
+}
+
+Interpreter::Next Interpreter::method(const Instruction & instruction)
+{
+  cost_ += builtin_cost;
+  const MethodCall & call = code_.methods[instruction.b];
+  const auto arguments = top(call.arguments);
+  charge(arguments);
+  if (instruction.op == Op::method_of_value) {
+    Value & object = *(thread_->stack.end() - 1 - call.arguments);
+    charge(object);
+    return replace(call.arguments + 1, call_method(object, call.name, arguments));
+  }
+  const Path & path = code_.paths[instruction.a];
+  const auto indices = top(call.arguments + path.indices).first(path.indices);
+  const auto object = follow(variable(path), path, indices, path.steps.size());
+  if (!object) {
+    return fail_here(object.error());
+  }
+  charge(**object);
+  auto result = call_method(**object, call.name, arguments);
+  if (!result) {
+    return fail_here(std::move(result.error()));
+  }
+  drop(call.arguments + path.indices);
+  thread_->stack.push_back(std::move(*result));
+  return Next::go_on;
+}
+
+Interpreter::Next Interpreter::run_thread(const Instruction & instruction)
+{
+  if (threads_.size() >= options_.threads) {
+    return fail_here(fmt::format("more than {} threads", options_.threads));
+  }
+  // It gets its turn after this thread waits, hence after the handle is assigned.
+  const std::int32_t handle = start(instruction.a, top(instruction.b)).handle;
+  drop(instruction.b);
+  thread_->stack.emplace_back(handle);
+  return Next::go_on;
+}
+
+Interpreter::Next Interpreter::kill_or_join(bool join)
+{
+  const Value handle = pop();
+  if (!handle.is(Type::integer)) {
+    return fail_here(fmt::format("Type error: {} takes a thread's handle, not {}", join ? "join" : "kill",
+                                 urscript::name_of(handle.type())));
+  }
+  Thread * other = find(handle.integer());
+  if (other == nullptr) {
+    return Next::go_on;
+  }
+  if (join) {
+    thread_->state = ThreadState::joining;
+    thread_->awaited = other->handle;
+    return Next::leave;
+  }
+  end(*other);
+  return other == thread_ ? Next::leave : Next::go_on;
+}
+
+Interpreter::Next Interpreter::leave_critical()
+{
+  if (thread_->critical > 0 && --thread_->critical == 0) {
+    critical_owner_ = 0;
+  }
+  return Next::go_on;
+}
+
+}  // namespace ur_simulator::urscript

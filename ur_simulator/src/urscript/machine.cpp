@@ -1,0 +1,198 @@
+#include "urscript/machine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+
+#include "urscript/interpreter.hpp"
+
+namespace ur_simulator::urscript {
+
+namespace {
+
+// A thread late in a cycle's order still gets something done.
+constexpr std::uint32_t least_share = 200;
+
+std::uint64_t next_program()
+{
+  static std::atomic<std::uint64_t> count{0};
+  return ++count;
+}
+
+}  // namespace
+
+struct Machine::Impl {
+  Impl(Program compiled, std::shared_ptr<const Library> functions, Host & to, const MachineOptions & settings)
+      : program(std::move(compiled)),
+        library(std::move(functions)),
+        options(settings),
+        context{to, settings.cycle_time, 0.0, 0, program.secondary(), next_program()},
+        interpreter(program.code(), *library, options)
+  {
+    interpreter.start(0, {});
+  }
+
+  void cycle()
+  {
+    instructions = 0;
+    // By index: threads may start others meanwhile, which have their first turn in this same cycle.
+    for (std::size_t i = 0; i < interpreter.threads().size() && status == MachineStatus::running; ++i) {
+      Thread & thread = *interpreter.threads()[i];
+      if (wakes(thread)) {
+        turn(thread, interpreter.threads().size() - i);
+      }
+      settle();
+    }
+    interpreter.remove_ended();
+    ++cycles;
+    context.time = static_cast<double>(cycles) * options.cycle_time;
+  }
+
+  // Is the thread's wait over, and may it run?
+  bool wakes(Thread & thread)
+  {
+    const std::int32_t owner = interpreter.critical_owner();
+    if (thread.state == ThreadState::operation) {
+      poll(thread);
+    } else if (thread.state == ThreadState::next_cycle) {
+      proceed(thread, std::move(thread.pending));
+    } else if (thread.state == ThreadState::joining && interpreter.find(thread.awaited) == nullptr) {
+      thread.state = ThreadState::ready;
+      thread.computing = 0;
+    }
+    return thread.state == ThreadState::ready && (owner == 0 || owner == thread.handle) &&
+           !interpreter.error();
+  }
+
+  void poll(Thread & thread)
+  {
+    context.line = interpreter.line_of(thread);
+    auto result = thread.operation->poll(context);
+    if (!result) {
+      interpreter.fail(interpreter.line_of(thread), std::move(result.error()));
+    } else if (*result) {
+      thread.operation.reset();
+      proceed(thread, std::move(**result));
+    }
+  }
+
+  static void proceed(Thread & thread, Value value)
+  {
+    thread.stack.push_back(std::move(value));
+    thread.pending = Value();
+    thread.state = ThreadState::ready;
+    thread.computing = 0;
+  }
+
+  void turn(Thread & thread, std::size_t threads_left)
+  {
+    const std::uint32_t left =
+        options.instructions_per_cycle - std::min(instructions, options.instructions_per_cycle);
+    const std::uint32_t share = std::max(left / static_cast<std::uint32_t>(threads_left), least_share);
+    instructions += interpreter.run(thread, share, context);
+    if (thread.state != ThreadState::ready) {
+      return;
+    }
+    ++thread.computing;
+    if (static_cast<double>(thread.computing) * options.cycle_time > options.infinite_loop_after) {
+      interpreter.fail(
+          interpreter.line_of(thread),
+          fmt::format("infinite loop: '{}' has computed for {} s without taking time; use sync() or sleep()",
+                      interpreter.name_of(thread), options.infinite_loop_after));
+    }
+  }
+
+  void settle()
+  {
+    if (interpreter.error()) {
+      finish(MachineStatus::failed);
+    } else if (interpreter.halted() || interpreter.find(1) == nullptr) {
+      finish(MachineStatus::finished);
+    }
+  }
+
+  void finish(MachineStatus how)
+  {
+    if (status != MachineStatus::running) {
+      return;
+    }
+    status = how;
+    for (const auto & thread : interpreter.threads()) {
+      interpreter.end(*thread);
+    }
+  }
+
+  Program program;
+  std::shared_ptr<const Library> library;
+  MachineOptions options;
+  CallContext context;
+  Interpreter interpreter;
+  MachineStatus status = MachineStatus::running;
+  std::uint64_t cycles = 0;
+  std::uint32_t instructions = 0;
+};
+
+Machine::Machine(Program program, std::shared_ptr<const Library> library, Host & host,
+                 const MachineOptions & options)
+    : impl_(std::make_unique<Impl>(std::move(program), std::move(library), host, options))
+{
+}
+
+Machine::~Machine()
+{
+  stop();
+}
+
+MachineStatus Machine::cycle()
+{
+  if (impl_->status == MachineStatus::running) {
+    try {
+      impl_->cycle();
+    } catch (const std::exception & error) {
+      // Out of memory, or a builtin that throws: the program ends, the controller goes on.
+      impl_->interpreter.fail(0, error.what());
+      impl_->finish(MachineStatus::failed);
+    }
+  }
+  return impl_->status;
+}
+
+void Machine::stop()
+{
+  impl_->finish(MachineStatus::finished);
+}
+
+MachineStatus Machine::status() const
+{
+  return impl_->status;
+}
+
+const RunTimeError & Machine::error() const
+{
+  static const RunTimeError none;
+  return impl_->interpreter.error() ? *impl_->interpreter.error() : none;
+}
+
+const Program & Machine::program() const
+{
+  return impl_->program;
+}
+
+std::size_t Machine::thread_count() const
+{
+  return impl_->status == MachineStatus::running ? impl_->interpreter.threads().size() : 0;
+}
+
+std::uint32_t Machine::instructions() const
+{
+  return impl_->instructions;
+}
+
+const Value * Machine::global(const std::string & name) const
+{
+  return impl_->interpreter.global(name);
+}
+
+}  // namespace ur_simulator::urscript

@@ -1,0 +1,251 @@
+#include "urscript/value.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace ur_simulator::urscript {
+
+namespace {
+
+// textmsg and to_str stop here: values may share storage, so their text could be far larger than they are.
+constexpr std::size_t text_limit = 16384;
+
+void append_text(std::string & out, const Value & value, bool nested);
+
+template <typename Elements>
+void append_elements(std::string & out, const Elements & elements)
+{
+  bool first = true;
+  for (const auto & element : elements) {
+    if (!first) {
+      out += ", ";
+    }
+    first = false;
+    append_text(out, Value(element), true);
+    if (out.size() > text_limit) {
+      return;
+    }
+  }
+}
+
+void append_matrix(std::string & out, const Matrix & matrix)
+{
+  for (std::size_t row = 0; row < matrix.rows && out.size() <= text_limit; ++row) {
+    out += row == 0 ? "[[" : ", [";
+    for (std::size_t column = 0; column < matrix.columns; ++column) {
+      fmt::format_to(std::back_inserter(out), "{}{}", column == 0 ? "" : ", ", matrix.at(row, column));
+    }
+    out += ']';
+  }
+  out += ']';
+}
+
+void append_structure(std::string & out, const Structure & structure)
+{
+  out += "struct(";
+  bool first = true;
+  for (const auto & [name, member] : structure.members) {
+    out += first ? "" : ", ";
+    out += name;
+    out += '=';
+    first = false;
+    append_text(out, member, true);
+  }
+  out += ')';
+}
+
+void append_text(std::string & out, const Value & value, bool nested)
+{
+  if (out.size() > text_limit) {
+    return;
+  }
+  switch (value.type()) {
+    case Type::none:
+      out += "None";
+      return;
+    case Type::boolean:
+      out += value.boolean() ? "True" : "False";
+      return;
+    case Type::integer:
+      out += std::to_string(value.integer());
+      return;
+    case Type::floating:
+      fmt::format_to(std::back_inserter(out), "{}", value.floating());
+      return;
+    case Type::string:
+      out += nested ? "\"" : "";
+      out += value.string();
+      out += nested ? "\"" : "";
+      return;
+    case Type::pose:
+      out += "p[";
+      append_elements(out, value.pose());
+      out += ']';
+      return;
+    case Type::list:
+      out += '[';
+      append_elements(out, value.list());
+      out += ']';
+      return;
+    case Type::matrix:
+      append_matrix(out, value.matrix());
+      return;
+    case Type::structure:
+      append_structure(out, value.structure());
+      return;
+  }
+}
+
+bool equal_lists(const List & left, const List & right)
+{
+  if (left.size() != right.size()) {
+    return false;
+  }
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (!equal(left[i], right[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool equal_structures(const Structure & left, const Structure & right)
+{
+  if (left.members.size() != right.members.size()) {
+    return false;
+  }
+  for (std::size_t i = 0; i < left.members.size(); ++i) {
+    if (left.members[i].first != right.members[i].first ||
+        !equal(left.members[i].second, right.members[i].second)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <typename VectorN>
+std::optional<VectorN> to_vector(const Value & value)
+{
+  constexpr auto size = static_cast<std::size_t>(VectorN::RowsAtCompileTime);
+  if (!value.is(Type::list) || value.list().size() != size) {
+    return std::nullopt;
+  }
+  VectorN result;
+  for (std::size_t i = 0; i < size; ++i) {
+    const Value & element = value.list()[i];
+    if (!element.is_number()) {
+      return std::nullopt;
+    }
+    result[static_cast<Eigen::Index>(i)] = *element.number();
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string_view name_of(Type type)
+{
+  constexpr std::array<std::string_view, 9> names{"none", "bool", "int",    "float", "string",
+                                                  "pose", "list", "matrix", "struct"};
+  return names[static_cast<std::size_t>(type)];
+}
+
+Value::Value(std::string value) : Value(Type::string, std::make_shared<std::string>(std::move(value))) {}
+Value::Value(const char * value) : Value(std::string(value)) {}
+Value::Value(List value) : Value(Type::list, std::make_shared<List>(std::move(value))) {}
+Value::Value(Matrix value) : Value(Type::matrix, std::make_shared<Matrix>(std::move(value))) {}
+Value::Value(Structure value) : Value(Type::structure, std::make_shared<Structure>(std::move(value))) {}
+
+Value Value::pose(const Vector6 & pose)
+{
+  return {Type::pose, std::make_shared<Vector6>(pose)};
+}
+
+Value Value::list(const Vector6 & values)
+{
+  return List(values.begin(), values.end());
+}
+Value Value::list(const Vector3 & values)
+{
+  return List(values.begin(), values.end());
+}
+
+std::optional<double> Value::number() const
+{
+  switch (type()) {
+    case Type::boolean:
+      return boolean() ? 1.0 : 0.0;
+    case Type::integer:
+      return integer();
+    case Type::floating:
+      return floating();
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<Vector6> Value::vector6() const
+{
+  return is(Type::pose) ? std::optional<Vector6>(pose()) : to_vector<Vector6>(*this);
+}
+
+std::optional<Vector3> Value::vector3() const
+{
+  return to_vector<Vector3>(*this);
+}
+
+std::string Value::text() const
+{
+  std::string out;
+  append_text(out, *this, false);
+  if (out.size() > text_limit) {
+    out.resize(text_limit);
+    out += "...";
+  }
+  return out;
+}
+
+Value * Structure::find(std::string_view name)
+{
+  for (auto & [member, value] : members) {
+    if (member == name) {
+      return &value;
+    }
+  }
+  return nullptr;
+}
+
+const Value * Structure::find(std::string_view name) const
+{
+  return const_cast<Structure *>(this)->find(name);
+}
+
+bool equal(const Value & left, const Value & right)
+{
+  const auto a = left.number();
+  const auto b = right.number();
+  if (a && b) {
+    return *a == *b;
+  }
+  if (left.type() != right.type()) {
+    return false;
+  }
+  switch (left.type()) {
+    case Type::string:
+      return left.string() == right.string();
+    case Type::pose:
+      return left.pose() == right.pose();
+    case Type::list:
+      return &left.list() == &right.list() || equal_lists(left.list(), right.list());
+    case Type::matrix:
+      return left.matrix() == right.matrix();
+    case Type::structure:
+      return equal_structures(left.structure(), right.structure());
+    default:
+      return true;
+  }
+}
+
+}  // namespace ur_simulator::urscript

@@ -1,0 +1,141 @@
+#include <cmath>
+
+#include "script_runner.hpp"
+
+namespace ur_simulator::urscript {
+namespace {
+
+double number(const std::string & expression)
+{
+  ScriptRunner runner("def test():\n result = " + expression + "\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished) << runner.machine->error().message;
+  const Value * value = runner.machine->global("result");
+  return value == nullptr ? NAN : value->number().value_or(NAN);
+}
+
+Vector6 six(const std::string & expression)
+{
+  ScriptRunner runner("def test():\n result = " + expression + "\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished) << runner.machine->error().message;
+  const Value * value = runner.machine->global("result");
+  return value == nullptr ? Vector6::Constant(NAN) : value->vector6().value_or(Vector6::Constant(NAN));
+}
+
+void expect_near(const Vector6 & actual, const Vector6 & expected)
+{
+  EXPECT_LT((actual - expected).norm(), 1e-9) << actual.transpose();
+}
+
+Vector6 vector(double a, double b, double c, double d, double e, double f)
+{
+  Vector6 result;
+  result << a, b, c, d, e, f;
+  return result;
+}
+
+TEST(Math, computes_functions_of_the_urmath_module)
+{
+  EXPECT_DOUBLE_EQ(number("sin(1) * sin(1) + cos(1) * cos(1)"), 1.0);
+  EXPECT_DOUBLE_EQ(number("atan2(1, 2)"), std::atan2(1.0, 2.0));
+  EXPECT_DOUBLE_EQ(number("d2r(180)"), M_PI);
+  EXPECT_DOUBLE_EQ(number("r2d(3.141592653589793)"), 180.0);
+  EXPECT_DOUBLE_EQ(number("pow(2, 10)"), 1024.0);
+  EXPECT_DOUBLE_EQ(number("log(2, 8)"), 3.0);
+  EXPECT_DOUBLE_EQ(number("norm([3, 4])"), 5.0);
+  EXPECT_DOUBLE_EQ(number("norm(-5.5)"), 5.5);
+  EXPECT_EQ(evaluate("ceil(1.1)"), "2");
+  EXPECT_EQ(evaluate("floor(-1.1)"), "-2");
+  EXPECT_EQ(evaluate("random() < 1 and random() >= 0"), "True");
+}
+
+TEST(Math, refuses_arguments_outside_of_the_domain)
+{
+  EXPECT_EQ(evaluate("sqrt(-1)"), "error: sqrt: f = -1 is outside of [0, inf]");
+  EXPECT_EQ(evaluate("asin(2)"), "error: asin: f = 2 is outside of [-1, 1]");
+  EXPECT_EQ(evaluate("sin(\"a\")"), "error: sin: the argument 'f' must be a finite number, not string a");
+}
+
+TEST(Lists, have_length_transpose_and_inverse)
+{
+  EXPECT_EQ(evaluate("get_list_length([1, 2, 3])"), "3");
+  EXPECT_EQ(evaluate("size([[1, 2, 3], [4, 5, 6]])"), "[2, 3]");
+  EXPECT_EQ(evaluate("transpose([[1, 2, 3], [4, 5, 6]])"), "[[1, 4], [2, 5], [3, 6]]");
+  EXPECT_EQ(evaluate("inv([[2, 0], [0, 4]])"), "[[0.5, 0], [0, 0.25]]");
+  EXPECT_EQ(evaluate("inv([[1, 1], [1, 1]])"), "error: inv: the matrix is singular");
+  EXPECT_EQ(evaluate("make_list(3, 7, 10)"), "[7, 7, 7]");
+  EXPECT_EQ(evaluate("make_list(1000000000, 7)"),
+            "error: make_list: length 1000000000 is outside of 0..10000");
+}
+
+TEST(Lists, convert_between_bits_and_integers)
+{
+  EXPECT_EQ(evaluate("binary_list_to_integer([True, False, True])"), "5");
+  EXPECT_EQ(evaluate("binary_list_to_integer(integer_to_binary_list(-12345))"), "-12345");
+  EXPECT_EQ(evaluate("get_list_length(integer_to_binary_list(1))"), "32");
+}
+
+TEST(Strings, are_searched_cut_and_converted)
+{
+  EXPECT_EQ(evaluate("str_cat(\"x = \", 1.5)"), "x = 1.5");
+  EXPECT_EQ(evaluate("str_at(\"Hello\", 1)"), "e");
+  EXPECT_EQ(evaluate("str_at(\"Hello\", 5)"), "error: str_at: index 5 is outside of the string of 5 bytes");
+  EXPECT_EQ(evaluate("str_find(\"Hello World\", \"o\", 5)"), "7");
+  EXPECT_EQ(evaluate("str_find(\"Hello\", \"z\")"), "-1");
+  EXPECT_EQ(evaluate("str_sub(\"0123456789\", 5, 2)"), "56");
+  EXPECT_EQ(evaluate("str_sub(\"0123456789\", 8)"), "89");
+  EXPECT_EQ(evaluate("str_len(\"Hello\")"), "5");
+  EXPECT_EQ(evaluate("str_empty(\"\")"), "True");
+  EXPECT_EQ(evaluate("to_num(\"45\") + 1"), "46");
+  EXPECT_EQ(evaluate("to_num(\"1.5\") + 1"), "2.5");
+  EXPECT_EQ(evaluate("to_num(\"abc\")"), "error: to_num: 'abc' is not a number");
+  EXPECT_EQ(evaluate("to_str([1, 2.5, True, \"a\"])"), "[1, 2.5, True, \"a\"]");
+}
+
+TEST(Poses, are_added_subtracted_and_inverted)
+{
+  expect_near(six("pose_add(p[1,2,3,0,0,1], p[1,1,1,0,0,1])"), vector(2, 3, 4, 0, 0, 2));
+  expect_near(six("pose_sub(p[.2,.5,.1,1.57,0,0], p[.2,.5,.6,1.57,0,0])"), vector(0, 0, -0.5, 0, 0, 0));
+  expect_near(six("pose_add(pose_sub(p[1,2,3,.1,.2,.3], p[3,2,1,.3,.1,.2]), p[3,2,1,.3,.1,.2])"),
+              vector(1, 2, 3, .1, .2, .3));
+  expect_near(six("pose_trans(p[1,0,0,0,0,1.5707963267948966], p[1,0,0,0,0,0])"),
+              vector(1, 1, 0, 0, 0, M_PI / 2));
+  expect_near(six("pose_trans(p[1,2,3,.1,.2,.3], pose_inv(p[1,2,3,.1,.2,.3]))"), Vector6::Zero());
+  expect_near(six("interpolate_pose(p[0,0,0,0,0,0], p[1,0,0,0,0,1], 0.25)"), vector(0.25, 0, 0, 0, 0, 0.25));
+  EXPECT_NEAR(number("point_dist(p[0,0,0,1,1,1], p[3,4,0,0,0,0])"), 5.0, 1e-12);
+}
+
+TEST(Poses, convert_rotation_vectors_to_roll_pitch_yaw_and_back)
+{
+  EXPECT_EQ(evaluate("rpy2rotvec([0, 0, 0.5])"), "[0, 0, 0.5]");
+  EXPECT_LT(number("norm(rotvec2rpy(rpy2rotvec([0.1, -0.2, 0.3])) - [0.1, -0.2, 0.3])"), 1e-9);
+  EXPECT_LT(
+      number("norm(rpy2rotvec(rotvec2rpy(rpy2rotvec([0.3, 1.5707963267948966, 0.1]))) - rpy2rotvec([0.3, "
+             "1.5707963267948966, 0.1]))"),
+      1e-6);
+}
+
+TEST(Poses, move_a_wrench_to_another_point_of_view)
+{
+  // 10 N along Y, one metre along X away from the new origin, turned by 90 degrees about Z.
+  expect_near(six("wrench_trans(p[-1,0,0,0,0,0], [0,10,0,0,0,0])"), vector(0, 10, 0, 0, 0, 10));
+  expect_near(six("wrench_trans(p[0,0,0,0,0,1.5707963267948966], [0,10,0,0,0,0])"),
+              vector(10, 0, 0, 0, 0, 0));
+}
+
+TEST(Messages, join_both_arguments)
+{
+  ScriptRunner runner(
+      "def test():\n textmsg(\"value: \", 3)\n textmsg(p[0.5,0,0,0,0,0])\n textmsg(\"\")\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.host.messages, (std::vector<std::string>{"value: 3", "p[0.5, 0, 0, 0, 0, 0]", ""}));
+}
+
+TEST(Builtins, name_a_required_argument_that_has_no_value)
+{
+  ScriptRunner runner("def test():\n def f():\n end\n x = sin(f())\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::failed);
+  EXPECT_EQ(runner.machine->error().message, "sin: the argument 'f' has no value");
+}
+
+}  // namespace
+}  // namespace ur_simulator::urscript

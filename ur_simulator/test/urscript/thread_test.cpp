@@ -1,0 +1,294 @@
+#include "script_runner.hpp"
+
+namespace ur_simulator::urscript {
+namespace {
+
+/// A builtin that takes time until the test says so, as a motion does.
+struct Motion {
+  bool done = false;
+  int started = 0;
+  int abandoned = 0;
+};
+
+class MotionOperation : public Operation {
+ public:
+  explicit MotionOperation(Motion & motion) : motion_(motion) {}
+  tl::expected<std::optional<Value>, std::string> poll(CallContext &) override
+  {
+    return motion_.done ? std::optional<Value>(Value()) : std::nullopt;
+  }
+  void abandon() override { ++motion_.abandoned; }
+
+ private:
+  Motion & motion_;
+};
+
+std::shared_ptr<Library> library_with(Motion & motion)
+{
+  auto library = standard_library();
+  library->add({"move", {}, 0, [&motion](CallContext &, Arguments) -> Outcome {
+                  ++motion.started;
+                  return std::make_unique<MotionOperation>(motion);
+                }});
+  return library;
+}
+
+TEST(Threads, take_turns_at_each_sync)
+{
+  ScriptRunner runner(R"(def test():
+    global log = ""
+    thread ping():
+      while True:
+        log = log + "a"
+        sync()
+      end
+    end
+    handle = run ping()
+    i = 0
+    while i < 3:
+      log = log + "b"
+      i = i + 1
+      sync()
+    end
+    kill handle
+    sync()
+    log = log + "!"
+  end)");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.global("log"), "bababa!");
+}
+
+TEST(Threads, start_only_after_the_handle_is_assigned)
+{
+  ScriptRunner runner(R"(def test():
+    global handle = 0
+    global seen = -1
+    thread child():
+      seen = handle
+      handle = 0
+    end
+    handle = run child()
+    while handle != 0:
+      sync()
+    end
+  end)");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.global("seen"), "2");
+}
+
+TEST(Threads, join_waits_for_the_end_of_the_other)
+{
+  ScriptRunner runner(R"(def test():
+    global done = False
+    thread child():
+      sleep(0.02)
+      done = True
+    end
+    handle = run child()
+    join handle
+    result = done
+    join handle
+  end)");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.global("result"), "True");
+  EXPECT_GE(runner.cycles, 10);
+}
+
+TEST(Threads, killing_nothing_is_no_error)
+{
+  ScriptRunner runner("def test():\n kill 0\n kill 99\n x = 1\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.global("x"), "1");
+}
+
+TEST(Threads, killed_while_it_moves_abandons_the_motion)
+{
+  Motion motion;
+  ScriptRunner runner(
+      "def test():\n thread mover():\n move()\n end\n h = run mover()\n sleep(0.01)\n kill h\n sleep(1)\nend",
+      library_with(motion));
+  for (int i = 0; i < 10; ++i) {
+    runner.machine->cycle();
+  }
+  EXPECT_EQ(motion.started, 1);
+  EXPECT_EQ(motion.abandoned, 1);
+  EXPECT_EQ(runner.machine->thread_count(), 1U);
+}
+
+TEST(Threads, stopping_the_program_abandons_what_they_do)
+{
+  Motion motion;
+  ScriptRunner runner("def test():\n move()\nend", library_with(motion));
+  runner.machine->cycle();
+  runner.machine->stop();
+  runner.machine->stop();
+  EXPECT_EQ(motion.abandoned, 1);
+  EXPECT_EQ(runner.machine->status(), MachineStatus::finished);
+  EXPECT_EQ(runner.machine->cycle(), MachineStatus::finished);
+}
+
+TEST(Threads, destroying_the_machine_abandons_what_they_do)
+{
+  Motion motion;
+  ScriptRunner runner("def test():\n move()\nend", library_with(motion));
+  runner.machine->cycle();
+  runner.machine.reset();
+  EXPECT_EQ(motion.abandoned, 1);
+}
+
+TEST(Threads, end_with_the_main_thread)
+{
+  Motion motion;
+  ScriptRunner runner("def test():\n thread mover():\n move()\n end\n run mover()\n sync()\nend",
+                      library_with(motion));
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(motion.abandoned, 1);
+}
+
+TEST(Threads, wait_while_another_is_in_a_critical_section_even_when_that_one_moves)
+{
+  Motion motion;
+  ScriptRunner runner(R"(def test():
+    global count = 0
+    thread counter():
+      while True:
+        count = count + 1
+        sync()
+      end
+    end
+    run counter()
+    sync()
+    enter_critical
+    move()
+    exit_critical
+    sleep(10)
+  end)",
+                      library_with(motion));
+  for (int i = 0; i < 20; ++i) {
+    runner.machine->cycle();
+  }
+  const std::string before = runner.global("count");
+  motion.done = true;
+  for (int i = 0; i < 5; ++i) {
+    runner.machine->cycle();
+  }
+  EXPECT_EQ(before, "1");
+  EXPECT_EQ(runner.global("count"), "6");
+}
+
+TEST(Threads, leave_the_critical_section_when_they_are_killed_or_end)
+{
+  ScriptRunner runner(R"(def test():
+    thread selfish():
+      enter_critical
+    end
+    run selfish()
+    sync()
+    x = 1
+  end)");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.global("x"), "1");
+}
+
+TEST(Threads, take_parameters)
+{
+  ScriptRunner runner(
+      "def test():\n global x = 0\n thread t(a, b):\n x = a + b\n end\n h = run t(1, b = 2)\n join h\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.global("x"), "3");
+}
+
+TEST(Threads, sleep_takes_its_time_in_cycles)
+{
+  ScriptRunner runner("def test():\n sleep(0.01)\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.cycles, 6);
+}
+
+TEST(Threads, a_long_computation_goes_on_in_the_next_cycle)
+{
+  ScriptRunner runner("def test():\n i = 0\n while i < 20000:\n i = i + 1\n end\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_GT(runner.cycles, 1);
+  EXPECT_EQ(runner.global("i"), "20000");
+}
+
+TEST(Threads, one_that_only_computes_does_not_starve_the_others)
+{
+  MachineOptions options;
+  options.infinite_loop_after = 10.0;
+  ScriptRunner runner(R"(def test():
+    global count = 0
+    thread greedy():
+      while True:
+      end
+    end
+    run greedy()
+    while True:
+      count = count + 1
+      sync()
+    end
+  end)",
+                      standard_library(), options);
+  for (int i = 0; i < 50; ++i) {
+    runner.machine->cycle();
+    EXPECT_LE(runner.machine->instructions(), 2 * options.instructions_per_cycle);
+  }
+  EXPECT_EQ(runner.global("count"), "50");
+}
+
+TEST(Threads, one_that_never_takes_time_fails_as_an_infinite_loop)
+{
+  ScriptRunner runner("def test():\n x = 0\n while True:\n x = 1 - x\n end\nend");
+  EXPECT_EQ(runner.finish(2000), MachineStatus::failed);
+  EXPECT_NE(runner.machine->error().message.find("infinite loop"), std::string::npos);
+  EXPECT_NEAR(runner.cycles, 1000, 2);
+}
+
+TEST(Threads, are_limited_in_number)
+{
+  ScriptRunner runner("def test():\n thread t():\n sleep(9)\n end\n while True:\n run t()\n end\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::failed);
+  EXPECT_NE(runner.machine->error().message.find("more than 64 threads"), std::string::npos);
+}
+
+TEST(Threads, an_error_in_one_ends_the_program)
+{
+  Motion motion;
+  ScriptRunner runner("def test():\n thread t():\n x = 1 / 0\n end\n run t()\n move()\nend",
+                      library_with(motion));
+  EXPECT_EQ(runner.finish(), MachineStatus::failed);
+  EXPECT_EQ(runner.machine->error().line, 3);
+  EXPECT_EQ(motion.abandoned, 1);
+}
+
+TEST(SecondaryProgram, may_not_take_physical_time)
+{
+  ScriptRunner fine("sec test():\n textmsg(\"hello\")\nend");
+  EXPECT_EQ(fine.finish(), MachineStatus::finished);
+  EXPECT_EQ(fine.host.messages, std::vector<std::string>{"hello"});
+
+  Motion motion;
+  ScriptRunner moves("sec test():\n move()\nend", library_with(motion));
+  EXPECT_EQ(moves.finish(), MachineStatus::failed);
+  EXPECT_NE(moves.machine->error().message.find("physical time"), std::string::npos);
+  EXPECT_EQ(motion.abandoned, 1);
+}
+
+TEST(BlockingPopup, holds_the_thread_until_the_operator_closes_it)
+{
+  ScriptRunner runner("def test():\n popup(\"Ready?\", title=\"Check\", blocking=True)\n x = 1\nend");
+  for (int i = 0; i < 10; ++i) {
+    runner.machine->cycle();
+  }
+  ASSERT_EQ(runner.host.popups.size(), 1U);
+  EXPECT_EQ(runner.host.popups[0].message, "Ready?");
+  EXPECT_EQ(runner.host.popups[0].title, "Check");
+  EXPECT_EQ(runner.machine->status(), MachineStatus::running);
+  runner.host.open = false;
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.global("x"), "1");
+}
+
+}  // namespace
+}  // namespace ur_simulator::urscript
