@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <future>
 #include <memory>
@@ -170,7 +171,8 @@ class ActionClientBase {
  protected:
   explicit ActionClientBase(std::shared_ptr<detail::ActionClientCore> core);
   GoalId send(const void * goal, detail::ErasedGoalCallbacks callbacks);
-  void forget(const GoalId & id) noexcept;
+  /// Nobody waits for this goal any more: it is asked to cancel, now or when it turns out to be accepted.
+  void abandon(const GoalId & id) noexcept;
   /// False at `deadline` or on shutdown.
   template <typename Future>
   bool wait(const Future & future, std::chrono::steady_clock::time_point deadline) const
@@ -226,6 +228,9 @@ class ActionClient : public ActionClientBase {
   };
 
   Started start(const Goal & goal, SendGoalOptions<A> options);
+  tl::expected<ActionResult<A>, std::string> call_until(const Goal & goal,
+                                                        std::chrono::steady_clock::time_point deadline,
+                                                        std::function<void(const Feedback &)> on_feedback);
 };
 
 template <typename A>
@@ -271,11 +276,23 @@ tl::expected<ActionResult<A>, std::string> ActionClient<A>::call(
   if (auto ready = check_blocking_call(timeout); !ready) {
     return tl::make_unexpected(ready.error());
   }
+  try {
+    return call_until(goal, deadline, std::move(on_feedback));
+  } catch (const std::exception & error) {  // not sent, or the client was destroyed
+    return tl::make_unexpected(action_name() + ": " + error.what());
+  }
+}
+
+template <typename A>
+tl::expected<ActionResult<A>, std::string> ActionClient<A>::call_until(
+    const Goal & goal, std::chrono::steady_clock::time_point deadline,
+    std::function<void(const Feedback &)> on_feedback)
+{
   SendGoalOptions<A> options;
   options.on_feedback = std::move(on_feedback);
   Started started = start(goal, std::move(options));
   if (!wait(started.response, deadline)) {
-    forget(started.id);
+    abandon(started.id);
     return tl::make_unexpected(action_name() + ": no answer to the goal within the time given");
   }
   const std::shared_ptr<Handle> handle = started.response.get();
@@ -283,7 +300,7 @@ tl::expected<ActionResult<A>, std::string> ActionClient<A>::call(
     return tl::make_unexpected(action_name() + ": goal refused (the server's log says why)");
   }
   if (!wait(handle->result(), deadline)) {
-    handle->cancel();
+    abandon(started.id);
     return tl::make_unexpected(action_name() + ": no result within the time given, cancel requested");
   }
   return handle->result().get();

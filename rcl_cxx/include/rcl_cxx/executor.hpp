@@ -1,8 +1,12 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <vector>
 
 #include "rcl_cxx/context.hpp"
 
@@ -11,7 +15,8 @@ class Node;
 
 namespace detail {
 class EventQueue;
-}
+class NodeCore;
+}  // namespace detail
 
 /// Runs the callbacks of its nodes, one at a time, in the thread that spins. Event-driven: the middleware
 /// pushes what has arrived into a queue; no wait set exists.
@@ -50,8 +55,14 @@ class Executor {
   bool in_callback_thread() const noexcept;
 
  private:
+  class Spinning;
+
   Context::SharedPtr context_;
   std::shared_ptr<detail::EventQueue> queue_;
+  std::size_t end_callback_ = 0;
+  std::mutex nodes_mutex_;
+  std::vector<std::weak_ptr<detail::NodeCore>> nodes_;
+  std::atomic<bool> spinning_{false};
 };
 
 }  // namespace rcl_cxx

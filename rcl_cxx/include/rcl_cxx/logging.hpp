@@ -38,7 +38,7 @@ class Logger {
   bool is_enabled(LogLevel level) const noexcept;
   void set_level(LogLevel level) const;
 
-  /// Writes `text`, whatever the level. Never throws.
+  /// Writes `text` if the level is enabled. Never throws.
   void write(LogLevel level, const LogLocation & location, std::string_view text) const noexcept;
   /// Formats and writes; a formatting error is written in place of the text. Never throws.
   void write_formatted(LogLevel level, const LogLocation & location, fmt::string_view format,

@@ -27,7 +27,6 @@ namespace rcl_cxx {
 namespace detail {
 class NodeCore;
 class Parameters;
-class ParameterServices;
 }  // namespace detail
 
 struct NodeOptions {
@@ -204,9 +203,12 @@ class Node {
                                                                const std::string & action,
                                                                const ActionClientOptions &);
 
+  struct Standard;
+
+  Context::SharedPtr context_;
   std::shared_ptr<detail::NodeCore> core_;
   std::shared_ptr<detail::Parameters> parameters_;
-  std::unique_ptr<detail::ParameterServices> services_;
+  std::unique_ptr<Standard> standard_;
 };
 
 }  // namespace rcl_cxx

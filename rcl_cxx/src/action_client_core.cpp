@@ -1,0 +1,335 @@
+#include "action_client_core.hpp"
+
+#include <fmt/format.h>
+
+#include <action_msgs/msg/goal_status_array.hpp>
+#include <utility>
+#include <vector>
+
+#include "node_core.hpp"
+#include "qos_rmw.hpp"
+#include "rcl_error.hpp"
+
+namespace rcl_cxx::detail {
+namespace {
+enum Source : std::size_t { kGoal, kCancel, kResult, kFeedback, kStatus };
+
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+
+/// Takes what is there; false if nothing is.
+bool taken(rcl_ret_t code, const std::string & name, const char * what)
+{
+  if (code == RCL_RET_ACTION_CLIENT_TAKE_FAILED) {
+    rcl_reset_error();
+    return false;
+  }
+  check_rcl(code, name, fmt::format("cannot take {}", what));
+  return true;
+}
+
+rcl_action_client_options_t to_rcl(const ActionClientOptions & options)
+{
+  rcl_action_client_options_t result = rcl_action_client_get_default_options();
+  result.goal_service_qos = to_rmw(options.goal_service_qos);
+  result.result_service_qos = to_rmw(options.result_service_qos);
+  result.cancel_service_qos = to_rmw(options.cancel_service_qos);
+  result.feedback_topic_qos = to_rmw(options.feedback_qos);
+  result.status_topic_qos = to_rmw(options.status_qos);
+  return result;
+}
+}  // namespace
+
+std::shared_ptr<ActionClientCore> ActionClientCore::create(std::shared_ptr<NodeCore> node,
+                                                           const ActionClientOps & ops,
+                                                           const std::string & name,
+                                                           const ActionClientOptions & options)
+{
+  auto core = std::make_shared<ActionClientCore>(std::move(node), ops, name, options);
+  core->start();
+  return core;
+}
+
+ActionClientCore::ActionClientCore(std::shared_ptr<NodeCore> node, const ActionClientOps & ops,
+                                   const std::string & name, const ActionClientOptions & options)
+    : Entity(std::move(node), fmt::format("action client of {}", name)),
+      ops_(ops),
+      client_(rcl_action_get_zero_initialized_client())
+{
+  const rcl_action_client_options_t rcl_options = to_rcl(options);
+  name_ = this->node()->resolve(name, false);
+  const std::lock_guard lock(this->node()->mutex());
+  check_rcl(rcl_action_client_init(&client_, this->node()->handle(), ops_.type_support(), name.c_str(),
+                                   &rcl_options),
+            label(), "cannot be created");
+}
+
+ActionClientCore::~ActionClientCore()
+{
+  const std::lock_guard lock(node()->mutex());
+  ignore_rcl(rcl_action_client_fini(&client_, node()->handle()));
+}
+
+void ActionClientCore::start()
+{
+  const auto check = [this](rcl_ret_t code) {
+    check_rcl(code, label(), "its middleware does not report new data");
+  };
+  check(rcl_action_client_set_goal_client_callback(&client_, &on_event, source(kGoal)));
+  check(rcl_action_client_set_cancel_client_callback(&client_, &on_event, source(kCancel)));
+  check(rcl_action_client_set_result_client_callback(&client_, &on_event, source(kResult)));
+  check(rcl_action_client_set_feedback_subscription_callback(&client_, &on_event, source(kFeedback)));
+  check(rcl_action_client_set_status_subscription_callback(&client_, &on_event, source(kStatus)));
+}
+
+void ActionClientCore::stop() noexcept
+{
+  ignore_rcl(rcl_action_client_set_goal_client_callback(&client_, nullptr, nullptr));
+  ignore_rcl(rcl_action_client_set_cancel_client_callback(&client_, nullptr, nullptr));
+  ignore_rcl(rcl_action_client_set_result_client_callback(&client_, nullptr, nullptr));
+  ignore_rcl(rcl_action_client_set_feedback_subscription_callback(&client_, nullptr, nullptr));
+  ignore_rcl(rcl_action_client_set_status_subscription_callback(&client_, nullptr, nullptr));
+}
+
+void ActionClientCore::forget_all()
+{
+  // Destroyed after the lock is released: their futures break, and whoever waits for them wakes up.
+  std::map<std::int64_t, Goal> unanswered;
+  std::map<std::int64_t, Goal> without_result;
+  std::map<GoalId, Goal> goals;
+  std::map<std::int64_t, std::promise<CancelResponse>> cancellations;
+  std::vector<ErasedGoalCallbacks> callbacks;
+  const std::lock_guard lock(mutex_);
+  for (const auto & [id, goal] : goals_) {
+    callbacks.push_back(std::exchange(goal->callbacks, {}));  // a user's handle keeps the goal itself
+  }
+  unanswered.swap(unanswered_);
+  without_result.swap(without_result_);
+  goals.swap(goals_);
+  cancellations.swap(cancellations_);
+}
+
+bool ActionClientCore::server_is_ready() const
+{
+  bool ready = false;
+  if (rcl_action_server_is_available(node()->handle(), &client_, &ready) != RCL_RET_OK) {
+    rcl_reset_error();  // after the shutdown
+    return false;
+  }
+  return ready;
+}
+
+GoalId ActionClientCore::send(const void * goal, ErasedGoalCallbacks callbacks)
+{
+  const GoalId id = GoalId::random();
+  const std::shared_ptr<void> request = ops_.make_goal_request(id, goal);
+  const auto self = std::static_pointer_cast<ActionClientCore>(shared_from_this());
+  const auto core = std::make_shared<ClientGoalCore>(self, id);
+  core->callbacks = std::move(callbacks);
+  std::int64_t sequence = 0;
+  const std::lock_guard lock(mutex_);  // the answer may be here before the call returns
+  check_rcl(rcl_action_send_goal_request(&client_, request.get(), &sequence), name_, "cannot send a goal");
+  unanswered_.emplace(sequence, core);
+  goals_.emplace(id, core);
+  return id;
+}
+
+void ActionClientCore::abandon(const GoalId & id) noexcept
+{
+  bool accepted = false;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = goals_.find(id);
+    if (found == goals_.end()) {
+      return;
+    }
+    found->second->abandoned = true;
+    accepted = found->second->status.load() != GoalStatus::unknown;
+  }
+  try {
+    if (accepted) {
+      cancel(id, 0);
+    }
+  } catch (const std::exception & error) {
+    RCL_CXX_WARN(node()->logger(), "{}: goal {} cannot be canceled: {}", name_, id.short_string(),
+                 error.what());
+  }
+}
+
+std::future<CancelResponse> ActionClientCore::cancel(const GoalId & id, std::int64_t stamp_ns)
+{
+  action_msgs::srv::CancelGoal::Request request;
+  request.goal_info.goal_id.uuid = id.bytes;
+  request.goal_info.stamp.sec = static_cast<std::int32_t>(stamp_ns / kNsPerSecond);
+  request.goal_info.stamp.nanosec = static_cast<std::uint32_t>(stamp_ns % kNsPerSecond);
+  std::promise<CancelResponse> promise;
+  auto future = promise.get_future();
+  std::int64_t sequence = 0;
+  const std::lock_guard lock(mutex_);
+  check_rcl(rcl_action_send_cancel_request(&client_, &request, &sequence), name_, "cannot ask to cancel");
+  cancellations_.emplace(sequence, std::move(promise));
+  return future;
+}
+
+ActionClientCore::Goal ActionClientCore::find(const GoalId & id) const
+{
+  const std::lock_guard lock(mutex_);
+  const auto found = goals_.find(id);
+  return found == goals_.end() ? nullptr : found->second;
+}
+
+void ActionClientCore::execute(std::size_t source)
+{
+  switch (source) {
+    case kGoal:
+      return take_goal_response();
+    case kCancel:
+      return take_cancel_response();
+    case kResult:
+      return take_result_response();
+    case kFeedback:
+      return take_feedback();
+    default:
+      return take_status();
+  }
+}
+
+void ActionClientCore::take_goal_response()
+{
+  const std::shared_ptr<void> response = ops_.make_goal_response();
+  rmw_request_id_t id;
+  if (!taken(rcl_action_take_goal_response(&client_, &id, response.get()), name_, "the answer to a goal")) {
+    return;
+  }
+  Goal goal;
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto node = unanswered_.extract(id.sequence_number)) {
+      goal = std::move(node.mapped());
+    }
+  }
+  if (!goal) {
+    return;
+  }
+  if (ops_.accepted(response.get())) {
+    on_accepted(goal);
+  } else {
+    on_refused(goal);
+  }
+}
+
+void ActionClientCore::on_accepted(const Goal & goal)
+{
+  decltype(goal->callbacks.response) respond;
+  bool abandoned = false;
+  {
+    const std::lock_guard lock(mutex_);
+    GoalStatus unknown = GoalStatus::unknown;  // unless a status message was quicker
+    goal->status.compare_exchange_strong(unknown, GoalStatus::accepted);
+    abandoned = goal->abandoned;
+    respond = std::exchange(goal->callbacks.response, nullptr);
+    const std::shared_ptr<void> request = ops_.make_result_request(goal->id());
+    std::int64_t sequence = 0;
+    check_rcl(rcl_action_send_result_request(&client_, request.get(), &sequence), name_,
+              "cannot ask for a result");
+    without_result_.emplace(sequence, goal);
+  }
+  if (abandoned) {
+    cancel(goal->id(), 0);
+  } else {
+    respond(goal);
+  }
+}
+
+void ActionClientCore::on_refused(const Goal & goal)
+{
+  ErasedGoalCallbacks callbacks;
+  {
+    const std::lock_guard lock(mutex_);
+    callbacks = std::exchange(goal->callbacks, {});
+    goals_.erase(goal->id());
+  }
+  if (!goal->abandoned) {
+    callbacks.response(nullptr);
+  }
+}
+
+void ActionClientCore::take_cancel_response()
+{
+  action_msgs::srv::CancelGoal::Response response;
+  rmw_request_id_t id;
+  if (!taken(rcl_action_take_cancel_response(&client_, &id, &response), name_,
+             "the answer to a cancellation")) {
+    return;
+  }
+  CancelResponse result;
+  result.code = static_cast<CancelCode>(response.return_code);
+  for (const auto & info : response.goals_canceling) {
+    result.goals.push_back(GoalId{info.goal_id.uuid});
+  }
+  const std::lock_guard lock(mutex_);
+  if (auto node = cancellations_.extract(id.sequence_number)) {
+    node.mapped().set_value(std::move(result));
+  }
+}
+
+void ActionClientCore::take_result_response()
+{
+  const std::shared_ptr<void> response = ops_.make_result_response();
+  rmw_request_id_t id;
+  if (!taken(rcl_action_take_result_response(&client_, &id, response.get()), name_, "a result")) {
+    return;
+  }
+  Goal goal;
+  ErasedGoalCallbacks callbacks;
+  {
+    const std::lock_guard lock(mutex_);
+    auto node = without_result_.extract(id.sequence_number);
+    if (!node) {
+      return;
+    }
+    goal = std::move(node.mapped());
+    goals_.erase(goal->id());
+    callbacks = std::exchange(goal->callbacks, {});
+    goal->status = static_cast<GoalStatus>(ops_.status(response.get()));
+  }
+  if (callbacks.result) {
+    callbacks.result(goal->id(), response.get());
+  }
+}
+
+void ActionClientCore::take_feedback()
+{
+  const std::shared_ptr<void> message = ops_.make_feedback();
+  if (!taken(rcl_action_take_feedback(&client_, message.get()), name_, "feedback")) {
+    return;
+  }
+  decltype(ErasedGoalCallbacks::feedback)
+      callback;  // a copy: it may destroy the client, and with it the original
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = goals_.find(ops_.goal_id_of_feedback(message.get()));
+    if (found != goals_.end() && !found->second->abandoned) {
+      callback = found->second->callbacks.feedback;
+    }
+  }
+  if (callback) {
+    callback(message.get());
+  }
+}
+
+void ActionClientCore::take_status()
+{
+  action_msgs::msg::GoalStatusArray message;
+  if (!taken(rcl_action_take_status(&client_, &message), name_, "the status of the goals")) {
+    return;
+  }
+  for (const auto & entry : message.status_list) {
+    const auto status = static_cast<GoalStatus>(entry.status);
+    const Goal goal = find(GoalId{entry.goal_info.goal_id.uuid});
+    if (goal && !is_terminal(status)) {  // the end comes with the result
+      goal->status = status;
+    }
+  }
+}
+
+}  // namespace rcl_cxx::detail

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <rcl/timer.h>
+#include <rcl_action/action_server.h>
+
+#include <action_msgs/srv/cancel_goal.hpp>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "entity.hpp"
+#include "goal_core.hpp"
+#include "rcl_cxx/action_server.hpp"
+
+namespace rcl_cxx::detail {
+class TimerCore;
+
+/// The timer that rcl_action wants to be given (Kilted). It never runs: the server sees to the expiry itself,
+/// because nothing waits on a wait set here; but rcl_action reads its clock from it.
+class ExpireTimer {
+ public:
+  explicit ExpireTimer(NodeCore & node);
+  ~ExpireTimer();
+  ExpireTimer(const ExpireTimer &) = delete;
+  ExpireTimer & operator=(const ExpireTimer &) = delete;
+  const rcl_timer_t * get() const noexcept { return &timer_; }
+
+ private:
+  rcl_timer_t timer_;
+};
+
+/// An action server. One lock guards rcl's state and the goals; no handler of the user runs under it.
+class ActionServerCore : public Entity {
+ public:
+  static std::shared_ptr<ActionServerCore> create(std::shared_ptr<NodeCore> node, ErasedActionServer erased,
+                                                  const std::string & name,
+                                                  const ActionServerOptions & options);
+  ActionServerCore(std::shared_ptr<NodeCore> node, ErasedActionServer erased, const std::string & name,
+                   const ActionServerOptions & options);
+  ~ActionServerCore() override;
+
+  const std::string & action_name() const noexcept { return name_; }
+  std::size_t active_goal_count() const;
+  /// Aborts what is active, with empty results. The server goes on.
+  void abort_all(const char * why) noexcept;
+  /// The user's server object is destroyed: after close() and abort_all() nothing reaches a goal any more.
+  void retire() noexcept;
+
+  // For goal handles, from any thread.
+  bool finish(GoalCore & goal, GoalStatus status, std::shared_ptr<void> result_response) noexcept;
+  bool publish_feedback(const GoalCore & goal, void * message) noexcept;
+  void on_handle_dropped(GoalCore & goal) noexcept;
+
+ protected:
+  void execute(std::size_t source) override;
+  void stop() noexcept override;
+
+ private:
+  void start();
+  void take_goal();
+  void take_cancel();
+  void take_result();
+  void expire();
+
+  tl::expected<void, std::string> decide_goal(const GoalId & id, const void * request) noexcept;
+  tl::expected<std::shared_ptr<GoalHandleBase>, std::string> accept(const GoalId & id,
+                                                                    const std::shared_ptr<void> & request);
+  void run_accepted(std::shared_ptr<GoalHandleBase> handle) noexcept;
+  bool send_goal_response(rmw_request_id_t & id, const GoalHandleBase * accepted);
+  void process_cancel(const action_msgs::srv::CancelGoal::Request & request,
+                      action_msgs::srv::CancelGoal::Response & response);
+  bool decide_cancel(GoalCore & goal);
+  bool ask_cancel(GoalHandleBase & handle) noexcept;
+  void tell_canceling(GoalHandleBase & handle) noexcept;
+  std::shared_ptr<GoalCore> find(const GoalId & id) const;
+
+  // Under the lock.
+  bool finish_locked(GoalCore & goal, GoalStatus status, std::shared_ptr<void> result_response);
+  bool transition_locked(GoalCore & goal, GoalStatus status);
+  void publish_status_locked();
+  void send_result_locked(rmw_request_id_t & id, void * response);
+  void schedule_expiry_locked();
+
+  const ErasedActionServer erased_;
+  const ActionServerOps & ops_;
+  std::string name_;
+  bool results_expire_ = true;
+  std::chrono::nanoseconds result_timeout_{0};
+
+  mutable std::mutex mutex_;
+  std::unique_ptr<ExpireTimer> rcl_timer_;
+  rcl_action_server_t server_;
+  std::map<GoalId, std::shared_ptr<GoalCore>> goals_;
+  std::shared_ptr<TimerCore> expiry_;
+  bool retired_ = false;
+  std::size_t shutdown_callback_ = 0;
+};
+
+}  // namespace rcl_cxx::detail

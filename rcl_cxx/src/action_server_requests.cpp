@@ -1,0 +1,249 @@
+#include <fmt/format.h>
+
+#include "action_messages.hpp"
+#include "action_server_core.hpp"
+#include "node_core.hpp"
+#include "rcl_error.hpp"
+
+/// What clients ask of an action server: goals, cancellations, results. In the executor's thread.
+namespace rcl_cxx::detail {
+namespace {
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+
+bool nothing_to_take(rcl_ret_t code)
+{
+  if (code == RCL_RET_ACTION_SERVER_TAKE_FAILED) {
+    rcl_reset_error();
+    return true;
+  }
+  return false;
+}
+}  // namespace
+
+void ActionServerCore::take_goal()
+{
+  const std::shared_ptr<void> request = ops_.make_goal_request();
+  rmw_request_id_t request_id;
+  const rcl_ret_t code = rcl_action_take_goal_request(&server_, &request_id, request.get());
+  if (nothing_to_take(code)) {
+    return;
+  }
+  check_rcl(code, name_, "cannot take a goal");
+  const GoalId id = ops_.goal_id_of_goal_request(request.get());
+  auto accepted = decide_goal(id, request.get()).and_then([&] { return accept(id, request); });
+  if (!accepted) {
+    RCL_CXX_WARN(node()->logger(), "{}: goal {} refused: {}", name_, id.short_string(), accepted.error());
+    send_goal_response(request_id, nullptr);
+    return;
+  }
+  if (!send_goal_response(request_id, accepted->get())) {
+    return;  // nobody would know of it; dropping the handle aborts the goal
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    publish_status_locked();
+  }
+  run_accepted(std::move(*accepted));
+}
+
+tl::expected<void, std::string> ActionServerCore::decide_goal(const GoalId & id,
+                                                              const void * request) noexcept
+{
+  try {
+    return erased_.goal ? erased_.goal(id, request) : tl::expected<void, std::string>{};
+  } catch (const std::exception & error) {
+    return tl::make_unexpected(std::string(error.what()));
+  } catch (...) {
+    return tl::make_unexpected(std::string("the goal handler threw something that is no std::exception"));
+  }
+}
+
+tl::expected<std::shared_ptr<GoalHandleBase>, std::string> ActionServerCore::accept(
+    const GoalId & id, const std::shared_ptr<void> & request)
+{
+  const std::lock_guard lock(mutex_);
+  if (!node()->context().ok()) {
+    return tl::make_unexpected(std::string("shutting down"));
+  }
+  if (goals_.contains(id)) {
+    return tl::make_unexpected(std::string("there is a goal of this id already"));
+  }
+  rcl_action_goal_info_t info = rcl_action_get_zero_initialized_goal_info();
+  std::copy(id.bytes.begin(), id.bytes.end(), std::begin(info.goal_id.uuid));
+  const rcl_action_goal_handle_t * const rcl_handle = rcl_action_accept_new_goal(&server_, &info);
+  if (rcl_handle == nullptr) {
+    return tl::make_unexpected(take_rcl_error());
+  }
+  const auto self = std::static_pointer_cast<ActionServerCore>(shared_from_this());
+  const auto goal = std::make_shared<GoalCore>(self, id, *rcl_handle);
+  goals_.emplace(id, goal);
+  goal->update(GOAL_EVENT_EXECUTE);
+  std::shared_ptr<GoalHandleBase> handle = ops_.make_handle(goal, request);
+  goal->handle = handle;
+  return handle;
+}
+
+bool ActionServerCore::send_goal_response(rmw_request_id_t & id, const GoalHandleBase * accepted)
+{
+  const std::int64_t stamp = accepted != nullptr ? accepted->accepted_ns() : 0;
+  const std::shared_ptr<void> response =
+      ops_.make_goal_response(accepted != nullptr, static_cast<std::int32_t>(stamp / kNsPerSecond),
+                              static_cast<std::uint32_t>(stamp % kNsPerSecond));
+  const rcl_ret_t code = rcl_action_send_goal_response(&server_, &id, response.get());
+  if (code != RCL_RET_OK) {
+    RCL_CXX_WARN(node()->logger(), "{}: the answer to a goal did not reach its client: {}", name_,
+                 take_rcl_error());
+  }
+  return code == RCL_RET_OK;
+}
+
+void ActionServerCore::run_accepted(std::shared_ptr<GoalHandleBase> handle) noexcept
+{
+  const std::string id = handle->goal_id().short_string();
+  try {
+    erased_.accepted(handle);
+    return;
+  } catch (const std::exception & error) {
+    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: {}", name_, id, error.what());
+  } catch (...) {
+    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: its handler threw something that is no std::exception",
+                  name_, id);
+  }
+  if (handle->is_active()) {
+    if (const auto goal = find(handle->goal_id())) {
+      finish(*goal, GoalStatus::aborted, ops_.make_result_response(GoalStatus::aborted));
+    }
+  }
+}
+
+void ActionServerCore::take_cancel()
+{
+  action_msgs::srv::CancelGoal::Request request;
+  rmw_request_id_t request_id;
+  const rcl_ret_t code = rcl_action_take_cancel_request(&server_, &request_id, &request);
+  if (nothing_to_take(code)) {
+    return;
+  }
+  check_rcl(code, name_, "cannot take a request to cancel");
+  action_msgs::srv::CancelGoal::Response response;
+  process_cancel(request, response);
+  if (rcl_action_send_cancel_response(&server_, &request_id, &response) != RCL_RET_OK) {
+    RCL_CXX_WARN(node()->logger(), "{}: the answer to a cancellation did not reach its client: {}", name_,
+                 take_rcl_error());
+  }
+}
+
+void ActionServerCore::process_cancel(const action_msgs::srv::CancelGoal::Request & request,
+                                      action_msgs::srv::CancelGoal::Response & response)
+{
+  using Response = action_msgs::srv::CancelGoal::Response;
+  rcl_action_cancel_request_t rcl_request = rcl_action_get_zero_initialized_cancel_request();
+  rcl_request.goal_info = to_c(request.goal_info);
+  rcl_action_cancel_response_t rcl_response = rcl_action_get_zero_initialized_cancel_response();
+  std::vector<action_msgs::msg::GoalInfo> candidates;
+  {
+    const std::lock_guard lock(mutex_);
+    check_rcl(rcl_action_process_cancel_request(&server_, &rcl_request, &rcl_response), name_,
+              "cannot cancel");
+    for (std::size_t i = 0; i < rcl_response.msg.goals_canceling.size; ++i) {
+      candidates.push_back(to_cpp(rcl_response.msg.goals_canceling.data[i]));
+    }
+    response.return_code = rcl_response.msg.return_code;
+    ignore_rcl(rcl_action_cancel_response_fini(&rcl_response));
+  }
+  bool all_ended = true;
+  for (const auto & info : candidates) {
+    const auto goal = find(GoalId{info.goal_id.uuid});
+    if (goal && decide_cancel(*goal)) {
+      response.goals_canceling.push_back(info);
+    } else if (goal && !is_terminal(goal->status())) {
+      all_ended = false;
+    }
+  }
+  if (!candidates.empty() && response.goals_canceling.empty()) {
+    response.return_code = all_ended ? Response::ERROR_GOAL_TERMINATED : Response::ERROR_REJECTED;
+  }
+  if (!response.goals_canceling.empty()) {
+    const std::lock_guard lock(mutex_);
+    publish_status_locked();
+  }
+}
+
+bool ActionServerCore::decide_cancel(GoalCore & goal)
+{
+  std::shared_ptr<GoalHandleBase> handle;
+  {
+    const std::lock_guard lock(mutex_);
+    handle = goal.handle.lock();
+    if (!handle || is_terminal(goal.status())) {
+      return false;
+    }
+    goal.cancel_being_decided = true;
+  }
+  const bool granted = ask_cancel(*handle);
+  {
+    const std::lock_guard lock(mutex_);
+    goal.cancel_being_decided = false;
+    if (goal.status() == GoalStatus::canceled) {
+      return true;  // its worker was quicker than its handler
+    }
+    if (!granted || !goal.update(GOAL_EVENT_CANCEL_GOAL)) {
+      return false;
+    }
+  }
+  tell_canceling(*handle);
+  return true;
+}
+
+bool ActionServerCore::ask_cancel(GoalHandleBase & handle) noexcept
+{
+  const std::string id = handle.goal_id().short_string();
+  try {
+    return erased_.cancel && erased_.cancel(handle);
+  } catch (const std::exception & error) {
+    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: cancel handler: {}", name_, id, error.what());
+  } catch (...) {
+    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: cancel handler threw something that is no std::exception",
+                  name_, id);
+  }
+  return false;
+}
+
+void ActionServerCore::tell_canceling(GoalHandleBase & handle) noexcept
+{
+  if (!erased_.canceling) {
+    return;
+  }
+  const std::string id = handle.goal_id().short_string();
+  try {
+    erased_.canceling(handle);
+  } catch (const std::exception & error) {
+    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: canceling handler: {}", name_, id, error.what());
+  } catch (...) {
+    RCL_CXX_ERROR(node()->logger(),
+                  "{}: goal {}: canceling handler threw something that is no std::exception", name_, id);
+  }
+}
+
+void ActionServerCore::take_result()
+{
+  const std::shared_ptr<void> request = ops_.make_result_request();
+  rmw_request_id_t request_id;
+  const rcl_ret_t code = rcl_action_take_result_request(&server_, &request_id, request.get());
+  if (nothing_to_take(code)) {
+    return;
+  }
+  check_rcl(code, name_, "cannot take a request for a result");
+  const GoalId id = ops_.goal_id_of_result_request(request.get());
+  const std::lock_guard lock(mutex_);
+  const auto found = goals_.find(id);
+  if (found == goals_.end()) {
+    send_result_locked(request_id, ops_.make_result_response(GoalStatus::unknown).get());
+  } else if (found->second->result_response) {
+    send_result_locked(request_id, found->second->result_response.get());
+  } else {
+    found->second->result_requests.push_back(request_id);
+  }
+}
+
+}  // namespace rcl_cxx::detail

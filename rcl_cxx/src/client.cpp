@@ -1,0 +1,184 @@
+#include "rcl_cxx/client.hpp"
+
+#include <fmt/format.h>
+#include <rcl/graph.h>
+
+#include "client_core.hpp"
+#include "node_core.hpp"
+#include "qos_rmw.hpp"
+#include "rcl_error.hpp"
+
+namespace rcl_cxx {
+namespace detail {
+namespace {
+// A wait for an answer looks this often whether the context still runs.
+constexpr std::chrono::milliseconds kShutdownCheckPeriod{20};
+}  // namespace
+
+std::shared_ptr<ClientCore> ClientCore::create(std::shared_ptr<NodeCore> node, ErasedClient erased,
+                                               const std::string & name, const QoS & qos)
+{
+  auto core = std::make_shared<ClientCore>(std::move(node), erased, name, qos);
+  check_rcl(rcl_client_set_on_new_response_callback(&core->client_, &on_event, core->source(0)),
+            core->label(), "its middleware does not report new responses");
+  return core;
+}
+
+ClientCore::ClientCore(std::shared_ptr<NodeCore> node, ErasedClient erased, const std::string & name,
+                       const QoS & qos)
+    : Entity(std::move(node), fmt::format("client of {}", name)),
+      erased_(erased),
+      client_(rcl_get_zero_initialized_client())
+{
+  rcl_client_options_t options = rcl_client_get_default_options();
+  options.qos = to_rmw(qos);
+  const std::lock_guard lock(this->node()->mutex());
+  check_rcl(rcl_client_init(&client_, this->node()->handle(), erased_.type_support, name.c_str(), &options),
+            label(), "cannot be created");
+  name_ = rcl_client_get_service_name(&client_);
+}
+
+ClientCore::~ClientCore()
+{
+  const std::lock_guard lock(node()->mutex());
+  ignore_rcl(rcl_client_fini(&client_, node()->handle()));
+}
+
+bool ClientCore::service_is_ready() const
+{
+  bool ready = false;
+  if (rcl_service_server_is_available(node()->handle(), &client_, &ready) != RCL_RET_OK) {
+    rcl_reset_error();  // after the shutdown
+    return false;
+  }
+  return ready;
+}
+
+bool ClientCore::wait_for_service(std::chrono::nanoseconds timeout) const
+{
+  return node()->wait_for([this] { return service_is_ready(); }, timeout);
+}
+
+std::int64_t ClientCore::send(const void * request, OnResponse on_response)
+{
+  std::int64_t sequence = 0;
+  const std::lock_guard lock(mutex_);  // the response may be here before the call returns
+  check_rcl(rcl_send_request(&client_, request, &sequence), label(), "cannot send a request");
+  pending_.emplace(sequence, std::move(on_response));
+  return sequence;
+}
+
+tl::expected<std::shared_ptr<void>, std::string> ClientCore::call(const void * request,
+                                                                  std::chrono::nanoseconds timeout)
+{
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  if (node()->in_own_callback()) {
+    return tl::make_unexpected(
+        fmt::format("{}: a blocking call from a callback would wait for ever, use async_call", name_));
+  }
+  if (!wait_for_service(timeout)) {
+    return tl::make_unexpected(fmt::format("{}: there is no such service", name_));
+  }
+  auto promise = std::make_shared<std::promise<std::shared_ptr<void>>>();
+  auto answer = promise->get_future();
+  std::int64_t sequence = 0;
+  try {
+    sequence =
+        send(request, [promise](const std::shared_ptr<void> & response) { promise->set_value(response); });
+  } catch (const Error & error) {
+    return tl::make_unexpected(std::string(error.what()));
+  }
+  while (answer.wait_for(kShutdownCheckPeriod) != std::future_status::ready) {
+    if (node()->context().ok() && std::chrono::steady_clock::now() < deadline) {
+      continue;
+    }
+    take_pending(sequence);
+    return tl::make_unexpected(fmt::format(
+        "{}: {}{}", name_, node()->context().ok() ? "no answer within the time given" : "shutting down",
+        node()->executor_hint()));
+  }
+  try {
+    return answer.get();
+  } catch (const std::future_error &) {
+    return tl::make_unexpected(fmt::format("{}: the client was destroyed during the call", name_));
+  }
+}
+
+std::size_t ClientCore::pending_count() const
+{
+  const std::lock_guard lock(mutex_);
+  return pending_.size();
+}
+
+void ClientCore::forget_all()
+{
+  std::map<std::int64_t, OnResponse> dropped;
+  const std::lock_guard lock(mutex_);
+  dropped.swap(pending_);
+}
+
+ClientCore::OnResponse ClientCore::take_pending(std::int64_t sequence)
+{
+  const std::lock_guard lock(mutex_);
+  auto node = pending_.extract(sequence);
+  return node.empty() ? OnResponse{} : std::move(node.mapped());
+}
+
+void ClientCore::execute(std::size_t /*source*/)
+{
+  const std::shared_ptr<void> response = erased_.make_response();
+  rmw_request_id_t id;
+  const rcl_ret_t code = rcl_take_response(&client_, &id, response.get());
+  if (code == RCL_RET_CLIENT_TAKE_FAILED) {
+    rcl_reset_error();
+    return;
+  }
+  check_rcl(code, label(), "cannot take a response");
+  if (const OnResponse on_response = take_pending(id.sequence_number)) {
+    on_response(response);
+  }
+}
+
+void ClientCore::stop() noexcept
+{
+  ignore_rcl(rcl_client_set_on_new_response_callback(&client_, nullptr, nullptr));
+}
+}  // namespace detail
+
+ClientBase::ClientBase(std::shared_ptr<detail::ClientCore> core) : core_(std::move(core)) {}
+
+ClientBase::~ClientBase()
+{
+  core_->close();
+  core_->forget_all();
+}
+
+const std::string & ClientBase::service_name() const noexcept
+{
+  return core_->service_name();
+}
+bool ClientBase::service_is_ready() const
+{
+  return core_->service_is_ready();
+}
+bool ClientBase::wait_for_service(std::chrono::nanoseconds timeout) const
+{
+  return core_->wait_for_service(timeout);
+}
+std::size_t ClientBase::pending_count() const
+{
+  return core_->pending_count();
+}
+
+std::int64_t ClientBase::send(const void * request, OnResponse on_response)
+{
+  return core_->send(request, std::move(on_response));
+}
+
+tl::expected<std::shared_ptr<void>, std::string> ClientBase::call_and_wait(const void * request,
+                                                                           std::chrono::nanoseconds timeout)
+{
+  return core_->call(request, timeout);
+}
+
+}  // namespace rcl_cxx

@@ -1,0 +1,235 @@
+#include "context_core.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <rcl/arguments.h>
+#include <rcl/init.h>
+#include <rcl/init_options.h>
+
+#include <csignal>
+
+#include "arguments.hpp"
+#include "logging_core.hpp"
+#include "rcl_cxx/logging.hpp"
+#include "rcl_error.hpp"
+
+namespace rcl_cxx::detail {
+namespace {
+const Logger & context_logger()
+{
+  static const Logger logger("rcl_cxx");
+  return logger;
+}
+
+class InitOptions {
+ public:
+  InitOptions()
+  {
+    check_rcl(rcl_init_options_init(&options_, rcl_get_default_allocator()), "context", "no options");
+  }
+  ~InitOptions() { ignore_rcl(rcl_init_options_fini(&options_)); }
+  InitOptions(const InitOptions &) = delete;
+  InitOptions & operator=(const InitOptions &) = delete;
+  rcl_init_options_t * get() { return &options_; }
+
+ private:
+  rcl_init_options_t options_ = rcl_get_zero_initialized_init_options();
+};
+}  // namespace
+
+ContextCore::ContextCore(int argc, const char * const * argv, const ContextOptions & options)
+    : context_(rcl_get_zero_initialized_context()), signal_grace_(options.signal_grace)
+{
+  init(argc, argv, options);
+  try {
+    read_arguments(argv);
+    if (options.initialize_logging) {
+      logging_ = configure_logging(context_.global_arguments);
+    }
+  } catch (...) {
+    ignore_rcl(rcl_shutdown(&context_));
+    ignore_rcl(rcl_context_fini(&context_));
+    throw;
+  }
+}
+
+void ContextCore::init(int argc, const char * const * argv, const ContextOptions & options)
+{
+  InitOptions init_options;
+  if (options.domain_id) {
+    check_rcl(rcl_init_options_set_domain_id(init_options.get(), *options.domain_id), "context",
+              "domain id cannot be set");
+  }
+  const rcl_ret_t code = rcl_init(argc, argv, init_options.get(), &context_);
+  if (code != RCL_RET_OK) {
+    const std::string details = take_rcl_error();
+    if (context_.impl != nullptr) {
+      ignore_rcl(rcl_context_fini(&context_));
+    }
+    throw Error(
+        fmt::format("context: rcl cannot start, see its --ros-args and environment variables: {}", details),
+        code);
+  }
+}
+
+void ContextCore::read_arguments(const char * const * argv)
+{
+  refuse_unknown_ros_arguments(context_.global_arguments, argv);
+  non_ros_arguments_ = without_ros_arguments(context_.global_arguments, argv);
+}
+
+ContextCore::~ContextCore()
+{
+  // A Context that was never wrapped, or whose owner is gone, has been shut down by then.
+  if (rcl_context_is_valid(&context_)) {
+    ignore_rcl(rcl_shutdown(&context_));
+  }
+  ignore_rcl(rcl_context_fini(&context_));
+}
+
+void ContextCore::watch_signals()
+{
+  signals_ = SignalWatcher::instance();
+  // Through a weak pointer: the watcher may call until it has been told not to.
+  signal_id_ = signals_->add([weak = weak_from_this()](int signal) {
+    if (const auto core = weak.lock()) {
+      core->on_signal(signal);
+    }
+  });
+}
+
+void ContextCore::join_signal_thread()
+{
+  if (signals_) {
+    signals_->remove(signal_id_);
+  }
+  std::thread thread;
+  {
+    const std::lock_guard lock(mutex_);
+    thread.swap(signal_thread_);
+  }
+  if (thread.joinable()) {
+    if (thread.get_id() == std::this_thread::get_id()) {
+      thread.detach();  // a shutdown callback released the Context; the thread holds what it needs
+    } else {
+      thread.join();
+    }
+  }
+  signals_.reset();
+}
+
+void ContextCore::on_signal(int signal)
+{
+  const char * const name = signal == SIGINT ? "SIGINT" : "SIGTERM";
+  const auto now = std::chrono::steady_clock::now();
+  const std::lock_guard lock(mutex_);
+  if (!first_signal_) {
+    first_signal_ = now;
+    signal_thread_ = std::thread([self = shared_from_this(), name] { self->shutdown(name); });
+  } else if (now - *first_signal_ > signal_grace_) {
+    take_default_action(signal);
+  } else {
+    RCL_CXX_INFO(context_logger(), "{} again, the shutdown is under way", name);
+  }
+}
+
+bool ContextCore::shutdown(const std::string & reason)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    if (state_.load() != State::running) {
+      return false;
+    }
+    reason_ = reason;
+  }
+  set_state(State::shutting_down);
+  run_callbacks(Phase::user_before);
+  run_callbacks(Phase::library_before);
+  const rcl_ret_t code = rcl_shutdown(&context_);
+  if (code != RCL_RET_OK) {
+    RCL_CXX_ERROR(context_logger(), "shutdown: {}", take_rcl_error());
+  }
+  run_callbacks(Phase::after);
+  set_state(State::shut_down);
+  return true;
+}
+
+std::string ContextCore::shutdown_reason() const
+{
+  const std::lock_guard lock(mutex_);
+  return reason_;
+}
+
+bool ContextCore::wait_for(std::chrono::nanoseconds timeout, bool complete) const
+{
+  std::unique_lock lock(mutex_);
+  return state_changed_.wait_for(lock, timeout, [&] {
+    const State state = state_.load();
+    return state == State::shut_down || (!complete && state == State::shutting_down);
+  });
+}
+
+void ContextCore::set_state(State state)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    state_ = state;
+  }
+  state_changed_.notify_all();
+}
+
+std::size_t ContextCore::add_callback(Phase phase, Context::Callback callback)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    const bool too_late = state_.load() != State::running && phase <= reached_;
+    const std::size_t id = ++next_id_;
+    if (!too_late) {
+      callbacks_.emplace(Key{phase, id}, std::move(callback));
+      return id;
+    }
+  }
+  run_callback(callback);
+  return 0;
+}
+
+void ContextCore::remove_callback(std::size_t id)
+{
+  // Not under the other mutex: a callback that is running may want that.
+  const std::lock_guard wait_for_running(running_callback_);
+  const std::lock_guard lock(mutex_);
+  std::erase_if(callbacks_, [id](const auto & entry) { return entry.first.second == id; });
+}
+
+void ContextCore::run_callbacks(Phase phase)
+{
+  std::size_t last = 0;
+  while (true) {
+    const std::lock_guard running(running_callback_);
+    Context::Callback callback;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto next = callbacks_.upper_bound(Key{phase, last});
+      if (next == callbacks_.end() || next->first.first != phase) {
+        reached_ = phase;
+        return;
+      }
+      last = next->first.second;
+      callback = next->second;
+    }
+    run_callback(callback);
+  }
+}
+
+void ContextCore::run_callback(const Context::Callback & callback) noexcept
+{
+  try {
+    callback();
+  } catch (const std::exception & error) {
+    RCL_CXX_ERROR(context_logger(), "shutdown callback: {}", error.what());
+  } catch (...) {
+    RCL_CXX_ERROR(context_logger(), "shutdown callback: unknown exception");
+  }
+}
+
+}  // namespace rcl_cxx::detail

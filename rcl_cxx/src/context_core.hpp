@@ -1,0 +1,81 @@
+#pragma once
+
+#include <rcl/context.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "rcl_cxx/context.hpp"
+#include "signals.hpp"
+
+namespace rcl_cxx::detail {
+/// Owns the rcl context, and lives as long as anything made from it.
+class ContextCore : public std::enable_shared_from_this<ContextCore> {
+ public:
+  /// In this order, and in order of registration within one: what the user does while communication works,
+  /// what action servers do after that, what is done when rcl has been shut down.
+  enum class Phase { user_before, library_before, after };
+
+  ContextCore(int argc, const char * const * argv, const ContextOptions & options);
+  ~ContextCore();
+  ContextCore(const ContextCore &) = delete;
+  ContextCore & operator=(const ContextCore &) = delete;
+
+  /// Second half of construction: it needs shared_from_this.
+  void watch_signals();
+  /// The thread in which a signal shuts down holds a reference: the owning Context ends it.
+  void join_signal_thread();
+
+  bool ok() const noexcept { return state_.load() == State::running; }
+  bool is_shut_down() const noexcept { return state_.load() == State::shut_down; }
+  bool shutdown(const std::string & reason);
+  std::string shutdown_reason() const;
+  bool wait_for(std::chrono::nanoseconds timeout, bool complete) const;
+
+  std::size_t add_callback(Phase phase, Context::Callback callback);
+  void remove_callback(std::size_t id);
+
+  rcl_context_t * handle() noexcept { return &context_; }
+  const std::vector<std::string> & non_ros_arguments() const noexcept { return non_ros_arguments_; }
+
+ private:
+  enum class State { running, shutting_down, shut_down };
+  using Key = std::pair<Phase, std::size_t>;
+
+  void init(int argc, const char * const * argv, const ContextOptions & options);
+  void read_arguments(const char * const * argv);
+  void on_signal(int signal);
+  void run_callbacks(Phase phase);
+  void run_callback(const Context::Callback & callback) noexcept;
+  void set_state(State state);
+
+  rcl_context_t context_;
+  std::vector<std::string> non_ros_arguments_;
+  std::shared_ptr<void> logging_;
+  const std::chrono::milliseconds signal_grace_;
+
+  std::atomic<State> state_{State::running};
+  mutable std::mutex mutex_;  // guards what follows
+  mutable std::condition_variable state_changed_;
+  std::string reason_;
+  std::map<Key, Context::Callback> callbacks_;
+  Phase reached_ = Phase::user_before;
+  std::size_t next_id_ = 0;
+  std::recursive_mutex running_callback_;  // held while a callback runs, so that its removal can wait
+
+  std::shared_ptr<SignalWatcher> signals_;
+  std::size_t signal_id_ = 0;
+  std::optional<std::chrono::steady_clock::time_point> first_signal_;
+  std::thread signal_thread_;
+};
+
+}  // namespace rcl_cxx::detail

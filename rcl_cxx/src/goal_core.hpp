@@ -1,0 +1,55 @@
+#pragma once
+
+#include <rcl_action/goal_handle.h>
+#include <rmw/types.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "rcl_cxx/goal_handle.hpp"
+#include "rcl_cxx/goal_id.hpp"
+
+namespace rcl_cxx::detail {
+class ActionServerCore;
+
+/// A goal as the server keeps it, from its acceptance until its result expires. GoalHandles share it.
+class GoalCore {
+ public:
+  /// Takes over the state that rcl_action_accept_new_goal has made: rcl keeps a list of such structs, but
+  /// frees nothing that they point to.
+  GoalCore(std::weak_ptr<ActionServerCore> server, GoalId id, const rcl_action_goal_handle_t & handle);
+  ~GoalCore();
+  GoalCore(const GoalCore &) = delete;
+  GoalCore & operator=(const GoalCore &) = delete;
+
+  const GoalId & id() const noexcept { return id_; }
+  std::int64_t accepted_ns() const noexcept { return accepted_ns_; }
+  /// Readable without the server's lock.
+  GoalStatus status() const noexcept { return status_.load(); }
+  std::shared_ptr<ActionServerCore> server() const noexcept { return server_.lock(); }
+
+  // --- the rest only under the server's lock ---
+
+  /// False if the state machine has no such transition now.
+  bool update(rcl_action_goal_event_t event);
+  /// The server is gone: nothing can be done with the goal any more.
+  void orphan() noexcept { status_ = GoalStatus::aborted; }
+
+  std::weak_ptr<GoalHandleBase> handle;           // the user's
+  bool cancel_being_decided = false;              // its cancel handler runs
+  std::shared_ptr<void> result_response;          // set with a terminal state
+  std::vector<rmw_request_id_t> result_requests;  // to be answered with it
+  std::chrono::steady_clock::time_point ended{};
+
+ private:
+  const std::weak_ptr<ActionServerCore> server_;
+  const GoalId id_;
+  rcl_action_goal_handle_t rcl_handle_;
+  std::int64_t accepted_ns_ = 0;
+  std::atomic<GoalStatus> status_{GoalStatus::accepted};
+};
+
+}  // namespace rcl_cxx::detail

@@ -1,0 +1,66 @@
+#include "rcl_cxx/goal_id.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <random>
+
+namespace rcl_cxx {
+GoalId GoalId::random()
+{
+  std::random_device device;
+  GoalId id;
+  for (std::size_t i = 0; i < id.bytes.size(); i += 4) {
+    const std::uint32_t word = device();
+    std::memcpy(&id.bytes[i], &word, sizeof(word));
+  }
+  // RFC 9562: version 4, variant 10.
+  id.bytes[6] = static_cast<std::uint8_t>((id.bytes[6] & 0x0fU) | 0x40U);
+  id.bytes[8] = static_cast<std::uint8_t>((id.bytes[8] & 0x3fU) | 0x80U);
+  return id;
+}
+
+std::string GoalId::to_string() const
+{
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const bool dash = i == 4 || i == 6 || i == 8 || i == 10;
+    text += fmt::format("{}{:02x}", dash ? "-" : "", bytes[i]);
+  }
+  return text;
+}
+
+std::string GoalId::short_string() const
+{
+  return to_string().substr(0, 8);
+}
+
+const char * to_string(GoalStatus status) noexcept
+{
+  switch (status) {
+    case GoalStatus::unknown:
+      return "unknown";
+    case GoalStatus::accepted:
+      return "accepted";
+    case GoalStatus::executing:
+      return "executing";
+    case GoalStatus::canceling:
+      return "canceling";
+    case GoalStatus::succeeded:
+      return "succeeded";
+    case GoalStatus::canceled:
+      return "canceled";
+    case GoalStatus::aborted:
+      return "aborted";
+  }
+  return "invalid";
+}
+
+}  // namespace rcl_cxx
+
+std::size_t std::hash<rcl_cxx::GoalId>::operator()(const rcl_cxx::GoalId & id) const noexcept
+{
+  std::size_t value = 0;  // the bytes are random, any of them will do
+  std::memcpy(&value, id.bytes.data() + 8, sizeof(value));
+  return value;
+}

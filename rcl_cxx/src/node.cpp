@@ -1,0 +1,238 @@
+#include "rcl_cxx/node.hpp"
+
+#include "action_client_core.hpp"
+#include "action_server_core.hpp"
+#include "arguments.hpp"
+#include "client_core.hpp"
+#include "node_core.hpp"
+#include "parameter_messages.hpp"
+#include "parameter_services.hpp"
+#include "parameters.hpp"
+#include "publisher_core.hpp"
+#include "rcl_error.hpp"
+#include "service_core.hpp"
+#include "sim_time.hpp"
+#include "subscription_core.hpp"
+#include "timer_core.hpp"
+#include "type_description_service.hpp"
+
+namespace rcl_cxx {
+namespace {
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+
+std::map<std::string, ParameterValue> read_overrides(const detail::NodeCore & node,
+                                                     detail::ContextCore & context,
+                                                     const NodeOptions & options,
+                                                     const rcl_arguments_t & arguments)
+{
+  std::map<std::string, ParameterValue> overrides;
+  if (options.use_global_arguments) {
+    detail::read_parameter_overrides(context.handle()->global_arguments, node.fully_qualified_name(),
+                                     overrides);
+  }
+  detail::read_parameter_overrides(arguments, node.fully_qualified_name(), overrides);
+  for (const Parameter & parameter : options.parameter_overrides) {
+    overrides[parameter.name] = parameter.value;
+  }
+  return overrides;
+}
+
+/// Publishes each change of the node's parameters.
+detail::Parameters::Observer parameter_event_publisher(
+    const std::shared_ptr<detail::NodeCore> & node,
+    std::shared_ptr<Publisher<rcl_interfaces::msg::ParameterEvent>> publisher)
+{
+  return [weak = std::weak_ptr(node), publisher](const detail::ParameterChanges & changes) {
+    const auto core = weak.lock();
+    if (!core) {
+      return;
+    }
+    rcl_interfaces::msg::ParameterEvent event = detail::to_message(changes);
+    const std::int64_t now = core->clock().now_ns();
+    event.stamp.sec = static_cast<std::int32_t>(now / kNsPerSecond);
+    event.stamp.nanosec = static_cast<std::uint32_t>(now % kNsPerSecond);
+    event.node = core->fully_qualified_name();
+    try {
+      publisher->publish(event);
+    } catch (const Error & error) {
+      RCL_CXX_ERROR(core->logger(), "{}", error.what());
+    }
+  };
+}
+}  // namespace
+
+/// What every node brings along. Destroyed before the node's core.
+struct Node::Standard {
+  std::unique_ptr<detail::SimTime> sim_time;
+  std::unique_ptr<detail::TypeDescriptionService> type_description;
+  std::unique_ptr<detail::ParameterServices> parameter_services;
+};
+
+Node::Node(Context::SharedPtr context, const std::string & name, const std::string & node_namespace,
+           const NodeOptions & options)
+    : context_(std::move(context))
+{
+  const detail::ParsedArguments arguments(options.arguments);
+  core_ =
+      std::make_shared<detail::NodeCore>(context_->core(), name, node_namespace, options, arguments.get());
+  parameters_ = std::make_shared<detail::Parameters>(
+      core_->logger(), read_overrides(*core_, *context_->core(), options, arguments.get()));
+  if (options.start_parameter_event_publisher) {
+    auto publisher =
+        create_publisher<rcl_interfaces::msg::ParameterEvent>("/parameter_events", QoS::parameters());
+    parameters_->observe(parameter_event_publisher(core_, std::move(publisher)));
+  }
+  standard_ = std::make_unique<Standard>();
+  standard_->sim_time = std::make_unique<detail::SimTime>(*this, *parameters_);
+  standard_->type_description = std::make_unique<detail::TypeDescriptionService>(core_, *parameters_);
+  if (options.automatically_declare_parameters_from_overrides) {
+    parameters_->declare_all_overrides();
+  }
+  if (options.start_parameter_services) {
+    standard_->parameter_services = std::make_unique<detail::ParameterServices>(*this, parameters_);
+  }
+}
+
+Node::~Node()
+{
+  standard_.reset();
+  parameters_->observe({});
+}
+
+const std::string & Node::name() const noexcept
+{
+  return core_->name();
+}
+const std::string & Node::node_namespace() const noexcept
+{
+  return core_->node_namespace();
+}
+const std::string & Node::fully_qualified_name() const noexcept
+{
+  return core_->fully_qualified_name();
+}
+const Context::SharedPtr & Node::context() const noexcept
+{
+  return context_;
+}
+const Logger & Node::logger() const noexcept
+{
+  return core_->logger();
+}
+
+builtin_interfaces::msg::Time Node::now() const
+{
+  const std::int64_t ns = now_ns();
+  builtin_interfaces::msg::Time time;
+  time.sec = static_cast<std::int32_t>(ns / kNsPerSecond);
+  time.nanosec = static_cast<std::uint32_t>(ns % kNsPerSecond);
+  return time;
+}
+
+std::int64_t Node::now_ns() const
+{
+  return core_->clock().now_ns();
+}
+
+std::string Node::resolve_topic_name(const std::string & topic) const
+{
+  return core_->resolve(topic, false);
+}
+
+std::string Node::resolve_service_name(const std::string & service) const
+{
+  return core_->resolve(service, true);
+}
+
+std::shared_ptr<Timer> Node::create_timer(std::chrono::nanoseconds period, std::function<void()> callback)
+{
+  auto timer = detail::TimerCore::create(core_, period, std::move(callback));
+  timer->arm();
+  return std::make_shared<Timer>(std::move(timer));
+}
+
+std::shared_ptr<detail::PublisherCore> Node::make_publisher(
+    const rosidl_message_type_support_t * type_support, const std::string & topic, const QoS & qos)
+{
+  return detail::PublisherCore::create(core_, type_support, topic, qos);
+}
+
+std::shared_ptr<detail::SubscriptionCore> Node::make_subscription(detail::ErasedSubscription erased,
+                                                                  const std::string & topic, const QoS & qos)
+{
+  return detail::SubscriptionCore::create(core_, std::move(erased), topic, qos);
+}
+
+std::shared_ptr<detail::ServiceCore> Node::make_service(detail::ErasedService erased,
+                                                        const std::string & service, const QoS & qos)
+{
+  return detail::ServiceCore::create(core_, std::move(erased), service, qos);
+}
+
+std::shared_ptr<detail::ClientCore> Node::make_client(detail::ErasedClient erased,
+                                                      const std::string & service, const QoS & qos)
+{
+  return detail::ClientCore::create(core_, erased, service, qos);
+}
+
+std::shared_ptr<detail::ActionServerCore> Node::make_action_server(detail::ErasedActionServer erased,
+                                                                   const std::string & action,
+                                                                   const ActionServerOptions & options)
+{
+  return detail::ActionServerCore::create(core_, std::move(erased), action, options);
+}
+
+std::shared_ptr<detail::ActionClientCore> Node::make_action_client(const detail::ActionClientOps * ops,
+                                                                   const std::string & action,
+                                                                   const ActionClientOptions & options)
+{
+  return detail::ActionClientCore::create(core_, *ops, action, options);
+}
+
+ParameterValue Node::declare(const std::string & parameter, const ParameterValue & default_value,
+                             const ParameterOptions & options)
+{
+  return parameters_->declare(parameter, default_value, options);
+}
+
+void Node::undeclare_parameter(const std::string & parameter)
+{
+  parameters_->undeclare(parameter);
+}
+
+bool Node::has_parameter(const std::string & parameter) const
+{
+  return parameters_->has(parameter);
+}
+
+ParameterValue Node::get_parameter(const std::string & parameter) const
+{
+  return parameters_->get(parameter).value;
+}
+
+std::vector<Parameter> Node::get_parameters() const
+{
+  return parameters_->all();
+}
+
+ParameterResult Node::set_parameter(const std::string & parameter, const ParameterValue & value)
+{
+  return parameters_->set({Parameter{parameter, value}});
+}
+
+ParameterResult Node::set_parameters_atomically(const std::vector<Parameter> & parameters)
+{
+  return parameters_->set(parameters);
+}
+
+ParameterCallbackHandle Node::on_set_parameters(OnSetParameters callback)
+{
+  return parameters_->add_on_set(std::move(callback));
+}
+
+ParameterCallbackHandle Node::on_parameters_set(OnParametersSet callback)
+{
+  return parameters_->add_after_set(std::move(callback));
+}
+
+}  // namespace rcl_cxx

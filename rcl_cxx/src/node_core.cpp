@@ -1,0 +1,82 @@
+#include "node_core.hpp"
+
+#include <fmt/format.h>
+#include <rcl/node_options.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "logging_core.hpp"
+#include "rcl_error.hpp"
+
+namespace rcl_cxx::detail {
+namespace {
+// The graph's changes are announced through guard conditions only, which want a wait set of their own; a
+// query takes microseconds.
+constexpr std::chrono::milliseconds kGraphCheckPeriod{5};
+}  // namespace
+
+NodeCore::NodeCore(std::shared_ptr<ContextCore> context, const std::string & name,
+                   const std::string & node_namespace, const NodeOptions & options,
+                   const rcl_arguments_t & arguments)
+    : context_core_(std::move(context)), node_(rcl_get_zero_initialized_node()), logger_(name)
+{
+  rcl_node_options_t node_options = rcl_node_get_default_options();
+  node_options.use_global_arguments = options.use_global_arguments;
+  node_options.enable_rosout = options.enable_rosout;
+  node_options.arguments = arguments;  // copied by rcl
+  const std::lock_guard lock(logging_mutex());
+  check_rcl(
+      rcl_node_init(&node_, name.c_str(), node_namespace.c_str(), context_core_->handle(), &node_options),
+      fmt::format("node '{}' in namespace '{}'", name, node_namespace), "cannot be created");
+  name_ = rcl_node_get_name(&node_);
+  namespace_ = rcl_node_get_namespace(&node_);
+  fully_qualified_name_ = rcl_node_get_fully_qualified_name(&node_);
+  logger_ = Logger(rcl_node_get_logger_name(&node_));
+}
+
+NodeCore::~NodeCore()
+{
+  const std::lock_guard lock(logging_mutex());
+  ignore_rcl(rcl_node_fini(&node_));
+}
+
+std::string NodeCore::resolve(const std::string & name, bool is_service) const
+{
+  const rcl_allocator_t allocator = rcl_get_default_allocator();
+  char * resolved = nullptr;
+  check_rcl(rcl_node_resolve_name(&node_, name.c_str(), allocator, is_service, false, &resolved),
+            fully_qualified_name_, fmt::format("'{}' is no valid name", name));
+  std::string result = resolved;
+  allocator.deallocate(resolved, allocator.state);
+  return result;
+}
+
+bool NodeCore::in_own_callback() const
+{
+  const auto queue = hub_.queue();
+  return queue && queue.get() == EventQueue::current();
+}
+
+bool NodeCore::wait_for(const std::function<bool()> & condition, std::chrono::nanoseconds timeout) const
+{
+  const auto start = std::chrono::steady_clock::now();
+  while (context_core_->ok()) {
+    if (condition()) {
+      return true;
+    }
+    const auto left = timeout - (std::chrono::steady_clock::now() - start);
+    if (left <= std::chrono::nanoseconds::zero()) {
+      return false;
+    }
+    std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(left, kGraphCheckPeriod));
+  }
+  return false;
+}
+
+std::string NodeCore::executor_hint() const
+{
+  return hub_.queue() ? "" : " (the node is in no executor, nothing can arrive)";
+}
+
+}  // namespace rcl_cxx::detail

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <rcl/node.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "context_core.hpp"
+#include "event_hub.hpp"
+#include "rcl_cxx/logging.hpp"
+#include "rcl_cxx/node.hpp"
+#include "ros_clock.hpp"
+
+namespace rcl_cxx::detail {
+/// Owns the rcl node, and lives as long as any of its entities.
+class NodeCore {
+ public:
+  NodeCore(std::shared_ptr<ContextCore> context, const std::string & name, const std::string & node_namespace,
+           const NodeOptions & options, const rcl_arguments_t & arguments);
+  ~NodeCore();
+  NodeCore(const NodeCore &) = delete;
+  NodeCore & operator=(const NodeCore &) = delete;
+
+  rcl_node_t * handle() noexcept { return &node_; }
+  /// To hold while an rcl entity of this node is initialised or finalised: rcl does not guard the node's own
+  /// tables.
+  std::mutex & mutex() noexcept { return mutex_; }
+  EventHub & hub() noexcept { return hub_; }
+  RosClock & clock() noexcept { return clock_; }
+  ContextCore & context() noexcept { return *context_core_; }
+
+  const Logger & logger() const noexcept { return logger_; }
+  const std::string & name() const noexcept { return name_; }
+  const std::string & node_namespace() const noexcept { return namespace_; }
+  const std::string & fully_qualified_name() const noexcept { return fully_qualified_name_; }
+
+  /// Expanded and remapped. @throws Error
+  std::string resolve(const std::string & name, bool is_service) const;
+
+  /// True in a callback of the executor that serves this node: waiting for another callback would be for
+  /// ever.
+  bool in_own_callback() const;
+  /// Looks at `condition` every few milliseconds. False at the deadline or on shutdown.
+  bool wait_for(const std::function<bool()> & condition, std::chrono::nanoseconds timeout) const;
+  /// Why an answer may have failed to come; empty if there is nothing to say.
+  std::string executor_hint() const;
+
+ private:
+  const std::shared_ptr<ContextCore> context_core_;
+  mutable std::mutex mutex_;
+  rcl_node_t node_;
+  Logger logger_;
+  std::string name_;
+  std::string namespace_;
+  std::string fully_qualified_name_;
+  RosClock clock_;
+  EventHub hub_;
+};
+
+}  // namespace rcl_cxx::detail

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <rcl_interfaces/srv/describe_parameters.hpp>
+#include <rcl_interfaces/srv/get_parameter_types.hpp>
+#include <rcl_interfaces/srv/get_parameters.hpp>
+#include <rcl_interfaces/srv/list_parameters.hpp>
+#include <rcl_interfaces/srv/set_parameters.hpp>
+#include <rcl_interfaces/srv/set_parameters_atomically.hpp>
+#include <string>
+#include <vector>
+
+#include "parameters.hpp"
+#include "rcl_cxx/node.hpp"
+
+namespace rcl_cxx::detail {
+/// The names that a request of ~/list_parameters asks for: `depth` counts the parts between dots, 0 is
+/// without limit; prefixes are themselves parts.
+rcl_interfaces::msg::ListParametersResult list_parameters(const std::vector<Parameter> & parameters,
+                                                          const std::vector<std::string> & prefixes,
+                                                          std::uint64_t depth);
+
+/// The six services through which others see and set a node's parameters.
+class ParameterServices {
+ public:
+  ParameterServices(Node & node, std::shared_ptr<Parameters> parameters);
+
+ private:
+  std::vector<std::shared_ptr<ServiceBase>> services_;
+};
+
+}  // namespace rcl_cxx::detail

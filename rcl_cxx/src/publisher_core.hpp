@@ -1,0 +1,36 @@
+#pragma once
+
+#include <rcl/publisher.h>
+
+#include <memory>
+#include <string>
+
+#include "entity.hpp"
+#include "qos_warning.hpp"
+#include "rcl_cxx/qos.hpp"
+
+namespace rcl_cxx::detail {
+class PublisherCore : public Entity {
+ public:
+  static std::shared_ptr<PublisherCore> create(std::shared_ptr<NodeCore> node,
+                                               const rosidl_message_type_support_t * type_support,
+                                               const std::string & topic, const QoS & qos);
+  PublisherCore(std::shared_ptr<NodeCore> node, const rosidl_message_type_support_t * type_support,
+                const std::string & topic, const QoS & qos);
+  ~PublisherCore() override;
+
+  void publish(const void * message);
+  std::size_t subscription_count() const;
+  const std::string & topic_name() const noexcept { return topic_; }
+
+ protected:
+  void execute(std::size_t source) override;
+  void stop() noexcept override;
+
+ private:
+  rcl_publisher_t publisher_;
+  std::string topic_;
+  std::unique_ptr<QosWarning> warning_;
+};
+
+}  // namespace rcl_cxx::detail

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <rcl/time.h>
+
+#include <cstdint>
+#include <mutex>
+#include <optional>
+
+namespace rcl_cxx::detail {
+/// ROS time: the system's clock, unless overridden (use_sim_time). Thread-safe.
+class RosClock {
+ public:
+  RosClock();
+  ~RosClock();
+  RosClock(const RosClock &) = delete;
+  RosClock & operator=(const RosClock &) = delete;
+
+  /// Nanoseconds since the epoch.
+  std::int64_t now_ns() const;
+  /// From now on this time, or without one the system's.
+  void override_with(std::optional<std::int64_t> now_ns);
+
+  rcl_clock_t * handle() noexcept { return &clock_; }
+
+ private:
+  mutable std::mutex mutex_;  // rcl's functions on one clock are not thread-safe
+  mutable rcl_clock_t clock_;
+};
+
+}  // namespace rcl_cxx::detail

@@ -1,0 +1,88 @@
+#include "rcl_cxx/service.hpp"
+
+#include <fmt/format.h>
+
+#include "node_core.hpp"
+#include "qos_rmw.hpp"
+#include "rcl_error.hpp"
+#include "service_core.hpp"
+
+namespace rcl_cxx {
+namespace detail {
+std::shared_ptr<ServiceCore> ServiceCore::create(std::shared_ptr<NodeCore> node, ErasedService erased,
+                                                 const std::string & name, const QoS & qos)
+{
+  auto core = std::make_shared<ServiceCore>(std::move(node), std::move(erased), name, qos);
+  check_rcl(rcl_service_set_on_new_request_callback(&core->service_, &on_event, core->source(0)),
+            core->label(), "its middleware does not report new requests");
+  return core;
+}
+
+ServiceCore::ServiceCore(std::shared_ptr<NodeCore> node, ErasedService erased, const std::string & name,
+                         const QoS & qos)
+    : Entity(std::move(node), fmt::format("service {}", name)),
+      erased_(std::move(erased)),
+      service_(rcl_get_zero_initialized_service())
+{
+  rcl_service_options_t options = rcl_service_get_default_options();
+  options.qos = to_rmw(qos);
+  const std::lock_guard lock(this->node()->mutex());
+  check_rcl(rcl_service_init(&service_, this->node()->handle(), erased_.type_support, name.c_str(), &options),
+            label(), "cannot be created");
+  name_ = rcl_service_get_service_name(&service_);
+}
+
+ServiceCore::~ServiceCore()
+{
+  const std::lock_guard lock(node()->mutex());
+  ignore_rcl(rcl_service_fini(&service_, node()->handle()));
+}
+
+void ServiceCore::execute(std::size_t /*source*/)
+{
+  const std::shared_ptr<void> request = erased_.make_request();
+  rmw_request_id_t id;
+  const rcl_ret_t code = rcl_take_request(&service_, &id, request.get());
+  if (code == RCL_RET_SERVICE_TAKE_FAILED) {
+    rcl_reset_error();
+    return;
+  }
+  check_rcl(code, label(), "cannot take a request");
+  const std::shared_ptr<void> response = erased_.make_response();
+  try {
+    erased_.callback(request.get(), response.get());
+  } catch (...) {
+    respond(id, response.get());  // a client must not hang because a server failed
+    throw;
+  }
+  respond(id, response.get());
+}
+
+void ServiceCore::respond(rmw_request_id_t & id, void * response)
+{
+  const rcl_ret_t code = rcl_send_response(&service_, &id, response);
+  if (code == RCL_RET_TIMEOUT) {
+    // The client is gone, or not discovered yet.
+    RCL_CXX_WARN(node()->logger(), "{}: the response did not reach its client: {}", name_, take_rcl_error());
+    return;
+  }
+  check_rcl(code, label(), "cannot send the response");
+}
+
+void ServiceCore::stop() noexcept
+{
+  ignore_rcl(rcl_service_set_on_new_request_callback(&service_, nullptr, nullptr));
+}
+}  // namespace detail
+
+ServiceBase::ServiceBase(std::shared_ptr<detail::ServiceCore> core) : core_(std::move(core)) {}
+ServiceBase::~ServiceBase()
+{
+  core_->close();
+}
+const std::string & ServiceBase::service_name() const noexcept
+{
+  return core_->service_name();
+}
+
+}  // namespace rcl_cxx

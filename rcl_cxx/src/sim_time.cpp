@@ -1,0 +1,44 @@
+#include "sim_time.hpp"
+
+#include "node_core.hpp"
+
+namespace rcl_cxx::detail {
+namespace {
+constexpr const char * kName = "use_sim_time";
+}
+
+SimTime::SimTime(Node & node, Parameters & parameters) : node_(node)
+{
+  follow(parameters.declare(kName, false, {}).get<bool>());
+  callback_ = parameters.add_after_set([this](const std::vector<Parameter> & changed) {
+    for (const Parameter & parameter : changed) {
+      if (parameter.name == kName) {
+        follow(parameter.value.get<bool>());
+      }
+    }
+  });
+}
+
+void SimTime::follow(bool use_sim_time)
+{
+  const std::lock_guard lock(mutex_);
+  if (use_sim_time == (clock_ != nullptr)) {
+    return;
+  }
+  const std::weak_ptr<NodeCore> weak = node_.core();
+  if (use_sim_time) {
+    node_.core()->clock().override_with(0);  // until the first message, as in rclcpp
+    clock_ = node_.create_subscription<rosgraph_msgs::msg::Clock>(
+        "/clock", QoS::best_effort(1), [weak](const rosgraph_msgs::msg::Clock & message) {
+          if (const auto core = weak.lock()) {
+            core->clock().override_with(std::int64_t{message.clock.sec} * 1'000'000'000 +
+                                        message.clock.nanosec);
+          }
+        });
+  } else {
+    clock_.reset();
+    node_.core()->clock().override_with(std::nullopt);
+  }
+}
+
+}  // namespace rcl_cxx::detail

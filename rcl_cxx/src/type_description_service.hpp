@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+
+#include "entity.hpp"
+#include "parameters.hpp"
+#include "rcl_cxx/node.hpp"
+
+namespace rcl_cxx::detail {
+/// ~/get_type_description, where rcl offers it and the parameter start_type_description_service (read-only,
+/// true) does not forbid it. Destroy with the node.
+class TypeDescriptionService {
+ public:
+  TypeDescriptionService(const std::shared_ptr<NodeCore> & node, Parameters & parameters);
+  ~TypeDescriptionService();
+  TypeDescriptionService(const TypeDescriptionService &) = delete;
+  TypeDescriptionService & operator=(const TypeDescriptionService &) = delete;
+
+ private:
+  std::shared_ptr<Entity> core_;
+};
+
+}  // namespace rcl_cxx::detail
