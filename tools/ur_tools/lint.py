@@ -12,7 +12,7 @@ from .layout import ROOT, Layout
 
 CPP = (".cpp", ".hpp", ".h", ".c")
 # Folders of one machine, and addresses of package registries, which pip and apt know by themselves.
-_TRACES = re.compile(r"/(?:work|root|tmp|home/[a-z])/[A-Za-z0-9_.-]|files\.pythonhosted|pypi\.org/simple")
+_TRACES = re.compile(r"(?<![\w.])/(?:work|root|tmp|home/[a-z]\w*)/[\w.-]|files\.pythonhosted|pypi\.org/simple")
 
 
 @dataclass

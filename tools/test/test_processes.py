@@ -1,0 +1,88 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from ur_tools.processes import Programs, group_is_alive
+from ur_tools.say import Failure
+
+# Ignores the first, polite signals, and has a child that does so too.
+STUBBORN = """
+import signal, subprocess, sys, time
+for number in (signal.SIGINT, signal.SIGTERM):
+    signal.signal(number, signal.SIG_IGN)
+child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+print("ready", flush=True)
+time.sleep(60)
+"""
+QUICK = ((signal.SIGINT, 0.2), (signal.SIGTERM, 0.2), (signal.SIGKILL, 5.0))
+
+
+def python(code):
+    return [sys.executable, "-c", code]
+
+
+def test_leaving_the_block_ends_every_program(tmp_path):
+    with Programs(tmp_path) as programs:
+        sleeper = programs.start("sleeper", python("import time; print('up', flush=True); time.sleep(60)"))
+        programs.wait_until(lambda: "up" in sleeper.output, 10.0, "the sleeper")
+    assert not sleeper.running
+
+
+def test_an_exception_in_the_block_ends_every_program(tmp_path):
+    with pytest.raises(RuntimeError):
+        with Programs(tmp_path) as programs:
+            sleeper = programs.start("sleeper", python("import time; time.sleep(60)"))
+            raise RuntimeError
+    assert not sleeper.running
+
+
+def test_a_program_that_ignores_signals_is_killed_with_its_children(tmp_path):
+    with Programs(tmp_path) as programs:
+        stubborn = programs.start("stubborn", python(STUBBORN))
+        programs.wait_until(lambda: "ready" in stubborn.output, 10.0, "the program")
+        stubborn.stop(QUICK)
+        assert not stubborn.running
+        assert not group_is_alive(stubborn.process.pid)
+
+
+def test_waiting_ends_at_once_when_a_program_dies_and_shows_its_last_words(tmp_path):
+    with Programs(tmp_path) as programs:
+        programs.start("broken", python("import sys; sys.exit('port 30004 is in use')"))
+        start = time.monotonic()
+        with pytest.raises(Failure, match="port 30004 is in use"):
+            programs.wait_until(lambda: False, 60.0, "nothing")
+        assert time.monotonic() - start < 30.0
+
+
+def test_waiting_for_a_condition_that_never_comes_ends_at_its_limit(tmp_path):
+    with Programs(tmp_path) as programs:
+        programs.start("sleeper", python("import time; time.sleep(60)"))
+        with pytest.raises(Failure, match="Waited 0.1 s for the dashboard"):
+            programs.wait_until(lambda: False, 0.1, "the dashboard")
+
+
+def test_a_program_that_does_not_exist_is_named(tmp_path):
+    with Programs(tmp_path) as programs:
+        with pytest.raises(Failure, match="ghost cannot be started"):
+            programs.start("ghost", [str(tmp_path / "ghost")])
+
+
+def test_a_terminated_parent_leaves_no_program_behind(tmp_path):
+    code = f"""
+import pathlib, sys, time
+sys.path[:0] = {sys.path!r}
+from ur_tools.processes import Programs
+with Programs(pathlib.Path({str(tmp_path)!r})) as programs:
+    child = programs.start("child", [sys.executable, "-c", "import time; time.sleep(60)"])
+    print(child.process.pid, flush=True)
+    time.sleep(60)
+"""
+    parent = subprocess.Popen(python(code), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True)
+    child = int(parent.stdout.readline())
+    assert group_is_alive(child)
+    os.kill(parent.pid, signal.SIGTERM)
+    parent.wait(20.0)
+    assert not group_is_alive(child)

@@ -1,0 +1,38 @@
+import pytest
+from ur_tools import main, testing
+
+REPORT = """<testsuites><testsuite>
+<testcase name="good"/><testcase name="good_too" status="run"/>
+<testcase name="bad"><failure/></testcase><testcase name="broken"><error/></testcase>
+<testcase name="left_out"><skipped/></testcase>
+</testsuite></testsuites>"""
+
+
+def test_cases_of_a_report_are_counted_and_skipped_ones_are_not(tmp_path):
+    report = tmp_path / "report.xml"
+    report.write_text(REPORT)
+    assert testing._count(report, False) == (2, 2)
+
+
+@pytest.mark.parametrize("succeeded, expected", [(True, (1, 0)), (False, (0, 1))])
+def test_a_program_without_a_report_is_one_case(tmp_path, succeeded, expected):
+    assert testing._count(tmp_path / "none.xml", succeeded) == expected
+
+
+def test_a_crash_after_passed_cases_is_a_failure(tmp_path):
+    report = tmp_path / "report.xml"
+    report.write_text("<testsuite><testcase name='good'/></testsuite>")
+    assert testing._count(report, False) == (1, 1)
+
+
+@pytest.mark.parametrize("arguments, ros, debug, forwarded", [
+    (["demo"], "kilted", False, []),
+    (["demo", "--model", "ur5e", "--ros", "jazzy"], "jazzy", False, ["--model", "ur5e"]),
+    (["demo", "--debug", "--speed", "0.1"], "kilted", True, ["--speed", "0.1"]),
+    (["demo", "--help"], "kilted", False, ["--help"]),
+    (["sim", "--", "--help"], "kilted", False, ["--help"]),
+    (["sim", "--model", "ur3e"], "kilted", False, ["--model", "ur3e"]),
+])
+def test_options_a_command_does_not_know_go_to_its_program(arguments, ros, debug, forwarded):
+    options = main._parse(arguments)
+    assert (options.ros, options.debug, main._forwarded(options)) == (ros, debug, forwarded)

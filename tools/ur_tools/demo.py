@@ -1,0 +1,110 @@
+"""./ur demo: the simulated controller of an arm above a table, the three nodes, and a motion that stops on force.
+
+Leaves demo/force_experiment.csv and demo/force_experiment.png: forces above, joint velocities below, the pushes that were
+ignored marked blue, the stop red.
+"""
+
+import argparse
+import os
+import socket
+import sys
+import time
+from typing import List
+
+from . import say
+from .environment import program, run_environment
+from .layout import ROOT, Layout
+from .processes import Programs
+
+NODES = ("robot_state_receiver", "command_server", "dashboard_server")
+# m between the tool and the table: what each size of arm can go down from its start pose.
+DROP = {"ur3": 0.15, "ur3e": 0.15}
+DEFAULT_DROP = 0.3
+
+
+def parse(arguments: List[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="./ur demo", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")
+    parser.add_argument("--threshold", type=float, default=20.0, metavar="N",
+                        help="force along the flange Z axis that stops the arm, newtons, 5 to 100 (default: 20)")
+    parser.add_argument("--speed", type=float, default=0.1, metavar="M/S",
+                        help="of the tool on its way down, m/s, 0.01 to 0.25 (default: 0.1)")
+    parser.add_argument("--drop", type=float, metavar="M",
+                        help="distance of the table below the tool, m (default: by the size of the arm)")
+    parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
+    parser.add_argument("--keep-running", action="store_true",
+                        help="leave simulator and nodes running afterwards, until Ctrl-C")
+    options = parser.parse_args(arguments)
+    for name, low, high in (("threshold", 5.0, 100.0), ("speed", 0.01, 0.25)):
+        value = getattr(options, name)
+        if not low <= value <= high:
+            parser.error(f"--{name} {value:g}: must be from {low:g} to {high:g}")
+    if options.drop is None:
+        options.drop = DROP.get(options.model.lower(), DEFAULT_DROP)
+    if not 0.05 <= options.drop <= 0.6:
+        parser.error(f"--drop {options.drop:g}: must be from 0.05 to 0.6")
+    return options
+
+
+def _answers(address: str, port: int) -> bool:
+    try:
+        socket.create_connection((address, port), 0.2).close()
+        return True
+    except OSError:
+        return False
+
+
+def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> None:
+    env = run_environment(layout)
+    say.step(f"Starting the simulated controller of a {options.model.upper()} at {options.address}")
+    programs.start("simulator", [program(layout, "ur_simulator", "ur_simulator"), "--address", options.address,
+                                 "--model", options.model], env)
+    programs.wait_until(lambda: _answers(options.address, 29999), 10.0, "the simulator's ports")
+    say.step("Starting the nodes " + ", ".join(NODES))
+    for node in NODES:
+        programs.start(node, [program(layout, "ur_ros_rtde", node), "--ros-args", "-p", f"robot_ip:={options.address}"], env)
+
+
+def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace) -> int:
+    say.step("move_down_until_force")
+    command = [layout.python, ROOT / "demo" / "force_experiment.py", "--address", options.address, "--model",
+               options.model.upper().replace("E", "e"), "--threshold", options.threshold, "--speed", options.speed,
+               "--drop", options.drop, "--output", ROOT / "demo"]
+    return programs.run([str(part) for part in command], run_environment(layout), limit=300.0)
+
+
+def _keep_running(programs: Programs, options: argparse.Namespace) -> None:
+    say.line(f"Simulator ({options.address}) and nodes go on until Ctrl-C. In another terminal: ./ur shell")
+    while True:
+        programs.check()
+        time.sleep(0.2)
+
+
+def run(options: argparse.Namespace, layout: Layout) -> int:
+    logs = layout.log / "demo"
+    with Programs(logs) as programs:
+        _start(programs, layout, options)
+        code = _experiment(programs, layout, options)
+        if code != 0:
+            say.line(f"The demo failed. What simulator and nodes said: {logs}")
+        elif options.keep_running:
+            _keep_running(programs, options)
+    return code
+
+
+def main() -> int:
+    ros, _, variant = os.environ.get("UR_LAYOUT", "kilted:").partition(":")
+    options = parse(sys.argv[1:])
+    try:
+        return run(options, Layout(ros, variant))
+    except say.Failure as failure:
+        say.line(f"\n{failure}")
+        return 1
+    except KeyboardInterrupt:
+        say.line("\nStopped.")
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())
