@@ -31,20 +31,32 @@ void Connection::start(OnData on_data, OnClose on_close)
 
 void Connection::read()
 {
+  if (reading_ || stalled_) {
+    return;
+  }
+  reading_ = true;
   socket_.async_read_some(asio::buffer(received_),
                           [self = shared_from_this()](const boost::system::error_code & error, std::size_t size) {
-                            if (!self->open_) {
-                              return;
-                            }
-                            if (error) {
-                              self->close();
-                              return;
-                            }
-                            self->deliver(std::string_view(self->received_.data(), size));
-                            if (self->open_ && !self->stalled_) {
-                              self->read();
-                            }
+                            self->reading_ = false;
+                            self->take(error, size);
                           });
+}
+
+void Connection::take(const boost::system::error_code & error, std::size_t size)
+{
+  if (!open_) {
+    return;
+  }
+  if (error && error != asio::error::operation_aborted) {  // aborted: by stall()
+    close();
+    return;
+  }
+  if (size > 0) {
+    deliver(std::string_view(received_.data(), size));
+  }
+  if (open_) {
+    read();
+  }
 }
 
 void Connection::deliver(std::string_view bytes)

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/system/error_code.hpp>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -46,6 +47,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
  private:
   void read();
+  void take(const boost::system::error_code & error, std::size_t size);
   void deliver(std::string_view bytes);
   std::size_t write_now(std::string_view bytes);
   void flush_when_writable();
@@ -59,6 +61,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::array<char, 16384> received_;
   std::string queue_;
   bool open_ = true;
+  bool reading_ = false;
   bool waiting_to_write_ = false;
   bool closing_ = false;
   bool stalled_ = false;
