@@ -12,13 +12,13 @@ namespace ur_ros_rtde::trajectory {
 
 inline constexpr int joint_count = 6;
 
-/// One value per joint, base to wrist 3. rad, rad/s, rad/s^2 or rad/s^3. The number of joints is fixed: every UR
-/// arm has six, and fixed sizes keep the solver free of allocations.
+/// One value per joint, base to wrist 3. rad, rad/s, rad/s^2 or rad/s^3. The number of joints is fixed: every
+/// UR arm has six, and fixed sizes keep the solver free of allocations.
 using Joints = Eigen::Array<double, joint_count, 1>;
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
-/// Defaults where the caller gives none: Universal Robots publishes no acceleration limit of the joints; these are
-/// gentle enough for every model with its rated payload, as MoveIt's configurations are.
+/// Defaults where the caller gives none: Universal Robots publishes no acceleration limit of the joints;
+/// these are gentle enough for every model with its rated payload, as MoveIt's configurations are.
 inline constexpr double default_acceleration = 5.0;  ///< rad/s^2
 inline constexpr double default_jerk = 50.0;         ///< rad/s^3: full acceleration after 0.1 s
 
@@ -28,17 +28,18 @@ struct Limits {
   Joints position_max = Joints::Constant(unlimited);   ///< rad
   Joints velocity = Joints::Constant(unlimited);       ///< rad/s, > 0
   Joints acceleration = Joints::Constant(unlimited);   ///< rad/s^2, > 0
-  Joints jerk = Joints::Constant(unlimited);           ///< rad/s^3, > 0; `unlimited` for all six: no jerk limit
+  Joints jerk = Joints::Constant(unlimited);  ///< rad/s^3, > 0; `unlimited` for all six: no jerk limit
 
   /// False when no joint has a jerk limit: the acceleration may then jump.
   bool has_jerk() const { return jerk.isFinite().any(); }
 };
 
 /// The position and velocity limits of an arm, with the same acceleration and jerk limit for every joint.
-Limits make_limits(const ArmLimits & arm, double acceleration = default_acceleration, double jerk = default_jerk);
+Limits make_limits(const ArmLimits & arm, double acceleration = default_acceleration,
+                   double jerk = default_jerk);
 
-/// Refuses limits that are zero, negative or NaN, an empty position range, and what time-optimal timing cannot do
-/// without: finite velocity and acceleration limits.
+/// Refuses limits that are zero, negative or NaN, an empty position range, and what time-optimal timing
+/// cannot do without: finite velocity and acceleration limits.
 Status check(const Limits & limits);
 
 /// "shoulder_pan_joint", … as ROS names them.

@@ -1,0 +1,420 @@
+#include "trajectory/jerk_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trajectory/reach.hpp"
+
+namespace ur_ros_rtde::trajectory {
+namespace {
+
+constexpr double to_the_border = 0.95;  // part of the way to the nearest limit that a step may go
+constexpr double rows_per_interval = 6.0 * joint_count + 1.0;
+
+double length_to_border(const Joints & value, const Joints & change)
+{
+  // 1 / max(-change / value): the step at which the first value becomes zero.
+  const double fastest = (-change / value).maxCoeff();
+  return fastest > 0.0 ? to_the_border / fastest : 1e30;
+}
+
+}  // namespace
+
+JerkSolver::JerkSolver(const Grid & grid, const Limits & limits, const Allowance & allowance)
+    : grid_(grid),
+      allowance_(allowance),
+      inverse_acceleration_(limits.acceleration.inverse()),
+      inverse_jerk_(limits.jerk.inverse()),
+      ceiling_(grid.stations()),
+      weight_(grid.stations()),
+      a_(grid.stations()),
+      b_(grid.stations()),
+      c_(grid.intervals()),
+      multipliers_(grid.intervals()),
+      change_(grid.intervals())
+{
+  for (std::size_t m = 0; m < grid.stations(); ++m) {
+    ceiling_[m] = std::min(highest_square_speed(grid.d1[m], limits), 1e12);
+  }
+}
+
+void JerkSolver::start(const SpeedSpline & spline, std::vector<double> w)
+{
+  w_ = std::move(w);
+  spline_ = &spline;
+  change_spline(spline);
+  double duration = 0.0;
+  for (const double t : weight_) {
+    duration += t;
+  }
+  const double mu = 0.02 * duration / static_cast<double>(count());
+  for (Multipliers & m : multipliers_) {
+    for (Joints * values :
+         {&m.station_plus, &m.station_minus, &m.begin_plus, &m.begin_minus, &m.end_plus, &m.end_minus}) {
+      values->setConstant(mu);
+    }
+    m.speed = mu;
+  }
+  balance_multipliers(mu, 1.0);
+}
+
+void JerkSolver::change_spline(const SpeedSpline & spline)
+{
+  spline_ = &spline;
+  std::fill(weight_.begin(), weight_.end(), 0.0);
+  for (std::size_t i = 0; i < count(); ++i) {
+    // The ends are at rest: their share goes to the station beside them.
+    weight_[std::max<std::size_t>(i, 1)] += 0.5 * spline.duration(i);
+    weight_[std::min(i + 1, count() - 1)] += 0.5 * spline.duration(i);
+  }
+  evaluate();
+  scale_to_limits(0.98);
+}
+
+void JerkSolver::evaluate()
+{
+  for (std::size_t m = 0; m <= count(); ++m) {
+    a_[m] = spline_->a(w_, m);
+    b_[m] = spline_->b(w_, m);
+  }
+  for (std::size_t i = 0; i < count(); ++i) {
+    c_[i] = (b_[i + 1] - b_[i]) / spline_->duration(i);
+  }
+}
+
+// Largest use of a limit, as the factor on a: jerk grows with a^(3/2).
+double JerkSolver::excess() const
+{
+  double worst = 0.0;
+  for (std::size_t m = 1; m < count(); ++m) {
+    const Joints use = ((grid_.d2[m] * a_[m] + grid_.d1[m] * b_[m]) * inverse_acceleration_).abs();
+    worst = std::max({worst, a_[m] / ceiling_[m], use.maxCoeff() / allowance_.acceleration[m]});
+  }
+  for (std::size_t i = 0; i < count(); ++i) {
+    for (const bool end : {false, true}) {
+      const JerkRow row = jerk_row(i, end);
+      const double use = (row.pa * row.value_a + row.pb * row.value_b + row.pc * c_[i]).abs().maxCoeff();
+      worst = std::max(worst, std::cbrt(std::pow(use / allowance_.jerk[i], 2)));
+    }
+  }
+  return worst;
+}
+
+void JerkSolver::scale_to_limits(double target)
+{
+  for (int round = 0; round < 20; ++round) {
+    const double worst = excess();
+    if (worst <= target * 1.01) {
+      return;
+    }
+    for (double & value : w_) {
+      value *= target / worst;
+    }
+    evaluate();
+  }
+}
+
+JerkSolver::JerkRow JerkSolver::jerk_row(std::size_t i, bool end) const
+{
+  const std::size_t station = end ? i + 1 : i;
+  const bool rest = station == 0 || station == count();
+  JerkRow row;
+  row.at = rest ? (station == 0 ? 1 : count() - 1) : station;
+  row.value_a = a_[row.at];
+  row.value_b = b_[row.at];
+  const double v = std::sqrt(row.value_a);
+  row.tangent = 0.5 * allowance_.jerk[i] / row.value_a;
+  row.pc = grid_.d1[station] * inverse_jerk_ * (v / spline_->speed(row.at));
+  if (rest) {
+    row.pa.setZero();
+    row.pb.setZero();
+  } else {
+    row.pa = (end ? grid_.d3_end[i] : grid_.d3_begin[i]) * inverse_jerk_ * v;
+    row.pb = grid_.d2[station] * inverse_jerk_ * (3.0 * v);
+  }
+  return row;
+}
+
+// Moves each multiplier to within a factor `spread` of mu / slack.
+void JerkSolver::balance_multipliers(double mu, double spread)
+{
+  const auto balance = [&](Joints & multiplier, const Joints & slack) {
+    const Joints centre = mu * slack.max(1e-9).inverse();
+    multiplier = multiplier.max(centre / spread).min(centre * spread);
+  };
+  for (std::size_t i = 0; i < count(); ++i) {
+    Multipliers & m = multipliers_[i];
+    if (i > 0) {
+      const Joints x = (grid_.d2[i] * a_[i] + grid_.d1[i] * b_[i]) * inverse_acceleration_;
+      balance(m.station_plus, allowance_.acceleration[i] - x);
+      balance(m.station_minus, allowance_.acceleration[i] + x);
+      const double centre = mu / std::max(1.0 - a_[i] / ceiling_[i], 1e-9);
+      m.speed = std::clamp(m.speed, centre / spread, centre * spread);
+    }
+    for (const bool end : {false, true}) {
+      const JerkRow row = jerk_row(i, end);
+      const Joints y = row.pa * row.value_a + row.pb * row.value_b + row.pc * c_[i];
+      balance(end ? m.end_plus : m.begin_plus, allowance_.jerk[i] - y);
+      balance(end ? m.end_minus : m.begin_minus, allowance_.jerk[i] + y);
+    }
+  }
+}
+
+double JerkSolver::mean_product() const
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count(); ++i) {
+    const Multipliers & m = multipliers_[i];
+    if (i > 0) {
+      const Joints x = (grid_.d2[i] * a_[i] + grid_.d1[i] * b_[i]) * inverse_acceleration_;
+      sum += (m.station_plus * (allowance_.acceleration[i] - x)).sum();
+      sum += (m.station_minus * (allowance_.acceleration[i] + x)).sum();
+      sum += m.speed * (1.0 - a_[i] / ceiling_[i]);
+    }
+    for (const bool end : {false, true}) {
+      const JerkRow row = jerk_row(i, end);
+      const Joints y = row.pa * row.value_a + row.pb * row.value_b + row.pc * c_[i];
+      sum += ((end ? m.end_plus : m.begin_plus) * (allowance_.jerk[i] - y)).sum();
+      sum += ((end ? m.end_minus : m.begin_minus) * (allowance_.jerk[i] + y)).sum();
+    }
+  }
+  return sum / (rows_per_interval * static_cast<double>(count()));
+}
+
+double JerkSolver::gap() const
+{
+  double duration = 0.0;
+  for (std::size_t m = 1; m < count(); ++m) {
+    duration += weight_[m] * spline_->speed(m) / std::sqrt(a_[m]);
+  }
+  return mean_product() * rows_per_interval * static_cast<double>(count()) / duration;
+}
+
+void JerkSolver::improve(int steps, double gap_limit)
+{
+  double reduction = 0.2;
+  for (int step = 0; step < steps && gap() > gap_limit; ++step) {
+    const double target = reduction * mean_product();
+    assemble(target);
+    if (!system_.solve()) {
+      return;  // the present iterate obeys the limits
+    }
+    const Steps lengths = find_step(system_.right, target);
+    advance(system_.right, lengths);
+    const double shorter = std::min(lengths.primal, lengths.dual);
+    reduction = shorter > 0.8 ? 0.1 : shorter > 0.4 ? 0.25 : 0.5;
+  }
+}
+
+void JerkSolver::assemble(double target)
+{
+  system_.clear(count());
+  for (std::size_t i = 0; i < count(); ++i) {
+    if (i > 0) {
+      add_station(i, target);
+    }
+    add_interval(i, target);
+  }
+  for (const std::size_t fixed : {std::size_t{0}, count() - 1}) {  // zero at rest
+    system_.diagonal[fixed] = 1.0;
+    system_.right[fixed] = 0.0;
+  }
+  system_.first[0] = system_.second[0] = 0.0;
+  system_.first[count() - 2] = system_.second[count() - 3] = 0.0;
+}
+
+void JerkSolver::add_station(std::size_t m, double target)
+{
+  const Multipliers & l = multipliers_[m];
+  const double f = allowance_.acceleration[m];
+  const Joints pa = grid_.d2[m] * inverse_acceleration_;
+  const Joints pb = grid_.d1[m] * inverse_acceleration_;
+  const Joints x = pa * a_[m] + pb * b_[m];
+  const Joints plus = (f - x).inverse();
+  const Joints minus = (f + x).inverse();
+  const Joints stiffness = l.station_plus * plus + l.station_minus * minus;
+  const Joints push = target * (plus - minus);
+  Model model;
+  model.aa = (stiffness * pa * pa).sum();
+  model.ab = (stiffness * pa * pb).sum();
+  model.bb = (stiffness * pb * pb).sum();
+  model.ga = (push * pa).sum();
+  model.gb = (push * pb).sum();
+
+  const double room = ceiling_[m] - a_[m];
+  model.aa += l.speed / (ceiling_[m] * room);
+  model.ga += target / room;
+
+  const double time = weight_[m] * spline_->speed(m) / std::sqrt(a_[m]);
+  model.ga -= 0.5 * time / a_[m];
+  model.aa += 0.75 * time / (a_[m] * a_[m]);
+  spread_model(m, m, model);
+}
+
+void JerkSolver::add_interval(std::size_t i, double target)
+{
+  const Multipliers & l = multipliers_[i];
+  for (const bool end : {false, true}) {
+    Model model;
+    const JerkRow row = jerk_row(i, end);
+    add_jerk(row, allowance_.jerk[i], c_[i], end ? l.end_plus : l.begin_plus,
+             end ? l.end_minus : l.begin_minus, target, model);
+    spread_model(i, row.at, model);
+  }
+}
+
+void JerkSolver::add_jerk(const JerkRow & row, double f, double c, const Joints & plus, const Joints & minus,
+                          double target, Model & model) const
+{
+  const Joints y = row.pa * row.value_a + row.pb * row.value_b + row.pc * c;
+  const Joints up = (f - y).inverse();
+  const Joints down = (f + y).inverse();
+  const Joints both = plus * up + minus * down;
+  const Joints difference = plus * up - minus * down;
+  const Joints push = target * (up - down);
+  model.aa +=
+      (both * (row.pa * row.pa + row.tangent * row.tangent) + 2.0 * row.tangent * difference * row.pa).sum();
+  model.ab += ((both * row.pa + row.tangent * difference) * row.pb).sum();
+  model.ac += ((both * row.pa + row.tangent * difference) * row.pc).sum();
+  model.bb += (both * row.pb * row.pb).sum();
+  model.bc += (both * row.pb * row.pc).sum();
+  model.cc += (both * row.pc * row.pc).sum();
+  model.ga += (push * row.pa).sum() + target * row.tangent * (up + down).sum();
+  model.gb += (push * row.pb).sum();
+  model.gc += (push * row.pc).sum();
+}
+
+// Adds a model in (a_m, b_m, c_i), m = i or i + 1, to the system in w.
+void JerkSolver::spread_model(std::size_t i, std::size_t m, const Model & model)
+{
+  // Rows of a, b, c over (w_(i-1), w_i, w_(i+1)).
+  const double shift_left = spline_->at(i).g;  // 0 at the ends
+  const double shift_right = spline_->at(i + 1).g;
+  const double rate = 1.0 / spline_->duration(i);
+  const auto & at = spline_->at(m);
+  double ra[3] = {0, 0, 0};
+  double rb[3] = {0, 0, 0};
+  const std::size_t k = m - i;
+  ra[k] = 1.0 - at.l;
+  ra[k + 1] = at.l;
+  rb[k] = -at.g;
+  rb[k + 1] = at.g;
+  const double rc[3] = {shift_left * rate, -(shift_left + shift_right) * rate, shift_right * rate};
+  double pa[3], pb[3], pc[3];
+  for (int n = 0; n < 3; ++n) {
+    pa[n] = model.aa * ra[n] + model.ab * rb[n] + model.ac * rc[n];
+    pb[n] = model.ab * ra[n] + model.bb * rb[n] + model.bc * rc[n];
+    pc[n] = model.ac * ra[n] + model.bc * rb[n] + model.cc * rc[n];
+  }
+  const auto entry = [&](int row, int column) {
+    return ra[row] * pa[column] + rb[row] * pb[column] + rc[row] * pc[column];
+  };
+  const auto force = [&](int row) { return ra[row] * model.ga + rb[row] * model.gb + rc[row] * model.gc; };
+  if (i > 0) {
+    system_.diagonal[i - 1] += entry(0, 0);
+    system_.first[i - 1] += entry(0, 1);
+    system_.right[i - 1] -= force(0);
+  }
+  system_.diagonal[i] += entry(1, 1);
+  system_.right[i] -= force(1);
+  if (i + 1 < count()) {
+    system_.first[i] += entry(1, 2);
+    system_.diagonal[i + 1] += entry(2, 2);
+    system_.right[i + 1] -= force(2);
+  }
+  if (i > 0 && i + 1 < count()) {
+    system_.second[i - 1] += entry(0, 2);
+  }
+}
+
+JerkSolver::Steps JerkSolver::find_step(const std::vector<double> & dw, double target)
+{
+  Steps steps;
+  for (std::size_t i = 0; i < count(); ++i) {
+    if (i > 0) {
+      station_step(i, spline_->a(dw, i), spline_->b(dw, i), target, steps);
+    }
+    const double dc = (spline_->b(dw, i + 1) - spline_->b(dw, i)) / spline_->duration(i);
+    const Multipliers & l = multipliers_[i];
+    Multipliers & d = change_[i];
+    for (const bool end : {false, true}) {
+      const JerkRow row = jerk_row(i, end);
+      const double da = spline_->a(dw, row.at);
+      const double db = spline_->b(dw, row.at);
+      if (end) {
+        jerk_step(row, allowance_.jerk[i], c_[i], da, db, dc, target, l.end_plus, l.end_minus, d.end_plus,
+                  d.end_minus, steps);
+      } else {
+        jerk_step(row, allowance_.jerk[i], c_[i], da, db, dc, target, l.begin_plus, l.begin_minus,
+                  d.begin_plus, d.begin_minus, steps);
+      }
+    }
+  }
+  return steps;
+}
+
+void JerkSolver::station_step(std::size_t m, double da, double db, double target, Steps & steps)
+{
+  const Multipliers & l = multipliers_[m];
+  Multipliers & d = change_[m];
+  const double f = allowance_.acceleration[m];
+  const Joints x = (grid_.d2[m] * a_[m] + grid_.d1[m] * b_[m]) * inverse_acceleration_;
+  const Joints dx = (grid_.d2[m] * da + grid_.d1[m] * db) * inverse_acceleration_;
+  const Joints room_plus = f - x;
+  const Joints room_minus = f + x;
+  d.station_plus = (target + l.station_plus * dx) / room_plus - l.station_plus;
+  d.station_minus = (target - l.station_minus * dx) / room_minus - l.station_minus;
+  steps.primal = std::min({steps.primal, length_to_border(room_plus, -dx), length_to_border(room_minus, dx)});
+  steps.dual = std::min({steps.dual, length_to_border(l.station_plus, d.station_plus),
+                         length_to_border(l.station_minus, d.station_minus)});
+
+  const double room = 1.0 - a_[m] / ceiling_[m];
+  const double used = da / ceiling_[m];
+  d.speed = (target + l.speed * used) / room - l.speed;
+  if (used > 0.0) {
+    steps.primal = std::min(steps.primal, to_the_border * room / used);
+  }
+  if (da < 0.0) {
+    steps.primal = std::min(steps.primal, -0.8 * a_[m] / da);
+  }
+  if (d.speed < 0.0) {
+    steps.dual = std::min(steps.dual, -to_the_border * l.speed / d.speed);
+  }
+}
+
+void JerkSolver::jerk_step(const JerkRow & row, double f, double c, double da, double db, double dc,
+                           double target, const Joints & plus, const Joints & minus, Joints & dplus,
+                           Joints & dminus, Steps & steps) const
+{
+  const Joints y = row.pa * row.value_a + row.pb * row.value_b + row.pc * c;
+  const Joints dy = row.pa * da + row.pb * db + row.pc * dc;
+  const double tangent = row.tangent * da;
+  const Joints room_plus = f - y;
+  const Joints room_minus = f + y;
+  dplus = (target + plus * (dy + tangent)) / room_plus - plus;
+  dminus = (target + minus * (tangent - dy)) / room_minus - minus;
+  steps.primal = std::min(
+      {steps.primal, length_to_border(room_plus, -dy - tangent), length_to_border(room_minus, dy - tangent)});
+  steps.dual = std::min({steps.dual, length_to_border(plus, dplus), length_to_border(minus, dminus)});
+}
+
+void JerkSolver::advance(const std::vector<double> & dw, const Steps & steps)
+{
+  for (std::size_t i = 0; i < count(); ++i) {
+    w_[i] += steps.primal * dw[i];
+    Multipliers & l = multipliers_[i];
+    const Multipliers & d = change_[i];
+    if (i > 0) {
+      l.station_plus += steps.dual * d.station_plus;
+      l.station_minus += steps.dual * d.station_minus;
+      l.speed += steps.dual * d.speed;
+    }
+    l.begin_plus += steps.dual * d.begin_plus;
+    l.begin_minus += steps.dual * d.begin_minus;
+    l.end_plus += steps.dual * d.end_plus;
+    l.end_minus += steps.dual * d.end_minus;
+  }
+  evaluate();
+}
+
+}  // namespace ur_ros_rtde::trajectory

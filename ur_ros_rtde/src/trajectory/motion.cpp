@@ -1,0 +1,88 @@
+#include "trajectory/motion.hpp"
+
+#include <algorithm>
+
+namespace ur_ros_rtde::trajectory {
+
+Place TimePiece::at(double time) const
+{
+  const double t = time - start;
+  return {c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5])))),
+          c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5]))),
+          2 * c[2] + t * (6 * c[3] + t * (12 * c[4] + t * 20 * c[5])),
+          6 * c[3] + t * (24 * c[4] + t * 60 * c[5])};
+}
+
+std::size_t Motion::piece_at(double time) const
+{
+  const auto after =
+      std::upper_bound(timing.begin(), timing.end(), time,
+                       [](double value, const TimePiece & piece) { return value < piece.start; });
+  return after == timing.begin() ? 0 : static_cast<std::size_t>(after - timing.begin()) - 1;
+}
+
+void Motion::append(const Grid & grid, const Profile & profile, bool constant_acceleration)
+{
+  timing.reserve(timing.size() + grid.intervals());
+  for (std::size_t i = 0; i < grid.intervals(); ++i) {
+    const double end_alpha = constant_acceleration ? profile.alpha[i] : profile.alpha[i + 1];
+    append(grid.piece[i], profile.time[i], {grid.begin[i], profile.v[i], profile.alpha[i], 0.0},
+           {grid.end[i], profile.v[i + 1], end_alpha, 0.0});
+  }
+}
+
+void Motion::append(std::size_t path_piece, double span, const Place & from)
+{
+  timing.push_back({duration(), span, path_piece, {from.u, from.v, from.a / 2.0, from.j / 6.0, 0.0, 0.0}});
+}
+
+void Motion::append(std::size_t path_piece, double span, const Place & from, const Place & to)
+{
+  TimePiece piece;
+  piece.start = duration();
+  piece.duration = span;
+  piece.piece = path_piece;
+  // Quintic Hermite interpolation in x = t / span.
+  const double rise = to.u - from.u;
+  const double v0 = from.v * span;
+  const double v1 = to.v * span;
+  const double a0 = from.a * span * span;
+  const double a1 = to.a * span * span;
+  const double x[6] = {from.u,
+                       v0,
+                       0.5 * a0,
+                       10 * rise - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1,
+                       -15 * rise + 8 * v0 + 7 * v1 + 1.5 * a0 - a1,
+                       6 * rise - 3 * (v0 + v1) - 0.5 * (a0 - a1)};
+  double scale = 1.0;
+  for (int k = 0; k < 6; ++k) {
+    piece.c[k] = x[k] * scale;
+    scale /= span;
+  }
+  timing.push_back(piece);
+}
+
+void Motion::stretch(double factor, std::size_t first)
+{
+  double start = first > 0 ? timing[first - 1].end() : 0.0;
+  for (std::size_t k = first; k < timing.size(); ++k) {
+    TimePiece & piece = timing[k];
+    piece.start = start;
+    piece.duration *= factor;
+    start = piece.end();
+    double scale = 1.0;
+    for (double & coefficient : piece.c) {
+      coefficient *= scale;
+      scale /= factor;
+    }
+  }
+}
+
+Point at_place(const PathPoint & point, const Place & place)
+{
+  const double v2 = place.v * place.v;
+  return {point.q, point.d1 * place.v, point.d2 * v2 + point.d1 * place.a,
+          point.d3 * (v2 * place.v) + point.d2 * (3.0 * place.v * place.a) + point.d1 * place.j};
+}
+
+}  // namespace ur_ros_rtde::trajectory

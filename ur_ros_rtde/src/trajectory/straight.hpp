@@ -1,0 +1,11 @@
+#pragma once
+
+#include "trajectory/motion.hpp"
+
+namespace ur_ros_rtde::trajectory {
+
+/// Appends the time-optimal motion along the straight piece `piece`, from rest to rest: up to seven phases of
+/// constant jerk (three of constant acceleration without a jerk limit), in closed form.
+void append_straight_motion(Motion & motion, std::size_t piece, const Limits & limits);
+
+}  // namespace ur_ros_rtde::trajectory

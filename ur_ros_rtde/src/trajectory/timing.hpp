@@ -1,0 +1,12 @@
+#pragma once
+
+#include "trajectory/motion.hpp"
+
+namespace ur_ros_rtde::trajectory {
+
+/// Appends the fastest motion along pieces [first, last) of the path, from rest to rest. The result obeys the
+/// limits at closely spaced points; where a solver's solution exceeded one between its stations, the motion
+/// is slowed down.
+void time_block(Motion & motion, std::size_t first, std::size_t last, const Limits & limits);
+
+}  // namespace ur_ros_rtde::trajectory

@@ -1,0 +1,108 @@
+#include "trajectory/verify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ur_ros_rtde::trajectory {
+namespace {
+
+constexpr double rounding = 1e-9;  // of a limit
+
+Point point_at(const Motion & motion, const TimePiece & piece, double time)
+{
+  const PathPiece & curve = motion.path->pieces[piece.piece];
+  const Place place = piece.at(time);
+  return at_place(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
+}
+
+std::optional<Excess> excess_of(Quantity quantity, const Joints & value, const Joints & limit, double time)
+{
+  int joint = 0;
+  if ((value.abs() / limit).maxCoeff(&joint) <= 1.0 + rounding) {
+    return std::nullopt;
+  }
+  return Excess{quantity, joint, time, value[joint], limit[joint]};
+}
+
+std::optional<Excess> excess_of_position(const Joints & q, const Limits & limits, double time)
+{
+  for (int j = 0; j < joint_count; ++j) {
+    if (q[j] < limits.position_min[j] - rounding || q[j] > limits.position_max[j] + rounding) {
+      return Excess{Quantity::position, j, time, q[j],
+                    q[j] < limits.position_min[j] ? limits.position_min[j] : limits.position_max[j]};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Excess> excess_at(const Point & point, const Limits & limits, double time)
+{
+  auto excess = excess_of_position(point.position, limits, time);
+  if (!excess) {
+    excess = excess_of(Quantity::velocity, point.velocity, limits.velocity, time);
+  }
+  if (!excess) {
+    excess = excess_of(Quantity::acceleration, point.acceleration, limits.acceleration, time);
+  }
+  if (!excess) {
+    excess = excess_of(Quantity::jerk, point.jerk, limits.jerk, time);
+  }
+  return excess;
+}
+
+}  // namespace
+
+PieceUse use_of(const Motion & motion, const TimePiece & piece, const Limits & limits, int inner)
+{
+  PieceUse use{Joints::Zero(), Joints::Zero(), Joints::Zero()};
+  for (int k = 0; k <= inner + 1; ++k) {
+    const Point point = point_at(motion, piece, piece.start + piece.duration * k / (inner + 1));
+    use.velocity = use.velocity.max(point.velocity.abs() / limits.velocity);
+    use.acceleration = use.acceleration.max(point.acceleration.abs() / limits.acceleration);
+    use.jerk = use.jerk.max(point.jerk.abs() / limits.jerk);
+  }
+  return use;
+}
+
+std::optional<Excess> first_excess(const Motion & motion, const Limits & limits, double step,
+                                   Utilisation & use)
+{
+  for (const TimePiece & piece : motion.timing) {
+    const int steps = std::max(4, static_cast<int>(std::ceil(piece.duration / step)));
+    for (int k = 0; k <= steps; ++k) {
+      const double time = piece.start + piece.duration * k / steps;
+      const Point point = point_at(motion, piece, time);
+      use.velocity = std::max(use.velocity, (point.velocity.abs() / limits.velocity).maxCoeff());
+      use.acceleration =
+          std::max(use.acceleration, (point.acceleration.abs() / limits.acceleration).maxCoeff());
+      use.jerk = std::max(use.jerk, (point.jerk.abs() / limits.jerk).maxCoeff());
+      if (auto excess = excess_at(point, limits, time)) {
+        return excess;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::string describe(const Excess & excess, std::size_t waypoint)
+{
+  static constexpr std::array names{"position", "velocity", "acceleration", "jerk"};
+  static constexpr std::array units{"rad", "rad/s", "rad/s^2", "rad/s^3"};
+  const auto index = static_cast<std::size_t>(excess.quantity);
+  return fmt::format("{} of {} is {:.6g} {} at {:.4f} s (after waypoint {}), its limit {:.6g} {}",
+                     names[index], joint_name(excess.joint), excess.value, units[index], excess.time,
+                     waypoint, excess.limit, units[index]);
+}
+
+Expected<Utilisation> Trajectory::verify(const Limits & limits, double step) const
+{
+  Utilisation use;
+  if (const auto excess = first_excess(*motion_, limits, step, use)) {
+    return failure(ErrorCode::invalid_goal, describe(*excess, waypoint_at(excess->time)));
+  }
+  return use;
+}
+
+}  // namespace ur_ros_rtde::trajectory

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "trajectory/motion.hpp"
+
+namespace ur_ros_rtde::trajectory {
+
+enum class Quantity { position, velocity, acceleration, jerk };
+
+/// A value of one joint at one time that is beyond its limit.
+struct Excess {
+  Quantity quantity = Quantity::position;
+  int joint = 0;
+  double time = 0.0, value = 0.0, limit = 0.0;
+};
+
+/// Uses of the limits at both ends of a time piece and at `inner` points between them.
+struct PieceUse {
+  Joints velocity, acceleration, jerk;  // largest |value| / limit of each joint
+};
+
+PieceUse use_of(const Motion & motion, const TimePiece & piece, const Limits & limits, int inner);
+
+/// The first excess of a motion, seen in steps of at most `step` seconds; `use` receives the largest uses.
+std::optional<Excess> first_excess(const Motion & motion, const Limits & limits, double step,
+                                   Utilisation & use);
+
+/// "velocity of elbow_joint is 3.2 rad/s at 1.25 s (after waypoint 7), its limit 3.14 rad/s: …"
+std::string describe(const Excess & excess, std::size_t waypoint);
+
+}  // namespace ur_ros_rtde::trajectory
