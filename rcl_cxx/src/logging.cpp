@@ -30,16 +30,24 @@ struct LoggingInUse {
   explicit LoggingInUse(const rcl_arguments_t & arguments)
   {
     const rcl_allocator_t allocator = rcl_get_default_allocator();
-    check_rcl(rcl_logging_configure_with_output_handler(&arguments, &allocator, &write_locked), "logging",
-              "cannot be configured");
+    configured = rcl_logging_configure_with_output_handler(&arguments, &allocator, &write_locked) == RCL_RET_OK;
+    if (!configured) {
+      // No folder for the log file, mostly. A robot can be driven without one: the console works anyway.
+      rcutils_log(nullptr, RCUTILS_LOG_SEVERITY_WARN, "rcl_cxx", "only the console gets log messages: %s",
+                  take_rcl_error().c_str());
+    }
   }
   ~LoggingInUse()
   {
     const std::lock_guard lock(logging_mutex());
-    ignore_rcl(rcl_logging_fini());
+    if (configured) {
+      ignore_rcl(rcl_logging_fini());
+    }
   }
   LoggingInUse(const LoggingInUse &) = delete;
   LoggingInUse & operator=(const LoggingInUse &) = delete;
+
+  bool configured = false;
 };
 }  // namespace
 
