@@ -42,6 +42,7 @@ struct RobotModel {
   Vector6 velocity_max;      ///< rad/s
   Vector6 acceleration_max;  ///< rad/s^2, the highest that motions use
   Vector6 torque_max;        ///< N m
+  Vector6 stiffness;         ///< N m/rad of each joint, between motor and link
   Vector6 torque_constant;   ///< N m/A, behind the gear
   double payload_max;        ///< kg, rated
   double reach;              ///< m

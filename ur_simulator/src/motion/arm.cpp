@@ -61,27 +61,32 @@ struct Arm::Impl {
   bool given_up = false;  // the motion in the slot only brakes any more
   bool is_stop = false;   // it is a stop: that it cannot go on straight is no fault
   bool paused = false;
-  Vector6 tcp_offset = Vector6::Zero();
-  RobotMode robot_mode = RobotMode::power_off;
-  SafetyMode safety_mode = SafetyMode::normal;
+  const ControllerState * state =
+      nullptr;  // of the last step: its modes and its TCP hold for what starts next
   std::optional<MotionFault> fault;
 
   Motion * motion() { return motion_in(slot); }
 
-  bool may_move() const { return robot_mode == RobotMode::running && allows_motion(safety_mode); }
+  bool may_move() const
+  {
+    return state != nullptr && state->robot_mode == RobotMode::running && allows_motion(state->safety_mode);
+  }
 
   Refusal not_ready(std::string_view call) const
   {
     if (may_move()) {
       return std::nullopt;
     }
+    if (state == nullptr) {
+      return fmt::format("{}: the robot has not started yet", call);
+    }
     return fmt::format("{}: the robot cannot move: its mode is {}, its safety mode {}", call,
-                       to_string(robot_mode), to_string(safety_mode));
+                       to_string(state->robot_mode), to_string(state->safety_mode));
   }
 
   Refusal unreachable(std::string_view call, const Vector6 & tcp_pose) const
   {
-    const auto solution = get_inverse_kin(model, tcp_pose, setpoint.position, tcp_offset);
+    const auto solution = get_inverse_kin(model, tcp_pose, setpoint.position, state->tcp_offset);
     return solution ? std::nullopt : Refusal(fmt::format("{}: {}", call, solution.error()));
   }
 
@@ -94,19 +99,20 @@ struct Arm::Impl {
     return ++last_id;
   }
 
-  CartesianPath path() const { return {model, tcp_offset}; }
+  CartesianPath path() const { return {model, state->tcp_offset}; }
 
-  void ramp_scaling(ControllerState & state) const;
+  void ramp_scaling(ControllerState & current) const;
   void advance(const Tick & tick);
   void brake_hard(double deceleration);
 };
 
-void Arm::Impl::ramp_scaling(ControllerState & state) const
+void Arm::Impl::ramp_scaling(ControllerState & current) const
 {
-  const double slider = std::isfinite(state.speed_slider) ? std::clamp(state.speed_slider, 0.0, 1.0) : 0.0;
-  state.target_speed_fraction = paused ? 0.0 : slider;
+  const double slider =
+      std::isfinite(current.speed_slider) ? std::clamp(current.speed_slider, 0.0, 1.0) : 0.0;
+  current.target_speed_fraction = paused ? 0.0 : slider;
   const double step = scaling_rate * cycle_time;
-  state.speed_scaling += std::clamp(state.target_speed_fraction - state.speed_scaling, -step, step);
+  current.speed_scaling += std::clamp(current.target_speed_fraction - current.speed_scaling, -step, step);
 }
 
 void Arm::Impl::brake_hard(double deceleration)
@@ -129,11 +135,6 @@ Arm::Arm(const RobotModel & model, double cycle_time, const Vector6 & initial_po
 }
 
 Arm::~Arm() = default;
-
-void Arm::set_tcp(const Vector6 & tcp_offset)
-{
-  impl_->tcp_offset = tcp_offset;
-}
 
 MotionStart Arm::move_joint(const Vector6 & target, const MoveOptions & options)
 {
@@ -287,11 +288,9 @@ void Arm::Impl::advance(const Tick & tick)
 void Arm::step(ControllerState & state)
 {
   Impl & arm = *impl_;
-  arm.tcp_offset = state.tcp_offset;
-  arm.robot_mode = state.robot_mode;
-  arm.safety_mode = state.safety_mode;
+  arm.state = &state;
   arm.ramp_scaling(state);
-  if (arm.robot_mode != RobotMode::running) {
+  if (state.robot_mode != RobotMode::running) {
     // The brakes are on: whatever was moving stands where it is.
     arm.slot = std::monostate();
     arm.follower.freeze();
@@ -315,9 +314,7 @@ void Arm::teleport(const Vector6 & position, ControllerState & state)
   impl_->slot = std::monostate();
   impl_->setpoint = {position, Vector6::Zero()};
   impl_->follower.jump_to(position);
-  impl_->tcp_offset = state.tcp_offset;
-  impl_->robot_mode = state.robot_mode;
-  impl_->safety_mode = state.safety_mode;
+  impl_->state = &state;
   impl_->writer.forget();
   impl_->writer.write(impl_->setpoint, impl_->follower, state);
 }

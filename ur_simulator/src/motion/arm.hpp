@@ -31,17 +31,15 @@ struct MoveOptions {
 /// The arm's motion generator: one motion at a time, advanced one control cycle at a time. A new motion takes
 /// over from the one before at its present position and velocity. Starts are refused (never throw) for
 /// unreachable, non-finite or limit-breaking targets. Nothing moves unless the robot mode is RUNNING and the
-/// safety mode NORMAL, REDUCED or RECOVERY (as of the last step).
+/// safety mode NORMAL, REDUCED or RECOVERY.
+/// The state given to step() or teleport() must outlive the arm: its modes and its TCP offset hold for what
+/// starts next (Cartesian motions lead the TCP that was set when they started, to their end).
 class Arm {
  public:
   Arm(const RobotModel & model, double cycle_time, const Vector6 & initial_position);
   ~Arm();
   Arm(const Arm &) = delete;
   Arm & operator=(const Arm &) = delete;
-
-  /// The TCP (pose in the flange frame) that Cartesian motions started from now on lead. To be called when
-  /// set_tcp() changes it in the middle of a cycle; step() takes it from the state anyway.
-  void set_tcp(const Vector6 & tcp_offset);
 
   MotionStart move_joint(const Vector6 & target, const MoveOptions & options);
   MotionStart move_linear(const Vector6 & tcp_pose, const MoveOptions & options);

@@ -53,6 +53,9 @@ void ArmStateWriter::write_actual(ControllerState & state)
   state.actual_tcp_pose = to_pose(tcp);
   state.actual_tcp_speed = lever * state.actual.velocity;
 
+  const Eigen::Matrix<double, 3, 6> forces = lever.topRows<3>();
+  state.tcp_compliance = forces * model_.stiffness.cwiseInverse().asDiagonal() * forces.transpose();
+
   const Vector3 angular = state.actual_tcp_speed.tail<3>();
   const Vector3 arm = frames[5].translation() - tcp.translation();
   const Vector3 flange_velocity = state.actual_tcp_speed.head<3>() + angular.cross(arm);

@@ -54,9 +54,12 @@ std::optional<std::string> LimitWatch::check_force(const SafetyLimits & limits, 
 {
   constexpr double harder = 50.0;  // N that a forgiven force may grow by
   const double force = state.contact_wrench.head<3>().norm();
+  const bool was_forgiven = relenting_ || forgiven_ > limits.tool_force;
   forgiven_ = relenting_ ? force : std::min(forgiven_, force);
-  filtered_force_ = relenting_ ? force : filtered_force_;
   relenting_ = false;
+  if (was_forgiven) {
+    filtered_force_ = std::min(filtered_force_, force);  // what was forgiven does not linger in the filter
+  }
   filtered_force_ += (1.0 - std::exp(-cycle_time_ / limits.tool_force_time)) * (force - filtered_force_);
   const bool forgiven = forgiven_ > limits.tool_force;
   const double sustained_limit = forgiven ? forgiven_ + harder : limits.tool_force;

@@ -70,6 +70,10 @@ struct ControllerState {
   Vector3 tool_acceleration =
       Vector3(0.0, 0.0, -9.81);  ///< accelerometer at the flange, in flange axes, m/s^2
 
+  /// How far the TCP gives way to a force, m/N in base axes: the joints' elasticity. Written by Arm, read by
+  /// World.
+  Eigen::Matrix3d tcp_compliance = Eigen::Matrix3d::Zero();
+
   Vector6 tcp_offset = Vector6::Zero();  ///< pose of the TCP in the flange frame
   Payload payload;
   Vector3 gravity = Vector3(0.0, 0.0, 9.82);  ///< as set_gravity(): opposes the pull

@@ -40,14 +40,19 @@ Surface checked(const Surface & surface)
 }
 
 /// Spring and damper along the normal, never pulling; Coulomb friction across it, smooth through standstill.
-Vector3 surface_force(const Surface & surface, const Vector3 & point, const Vector3 & velocity)
+/// The arm's own elasticity lies in series with the surface: `state` tells where a rigid arm would be, and
+/// the arm gives way by its share of the depth.
+Vector3 surface_force(const Surface & surface, const ControllerState & state)
 {
-  const double depth = -surface.normal.dot(point - surface.point);
+  const Vector3 velocity = state.actual_tcp_speed.head<3>();
+  const double depth = -surface.normal.dot(state.actual_tcp_pose.head<3>() - surface.point);
   if (depth <= 0.0) {
     return Vector3::Zero();
   }
   const double approach = -surface.normal.dot(velocity);
-  const double normal_force = std::max(0.0, surface.stiffness * depth + surface.damping * approach);
+  const double share =
+      1.0 / (1.0 + surface.stiffness * surface.normal.dot(state.tcp_compliance * surface.normal));
+  const double normal_force = share * std::max(0.0, surface.stiffness * depth + surface.damping * approach);
   const Vector3 sliding = velocity + approach * surface.normal;
   constexpr double full_friction_speed = 1e-3;  // m/s
   return normal_force * surface.normal -
@@ -120,8 +125,7 @@ Vector6 World::contact(const ControllerState & state) const
 {
   Vector6 wrench = Vector6::Zero();
   for (const PlacedSurface & placed : surfaces_) {
-    wrench.head<3>() +=
-        surface_force(placed.surface, state.actual_tcp_pose.head<3>(), state.actual_tcp_speed.head<3>());
+    wrench.head<3>() += surface_force(placed.surface, state);
   }
   return wrench;
 }
