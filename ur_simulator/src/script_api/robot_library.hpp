@@ -44,6 +44,21 @@ class Watchdog {
   std::vector<Entry> entries_;
 };
 
+/// The joint positions of the last cycles, for get_actual_joint_positions_history(). The controller records
+/// once a cycle.
+class JointHistory {
+ public:
+  static constexpr std::size_t capacity = 1024;
+
+  void record(const Vector6 & position);
+  /// `steps` cycles ago (0: the last recorded); nothing when it is not that long.
+  std::optional<Vector6> back(std::size_t steps) const;
+
+ private:
+  std::array<Vector6, capacity> positions_{};
+  std::size_t count_ = 0;
+};
+
 /// What robot builtins ask of the controller as a whole. Called on the controller's thread, from inside
 /// Machine::cycle(): remember the request and act after the cycle.
 struct ScriptRequests {
@@ -61,6 +76,8 @@ struct RobotAccess {
   Watchdog & watchdog;
   ScriptRequests requests;
   double cycle_time = 0.002;  ///< s
+  /// Recorded by the controller each cycle after Arm::step; without it only the present position is known.
+  const JointHistory * history = nullptr;
 };
 
 /// The standard builtins and everything URScript offers of a robot, as far as it is modelled; the rest exists

@@ -1,0 +1,88 @@
+#include "script_api/motion_operation.hpp"
+
+namespace ur_simulator::script_api {
+
+namespace {
+
+// Two threads that move at once stop the program on the robot too.
+const Failure occupied{"Another thread is already controlling the robot"};
+
+}  // namespace
+
+MotionOperation::MotionOperation(RobotPtr robot, MotionId motion) : robot_(std::move(robot)), motion_(motion)
+{
+  robot_->moving = this;
+}
+
+MotionOperation::~MotionOperation()
+{
+  release();
+}
+
+void MotionOperation::release()
+{
+  if (robot_->moving == this) {
+    robot_->moving = nullptr;
+  }
+}
+
+tl::expected<std::optional<Value>, std::string> MotionOperation::poll(CallContext &)
+{
+  if (!robot_->access.arm.finished(motion_)) {
+    return std::nullopt;
+  }
+  release();
+  return Value();
+}
+
+void MotionOperation::abandon()
+{
+  robot_->access.arm.abandon(motion_);
+  release();
+}
+
+MoveOperation::MoveOperation(RobotPtr robot, MotionId motion, Start start, Arrived arrived)
+    : MotionOperation(std::move(robot), motion), start_(std::move(start)), arrived_(std::move(arrived))
+{
+}
+
+tl::expected<std::optional<Value>, std::string> MoveOperation::poll(CallContext & context)
+{
+  auto result = MotionOperation::poll(context);
+  if (!result || !*result || arrived_(robot().state())) {
+    return result;
+  }
+  const MotionStart again = start_(robot().access.arm);
+  if (!again) {
+    return tl::unexpected(again.error());
+  }
+  follow(*again);
+  robot().moving = this;
+  return std::nullopt;
+}
+
+Outcome begin_motion(const RobotPtr & robot, const std::function<MotionStart(Arm & arm)> & start)
+{
+  if (robot->moving != nullptr) {
+    return occupied;
+  }
+  const MotionStart motion = start(robot->access.arm);
+  if (!motion) {
+    return Failure{motion.error()};
+  }
+  return std::make_unique<MotionOperation>(robot, *motion);
+}
+
+Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start, MoveOperation::Arrived arrived)
+{
+  if (robot->moving != nullptr) {
+    return occupied;
+  }
+  const MotionStart motion = start(robot->access.arm);
+  if (!motion) {
+    return Failure{motion.error()};
+  }
+  return std::make_unique<MoveOperation>(robot, *motion, std::move(start), std::move(arrived));
+}
+
+}  // namespace ur_simulator::script_api

@@ -1,0 +1,28 @@
+#include "script_api/robot_library.hpp"
+
+#include "script_api/robot.hpp"
+
+namespace ur_simulator {
+
+std::shared_ptr<const urscript::Library> make_robot_library(const RobotAccess & access)
+{
+  auto library = std::make_shared<urscript::Library>();
+  const auto robot = std::make_shared<script_api::Robot>(access);
+  // First what is not modelled, so that whatever is replaces it.
+  script_api::add_builtins_not_modelled(*library);
+  urscript::add_standard_builtins(*library);
+  script_api::add_move_builtins(*library, robot);
+  script_api::add_speed_builtins(*library, robot);
+  script_api::add_hand_guiding_builtins(*library, robot);
+  script_api::add_state_builtins(*library, robot);
+  script_api::add_kinematics_builtins(*library, robot);
+  script_api::add_dynamics_builtins(*library, robot);
+  script_api::add_installation_builtins(*library, robot);
+  script_api::add_register_builtins(*library, robot);
+  script_api::add_digital_io_builtins(*library, robot);
+  script_api::add_analog_io_builtins(*library, robot);
+  script_api::add_controller_builtins(*library, robot);
+  return library;
+}
+
+}  // namespace ur_simulator
