@@ -19,8 +19,8 @@ struct CommandTraits {
   bool takes_over = false;
 };
 
-/// The part of Command<A> that is compiled once: the goals of a command, their arbitration, and the standstill
-/// at their end.
+/// The part of Command<A> that is compiled once: the goals of a command, their arbitration, and the
+/// standstill at their end.
 class CommandGoals {
  public:
   CommandGoals(CommandHost & host, std::string action, CommandTraits traits);

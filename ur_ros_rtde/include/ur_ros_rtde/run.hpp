@@ -50,7 +50,8 @@ class Run {
   [[nodiscard]] std::optional<Interruption> sleep_for(std::chrono::nanoseconds duration);
   /// Looks at `condition` with each package of the controller (each 10 ms without link). Nothing if it
   /// holds; timeout.
-  [[nodiscard]] std::optional<Interruption> until(const std::function<bool()> & condition, std::chrono::nanoseconds timeout);
+  [[nodiscard]] std::optional<Interruption> until(const std::function<bool()> & condition,
+                                                  std::chrono::nanoseconds timeout);
 
   /// Waits for the first package of the controller after `sample` and puts it there: for loops that follow
   /// the controller's cycle.
@@ -66,7 +67,8 @@ class Run {
   /// The last asynchronous move has ended, or nothing of it began within a second.
   bool motion_ended() const;
   /// The arm stands still (by its joints' velocities). Nothing if it does; timeout.
-  [[nodiscard]] std::optional<Interruption> until_standstill(std::chrono::nanoseconds limit = std::chrono::seconds(5));
+  [[nodiscard]] std::optional<Interruption> until_standstill(
+      std::chrono::nanoseconds limit = std::chrono::seconds(5));
 
   /// For the feedback; 0 to 1.
   void progress(double fraction) { progress_ = fraction; }

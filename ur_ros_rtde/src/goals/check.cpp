@@ -96,8 +96,8 @@ Check & Check::in_range(std::string_view field, double value, double low, double
 Check & Check::above_zero(std::string_view field, double value, double high, std::string_view unit)
 {
   if (ok() && !(std::isfinite(value) && value > 0.0 && value <= high)) {
-    fail(ErrorCode::invalid_goal, fmt::format("{} is {:.6g}{}, it must be above 0 and at most {:.6g}{}", field,
-                                              value, with_unit(unit), high, with_unit(unit)));
+    fail(ErrorCode::invalid_goal, fmt::format("{} is {:.6g}{}, it must be above 0 and at most {:.6g}{}",
+                                              field, value, with_unit(unit), high, with_unit(unit)));
   }
   return *this;
 }
@@ -111,14 +111,14 @@ Check & Check::pose(std::string_view field, const geometry_msgs::msg::Pose & pos
   const auto & p = pose.position;
   const double distance = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
   if (!std::isfinite(distance)) {
-    fail(ErrorCode::invalid_goal, fmt::format("{}.position is ({}, {}, {}) m, it must be finite", field, p.x,
-                                              p.y, p.z));
+    fail(ErrorCode::invalid_goal,
+         fmt::format("{}.position is ({}, {}, {}) m, it must be finite", field, p.x, p.y, p.z));
   } else if (const auto rotation = rotation_vector_of(pose); !rotation) {
     fail(ErrorCode::invalid_goal, fmt::format("{}.orientation: {}", field, rotation.error().message));
   } else if (distance > reach + 1.0) {  // a tool may add a metre
     fail(ErrorCode::unreachable,
-         fmt::format("{}.position is {:.3f} m from the base, the arm reaches {:.3f} m without its tool", field,
-                     distance, reach));
+         fmt::format("{}.position is {:.3f} m from the base, the arm reaches {:.3f} m without its tool",
+                     field, distance, reach));
   }
   return *this;
 }
@@ -149,9 +149,8 @@ Check & Check::line(std::string_view field, std::string_view text, std::size_t l
          fmt::format("{} has {} bytes, it may have 1 to {}", field, text.size(), longest));
     return *this;
   }
-  const auto control = std::find_if(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-  });
+  const auto control = std::find_if(text.begin(), text.end(),
+                                    [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
   if (control != text.end()) {
     fail(ErrorCode::invalid_goal,
          fmt::format("{} has a control character (0x{:02x}) at byte {}, it must be one line of text", field,
@@ -207,9 +206,10 @@ Check & Check::reachable_in(std::string_view field, const std::vector<double> & 
     const double angle = std::abs(positions[i] - sample->actual_q[i]);
     const double needed = peak * angle / time;
     that(needed <= arm.velocity[i],
-         fmt::format("{}[{}] ({}) would need {:.3f} rad/s to get there in {:.3f} s, its limit is {:.3f} rad/s: "
-                     "use a time of at least {:.3f} s",
-                     field, i, joint_names()[i], needed, time, arm.velocity[i], peak * angle / arm.velocity[i]));
+         fmt::format(
+             "{}[{}] ({}) would need {:.3f} rad/s to get there in {:.3f} s, its limit is {:.3f} rad/s: "
+             "use a time of at least {:.3f} s",
+             field, i, joint_names()[i], needed, time, arm.velocity[i], peak * angle / arm.velocity[i]));
   }
   return *this;
 }

@@ -100,10 +100,11 @@ Status CommandGoals::take(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket,
   if (traits_.takes_over) {
     host_.set_takeover_stop(std::nullopt);
   }
-  if (!lease) {
+  if (lease) {
+    ticket.lease = std::move(*lease);
+  } else if (!traits_.takes_over) {  // who does not give way must not keep the arm from being stopped
     return tl::unexpected(lease.error());
   }
-  ticket.lease = std::move(*lease);
   return {};
 }
 
@@ -140,8 +141,8 @@ Outcome CommandGoals::settle(Outcome outcome, const GoalBook::Ticket &, StopOpti
   if (stopped) {
     return outcome;
   }
-  const std::string warning = fmt::format("whether the arm stands still is not known: {}",
-                                          stopped.error().message);
+  const std::string warning =
+      fmt::format("whether the arm stands still is not known: {}", stopped.error().message);
   if (outcome) {
     return Outcome::failure(stopped.error().code, warning);
   }

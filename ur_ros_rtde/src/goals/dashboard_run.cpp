@@ -23,7 +23,8 @@ bool begins_with(std::string_view text, std::string_view beginning)
 
 bool is_one_of(const std::string & state, const std::vector<std::string> & states)
 {
-  return std::any_of(states.begin(), states.end(), [&](const std::string & s) { return begins_with(state, s); });
+  return std::any_of(states.begin(), states.end(),
+                     [&](const std::string & s) { return begins_with(state, s); });
 }
 }  // namespace
 
@@ -81,16 +82,17 @@ Outcome DashboardRun::command(const std::string & line, const std::string & repl
     return Outcome::failure(
         ErrorCode::rejected_by_robot,
         fmt::format("the dashboard server answered \"{}\" to \"{}\"{}", answer_, line,
-                    remote == false ? ": the robot is in local control, switch it to remote on the teach pendant"
-                                    : ""));
+                    remote == false
+                        ? ": the robot is in local control, switch it to remote on the teach pendant"
+                        : ""));
   }
   return effect ? until(*effect, timeout) : Outcome::success(answer_);
 }
 
 Outcome DashboardRun::until(const Effect & effect, double timeout)
 {
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                           std::chrono::duration<double>(timeout));
+  const auto deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout));
   std::string shown;
   while (true) {
     const std::string state = ask_value(effect.question);
@@ -102,10 +104,10 @@ Outcome DashboardRun::until(const Effect & effect, double timeout)
       return Outcome::success(fmt::format("{} is {}", effect.question, state));
     }
     if (Clock::now() >= deadline) {
-      return Outcome::failure(ErrorCode::timeout,
-                              fmt::format("{} is still {} after {:.1f} s, not {} (the command was answered \"{}\")",
-                                          effect.question, state, timeout, fmt::join(effect.states, " or "),
-                                          answer_));
+      return Outcome::failure(
+          ErrorCode::timeout,
+          fmt::format("{} is still {} after {:.1f} s, not {} (the command was answered \"{}\")",
+                      effect.question, state, timeout, fmt::join(effect.states, " or "), answer_));
     }
     if (auto why = sleep_for(question_interval)) {
       return *why;

@@ -29,10 +29,11 @@ Status GoalThreads::can_start_locked() const
   if (closed_) {
     return failure(ErrorCode::shutdown, "the node is being shut down");
   }
-  const auto running = std::count_if(entries_.begin(), entries_.end(), [](const Entry & e) { return !e.done; });
+  const auto running =
+      std::count_if(entries_.begin(), entries_.end(), [](const Entry & e) { return !e.done; });
   if (static_cast<std::size_t>(running) >= limit) {
-    return failure(ErrorCode::busy, std::to_string(limit) +
-                                        " goals are running, more are not taken: wait for one to end");
+    return failure(ErrorCode::busy,
+                   std::to_string(limit) + " goals are running, more are not taken: wait for one to end");
   }
   return {};
 }

@@ -17,6 +17,7 @@ constexpr milliseconds feedback_period{50};
 constexpr milliseconds longest_nap{10};
 /// Within which the control program begins a move after it has acknowledged it: two cycles, with reserve.
 constexpr std::chrono::seconds begin_limit{1};
+constexpr std::chrono::seconds package_limit{1};
 constexpr double joint_tolerance = 0.005;     // rad
 constexpr double position_tolerance = 0.002;  // m
 constexpr double rotation_share = 0.2;        // m/rad: what a rotation counts as, so that 0.01 rad is 2 mm
@@ -142,10 +143,27 @@ std::optional<Interruption> Run::until(const std::function<bool()> & condition,
 {
   auto why = wait(condition, Clock::now() + timeout);
   if (why && why->code == ErrorCode::timeout) {
-    why->message = fmt::format("nothing came of it within {:.1f} s",
-                               std::chrono::duration<double>(timeout).count());
+    why->message =
+        fmt::format("nothing came of it within {:.1f} s", std::chrono::duration<double>(timeout).count());
   }
   return why;
+}
+
+std::optional<Interruption> Run::next(Sample & sample)
+{
+  const auto deadline = Clock::now() + package_limit;
+  while (true) {
+    if (auto why = interruption()) {
+      return why;
+    }
+    feed_back();
+    if (robot_.wait_for_next(sample, longest_nap, interrupt_->token())) {
+      return interruption();
+    }
+    if (Clock::now() >= deadline) {
+      return Error{ErrorCode::link_lost, "no package came from the controller within a second"};
+    }
+  }
 }
 
 std::optional<Interruption> Run::until_standstill(std::chrono::nanoseconds limit)

@@ -32,8 +32,8 @@ void DashboardServer::start()
     }
   };
   plugins_.start(
-      select_plugins(find_plugins(report), dashboard_base, choice_.plugins, choice_.blacklist, report), *host_,
-      report);
+      select_plugins(find_plugins(report), dashboard_base, choice_.plugins, choice_.blacklist, report),
+      *host_, report);
   RCL_CXX_INFO(node_->logger(), "dashboard commands: {}", fmt::join(plugins_.names(), ", "));
 }
 

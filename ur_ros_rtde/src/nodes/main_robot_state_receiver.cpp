@@ -1,5 +1,5 @@
-#include "nodes/state_server.hpp"
 #include "nodes/process.hpp"
+#include "nodes/state_server.hpp"
 
 int main(int argc, char ** argv)
 {

@@ -39,8 +39,9 @@ std::string declare_choice(rcl_cxx::Node & node, const std::string & name, const
 /// Part of a name: letters, digits, '_' and '/', the latter as the official driver's prefixes may have it.
 std::string declare_tf_prefix(rcl_cxx::Node & node)
 {
-  auto options = described("Put before the names of joints and frames, as in the URDF: \"left_\" makes "
-                           "left_shoulder_pan_joint, left_base, left_tool0_controller");
+  auto options = described(
+      "Put before the names of joints and frames, as in the URDF: \"left_\" makes "
+      "left_shoulder_pan_joint, left_base, left_tool0_controller");
   options.additional_constraints = "letters, digits, '_' and '/'";
   const auto prefix = node.declare_parameter("tf_prefix", "", options);
   const auto wrong = std::find_if(prefix.begin(), prefix.end(), [](unsigned char c) {
@@ -48,16 +49,17 @@ std::string declare_tf_prefix(rcl_cxx::Node & node)
   });
   if (wrong != prefix.end()) {
     throw rcl_cxx::ParameterError(
-        "tf_prefix", fmt::format("parameter tf_prefix is \"{}\", it may have letters, digits, '_' and '/'",
-                                 prefix));
+        "tf_prefix",
+        fmt::format("parameter tf_prefix is \"{}\", it may have letters, digits, '_' and '/'", prefix));
   }
   return prefix;
 }
 
 ArmLimits declare_arm_limits(rcl_cxx::Node & node)
 {
-  auto options = described("Model of the arm, for the speed limits of its joints and its reach: ur3, ur5, ur10, "
-                           "ur3e, ur5e, ur10e, …; empty: what holds for every model");
+  auto options = described(
+      "Model of the arm, for the speed limits of its joints and its reach: ur3, ur5, ur10, "
+      "ur3e, ur5e, ur10e, …; empty: what holds for every model");
   const auto model = node.declare_parameter("ur_type", "", options);
   if (model.empty()) {
     return widest_arm_limits();
@@ -119,14 +121,14 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
   auto port = described("Port at which the External Control URCap finds this node");
   port.integer_range = rcl_cxx::IntegerRange{1, 65535};
   robot.urcap_port = static_cast<std::uint16_t>(node.declare_parameter<int>("urcap_port", 50002, port));
-  robot.watchdog_frequency =
-      declare_number(node, "watchdog_frequency", robot.watchdog_frequency, 0.0, 100.0,
-                     "Hz: the robot stops the arm after 1/watchdog_frequency s without a sign of life of this "
-                     "node; 0: no watchdog");
-  robot.restart_program =
-      node.declare_parameter("restart_program", true,
-                             described("Start the control program again after it was stopped, never what it was "
-                                       "doing"));
+  robot.watchdog_frequency = declare_number(
+      node, "watchdog_frequency", robot.watchdog_frequency, 0.0, 100.0,
+      "Hz: the robot stops the arm after 1/watchdog_frequency s without a sign of life of this "
+      "node; 0: no watchdog");
+  robot.restart_program = node.declare_parameter(
+      "restart_program", true,
+      described("Start the control program again after it was stopped, never what it was "
+                "doing"));
   parameters.preempt_when_busy =
       declare_choice(node, "on_busy", "refuse", {"refuse", "preempt"},
                      "What happens to a motion that comes while another runs: it is refused, or the other is "

@@ -23,7 +23,8 @@ void end_goals(const Servers & servers)
     return;
   }
   for (const std::string & name : left) {
-    RCL_CXX_FATAL(servers.front()->node().logger(), "goal {} does not end, the process ends without it", name);
+    RCL_CXX_FATAL(servers.front()->node().logger(), "goal {} does not end, the process ends without it",
+                  name);
   }
   // Its thread cannot be joined, and what it uses cannot be destroyed under it. The robot's watchdog stops
   // the arm.

@@ -27,7 +27,8 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options)
                                                &srv::GetJointState::Response::joint_state);
   get_tcp_pose_ =
       serve<srv::GetTcpPose>("get_tcp_pose", &StateMessages::tcp_pose, &srv::GetTcpPose::Response::tcp_pose);
-  get_wrench_ = serve<srv::GetWrench>("get_wrench", &StateMessages::wrench, &srv::GetWrench::Response::wrench);
+  get_wrench_ =
+      serve<srv::GetWrench>("get_wrench", &StateMessages::wrench, &srv::GetWrench::Response::wrench);
   get_io_state_ =
       serve<srv::GetIOState>("get_io_state", &StateMessages::io_state, &srv::GetIOState::Response::io_state);
 
@@ -62,8 +63,9 @@ Status RobotStateReceiver::freshness() const
   }
   const double age = std::chrono::duration<double>(Clock::now() - *received_).count();
   if (age > std::max(least_age, missing_periods / options_.frequency)) {
-    return failure(ErrorCode::link_lost,
-                   fmt::format("the robot told its state {:.1f} s ago for the last time: {}", age, problem()));
+    return failure(
+        ErrorCode::link_lost,
+        fmt::format("the robot told its state {:.1f} s ago for the last time: {}", age, problem()));
   }
   return {};
 }
@@ -124,8 +126,8 @@ void RobotStateReceiver::set_faking(const std_srvs::srv::SetBool::Request & requ
 void RobotStateReceiver::take_fake(const sensor_msgs::msg::JointState & message)
 {
   if (const auto taken = fake_.set(message); !taken) {
-    RCL_CXX_WARN_THROTTLE(node_.logger(), std::chrono::seconds(1), "fake_joint_states: a message is ignored: {}",
-                          taken.error());
+    RCL_CXX_WARN_THROTTLE(node_.logger(), std::chrono::seconds(1),
+                          "fake_joint_states: a message is ignored: {}", taken.error());
     return;
   }
   // Without a robot there are no packages to publish with.

@@ -26,8 +26,8 @@ std::string library_file(const std::string & path, const std::string & package, 
 {
   const fs::path given(path);
   const fs::path as_library = given.parent_path() / ("lib" + given.filename().string() + ".so");
-  for (const fs::path & folder : {fs::path(prefix) / "lib", fs::path(prefix) / "lib" / package,
-                                  fs::path(prefix)}) {
+  for (const fs::path & folder :
+       {fs::path(prefix) / "lib", fs::path(prefix) / "lib" / package, fs::path(prefix)}) {
     for (const fs::path & file : {as_library, given}) {
       std::error_code ignored;
       if (fs::is_regular_file(folder / file, ignored)) {
@@ -62,8 +62,9 @@ std::vector<PluginEntry> read_library(const tinyxml2::XMLElement & library, cons
       continue;
     }
     if (entry.base != command_base && entry.base != dashboard_base) {
-      report(fmt::format("{}:{}: plugin {} has the base_class_type \"{}\", which is neither {} nor {}: left out",
-                         file, element->GetLineNum(), entry.name, entry.base, command_base, dashboard_base));
+      report(
+          fmt::format("{}:{}: plugin {} has the base_class_type \"{}\", which is neither {} nor {}: left out",
+                      file, element->GetLineNum(), entry.name, entry.base, command_base, dashboard_base));
       continue;
     }
     const auto * description = element->FirstChildElement("description");

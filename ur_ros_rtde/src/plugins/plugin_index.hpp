@@ -8,12 +8,12 @@ namespace ur_ros_rtde {
 
 /// One <class> of a plugins.xml: what is known of a plugin before its library is loaded.
 struct PluginEntry {
-  std::string name;         ///< "move_l": the plugin's and its action's
-  std::string type;         ///< "ur_ros_rtde::MoveL"
-  std::string base;         ///< "ur_ros_rtde::CommandPlugin" or "ur_ros_rtde::DashboardPlugin"
+  std::string name;  ///< "move_l": the plugin's and its action's
+  std::string type;  ///< "ur_ros_rtde::MoveL"
+  std::string base;  ///< "ur_ros_rtde::CommandPlugin" or "ur_ros_rtde::DashboardPlugin"
   std::string description;
   std::string package;
-  std::string library;      ///< path of the file, or what was looked for
+  std::string library;  ///< path of the file, or what was looked for
 };
 
 using ReportProblem = std::function<void(const std::string &)>;

@@ -39,20 +39,20 @@ Expected<const PluginDescriptor *> PluginLibraries::describe(const PluginEntry &
   }
   const std::string symbol = symbol_of(entry.type);
   if (!(*library)->has_symbol(symbol)) {
-    return failure(ErrorCode::exception,
-                   fmt::format("{} has no symbol {}: UR_ROS_RTDE_EXPORT({}, \"{}\") is missing there",
-                               entry.library, symbol, symbol.substr(sizeof("ur_ros_rtde_plugin_") - 1),
-                               entry.name));
+    return failure(
+        ErrorCode::exception,
+        fmt::format("{} has no symbol {}: UR_ROS_RTDE_EXPORT({}, \"{}\") is missing there", entry.library,
+                    symbol, symbol.substr(sizeof("ur_ros_rtde_plugin_") - 1), entry.name));
   }
   using Entry = const PluginDescriptor * (*)();
   const auto function = reinterpret_cast<Entry>((*library)->get_symbol(symbol));
   const PluginDescriptor * descriptor = function();
   if (descriptor == nullptr || descriptor->abi_version != plugin_abi_version) {
-    return failure(ErrorCode::exception,
-                   fmt::format("{} was built for version {} of the plugin interface, this is version {}: build "
-                               "it again with this driver",
-                               entry.library, descriptor == nullptr ? 0 : descriptor->abi_version,
-                               plugin_abi_version));
+    return failure(
+        ErrorCode::exception,
+        fmt::format("{} was built for version {} of the plugin interface, this is version {}: build "
+                    "it again with this driver",
+                    entry.library, descriptor == nullptr ? 0 : descriptor->abi_version, plugin_abi_version));
   }
   if (descriptor->name != entry.name) {
     return failure(ErrorCode::exception,
@@ -60,10 +60,10 @@ Expected<const PluginDescriptor *> PluginLibraries::describe(const PluginEntry &
                                entry.library, descriptor->name, entry.name));
   }
   const bool command = entry.base == command_base;
-  if ((command ? static_cast<bool>(descriptor->create_command) : static_cast<bool>(descriptor->create_dashboard)) ==
-      false) {
-    return failure(ErrorCode::exception, fmt::format("{} does not derive from {}, as plugins.xml says", entry.type,
-                                                     entry.base));
+  if ((command ? static_cast<bool>(descriptor->create_command)
+               : static_cast<bool>(descriptor->create_dashboard)) == false) {
+    return failure(ErrorCode::exception,
+                   fmt::format("{} does not derive from {}, as plugins.xml says", entry.type, entry.base));
   }
   return descriptor;
 }

@@ -42,15 +42,16 @@ std::vector<PluginEntry> select_plugins(const std::vector<PluginEntry> & all, co
     }
     const auto [first, added] = known.try_emplace(entry.name, entry);
     if (!added) {
-      report(fmt::format("plugin {} of package {} ({}) is left out: package {} has one of that name already ({})",
-                         entry.name, entry.package, entry.library, first->second.package,
-                         first->second.library));
+      report(fmt::format(
+          "plugin {} of package {} ({}) is left out: package {} has one of that name already ({})",
+          entry.name, entry.package, entry.library, first->second.package, first->second.library));
     }
   }
   report_unknown("plugins", chosen, known, report);
   report_unknown("plugins_blacklist", blacklist, known, report);
 
-  const bool choose = std::any_of(chosen.begin(), chosen.end(), [](const auto & name) { return !name.empty(); });
+  const bool choose =
+      std::any_of(chosen.begin(), chosen.end(), [](const auto & name) { return !name.empty(); });
   std::vector<PluginEntry> selected;
   for (const auto & [name, entry] : known) {
     if ((!choose || contains(chosen, name)) && !contains(blacklist, name)) {

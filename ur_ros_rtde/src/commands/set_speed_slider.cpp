@@ -1,0 +1,30 @@
+#include <cmath>
+#include <ur_ros_rtde_msgs/action/set_speed_slider.hpp>
+
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+
+class SetSpeedSlider : public Command<ur_ros_rtde_msgs::action::SetSpeedSlider> {
+  Resource resource() const override { return Resource::none; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.in_range("fraction", goal.fraction, 0.0, 1.0);
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    run.io()->setSpeedSlider(goal.fraction);
+    const auto is_set = [&] { return std::abs(run.state().target_speed_fraction - goal.fraction) < 0.01; };
+    const auto why = run.until(is_set, std::chrono::seconds(1));
+    if (why && why->code == ErrorCode::timeout) {
+      return Outcome::failure(ErrorCode::rejected_by_robot, "the robot still reports another speed");
+    }
+    return why ? Outcome(*why) : Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(SetSpeedSlider, "set_speed_slider")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,37 @@
+#include <cmath>
+#include <ur_ros_rtde_msgs/action/zero_ft_sensor.hpp>
+
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+constexpr double zero_force = 5.0;  // N: above the noise of the sensors, below what anyone would call zero
+}
+
+class ZeroFtSensor : public Command<ur_ros_rtde_msgs::action::ZeroFtSensor> {
+  Outcome run(const Goal &, Run & run) override
+  {
+    run.control()->zeroFtSensor();
+    const auto reads_zero = [&] {
+      const Vector6 f = run.flange_force();
+      return std::hypot(f[0], f[1], f[2]) < zero_force;
+    };
+    const auto why = run.until(reads_zero, std::chrono::seconds(1));
+    const Vector6 f = run.flange_force();
+    auto & wrench = run.result().wrench;
+    wrench.force.x = f[0];
+    wrench.force.y = f[1];
+    wrench.force.z = f[2];
+    wrench.torque.x = f[3];
+    wrench.torque.y = f[4];
+    wrench.torque.z = f[5];
+    if (why && why->code == ErrorCode::timeout) {
+      return Outcome::failure(ErrorCode::rejected_by_robot, "the sensor does not read zero afterwards");
+    }
+    return why ? Outcome(*why) : Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(ZeroFtSensor, "zero_ft_sensor")
+
+}  // namespace ur_ros_rtde

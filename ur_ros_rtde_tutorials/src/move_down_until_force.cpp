@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ur_ros_rtde/command.hpp>
+#include <ur_ros_rtde_tutorials/action/move_down_until_force.hpp>
+
+namespace ur_ros_rtde_tutorials {
+
+using ur_ros_rtde::Check;
+using ur_ros_rtde::ErrorCode;
+using ur_ros_rtde::Outcome;
+using std::chrono_literals::operator""ms;
+
+class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForce> {
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.in_range("force", goal.force, 1.0, 500.0, "N")
+        .above_zero("distance", goal.distance, 2.0, "m")
+        .above_zero("speed", goal.speed, 1.0, "m/s")
+        .above_zero("acceleration", goal.acceleration, 10.0, "m/s^2")
+        .in_range("deceleration", goal.deceleration, 0.1, 40.0, "rad/s^2");
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    run.control()->zeroFtSensor();
+    if (auto why = run.sleep_for(20ms)) {  // the next packages tell the force since then
+      return *why;
+    }
+    auto goal_pose = run.receive()->getActualTCPPose();
+    const double start = goal_pose[2];
+    goal_pose[2] -= goal.distance;
+    run.control()->moveL(goal_pose, goal.speed, goal.acceleration, true);
+    while (true) {
+      auto f = run.flange_force();
+      tell(goal, run, f[2], start);
+      if (std::abs(f[2]) > goal.force) {
+        run.control()->stopJ(goal.deceleration, true);
+        break;
+      }
+      if (run.motion_ended()) {
+        return Outcome::failure(ErrorCode::not_reached, fmt::format("no force above {} N on {} m downwards",
+                                                                    goal.force, goal.distance));
+      }
+      if (auto why = run.sleep_for(2ms)) {
+        return *why;
+      }
+    }
+    return standstill(goal, run, start);
+  }
+
+  /// Feedback, and what the result says if the goal ends here.
+  static void tell(const Goal & goal, Run & run, double force, double start)
+  {
+    const double distance = start - run.state().actual_tcp_pose[2];
+    run.feedback().force = run.result().force = force;
+    run.feedback().distance = run.result().distance = distance;
+    run.progress(std::clamp(distance / goal.distance, 0.0, 1.0));
+  }
+
+  static Outcome standstill(const Goal & goal, Run & run, double start)
+  {
+    const double force = run.result().force;
+    const double stop = run.state().controller_time;
+    if (auto why = run.until_standstill()) {
+      return *why;
+    }
+    tell(goal, run, force, start);
+    run.result().stopping_time = run.state().controller_time - stop;
+    return Outcome::success(
+        fmt::format("stopped by {:.1f} N along the flange's Z axis, {:.3f} m further down", force,
+                    run.result().distance));
+  }
+};
+
+UR_ROS_RTDE_EXPORT(MoveDownUntilForce, "move_down_until_force")
+
+}  // namespace ur_ros_rtde_tutorials
