@@ -37,11 +37,19 @@ function(_ros_wheels_repair_targets)
   endforeach()
 endfunction()
 
+# A macro takes the policies of the place it is written at. Boost brings its own package file; FindBoost is no more.
+cmake_policy(PUSH)
+if(POLICY CMP0167)
+  cmake_policy(SET CMP0167 NEW)
+endif()
+
 # A macro, so that what find_package() sets reaches its caller.
 macro(_ros_wheels_find_package _ros_wheels_method _ros_wheels_package)
   find_package(${_ros_wheels_package} ${ARGN} BYPASS_PROVIDER)
   _ros_wheels_repair_targets()
 endmacro()
+
+cmake_policy(POP)
 
 cmake_language(SET_DEPENDENCY_PROVIDER _ros_wheels_find_package SUPPORTED_METHODS FIND_PACKAGE)
 

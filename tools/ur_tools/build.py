@@ -42,7 +42,7 @@ def cmake_arguments(options: Options, tests: bool) -> List[str]:
         arguments.append(f"-DUR_SANITIZE={layout.variant}")
     return ["-GNinja", f"-DCMAKE_BUILD_TYPE={build_type}", f"-DROS_WHEELS_PREFIX={layout.venv}",
             "-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=" + ";".join(map(str, includes)), "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
-            "-DBUILD_TESTING=" + ("ON" if tests else "OFF"), "--no-warn-unused-cli", *arguments]
+            "-DBUILD_TESTING=" + ("ON" if tests else "OFF"), "-Wno-unused-cli", *arguments]
 
 
 class Stamps:
@@ -152,8 +152,8 @@ def _explain(layout: Layout, progress: Progress, output: pathlib.Path) -> say.Fa
     for name in progress.failed:
         log = layout.log / "latest_build" / name / "stdout_stderr.log"
         text = log.read_text(errors="replace") if log.is_file() else ""
-        # ninja marks what failed; what comes before it are other files' warnings.
-        at = text.find("FAILED: ")
+        # What comes before the first failure are other files' warnings.
+        at = next((at for at in (text.find("FAILED: "), text.find("CMake Error")) if at >= 0), -1)
         shown = "\n".join(text[at:].splitlines()[:40]) if at >= 0 else say.tail(text)
         parts.append(f"{name} did not build ({log}):\n{shown}")
     if not parts:
