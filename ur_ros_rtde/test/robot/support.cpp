@@ -1,0 +1,150 @@
+#include "support.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+
+namespace ur_ros_rtde::test {
+
+std::string own_address()
+{
+  const auto * info = testing::UnitTest::GetInstance()->current_test_info();
+  const auto hash = std::hash<std::string>{}(std::string(info->test_suite_name()) + info->name());
+  // Not 127.0.x.y, where people start things by hand.
+  return "127." + std::to_string(16 + hash % 200) + "." + std::to_string(hash / 200 % 250) + "." +
+         std::to_string(2 + hash / 50000 % 250);
+}
+
+bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds limit)
+{
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      return false;
+    }
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+ur_simulator::SimulatorOptions Controller::options()
+{
+  ur_simulator::SimulatorOptions result;
+  result.address = own_address();
+  return result;
+}
+
+void Controller::start(const ur_simulator::SimulatorOptions & options)
+{
+  controller_ = std::make_unique<ur_simulator::SimulatedController>(options);
+}
+
+nlohmann::json Controller::control(const nlohmann::json & request)
+{
+  const auto reply = controller_->control(request);
+  EXPECT_TRUE(reply.at("ok").get<bool>()) << request << " -> " << reply;
+  return reply;
+}
+
+LogFunction Log::function()
+{
+  return [this](LogLevel, const std::string & line) {
+    const std::lock_guard lock(mutex_);
+    lines_.push_back(line);
+  };
+}
+
+std::size_t Log::count(const std::string & part) const
+{
+  const std::lock_guard lock(mutex_);
+  return static_cast<std::size_t>(std::count_if(lines_.begin(), lines_.end(), [&](const std::string & line) {
+    return line.find(part) != std::string::npos;
+  }));
+}
+
+std::string Log::text() const
+{
+  const std::lock_guard lock(mutex_);
+  std::string all;
+  for (const auto & line : lines_) {
+    all += line + "\n";
+  }
+  return all;
+}
+
+OtherService::OtherService(std::uint16_t port, std::string reply) : reply_(std::move(reply))
+{
+  listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int on = 1;
+  ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  ::inet_pton(AF_INET, own_address().c_str(), &address.sin_addr);
+  if (::bind(listener_, reinterpret_cast<const sockaddr *>(&address), sizeof(address)) != 0 ||
+      ::listen(listener_, 8) != 0) {
+    ADD_FAILURE() << "cannot listen on port " << port;
+  }
+  thread_ = std::jthread([this](const std::stop_token & stop) {
+    std::vector<int> clients;
+    while (!stop.stop_requested()) {
+      pollfd entry{listener_, POLLIN, 0};
+      if (::poll(&entry, 1, 10) > 0) {
+        const int client = ::accept(listener_, nullptr, nullptr);
+        ::send(client, reply_.data(), reply_.size(), MSG_NOSIGNAL);
+        clients.push_back(client);
+      }
+    }
+    std::for_each(clients.begin(), clients.end(), ::close);
+  });
+}
+
+OtherService::~OtherService()
+{
+  thread_.request_stop();
+  thread_.join();
+  ::close(listener_);
+}
+
+namespace {
+
+std::size_t entries(const char * folder)
+{
+  const std::filesystem::directory_iterator all(folder);
+  return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+}
+
+}  // namespace
+
+std::size_t open_descriptors()
+{
+  return entries("/proc/self/fd");
+}
+
+std::size_t running_threads()
+{
+  return entries("/proc/self/task");
+}
+
+RobotOptions robot_options()
+{
+  RobotOptions result;
+  result.address = own_address();
+  return result;
+}
+
+StateReceiverOptions receiver_options()
+{
+  StateReceiverOptions result;
+  result.address = own_address();
+  return result;
+}
+
+}  // namespace ur_ros_rtde::test
