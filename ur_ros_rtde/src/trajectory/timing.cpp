@@ -31,14 +31,13 @@ Grid coarse_grid(const Path & path, std::size_t first, std::size_t last)
 // Slows down everything from piece `begin` on until no limit is exceeded.
 void slow_to_limits(Motion & motion, std::size_t begin, const Limits & limits)
 {
-  double factor = 0.0;
-  for (std::size_t k = begin; k < motion.timing.size(); ++k) {
-    const PieceUse use = use_of(motion, motion.timing[k], limits, 2 * inner_points + 1);
-    factor = std::max({factor, use.velocity.maxCoeff(), std::sqrt(use.acceleration.maxCoeff()),
-                       std::cbrt(use.jerk.maxCoeff())});
-  }
   constexpr double margin = 2e-4;  // for what happens between the points looked at
-  if (factor > 1.0 - margin) {
+  for (int round = 0; round < 6; ++round) {
+    const Utilisation use = largest_use(motion, begin, limits);
+    const double factor = std::max({use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)});
+    if (factor <= 1.0 - 0.5 * margin) {
+      return;
+    }
     motion.stretch(factor * (1.0 + margin), begin);
   }
 }

@@ -17,6 +17,11 @@ Point point_at(const Motion & motion, const TimePiece & piece, double time)
   return at_place(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
 }
 
+int steps_of(const TimePiece & piece, double step)
+{
+  return std::max(8, static_cast<int>(std::ceil(piece.duration / step)));
+}
+
 std::optional<Excess> excess_of(Quantity quantity, const Joints & value, const Joints & limit, double time)
 {
   int joint = 0;
@@ -66,11 +71,24 @@ PieceUse use_of(const Motion & motion, const TimePiece & piece, const Limits & l
   return use;
 }
 
+Utilisation largest_use(const Motion & motion, std::size_t begin, const Limits & limits)
+{
+  Utilisation largest;
+  for (std::size_t k = begin; k < motion.timing.size(); ++k) {
+    const PieceUse use =
+        use_of(motion, motion.timing[k], limits, steps_of(motion.timing[k], verification_step) - 1);
+    largest.velocity = std::max(largest.velocity, use.velocity.maxCoeff());
+    largest.acceleration = std::max(largest.acceleration, use.acceleration.maxCoeff());
+    largest.jerk = std::max(largest.jerk, use.jerk.maxCoeff());
+  }
+  return largest;
+}
+
 std::optional<Excess> first_excess(const Motion & motion, const Limits & limits, double step,
                                    Utilisation & use)
 {
   for (const TimePiece & piece : motion.timing) {
-    const int steps = std::max(4, static_cast<int>(std::ceil(piece.duration / step)));
+    const int steps = steps_of(piece, step);
     for (int k = 0; k <= steps; ++k) {
       const double time = piece.start + piece.duration * k / steps;
       const Point point = point_at(motion, piece, time);

@@ -21,7 +21,13 @@ struct PieceUse {
   Joints velocity, acceleration, jerk;  // largest |value| / limit of each joint
 };
 
+inline constexpr double verification_step = 0.002;  // s
+
 PieceUse use_of(const Motion & motion, const TimePiece & piece, const Limits & limits, int inner);
+
+/// Largest uses of the limits by the pieces of a motion from `begin` on, at the points where first_excess
+/// looks by default.
+Utilisation largest_use(const Motion & motion, std::size_t begin, const Limits & limits);
 
 /// The first excess of a motion, seen in steps of at most `step` seconds; `use` receives the largest uses.
 std::optional<Excess> first_excess(const Motion & motion, const Limits & limits, double step,
