@@ -1,0 +1,430 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <test_msgs/action/fibonacci.hpp>
+
+#include "rcl_cxx/rcl_cxx.hpp"
+#include "ros_fixture.hpp"
+
+using Fibonacci = test_msgs::action::Fibonacci;
+using Handle = rcl_cxx::GoalHandle<Fibonacci>;
+using rcl_cxx::CancelCode;
+using rcl_cxx::GoalStatus;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+namespace {
+Fibonacci::Goal goal_of(int order)
+{
+  Fibonacci::Goal goal;
+  goal.order = order;
+  return goal;
+}
+
+Fibonacci::Result result_of(std::vector<int> sequence)
+{
+  Fibonacci::Result result;
+  result.sequence.assign(sequence.begin(), sequence.end());
+  return result;
+}
+
+/// A server that only keeps the handles: the test does what a worker would.
+class Actions : public Spinning {
+ protected:
+  ~Actions() override { context->shutdown("end of the test"); }
+
+  void serve(const rcl_cxx::ActionServerOptions & options = {})
+  {
+    rcl_cxx::ActionHandlers<Fibonacci> handlers;
+    handlers.goal = [this](const rcl_cxx::GoalId & id, const Fibonacci::Goal & goal) {
+      return on_goal ? on_goal(id, goal) : tl::expected<void, std::string>{};
+    };
+    handlers.accepted = [this](std::shared_ptr<Handle> handle) {
+      if (on_accepted) {
+        on_accepted(std::move(handle));
+        return;
+      }
+      const std::lock_guard lock(mutex);
+      handles.push_back(std::move(handle));
+    };
+    handlers.cancel = [this](Handle & handle) { return !on_cancel || on_cancel(handle); };
+    server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers), options);
+    client = node->create_action_client<Fibonacci>("fibonacci");
+    ASSERT_TRUE(client->wait_for_server(kLimit));
+  }
+
+  std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>> send(int order,
+                                                             rcl_cxx::SendGoalOptions<Fibonacci> options = {})
+  {
+    auto response = client->send_goal(goal_of(order), std::move(options));
+    return response.wait_for(kLimit) == std::future_status::ready ? response.get() : nullptr;
+  }
+
+  /// The server's side of the n-th goal.
+  std::shared_ptr<Handle> accepted(std::size_t n)
+  {
+    EXPECT_TRUE(eventually([&] {
+      const std::lock_guard lock(mutex);
+      return handles.size() > n;
+    }));
+    const std::lock_guard lock(mutex);
+    return handles.at(n);
+  }
+
+  static rcl_cxx::ActionResult<Fibonacci> result(
+      const std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>> & goal)
+  {
+    EXPECT_EQ(goal->result().wait_for(kLimit), std::future_status::ready);
+    return goal->result().get();
+  }
+
+  template <typename T>
+  static T get(std::future<T> future)
+  {
+    EXPECT_EQ(future.wait_for(kLimit), std::future_status::ready);
+    return future.get();
+  }
+
+  std::mutex mutex;
+  std::vector<std::shared_ptr<Handle>> handles;
+  std::function<tl::expected<void, std::string>(const rcl_cxx::GoalId &, const Fibonacci::Goal &)> on_goal;
+  std::function<void(std::shared_ptr<Handle>)> on_accepted;
+  std::function<bool(Handle &)> on_cancel;
+  std::shared_ptr<rcl_cxx::ActionServer<Fibonacci>> server;
+  std::shared_ptr<rcl_cxx::ActionClient<Fibonacci>> client;
+};
+using ActionGoals = Actions;
+using ActionCancel = Actions;
+using ActionEnd = Actions;
+using ActionCalls = Actions;
+}  // namespace
+
+TEST_F(ActionGoals, end_with_the_result_that_was_given)
+{
+  serve();
+  const auto goal = send(5);
+  ASSERT_TRUE(goal);
+  const auto handle = accepted(0);
+  EXPECT_EQ(handle->goal().order, 5);
+  EXPECT_EQ(handle->goal_id(), goal->goal_id());
+  EXPECT_EQ(handle->status(), GoalStatus::executing);
+  EXPECT_TRUE(handle->succeed(result_of({0, 1, 1})));
+  EXPECT_EQ(handle->status(), GoalStatus::succeeded);
+  EXPECT_FALSE(handle->is_active());
+  const auto end = result(goal);
+  EXPECT_EQ(end.status, GoalStatus::succeeded);
+  EXPECT_THAT(end.result.sequence, ElementsAre(0, 1, 1));
+  EXPECT_EQ(goal->status(), GoalStatus::succeeded);
+}
+
+TEST_F(ActionGoals, take_exactly_one_result)
+{
+  serve();
+  const auto goal = send(5);
+  const auto handle = accepted(0);
+  EXPECT_TRUE(handle->abort(result_of({7})));
+  EXPECT_FALSE(handle->succeed(result_of({8})));
+  EXPECT_FALSE(handle->abort(result_of({9})));
+  EXPECT_FALSE(handle->canceled());
+  EXPECT_FALSE(handle->publish_feedback(Fibonacci::Feedback()));
+  EXPECT_EQ(result(goal).status, GoalStatus::aborted);
+  EXPECT_THAT(result(goal).result.sequence, ElementsAre(7));
+}
+
+TEST_F(ActionGoals, take_the_first_result_of_racing_threads)
+{
+  serve();
+  for (std::size_t round = 0; round < 20; ++round) {
+    const auto goal = send(5);
+    const auto handle = accepted(round);
+    std::atomic<int> taken{0};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t) {
+      threads.emplace_back([&, t] { taken += (t % 2 == 0 ? handle->succeed() : handle->abort()) ? 1 : 0; });
+    }
+    for (std::thread & thread : threads) {
+      thread.join();
+    }
+    EXPECT_EQ(taken, 1);
+    EXPECT_EQ(result(goal).status, handle->status());
+  }
+}
+
+TEST_F(ActionGoals, cannot_be_canceled_by_the_server_alone)
+{
+  serve();
+  const auto goal = send(5);
+  const auto handle = accepted(0);
+  EXPECT_FALSE(handle->canceled());
+  EXPECT_TRUE(handle->is_active());
+  EXPECT_TRUE(handle->abort());
+}
+
+TEST_F(ActionGoals, given_up_are_aborted)
+{
+  serve();
+  on_accepted = [](std::shared_ptr<Handle>) {};
+  const auto goal = send(5);
+  EXPECT_EQ(result(goal).status, GoalStatus::aborted);
+  EXPECT_TRUE(result(goal).result.sequence.empty());
+}
+
+TEST_F(ActionGoals, whose_handler_throws_are_aborted)
+{
+  serve();
+  on_accepted = [](std::shared_ptr<Handle>) { throw std::runtime_error("is logged"); };
+  EXPECT_EQ(result(send(5)).status, GoalStatus::aborted);
+}
+
+TEST_F(ActionGoals, are_refused_by_reason_or_by_exception)
+{
+  serve();
+  on_goal = [](const rcl_cxx::GoalId &, const Fibonacci::Goal & goal) -> tl::expected<void, std::string> {
+    if (goal.order == 1) {
+      throw std::runtime_error("is logged");
+    }
+    return tl::make_unexpected(std::string("not today"));
+  };
+  EXPECT_FALSE(send(0));
+  EXPECT_FALSE(send(1));
+  EXPECT_EQ(server->active_goal_count(), 0U);
+}
+
+TEST_F(ActionGoals, run_at_the_same_time)
+{
+  serve();
+  std::vector<std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>>> goals;
+  for (int i = 0; i < 10; ++i) {
+    goals.push_back(send(i));
+    ASSERT_TRUE(goals.back());
+  }
+  accepted(9);
+  EXPECT_EQ(server->active_goal_count(), 10U);
+  for (std::size_t i = 10; i-- > 0;) {
+    EXPECT_TRUE(accepted(i)->succeed(result_of({static_cast<int>(i)})));
+  }
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_THAT(result(goals[i]).result.sequence, ElementsAre(static_cast<int>(i)));
+  }
+}
+
+TEST_F(ActionGoals, send_feedback_to_their_own_client)
+{
+  serve();
+  std::atomic<int> first{0};
+  std::atomic<int> second{0};
+  rcl_cxx::SendGoalOptions<Fibonacci> options;
+  options.on_feedback = [&](const Fibonacci::Feedback & feedback) { first = feedback.sequence.at(0); };
+  const auto one = send(1, options);
+  options.on_feedback = [&](const Fibonacci::Feedback & feedback) { second = feedback.sequence.at(0); };
+  const auto two = send(2, options);
+  Fibonacci::Feedback feedback;
+  feedback.sequence = {42};
+  EXPECT_TRUE(accepted(1)->publish_feedback(feedback));
+  EXPECT_TRUE(eventually([&] { return second == 42; }));
+  EXPECT_EQ(first, 0);
+}
+
+TEST_F(ActionCancel, is_granted_and_ends_as_canceled)
+{
+  serve();
+  const auto goal = send(5);
+  const auto handle = accepted(0);
+  const auto response = get(goal->cancel());
+  EXPECT_EQ(response.code, CancelCode::none);
+  EXPECT_THAT(response.goals, ElementsAre(goal->goal_id()));
+  EXPECT_TRUE(handle->is_canceling());
+  EXPECT_TRUE(handle->canceled(result_of({1})));
+  EXPECT_EQ(result(goal).status, GoalStatus::canceled);
+  EXPECT_THAT(result(goal).result.sequence, ElementsAre(1));
+}
+
+TEST_F(ActionCancel, that_is_refused_leaves_the_goal_alone)
+{
+  serve();
+  on_cancel = [](Handle &) { return false; };
+  const auto goal = send(5);
+  const auto handle = accepted(0);
+  const auto response = get(goal->cancel());
+  EXPECT_EQ(response.code, CancelCode::rejected);
+  EXPECT_TRUE(response.goals.empty());
+  EXPECT_EQ(handle->status(), GoalStatus::executing);
+  EXPECT_TRUE(handle->succeed());
+}
+
+TEST_F(ActionCancel, whose_handler_throws_is_refused)
+{
+  serve();
+  on_cancel = [](Handle &) -> bool { throw std::runtime_error("is logged"); };
+  const auto goal = send(5);
+  EXPECT_EQ(get(goal->cancel()).code, CancelCode::rejected);
+  EXPECT_TRUE(accepted(0)->is_active());
+}
+
+TEST_F(ActionCancel, may_be_carried_out_by_its_handler)
+{
+  serve();
+  on_cancel = [](Handle & handle) { return handle.canceled(result_of({3})); };
+  const auto goal = send(5);
+  const auto response = get(goal->cancel());
+  EXPECT_EQ(response.code, CancelCode::none);
+  EXPECT_EQ(result(goal).status, GoalStatus::canceled);
+}
+
+TEST_F(ActionCancel, loses_against_a_result_that_comes_first)
+{
+  serve();
+  on_cancel = [](Handle & handle) {
+    handle.succeed();
+    return true;
+  };
+  const auto goal = send(5);
+  const auto response = get(goal->cancel());
+  EXPECT_EQ(response.code, CancelCode::goal_terminated);
+  EXPECT_TRUE(response.goals.empty());
+  EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
+  EXPECT_EQ(get(goal->cancel()).code, CancelCode::goal_terminated);
+}
+
+TEST_F(ActionCancel, of_an_unknown_goal_says_so)
+{
+  serve();
+  EXPECT_EQ(get(client->cancel_goal(rcl_cxx::GoalId::random())).code, CancelCode::unknown_goal);
+}
+
+TEST_F(ActionCancel, of_all_or_of_earlier_goals)
+{
+  serve();
+  const auto one = send(1);
+  const auto two = send(2);
+  const auto three = send(3);
+  EXPECT_THAT(get(client->cancel_goals_before(accepted(1)->accepted_ns())).goals,
+              UnorderedElementsAre(one->goal_id(), two->goal_id()));
+  EXPECT_FALSE(accepted(2)->is_canceling());
+  EXPECT_THAT(get(client->cancel_all_goals()).goals, ElementsAre(three->goal_id()));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_TRUE(accepted(i)->canceled());
+  }
+  const auto nothing = get(client->cancel_all_goals());
+  EXPECT_EQ(nothing.code, CancelCode::none);
+  EXPECT_TRUE(nothing.goals.empty());
+}
+
+TEST_F(ActionCancel, races_with_results_without_losing_a_goal)
+{
+  serve();
+  for (std::size_t round = 0; round < 20; ++round) {
+    const auto goal = send(1);
+    const auto handle = accepted(round);
+    std::thread worker([&] {
+      if (!(handle->is_canceling() && handle->canceled())) {
+        handle->succeed();
+      }
+    });
+    const auto response = get(goal->cancel());
+    worker.join();
+    const GoalStatus end = result(goal).status;
+    EXPECT_TRUE(end == GoalStatus::canceled || end == GoalStatus::succeeded);
+    EXPECT_TRUE(response.code == CancelCode::none || end == GoalStatus::succeeded);
+  }
+}
+
+TEST_F(ActionEnd, of_the_server_aborts_its_goals)
+{
+  serve();
+  const auto goal = send(5);
+  const auto handle = accepted(0);
+  server.reset();
+  EXPECT_FALSE(handle->is_active());
+  EXPECT_FALSE(handle->succeed());
+  EXPECT_FALSE(handle->publish_feedback(Fibonacci::Feedback()));
+  EXPECT_EQ(result(goal).status, GoalStatus::aborted);
+}
+
+TEST_F(ActionEnd, of_the_context_aborts_its_goals_after_the_users_callbacks)
+{
+  serve();
+  const auto goal = send(5);
+  const auto other = send(6);
+  const auto handle = accepted(0);
+  const auto left = accepted(1);
+  context->on_pre_shutdown([&] { EXPECT_TRUE(handle->succeed(result_of({1}))); });
+  context->shutdown("test");
+  EXPECT_EQ(handle->status(), GoalStatus::succeeded);
+  EXPECT_EQ(left->status(), GoalStatus::aborted);
+  EXPECT_FALSE(left->abort());
+}
+
+TEST_F(ActionEnd, of_the_shutdown_refuses_new_goals)
+{
+  serve();
+  std::optional<bool> refused;
+  context->on_pre_shutdown([&] { refused = send(5) == nullptr; });
+  context->shutdown("test");
+  EXPECT_EQ(refused, true);
+}
+
+TEST_F(ActionEnd, of_results_comes_with_their_time)
+{
+  rcl_cxx::ActionServerOptions options;
+  options.result_timeout = std::chrono::milliseconds(100);
+  serve(options);
+  const auto goal = send(5);
+  EXPECT_TRUE(accepted(0)->succeed());
+  EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
+  EXPECT_EQ(get(client->cancel_goal(goal->goal_id())).code, CancelCode::goal_terminated);
+  EXPECT_TRUE(
+      eventually([&] { return get(client->cancel_goal(goal->goal_id())).code == CancelCode::unknown_goal; }));
+}
+
+TEST_F(ActionEnd, of_the_client_breaks_its_promises)
+{
+  serve();
+  const auto goal = send(5);
+  client.reset();
+  EXPECT_THROW(goal->result().get(), std::future_error);
+  EXPECT_THROW(goal->cancel(), rcl_cxx::Error);
+  EXPECT_TRUE(accepted(0)->abort());
+}
+
+TEST_F(ActionCalls, wait_for_the_result)
+{
+  serve();
+  on_accepted = [](std::shared_ptr<Handle> handle) {
+    handle->publish_feedback(Fibonacci::Feedback());
+    handle->succeed(result_of({handle->goal().order}));
+  };
+  const auto end = client->call(goal_of(9), kLimit);
+  ASSERT_TRUE(end) << end.error();
+  EXPECT_EQ(end->status, GoalStatus::succeeded);
+  EXPECT_THAT(end->result.sequence, ElementsAre(9));
+}
+
+TEST_F(ActionCalls, say_what_went_wrong)
+{
+  serve();
+  on_goal = [](const rcl_cxx::GoalId &, const Fibonacci::Goal & goal) -> tl::expected<void, std::string> {
+    return goal.order == 0 ? tl::make_unexpected(std::string("no")) : tl::expected<void, std::string>{};
+  };
+  EXPECT_THAT(client->call(goal_of(0), kLimit).error(), HasSubstr("refused"));
+  EXPECT_THAT(client->call(goal_of(1), std::chrono::milliseconds(100)).error(),
+              HasSubstr("cancel requested"));
+  const auto other = node->create_action_client<Fibonacci>("nobody");
+  EXPECT_THAT(other->call(goal_of(1), std::chrono::milliseconds(20)).error(),
+              HasSubstr("no such action server"));
+  std::promise<std::string> error;
+  executor->post([&] { error.set_value(client->call(goal_of(1), kLimit).error()); });
+  EXPECT_THAT(get(error.get_future()), HasSubstr("wait for ever"));
+}
+
+TEST_F(ActionCalls, cancel_what_they_no_longer_wait_for)
+{
+  serve();
+  EXPECT_FALSE(client->call(goal_of(1), std::chrono::milliseconds(100)));
+  EXPECT_TRUE(eventually([&] { return accepted(0)->is_canceling(); }));
+}

@@ -1,0 +1,151 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <future>
+
+#include "rcl_cxx/rcl_cxx.hpp"
+#include "ros_fixture.hpp"
+
+using rcl_cxx::Context;
+using rcl_cxx::ContextOptions;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+namespace {
+std::string error_of(const std::function<void()> & action)
+{
+  try {
+    action();
+  } catch (const rcl_cxx::Error & error) {
+    return error.what();
+  }
+  return "no exception";
+}
+}  // namespace
+
+TEST(ContextArguments, that_are_not_for_ros_are_returned)
+{
+  const auto context = make_context({"--speed", "1", "--ros-args", "-r", "a:=b", "--", "rest"});
+  EXPECT_THAT(context->non_ros_arguments(), ElementsAre("test", "--speed", "1", "rest"));
+}
+
+TEST(ContextArguments, that_ros_does_not_know_are_refused_by_name)
+{
+  EXPECT_THAT(error_of([] { make_context({"--ros-args", "--sped", "1"}); }),
+              HasSubstr("unknown ROS arguments: --sped 1"));
+}
+
+TEST(ContextArguments, that_are_malformed_are_refused)
+{
+  EXPECT_THAT(error_of([] { make_context({"--ros-args", "-r", "no remap"}); }), HasSubstr("no remap"));
+  EXPECT_THAT(error_of([] { make_context({"--ros-args", "--params-file", "/does/not/exist.yaml"}); }),
+              HasSubstr("/does/not/exist.yaml"));
+}
+
+TEST(ContextArguments, choose_the_domain_by_option)
+{
+  ContextOptions options;
+  options.handle_signals = false;
+  options.domain_id = 42;
+  EXPECT_EQ(Context({"test"}, options).domain_id(), 42U);
+}
+
+TEST(ContextShutdown, happens_once_and_keeps_its_reason)
+{
+  const auto context = make_context();
+  EXPECT_TRUE(context->ok());
+  EXPECT_FALSE(context->wait_for_shutdown(std::chrono::milliseconds(1)));
+  EXPECT_TRUE(context->shutdown("first"));
+  EXPECT_FALSE(context->shutdown("second"));
+  EXPECT_FALSE(context->ok());
+  EXPECT_EQ(context->shutdown_reason(), "first");
+  EXPECT_TRUE(context->wait_for_shutdown(std::chrono::seconds(0)));
+}
+
+TEST(ContextShutdown, runs_callbacks_in_their_order)
+{
+  const auto context = make_context();
+  std::vector<std::string> calls;
+  context->on_shutdown([&] { calls.push_back("after"); });
+  context->on_pre_shutdown([&] { calls.push_back(context->ok() ? "still ok" : "before 1"); });
+  context->on_pre_shutdown([&] { throw std::runtime_error("is logged"); });
+  const auto removed = context->on_pre_shutdown([&] { calls.push_back("removed"); });
+  context->on_pre_shutdown([&] { calls.push_back("before 2"); });
+  context->remove_callback(removed);
+  context->shutdown("test");
+  context->on_shutdown([&] { calls.push_back("late"); });
+  EXPECT_THAT(calls, ElementsAre("before 1", "before 2", "after", "late"));
+}
+
+TEST(ContextShutdown, wakes_who_waits_for_its_beginning_before_its_end)
+{
+  const auto context = make_context();
+  std::promise<void> go_on;
+  context->on_pre_shutdown([&] { go_on.get_future().wait_for(kLimit); });
+  auto done = std::async(std::launch::async, [&] { context->shutdown("test"); });
+  EXPECT_TRUE(context->wait_for_shutdown_begin(kLimit));
+  EXPECT_FALSE(context->wait_for_shutdown(std::chrono::milliseconds(5)));
+  go_on.set_value();
+  EXPECT_TRUE(context->wait_for_shutdown(kLimit));
+}
+
+TEST(ContextShutdown, leaves_other_contexts_alone)
+{
+  const auto one = make_context();
+  const auto other = make_context();
+  one->shutdown("test");
+  EXPECT_TRUE(other->ok());
+  EXPECT_NO_THROW(rcl_cxx::Node(other, "node"));
+}
+
+TEST(ContextShutdown, makes_new_nodes_impossible_and_says_so)
+{
+  const auto context = make_context();
+  context->shutdown("test");
+  EXPECT_THAT(error_of([&] { rcl_cxx::Node(context, "node"); }), HasSubstr("node 'node'"));
+}
+
+TEST(NodeNames, that_are_invalid_are_refused_with_the_reason)
+{
+  const auto context = make_context();
+  EXPECT_THAT(error_of([&] { rcl_cxx::Node(context, "my-node"); }), HasSubstr("'my-node'"));
+  EXPECT_THAT(error_of([&] { rcl_cxx::Node(context, "node", "bad space"); }), HasSubstr("'bad space'"));
+}
+
+TEST(NodeNames, follow_namespace_and_remaps)
+{
+  const auto context =
+      make_context({"--ros-args", "-r", "__ns:=/left", "-r", "chatter:=talk", "-r", "__node:=arm"});
+  const rcl_cxx::Node node(context, "node", "/robot");
+  EXPECT_EQ(node.fully_qualified_name(), "/left/arm");
+  EXPECT_EQ(node.name(), "arm");
+  EXPECT_EQ(node.node_namespace(), "/left");
+  EXPECT_EQ(node.resolve_topic_name("chatter"), "/left/talk");
+  EXPECT_EQ(node.resolve_topic_name("~/state"), "/left/arm/state");
+  EXPECT_EQ(node.resolve_service_name("/absolute"), "/absolute");
+  EXPECT_THAT(error_of([&] { node.resolve_topic_name("not valid"); }), HasSubstr("'not valid'"));
+}
+
+TEST(NodeNames, may_ignore_the_command_line)
+{
+  const auto context = make_context({"--ros-args", "-r", "__node:=arm"});
+  EXPECT_EQ(rcl_cxx::Node(context, "node", "", {.use_global_arguments = false}).name(), "node");
+  EXPECT_EQ(rcl_cxx::Node(context, "node", "", {.arguments = {"--ros-args", "-r", "__node:=leg"}}).name(),
+            "leg");
+}
+
+TEST(ContextSignalHandlers, are_gone_with_the_last_context)
+{
+  struct sigaction before = {};
+  struct sigaction during = {};
+  struct sigaction after = {};
+  ::sigaction(SIGTERM, nullptr, &before);
+  {
+    const Context context(std::vector<std::string>{"test"});
+    ::sigaction(SIGTERM, nullptr, &during);
+  }
+  ::sigaction(SIGTERM, nullptr, &after);
+  EXPECT_NE(before.sa_handler, during.sa_handler);
+  EXPECT_EQ(before.sa_handler, after.sa_handler);
+}

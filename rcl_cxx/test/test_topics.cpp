@@ -1,0 +1,299 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <future>
+#include <new>
+#include <std_msgs/msg/string.hpp>
+#include <std_srvs/srv/set_bool.hpp>
+#include <test_msgs/msg/basic_types.hpp>
+
+#include "rcl_cxx/rcl_cxx.hpp"
+#include "ros_fixture.hpp"
+
+using std_msgs::msg::String;
+using std_srvs::srv::SetBool;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+namespace {
+thread_local std::size_t allocations = 0;
+}  // namespace
+
+// Replacing these counts what C++ code of the program allocates, in the middleware's C++ libraries too.
+void * operator new(std::size_t size)
+{
+  ++allocations;
+  if (void * memory = std::malloc(size)) {
+    return memory;
+  }
+  throw std::bad_alloc();
+}
+void operator delete(void * memory) noexcept
+{
+  std::free(memory);
+}
+void operator delete(void * memory, std::size_t) noexcept
+{
+  std::free(memory);
+}
+
+namespace {
+using Topics = Spinning;
+using Services = Spinning;
+using Graph = Spinning;
+
+String text(const std::string & data)
+{
+  String message;
+  message.data = data;
+  return message;
+}
+}  // namespace
+
+TEST_F(Topics, carry_messages_in_their_order)
+{
+  std::vector<std::string> heard;
+  std::promise<void> all;
+  const auto subscription =
+      node->create_subscription<String>("topic", rcl_cxx::QoS::reliable(100), [&](const String & message) {
+        heard.push_back(message.data);
+        if (heard.size() == 3) {
+          all.set_value();
+        }
+      });
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(100));
+  EXPECT_EQ(publisher->topic_name(), "/test/topic");
+  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  EXPECT_TRUE(eventually([&] { return subscription->publisher_count() == 1; }));
+  publisher->publish(text("a"));
+  publisher->publish(text("b"));
+  publisher->publish(text("c"));
+  ASSERT_EQ(all.get_future().wait_for(kLimit), std::future_status::ready);
+  EXPECT_THAT(heard, ElementsAre("a", "b", "c"));
+}
+
+TEST_F(Topics, that_are_latched_reach_who_comes_late)
+{
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::latched());
+  publisher->publish(text("from before"));
+  std::promise<std::string> heard;
+  const auto subscription = node->create_subscription<String>(
+      "topic", rcl_cxx::QoS::latched(), [&](const String & message) { heard.set_value(message.data); });
+  auto future = heard.get_future();
+  ASSERT_EQ(future.wait_for(kLimit), std::future_status::ready);
+  EXPECT_EQ(future.get(), "from before");
+}
+
+TEST_F(Topics, give_messages_that_can_be_kept)
+{
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const String>> kept;
+  const auto subscription = node->create_subscription<String>("topic", rcl_cxx::QoS::reliable(100),
+                                                              [&](std::shared_ptr<const String> message) {
+                                                                const std::lock_guard lock(mutex);
+                                                                kept.push_back(std::move(message));
+                                                              });
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(100));
+  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  publisher->publish(text("a"));
+  publisher->publish(text("b"));
+  ASSERT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return kept.size() == 2;
+  }));
+  EXPECT_EQ(kept[0]->data, "a");
+  EXPECT_EQ(kept[1]->data, "b");
+}
+
+TEST_F(Topics, survive_a_callback_that_throws)
+{
+  std::atomic<int> calls{0};
+  const auto subscription =
+      node->create_subscription<String>("topic", rcl_cxx::QoS::reliable(10), [&](const String & message) {
+        ++calls;
+        if (message.data == "bad") {
+          throw std::runtime_error("is logged");
+        }
+      });
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
+  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  publisher->publish(text("bad"));
+  publisher->publish(text("good"));
+  EXPECT_TRUE(eventually([&] { return calls == 2; }));
+}
+
+TEST_F(Topics, take_messages_without_allocation_in_this_layer)
+{
+  // Nobody listens: the middleware has nothing to serialise, what is left is ours (and rcl's).
+  const auto publisher =
+      node->create_publisher<test_msgs::msg::BasicTypes>("alone", rcl_cxx::QoS::reliable(10));
+  const test_msgs::msg::BasicTypes message;
+  publisher->publish(message);
+  const std::size_t before = allocations;
+  for (int i = 0; i < 1000; ++i) {
+    publisher->publish(message);
+  }
+  EXPECT_EQ(allocations, before);
+}
+
+TEST_F(Topics, take_messages_from_many_threads)
+{
+  std::atomic<int> heard{0};
+  const auto subscription = node->create_subscription<String>("topic", rcl_cxx::QoS::reliable(1000),
+                                                              [&](const String &) { ++heard; });
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(1000));
+  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 100; ++i) {
+        publisher->publish(text("x"));
+      }
+    });
+  }
+  for (std::thread & thread : threads) {
+    thread.join();
+  }
+  EXPECT_TRUE(eventually([&] { return heard == 400; })) << heard;
+}
+
+TEST_F(Topics, with_invalid_names_are_refused)
+{
+  EXPECT_THROW(node->create_publisher<String>("not valid", rcl_cxx::QoS::reliable(1)), rcl_cxx::Error);
+  try {
+    node->create_subscription<String>("1st", rcl_cxx::QoS::reliable(1), [](const String &) {});
+    FAIL() << "no exception";
+  } catch (const rcl_cxx::Error & error) {
+    EXPECT_THAT(error.what(), HasSubstr("subscription 1st"));
+  }
+}
+
+TEST_F(Topics, are_silent_after_the_shutdown)
+{
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
+  context->shutdown("test");
+  EXPECT_NO_THROW(publisher->publish(text("nobody")));
+  EXPECT_EQ(publisher->subscription_count(), 0U);
+}
+
+TEST_F(Services, answer_calls)
+{
+  const auto service =
+      node->create_service<SetBool>("set", [](const SetBool::Request & request, auto & response) {
+        response.success = request.data;
+        response.message = "done";
+      });
+  EXPECT_EQ(service->service_name(), "/test/set");
+  const auto client = node->create_client<SetBool>("set");
+  SetBool::Request request;
+  request.data = true;
+  const auto response = client->call(request, kLimit);
+  ASSERT_TRUE(response) << response.error();
+  EXPECT_TRUE(response->success);
+  EXPECT_EQ(response->message, "done");
+  EXPECT_EQ(client->pending_count(), 0U);
+}
+
+TEST_F(Services, answer_many_calls_at_once)
+{
+  const auto service = node->create_service<SetBool>(
+      "set", [](const SetBool::Request & request, auto & response) { response.success = request.data; });
+  const auto client = node->create_client<SetBool>("set");
+  ASSERT_TRUE(client->wait_for_service(kLimit));
+  std::vector<std::future<SetBool::Response>> answers;
+  SetBool::Request request;
+  for (int i = 0; i < 20; ++i) {
+    request.data = i % 2 == 0;
+    answers.push_back(client->async_call(request));
+  }
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_EQ(answers[static_cast<std::size_t>(i)].wait_for(kLimit), std::future_status::ready);
+    EXPECT_EQ(answers[static_cast<std::size_t>(i)].get().success, i % 2 == 0);
+  }
+}
+
+TEST_F(Services, whose_handler_throws_answer_anyway)
+{
+  const auto service = node->create_service<SetBool>("set", [](const SetBool::Request &, auto & response) {
+    response.message = "half";
+    throw std::runtime_error("is logged");
+  });
+  const auto client = node->create_client<SetBool>("set");
+  const auto response = client->call(SetBool::Request(), kLimit);
+  ASSERT_TRUE(response) << response.error();
+  EXPECT_EQ(response->message, "half");
+}
+
+TEST_F(Services, that_do_not_exist_or_do_not_answer_are_reported)
+{
+  const auto client = node->create_client<SetBool>("none");
+  EXPECT_FALSE(client->service_is_ready());
+  EXPECT_EQ(client->call(SetBool::Request(), std::chrono::milliseconds(20)).error(),
+            "/test/none: there is no such service");
+
+  rcl_cxx::Node mute(context, "mute", "/test");  // in no executor
+  const auto service = mute.create_service<SetBool>("none", [](const SetBool::Request &, auto &) {});
+  ASSERT_TRUE(client->wait_for_service(kLimit));
+  EXPECT_EQ(client->call(SetBool::Request(), std::chrono::milliseconds(50)).error(),
+            "/test/none: no answer within the time given");
+  EXPECT_EQ(client->pending_count(), 0U);
+}
+
+TEST_F(Services, refuse_to_be_called_blocking_from_a_callback)
+{
+  const auto client = node->create_client<SetBool>("set");
+  std::promise<std::string> error;
+  executor->post([&] { error.set_value(client->call(SetBool::Request(), kLimit).error()); });
+  auto future = error.get_future();
+  ASSERT_EQ(future.wait_for(kLimit), std::future_status::ready);
+  EXPECT_THAT(future.get(), HasSubstr("wait for ever"));
+}
+
+TEST_F(Services, that_are_waited_for_at_the_shutdown_let_go)
+{
+  rcl_cxx::Node mute(context, "mute", "/test");
+  const auto service = mute.create_service<SetBool>("set", [](const SetBool::Request &, auto &) {});
+  const auto client = node->create_client<SetBool>("set");
+  ASSERT_TRUE(client->wait_for_service(kLimit));
+  auto call =
+      std::async(std::launch::async, [&] { return client->call(SetBool::Request(), kLimit).error(); });
+  ASSERT_TRUE(eventually([&] { return client->pending_count() == 1; }));
+  context->shutdown("test");
+  EXPECT_THAT(call.get(), HasSubstr("shutting down"));
+}
+
+TEST_F(Services, break_the_promises_of_a_destroyed_client)
+{
+  rcl_cxx::Node mute(context, "mute", "/test");
+  const auto service = mute.create_service<SetBool>("set", [](const SetBool::Request &, auto &) {});
+  auto client = node->create_client<SetBool>("set");
+  ASSERT_TRUE(client->wait_for_service(kLimit));
+  auto answer = client->async_call(SetBool::Request());
+  client.reset();
+  EXPECT_THROW(answer.get(), std::future_error);
+}
+
+TEST_F(Graph, is_seen_by_every_node)
+{
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
+  const rcl_cxx::Node other(context, "other", "/test");
+  EXPECT_TRUE(other.wait_for_publishers("topic", 1, kLimit));
+  EXPECT_TRUE(other.wait_for_node("/test/node", kLimit));
+  EXPECT_FALSE(other.wait_for_subscribers("topic", 1, std::chrono::milliseconds(10)));
+  EXPECT_EQ(other.count_publishers("topic"), 1U);
+  EXPECT_EQ(other.count_subscribers("topic"), 0U);
+  EXPECT_THAT(other.get_topic_names_and_types().at("/test/topic"), ElementsAre("std_msgs/msg/String"));
+  EXPECT_THAT(other.get_service_names_and_types().at("/test/node/list_parameters"),
+              ElementsAre("rcl_interfaces/srv/ListParameters"));
+}
+
+TEST_F(Graph, waits_end_with_the_shutdown)
+{
+  auto wait =
+      std::async(std::launch::async, [&] { return node->wait_for_node("/nobody", std::chrono::hours(1)); });
+  context->shutdown("test");
+  ASSERT_EQ(wait.wait_for(kLimit), std::future_status::ready);
+  EXPECT_FALSE(wait.get());
+}

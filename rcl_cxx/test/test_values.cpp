@@ -1,0 +1,238 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "../src/arguments.hpp"
+#include "../src/parameter_messages.hpp"
+#include "../src/parameter_rules.hpp"
+#include "../src/parameter_services.hpp"
+#include "rcl_cxx/error.hpp"
+#include "rcl_cxx/goal_id.hpp"
+#include "rcl_cxx/parameter_value.hpp"
+#include "rcl_cxx/qos.hpp"
+
+using rcl_cxx::ParameterOptions;
+using rcl_cxx::ParameterType;
+using rcl_cxx::ParameterValue;
+using rcl_cxx::QoS;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+TEST(QosByName, knows_every_name_it_lists)
+{
+  for (const std::string & name : QoS::names()) {
+    EXPECT_NO_THROW(QoS::from_name(name)) << name;
+  }
+  EXPECT_EQ(QoS::from_name("sensor_data"), QoS::sensor_data());
+  EXPECT_EQ(QoS::from_name("latched"), QoS::from_name("transient_local"));
+  EXPECT_EQ(QoS::from_name("default"), QoS::reliable(10));
+}
+
+TEST(QosByName, names_the_known_ones_when_it_does_not_know_one)
+{
+  try {
+    QoS::from_name("sensordata");
+    FAIL() << "no exception";
+  } catch (const rcl_cxx::Error & error) {
+    EXPECT_THAT(error.what(), HasSubstr("'sensordata'"));
+    EXPECT_THAT(error.what(), HasSubstr("sensor_data, latched"));
+  }
+}
+
+TEST(QosByName, keeps_everything_but_the_depth_when_the_depth_changes)
+{
+  const QoS qos = QoS::sensor_data().with_depth(1);
+  EXPECT_EQ(qos.depth, 1U);
+  EXPECT_EQ(qos.reliability, rcl_cxx::Reliability::best_effort);
+}
+
+TEST(ParameterValues, have_the_type_of_what_they_are_made_from)
+{
+  EXPECT_EQ(ParameterValue().type(), ParameterType::not_set);
+  EXPECT_EQ(ParameterValue(true).type(), ParameterType::boolean);
+  EXPECT_EQ(ParameterValue(7).type(), ParameterType::integer);
+  EXPECT_EQ(ParameterValue(7U).type(), ParameterType::integer);
+  EXPECT_EQ(ParameterValue(7.0F).type(), ParameterType::real);
+  EXPECT_EQ(ParameterValue("text").type(), ParameterType::string);
+  EXPECT_EQ(ParameterValue(std::vector<std::uint8_t>{1}).type(), ParameterType::byte_array);
+  EXPECT_EQ(ParameterValue(std::vector<bool>{true}).type(), ParameterType::boolean_array);
+  EXPECT_EQ(ParameterValue(std::vector<int>{1}).type(), ParameterType::integer_array);
+  EXPECT_EQ(ParameterValue(std::vector<double>{1.0}).type(), ParameterType::real_array);
+  EXPECT_EQ(ParameterValue(std::vector<std::string>{"a"}).type(), ParameterType::string_array);
+}
+
+TEST(ParameterValues, refuse_to_be_read_as_another_type)
+{
+  try {
+    ParameterValue(3).get<std::string>();
+    FAIL() << "no exception";
+  } catch (const rcl_cxx::Error & error) {
+    EXPECT_STREQ(error.what(), "the value 3 is of type integer, not string");
+  }
+  EXPECT_THROW(ParameterValue(3).get<double>(), rcl_cxx::Error);
+}
+
+TEST(ParameterValues, refuse_integers_that_do_not_fit)
+{
+  EXPECT_EQ(ParameterValue(255).get<std::uint8_t>(), 255);
+  EXPECT_THROW(ParameterValue(256).get<std::uint8_t>(), rcl_cxx::Error);
+  EXPECT_THROW(ParameterValue(-1).get<unsigned>(), rcl_cxx::Error);
+  EXPECT_THROW(ParameterValue(std::vector<std::int64_t>{1LL << 40}).get<std::vector<int>>(), rcl_cxx::Error);
+  EXPECT_THROW(ParameterValue(std::numeric_limits<std::uint64_t>::max()), rcl_cxx::Error);
+}
+
+TEST(ParameterValues, are_written_for_people)
+{
+  EXPECT_EQ(ParameterValue().to_string(), "not set");
+  EXPECT_EQ(ParameterValue(2.0).to_string(), "2.0");
+  EXPECT_EQ(ParameterValue("a b").to_string(), "'a b'");
+  EXPECT_EQ(ParameterValue(std::vector<bool>{true, false}).to_string(), "[true, false]");
+  EXPECT_EQ(ParameterValue(std::vector<std::uint8_t>{1, 255}).to_string(), "[0x01, 0xff]");
+}
+
+TEST(ParameterValues, survive_the_way_through_a_message)
+{
+  const std::vector<ParameterValue> values = {{},
+                                              true,
+                                              -5,
+                                              1.5,
+                                              "text",
+                                              std::vector<std::uint8_t>{0, 255},
+                                              std::vector<bool>{true, false},
+                                              std::vector<std::int64_t>{1, -1},
+                                              std::vector<double>{0.5},
+                                              std::vector<std::string>{"", "b"}};
+  for (const ParameterValue & value : values) {
+    EXPECT_EQ(rcl_cxx::detail::from_message(rcl_cxx::detail::to_message(value)), value) << value.to_string();
+  }
+}
+
+TEST(ParameterValues, of_an_unknown_type_count_as_not_set)
+{
+  rcl_interfaces::msg::ParameterValue message;
+  message.type = 77;
+  EXPECT_EQ(rcl_cxx::detail::from_message(message), ParameterValue());
+}
+
+namespace {
+rcl_cxx::ParameterResult check(const ParameterOptions & options, const ParameterValue & value)
+{
+  const ParameterType type = options.floating_point_range ? ParameterType::real : ParameterType::integer;
+  return rcl_cxx::detail::check_value("p", type, options, value);
+}
+}  // namespace
+
+TEST(ParameterRanges, include_their_limits)
+{
+  const ParameterOptions options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.5}};
+  EXPECT_TRUE(check(options, 0.0));
+  EXPECT_TRUE(check(options, 1.5));
+  EXPECT_FALSE(check(options, -0.01));
+  EXPECT_EQ(check(options, 1.6).error(), "parameter 'p' is limited to the range 0 to 1.5, it cannot be 1.6");
+}
+
+TEST(ParameterRanges, refuse_what_is_no_number)
+{
+  const ParameterOptions options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.0}};
+  EXPECT_FALSE(check(options, std::nan("")));
+  EXPECT_FALSE(check(options, std::numeric_limits<double>::infinity()));
+}
+
+TEST(ParameterRanges, with_a_step_allow_its_multiples_and_the_end)
+{
+  const ParameterOptions options{.floating_point_range = rcl_cxx::FloatingPointRange{0.1, 1.0, 0.2}};
+  EXPECT_TRUE(check(options, 0.1 + 0.2 + 0.2));
+  EXPECT_TRUE(check(options, 1.0));
+  EXPECT_FALSE(check(options, 0.2));
+  const ParameterOptions integers{.integer_range = rcl_cxx::IntegerRange{-5, 6, 2}};
+  EXPECT_TRUE(check(integers, -3));
+  EXPECT_TRUE(check(integers, 6));
+  EXPECT_FALSE(check(integers, -4));
+}
+
+TEST(ParameterRanges, of_the_whole_width_of_integers_do_not_overflow)
+{
+  const ParameterOptions options{.integer_range = rcl_cxx::IntegerRange{INT64_MIN, INT64_MAX, 2}};
+  EXPECT_TRUE(check(options, std::int64_t{INT64_MAX - 1}));
+  EXPECT_TRUE(check(options, std::int64_t{INT64_MAX}));
+  EXPECT_FALSE(check(options, std::int64_t{INT64_MAX - 2}));
+}
+
+TEST(ParameterRanges, hold_for_each_element_of_an_array)
+{
+  const ParameterOptions options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.0}};
+  const auto check_array = [&](std::vector<double> values) {
+    return rcl_cxx::detail::check_value("p", ParameterType::real_array, options, values).has_value();
+  };
+  EXPECT_TRUE(check_array({0.0, 1.0}));
+  EXPECT_FALSE(check_array({0.0, 1.1}));
+}
+
+TEST(ParameterTypes, are_fixed_unless_typing_is_dynamic)
+{
+  EXPECT_EQ(check({}, "x").error(),
+            "Wrong parameter type: parameter 'p' is of type integer, it cannot be 'x' (string)");
+  EXPECT_TRUE(check({.dynamic_typing = true}, "x"));
+}
+
+TEST(ListedParameters, follow_prefixes_and_depth)
+{
+  const std::vector<rcl_cxx::Parameter> all = {{"a", 1}, {"b.c", 1}, {"b.d.e", 1}, {"bc.x", 1}};
+  const auto names = [&](const std::vector<std::string> & prefixes, std::uint64_t depth) {
+    return rcl_cxx::detail::list_parameters(all, prefixes, depth).names;
+  };
+  EXPECT_THAT(names({}, 0), ElementsAre("a", "b.c", "b.d.e", "bc.x"));
+  EXPECT_THAT(names({}, 1), ElementsAre("a"));
+  EXPECT_THAT(names({}, 2), ElementsAre("a", "b.c", "bc.x"));
+  EXPECT_THAT(names({"b"}, 0), ElementsAre("b.c", "b.d.e"));
+  EXPECT_THAT(names({"b"}, 1), ElementsAre("b.c"));
+  EXPECT_THAT(names({"a", "b.d"}, 0), ElementsAre("a", "b.d.e"));
+  EXPECT_THAT(names({"none"}, 0), IsEmpty());
+  EXPECT_THAT(rcl_cxx::detail::list_parameters(all, {}, 0).prefixes, UnorderedElementsAre("b", "b.d", "bc"));
+}
+
+TEST(NodeNamesOfParameterFiles, may_have_wildcards)
+{
+  using rcl_cxx::detail::names_node;
+  EXPECT_TRUE(names_node("/robot/driver", "/robot/driver"));
+  EXPECT_TRUE(names_node("driver", "/driver"));
+  EXPECT_FALSE(names_node("driver", "/robot/driver"));
+  EXPECT_TRUE(names_node("/**", "/robot/left/driver"));
+  EXPECT_TRUE(names_node("/**/driver", "/driver"));
+  EXPECT_TRUE(names_node("/**/driver", "/robot/left/driver"));
+  EXPECT_FALSE(names_node("/**/driver", "/robot/left/other"));
+  EXPECT_TRUE(names_node("/*/driver", "/robot/driver"));
+  EXPECT_FALSE(names_node("/*/driver", "/robot/left/driver"));
+  EXPECT_FALSE(names_node("/*", "/robot/driver"));
+}
+
+TEST(GoalIds, are_random_version_4_uuids)
+{
+  std::set<rcl_cxx::GoalId> ids;
+  for (int i = 0; i < 100; ++i) {
+    const auto id = rcl_cxx::GoalId::random();
+    ids.insert(id);
+    const std::string text = id.to_string();
+    ASSERT_EQ(text.size(), 36U);
+    EXPECT_EQ(text[14], '4');
+    EXPECT_THAT(std::string("89ab"), HasSubstr(text.substr(19, 1)));
+  }
+  EXPECT_EQ(ids.size(), 100U);
+}
+
+TEST(GoalIds, are_written_as_usual)
+{
+  rcl_cxx::GoalId id;
+  for (std::uint8_t i = 0; i < 16; ++i) {
+    id.bytes[i] = i;
+  }
+  EXPECT_EQ(id.to_string(), "00010203-0405-0607-0809-0a0b0c0d0e0f");
+  EXPECT_EQ(id.short_string(), "00010203");
+  EXPECT_FALSE(id.is_zero());
+  EXPECT_TRUE(rcl_cxx::GoalId{}.is_zero());
+}
