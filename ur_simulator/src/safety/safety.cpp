@@ -209,11 +209,11 @@ SafetyAnswer Safety::restart_safety()
     return refuse("cannot restart safety: release the emergency stop first");
   }
   wanted_ = Power::off;
-  cutting_power_ = false;
+  cutting_power_ = robot_mode_ != RobotMode::power_off;
+  cut_since_ = now_;
   orders_.halt = stop_deceleration;
   orders_.stop_program = true;
   restart_until_ = now_ + times_.restart;
-  enter(RobotMode::power_off);
   log(Level::information, "restarting safety");
   return {};
 }

@@ -226,6 +226,20 @@ TEST(Violation, is_left_by_restarting_the_safety_system_only)
   }
 }
 
+TEST(RestartSafety, in_the_middle_of_a_motion_brakes_before_it_cuts_the_power)
+{
+  WholeRig rig;
+  ASSERT_TRUE(rig.arm.speed_joint(six(2.0, 0, 0, 0, 0, 0), 10.0, 0.0));
+  rig.run(0.5);
+  ASSERT_TRUE(rig.safety.restart_safety());
+  rig.step();
+  EXPECT_EQ(rig.state.robot_mode, RobotMode::running);
+  rig.until([&] { return rig.state.robot_mode == RobotMode::power_off; }, 0.3);
+  EXPECT_FALSE(rig.safety.power_on());
+  rig.run(1.0);
+  EXPECT_TRUE(rig.safety.power_on());
+}
+
 TEST(Steady, is_true_only_after_half_a_second_of_standing_still)
 {
   WholeRig rig;
