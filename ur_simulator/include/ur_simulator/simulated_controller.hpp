@@ -24,7 +24,8 @@ struct Ports {
 struct SimulatorOptions {
   std::string address = "127.0.0.1";
   std::string model = "ur10e";  ///< ur3 ur5 ur10 ur3e ur5e ur7e ur10e ur12e ur15 ur16e ur18 ur20 ur30 …
-  /// "3.15.8" for a CB3 controller (125 Hz), 5.x for the others (500 Hz); empty: 5.25.1, or 3.15.8 for CB3 models.
+  /// "3.15.8" for a CB3 controller (125 Hz), 5.x for the others (500 Hz); empty: 5.25.1, or 3.15.8 for CB3
+  /// models.
   std::string polyscope_version;
   Ports ports;
   /// Where the joints stand at first, rad; nothing: tool down above the table in front of the robot.
@@ -32,14 +33,15 @@ struct SimulatorOptions {
   bool start_running = true;  ///< powered on, brakes released; false: power off, as after boot
   bool remote_control = true;
   std::uint64_t seed = 1;  ///< of the sensor noise
-  bool realtime_priority = false;  ///< try SCHED_FIFO for the controller's thread; goes on without when not permitted
+  bool realtime_priority =
+      false;  ///< try SCHED_FIFO for the controller's thread; goes on without when not permitted
 };
 
-/// A simulated controller that runs in a thread of its own, from construction to destruction. All methods are thread-safe and
-/// must not be called from a condition of wait_until().
+/// A simulated controller that runs in a thread of its own, from construction to destruction. All methods are
+/// thread-safe and must not be called from a condition of wait_until().
 ///
-/// The constructor throws std::runtime_error: address and port when a port cannot be bound, the known ones when model or
-/// version are unknown, value and limit when joints are out of range.
+/// The constructor throws std::runtime_error: address and port when a port cannot be bound, the known ones
+/// when model or version are unknown, value and limit when joints are out of range.
 class SimulatedController {
  public:
   explicit SimulatedController(const SimulatorOptions & options = {});
@@ -49,14 +51,16 @@ class SimulatedController {
 
   const std::string & address() const;
   Ports ports() const;
-  /// One request of the control port ({"command": "push", …}), answered in the same JSON: {"ok": true, …} or {"ok": false,
-  /// "error": …}. Carried out between two cycles.
+  /// One request of the control port ({"command": "push", …}), answered in the same JSON: {"ok": true, …} or
+  /// {"ok": false, "error": …}. Carried out between two cycles.
   nlohmann::json control(const nlohmann::json & request);
   /// The state after the last cycle, as the control port's "state" reports it.
   nlohmann::json state();
-  /// Evaluates the condition on the state now and after every further control cycle, on the controller's thread; true as soon
-  /// as it holds, false when it has not become true within `limit` of wall-clock time. What it throws is thrown here.
-  bool wait_until(const std::function<bool(const nlohmann::json & state)> & condition, std::chrono::milliseconds limit);
+  /// Evaluates the condition on the state now and after every further control cycle, on the controller's
+  /// thread; true as soon as it holds, false when it has not become true within `limit` of wall-clock time.
+  /// What it throws is thrown here.
+  bool wait_until(const std::function<bool(const nlohmann::json & state)> & condition,
+                  std::chrono::milliseconds limit);
 
  private:
   struct Impl;

@@ -21,16 +21,16 @@ void print_ready(const ur_simulator::AppOptions & options, const ur_simulator::P
   if (options.quiet) {
     return;
   }
-  fmt::print(
-      "ready: {} on {}, dashboard {}, primary {}, secondary {}, real-time {}, RTDE {}, control {}\n",
-      options.simulator.model, options.simulator.address, ports.dashboard, ports.primary, ports.secondary, ports.realtime,
-      ports.rtde, ports.control);
+  fmt::print("ready: {} on {}, dashboard {}, primary {}, secondary {}, real-time {}, RTDE {}, control {}\n",
+             options.simulator.model, options.simulator.address, ports.dashboard, ports.primary,
+             ports.secondary, ports.realtime, ports.rtde, ports.control);
   std::fflush(stdout);
 }
 
 void print(const LogEntry & entry)
 {
-  fmt::print("{:10.3f} {:7} {:10} {}\n", entry.timestamp, ur_simulator::name(entry.level), entry.source, entry.text);
+  fmt::print("{:10.3f} {:7} {:10} {}\n", entry.timestamp, ur_simulator::name(entry.level), entry.source,
+             entry.text);
   std::fflush(stdout);
 }
 

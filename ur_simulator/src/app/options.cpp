@@ -13,7 +13,8 @@ namespace ur_simulator {
 namespace {
 
 /// "name=value" in two; throws when there is no '='.
-std::pair<std::string, std::string> split(const std::string & text, std::string_view option, std::string_view example)
+std::pair<std::string, std::string> split(const std::string & text, std::string_view option,
+                                          std::string_view example)
 {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) {
@@ -41,15 +42,17 @@ double height(const std::string & text)
 void set_port(Ports & ports, const std::string & text)
 {
   const std::map<std::string, std::uint16_t Ports::*> names{
-      {"primary", &Ports::primary},     {"secondary", &Ports::secondary}, {"realtime", &Ports::realtime},
-      {"rtde", &Ports::rtde},           {"dashboard", &Ports::dashboard}, {"control", &Ports::control}};
+      {"primary", &Ports::primary}, {"secondary", &Ports::secondary}, {"realtime", &Ports::realtime},
+      {"rtde", &Ports::rtde},       {"dashboard", &Ports::dashboard}, {"control", &Ports::control}};
   const auto [name, value] = split(text, "--ports", "rtde=30004");
   const auto port = names.find(name);
   std::uint16_t number = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
   if (port == names.end() || error != std::errc() || end != value.data() + value.size()) {
-    throw std::runtime_error(fmt::format(
-        "--ports '{}' is not understood: give primary, secondary, realtime, rtde, dashboard or control = 0..65535", text));
+    throw std::runtime_error(
+        fmt::format("--ports '{}' is not understood: give primary, secondary, realtime, rtde, dashboard or "
+                    "control = 0..65535",
+                    text));
   }
   ports.*(port->second) = number;
 }
@@ -59,12 +62,17 @@ void set_port(Ports & ports, const std::string & text)
 void declare(CLI::App & app, AppOptions & options)
 {
   SimulatorOptions & simulator = options.simulator;
-  app.description("A simulated Universal Robots controller: RTDE, dashboard, script ports, and a JSON control port.");
+  app.description(
+      "A simulated Universal Robots controller: RTDE, dashboard, script ports, and a JSON control port.");
   app.add_option("--address", simulator.address, "IP address to listen on")->capture_default_str();
-  app.add_option("--model", simulator.model, "robot model, such as ur5e, ur10e, ur20, ur10 (CB3)")->capture_default_str();
-  app.add_option("--polyscope", simulator.polyscope_version, "version of the controller's software (5.25.1; 3.15.8 for CB3)");
+  app.add_option("--model", simulator.model, "robot model, such as ur5e, ur10e, ur20, ur10 (CB3)")
+      ->capture_default_str();
+  app.add_option("--polyscope", simulator.polyscope_version,
+                 "version of the controller's software (5.25.1; 3.15.8 for CB3)");
   app.add_option("--ports", options.port_texts, "other ports: name=number (0: any free one)")->delimiter(',');
-  app.add_option("--joints", options.joints, "where the joints stand at first, rad")->expected(6)->delimiter(',');
+  app.add_option("--joints", options.joints, "where the joints stand at first, rad")
+      ->expected(6)
+      ->delimiter(',');
   app.add_option("--surface", options.surface_texts, "a horizontal elastic surface: z=height in m");
   app.add_option("--seed", simulator.seed, "seed of the sensor noise")->capture_default_str();
   app.add_flag("--powered-off", options.powered_off, "start as after boot, powered off");

@@ -15,7 +15,10 @@ std::array<std::span<const Command>, 4> all_commands()
   return {world_commands(), robot_commands(), link_commands(), inquiry_commands()};
 }
 
-json refusal(const std::string & error) { return {{"ok", false}, {"error", error}}; }
+json refusal(const std::string & error)
+{
+  return {{"ok", false}, {"error", error}};
+}
 
 json help()
 {

@@ -15,17 +15,23 @@ double checked(const std::string & name, const nlohmann::json & value, Range ran
   }
   const double number = value.get<double>();
   if (!std::isfinite(number) || number < range.least || number > range.most) {
-    throw RequestError(
-        fmt::format("field '{}' is {}: it must be between {} and {}", name, value.dump(), range.least, range.most));
+    throw RequestError(fmt::format("field '{}' is {}: it must be between {} and {}", name, value.dump(),
+                                   range.least, range.most));
   }
   return number;
 }
 
 }  // namespace
 
-Fields::Fields(const nlohmann::json & request) : request_(request) { read_.emplace_back("command"); }
+Fields::Fields(const nlohmann::json & request) : request_(request)
+{
+  read_.emplace_back("command");
+}
 
-bool Fields::has(std::string_view name) const { return request_.contains(name); }
+bool Fields::has(std::string_view name) const
+{
+  return request_.contains(name);
+}
 
 const nlohmann::json * Fields::find(const std::string & name, bool optional)
 {
@@ -53,10 +59,11 @@ std::int64_t Fields::integer(const std::string & name, std::int64_t least, std::
   if (value == nullptr) {
     return *fallback;
   }
-  if (!value->is_number_integer() || (value->is_number_unsigned() && value->get<std::uint64_t>() > INT64_MAX) ||
+  if (!value->is_number_integer() ||
+      (value->is_number_unsigned() && value->get<std::uint64_t>() > INT64_MAX) ||
       value->get<std::int64_t>() < least || value->get<std::int64_t>() > most) {
-    throw RequestError(
-        fmt::format("field '{}' is {}: it must be a whole number from {} to {}", name, value->dump(), least, most));
+    throw RequestError(fmt::format("field '{}' is {}: it must be a whole number from {} to {}", name,
+                                   value->dump(), least, most));
   }
   return value->get<std::int64_t>();
 }
@@ -90,8 +97,8 @@ std::string Fields::choice(const std::string & name, std::span<const std::string
 {
   const std::string value = text(name, std::move(fallback));
   if (std::ranges::find(choices, value) == choices.end()) {
-    throw RequestError(
-        fmt::format("field '{}' is '{}': it must be one of {}", name, value, fmt::join(choices.begin(), choices.end(), ", ")));
+    throw RequestError(fmt::format("field '{}' is '{}': it must be one of {}", name, value,
+                                   fmt::join(choices.begin(), choices.end(), ", ")));
   }
   return value;
 }
@@ -100,7 +107,8 @@ std::vector<double> Fields::numbers(const std::string & name, std::size_t count,
 {
   const nlohmann::json & value = *find(name, false);
   if (!value.is_array() || value.size() != count) {
-    throw RequestError(fmt::format("field '{}' is {}: it must be an array of {} numbers", name, value.dump(), count));
+    throw RequestError(
+        fmt::format("field '{}' is {}: it must be an array of {} numbers", name, value.dump(), count));
   }
   std::vector<double> result;
   for (std::size_t i = 0; i < count; ++i) {

@@ -23,8 +23,8 @@ struct Range {
   double most;
 };
 
-/// Typed access to a request's fields. Every getter throws RequestError; finish() rejects fields nobody asked for, so that a
-/// misspelt one does not pass in silence.
+/// Typed access to a request's fields. Every getter throws RequestError; finish() rejects fields nobody asked
+/// for, so that a misspelt one does not pass in silence.
 class Fields {
  public:
   explicit Fields(const nlohmann::json & request);

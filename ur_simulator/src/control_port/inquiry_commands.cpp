@@ -28,7 +28,8 @@ json joints(const JointState & state)
 
 std::string_view name(RuntimeState state)
 {
-  constexpr std::array<std::string_view, 6> names{"STOPPING", "STOPPED", "PLAYING", "PAUSING", "PAUSED", "RESUMING"};
+  constexpr std::array<std::string_view, 6> names{"STOPPING", "STOPPED", "PLAYING",
+                                                  "PAUSING",  "PAUSED",  "RESUMING"};
   return names[static_cast<std::size_t>(state)];
 }
 
@@ -56,12 +57,9 @@ json clients(const Bench & bench)
 
 json io(const Io & io)
 {
-  return {{"digital_inputs", io.digital_inputs},
-          {"digital_outputs", io.digital_outputs},
-          {"analog_inputs", io.analog_inputs},
-          {"analog_outputs", io.analog_outputs},
-          {"analog_io_types", io.analog_io_types},
-          {"tool_analog_inputs", io.tool_analog_inputs}};
+  return {{"digital_inputs", io.digital_inputs},   {"digital_outputs", io.digital_outputs},
+          {"analog_inputs", io.analog_inputs},     {"analog_outputs", io.analog_outputs},
+          {"analog_io_types", io.analog_io_types}, {"tool_analog_inputs", io.tool_analog_inputs}};
 }
 
 json registers(const Registers & registers)
@@ -101,7 +99,8 @@ json log(Bench & bench, Fields & fields)
 constexpr std::array table{
     Command{"state", "", "All of the state after the last cycle, in SI units.", state},
     Command{"registers", "", "The general purpose registers.", get_registers},
-    Command{"log", "after (0)", "What the robot's log shows: the last 1000 entries, those numbered above 'after'.", log},
+    Command{"log", "after (0)",
+            "What the robot's log shows: the last 1000 entries, those numbered above 'after'.", log},
 };
 
 }  // namespace
@@ -144,6 +143,9 @@ json to_json(const Bench & bench)
           {"actual_execution_time", s.actual_execution_time}};
 }
 
-std::span<const Command> inquiry_commands() { return table; }
+std::span<const Command> inquiry_commands()
+{
+  return table;
+}
 
 }  // namespace ur_simulator::control_port

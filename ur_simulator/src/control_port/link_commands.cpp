@@ -46,7 +46,8 @@ json to_connections(Bench & bench, Fields & fields, const std::function<void(Con
                                                          : rtde::ClientRole::io;
     bench.rtde.for_each(role, counted);
   } else {
-    throw RequestError("field 'clients' is '" + clients + "': only links of 'rtde' can be chosen by what they are for");
+    throw RequestError("field 'clients' is '" + clients +
+                       "': only links of 'rtde' can be chosen by what they are for");
   }
   return {{"connections", count}};
 }
@@ -54,7 +55,8 @@ json to_connections(Bench & bench, Fields & fields, const std::function<void(Con
 json drop_links(Bench & bench, Fields & fields)
 {
   const bool reset = fields.boolean("reset", false);
-  return to_connections(bench, fields, [reset](Connection & connection) { reset ? connection.reset() : connection.close(); });
+  return to_connections(
+      bench, fields, [reset](Connection & connection) { reset ? connection.reset() : connection.close(); });
 }
 
 json stall_links(Bench & bench, Fields & fields)
@@ -103,22 +105,28 @@ json reboot(Bench & bench, Fields & fields)
 
 constexpr std::array table{
     Command{"drop_links",
-            "which all|rtde|dashboard|script|primary|secondary|realtime (all); clients all|control|receive|io (all); reset "
+            "which all|rtde|dashboard|script|primary|secondary|realtime (all); clients "
+            "all|control|receive|io (all); reset "
             "true|false (false)",
             "Closes connections, in order or with a reset.", drop_links},
-    Command{"stall_links", "which, clients as drop_links; stalled true|false (true)",
-            "Connections stay open but nothing is read or sent, as behind a pulled cable; false lets them go on.",
-            stall_links},
-    Command{"send_garbage", "which, clients as drop_links; bytes 1..65536 (64)", "Sends bytes that mean nothing.",
-            send_garbage},
+    Command{
+        "stall_links", "which, clients as drop_links; stalled true|false (true)",
+        "Connections stay open but nothing is read or sent, as behind a pulled cable; false lets them go on.",
+        stall_links},
+    Command{"send_garbage", "which, clients as drop_links; bytes 1..65536 (64)",
+            "Sends bytes that mean nothing.", send_garbage},
     Command{"refuse_connections", "which (all)", "Closes ports; open connections stay.", refuse_connections},
     Command{"accept_connections", "which (all)", "Opens them again.", accept_connections},
     Command{"reboot", "duration s (1)",
-            "Resets all connections, is away for so long and comes back powered off, its clock at 0.", reboot},
+            "Resets all connections, is away for so long and comes back powered off, its clock at 0.",
+            reboot},
 };
 
 }  // namespace
 
-std::span<const Command> link_commands() { return table; }
+std::span<const Command> link_commands()
+{
+  return table;
+}
 
 }  // namespace ur_simulator::control_port

@@ -169,7 +169,8 @@ constexpr std::array table{
             unlock_protective_stop},
     Command{"emergency_stop", "pressed true|false (true); system true|false (false)",
             "Presses or releases the emergency stop button.", emergency_stop},
-    Command{"safeguard", "open true|false (true)", "Opens the safeguard, or closes and resets it.", safeguard},
+    Command{"safeguard", "open true|false (true)", "Opens the safeguard, or closes and resets it.",
+            safeguard},
     Command{"reduced_mode", "on true|false (true)", "Switches reduced mode.", reduced_mode},
     Command{"violation", "reason", "Causes a safety violation.", violation},
     Command{"fault", "reason", "Causes a safety fault.", fault},
@@ -177,8 +178,8 @@ constexpr std::array table{
     Command{"power", "to off|on|release_brakes|running",
             "Powers the arm; 'running' skips the delays of a real robot.", power},
     Command{"remote_control", "on true|false (true)", "Remote or local control.", remote_control},
-    Command{"store_program", "name; script; load true|false (false)", "Puts a program on the controller's disk.",
-            store_program},
+    Command{"store_program", "name; script; load true|false (false)",
+            "Puts a program on the controller's disk.", store_program},
     Command{"run_script", "script", "Runs a script as if it came through a script port.", run_script},
     Command{"play", "", "The pendant's play button.", play},
     Command{"pause_program", "", "The pendant's pause button.", pause_program},
@@ -189,6 +190,9 @@ constexpr std::array table{
 
 }  // namespace
 
-std::span<const Command> robot_commands() { return table; }
+std::span<const Command> robot_commands()
+{
+  return table;
+}
 
 }  // namespace ur_simulator::control_port

@@ -12,12 +12,16 @@ constexpr std::size_t longest_line = 1024 * 1024;
 }  // namespace
 
 Server::Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, Handler handler)
-: handler_(std::move(handler)),
-  listener_(io, address, port, [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
+    : handler_(std::move(handler)),
+      listener_(io, address, port,
+                [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
 {
 }
 
-Server::~Server() { listener_.close_all(); }
+Server::~Server()
+{
+  listener_.close_all();
+}
 
 void Server::accept(const std::shared_ptr<Connection> & connection)
 {
@@ -47,7 +51,8 @@ void Server::receive(Client & client, std::string_view bytes)
   }
   client.received.erase(0, begin);
   if (client.received.size() > longest_line) {
-    client.connection->send(fmt::format(R"({{"ok":false,"error":"a line has at most {} bytes"}})", longest_line) + "\n");
+    client.connection->send(
+        fmt::format(R"({{"ok":false,"error":"a line has at most {} bytes"}})", longest_line) + "\n");
     client.connection->close_after_sending();
   }
 }
@@ -56,8 +61,9 @@ std::string Server::answer(std::string_view line) const
 {
   const nlohmann::json request = nlohmann::json::parse(line, nullptr, false);
   const nlohmann::json reply =
-      request.is_discarded() ? nlohmann::json{{"ok", false}, {"error", "the line is not JSON: one object a line"}}
-                             : handler_(request);
+      request.is_discarded()
+          ? nlohmann::json{{"ok", false}, {"error", "the line is not JSON: one object a line"}}
+          : handler_(request);
   // Texts of clients may hold anything: what is not UTF-8 is replaced, not thrown at.
   return reply.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

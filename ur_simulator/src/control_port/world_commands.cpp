@@ -136,23 +136,29 @@ constexpr std::array table{
             "A hand pushes at the TCP: a half-sine with this peak.", push},
     Command{"clear_pushes", "", "Ends all pushes.", clear_pushes},
     Command{"place_surface",
-            "z m, or point [3] m with normal [3] ([0, 0, 1]); stiffness N/m (20000); damping N s/m (50); friction (0)",
+            "z m, or point [3] m with normal [3] ([0, 0, 1]); stiffness N/m (20000); damping N s/m (50); "
+            "friction (0)",
             "Adds an elastic half space; answers its id.", place_surface},
     Command{"remove_surface", "id", "Removes one surface.", remove_surface},
     Command{"clear_surfaces", "", "Removes all surfaces.", clear_surfaces},
     Command{"attach_load", "mass kg; center_of_gravity [3] m in the flange frame ([0, 0, 0])",
             "What really hangs at the flange, whatever the payload setting says.", attach_load},
-    Command{"set_sensor_noise", "force N; torque N m (0)", "Standard deviation of the force sensor's noise; 0 is none.",
-            set_sensor_noise},
-    Command{"set_joints", "joints [6] rad", "Puts the arm elsewhere at once and stops the program.", set_joints},
+    Command{"set_sensor_noise", "force N; torque N m (0)",
+            "Standard deviation of the force sensor's noise; 0 is none.", set_sensor_noise},
+    Command{"set_joints", "joints [6] rad", "Puts the arm elsewhere at once and stops the program.",
+            set_joints},
     Command{"set_digital_input", "number 0..17 (8..15 configurable, 16, 17 tool); value true|false",
             "What is wired to a digital input.", set_digital_input},
-    Command{"set_analog_input", "number 0|1; value V or A; domain current|voltage (voltage); tool true|false (false)",
+    Command{"set_analog_input",
+            "number 0|1; value V or A; domain current|voltage (voltage); tool true|false (false)",
             "What is wired to an analog input.", set_analog_input},
 };
 
 }  // namespace
 
-std::span<const Command> world_commands() { return table; }
+std::span<const Command> world_commands()
+{
+  return table;
+}
 
 }  // namespace ur_simulator::control_port

@@ -17,8 +17,8 @@ namespace {
 namespace asio = boost::asio;
 using Clock = std::chrono::steady_clock;
 
-// A late host is caught up with up to this many cycles in a row; beyond, the simulated time falls behind instead of the
-// sockets starving.
+// A late host is caught up with up to this many cycles in a row; beyond, the simulated time falls behind
+// instead of the sockets starving.
 constexpr int most_cycles_to_catch_up = 10;
 
 const RobotModel & model_of(const SimulatorOptions & options)
@@ -33,16 +33,18 @@ const RobotModel & model_of(const SimulatorOptions & options)
 PolyscopeVersion version_of(const SimulatorOptions & options, const RobotModel & model)
 {
   const bool cb3 = model.series == Series::cb3;
-  const std::string text = options.polyscope_version.empty() ? (cb3 ? "3.15.8" : "5.25.1") : options.polyscope_version;
+  const std::string text =
+      options.polyscope_version.empty() ? (cb3 ? "3.15.8" : "5.25.1") : options.polyscope_version;
   const auto version = PolyscopeVersion::parse(text);
   if (!version || (version->major != 3 && version->major != 5)) {
-    throw std::runtime_error(
-        fmt::format("PolyScope version '{}' (--polyscope) is not known: give 3.x or 5.x, such as 5.25.1", text));
+    throw std::runtime_error(fmt::format(
+        "PolyScope version '{}' (--polyscope) is not known: give 3.x or 5.x, such as 5.25.1", text));
   }
   if (version->is_e_series() == cb3) {
-    throw std::runtime_error(fmt::format("model {} does not run PolyScope {}: CB3 models (ur3, ur5, ur10) run 3.x, all "
-                                         "others 5.x (--model, --polyscope)",
-                                         model.name, text));
+    throw std::runtime_error(
+        fmt::format("model {} does not run PolyScope {}: CB3 models (ur3, ur5, ur10) run 3.x, all "
+                    "others 5.x (--model, --polyscope)",
+                    model.name, text));
   }
   return *version;
 }
@@ -55,8 +57,9 @@ Vector6 joints_of(const SimulatorOptions & options, const RobotModel & model)
   const Vector6 joints(options.initial_joints->data());
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!(joints[i] >= model.position_min[i] && joints[i] <= model.position_max[i])) {
-      throw std::runtime_error(fmt::format("initial joint {} is {} rad: model {} allows {} to {}", i, joints[i], model.name,
-                                           model.position_min[i], model.position_max[i]));
+      throw std::runtime_error(fmt::format("initial joint {} is {} rad: model {} allows {} to {}", i,
+                                           joints[i], model.name, model.position_min[i],
+                                           model.position_max[i]));
     }
   }
   return joints;
@@ -78,37 +81,41 @@ LogLevel level_of(SafetyEvent::Level level)
 }  // namespace
 
 Controller::Controller(const SimulatorOptions & options)
-: model_(model_of(options)),
-  version_(version_of(options, model_)),
-  options_(options),
-  period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(version_.cycle_time()))),
-  initial_joints_(joints_of(options, model_)),
-  arm_(std::in_place, model_, version_.cycle_time(), initial_joints_),
-  world_(std::in_place, version_.cycle_time(), options.seed),
-  safety_(std::in_place, model_, version_.cycle_time()),
-  runner_(std::in_place, program_access()),
-  pendant_(std::in_place, model_, PendantOptions{version_, options.remote_control}, state_, *safety_, *runner_, log_),
-  primary_(io_, options.address, options.ports.primary, *pendant_, primary::version_message(version_)),
-  secondary_(io_, options.address, options.ports.secondary, *pendant_, primary::version_message(version_)),
-  realtime_(io_, options.address, options.ports.realtime, *pendant_, ""),
-  realtime_packet_(version_),
-  rtde_(io_, options.address, options.ports.rtde, state_, version_, log_),
-  dashboard_(io_, options.address, options.ports.dashboard, *pendant_),
-  bench_{state_,
-         *arm_,
-         *world_,
-         *safety_,
-         *pendant_,
-         log_,
-         rtde_,
-         {{"primary", &primary_.listener()},
-          {"secondary", &secondary_.listener()},
-          {"realtime", &realtime_.listener()},
-          {"rtde", &rtde_.listener()},
-          {"dashboard", &dashboard_.listener()}},
-         missed_cycles_,
-         [this](double duration) { reboot(duration); }},
-  control_(io_, options.address, options.ports.control, [this](const nlohmann::json & request) { return control(request); })
+    : model_(model_of(options)),
+      version_(version_of(options, model_)),
+      options_(options),
+      period_(
+          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(version_.cycle_time()))),
+      initial_joints_(joints_of(options, model_)),
+      arm_(std::in_place, model_, version_.cycle_time(), initial_joints_),
+      world_(std::in_place, version_.cycle_time(), options.seed),
+      safety_(std::in_place, model_, version_.cycle_time()),
+      runner_(std::in_place, program_access()),
+      pendant_(std::in_place, model_, PendantOptions{version_, options.remote_control}, state_, *safety_,
+               *runner_, log_),
+      primary_(io_, options.address, options.ports.primary, *pendant_, primary::version_message(version_)),
+      secondary_(io_, options.address, options.ports.secondary, *pendant_,
+                 primary::version_message(version_)),
+      realtime_(io_, options.address, options.ports.realtime, *pendant_, ""),
+      realtime_packet_(version_),
+      rtde_(io_, options.address, options.ports.rtde, state_, version_, log_),
+      dashboard_(io_, options.address, options.ports.dashboard, *pendant_),
+      bench_{state_,
+             *arm_,
+             *world_,
+             *safety_,
+             *pendant_,
+             log_,
+             rtde_,
+             {{"primary", &primary_.listener()},
+              {"secondary", &secondary_.listener()},
+              {"realtime", &realtime_.listener()},
+              {"rtde", &rtde_.listener()},
+              {"dashboard", &dashboard_.listener()}},
+             missed_cycles_,
+             [this](double duration) { reboot(duration); }},
+      control_(io_, options.address, options.ports.control,
+               [this](const nlohmann::json & request) { return control(request); })
 {
   rtde_.on_input([this](const rtde::InputField & field) { watchdog_.fed(field.name, state_.timestamp); });
   log_.add_listener([this](const LogEntry & entry) { primary_.broadcast(primary::message_for(entry)); });
@@ -144,7 +151,10 @@ Ports Controller::ports() const
   return ports;
 }
 
-nlohmann::json Controller::control(const nlohmann::json & request) { return control_port::handle(bench_, request); }
+nlohmann::json Controller::control(const nlohmann::json & request)
+{
+  return control_port::handle(bench_, request);
+}
 
 // ---- the loop
 

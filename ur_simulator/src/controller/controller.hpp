@@ -30,8 +30,8 @@
 
 namespace ur_simulator {
 
-/// The whole controller. Everything happens on the thread that calls run(): between two control cycles the sockets are
-/// served, so nothing in here needs a lock.
+/// The whole controller. Everything happens on the thread that calls run(): between two control cycles the
+/// sockets are served, so nothing in here needs a lock.
 class Controller {
  public:
   /// Called after a cycle; removed when it returns true.

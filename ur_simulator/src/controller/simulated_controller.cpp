@@ -56,13 +56,22 @@ struct SimulatedController::Impl {
   std::thread thread;
 };
 
-SimulatedController::SimulatedController(const SimulatorOptions & options) : impl_(std::make_unique<Impl>(options)) {}
+SimulatedController::SimulatedController(const SimulatorOptions & options)
+    : impl_(std::make_unique<Impl>(options))
+{
+}
 
 SimulatedController::~SimulatedController() = default;
 
-const std::string & SimulatedController::address() const { return impl_->options.address; }
+const std::string & SimulatedController::address() const
+{
+  return impl_->options.address;
+}
 
-Ports SimulatedController::ports() const { return impl_->controller.ports(); }
+Ports SimulatedController::ports() const
+{
+  return impl_->controller.ports();
+}
 
 nlohmann::json SimulatedController::control(const nlohmann::json & request)
 {

@@ -11,9 +11,15 @@ namespace {
 
 using Text = std::string_view;
 
-constexpr PolyscopeVersion v(std::uint32_t major, std::uint32_t minor) { return {major, minor, 0, 0}; }
+constexpr PolyscopeVersion v(std::uint32_t major, std::uint32_t minor)
+{
+  return {major, minor, 0, 0};
+}
 
-std::string failed(Text command) { return fmt::format("Failed to execute: {}", command); }
+std::string failed(Text command)
+{
+  return fmt::format("Failed to execute: {}", command);
+}
 
 std::string either(const Pendant::Answer & answer, Text done, Text command)
 {
@@ -37,7 +43,10 @@ std::string load(Pendant & p, Text file)
   return fmt::format("{}: {}", missing ? "File not found" : "Error while loading program", file);
 }
 
-std::string play(Pendant & p, Text) { return either(p.play(), "Starting program", "play"); }
+std::string play(Pendant & p, Text)
+{
+  return either(p.play(), "Starting program", "play");
+}
 
 std::string stop(Pendant & p, Text)
 {
@@ -45,7 +54,10 @@ std::string stop(Pendant & p, Text)
   return "Stopped";
 }
 
-std::string pause(Pendant & p, Text) { return either(p.pause(), "Pausing program", "pause"); }
+std::string pause(Pendant & p, Text)
+{
+  return either(p.pause(), "Pausing program", "pause");
+}
 
 std::string running(Pendant & p, Text)
 {
@@ -57,7 +69,10 @@ std::string get_loaded_program(Pendant & p, Text)
   return p.loaded_program().empty() ? "No program loaded" : "Loaded program: /programs/" + p.loaded_program();
 }
 
-std::string is_program_saved(Pendant & p, Text) { return "True " + program_name(p); }
+std::string is_program_saved(Pendant & p, Text)
+{
+  return "True " + program_name(p);
+}
 
 std::string program_state(Pendant & p, Text)
 {
@@ -67,14 +82,24 @@ std::string program_state(Pendant & p, Text)
 
 std::string load_installation(Pendant & p, Text file)
 {
-  return fmt::format("{}: {}", p.load_installation(std::string(file)) ? "Loading installation" : "File not found", file);
+  return fmt::format(
+      "{}: {}", p.load_installation(std::string(file)) ? "Loading installation" : "File not found", file);
 }
 
 // ---- power and safety
 
-std::string power_on(Pendant & p, Text) { return either(p.power_on(), "Powering on", "power on"); }
-std::string power_off(Pendant & p, Text) { return either(p.power_off(), "Powering off", "power off"); }
-std::string brake_release(Pendant & p, Text) { return either(p.release_brakes(), "Brake releasing", "brake release"); }
+std::string power_on(Pendant & p, Text)
+{
+  return either(p.power_on(), "Powering on", "power on");
+}
+std::string power_off(Pendant & p, Text)
+{
+  return either(p.power_off(), "Powering off", "power off");
+}
+std::string brake_release(Pendant & p, Text)
+{
+  return either(p.release_brakes(), "Brake releasing", "brake release");
+}
 
 std::string unlock_protective_stop(Pendant & p, Text)
 {
@@ -82,7 +107,8 @@ std::string unlock_protective_stop(Pendant & p, Text)
     return "Protective stop releasing";
   }
   return p.state().safety_mode == SafetyMode::protective_stop
-             ? "Cannot unlock protective stop until 5s after occurrence. Always inspect cause of protective stop before "
+             ? "Cannot unlock protective stop until 5s after occurrence. Always inspect cause of protective "
+               "stop before "
                "unlocking"
              : failed("unlock protective stop");
 }
@@ -93,10 +119,22 @@ std::string close_safety_popup(Pendant & p, Text)
   return "closing safety popup";
 }
 
-std::string restart_safety(Pendant & p, Text) { return either(p.restart_safety(), "Restarting safety", "restart safety"); }
-std::string robotmode(Pendant & p, Text) { return fmt::format("Robotmode: {}", to_string(p.state().robot_mode)); }
-std::string safetymode(Pendant & p, Text) { return fmt::format("Safetymode: {}", to_string(p.state().safety_mode)); }
-std::string safetystatus(Pendant & p, Text) { return fmt::format("Safetystatus: {}", to_string(p.state().safety_mode)); }
+std::string restart_safety(Pendant & p, Text)
+{
+  return either(p.restart_safety(), "Restarting safety", "restart safety");
+}
+std::string robotmode(Pendant & p, Text)
+{
+  return fmt::format("Robotmode: {}", to_string(p.state().robot_mode));
+}
+std::string safetymode(Pendant & p, Text)
+{
+  return fmt::format("Safetymode: {}", to_string(p.state().safety_mode));
+}
+std::string safetystatus(Pendant & p, Text)
+{
+  return fmt::format("Safetystatus: {}", to_string(p.state().safety_mode));
+}
 
 // ---- the pendant's screen
 
@@ -126,7 +164,8 @@ std::string add_to_log(Pendant & p, Text text)
 std::string upper(Text text)
 {
   std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::ranges::transform(result, result.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return result;
 }
 
@@ -140,7 +179,10 @@ std::string set_operational_mode(Pendant & p, Text mode)
   return fmt::format("Operational mode '{}' is set", mode);
 }
 
-std::string get_operational_mode(Pendant & p, Text) { return p.operational_mode.value_or("NONE"); }
+std::string get_operational_mode(Pendant & p, Text)
+{
+  return p.operational_mode.value_or("NONE");
+}
 
 std::string clear_operational_mode(Pendant & p, Text)
 {
@@ -160,7 +202,10 @@ std::string set_user_role(Pendant & p, Text role)
   return fmt::format("Setting user role: {}", role);
 }
 
-std::string get_user_role(Pendant & p, Text) { return p.user_role; }
+std::string get_user_role(Pendant & p, Text)
+{
+  return p.user_role;
+}
 
 // ---- about the robot
 
@@ -169,10 +214,22 @@ std::string polyscope_version(Pendant & p, Text)
   return fmt::format("URSoftware {} (simulated)", p.options().version.text());
 }
 
-std::string version(Pendant & p, Text) { return p.options().version.text(); }
-std::string is_in_remote_control(Pendant & p, Text) { return p.remote_control() ? "true" : "false"; }
-std::string get_serial_number(Pendant & p, Text) { return p.options().serial_number; }
-std::string get_robot_model(Pendant & p, Text) { return p.model().dashboard_name; }
+std::string version(Pendant & p, Text)
+{
+  return p.options().version.text();
+}
+std::string is_in_remote_control(Pendant & p, Text)
+{
+  return p.remote_control() ? "true" : "false";
+}
+std::string get_serial_number(Pendant & p, Text)
+{
+  return p.options().serial_number;
+}
+std::string get_robot_model(Pendant & p, Text)
+{
+  return p.model().dashboard_name;
+}
 
 std::string shutdown(Pendant & p, Text)
 {
@@ -180,9 +237,15 @@ std::string shutdown(Pendant & p, Text)
   return "Shutting down";
 }
 
-std::string quit(Pendant &, Text) { return "Disconnected"; }
+std::string quit(Pendant &, Text)
+{
+  return "Disconnected";
+}
 
-std::string no_files(Pendant &, Text) { return "Error: the simulated controller writes no reports"; }
+std::string no_files(Pendant &, Text)
+{
+  return "Error: the simulated controller writes no reports";
+}
 
 constexpr auto never = Since::never;
 constexpr std::array table{
@@ -239,7 +302,10 @@ Text trim(Text text)
 
 }  // namespace
 
-std::span<const Command> commands() { return table; }
+std::span<const Command> commands()
+{
+  return table;
+}
 
 const Command * find_command(Text line, const PolyscopeVersion & version, Text & argument)
 {

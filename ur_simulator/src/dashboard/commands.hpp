@@ -20,7 +20,9 @@ struct Command {
 /// All commands except quit and shutdown's effect on the connection, which the server carries out.
 std::span<const Command> commands();
 
-/// The command that the line begins with, the longest name winning, or nullptr; `argument` is the trimmed rest.
-const Command * find_command(std::string_view line, const PolyscopeVersion & version, std::string_view & argument);
+/// The command that the line begins with, the longest name winning, or nullptr; `argument` is the trimmed
+/// rest.
+const Command * find_command(std::string_view line, const PolyscopeVersion & version,
+                             std::string_view & argument);
 
 }  // namespace ur_simulator::dashboard

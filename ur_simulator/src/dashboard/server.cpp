@@ -11,13 +11,18 @@ constexpr std::size_t longest_line = 16 * 1024;
 
 }  // namespace
 
-Server::Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, Pendant & pendant)
-: pendant_(pendant),
-  listener_(io, address, port, [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
+Server::Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
+               Pendant & pendant)
+    : pendant_(pendant), listener_(io, address, port, [this](const std::shared_ptr<Connection> & connection) {
+        accept(connection);
+      })
 {
 }
 
-Server::~Server() { listener_.close_all(); }
+Server::~Server()
+{
+  listener_.close_all();
+}
 
 void Server::accept(const std::shared_ptr<Connection> & connection)
 {
@@ -71,7 +76,8 @@ void Server::answer(Client & client, std::string_view line)
   const bool local = !pendant_.remote_control() || !client.remote_when_connected;
   if (command->needs_remote_control && local && pendant_.options().version.is_e_series()) {
     client.connection->send(
-        "Command is not allowed due to safety reasons, please switch robot to Remote Control mode and reconnect to port "
+        "Command is not allowed due to safety reasons, please switch robot to Remote Control mode and "
+        "reconnect to port "
         "29999\n");
     return;
   }

@@ -22,7 +22,8 @@ struct LogEntry {
   std::string text;
 };
 
-/// What a robot would show on its log tab: the most recent entries, in order. Belongs to the controller's thread.
+/// What a robot would show on its log tab: the most recent entries, in order. Belongs to the controller's
+/// thread.
 class EventLog {
  public:
   using Listener = std::function<void(const LogEntry &)>;

@@ -35,11 +35,12 @@ void Connection::read()
     return;
   }
   reading_ = true;
-  socket_.async_read_some(asio::buffer(received_),
-                          [self = shared_from_this()](const boost::system::error_code & error, std::size_t size) {
-                            self->reading_ = false;
-                            self->take(error, size);
-                          });
+  socket_.async_read_some(
+      asio::buffer(received_),
+      [self = shared_from_this()](const boost::system::error_code & error, std::size_t size) {
+        self->reading_ = false;
+        self->take(error, size);
+      });
 }
 
 void Connection::take(const boost::system::error_code & error, std::size_t size)

@@ -11,8 +11,8 @@
 
 namespace ur_simulator {
 
-/// One client on one socket. Single-threaded: everything happens on the io_context's thread. Sends never block: what the
-/// kernel does not take waits in a bounded queue.
+/// One client on one socket. Single-threaded: everything happens on the io_context's thread. Sends never
+/// block: what the kernel does not take waits in a bounded queue.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   /// Bytes as they came, in pieces of any size.
@@ -23,10 +23,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Connection(boost::asio::ip::tcp::socket socket, std::uint64_t id);
 
   void start(OnData on_data, OnClose on_close);
-  /// Sends all of it, now or as soon as the client reads; a client that has let more than `queue_limit` bytes pile up is
-  /// disconnected.
+  /// Sends all of it, now or as soon as the client reads; a client that has let more than `queue_limit` bytes
+  /// pile up is disconnected.
   void send(std::string_view bytes);
-  /// Sends all of it, or nothing when the client has not read what came before: then the caller's data is dropped.
+  /// Sends all of it, or nothing when the client has not read what came before: then the caller's data is
+  /// dropped.
   bool send_or_drop(std::string_view bytes);
   /// Ends the connection; what waits unsent is lost.
   void close();

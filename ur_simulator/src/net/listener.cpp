@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <boost/asio/ip/address.hpp>
+#include <chrono>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -17,7 +18,8 @@ std::string explain(const boost::system::error_code & error, const tcp::endpoint
 {
   const std::string where = fmt::format("port {} of {}", endpoint.port(), endpoint.address().to_string());
   if (error == asio::error::address_in_use) {
-    return where + " is in use by another process: stop it or choose another address (--address) or port (--ports)";
+    return where +
+           " is in use by another process: stop it or choose another address (--address) or port (--ports)";
   }
   if (error == asio::error::access_denied) {
     return where + " may not be opened by this user: choose a port above 1023 (--ports)";
@@ -31,18 +33,22 @@ std::string explain(const boost::system::error_code & error, const tcp::endpoint
 }  // namespace
 
 Listener::Listener(asio::io_context & io, const std::string & address, std::uint16_t port, OnAccept on_accept)
-: acceptor_(io), on_accept_(std::move(on_accept))
+    : acceptor_(io), retry_(io), on_accept_(std::move(on_accept))
 {
   boost::system::error_code error;
   const asio::ip::address parsed = asio::ip::make_address(address, error);
   if (error) {
-    throw std::runtime_error(fmt::format("address '{}' is not an IP address (--address): {}", address, error.message()));
+    throw std::runtime_error(
+        fmt::format("address '{}' is not an IP address (--address): {}", address, error.message()));
   }
   endpoint_ = tcp::endpoint(parsed, port);
   listen();
 }
 
-Listener::~Listener() { close_all(); }
+Listener::~Listener()
+{
+  close_all();
+}
 
 void Listener::listen()
 {
@@ -72,14 +78,27 @@ void Listener::accept()
     if (error == asio::error::operation_aborted || !acceptor_.is_open()) {
       return;
     }
-    if (!error) {
-      const std::uint64_t id = next_id_++;
-      auto connection = std::make_shared<Connection>(std::move(socket), id);
-      std::erase_if(connections_, [](const auto & entry) { return entry.second.expired(); });
-      connections_.emplace(id, connection);
-      on_accept_(connection);
+    if (error) {
+      accept_later();
+      return;
     }
+    const std::uint64_t id = next_id_++;
+    auto connection = std::make_shared<Connection>(std::move(socket), id);
+    std::erase_if(connections_, [](const auto & entry) { return entry.second.expired(); });
+    connections_.emplace(id, connection);
+    on_accept_(connection);
     accept();
+  });
+}
+
+void Listener::accept_later()
+{
+  // Out of file descriptors, as a rule: at once it would fail again, and again.
+  retry_.expires_after(std::chrono::milliseconds(100));
+  retry_.async_wait([this](const boost::system::error_code & error) {
+    if (!error && acceptor_.is_open()) {
+      accept();
+    }
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -35,8 +36,10 @@ class Listener {
  private:
   void listen();
   void accept();
+  void accept_later();
 
   boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer retry_;
   boost::asio::ip::tcp::endpoint endpoint_;
   OnAccept on_accept_;
   std::map<std::uint64_t, std::weak_ptr<Connection>> connections_;

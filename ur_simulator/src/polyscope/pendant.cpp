@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace ur_simulator {
 namespace {
 
@@ -19,15 +21,15 @@ std::string file_name(std::string_view path)
 
 }  // namespace
 
-Pendant::Pendant(const RobotModel & model, const PendantOptions & options, ControllerState & state, Safety & safety,
-                 ProgramRunner & runner, EventLog & log)
-: model_(model),
-  options_(options),
-  state_(state),
-  safety_(safety),
-  runner_(runner),
-  log_(log),
-  remote_control_(options.remote_control)
+Pendant::Pendant(const RobotModel & model, const PendantOptions & options, ControllerState & state,
+                 Safety & safety, ProgramRunner & runner, EventLog & log)
+    : model_(model),
+      options_(options),
+      state_(state),
+      safety_(safety),
+      runner_(runner),
+      log_(log),
+      remote_control_(options.remote_control)
 {
 }
 
@@ -42,7 +44,7 @@ tl::expected<void, Pendant::LoadError> Pendant::load_program(const std::string &
   if (found == programs_.end()) {
     return tl::make_unexpected(LoadError::not_found);
   }
-  if (const auto compiled = runner_.check(found->second); !compiled) {
+  if (const auto compiled = runner_.compile(found->second); !compiled) {
     log_.error(source, fmt::format("'{}' cannot be loaded: {}", name, compiled.error().text()));
     return tl::make_unexpected(LoadError::not_a_program);
   }
@@ -59,7 +61,8 @@ bool Pendant::load_installation(const std::string & name)
 Pendant::Answer Pendant::can_run() const
 {
   if (state_.robot_mode != RobotMode::running) {
-    return tl::make_unexpected(fmt::format("robot mode is {}, a program needs RUNNING", to_string(state_.robot_mode)));
+    return tl::make_unexpected(
+        fmt::format("robot mode is {}, a program needs RUNNING", to_string(state_.robot_mode)));
   }
   const bool safe = state_.safety_mode == SafetyMode::normal || state_.safety_mode == SafetyMode::reduced ||
                     state_.safety_mode == SafetyMode::recovery;
@@ -70,31 +73,33 @@ Pendant::Answer Pendant::can_run() const
   return {};
 }
 
-Pendant::Answer Pendant::start(const std::string & script)
+Pendant::Answer Pendant::start(std::string_view script)
 {
-  if (const auto started = runner_.run(script); !started) {
-    return tl::make_unexpected(started.error().text());
+  auto program = runner_.compile(script);
+  if (!program) {
+    return tl::make_unexpected(program.error().text());
+  }
+  const bool secondary = program->secondary();
+  if (const Answer can = can_run(); !secondary && !can) {
+    return can;
+  }
+  runner_.start(std::move(*program));
+  if (!secondary) {
+    last_script_ = script;
   }
   return {};
 }
 
 Pendant::Answer Pendant::run_script(std::string_view text)
 {
-  std::string script(text);
-  const bool secondary = script.starts_with("sec ");
   Answer answer;
   if (!remote_control_ && options_.version.is_e_series()) {
     answer = tl::make_unexpected(std::string("the robot is in local control: switch it to remote control"));
-  } else if (!secondary) {
-    answer = can_run();
-  }
-  if (answer) {
-    answer = start(script);
+  } else {
+    answer = start(text);
   }
   if (!answer) {
     log_.error("program", "script was not started: " + answer.error());
-  } else if (!secondary) {
-    last_script_ = std::move(script);
   }
   return answer;
 }
@@ -105,7 +110,7 @@ Pendant::Answer Pendant::play()
   if (answer && runner_.running()) {
     answer = runner_.resume() ? Answer() : tl::make_unexpected(std::string("the program is running already"));
   } else if (answer) {
-    const std::string & script = loaded_.empty() ? last_script_ : programs_.at(loaded_);
+    const std::string script = loaded_.empty() ? last_script_ : programs_.at(loaded_);
     answer = script.empty() ? tl::make_unexpected(std::string("no program is loaded")) : start(script);
   }
   if (!answer) {
@@ -122,7 +127,10 @@ Pendant::Answer Pendant::pause()
   return {};
 }
 
-void Pendant::stop() { runner_.stop("stopped by the operator"); }
+void Pendant::stop()
+{
+  runner_.stop("stopped by the operator");
+}
 
 Pendant::Answer Pendant::logged(std::string_view action, const SafetyAnswer & answer)
 {
@@ -132,11 +140,20 @@ Pendant::Answer Pendant::logged(std::string_view action, const SafetyAnswer & an
   return answer;
 }
 
-Pendant::Answer Pendant::power_on() { return logged("power on", safety_.power_on()); }
+Pendant::Answer Pendant::power_on()
+{
+  return logged("power on", safety_.power_on());
+}
 
-Pendant::Answer Pendant::power_off() { return logged("power off", safety_.power_off()); }
+Pendant::Answer Pendant::power_off()
+{
+  return logged("power off", safety_.power_off());
+}
 
-Pendant::Answer Pendant::release_brakes() { return logged("brake release", safety_.brake_release()); }
+Pendant::Answer Pendant::release_brakes()
+{
+  return logged("brake release", safety_.brake_release());
+}
 
 Pendant::Answer Pendant::unlock_protective_stop()
 {
@@ -147,7 +164,10 @@ Pendant::Answer Pendant::unlock_protective_stop()
   return answer;
 }
 
-Pendant::Answer Pendant::restart_safety() { return logged("restart safety", safety_.restart_safety()); }
+Pendant::Answer Pendant::restart_safety()
+{
+  return logged("restart safety", safety_.restart_safety());
+}
 
 void Pendant::set_remote_control(bool remote)
 {

@@ -21,8 +21,9 @@ struct PendantOptions {
   std::string serial_number = "20245000001";
 };
 
-/// What a person at the teach pendant, or a program on its behalf, does with the robot: the part of PolyScope that stands
-/// above controller and safety system. The dashboard server, the script ports and the control port all act through it.
+/// What a person at the teach pendant, or a program on its behalf, does with the robot: the part of PolyScope
+/// that stands above controller and safety system. The dashboard server, the script ports and the control
+/// port all act through it.
 class Pendant {
  public:
   /// Refusals say why.
@@ -74,7 +75,7 @@ class Pendant {
 
  private:
   Answer can_run() const;
-  Answer start(const std::string & script);
+  Answer start(std::string_view script);
   Answer logged(std::string_view action, const SafetyAnswer & answer);
 
   const RobotModel & model_;

@@ -15,42 +15,36 @@ constexpr double stood_still = 1e-3;  // speed scaling below which a paused traj
 
 ProgramRunner::ProgramRunner(const ProgramAccess & access) : access_(access) {}
 
-tl::expected<void, urscript::CompileError> ProgramRunner::check(std::string_view text) const
+tl::expected<urscript::Program, urscript::CompileError> ProgramRunner::compile(std::string_view text) const
 {
-  auto program = urscript::compile(text, *access_.library);
-  if (!program) {
-    return tl::make_unexpected(program.error());
-  }
-  return {};
+  return urscript::compile(text, *access_.library);
 }
 
-tl::expected<void, urscript::CompileError> ProgramRunner::run(std::string_view text)
+void ProgramRunner::start(urscript::Program program)
 {
-  auto program = urscript::compile(text, *access_.library);
-  if (!program) {
-    return tl::make_unexpected(program.error());
-  }
   urscript::MachineOptions options;
   options.cycle_time = access_.cycle_time;
-  if (program->secondary()) {
-    if (secondaries_.size() == most_secondaries) {
-      access_.log.error(source, fmt::format("{} secondary programs run already: '{}' was not started",
-                                            most_secondaries, program->name()));
-      return {};
-    }
-    secondaries_.push_back(
-        std::make_unique<urscript::Machine>(std::move(*program), access_.library, *this, options));
-    return {};
+  auto machine = std::make_unique<urscript::Machine>(std::move(program), access_.library, *this, options);
+  if (machine->program().secondary()) {
+    start_secondary(std::move(machine));
+    return;
   }
-  if (primary_) {
-    stop("another program was started");
-  }
+  stop("another program was started");
   access_.arm.resume();
-  name_ = program->name();
-  primary_ = std::make_unique<urscript::Machine>(std::move(*program), access_.library, *this, options);
+  name_ = machine->program().name();
+  primary_ = std::move(machine);
   access_.state.runtime_state = RuntimeState::playing;
   access_.log.info(source, fmt::format("program '{}' started", name_));
-  return {};
+}
+
+void ProgramRunner::start_secondary(std::unique_ptr<urscript::Machine> machine)
+{
+  if (secondaries_.size() == most_secondaries) {
+    access_.log.error(source, fmt::format("{} secondary programs run already: '{}' was not started",
+                                          most_secondaries, machine->program().name()));
+    return;
+  }
+  secondaries_.push_back(std::move(machine));
 }
 
 void ProgramRunner::stop(std::string_view why)
@@ -119,7 +113,8 @@ void ProgramRunner::cycle()
 void ProgramRunner::follow_ramps()
 {
   RuntimeState & runtime = access_.state.runtime_state;
-  if (runtime == RuntimeState::pausing && (access_.arm.at_rest() || access_.state.speed_scaling < stood_still)) {
+  if (runtime == RuntimeState::pausing &&
+      (access_.arm.at_rest() || access_.state.speed_scaling < stood_still)) {
     runtime = RuntimeState::paused;
   } else if (runtime == RuntimeState::resuming) {
     runtime = RuntimeState::playing;
@@ -137,8 +132,8 @@ void ProgramRunner::run_primary()
       access_.log.info(source, fmt::format("program '{}' ended", name_));
       break;
     case urscript::MachineStatus::failed:
-      access_.log.error(source, fmt::format("program '{}' failed in line {}: {}", name_, primary_->error().line,
-                                            primary_->error().message));
+      access_.log.error(source, fmt::format("program '{}' failed in line {}: {}", name_,
+                                            primary_->error().line, primary_->error().message));
       break;
   }
   end(RuntimeState::stopping);
@@ -149,14 +144,18 @@ void ProgramRunner::run_secondaries()
   std::erase_if(secondaries_, [this](const std::unique_ptr<urscript::Machine> & machine) {
     const urscript::MachineStatus status = machine->cycle();
     if (status == urscript::MachineStatus::failed) {
-      access_.log.error(source, fmt::format("secondary program '{}' failed in line {}: {}", machine->program().name(),
-                                            machine->error().line, machine->error().message));
+      access_.log.error(source,
+                        fmt::format("secondary program '{}' failed in line {}: {}", machine->program().name(),
+                                    machine->error().line, machine->error().message));
     }
     return status != urscript::MachineStatus::running;
   });
 }
 
-void ProgramRunner::text_message(const std::string & text) { access_.log.info("textmsg", text); }
+void ProgramRunner::text_message(const std::string & text)
+{
+  access_.log.info("textmsg", text);
+}
 
 void ProgramRunner::show_popup(const urscript::Popup & popup)
 {

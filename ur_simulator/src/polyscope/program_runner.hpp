@@ -30,13 +30,11 @@ struct ProgramAccess {
 /// Runs the robot's program, and `sec` programs beside it; owns the runtime state.
 class ProgramRunner final : public urscript::Host {
  public:
-
   explicit ProgramRunner(const ProgramAccess & access);
 
-  /// Compiles the text and starts it in place of the running program, or beside it when it is a `sec` program.
-  tl::expected<void, urscript::CompileError> run(std::string_view text);
-  /// Is this text a program? Nothing is run.
-  tl::expected<void, urscript::CompileError> check(std::string_view text) const;
+  tl::expected<urscript::Program, urscript::CompileError> compile(std::string_view text) const;
+  /// Starts the program in place of the running one, or beside it when it is a `sec` program.
+  void start(urscript::Program program);
   /// Ends the program; the arm decelerates.
   void stop(std::string_view why);
   /// Ends all programs at once, `sec` programs too (the controller switches off).
@@ -61,6 +59,7 @@ class ProgramRunner final : public urscript::Host {
   bool popup_open() const override { return popup_.has_value(); }
 
  private:
+  void start_secondary(std::unique_ptr<urscript::Machine> machine);
   void run_primary();
   void run_secondaries();
   void follow_ramps();

@@ -6,7 +6,10 @@
 
 namespace ur_simulator::primary {
 
-inline void put_u8(std::string & to, std::uint8_t value) { to += static_cast<char>(value); }
+inline void put_u8(std::string & to, std::uint8_t value)
+{
+  to += static_cast<char>(value);
+}
 
 inline void put_u32(std::string & to, std::uint32_t value)
 {
@@ -21,6 +24,9 @@ inline void put_u64(std::string & to, std::uint64_t value)
   put_u32(to, static_cast<std::uint32_t>(value));
 }
 
-inline void put_f64(std::string & to, double value) { put_u64(to, std::bit_cast<std::uint64_t>(value)); }
+inline void put_f64(std::string & to, double value)
+{
+  put_u64(to, std::bit_cast<std::uint64_t>(value));
+}
 
 }  // namespace ur_simulator::primary

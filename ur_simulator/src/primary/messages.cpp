@@ -50,7 +50,8 @@ std::string text_message(double timestamp, std::string_view text)
   return finish(std::move(message));
 }
 
-std::string runtime_exception_message(double timestamp, std::int32_t line, std::int32_t column, std::string_view text)
+std::string runtime_exception_message(double timestamp, std::int32_t line, std::int32_t column,
+                                      std::string_view text)
 {
   std::string message = begin(MessageType::runtime_exception, timestamp);
   put_u32(message, static_cast<std::uint32_t>(line));

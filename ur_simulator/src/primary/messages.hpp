@@ -9,13 +9,14 @@
 
 namespace ur_simulator::primary {
 
-/// Robot messages (type 20) of the primary and secondary interface, big-endian, as in UR's "Client Interface" documents.
-/// What a client receives first.
+/// Robot messages (type 20) of the primary and secondary interface, big-endian, as in UR's "Client Interface"
+/// documents. What a client receives first.
 std::string version_message(const PolyscopeVersion & version);
 /// textmsg() of a program. `timestamp` in s.
 std::string text_message(double timestamp, std::string_view text);
 /// A program that could not be compiled or failed while it ran.
-std::string runtime_exception_message(double timestamp, std::int32_t line, std::int32_t column, std::string_view text);
+std::string runtime_exception_message(double timestamp, std::int32_t line, std::int32_t column,
+                                      std::string_view text);
 
 /// The message that a log entry becomes on the primary interface, or "".
 std::string message_for(const LogEntry & entry);

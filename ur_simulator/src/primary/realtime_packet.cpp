@@ -15,9 +15,15 @@ std::size_t packet_size(const PolyscopeVersion & version)
 
 }  // namespace
 
-RealtimePacket::RealtimePacket(const PolyscopeVersion & version) : size_(packet_size(version)) { bytes_.reserve(2 * size_); }
+RealtimePacket::RealtimePacket(const PolyscopeVersion & version) : size_(packet_size(version))
+{
+  bytes_.reserve(2 * size_);
+}
 
-void RealtimePacket::put(double value) { put_f64(bytes_, value); }
+void RealtimePacket::put(double value)
+{
+  put_f64(bytes_, value);
+}
 
 template <typename Derived>
 void RealtimePacket::put(const Eigen::MatrixBase<Derived> & values)
@@ -88,7 +94,7 @@ void RealtimePacket::put_status(const ControllerState & s)
   put(Vector6::Constant(powered ? 48.0 : 0.0));               // joint voltages
   put(static_cast<double>(s.io.digital_outputs));
   put(static_cast<double>(s.runtime_state));
-  put_zeros(6);  // elbow position and velocity are not modelled
+  put_zeros(6);                             // elbow position and velocity are not modelled
   put(static_cast<double>(s.safety_mode));  // safety status
   put_zeros(3);                             // internal
   put(s.payload.mass);

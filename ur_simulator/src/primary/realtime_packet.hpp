@@ -9,8 +9,8 @@
 
 namespace ur_simulator::primary {
 
-/// The packet that port 30003 sends each cycle: doubles, big-endian, behind a 4-byte size. UR, "Client Interface", sheets
-/// "RealTime 3.5" (1060 bytes), "RealTime 5.4" (1116) and "RealTime 5.10" (1220).
+/// The packet that port 30003 sends each cycle: doubles, big-endian, behind a 4-byte size. UR, "Client
+/// Interface", sheets "RealTime 3.5" (1060 bytes), "RealTime 5.4" (1116) and "RealTime 5.10" (1220).
 class RealtimePacket {
  public:
   explicit RealtimePacket(const PolyscopeVersion & version);

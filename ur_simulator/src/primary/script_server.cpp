@@ -6,15 +6,19 @@
 
 namespace ur_simulator::primary {
 
-ScriptServer::ScriptServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port, Pendant & pendant,
-                           std::string greeting)
-: pendant_(pendant),
-  greeting_(std::move(greeting)),
-  listener_(io, address, port, [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
+ScriptServer::ScriptServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
+                           Pendant & pendant, std::string greeting)
+    : pendant_(pendant),
+      greeting_(std::move(greeting)),
+      listener_(io, address, port,
+                [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
 {
 }
 
-ScriptServer::~ScriptServer() { listener_.close_all(); }
+ScriptServer::~ScriptServer()
+{
+  listener_.close_all();
+}
 
 void ScriptServer::accept(const std::shared_ptr<Connection> & connection)
 {
@@ -47,7 +51,8 @@ void ScriptServer::report_dropped(Client & client)
   const std::uint64_t dropped = client.reader.dropped();
   if (dropped != client.dropped) {
     client.dropped = dropped;
-    pendant_.log().error("program", fmt::format("a script from {} was dropped: it is too long", client.connection->peer()));
+    pendant_.log().error(
+        "program", fmt::format("a script from {} was dropped: it is too long", client.connection->peer()));
   }
 }
 

@@ -12,13 +12,13 @@
 
 namespace ur_simulator::primary {
 
-/// One of the ports that take scripts (30001 primary, 30002 secondary, 30003 real-time) and send the robot's state. A client
-/// need not read: what it leaves unread is dropped, the client stays.
+/// One of the ports that take scripts (30001 primary, 30002 secondary, 30003 real-time) and send the robot's
+/// state. A client need not read: what it leaves unread is dropped, the client stays.
 class ScriptServer {
  public:
   /// Greets each new client, or nothing.
-  ScriptServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port, Pendant & pendant,
-               std::string greeting);
+  ScriptServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
+               Pendant & pendant, std::string greeting);
   ~ScriptServer();
 
   /// Sends a whole message to every client that keeps up.

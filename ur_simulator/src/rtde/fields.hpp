@@ -11,7 +11,8 @@
 
 namespace ur_simulator::rtde {
 
-/// A variable that the controller sends. Register families are one row each in the source and one field a register here.
+/// A variable that the controller sends. Register families are one row each in the source and one field a
+/// register here.
 struct OutputField {
   std::string name;
   FieldType type;
@@ -20,10 +21,16 @@ struct OutputField {
   void (*write)(const ControllerState & state, unsigned index, Writer & to);
 };
 
-/// The values of inputs that act only under a mask, as one client last sent them; `touched` tells which groups came with the
-/// present package.
+/// The values of inputs that act only under a mask, as one client last sent them; `touched` tells which
+/// groups came with the present package.
 struct MaskedInputs {
-  enum Group : unsigned { speed_slider = 1, standard_digital = 2, configurable_digital = 4, tool_digital = 8, analog = 16 };
+  enum Group : unsigned {
+    speed_slider = 1,
+    standard_digital = 2,
+    configurable_digital = 4,
+    tool_digital = 8,
+    analog = 16
+  };
 
   unsigned touched = 0;
   std::uint32_t speed_slider_mask = 0;

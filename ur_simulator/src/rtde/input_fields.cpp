@@ -12,8 +12,8 @@ using State = ControllerState;
 
 constexpr Since upper_range{{5, 3, 0, 0}, {3, 9, 0, 0}};
 
-#define UR_INPUT(statement)                                                                                  \
-  []([[maybe_unused]] Reader & from, [[maybe_unused]] unsigned i, [[maybe_unused]] State & s,                \
+#define UR_INPUT(statement)                                                                   \
+  []([[maybe_unused]] Reader & from, [[maybe_unused]] unsigned i, [[maybe_unused]] State & s, \
      [[maybe_unused]] MaskedInputs & m) { statement; }
 
 void add_registers(std::vector<InputField> & fields)
@@ -30,9 +30,10 @@ void add_registers(std::vector<InputField> & fields)
   }
   for (unsigned n = 0; n < 48; ++n) {
     const Since since = n < 24 ? Since{} : upper_range;
-    fields.push_back({fmt::format("input_int_register_{}", n), int32, since, n, UR_INPUT(s.inputs.integers[i] = from.i32())});
-    fields.push_back(
-        {fmt::format("input_double_register_{}", n), double_, since, n, UR_INPUT(s.inputs.doubles[i] = from.f64())});
+    fields.push_back({fmt::format("input_int_register_{}", n), int32, since, n,
+                      UR_INPUT(s.inputs.integers[i] = from.i32())});
+    fields.push_back({fmt::format("input_double_register_{}", n), double_, since, n,
+                      UR_INPUT(s.inputs.doubles[i] = from.f64())});
   }
 }
 
@@ -41,26 +42,72 @@ void add_masked(std::vector<InputField> & fields)
   using enum FieldType;
   using M = MaskedInputs;
   const std::vector<InputField> rows{
-      {"speed_slider_mask", uint32, {}, 0, UR_INPUT(m.speed_slider_mask = from.u32(); m.touched |= M::speed_slider)},
-      {"speed_slider_fraction", double_, {}, 0,
+      {"speed_slider_mask",
+       uint32,
+       {},
+       0,
+       UR_INPUT(m.speed_slider_mask = from.u32(); m.touched |= M::speed_slider)},
+      {"speed_slider_fraction",
+       double_,
+       {},
+       0,
        UR_INPUT(m.speed_slider_fraction = from.f64(); m.touched |= M::speed_slider)},
-      {"standard_digital_output_mask", uint8, {}, 0,
+      {"standard_digital_output_mask",
+       uint8,
+       {},
+       0,
        UR_INPUT(m.standard_digital_mask = from.u8(); m.touched |= M::standard_digital)},
-      {"standard_digital_output", uint8, {}, 0,
+      {"standard_digital_output",
+       uint8,
+       {},
+       0,
        UR_INPUT(m.standard_digital_values = from.u8(); m.touched |= M::standard_digital)},
-      {"configurable_digital_output_mask", uint8, {}, 0,
+      {"configurable_digital_output_mask",
+       uint8,
+       {},
+       0,
        UR_INPUT(m.configurable_digital_mask = from.u8(); m.touched |= M::configurable_digital)},
-      {"configurable_digital_output", uint8, {}, 0,
+      {"configurable_digital_output",
+       uint8,
+       {},
+       0,
        UR_INPUT(m.configurable_digital_values = from.u8(); m.touched |= M::configurable_digital)},
-      {"tool_digital_output_mask", uint8, {}, 0,
+      {"tool_digital_output_mask",
+       uint8,
+       {},
+       0,
        UR_INPUT(m.tool_digital_mask = from.u8(); m.touched |= M::tool_digital)},
-      {"tool_digital_output", uint8, {}, 0,
+      {"tool_digital_output",
+       uint8,
+       {},
+       0,
        UR_INPUT(m.tool_digital_values = from.u8(); m.touched |= M::tool_digital)},
-      {"standard_analog_output_mask", uint8, {}, 0, UR_INPUT(m.analog_mask = from.u8(); m.touched |= M::analog)},
-      {"standard_analog_output_type", uint8, {}, 0, UR_INPUT(m.analog_types = from.u8(); m.touched |= M::analog)},
-      {"standard_analog_output_0", double_, {}, 0, UR_INPUT(m.analog_values[0] = from.f64(); m.touched |= M::analog)},
-      {"standard_analog_output_1", double_, {}, 0, UR_INPUT(m.analog_values[1] = from.f64(); m.touched |= M::analog)},
-      {"external_force_torque", vector6d, {}, 0, UR_INPUT(const Vector6 wrench = from.vector6(); if (wrench.allFinite()) { s.external_force_torque = wrench; })},
+      {"standard_analog_output_mask",
+       uint8,
+       {},
+       0,
+       UR_INPUT(m.analog_mask = from.u8(); m.touched |= M::analog)},
+      {"standard_analog_output_type",
+       uint8,
+       {},
+       0,
+       UR_INPUT(m.analog_types = from.u8(); m.touched |= M::analog)},
+      {"standard_analog_output_0",
+       double_,
+       {},
+       0,
+       UR_INPUT(m.analog_values[0] = from.f64(); m.touched |= M::analog)},
+      {"standard_analog_output_1",
+       double_,
+       {},
+       0,
+       UR_INPUT(m.analog_values[1] = from.f64(); m.touched |= M::analog)},
+      {"external_force_torque",
+       vector6d,
+       {},
+       0,
+       UR_INPUT(const Vector6 wrench = from.vector6();
+                if (wrench.allFinite()) { s.external_force_torque = wrench; })},
   };
   fields.insert(fields.end(), rows.begin(), rows.end());
 }
@@ -92,7 +139,8 @@ void apply_analog(const MaskedInputs & masked, State & state)
     const double fraction = std::clamp(masked.analog_values[i], 0.0, 1.0);
     const bool voltage = (masked.analog_types & selected) != 0;
     const std::uint32_t domain = 1u << (2 + i);
-    state.io.analog_io_types = voltage ? state.io.analog_io_types | domain : state.io.analog_io_types & ~domain;
+    state.io.analog_io_types =
+        voltage ? state.io.analog_io_types | domain : state.io.analog_io_types & ~domain;
     state.io.analog_outputs[i] = voltage ? 10.0 * fraction : 0.004 + 0.016 * fraction;
   }
 }
@@ -130,7 +178,8 @@ void apply(MaskedInputs & masked, State & state)
     set_bits(state.io.digital_outputs, 0, masked.standard_digital_mask, masked.standard_digital_values);
   }
   if ((touched & MaskedInputs::configurable_digital) != 0) {
-    set_bits(state.io.digital_outputs, 8, masked.configurable_digital_mask, masked.configurable_digital_values);
+    set_bits(state.io.digital_outputs, 8, masked.configurable_digital_mask,
+             masked.configurable_digital_values);
   }
   if ((touched & MaskedInputs::tool_digital) != 0) {
     const std::uint8_t mask = masked.tool_digital_mask & 0x3;

@@ -28,9 +28,13 @@ std::uint32_t word(const Bits & bits, unsigned first)
   return value;
 }
 
-bool powered(const State & s) { return (s.robot_status_bits & 1u) != 0; }
+bool powered(const State & s)
+{
+  return (s.robot_status_bits & 1u) != 0;
+}
 
-#define UR_FIELD(expression) []([[maybe_unused]] const State & s, [[maybe_unused]] unsigned i, Writer & to) { to.put(expression); }
+#define UR_FIELD(expression) \
+  []([[maybe_unused]] const State & s, [[maybe_unused]] unsigned i, Writer & to) { to.put(expression); }
 
 void add_registers(std::vector<OutputField> & fields)
 {
@@ -42,19 +46,25 @@ void add_registers(std::vector<OutputField> & fields)
   for (unsigned n = 0; n < 2; ++n) {
     const std::string range = fmt::format("{}_to_{}", 32 * n, 32 * n + 31);
     add("output_bit_registers" + range, FieldType::uint32, {}, n, UR_FIELD(word(s.outputs.bits, 32 * i)));
-    add("input_bit_registers" + range, FieldType::uint32, inputs_readable, n, UR_FIELD(word(s.inputs.bits, 32 * i)));
+    add("input_bit_registers" + range, FieldType::uint32, inputs_readable, n,
+        UR_FIELD(word(s.inputs.bits, 32 * i)));
   }
   for (unsigned n = 64; n < 128; ++n) {
-    add(fmt::format("output_bit_register_{}", n), FieldType::boolean, upper_range, n, UR_FIELD(s.outputs.bits.test(i)));
-    add(fmt::format("input_bit_register_{}", n), FieldType::boolean, upper_range, n, UR_FIELD(s.inputs.bits.test(i)));
+    add(fmt::format("output_bit_register_{}", n), FieldType::boolean, upper_range, n,
+        UR_FIELD(s.outputs.bits.test(i)));
+    add(fmt::format("input_bit_register_{}", n), FieldType::boolean, upper_range, n,
+        UR_FIELD(s.inputs.bits.test(i)));
   }
   for (unsigned n = 0; n < 48; ++n) {
     const Since outputs = n < 24 ? Since{} : upper_range;
     const Since inputs = n < 24 ? inputs_readable : upper_range;
-    add(fmt::format("output_int_register_{}", n), FieldType::int32, outputs, n, UR_FIELD(s.outputs.integers[i]));
-    add(fmt::format("output_double_register_{}", n), FieldType::double_, outputs, n, UR_FIELD(s.outputs.doubles[i]));
+    add(fmt::format("output_int_register_{}", n), FieldType::int32, outputs, n,
+        UR_FIELD(s.outputs.integers[i]));
+    add(fmt::format("output_double_register_{}", n), FieldType::double_, outputs, n,
+        UR_FIELD(s.outputs.doubles[i]));
     add(fmt::format("input_int_register_{}", n), FieldType::int32, inputs, n, UR_FIELD(s.inputs.integers[i]));
-    add(fmt::format("input_double_register_{}", n), FieldType::double_, inputs, n, UR_FIELD(s.inputs.doubles[i]));
+    add(fmt::format("input_double_register_{}", n), FieldType::double_, inputs, n,
+        UR_FIELD(s.inputs.doubles[i]));
   }
 }
 

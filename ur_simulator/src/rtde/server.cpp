@@ -8,10 +8,11 @@
 
 namespace ur_simulator::rtde {
 
-Server::Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, ControllerState & state,
-               const PolyscopeVersion & version, EventLog & log)
-: shared_{state, version, log, {}, nullptr},
-  listener_(io, address, port, [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
+Server::Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
+               ControllerState & state, const PolyscopeVersion & version, EventLog & log)
+    : shared_{state, version, log, {}, nullptr},
+      listener_(io, address, port,
+                [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
 {
 }
 

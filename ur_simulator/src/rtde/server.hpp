@@ -16,11 +16,12 @@ namespace ur_simulator::rtde {
 
 class Session;
 
-/// What a client uses the link for, as its recipes tell: ur_rtde's interfaces are `receive` (outputs only), `io` (inputs only)
-/// and `control` (both).
+/// What a client uses the link for, as its recipes tell: ur_rtde's interfaces are `receive` (outputs only),
+/// `io` (inputs only) and `control` (both).
 enum class ClientRole : std::uint8_t { undecided, receive, io, control };
 
-/// What the sessions share. An input field belongs to the client that first asked for it, until that client leaves.
+/// What the sessions share. An input field belongs to the client that first asked for it, until that client
+/// leaves.
 struct Shared {
   ControllerState & state;
   PolyscopeVersion version;
@@ -33,8 +34,8 @@ struct Shared {
 /// The Real-Time Data Exchange server, protocol versions 1 and 2.
 class Server {
  public:
-  Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, ControllerState & state,
-         const PolyscopeVersion & version, EventLog & log);
+  Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
+         ControllerState & state, const PolyscopeVersion & version, EventLog & log);
   ~Server();
 
   void on_input(std::function<void(const InputField &)> fed) { shared_.fed = std::move(fed); }

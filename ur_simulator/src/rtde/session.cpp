@@ -12,7 +12,10 @@ constexpr std::uint8_t output_recipe_id = 1;
 constexpr std::size_t most_input_recipes = 255;  // the id is one byte and 0 means "not valid"
 constexpr double version_1_frequency = 125.0;
 
-double highest_frequency(const PolyscopeVersion & version) { return version.is_e_series() ? 500.0 : 125.0; }
+double highest_frequency(const PolyscopeVersion & version)
+{
+  return version.is_e_series() ? 500.0 : 125.0;
+}
 
 /// "a,b,": a trailing comma ends the list, it does not begin another name.
 std::vector<std::string_view> split(std::string_view names)
@@ -26,14 +29,20 @@ std::vector<std::string_view> split(std::string_view names)
   return parts;
 }
 
-std::string join(const std::vector<std::string> & parts) { return fmt::format("{}", fmt::join(parts, ",")); }
+std::string join(const std::vector<std::string> & parts)
+{
+  return fmt::format("{}", fmt::join(parts, ","));
+}
 
-std::string accepted(bool yes) { return std::string(1, yes ? '\1' : '\0'); }
+std::string accepted(bool yes)
+{
+  return std::string(1, yes ? '\1' : '\0');
+}
 
 }  // namespace
 
 Session::Session(std::shared_ptr<Connection> connection, Shared & shared)
-: connection_(std::move(connection)), shared_(shared), frequency_(highest_frequency(shared.version))
+    : connection_(std::move(connection)), shared_(shared), frequency_(highest_frequency(shared.version))
 {
 }
 
@@ -62,8 +71,9 @@ void Session::receive(std::string_view bytes)
     const std::uint8_t type = header.u8();
     if (size < header_size) {
       // The packages' ends cannot be found any more.
-      shared_.log.error("rtde", fmt::format("client {}: package size is {}, the header alone has {} bytes: disconnected",
-                                            connection_->id(), size, header_size));
+      shared_.log.error(
+          "rtde", fmt::format("client {}: package size is {}, the header alone has {} bytes: disconnected",
+                              connection_->id(), size, header_size));
       connection_->close();
       return;
     }
@@ -221,8 +231,9 @@ void Session::data_package(std::string_view payload)
   Reader reader(payload);
   const unsigned id = reader.u8();
   if (!reader.ok() || id == 0 || id > inputs_.size()) {
-    shared_.log.warning("rtde", fmt::format("client {}: data package for recipe {}, which was not set up (there are {})",
-                                            connection_->id(), id, inputs_.size()));
+    shared_.log.warning(
+        "rtde", fmt::format("client {}: data package for recipe {}, which was not set up (there are {})",
+                            connection_->id(), id, inputs_.size()));
     return;
   }
   read_fields(inputs_[id - 1], reader.rest(), id);
@@ -230,8 +241,8 @@ void Session::data_package(std::string_view payload)
 
 void Session::read_fields(InputRecipe & recipe, std::string_view values, unsigned recipe_id)
 {
-  // Clients send packages that are longer or shorter than their recipe (ur_rtde does): the controller takes the fields
-  // that are there, in order, and keeps the last value of the others.
+  // Clients send packages that are longer or shorter than their recipe (ur_rtde does): the controller takes
+  // the fields that are there, in order, and keeps the last value of the others.
   Reader reader(values);
   std::size_t expected = 0;
   for (const InputField * field : recipe.fields) {
@@ -248,8 +259,9 @@ void Session::read_fields(InputRecipe & recipe, std::string_view values, unsigne
   apply(masked_, shared_.state);
   if (expected != values.size() && !recipe.wrong_size_reported) {
     recipe.wrong_size_reported = true;
-    shared_.log.warning("rtde", fmt::format("client {}: data package for recipe {} has {} bytes, the recipe {}",
-                                            connection_->id(), recipe_id, values.size(), expected));
+    shared_.log.warning("rtde",
+                        fmt::format("client {}: data package for recipe {} has {} bytes, the recipe {}",
+                                    connection_->id(), recipe_id, values.size(), expected));
   }
 }
 
@@ -293,7 +305,7 @@ void Session::say(std::string_view text)
   shared_.log.warning("rtde", fmt::format("client {}: {}", connection_->id(), text));
   constexpr std::string_view source = "RTDE";
   constexpr std::uint8_t warning = 2;  // 0 exception, 1 error, 2 warning, 3 info
-  text = text.substr(0, 255);  // the length is one byte
+  text = text.substr(0, 255);          // the length is one byte
   if (protocol_ == 1) {
     reply(PackageType::text_message, static_cast<char>(warning) + std::string(text));
     return;

@@ -56,7 +56,7 @@ class Session {
   std::vector<const OutputField *> outputs_;
   bool outputs_valid_ = true;
   double frequency_;
-  double due_ = 1.0;  ///< a package is due when this reaches 1
+  double due_ = 1.0;     ///< a package is due when this reaches 1
   std::string package_;  ///< the outgoing data package, sized at set-up
   bool started_ = false;
   std::uint64_t dropped_packages_ = 0;

@@ -22,8 +22,14 @@ constexpr std::array<TypeRow, 9> types{{{"BOOL", 1},
 
 }  // namespace
 
-std::string_view name(FieldType type) { return types[static_cast<std::size_t>(type)].name; }
+std::string_view name(FieldType type)
+{
+  return types[static_cast<std::size_t>(type)].name;
+}
 
-std::size_t size(FieldType type) { return types[static_cast<std::size_t>(type)].size; }
+std::size_t size(FieldType type)
+{
+  return types[static_cast<std::size_t>(type)].size;
+}
 
 }  // namespace ur_simulator::rtde

@@ -7,7 +7,10 @@
 
 namespace ur_simulator {
 
-std::string PolyscopeVersion::text() const { return fmt::format("{}.{}.{}.{}", major, minor, bugfix, build); }
+std::string PolyscopeVersion::text() const
+{
+  return fmt::format("{}.{}.{}.{}", major, minor, bugfix, build);
+}
 
 std::optional<PolyscopeVersion> PolyscopeVersion::parse(std::string_view text)
 {

@@ -59,20 +59,24 @@ TEST(Controller, starts_powered_off_when_asked)
   SimulatorOptions options = on_own_address();
   options.start_running = false;
   SimulatedController controller(options);
-  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "POWER_OFF"; }, seconds(5)));
+  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "POWER_OFF"; },
+                                    seconds(5)));
 }
 
 TEST(Controller, starts_every_model_with_the_tool_pointing_down_in_front_of_the_robot)
 {
-  for (const char * model : {"ur3", "ur5", "ur10", "ur3e", "ur5e", "ur7e", "ur10e", "ur12e", "ur15", "ur16e", "ur20", "ur30"}) {
+  for (const char * model :
+       {"ur3", "ur5", "ur10", "ur3e", "ur5e", "ur7e", "ur10e", "ur12e", "ur15", "ur16e", "ur20", "ur30"}) {
     SimulatorOptions options = on_own_address();
     options.model = model;
     SimulatedController controller(options);
-    ASSERT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "RUNNING"; }, seconds(5)));
+    ASSERT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "RUNNING"; },
+                                      seconds(5)));
     const json pose = controller.state()["actual_tcp_pose"];
     EXPECT_GT(pose[2].get<double>(), 0.1) << model << pose.dump();
     // Pointing down: half a turn about a horizontal axis.
-    EXPECT_NEAR(std::hypot(pose[3].get<double>(), pose[4].get<double>()), 3.14159, 0.01) << model << pose.dump();
+    EXPECT_NEAR(std::hypot(pose[3].get<double>(), pose[4].get<double>()), 3.14159, 0.01)
+        << model << pose.dump();
     EXPECT_NEAR(pose[5].get<double>(), 0.0, 0.01) << model;
   }
 }
@@ -82,7 +86,8 @@ TEST(Controller, its_clock_follows_the_cycles)
   SimulatedController controller(on_own_address());
   const json first = controller.state();
   ASSERT_TRUE(controller.wait_until(
-      [&](const json & state) { return state["cycle"].get<int>() >= first["cycle"].get<int>() + 100; }, seconds(10)));
+      [&](const json & state) { return state["cycle"].get<int>() >= first["cycle"].get<int>() + 100; },
+      seconds(10)));
   const json second = controller.state();
   const int cycles = second["cycle"].get<int>() - first["cycle"].get<int>();
   EXPECT_NEAR(second["timestamp"].get<double>() - first["timestamp"].get<double>(), 0.002 * cycles, 1e-9);
@@ -92,8 +97,9 @@ TEST(Controller, a_condition_that_never_holds_ends_at_its_limit_and_one_that_thr
 {
   SimulatedController controller(on_own_address());
   EXPECT_FALSE(controller.wait_until([](const json &) { return false; }, milliseconds(50)));
-  EXPECT_THROW(controller.wait_until([](const json & state) { return state.at("no such thing") == 1; }, seconds(5)),
-               nlohmann::json::out_of_range);
+  EXPECT_THROW(
+      controller.wait_until([](const json & state) { return state.at("no such thing") == 1; }, seconds(5)),
+      nlohmann::json::out_of_range);
 }
 
 TEST(Controller, ends_at_once_with_clients_connected_and_a_program_running)

@@ -8,7 +8,10 @@ namespace {
 
 class DashboardClient {
  public:
-  explicit DashboardClient(const std::string & address) : socket_(address, 29999) { greeting = socket_.receive_line(); }
+  explicit DashboardClient(const std::string & address) : socket_(address, 29999)
+  {
+    greeting = socket_.receive_line();
+  }
   std::string ask(const std::string & command)
   {
     socket_.send(command + "\n");
@@ -55,7 +58,8 @@ TEST_F(Dashboard, answers_inquiries_as_the_manual_says)
   EXPECT_EQ(client.ask("get robot model"), "UR10");
   EXPECT_EQ(client.ask("get operational mode"), "NONE");
   EXPECT_TRUE(std::regex_match(client.ask("get serial number"), std::regex("\\d+")));
-  EXPECT_TRUE(std::regex_match(client.ask("PolyscopeVersion"), std::regex("URSoftware \\d+\\.\\d+\\.\\d+\\.\\d+ .*")));
+  EXPECT_TRUE(std::regex_match(client.ask("PolyscopeVersion"),
+                               std::regex("URSoftware \\d+\\.\\d+\\.\\d+\\.\\d+ .*")));
   EXPECT_EQ(client.ask("version"), "5.25.1.0");
 }
 
@@ -72,7 +76,10 @@ TEST_F(Dashboard, does_not_understand_what_is_no_command)
   EXPECT_EQ(client.ask("setUserRole operator"), "could not understand: 'setUserRole operator'");
 }
 
-TEST_F(Dashboard, answers_stop_also_when_nothing_runs) { EXPECT_EQ(client.ask("stop"), "Stopped"); }
+TEST_F(Dashboard, answers_stop_also_when_nothing_runs)
+{
+  EXPECT_EQ(client.ask("stop"), "Stopped");
+}
 
 TEST_F(Dashboard, loads_plays_pauses_and_stops_a_program)
 {
@@ -117,13 +124,16 @@ TEST_F(Dashboard, powers_the_robot_off_and_on_and_releases_the_brakes)
 TEST_F(Dashboard, unlocks_a_protective_stop_after_five_seconds_only)
 {
   controller.control({{"command", "protective_stop"}});
-  ASSERT_TRUE(controller.wait_until([](const json & state) { return state["safety_mode"] == "PROTECTIVE_STOP"; }, seconds(5)));
-  EXPECT_EQ(client.ask("unlock protective stop").substr(0, 46), "Cannot unlock protective stop until 5s after o");
+  ASSERT_TRUE(controller.wait_until(
+      [](const json & state) { return state["safety_mode"] == "PROTECTIVE_STOP"; }, seconds(5)));
+  EXPECT_EQ(client.ask("unlock protective stop").substr(0, 46),
+            "Cannot unlock protective stop until 5s after o");
   const double since = controller.state()["timestamp"];
   ASSERT_TRUE(controller.wait_until(
       [&](const json & state) { return state["timestamp"].get<double>() > since + 5.1; }, seconds(30)));
   EXPECT_EQ(client.ask("unlock protective stop"), "Protective stop releasing");
-  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["safety_mode"] == "NORMAL"; }, seconds(5)));
+  EXPECT_TRUE(
+      controller.wait_until([](const json & state) { return state["safety_mode"] == "NORMAL"; }, seconds(5)));
 }
 
 TEST_F(Dashboard, shows_and_closes_popups)

@@ -11,7 +11,9 @@ class HostileRtde : public SimulatorTest {
   {
     RtdeClient client(controller.address());
     ASSERT_TRUE(client.negotiate(2));
-    ASSERT_EQ(client.outputs(500.0, "timestamp"), "\1" "DOUBLE");
+    ASSERT_EQ(client.outputs(500.0, "timestamp"),
+              "\1"
+              "DOUBLE");
     ASSERT_TRUE(client.start());
     const double first = real(client.receive('U').payload.substr(1, 8));
     EXPECT_GT(real(client.receive('U').payload.substr(1, 8)), first);
@@ -83,7 +85,9 @@ TEST_F(HostileRtde, texts_longer_than_their_package_are_survived)
 {
   RtdeClient client(controller.address());
   ASSERT_TRUE(client.negotiate(2));
-  client.send('M', "\xff" "short");
+  client.send('M',
+              "\xff"
+              "short");
   EXPECT_EQ(client.request('v', "").size(), 16u);
 }
 
@@ -91,7 +95,7 @@ TEST_F(HostileRtde, data_for_a_recipe_that_does_not_exist_is_ignored)
 {
   RtdeClient client(controller.address());
   ASSERT_TRUE(client.negotiate(2));
-  client.send('U', "\7" + int32(1));
+  client.send('U', package_for(7) + int32(1));
   EXPECT_EQ(client.request('v', "").size(), 16u);
   EXPECT_TRUE(logged(controller, "recipe 7, which was not set up"));
 }
@@ -101,8 +105,8 @@ TEST_F(HostileRtde, of_a_short_data_package_the_fields_that_are_there_are_taken)
   RtdeClient client(controller.address());
   ASSERT_TRUE(client.negotiate(2));
   client.inputs("input_int_register_0,input_double_register_0,input_int_register_1");
-  client.send('U', "\1" + int32(21) + float64(1.5));
-  client.send('U', "\1" + int32(22) + "\1\2");
+  client.send('U', package_for(1) + int32(21) + float64(1.5));
+  client.send('U', package_for(1) + int32(22) + "\1\2");
   EXPECT_EQ(client.request('v', "").size(), 16u);
   const json inputs = controller.control({{"command", "registers"}})["inputs"];
   EXPECT_EQ(inputs["integers"][0], 22);
@@ -115,7 +119,7 @@ TEST_F(HostileRtde, of_a_long_data_package_the_surplus_is_ignored)
   RtdeClient client(controller.address());
   ASSERT_TRUE(client.negotiate(2));
   client.inputs("input_int_register_0");
-  client.send('U', "\1" + int32(5) + std::string(48, '\x55'));
+  client.send('U', package_for(1) + int32(5) + std::string(48, '\x55'));
   EXPECT_EQ(client.request('v', "").size(), 16u);
   EXPECT_EQ(controller.control({{"command", "registers"}})["inputs"]["integers"][0], 5);
 }
@@ -125,7 +129,9 @@ TEST_F(HostileRtde, frequencies_that_make_no_sense_become_the_highest)
   RtdeClient client(controller.address());
   ASSERT_TRUE(client.negotiate(2));
   for (const double frequency : {0.0, -1.0, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(client.outputs(frequency, "timestamp"), "\1" "DOUBLE");
+    EXPECT_EQ(client.outputs(frequency, "timestamp"),
+              "\1"
+              "DOUBLE");
     ASSERT_TRUE(client.start());
     client.receive('U');
     client.request('P', "");
@@ -165,7 +171,8 @@ TEST_F(HostileRtde, a_client_that_never_reads_loses_packages_and_delays_nobody)
   ASSERT_EQ(client.outputs(500.0, names)[0], 1);
   ASSERT_TRUE(client.start());
   EXPECT_TRUE(controller.wait_until(
-      [](const json & state) { return state["clients"]["rtde_dropped_packages"].get<int>() > 10; }, seconds(20)));
+      [](const json & state) { return state["clients"]["rtde_dropped_packages"].get<int>() > 10; },
+      seconds(20)));
 }
 
 TEST_F(HostileRtde, noise_of_any_kind_is_survived)
@@ -178,7 +185,8 @@ TEST_F(HostileRtde, noise_of_any_kind_is_survived)
       seed = seed * 1664525u + 1013904223u;
       noise += static_cast<char>(seed >> 24);
     }
-    client.send_raw(RtdeClient::package("VvMUOISP"[round % 8], noise.substr(0, static_cast<std::size_t>(round) * 5)));
+    client.send_raw(
+        RtdeClient::package("VvMUOISP"[round % 8], noise.substr(0, static_cast<std::size_t>(round) * 5)));
     client.send_raw(noise);
   }
 }

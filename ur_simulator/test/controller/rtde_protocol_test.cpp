@@ -29,8 +29,10 @@ TEST_F(Rtde, tells_the_controllers_version)
 TEST_F(Rtde, answers_an_output_recipe_with_its_types)
 {
   ASSERT_TRUE(client.negotiate(2));
-  EXPECT_EQ(client.outputs(500.0, "timestamp,actual_q,robot_mode,joint_mode,actual_digital_input_bits,payload_cog,"),
-            "\1" "DOUBLE,VECTOR6D,INT32,VECTOR6INT32,UINT64,VECTOR3D");
+  EXPECT_EQ(client.outputs(500.0,
+                           "timestamp,actual_q,robot_mode,joint_mode,actual_digital_input_bits,payload_cog,"),
+            "\1"
+            "DOUBLE,VECTOR6D,INT32,VECTOR6INT32,UINT64,VECTOR3D");
 }
 
 TEST_F(Rtde, names_unknown_outputs_and_does_not_start_with_them)
@@ -92,10 +94,16 @@ TEST_F(Rtde, stops_sending_when_paused)
 TEST_F(Rtde, numbers_input_recipes_from_1_in_the_order_of_requests)
 {
   ASSERT_TRUE(client.negotiate(2));
-  EXPECT_EQ(client.inputs("input_int_register_0,"), "\1" "INT32");
-  EXPECT_EQ(client.inputs("input_int_register_0,input_double_register_0,"), "\2" "INT32,DOUBLE");
+  EXPECT_EQ(client.inputs("input_int_register_0,"),
+            "\1"
+            "INT32");
+  EXPECT_EQ(client.inputs("input_int_register_0,input_double_register_0,"),
+            "\2"
+            "INT32,DOUBLE");
   EXPECT_EQ(client.inputs("no_such_thing"), std::string("\0", 1) + "NOT_FOUND");
-  EXPECT_EQ(client.inputs("external_force_torque"), "\3" "VECTOR6D");
+  EXPECT_EQ(client.inputs("external_force_torque"),
+            "\3"
+            "VECTOR6D");
 }
 
 TEST_F(Rtde, lets_one_client_write_a_register_and_gives_it_back_when_the_client_leaves)
@@ -104,18 +112,24 @@ TEST_F(Rtde, lets_one_client_write_a_register_and_gives_it_back_when_the_client_
   {
     RtdeClient owner(controller.address());
     ASSERT_TRUE(owner.negotiate(2));
-    ASSERT_EQ(owner.inputs("input_int_register_5"), "\1" "INT32");
-    EXPECT_EQ(client.inputs("input_int_register_4,input_int_register_5"), std::string("\0", 1) + "INT32,IN_USE");
+    ASSERT_EQ(owner.inputs("input_int_register_5"),
+              "\1"
+              "INT32");
+    EXPECT_EQ(client.inputs("input_int_register_4,input_int_register_5"),
+              std::string("\0", 1) + "INT32,IN_USE");
   }
-  ASSERT_TRUE(controller.wait_until([](const json & state) { return state["clients"]["rtde"] == 1; }, seconds(5)));
-  EXPECT_EQ(client.inputs("input_int_register_4,input_int_register_5"), "\1" "INT32,INT32");
+  ASSERT_TRUE(
+      controller.wait_until([](const json & state) { return state["clients"]["rtde"] == 1; }, seconds(5)));
+  EXPECT_EQ(client.inputs("input_int_register_4,input_int_register_5"),
+            "\1"
+            "INT32,INT32");
 }
 
 TEST_F(Rtde, writes_registers_and_shows_them_to_others)
 {
   ASSERT_TRUE(client.negotiate(2));
   client.inputs("input_int_register_3,input_double_register_47,input_bit_register_64");
-  client.send('U', "\1" + int32(-7) + float64(2.5) + "\1");
+  client.send('U', package_for(1) + int32(-7) + float64(2.5) + "\1");
   RtdeClient reader(controller.address());
   ASSERT_TRUE(reader.negotiate(2));
   reader.outputs(500.0, "input_int_register_3,input_double_register_47,input_bit_register_64");
@@ -124,7 +138,7 @@ TEST_F(Rtde, writes_registers_and_shows_them_to_others)
   for (int i = 0; i < 500 && (payload.empty() || payload[13] == 0); ++i) {
     payload = reader.receive('U').payload;
   }
-  EXPECT_EQ(payload, "\1" + int32(-7) + float64(2.5) + "\1");
+  EXPECT_EQ(payload, package_for(1) + int32(-7) + float64(2.5) + "\1");
 }
 
 TEST_F(Rtde, changes_only_the_outputs_its_mask_selects)
@@ -133,19 +147,23 @@ TEST_F(Rtde, changes_only_the_outputs_its_mask_selects)
   client.inputs("standard_digital_output_mask,standard_digital_output");
   client.send('U', std::string("\1\xf0\xff", 3));
   client.send('U', std::string("\1\x81\x01", 3));
-  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["io"]["digital_outputs"] == 0x71; }, seconds(5)))
+  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["io"]["digital_outputs"] == 0x71; },
+                                    seconds(5)))
       << controller.state()["io"].dump();
 }
 
 TEST_F(Rtde, sets_analog_outputs_as_fraction_of_their_range)
 {
   ASSERT_TRUE(client.negotiate(2));
-  client.inputs("standard_analog_output_mask,standard_analog_output_type,standard_analog_output_0,standard_analog_output_1");
+  client.inputs(
+      "standard_analog_output_mask,standard_analog_output_type,standard_analog_output_0,standard_analog_"
+      "output_1");
   client.send('U', std::string("\1\3\2", 3) + float64(0.5) + float64(0.5));
   EXPECT_TRUE(controller.wait_until(
       [](const json & state) {
         const json & outputs = state["io"]["analog_outputs"];
-        return std::abs(outputs[0].get<double>() - 0.012) < 1e-12 && std::abs(outputs[1].get<double>() - 5.0) < 1e-12;
+        return std::abs(outputs[0].get<double>() - 0.012) < 1e-12 &&
+               std::abs(outputs[1].get<double>() - 5.0) < 1e-12;
       },
       seconds(5)));
 }
@@ -154,9 +172,10 @@ TEST_F(Rtde, moves_the_speed_slider_only_under_its_mask)
 {
   ASSERT_TRUE(client.negotiate(2));
   client.inputs("speed_slider_mask,speed_slider_fraction");
-  client.send('U', "\1" + int32(1) + float64(0.25));
-  ASSERT_TRUE(controller.wait_until([](const json & state) { return state["speed_slider"] == 0.25; }, seconds(5)));
-  client.send('U', "\1" + int32(0) + float64(0.75));
+  client.send('U', package_for(1) + int32(1) + float64(0.25));
+  ASSERT_TRUE(
+      controller.wait_until([](const json & state) { return state["speed_slider"] == 0.25; }, seconds(5)));
+  client.send('U', package_for(1) + int32(0) + float64(0.75));
   EXPECT_EQ(client.request('v', "").size(), 16u);  // answered after the package was read
   EXPECT_EQ(controller.state()["speed_slider"], 0.25);
 }
@@ -168,7 +187,8 @@ TEST(RtdeVersions, hide_what_a_version_does_not_have)
   SimulatedController controller(on_own_address(options));
   RtdeClient client(controller.address());
   ASSERT_TRUE(client.negotiate(2));
-  EXPECT_EQ(client.outputs(500.0, "ft_raw_wrench,payload,timestamp"), std::string("\0", 1) + "NOT_FOUND,NOT_FOUND,DOUBLE");
+  EXPECT_EQ(client.outputs(500.0, "ft_raw_wrench,payload,timestamp"),
+            std::string("\0", 1) + "NOT_FOUND,NOT_FOUND,DOUBLE");
 }
 
 TEST(RtdeVersions, a_cb3_controller_runs_at_125_hertz)

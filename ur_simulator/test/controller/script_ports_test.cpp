@@ -10,7 +10,9 @@ using ScriptPorts = SimulatorTest;
 bool wait_for_output(SimulatedController & controller, std::size_t number, bool value)
 {
   return controller.wait_until(
-      [=](const json & state) { return ((state["io"]["digital_outputs"].get<std::uint64_t>() >> number) & 1u) == value; },
+      [=](const json & state) {
+        return ((state["io"]["digital_outputs"].get<std::uint64_t>() >> number) & 1u) == value;
+      },
       seconds(5));
 }
 
@@ -22,7 +24,8 @@ bool wait_for_log(SimulatedController & controller, const std::string & text)
       return true;
     }
     controller.wait_until([cycle = controller.state()["cycle"].get<int>()](
-                              const json & state) { return state["cycle"].get<int>() > cycle; }, seconds(1));
+                              const json & state) { return state["cycle"].get<int>() > cycle; },
+                          seconds(1));
   }
   return false;
 }
@@ -44,7 +47,8 @@ TEST_F(ScriptPorts, replace_the_running_program)
   client.send("def first():\n  while True:\n    sync()\n  end\nend\n");
   ASSERT_TRUE(wait_for_program(controller, "PLAYING"));
   client.send("def second():\n  while True:\n    sync()\n  end\nend\n");
-  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["program"]["name"] == "second"; }, seconds(5)));
+  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["program"]["name"] == "second"; },
+                                    seconds(5)));
 }
 
 TEST_F(ScriptPorts, run_secondary_programs_beside_the_running_one)
@@ -91,7 +95,8 @@ TEST_F(ScriptPorts, report_programs_that_fail_while_they_run)
 TEST_F(ScriptPorts, do_not_start_programs_while_powered_off)
 {
   controller.control({{"command", "power"}, {"to", "off"}});
-  ASSERT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "POWER_OFF"; }, seconds(10)));
+  ASSERT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "POWER_OFF"; },
+                                    seconds(10)));
   RawSocket client(controller.address(), 30002);
   client.send("def nothing():\n  sync()\nend\n");
   EXPECT_TRUE(wait_for_log(controller, "robot mode is POWER_OFF"));
@@ -101,7 +106,8 @@ TEST_F(ScriptPorts, do_not_start_programs_while_powered_off)
 TEST_F(ScriptPorts, keep_clients_that_never_read)
 {
   RawSocket client(controller.address(), 30003);
-  ASSERT_TRUE(controller.wait_until([](const json & state) { return state["timestamp"].get<double>() > 2.0; }, seconds(20)));
+  ASSERT_TRUE(controller.wait_until([](const json & state) { return state["timestamp"].get<double>() > 2.0; },
+                                    seconds(20)));
   client.send("def late():\n  set_standard_digital_out(2, True)\nend\n");
   EXPECT_TRUE(wait_for_output(controller, 2, true));
 }

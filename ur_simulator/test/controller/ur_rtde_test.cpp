@@ -36,7 +36,9 @@ bool wait_for_rest(SimulatedController & controller)
 bool wait_for_tcp_speed(SimulatedController & controller, std::size_t axis, double speed, double tolerance)
 {
   return controller.wait_until(
-      [=](const json & state) { return std::abs(state["actual_tcp_speed"][axis].get<double>() - speed) < tolerance; },
+      [=](const json & state) {
+        return std::abs(state["actual_tcp_speed"][axis].get<double>() - speed) < tolerance;
+      },
       seconds(10));
 }
 
@@ -74,8 +76,8 @@ TEST(UrRtdeIo, sets_outputs_slider_and_registers)
   EXPECT_TRUE(io.setInputIntRegister(18, 42));
   EXPECT_TRUE(controller.wait_until(
       [](const json & state) {
-        return state["io"]["digital_outputs"] == (1u << 3 | 1u << 9 | 1u << 16) && state["speed_slider"] == 0.5 &&
-               state["io"]["analog_outputs"][0] == 2.5;
+        return state["io"]["digital_outputs"] == (1u << 3 | 1u << 9 | 1u << 16) &&
+               state["speed_slider"] == 0.5 && state["io"]["analog_outputs"][0] == 2.5;
       },
       seconds(5)))
       << controller.state().dump(2);
@@ -93,7 +95,8 @@ TEST(UrRtdeDashboard, powers_the_robot_on)
   EXPECT_EQ(dashboard.robotmode(), "Robotmode: POWER_OFF");
   dashboard.powerOn();
   dashboard.brakeRelease();
-  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "RUNNING"; }, seconds(20)));
+  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "RUNNING"; },
+                                    seconds(20)));
   EXPECT_TRUE(dashboard.isInRemoteControl());
   EXPECT_FALSE(dashboard.running());
   EXPECT_TRUE(dashboard.isProgramSaved());
@@ -104,7 +107,8 @@ TEST(UrRtdeDashboard, powers_the_robot_on)
 /// The control interface with its script running.
 class UrRtdeControl : public SimulatorTest {
  protected:
-  ur_rtde::RTDEControlInterface control{controller.address(), -1.0, ur_rtde::RTDEControlInterface::FLAGS_DEFAULT, 50002, -1};
+  ur_rtde::RTDEControlInterface control{controller.address(), -1.0,
+                                        ur_rtde::RTDEControlInterface::FLAGS_DEFAULT, 50002, -1};
   Joints start = joints_of(controller);
 
   Joints shifted(double by) const
@@ -150,7 +154,8 @@ TEST_F(UrRtdeControl, moves_linearly_and_stops_on_request)
 TEST_F(UrRtdeControl, reports_progress_of_asynchronous_motions)
 {
   ASSERT_TRUE(control.moveJ(shifted(0.3), 1.0, 2.0, true));
-  ASSERT_TRUE(controller.wait_until([](const json & state) { return !state["at_rest"].get<bool>(); }, seconds(5)));
+  ASSERT_TRUE(
+      controller.wait_until([](const json & state) { return !state["at_rest"].get<bool>(); }, seconds(5)));
   EXPECT_GE(control.getAsyncOperationProgress(), 0);
   ASSERT_TRUE(wait_for_rest(controller));
   EXPECT_LT(distance(joints_of(controller), shifted(0.3)), 1e-3);
@@ -191,13 +196,15 @@ TEST_F(UrRtdeControl, zeroes_the_force_sensor_and_sets_payload_and_tcp)
   EXPECT_TRUE(control.setPayload(1.5, {0.0, 0.0, 0.05}));
   EXPECT_TRUE(control.setTcp({0.0, 0.0, 0.1, 0.0, 0.0, 0.0}));
   EXPECT_TRUE(controller.wait_until(
-      [](const json & state) { return state["payload"]["mass"] == 1.5 && state["tcp_offset"][2] == 0.1; }, seconds(5)));
+      [](const json & state) { return state["payload"]["mass"] == 1.5 && state["tcp_offset"][2] == 0.1; },
+      seconds(5)));
 }
 
 TEST_F(UrRtdeControl, a_motion_ends_on_a_protective_stop)
 {
   ASSERT_TRUE(control.moveJ(shifted(0.5), 0.5, 1.0, true));
-  ASSERT_TRUE(controller.wait_until([](const json & state) { return !state["at_rest"].get<bool>(); }, seconds(5)));
+  ASSERT_TRUE(
+      controller.wait_until([](const json & state) { return !state["at_rest"].get<bool>(); }, seconds(5)));
   controller.control({{"command", "protective_stop"}});
   ASSERT_TRUE(wait_for_rest(controller));
   EXPECT_EQ(controller.state()["safety_mode"], "PROTECTIVE_STOP");
@@ -221,7 +228,8 @@ TEST_F(UrRtdeControl, shares_the_controller_with_receive_and_io)
 
 TEST_F(UrRtdeControl, a_second_control_interface_finds_the_registers_in_use)
 {
-  EXPECT_THROW(ur_rtde::RTDEControlInterface(controller.address(), -1.0, ur_rtde::RTDEControlInterface::FLAGS_DEFAULT, 50002, -1),
+  EXPECT_THROW(ur_rtde::RTDEControlInterface(controller.address(), -1.0,
+                                             ur_rtde::RTDEControlInterface::FLAGS_DEFAULT, 50002, -1),
                std::runtime_error);
 }
 

@@ -17,8 +17,17 @@ inline std::string big_endian(std::uint64_t value, int bytes)
   }
   return result;
 }
-inline std::string int32(std::int32_t value) { return big_endian(static_cast<std::uint32_t>(value), 4); }
-inline std::string float64(double value) { return big_endian(std::bit_cast<std::uint64_t>(value), 8); }
+inline std::string int32(std::int32_t value)
+{
+  return big_endian(static_cast<std::uint32_t>(value), 4);
+}
+inline std::string float64(double value)
+{
+  return big_endian(std::bit_cast<std::uint64_t>(value), 8);
+}
+
+/// The beginning of a data package: its recipe.
+inline std::string package_for(int recipe) { return std::string(1, static_cast<char>(recipe)); }
 
 inline std::uint64_t number(std::string_view bytes)
 {
@@ -28,7 +37,10 @@ inline std::uint64_t number(std::string_view bytes)
   }
   return value;
 }
-inline double real(std::string_view bytes) { return std::bit_cast<double>(number(bytes)); }
+inline double real(std::string_view bytes)
+{
+  return std::bit_cast<double>(number(bytes));
+}
 
 /// Speaks RTDE byte by byte.
 class RtdeClient {

@@ -34,7 +34,8 @@ inline bool logged(SimulatedController & controller, const std::string & text)
 
 inline bool wait_for_program(SimulatedController & controller, const std::string & state)
 {
-  return controller.wait_until([&](const json & now) { return now["program"]["state"] == state; }, seconds(10));
+  return controller.wait_until([&](const json & now) { return now["program"]["state"] == state; },
+                               seconds(10));
 }
 
 /// One controller a test, on an address of its own.
