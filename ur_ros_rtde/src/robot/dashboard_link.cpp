@@ -222,7 +222,7 @@ DashboardLink::DashboardLink(DashboardLinkOptions options, LogFunction log)
 {
 }
 
-DashboardLink::~DashboardLink() = default;
+DashboardLink::~DashboardLink() { stop(); }
 
 void DashboardLink::on_link(std::function<void(const LinkStatus &)> function)
 {

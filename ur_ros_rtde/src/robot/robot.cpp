@@ -248,8 +248,13 @@ Status Robot::motion_possible() const
             "doing, as soon as the robot is ready for it",
             to_string(sample->runtime_state)));
   }
-  if (!impl_->links.control_pointer()) {
+  const auto control = impl_->links.control_pointer();
+  if (!control) {
     return tl::unexpected(impl_->why_not());
+  }
+  if (!control->isConnected()) {
+    return failure(ErrorCode::link_lost,
+                   "the robot closed the connection to the control program; it is made anew");
   }
   return {};
 }

@@ -61,7 +61,7 @@ class StateReceiver::Impl {
   Sample latest_{};
   std::shared_ptr<ur_rtde::RTDEReceiveInterface> interface_;
 
-  std::jthread thread_;  ///< last: it uses all of the above
+  std::jthread thread_;
 
  private:
   Status connect();
@@ -216,7 +216,7 @@ StateReceiver::StateReceiver(StateReceiverOptions options, LogFunction log)
 {
 }
 
-StateReceiver::~StateReceiver() = default;
+StateReceiver::~StateReceiver() { stop(); }
 
 void StateReceiver::on_sample(SampleFunction function)
 {

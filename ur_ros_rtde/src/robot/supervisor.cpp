@@ -1,6 +1,7 @@
 #include "robot/supervisor.hpp"
 
 #include <fmt/format.h>
+#include <ur_rtde/rtde_control_interface.h>
 
 #include <utility>
 
@@ -149,6 +150,11 @@ RobotStatus Supervisor::look()
     program_ours_ = false;
     program_ended_ = false;
     links_.drop();
+  }
+  if (const auto control = links_.control_pointer(); program_ours_ && control && !control->isConnected()) {
+    // Only this link is lost; the program behind it, still ours, is replaced.
+    program_ours_ = false;
+    links_.drop_control();
   }
   if (!program_ours_ && links_.control_pointer()) {
     // Whatever ended it, it must not go on from where it was: not after a protective stop is unlocked, not on

@@ -1,0 +1,100 @@
+#include "robot_fixture.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ur_ros_rtde::test {
+
+void RobotFixture::make_robot(RobotOptions options)
+{
+  robot = std::make_unique<Robot>(std::move(options), log.function());
+  robot->on_status([this](const RobotStatus & status) {
+    const std::lock_guard lock(mutex);
+    statuses.push_back(status);
+  });
+  robot->on_sample([this](const Sample & sample) {
+    if (recording) {
+      const std::lock_guard lock(mutex);
+      samples.push_back(sample);
+    }
+  });
+  robot->start();
+}
+
+void RobotFixture::make_both()
+{
+  controller.start();
+  make_robot();
+  ASSERT_TRUE(becomes_ready());
+}
+
+testing::AssertionResult RobotFixture::comes_to(RobotState state, ErrorCode cause,
+                                                std::chrono::milliseconds limit)
+{
+  const auto there = [&] {
+    const auto now = robot->status();
+    return now.state == state && (cause == ErrorCode::none || now.cause == cause);
+  };
+  if (eventually(there, limit)) {
+    return testing::AssertionSuccess();
+  }
+  const auto now = robot->status();
+  return testing::AssertionFailure() << "the robot is " << to_string(now.state) << " ("
+                                     << to_string(now.cause) << ": " << now.message << "), not "
+                                     << to_string(state) << ". It said:\n"
+                                     << log.text();
+}
+
+testing::AssertionResult RobotFixture::becomes_ready_again(std::size_t times)
+{
+  const auto count = [this] {
+    const std::lock_guard lock(mutex);
+    return std::count_if(statuses.begin(), statuses.end(),
+                         [](const RobotStatus & status) { return status.state == RobotState::ready; });
+  };
+  if (!eventually([&] { return static_cast<std::size_t>(count()) >= times; }, 10s)) {
+    return testing::AssertionFailure() << "it was ready " << count() << " times. It said:\n" << log.text();
+  }
+  return becomes_ready();
+}
+
+void RobotFixture::move_joints()
+{
+  auto q = robot->receive()->getActualQ();
+  q[0] += 3.0;
+  ASSERT_TRUE(robot->control()->moveJ(q, 0.8, 2.0, true)) << log.text();
+  ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.7; })) << log.text();
+}
+
+void RobotFixture::move_linear()
+{
+  auto pose = robot->receive()->getActualTCPPose();
+  pose[2] += 0.2;
+  ASSERT_TRUE(robot->control()->moveL(pose, 0.1, 1.0, true)) << log.text();
+  ASSERT_TRUE(eventually([&] { return robot->latest()->actual_tcp_speed[2] > 0.09; })) << log.text();
+}
+
+std::vector<Sample> RobotFixture::recorded()
+{
+  const std::lock_guard lock(mutex);
+  return samples;
+}
+
+double RobotFixture::highest_deceleration(std::size_t index)
+{
+  const auto all = recorded();
+  double highest = 0.0;
+  for (std::size_t begin = 0, end = 0; end < all.size(); ++end) {
+    while (all[end].controller_time - all[begin].controller_time > 0.0105) {
+      ++begin;
+    }
+    const double duration = all[end].controller_time - all[begin].controller_time;
+    if (duration > 0.0095) {
+      const double slower = std::abs(all[begin].target_qd[index]) - std::abs(all[end].target_qd[index]);
+      highest = std::max(highest, slower / duration);
+    }
+  }
+  return highest;
+}
+
+}  // namespace ur_ros_rtde::test

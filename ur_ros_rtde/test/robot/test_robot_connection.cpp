@@ -1,0 +1,230 @@
+#include "robot_fixture.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using ARobot = RobotFixture;
+
+double seconds_since(Clock::time_point begin)
+{
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+TEST_F(ARobot, becomes_ready_within_two_seconds)
+{
+  controller.start();
+  const auto begin = Clock::now();
+  make_robot();
+  ASSERT_TRUE(becomes_ready());
+  RecordProperty("ready_after_s", std::to_string(seconds_since(begin)));
+  EXPECT_LT(seconds_since(begin), 2.0);
+  EXPECT_TRUE(robot->ready_to_move());
+  EXPECT_TRUE(robot->control()->isProgramRunning());
+  EXPECT_TRUE(robot->io()->setStandardDigitalOut(1, true));
+  EXPECT_TRUE(eventually([&] { return (robot->latest()->digital_outputs & 2U) != 0; }));
+  EXPECT_NE(robot->dashboard()->robotmode().find("RUNNING"), std::string::npos);
+}
+
+TEST_F(ARobot, waits_for_a_controller_that_starts_later)
+{
+  make_robot();
+  ASSERT_TRUE(eventually([&] { return log.count("Trying again") > 0; }));
+  EXPECT_EQ(robot->status().state, RobotState::disconnected);
+  EXPECT_EQ(robot->status().cause, ErrorCode::link_lost);
+  EXPECT_THROW(robot->control(), RobotError);
+  EXPECT_FALSE(robot->ready_to_move());
+  controller.start();
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(ARobot, follows_the_arm_through_power_up)
+{
+  auto options = Controller::options();
+  options.start_running = false;
+  controller.start(options);
+  make_robot();
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::not_ready));
+  EXPECT_NE(robot->status().message.find("dashboard/power_on"), std::string::npos) << robot->status().message;
+  EXPECT_TRUE(robot->io()->setStandardDigitalOut(0, true)) << "IO works without power at the arm";
+  controller.control({{"command", "power"}, {"to", "on"}});
+  ASSERT_TRUE(eventually(
+      [&] { return robot->status().message.find("dashboard/brake_release") != std::string::npos; }, 20s));
+  controller.control({{"command", "power"}, {"to", "running"}});
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(ARobot, says_that_the_robot_is_in_local_control_and_goes_on_when_it_is_not)
+{
+  auto options = Controller::options();
+  options.remote_control = false;
+  controller.start(options);
+  make_robot();
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::not_ready));
+  EXPECT_NE(robot->status().message.find("remote control"), std::string::npos);
+  EXPECT_EQ(log.count("local control"), 1U) << log.text();
+  controller.control({{"command", "remote_control"}});
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(ARobot, tells_each_change_of_its_status_once)
+{
+  make_both();
+  controller.control({{"command", "protective_stop"}, {"reason", "test"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
+  const std::lock_guard lock(mutex);
+  ASSERT_GE(statuses.size(), 3U);
+  for (std::size_t i = 1; i < statuses.size(); ++i) {
+    EXPECT_FALSE(statuses[i].state == statuses[i - 1].state &&
+                 statuses[i].message == statuses[i - 1].message);
+  }
+  EXPECT_EQ(statuses.back().cause, ErrorCode::protective_stop);
+}
+
+TEST_F(ARobot, starts_the_control_program_again_after_it_was_stopped_on_the_pendant)
+{
+  make_both();
+  controller.control({{"command", "stop_program"}});
+  const auto begin = Clock::now();
+  ASSERT_TRUE(becomes_ready_again());
+  EXPECT_LT(seconds_since(begin), 1.0);
+  EXPECT_TRUE(robot->control()->isSteady());
+}
+
+TEST_F(ARobot, leaves_the_program_stopped_where_restarting_is_off)
+{
+  controller.start();
+  auto options = robot_options();
+  options.restart_program = false;
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  EXPECT_FALSE(eventually([&] { return robot->status().state == RobotState::ready; }, 700ms));
+}
+
+TEST_F(ARobot, takes_over_from_a_program_that_runs_when_it_comes)
+{
+  controller.start();
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "PLAYING"; }));
+  make_robot();
+  EXPECT_TRUE(becomes_ready());
+  EXPECT_EQ(log.count("a program was running on the robot"), 1U) << log.text();
+}
+
+TEST_F(ARobot, leaves_a_program_alone_that_somebody_else_starts_later)
+{
+  make_both();
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  EXPECT_NE(robot->status().message.find("another program"), std::string::npos) << robot->status().message;
+  controller.control({{"command", "stop_program"}});
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(ARobot, comes_back_after_a_reboot_once_the_arm_is_powered)
+{
+  make_both();
+  controller.control({{"command", "reboot"}, {"duration", 0.3}});
+  ASSERT_TRUE(comes_to(RobotState::disconnected, ErrorCode::link_lost));
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::not_ready));
+  controller.control({{"command", "power"}, {"to", "running"}});
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(ARobot, comes_back_within_a_second_after_its_links_were_dropped)
+{
+  make_both();
+  std::size_t times = 1;
+  for (const bool reset : {false, true}) {
+    controller.control({{"command", "drop_links"}, {"reset", reset}});
+    const auto begin = Clock::now();
+    ASSERT_TRUE(becomes_ready_again(++times));
+    RecordProperty("ready_again_after_s", std::to_string(seconds_since(begin)));
+    EXPECT_LT(seconds_since(begin), 1.5);
+  }
+}
+
+TEST_F(ARobot, notices_that_only_the_control_link_was_dropped)
+{
+  make_both();
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "control"}});
+  EXPECT_TRUE(becomes_ready_again());
+}
+
+TEST_F(ARobot, brings_io_back_after_only_its_link_was_dropped)
+{
+  make_both();
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "io"}});
+  EXPECT_TRUE(eventually([&] {
+    robot->io()->setStandardDigitalOut(3, true);
+    return (robot->latest()->digital_outputs & 8U) != 0;
+  })) << log.text();
+}
+
+TEST_F(ARobot, survives_a_controller_that_dies_for_good)
+{
+  make_both();
+  controller.stop();
+  ASSERT_TRUE(comes_to(RobotState::disconnected, ErrorCode::link_lost));
+  EXPECT_THROW(robot->control(), RobotError);
+  EXPECT_THROW(robot->io(), RobotError);
+  EXPECT_FALSE(robot->stop_motion());
+  controller.start();
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(ARobot, leaks_no_descriptors_and_no_threads_over_many_reconnections)
+{
+  controller.start();
+  auto options = robot_options();
+  options.retry_interval = 10ms;
+  make_robot(options);
+  std::size_t descriptors = 0;
+  std::size_t threads = 0;
+  for (int round = 0; round < 25; ++round) {
+    ASSERT_TRUE(becomes_ready_again(static_cast<std::size_t>(round) + 1)) << "round " << round;
+    if (round == 5) {
+      descriptors = open_descriptors();
+      threads = running_threads();
+    }
+    if (round > 5) {
+      EXPECT_TRUE(eventually([&] { return open_descriptors() <= descriptors + 3; }))
+          << open_descriptors() << " of " << descriptors;
+      EXPECT_TRUE(eventually([&] { return running_threads() <= threads; }))
+          << running_threads() << " of " << threads;
+    }
+    const auto link = robot->latest()->link;
+    controller.control({{"command", "drop_links"}});
+    ASSERT_TRUE(eventually(
+        [&] { return robot->latest()->link > link || robot->status().state != RobotState::ready; }));
+  }
+}
+
+TEST_F(ARobot, ends_at_any_moment_of_its_start)
+{
+  controller.start();
+  for (const auto delay : {0ms, 5ms, 20ms, 60ms, 150ms}) {
+    make_robot();
+    eventually([] { return false; }, delay);
+    const auto begin = Clock::now();
+    robot.reset();
+    EXPECT_LT(seconds_since(begin), 8.0);
+  }
+}
+
+TEST_F(ARobot, refuses_options_out_of_range)
+{
+  auto options = robot_options();
+  options.watchdog_frequency = 0.5;
+  EXPECT_THROW(Robot{options}, std::invalid_argument);
+  options.watchdog_frequency = 10.0;
+  options.frequency = 1000.0;
+  EXPECT_THROW(Robot{options}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

@@ -1,0 +1,212 @@
+#include <cmath>
+#include <thread>
+
+#include "robot_fixture.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using AMotion = RobotFixture;
+
+TEST_F(AMotion, is_tracked_from_its_start_to_its_end)
+{
+  make_both();
+  auto q = robot->receive()->getActualQ();
+  q[5] += 0.3;
+  const auto mark = robot->mark_motion();
+  EXPECT_FALSE(robot->motion_progress(mark).started);
+  ASSERT_TRUE(robot->control()->moveJ(q, 1.0, 3.0, true));
+  ASSERT_TRUE(eventually([&] { return robot->motion_progress(mark).running; }));
+  EXPECT_FALSE(robot->motion_progress(mark).finished());
+  ASSERT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); }, 10s));
+  EXPECT_NEAR(robot->latest()->actual_q[5], q[5], 1e-3);
+  EXPECT_FALSE(robot->moving());
+}
+
+TEST_F(AMotion, is_not_finished_by_the_end_of_the_one_before)
+{
+  make_both();
+  auto q = robot->receive()->getActualQ();
+  for (int i = 0; i < 5; ++i) {
+    q[5] += i % 2 == 0 ? 0.1 : -0.1;
+    const auto mark = robot->mark_motion();
+    ASSERT_FALSE(robot->motion_progress(mark).finished());
+    ASSERT_TRUE(robot->control()->moveJ(q, 1.0, 5.0, true));
+    ASSERT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); }, 10s));
+    EXPECT_NEAR(robot->latest()->actual_q[5], q[5], 1e-3) << "motion " << i;
+  }
+}
+
+TEST_F(AMotion, to_where_the_arm_is_already_ends_too)
+{
+  make_both();
+  const auto q = robot->receive()->getActualQ();
+  const auto mark = robot->mark_motion();
+  ASSERT_TRUE(robot->control()->moveJ(q, 1.0, 3.0, true));
+  EXPECT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); })) << log.text();
+}
+
+TEST_F(AMotion, ends_with_the_cause_when_the_robot_goes_into_a_protective_stop)
+{
+  make_both();
+  move_joints();
+  controller.control({{"command", "protective_stop"}, {"reason", "test"}});
+  ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
+  EXPECT_EQ(robot->motion_possible().error().code, ErrorCode::protective_stop);
+  const auto stopped = robot->stop_motion();
+  ASSERT_TRUE(stopped) << stopped.error().message;
+  EXPECT_EQ(stopped->means, StopMeans::stopped_by_robot);
+  EXPECT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
+}
+
+TEST_F(AMotion, is_not_resumed_after_a_protective_stop_is_unlocked)
+{
+  make_both();
+  move_joints();
+  controller.control({{"command", "protective_stop"}, {"reason", "test"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
+  const auto q = robot->latest()->actual_q;
+  ASSERT_TRUE(eventually(
+      [&] {
+        try {
+          robot->dashboard()->unlockProtectiveStop();  // refused for 5 s
+          return true;
+        } catch (const std::exception &) {
+          return false;
+        }
+      },
+      20s));
+  ASSERT_TRUE(becomes_ready());
+  const auto sequence = robot->latest()->sequence;
+  ASSERT_TRUE(eventually([&] { return robot->latest()->sequence > sequence + 200; }));
+  EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3) << "the old motion went on";
+  move_joints();
+}
+
+TEST_F(AMotion, ends_with_the_cause_in_an_emergency_stop_and_the_way_out_is_named)
+{
+  make_both();
+  move_joints();
+  controller.control({{"command", "emergency_stop"}});
+  ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
+  EXPECT_EQ(robot->motion_possible().error().code, ErrorCode::emergency_stop);
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::emergency_stop));
+  controller.control({{"command", "emergency_stop"}, {"pressed", false}});
+  controller.control({{"command", "power"}, {"to", "running"}});
+  EXPECT_TRUE(becomes_ready(20s));
+}
+
+TEST_F(AMotion, ends_in_a_safeguard_stop_and_does_not_go_on_when_the_guard_closes)
+{
+  make_both();
+  move_joints();
+  controller.control({{"command", "safeguard"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::safeguard_stop));
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
+  const auto q = robot->latest()->actual_q;
+  controller.control({{"command", "safeguard"}, {"open", false}});
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3) << "the old motion went on";
+}
+
+TEST_F(AMotion, ends_when_its_program_is_stopped_on_the_pendant)
+{
+  make_both();
+  move_joints();
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
+  EXPECT_EQ(robot->motion_possible().error().code, ErrorCode::program_stopped);
+  ASSERT_TRUE(becomes_ready_again());
+  EXPECT_TRUE(eventually([&] { return at_rest(); }));
+}
+
+TEST_F(AMotion, does_not_go_on_when_a_program_paused_on_the_pendant_is_played_again)
+{
+  make_both();
+  move_joints();
+  controller.control({{"command", "pause_program"}});
+  ASSERT_TRUE(becomes_ready_again());
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
+  const auto q = robot->latest()->actual_q;
+  const auto sequence = robot->latest()->sequence;
+  ASSERT_TRUE(eventually([&] { return robot->latest()->sequence > sequence + 100; }));
+  EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3);
+}
+
+TEST_F(AMotion, ends_when_the_controller_dies_in_the_middle_of_it)
+{
+  make_both();
+  move_joints();
+  controller.stop();
+  ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
+  EXPECT_EQ(robot->motion_possible().error().code, ErrorCode::link_lost);
+  const auto begin = Clock::now();
+  const auto stopped = robot->stop_motion();
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::link_lost);
+  EXPECT_LT(Clock::now() - begin, 1s);
+}
+
+TEST_F(AMotion, is_stopped_by_the_watchdog_when_the_link_is_half_open)
+{
+  make_both();
+  move_joints();
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+  ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
+  EXPECT_EQ(robot->motion_possible().error().code, ErrorCode::link_lost);
+  EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }))
+      << "the program goes on";
+  EXPECT_TRUE(eventually([&] { return controller.state().at("at_rest").get<bool>(); }));
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", false}});
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(AMotion, that_blocks_in_ur_rtde_returns_when_the_link_is_lost)
+{
+  make_both();
+  auto q = robot->receive()->getActualQ();
+  q[0] += 3.0;
+  std::atomic<bool> returned{false};
+  std::jthread blocked([&, control = robot->control()] {
+    control->moveJ(q, 0.5, 1.0);
+    returned = true;
+  });
+  ASSERT_TRUE(eventually([&] { return robot->moving(); }));
+  EXPECT_FALSE(returned);
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+  EXPECT_TRUE(eventually([&] { return returned.load(); }, 2s));
+}
+
+TEST_F(AMotion, may_block_in_ur_rtde_without_starving_the_watchdog)
+{
+  make_both();
+  auto q = robot->receive()->getActualQ();
+  q[5] += 0.8;
+  EXPECT_TRUE(robot->control()->moveJ(q, 0.8, 3.0)) << log.text();
+  EXPECT_NEAR(robot->latest()->actual_q[5], q[5], 1e-2);
+  EXPECT_TRUE(robot->ready_to_move());
+}
+
+TEST_F(AMotion, and_queries_of_many_threads_share_the_control_interface)
+{
+  make_both();
+  move_joints();
+  std::atomic<int> answers{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 4; ++i) {
+      threads.emplace_back([&] {
+        for (int n = 0; n < 10; ++n) {
+          answers += robot->control()->isSteady() ? 0 : 1;
+        }
+      });
+    }
+  }
+  EXPECT_EQ(answers, 40) << "each call must be answered, with what is true";
+  EXPECT_TRUE(robot->stop_motion());
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

@@ -1,0 +1,169 @@
+#include <cmath>
+#include <thread>
+
+#include "robot_fixture.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+using AStop = RobotFixture;
+
+StopOptions decelerating(double joint, double linear)
+{
+  StopOptions options;
+  options.joint_deceleration = joint;
+  options.linear_deceleration = linear;
+  return options;
+}
+
+TEST_F(AStop, of_an_arm_at_rest_does_nothing)
+{
+  make_both();
+  const auto report = robot->stop_motion();
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->means, StopMeans::nothing_moved);
+  EXPECT_TRUE(robot->ready_to_move());
+}
+
+TEST_F(AStop, decelerates_a_joint_motion_as_asked)
+{
+  make_both();
+  move_joints();
+  recording = true;
+  const auto report = robot->stop_motion(decelerating(2.0, 1.0));
+  recording = false;
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_TRUE(at_rest());
+  EXPECT_NEAR(highest_deceleration(0), 2.0, 0.3);
+  // 0.8 rad/s at 2 rad/s^2 are 0.4 s; and the cycles of the command and of the detection of rest
+  EXPECT_NEAR(report->time_to_standstill, 0.4, 0.12);
+  EXPECT_TRUE(robot->ready_to_move()) << "the program goes on";
+}
+
+TEST_F(AStop, decelerates_a_linear_motion_along_its_line)
+{
+  make_both();
+  const auto start = robot->latest()->actual_tcp_pose;
+  move_linear();
+  const auto report = robot->stop_motion(decelerating(1.0, 0.5));
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_NEAR(report->time_to_standstill, 0.2, 0.12);
+  const auto end = robot->latest()->actual_tcp_pose;
+  EXPECT_NEAR(end[0], start[0], 1e-3);
+  EXPECT_NEAR(end[1], start[1], 1e-3);
+}
+
+TEST_F(AStop, ends_a_stream_of_joint_velocities)
+{
+  make_both();
+  ASSERT_TRUE(robot->control()->speedJ({0.4, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0));
+  ASSERT_TRUE(eventually([&] { return robot->latest()->actual_qd[0] > 0.35; }));
+  recording = true;
+  const auto report = robot->stop_motion(decelerating(1.0, 1.0));
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_NEAR(highest_deceleration(0), 1.0, 0.2);
+  EXPECT_TRUE(at_rest());
+}
+
+TEST_F(AStop, ends_a_stream_of_tool_velocities)
+{
+  make_both();
+  ASSERT_TRUE(robot->control()->speedL({0.0, 0.0, 0.05, 0.0, 0.0, 0.0}, 0.5, 0.0));
+  ASSERT_TRUE(eventually([&] { return robot->latest()->actual_tcp_speed[2] > 0.04; }));
+  const auto report = robot->stop_motion();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_TRUE(at_rest());
+}
+
+TEST_F(AStop, ends_a_stream_of_joint_positions)
+{
+  make_both();
+  auto q = robot->receive()->getActualQ();
+  Sample sample = *robot->latest();
+  for (int i = 0; i < 200; ++i) {
+    q[5] += 0.001;
+    ASSERT_TRUE(robot->control()->servoJ(q, 0.0, 0.0, 0.002, 0.05, 300.0)) << log.text();
+    ASSERT_TRUE(robot->wait_for_next(sample, 1s));
+  }
+  EXPECT_TRUE(robot->moving());
+  const auto report = robot->stop_motion();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_TRUE(at_rest());
+  EXPECT_TRUE(robot->ready_to_move());
+}
+
+TEST_F(AStop, leaves_the_robot_ready_for_the_next_motion)
+{
+  make_both();
+  for (int i = 0; i < 3; ++i) {
+    move_linear();
+    ASSERT_TRUE(robot->stop_motion(decelerating(4.0, 2.0)));
+    auto pose = robot->receive()->getActualTCPPose();
+    pose[2] -= 0.02;
+    ASSERT_TRUE(robot->control()->moveL(pose, 0.2, 1.0)) << "motion " << i << "\n" << log.text();
+  }
+}
+
+TEST_F(AStop, right_after_a_motion_command_stops_that_motion)
+{
+  make_both();
+  auto q = robot->receive()->getActualQ();
+  q[0] += 3.0;
+  ASSERT_TRUE(robot->control()->moveJ(q, 0.5, 1.0, true));
+  const auto report = robot->stop_motion();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  const auto sequence = robot->latest()->sequence;
+  ASSERT_TRUE(eventually([&] { return robot->latest()->sequence > sequence + 100; }));
+  EXPECT_TRUE(at_rest()) << "the motion began after the stop";
+}
+
+TEST_F(AStop, stops_the_program_when_a_blocking_motion_holds_it)
+{
+  make_both();
+  auto q = robot->receive()->getActualQ();
+  q[0] += 3.0;
+  std::jthread blocked([&, control = robot->control()] { control->moveJ(q, 0.5, 1.0); });
+  ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.4; }));
+  auto options = decelerating(2.0, 2.0);
+  options.limit = 500ms;
+  const auto report = robot->stop_motion(options);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::program_stopped);
+  EXPECT_TRUE(at_rest());
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(AStop, may_be_asked_for_by_several_threads_at_once)
+{
+  make_both();
+  move_joints();
+  std::atomic<int> stopped{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 4; ++i) {
+      threads.emplace_back([&] { stopped += robot->stop_motion() ? 1 : 0; });
+    }
+  }
+  EXPECT_EQ(stopped, 4);
+  EXPECT_TRUE(at_rest());
+  EXPECT_TRUE(robot->ready_to_move());
+}
+
+TEST_F(AStop, comes_with_the_end_of_the_driver)
+{
+  make_both();
+  move_joints();
+  robot.reset();
+  const auto state = controller.state();
+  EXPECT_TRUE(state.at("at_rest").get<bool>());
+  EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

@@ -1,0 +1,90 @@
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "robot_fixture.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+/// The driver in a process of its own, which moves the arm until it is killed. Made before the test starts a
+/// thread.
+class DriverProcess {
+ public:
+  DriverProcess()
+  {
+    process_ = ::fork();
+    if (process_ == 0) {
+      move_forever();
+    }
+  }
+  ~DriverProcess()
+  {
+    send(SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  void send(int signal) const { ::kill(process_, signal); }
+
+ private:
+  [[noreturn]] static void move_forever()
+  {
+    Robot robot(robot_options());
+    robot.start();
+    if (robot.wait_until_ready(30s)) {
+      robot.control()->speedJ({0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0);
+      std::this_thread::sleep_for(60s);
+    }
+    ::_exit(1);
+  }
+  pid_t process_ = -1;
+};
+
+double base_speed(Controller & controller)
+{
+  return std::abs(controller.state().at("actual").at("velocity").at(0).get<double>());
+}
+
+/// s of simulator time until the arm stands.
+double time_to_rest(Controller & controller)
+{
+  const double begin = controller.state().at("timestamp").get<double>();
+  EXPECT_TRUE(eventually([&] { return base_speed(controller) < 0.01; }));
+  return controller.state().at("timestamp").get<double>() - begin;
+}
+
+TEST(TheWatchdog, stops_the_arm_when_the_driver_is_killed)
+{
+  const DriverProcess driver;
+  Controller controller(Controller::options());
+  ASSERT_TRUE(eventually([&] { return base_speed(controller) > 0.45; }, 30s));
+  driver.send(SIGKILL);
+  const double time = time_to_rest(controller);
+  RecordProperty("standstill_after_ms", std::to_string(1000.0 * time));
+  EXPECT_LT(time, 0.3);
+  EXPECT_EQ(controller.state().at("program").at("state"), "STOPPED");
+}
+
+TEST(TheWatchdog, stops_the_arm_when_the_driver_hangs)
+{
+  const DriverProcess driver;
+  Controller controller(Controller::options());
+  ASSERT_TRUE(eventually([&] { return base_speed(controller) > 0.45; }, 30s));
+  driver.send(SIGSTOP);  // all its connections stay open
+  EXPECT_LT(time_to_rest(controller), 0.4);
+  EXPECT_EQ(controller.state().at("program").at("state"), "STOPPED");
+}
+
+TEST(TheWatchdog, lets_a_living_driver_move_on)
+{
+  const DriverProcess driver;
+  Controller controller(Controller::options());
+  ASSERT_TRUE(eventually([&] { return base_speed(controller) > 0.45; }, 30s));
+  const double begin = controller.state().at("timestamp").get<double>();
+  EXPECT_TRUE(eventually([&] { return controller.state().at("timestamp").get<double>() > begin + 1.0; }));
+  EXPECT_GT(base_speed(controller), 0.45);
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test
