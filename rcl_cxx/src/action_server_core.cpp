@@ -159,7 +159,7 @@ void ActionServerCore::abort_all(const char * why) noexcept
     }
   }
   if (aborted > 0) {
-    RCL_CXX_WARN(node()->logger(), "{}: {} running goals aborted: {}", name_, aborted, why);
+    RCL_CXX_WARN(node()->logger(), "{}: goals aborted that were running: {} ({})", name_, aborted, why);
   }
 }
 

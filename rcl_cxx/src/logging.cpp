@@ -30,7 +30,8 @@ struct LoggingInUse {
   explicit LoggingInUse(const rcl_arguments_t & arguments)
   {
     const rcl_allocator_t allocator = rcl_get_default_allocator();
-    configured = rcl_logging_configure_with_output_handler(&arguments, &allocator, &write_locked) == RCL_RET_OK;
+    configured =
+        rcl_logging_configure_with_output_handler(&arguments, &allocator, &write_locked) == RCL_RET_OK;
     if (!configured) {
       // No folder for the log file, mostly. A robot can be driven without one: the console works anyway.
       rcutils_log(nullptr, RCUTILS_LOG_SEVERITY_WARN, "rcl_cxx", "only the console gets log messages: %s",

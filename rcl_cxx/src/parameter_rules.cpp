@@ -11,7 +11,8 @@ namespace {
 bool nearly_equal(double a, double b)
 {
   // As rclcpp: the steps of a range are computed, their sums carry rounding errors.
-  return std::abs(a - b) <= std::numeric_limits<double>::epsilon() * 100.0 * std::abs(a + b);
+  return a == b || (std::isfinite(a) && std::isfinite(b) &&
+                    std::abs(a - b) <= std::numeric_limits<double>::epsilon() * 100.0 * std::abs(a + b));
 }
 
 bool within(double value, const FloatingPointRange & range)

@@ -143,12 +143,12 @@ TEST_F(ActionGoals, take_the_first_result_of_racing_threads)
     const auto goal = send(5);
     const auto handle = accepted(round);
     std::atomic<int> taken{0};
-    std::vector<std::thread> threads;
+    std::vector<std::thread> workers;
     for (int t = 0; t < 4; ++t) {
-      threads.emplace_back([&, t] { taken += (t % 2 == 0 ? handle->succeed() : handle->abort()) ? 1 : 0; });
+      workers.emplace_back([&, t] { taken += (t % 2 == 0 ? handle->succeed() : handle->abort()) ? 1 : 0; });
     }
-    for (std::thread & thread : threads) {
-      thread.join();
+    for (std::thread & worker : workers) {
+      worker.join();
     }
     EXPECT_EQ(taken, 1);
     EXPECT_EQ(result(goal).status, handle->status());

@@ -2,13 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <future>
-#include <new>
 #include <std_msgs/msg/string.hpp>
 #include <std_srvs/srv/set_bool.hpp>
 #include <test_msgs/msg/basic_types.hpp>
 
+#include "counting_new.hpp"
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "ros_fixture.hpp"
 
@@ -16,28 +15,6 @@ using std_msgs::msg::String;
 using std_srvs::srv::SetBool;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-namespace {
-thread_local std::size_t allocations = 0;
-}  // namespace
-
-// Replacing these counts what C++ code of the program allocates, in the middleware's C++ libraries too.
-void * operator new(std::size_t size)
-{
-  ++allocations;
-  if (void * memory = std::malloc(size)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-void operator delete(void * memory) noexcept
-{
-  std::free(memory);
-}
-void operator delete(void * memory, std::size_t) noexcept
-{
-  std::free(memory);
-}
 
 namespace {
 using Topics = Spinning;
@@ -131,11 +108,11 @@ TEST_F(Topics, take_messages_without_allocation_in_this_layer)
       node->create_publisher<test_msgs::msg::BasicTypes>("alone", rcl_cxx::QoS::reliable(10));
   const test_msgs::msg::BasicTypes message;
   publisher->publish(message);
-  const std::size_t before = allocations;
+  const std::size_t before = allocations_of_this_thread();
   for (int i = 0; i < 1000; ++i) {
     publisher->publish(message);
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(allocations_of_this_thread(), before);
 }
 
 TEST_F(Topics, take_messages_from_many_threads)
@@ -145,16 +122,16 @@ TEST_F(Topics, take_messages_from_many_threads)
                                                               [&](const String &) { ++heard; });
   const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(1000));
   ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
-  std::vector<std::thread> threads;
+  std::vector<std::thread> talkers;
   for (int t = 0; t < 4; ++t) {
-    threads.emplace_back([&] {
+    talkers.emplace_back([&] {
       for (int i = 0; i < 100; ++i) {
         publisher->publish(text("x"));
       }
     });
   }
-  for (std::thread & thread : threads) {
-    thread.join();
+  for (std::thread & talker : talkers) {
+    talker.join();
   }
   EXPECT_TRUE(eventually([&] { return heard == 400; })) << heard;
 }

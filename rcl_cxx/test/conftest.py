@@ -1,0 +1,157 @@
+"""A node of rcl_cxx in a process of its own, and rclpy to look at it. Waits are for conditions, for at most LIMIT."""
+
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import threading
+import time
+
+LIMIT = 10.0
+
+_own_domain = None
+
+
+def _take_own_domain():
+    """A ROS domain that no other test has: whoever has bound its port owns it, as with ROS's domain_coordinator."""
+    global _own_domain
+    for domain in range(1, 101):
+        lock = socket.socket()
+        try:
+            lock.bind(("", 22119 + domain))
+        except OSError:
+            lock.close()
+            continue
+        _own_domain = lock
+        return str(domain)
+    raise RuntimeError("all ROS domains are in use by other tests")
+
+
+# Before rclpy is used for the first time.
+os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+if "ROS_DOMAIN_ID" not in os.environ:
+    os.environ["ROS_DOMAIN_ID"] = _take_own_domain()
+
+import pytest  # noqa: E402
+import rclpy  # noqa: E402
+from rclpy.executors import SingleThreadedExecutor  # noqa: E402
+
+
+def eventually(condition, limit=LIMIT):
+    """The condition's value as soon as it is true; fails if that takes longer than the limit."""
+    end = time.monotonic() + limit
+    while True:
+        value = condition()
+        if value:
+            return value
+        assert time.monotonic() < end, "it did not come true in time"
+        time.sleep(0.005)
+
+
+def result_of(future, limit=LIMIT):
+    done = threading.Event()
+    future.add_done_callback(lambda _: done.set())
+    assert done.wait(limit), "no answer in time"
+    return future.result()
+
+
+class NodeProcess:
+    """The test node, with arguments of its own."""
+
+    def __init__(self, *arguments, ready=True):
+        environment = dict(os.environ, RCUTILS_LOGGING_USE_STDOUT="0")
+        self.process = subprocess.Popen([str(program()), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                        text=True, env=environment)
+        self.output = []
+        self.errors = []
+        self._readers = [threading.Thread(target=self._read, args=(stream, lines)) for stream, lines in
+                         ((self.process.stdout, self.output), (self.process.stderr, self.errors))]
+        for reader in self._readers:
+            reader.start()
+        if ready:
+            eventually(lambda: "ready\n" in self.output or self.process.poll() is not None)
+            assert self.process.poll() is None, self.errors
+
+    @staticmethod
+    def _read(stream, lines):
+        for line in stream:
+            lines.append(line)
+
+    def stop(self, sig=signal.SIGINT):
+        """Its exit code. The seconds it took are in `self.seconds_to_stop`."""
+        start = time.monotonic()
+        if self.process.poll() is None:
+            self.process.send_signal(sig)
+        return self.wait(start)
+
+    def wait(self, start=None):
+        try:
+            self.process.wait(LIMIT)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+            raise AssertionError("the node did not end") from None
+        finally:
+            for reader in self._readers:
+                reader.join()
+            self.process.stdout.close()
+            self.process.stderr.close()
+        self.seconds_to_stop = time.monotonic() - start if start else None
+        return self.process.returncode
+
+
+def program():
+    if "RCL_CXX_TEST_NODE" in os.environ:
+        return pathlib.Path(os.environ["RCL_CXX_TEST_NODE"])
+    from ament_index_python.packages import get_package_prefix
+    return pathlib.Path(get_package_prefix("rcl_cxx")) / "lib" / "rcl_cxx" / "rcl_cxx_test_node"
+
+
+class Ros:
+    """An rclpy node whose executor spins in a thread."""
+
+    def __init__(self):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context)
+        self.node = rclpy.create_node("observer", context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self._thread = threading.Thread(target=self.executor.spin)
+        self._thread.start()
+
+    def close(self):
+        self.executor.shutdown()
+        self._thread.join(LIMIT)
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+    def call(self, service_type, name, request):
+        client = self.node.create_client(service_type, name)
+        try:
+            assert client.wait_for_service(LIMIT), f"no service {name}"
+            return result_of(client.call_async(request))
+        finally:
+            self.node.destroy_client(client)
+
+    def listen(self, message_type, topic, qos):
+        """A list that grows with the messages of the topic; returned once the publisher is matched."""
+        messages = []
+        self.node.create_subscription(message_type, topic, messages.append, qos)
+        eventually(lambda: self.node.count_publishers(topic) > 0)
+        return messages
+
+
+@pytest.fixture(scope="module")
+def ros():
+    ros = Ros()
+    yield ros
+    ros.close()
+
+
+@pytest.fixture(scope="module")
+def test_node():
+    """One for all tests of a file; those that need a special one start their own."""
+    process = NodeProcess()
+    yield process
+    assert process.stop() == 0

@@ -1,0 +1,31 @@
+#include "counting_new.hpp"
+
+#include <cstdlib>
+#include <new>
+
+namespace {
+thread_local std::size_t allocations = 0;
+}
+
+std::size_t allocations_of_this_thread()
+{
+  return allocations;
+}
+
+void * operator new(std::size_t size)
+{
+  ++allocations;
+  if (void * memory = std::malloc(size)) {
+    return memory;
+  }
+  throw std::bad_alloc();
+}
+
+void operator delete(void * memory) noexcept
+{
+  std::free(memory);
+}
+void operator delete(void * memory, std::size_t) noexcept
+{
+  std::free(memory);
+}

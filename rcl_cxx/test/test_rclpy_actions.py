@@ -1,0 +1,267 @@
+"""An action server of rcl_cxx, used by rclpy's action client."""
+
+import threading
+
+import pytest
+from action_msgs.msg import GoalStatus, GoalStatusArray
+from action_msgs.srv import CancelGoal
+from conftest import LIMIT, NodeProcess, eventually, result_of
+from rclpy.action import ActionClient
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from test_msgs.action import Fibonacci
+from unique_identifier_msgs.msg import UUID
+
+RUN_UNTIL_CANCELED, REFUSE_CANCEL, SUCCEED_ON_CANCEL, ABORT, DROP_HANDLE, THROW, THROW_IN_GOAL, FINISH_TWICE, \
+    CANCELED_UNASKED, CANCEL_IN_HANDLER = range(1000, 1010)
+
+
+class Client:
+    """rclpy's action client, and the hidden services under it."""
+
+    def __init__(self, ros, name):
+        self.ros = ros
+        self.name = name
+        self.client = ActionClient(ros.node, Fibonacci, name)
+        assert self.client.wait_for_server(LIMIT)
+
+    def send(self, order, feedback=None):
+        callback = (lambda message: feedback.append(message.feedback)) if feedback is not None else None
+        return result_of(self.client.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=callback))
+
+    def run(self, order):
+        return result_of(self.send(order).get_result_async())
+
+    def cancel(self, goal_id=None, stamp=None):
+        request = CancelGoal.Request()
+        if goal_id is not None:
+            request.goal_info.goal_id = goal_id
+        if stamp is not None:
+            request.goal_info.stamp = stamp
+        return self.ros.call(CancelGoal, self.name + "/_action/cancel_goal", request)
+
+    def result_by_id(self, goal_id):
+        service = Fibonacci.Impl.GetResultService
+        return self.ros.call(service, self.name + "/_action/get_result", service.Request(goal_id=goal_id))
+
+
+@pytest.fixture
+def client(ros, test_node):
+    client = Client(ros, "/fibonacci")
+    yield client
+    client.cancel()
+    client.client.destroy()
+
+
+def ids(goals):
+    return sorted(bytes(goal.goal_id.uuid) for goal in goals)
+
+
+def test_a_goal_gives_feedback_and_a_result(client):
+    feedback = []
+    goal = client.send(8, feedback)
+    assert goal.accepted
+    assert goal.stamp.sec > 0
+    answer = result_of(goal.get_result_async())
+    assert answer.status == GoalStatus.STATUS_SUCCEEDED
+    assert list(answer.result.sequence) == [0, 1, 1, 2, 3, 5, 8, 13]
+    eventually(lambda: len(feedback) == 6)
+    assert list(feedback[-1].sequence) == [0, 1, 1, 2, 3, 5, 8, 13]
+
+
+def test_a_result_can_be_asked_for_before_and_after_the_end_and_twice(client):
+    goal = client.send(20)
+    before = [goal.get_result_async(), goal.get_result_async()]
+    assert [result_of(future).status for future in before] == [GoalStatus.STATUS_SUCCEEDED] * 2
+    after = result_of(goal.get_result_async())
+    assert after.status == GoalStatus.STATUS_SUCCEEDED
+    assert after.result == result_of(before[0]).result
+
+
+def test_a_refused_goal_is_refused_and_the_reason_logged(client, test_node):
+    assert not client.send(-3).accepted
+    eventually(lambda: any("/fibonacci: goal" in line and "refused: order is -3, it must not be negative" in line
+                           for line in test_node.errors))
+
+
+def test_a_goal_whose_check_throws_is_refused(client, test_node):
+    assert not client.send(THROW_IN_GOAL).accepted
+    eventually(lambda: any("the goal handler failed" in line for line in test_node.errors))
+
+
+def test_many_goals_run_at_the_same_time(client):
+    goals = [client.client.send_goal_async(Fibonacci.Goal(order=order)) for order in range(2, 22)]
+    handles = [result_of(goal) for goal in goals]
+    assert all(handle.accepted for handle in handles)
+    results = [result_of(handle.get_result_async()) for handle in handles]
+    assert [len(result.result.sequence) for result in results] == list(range(2, 22))
+
+
+def test_a_goal_is_canceled(client):
+    goal = client.send(RUN_UNTIL_CANCELED)
+    result = goal.get_result_async()
+    answer = result_of(goal.cancel_goal_async())
+    assert answer.return_code == CancelGoal.Response.ERROR_NONE
+    assert ids(answer.goals_canceling) == [bytes(goal.goal_id.uuid)]
+    assert result_of(result).status == GoalStatus.STATUS_CANCELED
+
+
+def test_a_cancellation_may_be_refused(client):
+    goal = client.send(REFUSE_CANCEL)
+    answer = result_of(goal.cancel_goal_async())
+    assert answer.return_code == CancelGoal.Response.ERROR_REJECTED
+    assert not answer.goals_canceling
+
+
+def test_a_canceled_goal_may_succeed(client):
+    goal = client.send(SUCCEED_ON_CANCEL)
+    assert result_of(goal.cancel_goal_async()).return_code == CancelGoal.Response.ERROR_NONE
+    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_SUCCEEDED
+
+
+def test_a_goal_may_be_canceled_by_the_handler_itself(client):
+    goal = client.send(CANCEL_IN_HANDLER)
+    answer = result_of(goal.cancel_goal_async())
+    assert answer.return_code == CancelGoal.Response.ERROR_NONE
+    assert len(answer.goals_canceling) == 1
+    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_CANCELED
+
+
+def test_an_ended_goal_cannot_be_canceled(client):
+    goal = client.send(3)
+    result_of(goal.get_result_async())
+    answer = result_of(goal.cancel_goal_async())
+    assert answer.return_code == CancelGoal.Response.ERROR_GOAL_TERMINATED
+
+
+def test_an_unknown_goal_cannot_be_canceled_and_has_no_result(client):
+    unknown = UUID(uuid=list(range(16)))
+    assert client.cancel(unknown).return_code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
+    assert client.result_by_id(unknown).status == GoalStatus.STATUS_UNKNOWN
+
+
+def test_all_goals_are_canceled_at_once(client):
+    goals = [client.send(RUN_UNTIL_CANCELED) for _ in range(3)]
+    answer = client.cancel()
+    assert answer.return_code == CancelGoal.Response.ERROR_NONE
+    assert ids(answer.goals_canceling) == ids(goals)
+    for goal in goals:
+        assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_CANCELED
+    nothing = client.cancel()
+    assert nothing.return_code == CancelGoal.Response.ERROR_NONE
+    assert not nothing.goals_canceling
+
+
+def test_goals_up_to_a_stamp_are_canceled(client):
+    early, middle, late = (client.send(RUN_UNTIL_CANCELED) for _ in range(3))
+    assert ids(client.cancel(stamp=middle.stamp).goals_canceling) == ids([early, middle])
+    assert result_of(middle.get_result_async()).status == GoalStatus.STATUS_CANCELED
+    assert ids(client.cancel().goals_canceling) == ids([late])
+
+
+def test_goals_up_to_a_stamp_and_one_more_are_canceled(client):
+    early, middle, late = (client.send(RUN_UNTIL_CANCELED) for _ in range(3))
+    assert ids(client.cancel(late.goal_id, early.stamp).goals_canceling) == ids([early, late])
+    assert ids(client.cancel().goals_canceling) == ids([middle])
+
+
+def test_cancellations_race_with_results_and_every_goal_ends_once(client):
+    outcomes = set()
+    for order in range(2, 14):
+        goal = client.send(order)
+        result = goal.get_result_async()
+        answer = result_of(goal.cancel_goal_async())
+        status = result_of(result).status
+        outcomes.add(status)
+        if answer.return_code == CancelGoal.Response.ERROR_NONE:
+            assert status in (GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_SUCCEEDED)
+        else:
+            assert answer.return_code == CancelGoal.Response.ERROR_GOAL_TERMINATED
+            assert status == GoalStatus.STATUS_SUCCEEDED
+    assert outcomes
+
+
+def test_several_clients_have_goals_and_cancel_them_concurrently(ros, client):
+    failures = []
+
+    def use(number):
+        try:
+            for round_ in range(5):
+                goal = client.send(RUN_UNTIL_CANCELED if (number + round_) % 2 else 6)
+                result_of(goal.cancel_goal_async())
+                assert result_of(goal.get_result_async()).status in (GoalStatus.STATUS_CANCELED,
+                                                                     GoalStatus.STATUS_SUCCEEDED)
+        except Exception as error:
+            failures.append(error)
+
+    threads = [threading.Thread(target=use, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(3 * LIMIT)
+        assert not thread.is_alive()
+    assert not failures
+
+
+@pytest.mark.parametrize("order, status", [
+    (ABORT, GoalStatus.STATUS_ABORTED),
+    (DROP_HANDLE, GoalStatus.STATUS_ABORTED),
+    (THROW, GoalStatus.STATUS_ABORTED),
+    (CANCELED_UNASKED, GoalStatus.STATUS_ABORTED),
+    (FINISH_TWICE, GoalStatus.STATUS_SUCCEEDED),
+])
+def test_every_accepted_goal_gets_one_result(client, order, status):
+    assert client.run(order).status == status
+
+
+def test_misuse_is_logged(client, test_node):
+    client.run(FINISH_TWICE)
+    client.run(DROP_HANDLE)
+    eventually(lambda: any("second result: false" in line for line in test_node.errors))
+    eventually(lambda: any("is succeeded, it cannot become aborted" in line for line in test_node.errors))
+    eventually(lambda: any("was given up without a result" in line for line in test_node.errors))
+
+
+def test_the_status_of_goals_is_published_for_late_comers_too(ros, client):
+    goal = client.send(RUN_UNTIL_CANCELED)
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    arrays = ros.listen(GoalStatusArray, "/fibonacci/_action/status", latched)
+
+    def status():
+        return {bytes(entry.goal_info.goal_id.uuid): entry.status for array in arrays[-1:]
+                for entry in array.status_list}.get(bytes(goal.goal_id.uuid))
+
+    eventually(lambda: status() == GoalStatus.STATUS_EXECUTING)
+    result_of(goal.cancel_goal_async())
+    eventually(lambda: status() == GoalStatus.STATUS_CANCELED)
+    seen = [entry.status for array in arrays for entry in array.status_list
+            if bytes(entry.goal_info.goal_id.uuid) == bytes(goal.goal_id.uuid)]
+    assert seen == sorted(seen), "executing, canceling, canceled: no way back"
+
+
+def test_results_expire(ros, test_node):
+    client = Client(ros, "/forgetful")
+    goal = client.send(3)
+    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_SUCCEEDED
+    assert client.result_by_id(goal.goal_id).status == GoalStatus.STATUS_SUCCEEDED
+    eventually(lambda: client.result_by_id(goal.goal_id).status == GoalStatus.STATUS_UNKNOWN)
+
+
+def test_goals_without_an_end_do_not_expire(ros, test_node):
+    client = Client(ros, "/forgetful")
+    goal = client.send(RUN_UNTIL_CANCELED)
+    short = client.send(2)
+    result_of(short.get_result_async())
+    eventually(lambda: client.result_by_id(short.goal_id).status == GoalStatus.STATUS_UNKNOWN)
+    assert result_of(goal.cancel_goal_async()).return_code == CancelGoal.Response.ERROR_NONE
+    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_CANCELED
+
+
+def test_goals_are_answered_when_the_node_ends(ros):
+    process = NodeProcess("--ros-args", "-r", "__ns:=/ending")
+    client = Client(ros, "/ending/fibonacci")
+    goals = [client.send(RUN_UNTIL_CANCELED) for _ in range(3)]
+    results = [goal.get_result_async() for goal in goals]
+    # A request is here before the next one of the same client is answered.
+    client.result_by_id(UUID(uuid=list(range(16))))
+    assert process.stop() == 0
+    assert [result_of(result).status for result in results] == [GoalStatus.STATUS_ABORTED] * 3

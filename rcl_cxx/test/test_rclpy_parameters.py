@@ -1,0 +1,188 @@
+"""The parameters of a node of rcl_cxx, seen and set from rclpy."""
+
+import pytest
+from conftest import LIMIT, NodeProcess, eventually, result_of
+from rcl_interfaces.msg import ParameterEvent, ParameterType
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
+from rclpy.parameter import Parameter
+from rclpy.parameter_client import AsyncParameterClient
+from rclpy.qos import qos_profile_parameter_events
+
+NAMES = ["anything", "bytes", "count", "flags", "home", "integers", "model", "names", "picky", "robot.host",
+         "robot.tool.mass", "speed", "start_type_description_service", "switch", "use_sim_time"]
+
+
+@pytest.fixture(scope="module")
+def client(ros, test_node):
+    client = AsyncParameterClient(ros.node, "/test_node")
+    assert client.wait_for_services(LIMIT)
+    return client
+
+
+def get(client, *names):
+    return list(result_of(client.get_parameters(list(names))).values)
+
+
+def set_one(client, name, value, type_=None):
+    return result_of(client.set_parameters([Parameter(name, type_, value)])).results[0]
+
+
+def test_all_are_listed(client):
+    answer = result_of(client.list_parameters()).result
+    assert sorted(answer.names) == NAMES
+    assert sorted(answer.prefixes) == ["robot", "robot.tool"]
+
+
+@pytest.mark.parametrize("prefixes, depth, names", [
+    (["robot"], 1, ["robot.host"]),
+    (["robot"], 0, ["robot.host", "robot.tool.mass"]),
+    ([], 1, [name for name in NAMES if "." not in name]),
+])
+def test_listing_keeps_to_prefix_and_depth(client, prefixes, depth, names):
+    assert sorted(result_of(client.list_parameters(prefixes, depth)).result.names) == names
+
+
+def test_they_have_their_types(client):
+    names = ["switch", "count", "speed", "robot.host", "bytes", "flags", "integers", "home", "names", "anything"]
+    types = list(result_of(client.get_parameter_types(names)).types)
+    assert types == [ParameterType.PARAMETER_BOOL, ParameterType.PARAMETER_INTEGER, ParameterType.PARAMETER_DOUBLE,
+                     ParameterType.PARAMETER_STRING, ParameterType.PARAMETER_BYTE_ARRAY,
+                     ParameterType.PARAMETER_BOOL_ARRAY, ParameterType.PARAMETER_INTEGER_ARRAY,
+                     ParameterType.PARAMETER_DOUBLE_ARRAY, ParameterType.PARAMETER_STRING_ARRAY,
+                     ParameterType.PARAMETER_NOT_SET]
+
+
+def test_they_have_their_values(client):
+    switch, host, home, flags, data = get(client, "switch", "robot.host", "home", "flags", "bytes")
+    assert switch.bool_value is True
+    assert host.string_value == "localhost"
+    assert list(home.double_array_value) == [0.0, -1.57, 0.0]
+    assert list(flags.bool_array_value) == [True, False]
+    assert [bytes(byte)[0] for byte in data.byte_array_value] == [1, 255]
+
+
+def test_they_describe_themselves(client):
+    speed, count, model, anything = result_of(
+        client.describe_parameters(["speed", "count", "model", "anything"])).descriptors
+    assert (speed.name, speed.type) == ("speed", ParameterType.PARAMETER_DOUBLE)
+    assert speed.description == "in m/s"
+    assert speed.additional_constraints == "slow is smooth"
+    assert (speed.floating_point_range[0].from_value, speed.floating_point_range[0].to_value) == (0.0, 3.0)
+    assert (count.integer_range[0].from_value, count.integer_range[0].to_value, count.integer_range[0].step) == \
+        (0, 10, 1)
+    assert model.read_only and not speed.read_only
+    assert anything.dynamic_typing and not speed.dynamic_typing
+
+
+def test_unknown_ones_give_empty_answers_as_with_rclcpp(ros, test_node):
+    assert not ros.call(GetParameters, "/test_node/get_parameters", GetParameters.Request(names=["nothing"])).values
+    assert not ros.call(DescribeParameters, "/test_node/describe_parameters",
+                        DescribeParameters.Request(names=["speed", "nothing"])).descriptors
+    assert not ros.call(ListParameters, "/test_node/list_parameters",
+                        ListParameters.Request(prefixes=["nothing"])).result.names
+
+
+def test_they_can_be_set(client):
+    assert set_one(client, "speed", 1.5).successful
+    assert get(client, "speed")[0].double_value == 1.5
+    assert set_one(client, "names", ["x"]).successful
+    assert list(get(client, "names")[0].string_array_value) == ["x"]
+
+
+@pytest.mark.parametrize("name, value, reason", [
+    ("speed", 3.5, "range 0 to 3, it cannot be 3.5"),
+    ("speed", float("nan"), "range 0 to 3"),
+    ("count", 11, "range 0 to 10"),
+    ("speed", "fast", "of type double, it cannot be 'fast'"),
+    ("speed", 1, "of type double, it cannot be 1"),
+    ("model", "ur3e", "read-only"),
+    ("nothing", 1, "'nothing' cannot be set because it was not declared"),
+    ("picky", 7, "7 is not liked"),
+])
+def test_what_does_not_suit_is_refused_with_the_reason(client, name, value, reason):
+    before = get(client, name)
+    answer = set_one(client, name, value)
+    assert not answer.successful
+    assert reason in answer.reason
+    assert get(client, name) == before
+
+
+def test_several_are_set_each_for_itself(client):
+    answers = result_of(client.set_parameters([Parameter("count", value=4), Parameter("model", value="x"),
+                                               Parameter("picky", value=5)])).results
+    assert [answer.successful for answer in answers] == [True, False, True]
+    assert [value.integer_value for value in get(client, "count", "picky")] == [4, 5]
+
+
+def test_several_are_set_atomically_or_not_at_all(client):
+    count = get(client, "count")[0].integer_value
+    refused = result_of(client.set_parameters_atomically([Parameter("count", value=count + 1),
+                                                          Parameter("speed", value=99.0)])).result
+    assert not refused.successful and "'speed'" in refused.reason
+    assert get(client, "count")[0].integer_value == count
+    assert result_of(client.set_parameters_atomically([Parameter("count", value=count + 1),
+                                                       Parameter("speed", value=2.0)])).result.successful
+    assert get(client, "count")[0].integer_value == count + 1
+
+
+def test_dynamic_ones_change_their_type_and_can_be_deleted(ros):
+    other = NodeProcess("--ros-args", "-r", "__node:=dynamic")
+    client = AsyncParameterClient(ros.node, "/dynamic")
+    assert client.wait_for_services(LIMIT)
+    assert set_one(client, "anything", 5).successful
+    assert set_one(client, "anything", "text").successful
+    assert get(client, "anything")[0].string_value == "text"
+    assert set_one(client, "anything", None, Parameter.Type.NOT_SET).successful
+    assert "anything" not in result_of(client.list_parameters()).result.names
+    assert other.stop() == 0
+
+
+def test_changes_are_announced(ros, client):
+    events = ros.listen(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
+
+    def announced():
+        set_one(client, "switch", False)  # again and again: the subscription may not be matched from the other side
+        return [event for event in events if event.node == "/test_node"]
+
+    event = eventually(announced)[0]
+    assert [parameter.name for parameter in event.changed_parameters] == ["switch"]
+    assert event.changed_parameters[0].value.bool_value is False
+    assert event.stamp.sec > 0
+    assert not event.new_parameters and not event.deleted_parameters
+
+
+def test_declarations_are_announced(ros):
+    events = ros.listen(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
+
+    def announced():
+        assert NodeProcess("--ros-args", "-r", "__node:=newcomer").stop() == 0
+        return [event for event in events if event.node == "/newcomer" and event.new_parameters]
+
+    assert eventually(announced, 3 * LIMIT)
+
+
+def test_command_line_and_file_override_defaults(ros, tmp_path):
+    file = tmp_path / "parameters.yaml"
+    file.write_text("/**/test_node:\n  ros__parameters:\n    speed: 2\n    robot: {host: from_file}\n")
+    process = NodeProcess("--ros-args", "-r", "__ns:=/robot", "--params-file", str(file), "-p", "count:=9", "-p",
+                          "test_node:switch:=false")
+    client = AsyncParameterClient(ros.node, "/robot/test_node")
+    assert client.wait_for_services(LIMIT)
+    speed, host, count, switch = get(client, "speed", "robot.host", "count", "switch")
+    assert (speed.double_value, host.string_value, count.integer_value, switch.bool_value) == \
+        (2.0, "from_file", 9, False)
+    assert process.stop() == 0
+
+
+@pytest.mark.parametrize("override, message", [
+    ("speed:=9.0", "parameter 'speed' is limited to the range 0 to 3, it cannot be 9.0"),
+    ("count:=many", "parameter 'count' is of type integer, it cannot be 'many'"),
+])
+def test_bad_overrides_end_the_node_with_a_clear_message(override, message):
+    process = NodeProcess("--ros-args", "-p", override, ready=False)
+    assert process.wait() == 2
+    assert message in "".join(process.errors)
+
+
+def test_requests_of_no_parameters_are_answered(ros, test_node):
+    assert ros.call(SetParameters, "/test_node/set_parameters", SetParameters.Request()).results == []
