@@ -3,7 +3,7 @@ from ur_tools import main, testing
 
 REPORT = """<testsuites><testsuite>
 <testcase name="good"/><testcase name="good_too" status="run"/>
-<testcase name="bad"><failure/></testcase><testcase name="broken"><error/></testcase>
+<testcase classname="Suite" name="bad"><failure/></testcase><testcase classname="a.Suite" name="broken"><error/></testcase>
 <testcase name="left_out"><skipped/></testcase>
 </testsuite></testsuites>"""
 
@@ -11,18 +11,18 @@ REPORT = """<testsuites><testsuite>
 def test_cases_of_a_report_are_counted_and_skipped_ones_are_not(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text(REPORT)
-    assert testing._count(report, False) == (2, 2)
+    assert testing._cases(report, False) == (2, ["Suite.bad", "Suite.broken"])
 
 
-@pytest.mark.parametrize("succeeded, expected", [(True, (1, 0)), (False, (0, 1))])
+@pytest.mark.parametrize("succeeded, expected", [(True, (1, [])), (False, (0, [""]))])
 def test_a_program_without_a_report_is_one_case(tmp_path, succeeded, expected):
-    assert testing._count(tmp_path / "none.xml", succeeded) == expected
+    assert testing._cases(tmp_path / "none.xml", succeeded) == expected
 
 
 def test_a_crash_after_passed_cases_is_a_failure(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text("<testsuite><testcase name='good'/></testsuite>")
-    assert testing._count(report, False) == (1, 1)
+    assert testing._cases(report, False) == (1, ["ended badly after its last case"])
 
 
 @pytest.mark.parametrize("arguments, ros, debug, forwarded", [

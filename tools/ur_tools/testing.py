@@ -47,7 +47,7 @@ class Test:
 class Result:
     test: Test
     passed: int
-    failed: int
+    failures: List[str]
     seconds: float
     output: str
 
@@ -104,21 +104,32 @@ def _collect(options: Options, packages: Dict[str, Package]) -> List[Test]:
 # --- Running one ------------------------------------------------------------------------------------------------------
 
 
-def _count(report: pathlib.Path, succeeded: bool) -> "tuple[int, int]":
-    """Passed and failed cases of a JUnit report (GoogleTest's or pytest's); the program itself is one without it."""
+def _cases(report: pathlib.Path, succeeded: bool) -> "tuple[int, List[str]]":
+    """How many cases of a JUnit report (GoogleTest's or pytest's) passed, and the names of those that did not.
+
+    A program without a report is one case, without a name.
+    """
     try:
         tree = xml.parse(report).getroot()
     except (OSError, xml.ParseError):
-        return (1, 0) if succeeded else (0, 1)
-    passed = failed = 0
+        return (1, []) if succeeded else (0, [""])
+    passed, failures = 0, []
     for case in tree.iter("testcase"):
         if case.find("failure") is not None or case.find("error") is not None:
-            failed += 1
+            failures.append(f"{case.get('classname', '').split('.')[-1]}.{case.get('name')}")
         elif case.find("skipped") is None and case.get("status") != "notrun":
             passed += 1
-    if not succeeded and failed == 0:
-        failed = 1  # it crashed, or ran out of time, after the cases it reported
-    return passed, failed
+    if not succeeded and not failures:
+        failures.append("ended badly after its last case")
+    return passed, failures
+
+
+def _report_of(test: Test, base: pathlib.Path) -> pathlib.Path:
+    """Where the test writes its report: where its own command says, else where we ask for it."""
+    for part in test.command:
+        if part.startswith("--gtest_output=xml:"):
+            return pathlib.Path(part.split(":", 1)[1])
+    return base.with_suffix(".xml")
 
 
 def _sanitizer_environment() -> Dict[str, str]:
@@ -151,7 +162,9 @@ class Runner:
             return self._run(test, base, domain)
 
     def _run(self, test: Test, base: pathlib.Path, domain: isolation.Domain) -> Result:
-        report, log = base.with_suffix(".xml"), base.with_suffix(".log")
+        report, log = _report_of(test, base), base.with_suffix(".log")
+        if report.exists():
+            report.unlink()  # an earlier run's
         env = {**self._env, **domain.environment(), **test.env, "GTEST_OUTPUT": f"xml:{report}", "GTEST_COLOR": "no"}
         command = test.command + ([f"--junitxml={report}"] if "pytest" in test.command else [])
         limit = self._options.timeout or test.limit
@@ -169,13 +182,13 @@ class Runner:
         end_group(process)
         with self._lock:
             self._running.discard(process)
-        passed, failed = _count(report, process.returncode == 0 and not late)
+        passed, failures = _cases(report, process.returncode == 0 and not late)
         text = log.read_text(errors="replace")
         if late:
             text += f"\nstopped after its limit of {limit:g} s\n"
         elif process.returncode < 0:
             text += f"\nended by signal {-process.returncode}\n"
-        return Result(test, passed, failed, time.monotonic() - start, text + f"(log: {log.relative_to(ROOT)})\n")
+        return Result(test, passed, failures, time.monotonic() - start, text + f"(log: {log.relative_to(ROOT)})\n")
 
     def cancel(self) -> None:
         with self._lock:
@@ -224,7 +237,7 @@ def _run_all(options: Options, tests: List[Test], folder: pathlib.Path) -> List[
 
 
 def _report(status: say.Status, result: Result, done: int, total: int) -> None:
-    if result.failed:
+    if result.failures:
         status.keep(f"FAILED  {result.test.name} ({result.seconds:.1f} s)")
         status.keep("\n".join("        " + text for text in say.tail(result.output, 60).splitlines()))
     status.show(f"{done}/{total} {result.test.name}")
@@ -232,14 +245,15 @@ def _report(status: say.Status, result: Result, done: int, total: int) -> None:
 
 def _summary(results: List[Result], checks: List[lint.Check], seconds: float) -> int:
     passed = sum(result.passed for result in results) + sum(1 for check in checks if check.ok)
-    failed = sum(result.failed for result in results) + sum(1 for check in checks if not check.ok)
+    failed = sum(len(result.failures) for result in results) + sum(1 for check in checks if not check.ok)
     say.line("")
     by_package: Dict[str, List[Result]] = {}
     for result in results:
         by_package.setdefault(result.test.name.split(":")[0], []).append(result)
     for name, group in sorted(by_package.items()):
-        say.line(f"    {name:28} {sum(r.passed for r in group):5} passed {sum(r.failed for r in group):4} failed")
-    bad = sorted({result.test.name for result in results if result.failed} | {c.name for c in checks if not c.ok})
+        say.line(f"    {name:28} {sum(r.passed for r in group):5} passed {sum(len(r.failures) for r in group):4} failed")
+    bad = sorted({f"{result.test.name} {case}".rstrip() for result in results for case in result.failures}
+                 | {check.name for check in checks if not check.ok})
     if bad:
         say.line("Failed:")
         for name in bad:
