@@ -90,37 +90,24 @@ Outcome set_tool_voltage(Robot & robot, Arguments arguments)
   return Value();
 }
 
-struct Entry {
-  const char * name;
-  std::vector<urscript::Parameter> parameters;
-  Outcome (*function)(Robot &, Arguments);
-};
-
 }  // namespace
 
 void add_analog_io_builtins(Library & library, const RobotPtr & robot)
 {
-  const Entry entries[] = {
-      {"set_analog_out", {"n", "f"}, set_output},
-      {"set_standard_analog_out", {"n", "f"}, set_output},
-      {"get_analog_out", {"n"}, get_output},
-      {"get_standard_analog_out", {"n"}, get_output},
-      {"get_analog_in", {"n"}, get_input<&Io::analog_inputs>},
-      {"get_standard_analog_in", {"n"}, get_input<&Io::analog_inputs>},
-      {"get_tool_analog_in", {"n"}, get_input<&Io::tool_analog_inputs>},
-      {"set_analog_outputdomain", {"port", "domain"}, set_domain<&Io::analog_io_types, output_type_bit>},
-      {"set_standard_analog_input_domain",
-       {"port", "domain"},
-       set_domain<&Io::analog_io_types, input_type_bit>},
-      {"set_tool_analog_input_domain", {"port", "domain"}, set_domain<&Io::tool_analog_input_types, 0>},
-      {"set_tool_voltage", {"voltage"}, set_tool_voltage},
-  };
-  for (const Entry & entry : entries) {
-    library.add({entry.name, entry.parameters, entry.parameters.size(),
-                 [robot, function = entry.function](CallContext &, Arguments arguments) {
-                   return function(*robot, arguments);
-                 }});
-  }
+  add_bound(library, robot, "set_analog_out", {"n", "f"}, 2, set_output);
+  add_bound(library, robot, "set_standard_analog_out", {"n", "f"}, 2, set_output);
+  add_bound(library, robot, "get_analog_out", {"n"}, 1, get_output);
+  add_bound(library, robot, "get_standard_analog_out", {"n"}, 1, get_output);
+  add_bound(library, robot, "get_analog_in", {"n"}, 1, get_input<&Io::analog_inputs>);
+  add_bound(library, robot, "get_standard_analog_in", {"n"}, 1, get_input<&Io::analog_inputs>);
+  add_bound(library, robot, "get_tool_analog_in", {"n"}, 1, get_input<&Io::tool_analog_inputs>);
+  add_bound(library, robot, "set_analog_outputdomain", {"port", "domain"}, 2,
+            set_domain<&Io::analog_io_types, output_type_bit>);
+  add_bound(library, robot, "set_standard_analog_input_domain", {"port", "domain"}, 2,
+            set_domain<&Io::analog_io_types, input_type_bit>);
+  add_bound(library, robot, "set_tool_analog_input_domain", {"port", "domain"}, 2,
+            set_domain<&Io::tool_analog_input_types, 0>);
+  add_bound(library, robot, "set_tool_voltage", {"voltage"}, 1, set_tool_voltage);
 }
 
 }  // namespace ur_simulator::script_api

@@ -43,7 +43,7 @@ Outcome coriolis(Robot & robot, Arguments arguments)
   return in ? Outcome(Value::list(present(robot).coriolis_torques(q, qd))) : in.failure();
 }
 
-Outcome jacobian_builtin(const Robot & robot, Arguments arguments)
+Outcome jacobian_builtin(Robot & robot, Arguments arguments)
 {
   ArgumentReader in(arguments);
   const Vector6 q = positions(robot, in);
@@ -51,7 +51,7 @@ Outcome jacobian_builtin(const Robot & robot, Arguments arguments)
   return in ? Outcome(to_matrix(jacobian(robot.access.model, q, tcp))) : in.failure();
 }
 
-Outcome jacobian_derivative(const Robot & robot, Arguments arguments)
+Outcome jacobian_derivative(Robot & robot, Arguments arguments)
 {
   ArgumentReader in(arguments);
   const Vector6 q = positions(robot, in);
@@ -64,21 +64,10 @@ Outcome jacobian_derivative(const Robot & robot, Arguments arguments)
 
 void add_dynamics_builtins(Library & library, const RobotPtr & robot)
 {
-  library.add(
-      {"get_mass_matrix", {"q", "include_rotors_inertia"}, 0, [robot](CallContext &, Arguments arguments) {
-         return mass_matrix(*robot, arguments);
-       }});
-  library.add(
-      {"get_coriolis_and_centrifugal_torques", {"q", "qd"}, 0, [robot](CallContext &, Arguments arguments) {
-         return coriolis(*robot, arguments);
-       }});
-  library.add({"get_jacobian", {"q", "tcp"}, 0, [robot](CallContext &, Arguments arguments) {
-                 return jacobian_builtin(*robot, arguments);
-               }});
-  library.add(
-      {"get_jacobian_time_derivative", {"q", "qd", "tcp"}, 0, [robot](CallContext &, Arguments arguments) {
-         return jacobian_derivative(*robot, arguments);
-       }});
+  add_bound(library, robot, "get_mass_matrix", {"q", "include_rotors_inertia"}, 0, mass_matrix, 300);
+  add_bound(library, robot, "get_coriolis_and_centrifugal_torques", {"q", "qd"}, 0, coriolis, 100);
+  add_bound(library, robot, "get_jacobian", {"q", "tcp"}, 0, jacobian_builtin, 60);
+  add_bound(library, robot, "get_jacobian_time_derivative", {"q", "qd", "tcp"}, 0, jacobian_derivative, 100);
 }
 
 }  // namespace ur_simulator::script_api

@@ -113,26 +113,17 @@ Outcome external_sensor(Arguments arguments)
   return in ? Outcome(Value()) : in.failure();
 }
 
-using Setter = Outcome (*)(Robot &, Arguments);
-
-void add(Library & library, const RobotPtr & robot, const char * name,
-         std::vector<urscript::Parameter> parameters, std::size_t required, Setter setter)
-{
-  library.add({name, std::move(parameters), required,
-               [robot, setter](CallContext &, Arguments arguments) { return setter(*robot, arguments); }});
-}
-
 }  // namespace
 
 void add_installation_builtins(Library & library, const RobotPtr & robot)
 {
-  add(library, robot, "set_payload", {"m", "cog"}, 1, set_payload);
-  add(library, robot, "set_target_payload", {"m", "cog", "inertia", "transition_time"}, 2,
-      set_target_payload);
-  add(library, robot, "set_payload_mass", {"m"}, 1, set_payload_mass);
-  add(library, robot, "set_payload_cog", {"CoG", "transition_time"}, 1, set_payload_cog);
-  add(library, robot, "set_tcp", {"pose", "tcp_name"}, 1, set_tcp);
-  add(library, robot, "set_gravity", {"d"}, 1, set_gravity);
+  add_bound(library, robot, "set_payload", {"m", "cog"}, 1, set_payload);
+  add_bound(library, robot, "set_target_payload", {"m", "cog", "inertia", "transition_time"}, 2,
+            set_target_payload);
+  add_bound(library, robot, "set_payload_mass", {"m"}, 1, set_payload_mass);
+  add_bound(library, robot, "set_payload_cog", {"CoG", "transition_time"}, 1, set_payload_cog);
+  add_bound(library, robot, "set_tcp", {"pose", "tcp_name"}, 1, set_tcp);
+  add_bound(library, robot, "set_gravity", {"d"}, 1, set_gravity);
   library.add({"zero_ftsensor", {}, 0, [robot](CallContext &, Arguments) -> Outcome {
                  robot->access.world.zero_sensor();
                  return Value();

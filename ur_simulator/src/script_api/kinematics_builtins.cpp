@@ -6,6 +6,8 @@ namespace ur_simulator::script_api {
 
 namespace {
 
+constexpr std::uint32_t inverse_cost = 200;
+
 /// The arguments of the inverse kinematics: (x, qnear, maxPositionError, maxOrientationError, tcp). Older
 /// programs give the TCP in third place, newer ones by name.
 struct InverseRequest {
@@ -41,7 +43,7 @@ tl::expected<Vector6, std::string> solve(const Robot & robot, const InverseReque
   return get_inverse_kin(robot.access.model, request.pose, request.near, request.tcp, request.position_error);
 }
 
-Outcome inverse(const Robot & robot, Arguments arguments)
+Outcome inverse(Robot & robot, Arguments arguments)
 {
   ArgumentReader in(arguments);
   const InverseRequest request = inverse_request(robot, arguments, in);
@@ -52,14 +54,14 @@ Outcome inverse(const Robot & robot, Arguments arguments)
   return solution ? Outcome(Value::list(*solution)) : Failure{solution.error()};
 }
 
-Outcome has_inverse(const Robot & robot, Arguments arguments)
+Outcome has_inverse(Robot & robot, Arguments arguments)
 {
   ArgumentReader in(arguments);
   const InverseRequest request = inverse_request(robot, arguments, in);
   return in ? Outcome(Value(solve(robot, request).has_value())) : in.failure();
 }
 
-Outcome forward(const Robot & robot, Arguments arguments)
+Outcome forward(Robot & robot, Arguments arguments)
 {
   ArgumentReader in(arguments);
   const Vector6 q = in.given(0) ? in.six(0, "q") : robot.state().actual.position;
@@ -73,7 +75,7 @@ bool joints_within_limits(const RobotModel & model, const Vector6 & q)
 }
 
 // Joint limits and reach; safety planes belong to installations, which the simulator has none of.
-Outcome within_safety_limits(const Robot & robot, Arguments arguments)
+Outcome within_safety_limits(Robot & robot, Arguments arguments)
 {
   ArgumentReader in(arguments);
   const Vector6 six = in.six(0, "pose");
@@ -92,18 +94,12 @@ Outcome within_safety_limits(const Robot & robot, Arguments arguments)
 
 void add_kinematics_builtins(Library & library, const RobotPtr & robot)
 {
-  const std::vector<urscript::Parameter> inverse_parameters{"x", "qnear", "maxPositionError",
-                                                            "maxOrientationError", "tcp"};
-  library.add({"get_inverse_kin", inverse_parameters, 1,
-               [robot](CallContext &, Arguments arguments) { return inverse(*robot, arguments); }});
-  library.add({"get_inverse_kin_has_solution", inverse_parameters, 1,
-               [robot](CallContext &, Arguments arguments) { return has_inverse(*robot, arguments); }});
-  library.add({"get_forward_kin", {"q", "tcp"}, 0, [robot](CallContext &, Arguments arguments) {
-                 return forward(*robot, arguments);
-               }});
-  library.add({"is_within_safety_limits", {"pose"}, 1, [robot](CallContext &, Arguments arguments) {
-                 return within_safety_limits(*robot, arguments);
-               }});
+  const std::vector<urscript::Parameter> parameters{"x", "qnear", "maxPositionError", "maxOrientationError",
+                                                    "tcp"};
+  add_bound(library, robot, "get_inverse_kin", parameters, 1, inverse, inverse_cost);
+  add_bound(library, robot, "get_inverse_kin_has_solution", parameters, 1, has_inverse, inverse_cost);
+  add_bound(library, robot, "get_forward_kin", {"q", "tcp"}, 0, forward, 40);
+  add_bound(library, robot, "is_within_safety_limits", {"pose"}, 1, within_safety_limits, inverse_cost);
 }
 
 }  // namespace ur_simulator::script_api

@@ -35,6 +35,11 @@ struct Robot {
 
 using RobotPtr = std::shared_ptr<Robot>;
 
+/// Adds a builtin that acts on the robot.
+void add_bound(Library & library, const RobotPtr & robot, const char * name,
+               std::vector<urscript::Parameter> parameters, std::size_t required,
+               Outcome (*function)(Robot & robot, Arguments arguments), std::uint32_t cost = 15);
+
 // The groups of make_robot_library.
 void add_move_builtins(Library & library, const RobotPtr & robot);
 void add_speed_builtins(Library & library, const RobotPtr & robot);

@@ -4,6 +4,20 @@
 
 namespace ur_simulator {
 
+namespace script_api {
+
+void add_bound(Library & library, const RobotPtr & robot, const char * name,
+               std::vector<urscript::Parameter> parameters, std::size_t required,
+               Outcome (*function)(Robot & robot, Arguments arguments), std::uint32_t cost)
+{
+  const auto bound = [robot, function](CallContext &, Arguments arguments) {
+    return function(*robot, arguments);
+  };
+  library.add({name, std::move(parameters), required, bound, false, cost});
+}
+
+}  // namespace script_api
+
 std::shared_ptr<const urscript::Library> make_robot_library(const RobotAccess & access)
 {
   auto library = std::make_shared<urscript::Library>();

@@ -10,9 +10,8 @@ namespace ur_simulator::urscript {
 
 namespace {
 
-// A builtin does more than an instruction; weights keep a cycle's work within its time whatever the program
-// calls.
-constexpr std::uint32_t builtin_cost = 10;
+// Weights keep a cycle's work within its time whatever the program does.
+constexpr std::uint32_t method_cost = 10;
 constexpr std::uint32_t container_cost = 4;
 constexpr std::size_t stack_limit = 100000;
 
@@ -141,13 +140,32 @@ void Interpreter::charge(std::span<const Value> values)
   }
 }
 
-Interpreter::Next Interpreter::load(const Value & value, const std::string & name)
+Interpreter::Next Interpreter::load(const Value & value, const Instruction & instruction)
 {
   if (value.is(Type::none)) {
-    return fail_here(fmt::format("The variable '{}' has no value", name));
+    const bool is_local = instruction.op == Op::load_local;
+    const auto & locals = code_.functions[thread_->frames.back().function].local_names;
+    return fail_here(fmt::format("The variable '{}' has no value",
+                                 is_local ? locals[instruction.a] : code_.global_names[instruction.a]));
   }
   thread_->stack.push_back(value);
   return Next::go_on;
+}
+
+Interpreter::Next Interpreter::binary_operator(Operator op)
+{
+  Value & left = *(thread_->stack.end() - 2);
+  const Value & right = thread_->stack.back();
+  if (combine_scalars(op, left, right)) {
+    thread_->stack.pop_back();
+    return Next::go_on;
+  }
+  charge(left);
+  charge(right);
+  if (left.is(Type::matrix) && right.is(Type::matrix)) {
+    cost_ += static_cast<std::uint32_t>(weight(left) * right.matrix().columns) / container_cost;
+  }
+  return replace(2, binary(op, left, right));
 }
 
 // What runs most; the rest is in execute_rare.
@@ -159,13 +177,12 @@ Interpreter::Next Interpreter::execute(const Instruction & instruction)
       stack.push_back(code_.constants[instruction.a]);
       return Next::go_on;
     case Op::load_global:
-      return load(globals_[instruction.a], code_.global_names[instruction.a]);
+      return load(globals_[instruction.a], instruction);
     case Op::load_local:
-      return load(local(instruction.a),
-                  code_.functions[thread_->frames.back().function].local_names[instruction.a]);
+      return load(local(instruction.a), instruction);
     case Op::load_free: {
       const Value & global = globals_[instruction.a];
-      return load(global.is(Type::none) ? local(instruction.b) : global, code_.global_names[instruction.a]);
+      return load(global.is(Type::none) ? local(instruction.b) : global, instruction);
     }
     case Op::store_global:
       globals_[instruction.a] = pop();
@@ -179,9 +196,7 @@ Interpreter::Next Interpreter::execute(const Instruction & instruction)
       return Next::go_on;
     }
     case Op::binary:
-      charge(*(stack.end() - 2));
-      charge(stack.back());
-      return replace(2, binary(static_cast<Operator>(instruction.a), *(stack.end() - 2), stack.back()));
+      return binary_operator(static_cast<Operator>(instruction.a));
     case Op::jump:
       thread_->next = instruction.a;
       return Next::go_on;
@@ -316,8 +331,8 @@ Interpreter::Next Interpreter::return_value()
 
 Interpreter::Next Interpreter::call_builtin(const Instruction & instruction)
 {
-  cost_ += builtin_cost;
   const Builtin & builtin = library_[instruction.a];
+  cost_ += builtin.cost;
   const auto arguments = top(instruction.b);
   charge(arguments);
   for (std::size_t i = 0; i < builtin.required; ++i) {
@@ -329,7 +344,8 @@ Interpreter::Next Interpreter::call_builtin(const Instruction & instruction)
   context_->line = line_of(*thread_);
   Outcome outcome = builtin.function(*context_, arguments);
   if (auto * failure = std::get_if<Failure>(&outcome)) {
-    return fail_here(builtin.name + ": " + failure->message);
+    const bool named = failure->message.starts_with(builtin.name + ":");
+    return fail_here(named ? failure->message : builtin.name + ": " + failure->message);
   }
   return take(std::move(outcome), instruction.b);
 }
@@ -387,7 +403,7 @@ Interpreter::Next Interpreter::store_path(const Instruction & instruction)
 
 Interpreter::Next Interpreter::method(const Instruction & instruction)
 {
-  cost_ += builtin_cost;
+  cost_ += method_cost;
   const MethodCall & call = code_.methods[instruction.b];
   const auto arguments = top(call.arguments);
   charge(arguments);

@@ -8,6 +8,7 @@
 
 #include "urscript/code.hpp"
 #include "urscript/machine.hpp"
+#include "urscript/operators.hpp"
 #include "urscript/thread.hpp"
 
 namespace ur_simulator::urscript {
@@ -49,7 +50,8 @@ class Interpreter {
   void charge(const Value & value);
   void charge(std::span<const Value> values);
 
-  Next load(const Value & value, const std::string & name);
+  Next load(const Value & value, const Instruction & instruction);
+  Next binary_operator(Operator op);
   Next jump_keep(const Instruction & instruction, bool leaves_when);
   Next call(const Instruction & instruction);
   Next call_builtin(const Instruction & instruction);

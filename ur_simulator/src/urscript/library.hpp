@@ -75,7 +75,8 @@ struct Builtin {
   std::vector<Parameter> parameters;
   std::size_t required = 0;  ///< how many of the parameters a call must give
   BuiltinFunction function;
-  bool variadic = false;  ///< takes further positional arguments (str_cat, textmsg, …)
+  bool variadic = false;    ///< takes further positional arguments
+  std::uint32_t cost = 15;  ///< of a call in units of instructions, about 20 ns each
 };
 
 /// The functions that programs find by name. Filled once, then shared and never changed.

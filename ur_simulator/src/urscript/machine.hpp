@@ -22,7 +22,7 @@ struct RunTimeError {
 struct MachineOptions {
   double cycle_time = 0.002;  ///< s
   std::uint32_t instructions_per_cycle =
-      20000;  ///< of all threads together; what is left goes on in the next cycle
+      5000;  ///< of all threads together; what is left goes on in the next cycle
   /// A thread that computes this long without taking physical time (sync, sleep, a motion, …) fails: s of
   /// simulated time.
   double infinite_loop_after = 2.0;

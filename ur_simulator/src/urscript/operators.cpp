@@ -267,6 +267,29 @@ Result binary(Operator op, const Value & left, const Value & right)
   return containers(op, left, right);
 }
 
+bool combine_scalars(Operator op, Value & left, const Value & right)
+{
+  if (!left.is_number() || !right.is_number() || op < Operator::equal || op > Operator::multiply) {
+    return false;
+  }
+  if (left.is(Type::integer) && right.is(Type::integer)) {
+    const std::int32_t a = left.integer();
+    const std::int32_t b = right.integer();
+    left = is_comparison(op)          ? Value(compare(op, a, b))
+           : op == Operator::add      ? Value(wrapped(std::int64_t{a} + b))
+           : op == Operator::subtract ? Value(wrapped(std::int64_t{a} - b))
+                                      : Value(wrapped(std::int64_t{a} * b));
+    return true;
+  }
+  const double a = left.is(Type::integer) ? left.integer() : left.floating();
+  const double b = right.is(Type::integer) ? right.integer() : right.floating();
+  left = is_comparison(op)          ? Value(compare(op, a, b))
+         : op == Operator::add      ? Value(a + b)
+         : op == Operator::subtract ? Value(a - b)
+                                    : Value(a * b);
+  return true;
+}
+
 Result negate(const Value & value)
 {
   switch (value.type()) {

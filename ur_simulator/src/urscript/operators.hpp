@@ -16,6 +16,9 @@ using Result = tl::expected<Value, std::string>;
 /// Array Expressions" of the script manual: element by element, matrix by matrix and matrix by array as
 /// products. + joins strings.
 Result binary(Operator op, const Value & left, const Value & right);
+/// The frequent cases, numbers on both sides and nothing that can go wrong: `left` becomes the result. False:
+/// use binary().
+bool combine_scalars(Operator op, Value & left, const Value & right);
 Result negate(const Value & value);
 /// Of a condition: a bool, or a number that is not zero.
 tl::expected<bool, std::string> truth(const Value & value);
