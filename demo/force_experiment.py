@@ -20,6 +20,7 @@ from control_port import ControlPort
 
 DISCOVERY_LIMIT = 20.0  # s
 STANDSTILL = 0.002  # rad/s
+NEW_LINE = "\n" if sys.stdout.isatty() else ""  # after the progress line, which only a terminal gets
 AFTERWARDS = 0.8  # s recorded after the standstill
 
 
@@ -62,7 +63,9 @@ class Experiment:
         print("goal accepted")
         self.result = self.goal_handle.get_result_async()
 
-    def on_feedback(self, message):
+    def on_feedback(self, _message):
+        if not sys.stdout.isatty():
+            return
         done = max(0.0, min(1.0, (self.start_height - self.recorder.height) / self.options.drop))
         bar = "#" * round(30 * done)
         force = self.recorder.force()
@@ -75,7 +78,7 @@ class Experiment:
         wrench["xyz".index(axis)] = 1.5 * self.options.threshold
         self.control.request("push", wrench=wrench, duration=0.4, frame="tool")
         self.pushes.append((self.recorder.now(), axis))
-        print(f"\n  push along {axis.upper()}: {wrench['xyz'.index(axis)]:g} N for 0.4 s (must be ignored)")
+        print(f"{NEW_LINE}  push along {axis.upper()}: {wrench['xyz'.index(axis)]:g} N for 0.4 s (must be ignored)")
 
     def run(self):
         self.send_goal()
@@ -87,7 +90,7 @@ class Experiment:
                 break
             self.push(axis)
         self.wait(self.result.done, limit, "the result")
-        print()
+        print(NEW_LINE, end="")
         end = self.recorder.now() + AFTERWARDS
         self.wait(lambda: self.recorder.now() > end, 10.0 * AFTERWARDS, "the end of the recording")
         return self.result.result().result

@@ -76,16 +76,22 @@ def _draw_velocities(axes, columns, events):
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, title="joint")
 
 
+def _label(axes, events):
+    """Above the plot, where no curve runs."""
+    for event in events:
+        ignored = event.kind == "ignored"
+        text = f"{abs(event.force):.0f} N along {event.axis.upper()}: " + ("ignored" if ignored else "stop")
+        axes.annotate(text, (event.time, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 3), fontsize=9,
+                      textcoords="offset points", ha="center", va="bottom", color="tab:blue" if ignored else "tab:red")
+
+
 def draw(csv_path, png_path, threshold, title):
     columns, events = read(csv_path)
     figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(10, 6.2), layout="constrained")
     figure.suptitle(title)
     _draw_forces(upper, columns, events, threshold)
     _draw_velocities(lower, columns, events)
-    for event in events:
-        text = f"push along {event.axis.upper()}\nignored" if event.kind == "ignored" else "contact:\nstop"
-        upper.annotate(text, (event.time, event.force), xytext=(6, 0), textcoords="offset points", fontsize=8,
-                       va="center", color="tab:blue" if event.kind == "ignored" else "tab:red")
+    _label(upper, events)
     for axes in (upper, lower):
         axes.grid(alpha=0.3)
         axes.margins(x=0.01)
