@@ -59,7 +59,8 @@ class Check {
   Check & reachable(std::string_view field, const geometry_msgs::msg::Pose & pose);
   /// No joint has to go faster than it can on the way to `positions` in `time`, when its highest speed is
   /// `peak` times the mean one.
-  Check & reachable_in(std::string_view field, const std::vector<double> & positions, double time, double peak);
+  Check & reachable_in(std::string_view field, const std::vector<double> & positions, double time,
+                       double peak);
 
   bool ok() const { return !error_; }
   const std::optional<Error> & error() const { return error_; }

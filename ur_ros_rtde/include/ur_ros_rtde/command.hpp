@@ -14,7 +14,8 @@ namespace ur_ros_rtde {
 ///     class MoveL : public Command<ur_ros_rtde_msgs::action::MoveL> {
 ///       void check(const Goal & goal, Check & check) const override
 ///       {
-///         check.pose("pose", goal.pose).above_zero("speed", goal.speed, 3.0, "m/s").reachable("pose", goal.pose);
+///         check.pose("pose", goal.pose).above_zero("speed", goal.speed, 3.0, "m/s").reachable("pose",
+///         goal.pose);
 ///       }
 ///       Outcome run(const Goal & goal, Run & run) override
 ///       {
@@ -72,10 +73,9 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
     return goals_->admit(id, [&](Check & result) { check(goal, result); });
   };
   handlers.accepted = [this](std::shared_ptr<Handle> handle) {
-    const Status started =
-        goals_->start(handle->goal_id(), [this, handle](std::shared_ptr<GoalBook::Ticket> ticket) {
-          carry_out(*handle, *ticket);
-        });
+    const Status started = goals_->start(
+        handle->goal_id(),
+        [this, handle](std::shared_ptr<GoalBook::Ticket> ticket) { carry_out(*handle, *ticket); });
     if (!started) {
       Run run(goals_->host().robot(), std::make_shared<Interrupt>(), false, {});
       conclude(*handle, run, started);
@@ -91,8 +91,10 @@ void Command<A>::carry_out(Handle & handle, GoalBook::Ticket & ticket)
 {
   Run goal_run(goals_->host().robot(), ticket.interrupt, goals_->moves(),
                [&handle](const Feedback & feedback) { handle.publish_feedback(feedback); });
-  const Outcome outcome = goals_->carry_out(handle.goal_id(), ticket, stop_options(handle.goal()),
-                                            [&] { return run(handle.goal(), goal_run); });
+  const Outcome outcome = goals_->carry_out(handle.goal_id(), ticket, stop_options(handle.goal()), [&] {
+    goal_run.set_displaced(ticket.displaced);
+    return run(handle.goal(), goal_run);
+  });
   conclude(handle, goal_run, outcome);
 }
 

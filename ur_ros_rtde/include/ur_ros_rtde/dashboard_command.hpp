@@ -71,10 +71,9 @@ void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::s
     return book_->admit(id, [&](GoalBook::Ticket &) { return examine(goal); });
   };
   handlers.accepted = [this](std::shared_ptr<Handle> handle) {
-    const Status started =
-        book_->start(handle->goal_id(), [this, handle](std::shared_ptr<GoalBook::Ticket> ticket) {
-          carry_out(*handle, ticket->interrupt);
-        });
+    const Status started = book_->start(
+        handle->goal_id(),
+        [this, handle](std::shared_ptr<GoalBook::Ticket> ticket) { carry_out(*handle, ticket->interrupt); });
     if (!started) {
       Run run(*link_, std::make_shared<Interrupt>(), {});
       conclude(*handle, run, started);

@@ -20,6 +20,7 @@ class GoalBook {
   struct Ticket {
     std::shared_ptr<Interrupt> interrupt = std::make_shared<Interrupt>();
     Lease lease;
+    std::string displaced;  ///< the goal that had to end for this one
     bool started = false;
   };
 

@@ -60,10 +60,10 @@ constexpr PluginDescriptor describe(const char * name)
 
 /// Makes `Class` (unqualified: write this in its namespace, in a .cpp) the plugin `action_name`.
 /// plugins.xml names it: <class name="action_name" type="namespace::Class" base_class_type="…"/>.
-#define UR_ROS_RTDE_EXPORT(Class, action_name)                                                     \
-  extern "C" __attribute__((visibility("default"))) const ::ur_ros_rtde::PluginDescriptor *        \
-      ur_ros_rtde_plugin_##Class()                                                                 \
-  {                                                                                                \
-    static constexpr auto descriptor = ::ur_ros_rtde::detail::describe<Class>(action_name);        \
-    return &descriptor;                                                                            \
+#define UR_ROS_RTDE_EXPORT(Class, action_name)                                              \
+  extern "C" __attribute__((visibility("default")))                                         \
+  const ::ur_ros_rtde::PluginDescriptor * ur_ros_rtde_plugin_##Class()                      \
+  {                                                                                         \
+    static constexpr auto descriptor = ::ur_ros_rtde::detail::describe<Class>(action_name); \
+    return &descriptor;                                                                     \
   }

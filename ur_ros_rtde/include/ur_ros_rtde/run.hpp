@@ -74,6 +74,10 @@ class Run {
   void progress(double fraction) { progress_ = fraction; }
   double progress() const { return progress_; }
   std::chrono::nanoseconds elapsed() const { return std::chrono::steady_clock::now() - begin_; }
+  /// Of a command that takes over: which goal had to end, "/move_j, goal 3f0c12ab"; empty if there was none.
+  const std::string & displaced() const { return displaced_; }
+  void set_displaced(std::string goal) { displaced_ = std::move(goal); }
+
   /// For the feedback; nothing while no package has come.
   std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> motion_feedback() const;
 
@@ -92,6 +96,7 @@ class Run {
   std::shared_ptr<Interrupt> interrupt_;
   bool moves_;
   double progress_ = 0.0;
+  std::string displaced_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point next_feedback_ = begin_;
   std::chrono::steady_clock::time_point last_call_ = begin_;

@@ -18,7 +18,9 @@ class SetPayload : public Command<ur_ros_rtde_msgs::action::SetPayload> {
   Outcome run(const Goal & goal, Run & run) override
   {
     const auto & cog = goal.center_of_gravity;
-    run.control()->setPayload(goal.mass, {cog.x, cog.y, cog.z});
+    // To ur_rtde's control script a centre of exactly zero means: as it was.
+    const double z = cog.x == 0.0 && cog.y == 0.0 && cog.z == 0.0 ? 1e-9 : cog.z;
+    run.control()->setPayload(goal.mass, {cog.x, cog.y, z});
     const auto is_set = [&] {
       const Sample sample = run.state();
       const Vector3 & set = sample.payload_cog;

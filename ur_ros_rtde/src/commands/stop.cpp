@@ -1,3 +1,4 @@
+#include <chrono>
 #include <ur_ros_rtde_msgs/action/stop.hpp>
 
 #include "ur_ros_rtde/command.hpp"
@@ -27,8 +28,9 @@ class Stop : public Command<ur_ros_rtde_msgs::action::Stop> {
     if (!report) {
       return report.error();
     }
-    run.result().time_to_standstill = report->time_to_standstill;
-    return Outcome::success(to_string(report->means));
+    run.result().time_to_standstill = std::chrono::duration<double>(run.elapsed()).count();
+    return Outcome::success(run.displaced().empty() ? to_string(report->means)
+                                                    : run.displaced() + " was stopped");
   }
 };
 

@@ -95,6 +95,9 @@ Status CommandGoals::take(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket,
   }
   if (traits_.takes_over) {
     host_.set_takeover_stop(stop);
+    if (const auto holder = host_.robot().arbiter().holder(traits_.resource)) {
+      ticket.displaced = fmt::format("{}, goal {}", holder->owner, holder->id);
+    }
   }
   auto lease = host_.robot().arbiter().acquire_preempting(claim(id, ticket), takeover_limit);
   if (traits_.takes_over) {

@@ -1,0 +1,125 @@
+#include "ur_ros_rtde/check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace ur_ros_rtde {
+namespace {
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::string message(const Check & check)
+{
+  return check.error() ? check.error()->message : "";
+}
+
+TEST(Check, passes_what_is_in_range_bounds_included)
+{
+  Check check;
+  check.in_range("a", 0.0, 0.0, 1.0).in_range("b", 1.0, 0.0, 1.0).above_zero("c", 3.0, 3.0);
+  EXPECT_TRUE(check.ok()) << message(check);
+}
+
+TEST(Check, names_field_value_and_limits_with_their_unit)
+{
+  Check check;
+  check.in_range("lookahead_time", 0.5, 0.03, 0.2, "s");
+  EXPECT_EQ(message(check), "lookahead_time is 0.5 s, it may be 0.03 to 0.2 s");
+  EXPECT_EQ(check.error()->code, ErrorCode::invalid_goal);
+}
+
+TEST(Check, keeps_the_first_error)
+{
+  Check check;
+  check.above_zero("speed", -1.0, 3.0).in_range("time", 9.0, 0.0, 1.0);
+  EXPECT_NE(message(check).find("speed"), std::string::npos);
+}
+
+TEST(Check, refuses_nan_and_infinity_everywhere)
+{
+  for (const double value : {nan, infinity, -infinity}) {
+    EXPECT_FALSE(Check().in_range("x", value, -1e300, 1e300).ok());
+    EXPECT_FALSE(Check().above_zero("x", value, 1e300).ok());
+    EXPECT_FALSE(Check().joints("x", {0.0, 0.0, 0.0, 0.0, 0.0, value}).ok());
+    geometry_msgs::msg::Pose pose;
+    pose.position.y = value;
+    EXPECT_FALSE(Check().pose("x", pose).ok());
+    pose.position.y = 0.0;
+    pose.orientation.z = value;
+    EXPECT_FALSE(Check().pose("x", pose).ok());
+    geometry_msgs::msg::Twist twist;
+    twist.angular.x = value;
+    EXPECT_FALSE(Check().twist("x", twist).ok());
+    geometry_msgs::msg::Vector3 vector;
+    vector.z = value;
+    EXPECT_FALSE(Check().vector("x", vector, 1.0).ok());
+  }
+}
+
+TEST(Check, wants_six_joints_and_says_which)
+{
+  Check check;
+  check.joints("joint_positions", {1.0, 2.0, 3.0});
+  EXPECT_NE(message(check).find("joint_positions has 3 values, it takes 6: shoulder_pan_joint"),
+            std::string::npos)
+      << message(check);
+}
+
+TEST(Check, names_the_joint_that_is_out_of_its_limits)
+{
+  Check check;
+  check.joints("joint_positions", {0.0, 0.0, -7.0, 0.0, 0.0, 0.0});
+  EXPECT_NE(message(check).find("joint_positions[2] (elbow_joint) is -7 rad"), std::string::npos)
+      << message(check);
+}
+
+TEST(Check, refuses_a_quaternion_without_direction_but_not_one_of_another_length)
+{
+  geometry_msgs::msg::Pose pose;
+  pose.orientation.w = 0.0;
+  EXPECT_FALSE(Check().pose("pose", pose).ok());
+  pose.orientation.x = 20.0;
+  EXPECT_TRUE(Check().pose("pose", pose).ok());
+}
+
+TEST(Check, refuses_a_pose_that_no_arm_can_reach)
+{
+  geometry_msgs::msg::Pose pose;
+  pose.position.x = 5.0;
+  Check check;
+  check.pose("pose", pose);
+  ASSERT_FALSE(check.ok());
+  EXPECT_EQ(check.error()->code, ErrorCode::unreachable);
+}
+
+TEST(Check, refuses_a_twist_that_moves_nothing)
+{
+  EXPECT_FALSE(Check().twist("twist", geometry_msgs::msg::Twist()).ok());
+}
+
+TEST(Check, takes_one_line_of_text_and_no_more)
+{
+  EXPECT_TRUE(Check().line("text", "Grüße, 20 °C", 100).ok());
+  EXPECT_FALSE(Check().line("text", "", 100).ok());
+  EXPECT_FALSE(Check().line("text", "power off\nshutdown", 100).ok());
+  EXPECT_FALSE(Check().line("text", std::string("a\0b", 3), 100).ok());
+  EXPECT_FALSE(Check().line("text", "too long", 7).ok());
+}
+
+TEST(ToUr, turns_a_quaternion_into_a_rotation_vector)
+{
+  geometry_msgs::msg::Pose pose;
+  pose.position.x = 0.1;
+  pose.orientation.w = pose.orientation.z = std::sqrt(0.5);
+  const auto converted = to_ur(pose);
+  ASSERT_EQ(converted.size(), 6U);
+  EXPECT_DOUBLE_EQ(converted[0], 0.1);
+  EXPECT_NEAR(converted[5], std::acos(-1.0) / 2.0, 1e-12);
+  pose.orientation.w = pose.orientation.z = 0.0;
+  EXPECT_THROW(to_ur(pose), RobotError);
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde

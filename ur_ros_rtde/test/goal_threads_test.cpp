@@ -1,0 +1,106 @@
+#include "ur_ros_rtde/goal_threads.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <future>
+
+namespace ur_ros_rtde {
+namespace {
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+const Interruption shutdown{ErrorCode::shutdown, "the end"};
+
+/// Waits until it is asked to end.
+void wait_for(const Interrupt & interrupt)
+{
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  wake.wait(lock, interrupt.token(), [] { return false; });
+}
+
+TEST(GoalThreads, run_their_work_at_the_same_time)
+{
+  GoalThreads threads;
+  std::promise<void> first_runs;
+  std::promise<void> second_runs;
+  auto second_future = second_runs.get_future();
+  std::atomic<bool> met{false};
+  ASSERT_TRUE(threads.start("first", std::make_shared<Interrupt>(), [&] {
+    first_runs.set_value();
+    met = second_future.wait_for(seconds(10)) == std::future_status::ready;
+  }));
+  ASSERT_EQ(first_runs.get_future().wait_for(seconds(10)), std::future_status::ready);
+  ASSERT_TRUE(threads.start("second", std::make_shared<Interrupt>(), [&] { second_runs.set_value(); }));
+  EXPECT_TRUE(threads.close(shutdown, seconds(10)).empty());
+  EXPECT_TRUE(met);
+}
+
+TEST(GoalThreads, ask_everything_to_end_with_the_reason_and_wait_for_it)
+{
+  GoalThreads threads;
+  auto interrupt = std::make_shared<Interrupt>();
+  std::atomic<bool> ended{false};
+  ASSERT_TRUE(threads.start("goal", interrupt, [&] {
+    wait_for(*interrupt);
+    ended = true;
+  }));
+  EXPECT_TRUE(threads.close(shutdown, seconds(10)).empty());
+  EXPECT_TRUE(ended);
+  ASSERT_TRUE(interrupt->requested());
+  EXPECT_EQ(interrupt->requested()->code, ErrorCode::shutdown);
+}
+
+TEST(GoalThreads, take_nothing_after_they_were_closed)
+{
+  GoalThreads threads;
+  threads.close(shutdown, milliseconds(0));
+  const auto status = threads.start("late", std::make_shared<Interrupt>(), [] { FAIL(); });
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::shutdown);
+}
+
+TEST(GoalThreads, name_what_does_not_end_in_time)
+{
+  GoalThreads threads;
+  std::promise<void> release;
+  ASSERT_TRUE(threads.start("stubborn", std::make_shared<Interrupt>(),
+                            [future = release.get_future().share()] { future.wait(); }));
+  EXPECT_EQ(threads.close(shutdown, milliseconds(10)), std::vector<std::string>{"stubborn"});
+  release.set_value();
+}
+
+TEST(GoalThreads, refuse_more_than_their_limit_and_take_more_when_some_have_ended)
+{
+  GoalThreads threads;
+  auto interrupt = std::make_shared<Interrupt>();
+  for (std::size_t i = 0; i < GoalThreads::limit; ++i) {
+    ASSERT_TRUE(threads.start("goal", interrupt, [interrupt] { wait_for(*interrupt); }));
+  }
+  const auto status = threads.can_start();
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::busy);
+  interrupt->request(shutdown);
+  const auto limit = std::chrono::steady_clock::now() + seconds(10);
+  while (!threads.can_start() && std::chrono::steady_clock::now() < limit) {
+    std::this_thread::yield();
+  }
+  EXPECT_TRUE(threads.can_start());
+}
+
+TEST(Interrupt, keeps_the_first_reason)
+{
+  Interrupt interrupt;
+  EXPECT_FALSE(interrupt.requested());
+  interrupt.request(Error{ErrorCode::canceled, "first"});
+  interrupt.request(Error{ErrorCode::preempted, "second"});
+  ASSERT_TRUE(interrupt.requested());
+  EXPECT_EQ(interrupt.requested()->message, "first");
+  EXPECT_TRUE(interrupt.token().stop_requested());
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde

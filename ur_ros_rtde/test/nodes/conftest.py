@@ -1,0 +1,97 @@
+import os
+import shutil
+
+import pytest
+from support import HOME, Client, Simulator, node, wait_for
+
+from ur_ros_rtde_msgs.action import MoveJ
+
+
+def _address(number):
+    """Loopback addresses of this run's own: ./ur test gives each test file one."""
+    given = os.environ.get("UR_TEST_ADDRESS", "127.0.1.200").split(".")
+    return ".".join([given[0], str(int(given[1]) + number), given[2], given[3]])
+
+
+@pytest.fixture(scope="session")
+def addresses():
+    return [_address(number) for number in range(4)]
+
+
+@pytest.fixture(scope="module")
+def simulator(addresses):
+    simulator = Simulator(addresses[0])
+    yield simulator
+    simulator.end()
+
+
+@pytest.fixture(scope="module")
+def client():
+    client = Client()
+    yield client
+    client.close()
+
+
+@pytest.fixture(scope="module")
+def driver(simulator):
+    driver = node("driver", simulator.address, "ur_type:=ur10e")
+    yield driver
+    driver.end()
+    print(driver.output())
+
+
+@pytest.fixture
+def processes():
+    """Keeps a test's processes; ends them in the opposite order."""
+    kept = []
+    yield lambda process: kept.append(process) or process
+    for process in reversed(kept):
+        process.end()
+        print(getattr(process, "process", process).output())
+
+
+def make_ready(client, limit=30.0):
+    """Home, by the driver's own means: true when it takes motions."""
+
+    def home():
+        goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0)
+        if goal.accepted and goal.result().success:
+            return True
+        reasons.append(client.refusal(goal).message if not goal.accepted else goal.result().message)
+        return False
+
+    reasons = []
+    try:
+        wait_for(home, limit, "the driver to take a motion")
+    except AssertionError:
+        raise AssertionError(f"not ready within {limit} s: {reasons[-1:]}") from None
+
+
+@pytest.fixture
+def robot(simulator, driver, client):
+    """A driver that is ready, the arm at home, nothing in its way."""
+    assert driver.running(), driver.output()
+    simulator.control("clear_surfaces")
+    simulator.control("clear_pushes")
+    simulator.control("speed_slider", fraction=1.0)
+    make_ready(client)
+    return client
+
+
+@pytest.fixture
+def plugin_prefix(tmp_path):
+    """A prefix for the ament index in which a test puts a package with plugins."""
+
+    def make(package, description, libraries=()):
+        index = tmp_path / "share" / "ament_index" / "resource_index"
+        for kind, content in (("ur_ros_rtde__pluginlib__plugin", f"share/{package}/plugins.xml\n"), ("packages", "")):
+            (index / kind).mkdir(parents=True, exist_ok=True)
+            (index / kind / package).write_text(content)
+        (tmp_path / "share" / package).mkdir(parents=True)
+        (tmp_path / "share" / package / "plugins.xml").write_text(description)
+        (tmp_path / "lib").mkdir(exist_ok=True)
+        for library in libraries:
+            shutil.copy(library, tmp_path / "lib")
+        return tmp_path
+
+    return make

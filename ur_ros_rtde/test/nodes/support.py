@@ -1,0 +1,233 @@
+"""What the tests of the nodes share: processes with their logs, the simulator's control port, and a client of the nodes."""
+
+import json
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import threading
+import time
+
+import rclpy
+from action_msgs.msg import GoalStatus
+from rclpy.action import ActionClient
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+from ur_ros_rtde_msgs.msg import GoalRefused
+
+HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
+JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
+
+
+def wait_for(condition, limit, what):
+    """The first value of `condition` that is true; fails when there is none within `limit` s."""
+    end = time.monotonic() + limit
+    while True:
+        value = condition()
+        if value:
+            return value
+        assert time.monotonic() < end, f"waited {limit} s for {what}"
+        time.sleep(0.005)
+
+
+def program(package, name):
+    for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep):
+        for file in (pathlib.Path(prefix, "lib", package, name), pathlib.Path(prefix, "bin", name)):
+            if file.is_file():
+                return str(file)
+    raise FileNotFoundError(f"{package}/{name} is in no prefix of AMENT_PREFIX_PATH")
+
+
+class Process:
+    """A program with its output."""
+
+    def __init__(self, command, env=None):
+        self.lines = []
+        self._process = subprocess.Popen([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                         env={**os.environ, **(env or {})}, text=True, errors="replace")
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self):
+        for line in self._process.stdout:
+            self.lines.append(line.rstrip("\n"))
+
+    def output(self):
+        return "\n".join(self.lines)
+
+    def wait_for_output(self, text, limit=15.0):
+        return wait_for(lambda: next((line for line in list(self.lines) if text in line), None), limit,
+                        f"'{text}' in the output:\n{self.output()}")
+
+    def running(self):
+        return self._process.poll() is None
+
+    def wait(self, limit):
+        try:
+            code = self._process.wait(limit)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"it still runs after {limit} s:\n{self.output()}") from None
+        self._reader.join(5.0)
+        return code
+
+    def interrupt(self):
+        self._process.send_signal(signal.SIGINT)
+
+    def kill(self):
+        self._process.kill()
+        self._process.wait(10.0)
+
+    def end(self):
+        """As Ctrl-C does; killed when it does not end by that."""
+        if self.running():
+            self.interrupt()
+            try:
+                self._process.wait(15.0)
+            except subprocess.TimeoutExpired:
+                self.kill()
+
+
+class Simulator:
+    def __init__(self, address, *arguments):
+        self.address = address
+        self._arguments = arguments
+        self.process = None
+        self.start()
+
+    def start(self):
+        self.process = Process([program("ur_simulator", "ur_simulator"), "--address", self.address, "--model", "ur10e",
+                                "--joints", ",".join(map(str, HOME)), *self._arguments])
+        wait_for(self._connect, 20.0, "the simulator's control port")
+        return self
+
+    def _connect(self):
+        assert self.process.running(), self.process.output()
+        try:
+            self._socket = socket.create_connection((self.address, 30099), 5.0)
+        except OSError:
+            return False
+        self._answers = self._socket.makefile("r")
+        return True
+
+    def control(self, command, **fields):
+        self._socket.sendall((json.dumps({"command": command, **fields}) + "\n").encode())
+        answer = json.loads(self._answers.readline())
+        assert answer.get("ok"), answer
+        return answer
+
+    def state(self):
+        return self.control("state")["state"]
+
+    def kill(self):
+        self._socket.close()
+        self.process.kill()
+
+    def end(self):
+        self._socket.close()
+        self.process.end()
+
+
+def node(name, address, *parameters, namespace="", env=None, arguments=()):
+    command = [program("ur_ros_rtde", name), "--ros-args", "-p", f"robot_ip:={address}"]
+    for parameter in parameters:
+        command += ["-p", parameter]
+    if namespace:
+        command += ["-r", f"__ns:=/{namespace}"]
+    return Process([*command, *arguments], env)
+
+
+class Goal:
+    def __init__(self, client, future):
+        self._client, self._future = client, future
+        self.feedback = []
+        self._result = None
+
+    @property
+    def handle(self):
+        return wait_for(lambda: self._future.done() and self._future.result(), 10.0, "the answer to the goal")
+
+    @property
+    def accepted(self):
+        return self.handle.accepted
+
+    @property
+    def id(self):
+        return bytes(self.handle.goal_id.uuid)
+
+    def end(self, limit=30.0):
+        """Status and result."""
+        assert self.accepted, self._client.refusal(self)
+        if self._result is None:
+            self._result = self.handle.get_result_async()
+        answer = wait_for(lambda: self._result.done() and self._result.result(), limit, "the result")
+        return answer.status, answer.result
+
+    def result(self, limit=30.0):
+        return self.end(limit)[1]
+
+    def succeeded(self, limit=30.0):
+        status, result = self.end(limit)
+        assert status == GoalStatus.STATUS_SUCCEEDED and result.success, (status, result.error_code, result.message)
+        assert result.error_code == 0
+        return result
+
+    def cancel(self):
+        future = self.handle.cancel_goal_async()
+        return wait_for(lambda: future.done() and future.result(), 10.0, "the answer to the cancel request")
+
+
+class Client:
+    """A node of the test's own, served in a thread."""
+
+    def __init__(self, namespace=""):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context)
+        self.node = rclpy.create_node("test_client", namespace=namespace or None, context=self.context)
+        self._executor = SingleThreadedExecutor(context=self.context)
+        self._executor.add_node(self.node)
+        self._actions, self._services, self._topics = {}, {}, {}
+        self.refusals = []
+        self.node.create_subscription(GoalRefused, "goal_refusals", self.refusals.append, 100)
+        self._thread = threading.Thread(target=self._executor.spin, daemon=True)
+        self._thread.start()
+
+    def close(self):
+        self._executor.shutdown()
+        self._thread.join(10.0)
+        self.node.destroy_node()
+        self.context.try_shutdown()
+
+    def send(self, action, name, **fields):
+        if name not in self._actions:
+            self._actions[name] = ActionClient(self.node, action, name)
+        client = self._actions[name]
+        wait_for(client.server_is_ready, 20.0, f"the action {name}")
+        goal = Goal(self, None)
+        goal._future = client.send_goal_async(
+            action.Goal(**fields), feedback_callback=lambda message: goal.feedback.append(message.feedback))
+        return goal
+
+    def refusal(self, goal):
+        return wait_for(lambda: next((r for r in list(self.refusals) if bytes(r.goal_id.uuid) == goal.id), None), 10.0,
+                        "the reason on goal_refusals")
+
+    def call(self, service, name, **fields):
+        if name not in self._services:
+            self._services[name] = self.node.create_client(service, name)
+        client = self._services[name]
+        wait_for(client.service_is_ready, 20.0, f"the service {name}")
+        future = client.call_async(service.Request(**fields))
+        return wait_for(lambda: future.done() and future.result(), 10.0, f"the answer of {name}")
+
+    def listen(self, message, topic):
+        """All messages from now on."""
+        messages = []
+        self._topics.setdefault(topic, []).append(self.node.create_subscription(
+            message, topic, messages.append, QoSProfile(depth=2000, reliability=ReliabilityPolicy.RELIABLE)))
+        return messages
+
+
+def seconds(stamp):
+    return stamp.sec + 1e-9 * stamp.nanosec

@@ -1,0 +1,316 @@
+"""The commands of command_server, on the simulator."""
+
+import math
+
+import pytest
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from sensor_msgs.msg import JointState
+from support import HOME, seconds, wait_for
+
+from ur_ros_rtde_msgs.action import (MoveJ, MoveL, ServoJ, SetDigitalOutput, SetPayload, SetSpeedSlider, SpeedL, Stop,
+                                     ZeroFtSensor)
+from ur_ros_rtde_msgs.msg import ErrorCode, IOState
+from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
+
+NAN = math.nan
+
+
+def turned(angle, joint=0):
+    positions = list(HOME)
+    positions[joint] += angle
+    return positions
+
+
+def pose_now(client):
+    return client.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose
+
+
+def joints_now(client):
+    return client.call(GetJointState, "get_joint_state").joint_state
+
+
+def wait_until_moving(client, speed=0.05):
+    wait_for(lambda: max(map(abs, joints_now(client).velocity)) > speed, 10.0, "the arm to move")
+
+
+def is_at_rest(client):
+    return max(map(abs, joints_now(client).velocity)) < 0.01
+
+
+def test_move_j_arrives_with_progress_and_says_where(robot):
+    goal = robot.send(MoveJ, "move_j", joint_positions=turned(0.4), speed=0.6, acceleration=1.5)
+    result = goal.succeeded()
+    assert result.final_state.joint_positions == pytest.approx(turned(0.4), abs=0.005)
+    assert joints_now(robot).position == pytest.approx(turned(0.4), abs=0.005)
+    progress = [feedback.motion.progress for feedback in goal.feedback]
+    assert len(progress) >= 10 and progress == sorted(progress) and 0.2 < progress[len(progress) // 2] < 0.9
+    stamps = [seconds(feedback.motion.elapsed) for feedback in goal.feedback]
+    assert all(later > earlier for earlier, later in zip(stamps, stamps[1:]))
+    assert (stamps[-1] - stamps[0]) / (len(stamps) - 1) == pytest.approx(0.05, abs=0.02)
+
+
+def test_move_l_goes_straight(robot):
+    start = pose_now(robot)
+    target = pose_now(robot)
+    target.position.z -= 0.1
+    poses = robot.listen(JointState, "joint_states")
+    result = robot.send(MoveL, "move_l", pose=target, speed=0.2, acceleration=1.0).succeeded()
+    reached = result.final_state.tcp_pose.position
+    assert (reached.x, reached.y, reached.z) == pytest.approx((start.position.x, start.position.y, target.position.z),
+                                                              abs=0.002)
+    assert poses
+
+
+def test_a_quaternion_need_not_be_normalised(robot):
+    target = pose_now(robot)
+    target.position.z += 0.02
+    for axis in "xyzw":
+        setattr(target.orientation, axis, 3.0 * getattr(target.orientation, axis))
+    robot.send(MoveL, "move_l", pose=target, speed=0.2).succeeded()
+
+
+BAD_GOALS = [
+    (MoveJ, "move_j", {"joint_positions": [0.0] * 5}, "joint_positions has 5 values", "6"),
+    (MoveJ, "move_j", {"joint_positions": []}, "joint_positions has 0 values", "6"),
+    (MoveJ, "move_j", {"joint_positions": [0.0] * 7}, "joint_positions has 7 values", "6"),
+    (MoveJ, "move_j", {"joint_positions": turned(NAN, 2)}, "joint_positions[2] (elbow_joint) is nan", "6.28"),
+    (MoveJ, "move_j", {"joint_positions": turned(9.0, 5)}, "joint_positions[5] (wrist_3_joint) is 9", "6.28"),
+    (MoveJ, "move_j", {"joint_positions": HOME, "speed": 3.5}, "speed is 3.5 rad/s", "3.14"),
+    (MoveJ, "move_j", {"joint_positions": HOME, "speed": 0.0}, "speed is 0", "above 0"),
+    (MoveJ, "move_j", {"joint_positions": HOME, "speed": -1.0}, "speed is -1", "above 0"),
+    (MoveJ, "move_j", {"joint_positions": HOME, "acceleration": 41.0}, "acceleration is 41", "40"),
+    (MoveJ, "move_j", {"joint_positions": HOME, "acceleration": math.inf}, "acceleration is inf", "40"),
+    (MoveL, "move_l", {"pose": Pose(position=Point(x=0.5), orientation=Quaternion(w=0.0))}, "pose.orientation", "0"),
+    (MoveL, "move_l", {"pose": Pose(position=Point(x=NAN))}, "pose.position", "nan"),
+    (MoveL, "move_l", {"pose": Pose(position=Point(x=0.5)), "speed": 3.1}, "speed is 3.1 m/s", "3"),
+    (MoveL, "move_l", {"pose": Pose(position=Point(x=0.5)), "acceleration": -1.0}, "acceleration is -1", "150"),
+    (ServoJ, "servo_j", {"joint_positions": HOME, "time": 0.0}, "time is 0", "0.01"),
+    (ServoJ, "servo_j", {"joint_positions": HOME, "lookahead_time": 0.5}, "lookahead_time is 0.5", "0.2"),
+    (ServoJ, "servo_j", {"joint_positions": HOME, "gain": 5000.0}, "gain is 5000", "2000"),
+    (ServoJ, "servo_j", {"joint_positions": [NAN] * 6}, "joint_positions[0]", "nan"),
+    (SpeedL, "speed_l", {"twist": Twist(linear=Vector3(x=4.0))}, "twist.linear is 4 m/s", "3"),
+    (SpeedL, "speed_l", {"twist": Twist(angular=Vector3(x=NAN))}, "twist.angular is nan", "3.14"),
+    (SpeedL, "speed_l", {"twist": Twist()}, "twist is zero", "nothing"),
+    (SpeedL, "speed_l", {"twist": Twist(linear=Vector3(x=0.1)), "time": 1e9}, "time is 1e+09", "3600"),
+    (Stop, "stop", {"joint_deceleration": 0.0}, "joint_deceleration is 0", "0.1"),
+    (Stop, "stop", {"linear_deceleration": NAN}, "linear_deceleration is nan", "150"),
+    (SetDigitalOutput, "set_digital_output", {"pin": 18}, "pin is 18", "17"),
+    (SetPayload, "set_payload", {"mass": -1.0}, "mass is -1 kg", "50"),
+    (SetPayload, "set_payload", {"center_of_gravity": Vector3(z=NAN)}, "center_of_gravity.z is nan", "1"),
+    (SetSpeedSlider, "set_speed_slider", {"fraction": 1.5}, "fraction is 1.5", "1"),
+]
+
+
+@pytest.mark.parametrize("action, name, fields, what, limit", BAD_GOALS,
+                         ids=[f"{case[1]}-{case[3]}" for case in BAD_GOALS])
+def test_a_bad_goal_is_refused_with_field_value_and_limit(driver, simulator, client, action, name, fields, what, limit):
+    goal = client.send(action, name, **fields)
+    assert not goal.accepted
+    refusal = client.refusal(goal)
+    assert refusal.error_code == ErrorCode.INVALID_GOAL
+    assert refusal.action == f"/{name}"
+    assert what in refusal.message and limit in refusal.message, refusal.message
+    driver.wait_for_output(what)
+
+
+def test_a_goal_after_a_bad_one_is_carried_out(robot):
+    assert not robot.send(MoveJ, "move_j", joint_positions=[0.0]).accepted
+    robot.send(MoveJ, "move_j", joint_positions=turned(0.05)).succeeded()
+
+
+@pytest.mark.parametrize("x", [1.6, 2.9])
+def test_an_unreachable_pose_is_refused(robot, x):
+    pose = pose_now(robot)
+    pose.position.x, pose.position.y, pose.position.z = x, 0.0, 0.5
+    goal = robot.send(MoveL, "move_l", pose=pose)
+    assert not goal.accepted
+    refusal = robot.refusal(goal)
+    assert refusal.error_code == ErrorCode.UNREACHABLE, refusal.message
+    assert "pose" in refusal.message
+
+
+def test_a_second_motion_is_refused_and_told_which_one_runs(robot):
+    first = robot.send(MoveJ, "move_j", joint_positions=turned(1.0), speed=0.5)
+    wait_until_moving(robot)
+    second = robot.send(SpeedL, "speed_l", twist=Twist(linear=Vector3(z=0.05)))
+    assert not second.accepted
+    refusal = robot.refusal(second)
+    assert refusal.error_code == ErrorCode.BUSY
+    assert "move_j" in refusal.message and first.id.hex()[:8] in refusal.message
+    first.succeeded()
+
+
+@pytest.mark.parametrize("action, name, fields", [
+    (MoveJ, "move_j", {"joint_positions": turned(2.0), "speed": 0.6, "acceleration": 2.0}),
+    (MoveL, "move_l", {"speed": 0.1}),
+    (ServoJ, "servo_j", {"joint_positions": turned(1.0), "time": 4.0}),
+    (SpeedL, "speed_l", {"twist": Twist(linear=Vector3(z=-0.1)), "time": 20.0}),
+], ids=lambda value: value if isinstance(value, str) else "")
+def test_cancel_decelerates_and_tells_where_the_arm_stands(robot, action, name, fields):
+    if action is MoveL:
+        fields = {**fields, "pose": pose_now(robot)}
+        fields["pose"].position.z -= 0.4
+    goal = robot.send(action, name, **fields)
+    wait_until_moving(robot, 0.1)
+    wait_for(lambda: goal.feedback and seconds(goal.feedback[-1].motion.elapsed) > 0.6, 10.0, "the motion to be at speed")
+    states = robot.listen(JointState, "joint_states")
+    wait_for(lambda: states, 10.0, "joint states")
+    goal.cancel()
+    status, result = goal.end()
+    assert status == GoalStatus.STATUS_CANCELED
+    assert not result.success and result.error_code == ErrorCode.CANCELED
+    assert is_at_rest(robot)
+    assert result.final_state.joint_positions == pytest.approx(list(joints_now(robot).position), abs=0.003)
+    recorded = list(states)
+    speed = [max(map(abs, state.velocity)) for state in recorded]
+    times = [seconds(state.header.stamp) for state in recorded]
+    begin = next(i for i, value in enumerate(speed) if value < 0.9 * speed[0])
+    end = next(i for i, value in enumerate(speed) if value < 0.02)
+    assert len([i for i in range(begin, end)]) > 5, "it stopped dead instead of decelerating"
+    assert times[end] - times[0] < 2.5
+
+
+def test_stop_ends_the_motion_that_runs(robot):
+    motion = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.8, acceleration=2.0)
+    wait_until_moving(robot, 0.3)
+    result = robot.send(Stop, "stop").succeeded()
+    assert is_at_rest(robot)
+    assert 0.05 < result.time_to_standstill < 2.0
+    assert f"move_j, goal {motion.id.hex()[:8]}" in result.message
+    status, ended = motion.end()
+    assert status == GoalStatus.STATUS_ABORTED and ended.error_code == ErrorCode.PREEMPTED
+    assert "stop" in ended.message
+
+
+def test_stop_succeeds_when_nothing_moves(robot):
+    robot.send(Stop, "stop").succeeded(5.0)
+
+
+def test_servo_j_arrives_in_its_time(robot):
+    goal = robot.send(ServoJ, "servo_j", joint_positions=turned(0.5), time=1.5)
+    result = goal.succeeded()
+    assert result.final_state.joint_positions == pytest.approx(turned(0.5), abs=0.015)
+    assert seconds(goal.feedback[-1].motion.elapsed) == pytest.approx(1.5, abs=1.0)
+
+
+def test_servo_j_refuses_what_the_joints_cannot_do_in_the_time(robot):
+    goal = robot.send(ServoJ, "servo_j", joint_positions=turned(1.0), time=0.5)
+    assert not goal.accepted
+    refusal = robot.refusal(goal)
+    assert refusal.error_code == ErrorCode.INVALID_GOAL
+    assert "shoulder_pan_joint" in refusal.message and "use a time of at least" in refusal.message
+
+
+def test_speed_l_moves_for_its_time_and_stops(robot):
+    start = pose_now(robot).position.z
+    result = robot.send(SpeedL, "speed_l", twist=Twist(linear=Vector3(z=-0.1)), acceleration=1.0, time=1.0).succeeded()
+    assert is_at_rest(robot)
+    assert start - result.final_state.tcp_pose.position.z == pytest.approx(0.095, abs=0.03)
+
+
+@pytest.mark.parametrize("pin", [0, 7, 8, 15, 16, 17])
+def test_set_digital_output_switches_the_pin(robot, simulator, pin):
+    for state in (True, False):
+        robot.send(SetDigitalOutput, "set_digital_output", pin=pin, state=state).succeeded()
+        assert bool(simulator.state()["io"]["digital_outputs"] >> pin & 1) == state
+    messages = robot.listen(IOState, "io_state")
+    wait_for(lambda: messages, 5.0, "io_state")
+    assert not messages[-1].digital_outputs[pin]
+
+
+def test_outputs_are_switched_while_the_arm_moves(robot):
+    motion = robot.send(MoveJ, "move_j", joint_positions=turned(1.0), speed=0.5)
+    wait_until_moving(robot)
+    robot.send(SetDigitalOutput, "set_digital_output", pin=1, state=True).succeeded()
+    motion.succeeded()
+    robot.send(SetDigitalOutput, "set_digital_output", pin=1, state=False).succeeded()
+
+
+def test_set_payload_and_speed_slider_take_effect(robot, simulator):
+    robot.send(SetPayload, "set_payload", mass=1.5, center_of_gravity=Vector3(z=0.05)).succeeded()
+    assert simulator.state()["payload"] == {"mass": pytest.approx(1.5), "center_of_gravity": pytest.approx([0.0, 0.0, 0.05])}
+    robot.send(SetPayload, "set_payload", mass=0.0).succeeded()
+    assert simulator.state()["payload"]["center_of_gravity"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
+    robot.send(SetSpeedSlider, "set_speed_slider", fraction=0.5).succeeded()
+    assert simulator.state()["speed_slider"] == pytest.approx(0.5)
+    robot.send(SetSpeedSlider, "set_speed_slider", fraction=1.0).succeeded()
+
+
+def test_zero_ft_sensor_reads_zero_afterwards(robot):
+    result = robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
+    assert abs(result.wrench.force.z) < 5.0
+
+
+def test_a_protective_stop_ends_the_goal_and_the_next_one_works_after_unlocking(robot, simulator):
+    goal = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.6)
+    wait_until_moving(robot)
+    simulator.control("protective_stop", reason="a test")
+    status, result = goal.end()
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PROTECTIVE_STOP, result.message
+    assert "not known" not in result.message
+    refused = robot.send(MoveJ, "move_j", joint_positions=HOME)
+    assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.PROTECTIVE_STOP
+    wait_for(lambda: _unlocked(simulator), 10.0, "the protective stop to be unlocked")
+    home = wait_for(lambda: _accepted(robot), 20.0, "a motion to be taken again")
+    home.succeeded()
+
+
+def _unlocked(simulator):
+    try:
+        simulator.control("unlock_protective_stop")
+        return True
+    except AssertionError:
+        return False
+
+
+def _accepted(client):
+    goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0, acceleration=3.0)
+    return goal if goal.accepted else None
+
+
+def test_an_emergency_stop_ends_the_goal(robot, simulator):
+    goal = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.6)
+    wait_until_moving(robot)
+    simulator.control("emergency_stop", pressed=True)
+    try:
+        status, result = goal.end()
+        assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.EMERGENCY_STOP, result.message
+    finally:
+        simulator.control("emergency_stop", pressed=False)
+        simulator.control("power", to="running")
+
+
+def test_the_stopped_program_ends_the_goal_and_is_not_resumed(robot, simulator):
+    goal = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.6)
+    wait_until_moving(robot)
+    simulator.control("stop_program")
+    status, result = goal.end()
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PROGRAM_STOPPED, result.message
+    wait_for(lambda: simulator.state()["program"]["state"] == "PLAYING", 10.0, "the control program to be back")
+    assert is_at_rest(robot)
+
+
+def test_a_dropped_link_ends_the_goal_and_the_arm_stops(robot, simulator):
+    goal = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.6)
+    wait_until_moving(robot)
+    simulator.control("drop_links", which="rtde")
+    status, result = goal.end()
+    assert status == GoalStatus.STATUS_ABORTED
+    assert result.error_code in (ErrorCode.LINK_LOST, ErrorCode.PROGRAM_STOPPED), result.message
+    wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 5.0, "the arm to stand still")
+    assert simulator.state()["actual"]["position"][0] < 1.9
+
+
+def test_many_goals_of_many_kinds_get_one_result_each(robot):
+    switches, motions = [], []
+    for i in range(10):  # few at a time: services of ROS keep ten requests
+        switches += [robot.send(SetDigitalOutput, "set_digital_output", pin=pin, state=bool(i % 2)) for pin in range(4)]
+        motions.append(robot.send(MoveJ, "move_j", joint_positions=turned(0.01 * i)))
+        assert all(goal.accepted for goal in switches[-4:])
+    assert all(goal.end()[0] in (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_ABORTED) for goal in switches)
+    for goal in motions:
+        if goal.accepted:
+            goal.succeeded()
+        else:
+            assert robot.refusal(goal).error_code == ErrorCode.BUSY

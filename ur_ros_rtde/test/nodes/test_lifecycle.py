@@ -1,0 +1,183 @@
+"""Starting, ending, and addresses at which there is no robot."""
+
+import socket
+import threading
+import time
+
+import pytest
+from action_msgs.msg import GoalStatus
+from support import HOME, Client, Simulator, node, wait_for
+
+from conftest import make_ready
+from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ
+from ur_ros_rtde_msgs.msg import ErrorCode
+
+NODES = ["robot_state_receiver", "command_server", "dashboard_server", "driver"]
+
+
+def far_away():
+    return [2.5, *HOME[1:]]
+
+
+@pytest.mark.parametrize("name", NODES)
+def test_without_an_address_it_says_what_to_give(name):
+    process = node(name, "''")
+    assert process.wait(15.0) == 2
+    assert "robot_ip" in process.output() and "--ros-args -p robot_ip:=" in process.output()
+
+
+@pytest.mark.parametrize("name, parameter, what", [
+    ("robot_state_receiver", "rtde_frequency:=501.0", "rtde_frequency"),
+    ("robot_state_receiver", "rtde_frequency:=0.5", "rtde_frequency"),
+    ("robot_state_receiver", "qos:=fast", "reliable"),
+    ("robot_state_receiver", "tf_prefix:='left arm'", "tf_prefix"),
+    ("command_server", "on_busy:=wait", "preempt"),
+    ("command_server", "ur_type:=ur99", "ur99"),
+    ("command_server", "urcap_port:=70000", "urcap_port"),
+    ("command_server", "watchdog_frequency:=true", "watchdog_frequency"),
+])
+def test_a_wrong_parameter_is_named_with_what_it_may_be(name, parameter, what):
+    process = node(name, "127.0.0.1", parameter)
+    assert process.wait(15.0) == 2
+    assert what in process.output()
+
+
+@pytest.mark.parametrize("name", NODES)
+def test_ctrl_c_ends_it_without_a_robot(name, addresses):
+    process = node(name, addresses[3])
+    process.wait_for_output(addresses[3])
+    process.interrupt()
+    begin = time.monotonic()
+    assert process.wait(10.0) == 0, process.output()
+    assert time.monotonic() - begin < 4.0
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.05, 0.1, 0.2, 0.4])
+def test_ctrl_c_ends_it_while_it_starts(delay, simulator):
+    process = node("driver", simulator.address)
+    time.sleep(delay)  # the moment itself is the variation
+    process.interrupt()
+    assert process.wait(15.0) in (0, -2), process.output()
+
+
+@pytest.mark.parametrize("name", ["driver", "command_server"])
+def test_no_controller_at_the_address_is_said_and_goals_are_refused_with_it(name, addresses, processes):
+    server = processes(node(name, addresses[3], namespace="nobody"))
+    client = Client("nobody")
+    try:
+        goal = client.send(MoveJ, "move_j", joint_positions=HOME)
+        assert not goal.accepted
+        assert client.refusal(goal).error_code in (ErrorCode.NOT_READY, ErrorCode.LINK_LOST)
+        assert server.wait_for_output(addresses[3])
+        wait_for(lambda: addresses[3] in client.refusal(client.send(MoveJ, "move_j", joint_positions=HOME)).message, 10.0,
+                 "a refusal that names the address")
+    finally:
+        client.close()
+
+
+class SomethingElse:
+    """Listens where a controller would, and answers like a web server."""
+
+    def __init__(self, address, ports=(29999, 30001, 30002, 30003, 30004)):
+        self._sockets = []
+        for port in ports:
+            listener = socket.create_server((address, port))
+            self._sockets.append(listener)
+            threading.Thread(target=self._serve, args=(listener,), daemon=True).start()
+
+    @staticmethod
+    def _serve(listener):
+        while True:
+            try:
+                connection, _ = listener.accept()
+                connection.sendall(b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n")
+            except OSError:
+                return
+
+    def close(self):
+        for listener in self._sockets:
+            listener.shutdown(socket.SHUT_RDWR)
+            listener.close()
+
+
+def test_something_else_at_the_address_does_no_harm(addresses, processes):
+    other = SomethingElse(addresses[2])
+    try:
+        server = processes(node("driver", addresses[2], namespace="other"))
+        client = Client("other")
+        try:
+            server.wait_for_output(addresses[2])
+            goal = client.send(MoveJ, "move_j", joint_positions=HOME)
+            assert not goal.accepted and client.refusal(goal).message
+            assert server.running(), server.output()
+            server.interrupt()
+            assert server.wait(15.0) == 0
+        finally:
+            client.close()
+    finally:
+        other.close()
+
+
+def test_ctrl_c_in_the_middle_of_a_motion_decelerates_and_gives_the_result(simulator, client, processes):
+    driver = processes(node("driver", simulator.address, "ur_type:=ur10e"))
+    make_ready(client)
+    goal = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.8, acceleration=2.0)
+    wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.5, 10.0, "the arm to move")
+    begin = time.monotonic()
+    driver.interrupt()
+    status, result = goal.end()
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.SHUTDOWN, result.message
+    assert driver.wait(10.0) == 0, driver.output()
+    assert time.monotonic() - begin < 4.0
+    state = simulator.state()
+    assert max(map(abs, state["actual"]["velocity"])) < 0.01
+    assert state["actual"]["position"][0] < 2.0
+    assert state["safety_mode"] == "NORMAL"
+
+
+def test_when_the_driver_is_killed_the_robot_stops_by_itself(simulator, client, processes):
+    driver = processes(node("driver", simulator.address, "ur_type:=ur10e"))
+    make_ready(client)
+    client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.8, acceleration=2.0)
+    wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.5, 10.0, "the arm to move")
+    driver.kill()
+    wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 3.0, "the arm to stand still")
+    assert simulator.state()["actual"]["position"][0] < 2.3
+
+
+def test_a_controller_that_dies_ends_the_motion_and_is_found_again(addresses, processes):
+    simulator = Simulator(addresses[1])
+    driver = processes(node("driver", addresses[1], namespace="frail"))
+    client = Client("frail")
+    try:
+        make_ready(client)
+        goal = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.5)
+        wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
+        simulator.kill()
+        status, result = goal.end(10.0)
+        assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.LINK_LOST, result.message
+        refused = client.send(MoveJ, "move_j", joint_positions=HOME)
+        assert not refused.accepted and client.refusal(refused).message
+        processes(simulator.start())
+        make_ready(client)
+        assert driver.running()
+    finally:
+        client.close()
+
+
+def test_the_dashboard_and_the_commands_live_in_one_process(simulator, client, processes):
+    processes(node("driver", simulator.address))
+    make_ready(client)
+    wait_for(lambda: client.send(DashboardCommand, "dashboard/close_popup").accepted, 10.0, "the dashboard server")
+
+
+def test_preempting_stops_the_motion_that_runs_and_carries_out_the_new_one(simulator, client, processes):
+    processes(node("driver", simulator.address, "on_busy:=preempt"))
+    make_ready(client)
+    first = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.6)
+    wait_for(lambda: first.feedback and first.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
+    second = client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.6)
+    status, result = first.end()
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PREEMPTED
+    assert "move_j" in result.message
+    second.succeeded()

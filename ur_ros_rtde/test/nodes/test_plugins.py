@@ -1,0 +1,66 @@
+"""Which plugins command_server loads, and what it says of those it cannot."""
+
+from support import HOME, node, wait_for
+
+from ur_ros_rtde_msgs.action import MoveJ, SetDigitalOutput
+
+CLASS = '<class name="{name}" type="test::{type}" base_class_type="ur_ros_rtde::CommandPlugin"/>'
+
+
+def with_prefix(prefix):
+    import os
+    return {"AMENT_PREFIX_PATH": os.pathsep.join([str(prefix), os.environ["AMENT_PREFIX_PATH"]])}
+
+
+def test_unknown_names_are_errors_that_list_the_known_ones(addresses, processes):
+    server = processes(node("command_server", addresses[3], "plugins:=[move_j,fly]", "plugins_blacklist:=[dance]"))
+    line = server.wait_for_output('"fly"')
+    assert "parameter plugins " in line and "move_j" in line and "set_digital_output" in line
+    assert "move_l" in server.wait_for_output('"dance"')
+    assert server.wait_for_output("commands:").endswith("commands: move_j")
+
+
+def test_a_blacklisted_plugin_is_not_loaded(addresses, processes):
+    server = processes(node("command_server", addresses[3], "plugins_blacklist:=[move_j,move_l]"))
+    loaded = server.wait_for_output("commands:").split("commands: ")[1].split(", ")
+    assert "stop" in loaded and "move_j" not in loaded and "move_l" not in loaded
+
+
+def test_a_broken_library_is_named_and_the_rest_goes_on(addresses, client, processes, plugin_prefix):
+    prefix = plugin_prefix("broken_plugins", '<library path="broken">' + CLASS.format(name="broken", type="Broken") + "</library>")
+    (prefix / "lib" / "libbroken.so").write_bytes(b"\x7fELF this is no library")
+    server = processes(node("command_server", addresses[3], env=with_prefix(prefix)))
+    line = server.wait_for_output("plugin broken of package broken_plugins is left out")
+    assert "libbroken.so" in line
+    assert "move_j" in server.wait_for_output("commands:")
+    assert not client.send(MoveJ, "move_j", joint_positions=HOME).accepted  # it answers
+
+
+def test_a_missing_library_and_a_malformed_description_are_named(addresses, processes, plugin_prefix):
+    prefix = plugin_prefix("missing", '<library path="nowhere">' + CLASS.format(name="gone", type="Gone") + "</library>")
+    (prefix / "share" / "torn").mkdir()
+    (prefix / "share" / "torn" / "plugins.xml").write_text("<library path='x'><class name=")
+    index = prefix / "share" / "ament_index" / "resource_index" / "ur_ros_rtde__pluginlib__plugin" / "torn"
+    index.write_text("share/torn/plugins.xml\n")
+    server = processes(node("command_server", addresses[3], env=with_prefix(prefix)))
+    server.wait_for_output("libnowhere.so")
+    server.wait_for_output("share/torn/plugins.xml")
+    assert "move_j" in server.wait_for_output("commands:")
+
+
+def test_an_action_name_taken_twice_is_reported(addresses, processes, plugin_prefix):
+    prefix = plugin_prefix("zz_other", '<library path="other">' + CLASS.format(name="move_j", type="Other") + "</library>")
+    server = processes(node("command_server", addresses[3], env=with_prefix(prefix)))
+    line = server.wait_for_output("plugin move_j of package zz_other")
+    assert "package ur_ros_rtde has one of that name already" in line
+    assert "move_j" in server.wait_for_output("commands:")
+
+
+def test_every_plugin_of_the_package_is_loaded(addresses, client, processes):
+    server = processes(node("driver", addresses[3]))
+    loaded = set(server.wait_for_output(" commands: ").split("commands: ")[1].split(", "))
+    assert {"move_j", "move_l", "stop", "servo_j", "speed_l", "set_digital_output", "zero_ft_sensor", "set_payload",
+            "set_speed_slider"} <= loaded
+    server.wait_for_output("dashboard commands:")
+    wait_for(lambda: client.send(SetDigitalOutput, "set_digital_output", pin=0).accepted is False, 10.0, "an answer")
+    assert "left out" not in server.output()

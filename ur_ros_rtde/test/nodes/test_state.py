@@ -1,0 +1,183 @@
+"""robot_state_receiver: topics, services, faked joint states, links that come and go."""
+
+import math
+
+import pytest
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool
+from support import HOME, JOINTS, Client, Simulator, node, seconds, wait_for
+
+from ur_ros_rtde_msgs.msg import ErrorCode, IOState
+from ur_ros_rtde_msgs.srv import GetIOState, GetJointState, GetTcpPose, GetWrench
+
+
+@pytest.fixture(scope="module")
+def receiver(simulator):
+    receiver = node("robot_state_receiver", simulator.address, "tf_prefix:=left_")
+    yield receiver
+    receiver.end()
+    print(receiver.output())
+
+
+def collect(client, message, topic, number, limit=15.0):
+    messages = client.listen(message, topic)
+    wait_for(lambda: len(messages) >= number, limit, f"{number} messages of {topic}")
+    return list(messages)
+
+
+def test_joint_states_have_the_names_and_the_order_of_moveit(receiver, client):
+    state = collect(client, JointState, "joint_states", 1)[0]
+    assert list(state.name) == [f"left_{name}" for name in JOINTS]
+    assert list(state.position) == pytest.approx(HOME, abs=0.01)
+    assert len(state.velocity) == len(state.effort) == 6
+
+
+def test_efforts_are_torques_that_carry_the_arm(receiver, client):
+    effort = collect(client, JointState, "joint_states", 1)[0].effort
+    assert all(map(math.isfinite, effort))
+    assert 20.0 < abs(effort[1]) < 400.0  # the shoulder of a stretched UR10e
+
+
+def test_the_pose_is_the_tools_in_the_base_frame(receiver, client, simulator):
+    pose = collect(client, PoseStamped, "tcp_pose", 1)[0]
+    assert pose.header.frame_id == "left_base"
+    tcp = simulator.state()["actual_tcp_pose"]
+    position = pose.pose.position
+    assert (position.x, position.y, position.z) == pytest.approx(tcp[:3], abs=1e-3)
+    q = pose.pose.orientation
+    assert math.hypot(q.x, q.y, q.z, q.w) == pytest.approx(1.0, abs=1e-9)
+    angle = math.hypot(*tcp[3:])
+    assert 2.0 * math.acos(min(1.0, abs(q.w))) == pytest.approx(min(angle, 2.0 * math.pi - angle), abs=1e-3)
+
+
+def test_the_wrench_is_in_the_frame_of_the_tool(receiver, client, simulator):
+    wrenches = client.listen(WrenchStamped, "wrench")
+    simulator.control("push", force=[0.0, 0.0, 30.0], duration=0.5, frame="tool")
+    wait_for(lambda: any(w.wrench.force.z > 25.0 for w in list(wrenches)), 10.0, "the push along the tool's axis")
+    strongest = max(list(wrenches), key=lambda w: w.wrench.force.z)
+    assert strongest.header.frame_id == "left_tool0_controller"
+    assert abs(strongest.wrench.force.x) < 8.0 and abs(strongest.wrench.force.y) < 8.0
+
+
+def test_io_state_shows_inputs_by_pin(receiver, client, simulator):
+    messages = client.listen(IOState, "io_state")
+    for pin in (0, 9, 17):
+        simulator.control("set_digital_input", number=pin, value=True)
+        wait_for(lambda p=pin: messages and messages[-1].digital_inputs[p], 10.0, f"input {pin}")
+        simulator.control("set_digital_input", number=pin, value=False)
+        wait_for(lambda p=pin: not messages[-1].digital_inputs[p], 10.0, f"input {pin} to go off")
+
+
+def test_all_messages_of_a_cycle_have_one_stamp(receiver, client):
+    topics = {name: client.listen(kind, name) for name, kind in (("joint_states", JointState), ("tcp_pose", PoseStamped),
+                                                                 ("wrench", WrenchStamped), ("io_state", IOState))}
+    wait_for(lambda: all(len(messages) > 100 for messages in topics.values()), 20.0, "100 messages of each topic")
+    stamps = [{seconds(message.header.stamp) for message in list(messages)[20:80]} for messages in topics.values()]
+    common = set.intersection(*({seconds(m.header.stamp) for m in list(messages)} for messages in topics.values()))
+    assert all(len(own & common) > 0.8 * len(own) for own in stamps)
+
+
+def test_it_publishes_at_the_rate_of_the_controller(receiver, client):
+    states = collect(client, JointState, "joint_states", 1000, 20.0)
+    times = [seconds(state.header.stamp) for state in states]
+    assert (len(times) - 1) / (times[-1] - times[0]) == pytest.approx(500.0, rel=0.1)
+    assert times == sorted(times)
+
+
+@pytest.mark.parametrize("frequency", [10.0, 300.0])
+def test_the_rate_can_be_chosen(simulator, client, processes, frequency):
+    processes(node("robot_state_receiver", simulator.address, f"rtde_frequency:={frequency}", namespace="slow"))
+    states = collect(client, JointState, "/slow/joint_states", 20 if frequency < 100 else 600, 20.0)
+    times = [seconds(state.header.stamp) for state in states]
+    assert (len(times) - 1) / (times[-1] - times[0]) == pytest.approx(frequency, rel=0.15)
+
+
+@pytest.mark.parametrize("service, name, field", [
+    (GetJointState, "get_joint_state", lambda a: list(a.joint_state.position) == pytest.approx(HOME, abs=0.01)),
+    (GetTcpPose, "get_tcp_pose", lambda a: a.tcp_pose.header.frame_id == "left_base"),
+    (GetWrench, "get_wrench", lambda a: a.wrench.header.frame_id == "left_tool0_controller"),
+    (GetIOState, "get_io_state", lambda a: not any(a.io_state.digital_outputs)),
+], ids=lambda value: value if isinstance(value, str) else "")
+def test_services_answer_from_the_newest_sample(receiver, client, service, name, field):
+    collect(client, JointState, "joint_states", 1)
+    answer = client.call(service, name)
+    assert answer.success and answer.error_code == ErrorCode.NONE, answer.message
+    assert field(answer)
+
+
+def test_faked_joint_states_are_shown_and_the_real_state_goes_on(receiver, client):
+    shown = client.listen(JointState, "joint_states")
+    publisher = client.node.create_publisher(JointState, "fake_joint_states", 10)
+    wait_for(lambda: publisher.get_subscription_count(), 10.0, "the subscription of fake_joint_states")
+    assert client.call(SetBool, "publish_fake_joint_states", data=True).success
+    try:
+        # By name, in another order, and only some of them.
+        publisher.publish(JointState(name=["left_elbow_joint", "left_shoulder_pan_joint"], position=[0.25, -0.5]))
+        wait_for(lambda: shown and shown[-1].position[2] == 0.25, 10.0, "the faked elbow")
+        assert list(shown[-1].position) == pytest.approx([-0.5, HOME[1], 0.25, *HOME[3:]], abs=0.01)
+        assert list(shown[-1].velocity) == [0.0] * 6
+        real = client.call(GetJointState, "get_joint_state")
+        assert real.success and list(real.joint_state.position) == pytest.approx(HOME, abs=0.01)
+        # What is wrong with a message is said, and nothing of it is taken.
+        publisher.publish(JointState(name=["left_elbow_joint", "nonsense"], position=[1.0, 1.0]))
+        receiver.wait_for_output('there is no joint "nonsense"')
+        publisher.publish(JointState(name=["left_elbow_joint"], position=[]))
+        number = len(shown)
+        wait_for(lambda: len(shown) > number + 50, 10.0, "more joint states")
+        assert shown[-1].position[2] == 0.25
+    finally:
+        assert client.call(SetBool, "publish_fake_joint_states", data=False).success
+    wait_for(lambda: shown[-1].position[2] == pytest.approx(HOME[2], abs=0.01), 10.0, "the real elbow")
+
+
+def test_any_number_of_receivers_follow_one_robot(simulator, client, processes):
+    names = [f"watcher_{i}" for i in range(4)]
+    for name in names:
+        processes(node("robot_state_receiver", simulator.address, "rtde_frequency:=50.0", namespace=name))
+    for name in names:
+        assert collect(client, JointState, f"/{name}/joint_states", 20)
+
+
+def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
+    address = addresses[1]
+    receiver = processes(node("robot_state_receiver", address, namespace="early"))
+    client = Client("early")
+    try:
+        answer = client.call(GetJointState, "get_joint_state")
+        assert not answer.success and answer.error_code == ErrorCode.LINK_LOST
+        assert address in wait_for(lambda: client.call(GetJointState, "get_joint_state").message, 5.0, "the reason")
+        receiver.wait_for_output(address)
+
+        simulator = Simulator(address)
+        states = client.listen(JointState, "joint_states")
+        wait_for(lambda: len(states) > 10, 15.0, "the first joint states")
+        assert client.call(GetJointState, "get_joint_state").success
+
+        simulator.kill()
+        answer = wait_for(lambda: _failed(client.call(GetJointState, "get_joint_state")), 10.0, "the loss to be told")
+        assert answer.error_code == ErrorCode.LINK_LOST and "for the last time" in answer.message
+        assert list(answer.joint_state.position) == pytest.approx(HOME, abs=0.01)
+
+        processes(simulator.start())
+        number = len(states)
+        wait_for(lambda: len(states) > number + 10, 15.0, "joint states after the robot came back")
+        assert client.call(GetJointState, "get_joint_state").success
+        assert receiver.running()
+    finally:
+        client.close()
+
+
+def _failed(answer):
+    return None if answer.success else answer
+
+
+def test_faked_joint_states_are_shown_without_a_robot(addresses, client, processes):
+    processes(node("robot_state_receiver", addresses[2], namespace="nowhere"))
+    shown = client.listen(JointState, "/nowhere/joint_states")
+    publisher = client.node.create_publisher(JointState, "/nowhere/fake_joint_states", 10)
+    wait_for(lambda: publisher.get_subscription_count(), 15.0, "the subscription of fake_joint_states")
+    assert client.call(SetBool, "/nowhere/publish_fake_joint_states", data=True).success
+    publisher.publish(JointState(name=[JOINTS[5]], position=[0.75]))
+    wait_for(lambda: shown, 10.0, "a joint state")
+    assert shown[-1].position[5] == 0.75
