@@ -69,20 +69,14 @@ def command_shell(options: argparse.Namespace) -> int:
 
 
 def _python_command(name: str, options: argparse.Namespace) -> int:
-    """demo and bench use what the virtual environment has (rclpy, numpy, matplotlib), so they run in its Python."""
-    if not (ROOT / "tools" / "ur_tools" / f"{name}.py").is_file():
-        raise say.Failure(f"`./ur {name}` is not part of this checkout: tools/ur_tools/{name}.py is missing")
+    """demo and bench, as modules of their own: their help needs no build."""
     arguments = _forwarded(options)
     layout = _layout(options)
-    asks_for_help = any(argument in ("-h", "--help") for argument in arguments)
-    if asks_for_help and not layout.python.is_file():
-        building.setup(layout)
-    if not asks_for_help:
+    if not any(argument in ("-h", "--help") for argument in arguments):
         _build(options)
-    env = run_environment(layout)
-    env["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tools"), env["PYTHONPATH"]])
-    env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
-    os.execve(str(layout.python), [str(layout.python), "-m", f"ur_tools.{name}", *arguments], env)
+    env = {**os.environ, "UR_LAYOUT": f"{layout.ros}:{layout.variant}", "PYTHONPATH": str(ROOT / "tools"),
+           "PYTHONDONTWRITEBYTECODE": "1"}
+    os.execve(sys.executable, [sys.executable, "-m", f"ur_tools.{name}", *arguments], env)
 
 
 def command_demo(options: argparse.Namespace) -> int:

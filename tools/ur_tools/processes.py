@@ -117,6 +117,20 @@ class Programs:
         self._programs.append(program)
         return program
 
+    def run(self, command: Sequence[str], env: Mapping[str, str], limit: float) -> int:
+        """A command in the foreground: its output is shown, its return code given. Ended with the others, or at `limit`."""
+        process = subprocess.Popen(command, env=dict(env), stdin=subprocess.DEVNULL, start_new_session=True)
+        deadline = time.monotonic() + limit
+        try:
+            while process.poll() is None:
+                self.check()
+                if time.monotonic() > deadline:
+                    raise Failure(f"{command[1]} did not end within {limit:g} s")
+                time.sleep(0.02)
+            return process.returncode
+        finally:
+            end_group(process)
+
     def check(self) -> None:
         """Raises Failure, with the end of its log, for a program that ended by itself."""
         for program in self._programs:
