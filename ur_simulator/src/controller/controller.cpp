@@ -130,8 +130,8 @@ RobotAccess Controller::access()
   ScriptRequests requests;
   requests.power_down = [this] { requests_.power_down = true; };
   requests.protective_stop = [this] { requests_.protective_stop = true; };
-  requests.set_speed_slider = [this](double fraction) { state_.speed_slider = fraction; };
-  return {state_, *arm_, *world_, model_, watchdog_, std::move(requests), version_.cycle_time()};
+  return {state_,         *arm_, *world_, model_, watchdog_, std::move(requests), version_.cycle_time(),
+          &joint_history_};
 }
 
 ProgramAccess Controller::program_access()
@@ -241,6 +241,7 @@ void Controller::step_robot()
   runner_->cycle();
   act_on_requests();
   arm_->step(state_);
+  joint_history_.record(state_.actual.position);
   if (const auto fault = arm_->take_fault()) {
     safety_->trip(*fault);
   }

@@ -88,6 +88,7 @@ class Controller {
   std::optional<World> world_;
   std::optional<Safety> safety_;
   Watchdog watchdog_;
+  JointHistory joint_history_;
   struct Requests {
     bool power_down = false;
     bool protective_stop = false;

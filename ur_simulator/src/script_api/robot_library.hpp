@@ -64,7 +64,6 @@ class JointHistory {
 struct ScriptRequests {
   std::function<void()> power_down;              ///< powerdown()
   std::function<void()> protective_stop;         ///< protective_stop()
-  std::function<void(double)> set_speed_slider;  ///< 0..1
 };
 
 /// Where the robot builtins act. Everything outlives the library.
