@@ -1,12 +1,14 @@
 #include "node_core.hpp"
 
 #include <fmt/format.h>
+#include <rcl/logging.h>
 #include <rcl/node_options.h>
 
 #include <algorithm>
 #include <thread>
 
 #include "logging_core.hpp"
+#include "rcl_compat.hpp"
 #include "rcl_error.hpp"
 
 namespace rcl_cxx::detail {
@@ -33,11 +35,23 @@ NodeCore::NodeCore(std::shared_ptr<ContextCore> context, const std::string & nam
   namespace_ = rcl_node_get_namespace(&node_);
   fully_qualified_name_ = rcl_node_get_fully_qualified_name(&node_);
   logger_ = Logger(rcl_node_get_logger_name(&node_));
+  if (options.enable_rosout && rcl_logging_rosout_enabled()) {
+    const rcl_ret_t code = compat::rosout_start(&node_);
+    has_rosout_ = code == RCL_RET_OK;
+    if (!has_rosout_) {
+      const std::string details = take_rcl_error();
+      ignore_rcl(rcl_node_fini(&node_));
+      throw Error(fmt::format("node {}: no /rosout: {}", fully_qualified_name_, details), code);
+    }
+  }
 }
 
 NodeCore::~NodeCore()
 {
   const std::lock_guard lock(logging_mutex());
+  if (has_rosout_) {
+    ignore_rcl(compat::rosout_stop(&node_));
+  }
   ignore_rcl(rcl_node_fini(&node_));
 }
 

@@ -52,6 +52,7 @@ class NodeCore {
   const std::shared_ptr<ContextCore> context_core_;
   mutable std::mutex mutex_;
   rcl_node_t node_;
+  bool has_rosout_ = false;
   Logger logger_;
   std::string name_;
   std::string namespace_;

@@ -56,6 +56,25 @@ inline rcl_ret_t action_server_init(rcl_action_server_t * server, rcl_node_t * n
 #endif
 }
 
+/// The node's publisher on /rosout. rcl itself makes it up to Iron, the client libraries do from Jazzy on.
+inline rcl_ret_t rosout_start(rcl_node_t * node)
+{
+#if RCL_VERSION_MAJOR >= 9
+  return rcl_logging_rosout_init_publisher_for_node(node);
+#else
+  return rcl_node_is_valid(node) ? RCL_RET_OK : RCL_RET_NODE_INVALID;
+#endif
+}
+
+inline rcl_ret_t rosout_stop(rcl_node_t * node)
+{
+#if RCL_VERSION_MAJOR >= 9
+  return rcl_logging_rosout_fini_publisher_for_node(node);
+#else
+  return rcl_node_is_valid_except_context(node) ? RCL_RET_OK : RCL_RET_NODE_INVALID;
+#endif
+}
+
 /// Lets messages of logger "<logger>.<child>" appear in the /rosout of `logger`'s node. Since Jazzy.
 inline bool rosout_add_child(const char * logger, const char * child)
 {

@@ -65,13 +65,13 @@ class NodeProcess:
                                         text=True, env=environment)
         self.output = []
         self.errors = []
-        self._readers = [threading.Thread(target=self._read, args=(stream, lines)) for stream, lines in
+        self._readers = [threading.Thread(target=self._read, args=(stream, lines), daemon=True) for stream, lines in
                          ((self.process.stdout, self.output), (self.process.stderr, self.errors))]
         for reader in self._readers:
             reader.start()
         if ready:
             eventually(lambda: "ready\n" in self.output or self.process.poll() is not None)
-            assert self.process.poll() is None, self.errors
+            assert "ready\n" in self.output, self.errors
 
     @staticmethod
     def _read(stream, lines):
@@ -147,6 +147,22 @@ def ros():
     ros = Ros()
     yield ros
     ros.close()
+
+
+@pytest.fixture
+def start_node():
+    """Starts further ones; those that a failed test leaves behind are killed, and what they said is shown."""
+    processes = []
+
+    def start(*arguments, **options):
+        processes.append(NodeProcess(*arguments, **options))
+        return processes[-1]
+
+    yield start
+    for process in processes:
+        if process.process.poll() is None:
+            process.process.kill()
+            print(process.output, process.errors, sep="\n")
 
 
 @pytest.fixture(scope="module")

@@ -33,6 +33,9 @@ constexpr int kFinishTwice = 1007;
 constexpr int kCanceledUnasked = 1008;
 constexpr int kCancelInHandler = 1009;
 
+// So many elements are computed, the next ones would not fit.
+constexpr std::size_t kLongest = 40;
+
 /// Carries out each goal in a thread of its own.
 class Counting {
  public:
@@ -102,7 +105,7 @@ class Counting {
         return;
       }
       const auto size = progress.sequence.size();
-      if (size < 40) {
+      if (size < kLongest) {
         progress.sequence.push_back(progress.sequence[size - 1] + progress.sequence[size - 2]);
       }
       handle.publish_feedback(progress);
@@ -116,6 +119,9 @@ class Counting {
     if (handle.is_canceling()) {
       return order == kSucceedOnCancel ? handle.succeed(result_of(progress))
                                        : handle.canceled(result_of(progress));
+    }
+    if (order == kRefuseCancel && progress.sequence.size() == kLongest) {
+      return handle.succeed(result_of(progress));
     }
     switch (order) {
       case kAbort:
@@ -282,6 +288,12 @@ int run(int argc, char ** argv)
         RCL_CXX_DEBUG(node->logger(), "a debug message");
         RCL_CXX_WARN(node->logger(), "a warning with {} and 100 %s", 42);
         RCL_CXX_ERROR(child, "an error of a part");
+        response.success = true;
+      });
+  int declared = 0;
+  const auto declare = node->create_service<std_srvs::srv::Trigger>(
+      "~/declare", [&](const std_srvs::srv::Trigger::Request &, std_srvs::srv::Trigger::Response & response) {
+        node->declare_parameter("declared_" + std::to_string(++declared), 5);
         response.success = true;
       });
   Counting counting(*node, "fibonacci");

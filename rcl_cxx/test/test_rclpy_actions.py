@@ -5,7 +5,7 @@ import threading
 import pytest
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from action_msgs.srv import CancelGoal
-from conftest import LIMIT, NodeProcess, eventually, result_of
+from conftest import LIMIT, eventually, result_of
 from rclpy.action import ActionClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from test_msgs.action import Fibonacci
@@ -110,6 +110,7 @@ def test_a_cancellation_may_be_refused(client):
     answer = result_of(goal.cancel_goal_async())
     assert answer.return_code == CancelGoal.Response.ERROR_REJECTED
     assert not answer.goals_canceling
+    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_a_canceled_goal_may_succeed(client):
@@ -256,8 +257,8 @@ def test_goals_without_an_end_do_not_expire(ros, test_node):
     assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_CANCELED
 
 
-def test_goals_are_answered_when_the_node_ends(ros):
-    process = NodeProcess("--ros-args", "-r", "__ns:=/ending")
+def test_goals_are_answered_when_the_node_ends(ros, start_node):
+    process = start_node("--ros-args", "-r", "__ns:=/ending")
     client = Client(ros, "/ending/fibonacci")
     goals = [client.send(RUN_UNTIL_CANCELED) for _ in range(3)]
     results = [goal.get_result_async() for goal in goals]

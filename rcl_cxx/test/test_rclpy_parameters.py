@@ -1,12 +1,13 @@
 """The parameters of a node of rcl_cxx, seen and set from rclpy."""
 
 import pytest
-from conftest import LIMIT, NodeProcess, eventually, result_of
+from conftest import LIMIT, eventually, result_of
 from rcl_interfaces.msg import ParameterEvent, ParameterType
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import qos_profile_parameter_events
+from std_srvs.srv import Trigger
 
 NAMES = ["anything", "bytes", "count", "flags", "home", "integers", "model", "names", "picky", "robot.host",
          "robot.tool.mass", "speed", "start_type_description_service", "switch", "use_sim_time"]
@@ -29,7 +30,7 @@ def set_one(client, name, value, type_=None):
 
 def test_all_are_listed(client):
     answer = result_of(client.list_parameters()).result
-    assert sorted(answer.names) == NAMES
+    assert sorted(name for name in answer.names if not name.startswith("declared_")) == NAMES
     assert sorted(answer.prefixes) == ["robot", "robot.tool"]
 
 
@@ -125,8 +126,8 @@ def test_several_are_set_atomically_or_not_at_all(client):
     assert get(client, "count")[0].integer_value == count + 1
 
 
-def test_dynamic_ones_change_their_type_and_can_be_deleted(ros):
-    other = NodeProcess("--ros-args", "-r", "__node:=dynamic")
+def test_dynamic_ones_change_their_type_and_can_be_deleted(ros, start_node):
+    other = start_node("--ros-args", "-r", "__node:=dynamic")
     client = AsyncParameterClient(ros.node, "/dynamic")
     assert client.wait_for_services(LIMIT)
     assert set_one(client, "anything", 5).successful
@@ -151,21 +152,23 @@ def test_changes_are_announced(ros, client):
     assert not event.new_parameters and not event.deleted_parameters
 
 
-def test_declarations_are_announced(ros):
+def test_declarations_are_announced(ros, test_node):
     events = ros.listen(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
 
     def announced():
-        assert NodeProcess("--ros-args", "-r", "__node:=newcomer").stop() == 0
-        return [event for event in events if event.node == "/newcomer" and event.new_parameters]
+        assert ros.call(Trigger, "/test_node/declare", Trigger.Request()).success
+        return [event for event in events if event.node == "/test_node" and event.new_parameters]
 
-    assert eventually(announced, 3 * LIMIT)
+    parameter = eventually(announced)[0].new_parameters[0]
+    assert parameter.name.startswith("declared_")
+    assert parameter.value.integer_value == 5
 
 
-def test_command_line_and_file_override_defaults(ros, tmp_path):
+def test_command_line_and_file_override_defaults(ros, tmp_path, start_node):
     file = tmp_path / "parameters.yaml"
     file.write_text("/**/test_node:\n  ros__parameters:\n    speed: 2\n    robot: {host: from_file}\n")
-    process = NodeProcess("--ros-args", "-r", "__ns:=/robot", "--params-file", str(file), "-p", "count:=9", "-p",
-                          "test_node:switch:=false")
+    process = start_node("--ros-args", "-r", "__ns:=/robot", "--params-file", str(file), "-p", "count:=9", "-p",
+                          "switch:=false")
     client = AsyncParameterClient(ros.node, "/robot/test_node")
     assert client.wait_for_services(LIMIT)
     speed, host, count, switch = get(client, "speed", "robot.host", "count", "switch")
@@ -178,8 +181,8 @@ def test_command_line_and_file_override_defaults(ros, tmp_path):
     ("speed:=9.0", "parameter 'speed' is limited to the range 0 to 3, it cannot be 9.0"),
     ("count:=many", "parameter 'count' is of type integer, it cannot be 'many'"),
 ])
-def test_bad_overrides_end_the_node_with_a_clear_message(override, message):
-    process = NodeProcess("--ros-args", "-p", override, ready=False)
+def test_bad_overrides_end_the_node_with_a_clear_message(override, message, start_node):
+    process = start_node("--ros-args", "-p", override, ready=False)
     assert process.wait() == 2
     assert message in "".join(process.errors)
 
