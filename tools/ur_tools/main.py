@@ -3,6 +3,7 @@
 import argparse
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from typing import List, Optional
@@ -196,7 +197,14 @@ def _ours_first(arguments: List[str]) -> List[str]:
     return ours + (["--", *rest] if rest else [])
 
 
+def _interrupt(_number: int, _frame: object) -> None:
+    raise KeyboardInterrupt
+
+
 def main(arguments: Optional[List[str]] = None) -> int:
+    # What ends us, a closing terminal or `timeout`, must let us end what we started.
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _interrupt)
     arguments = sys.argv[1:] if arguments is None else arguments
     options = _parse(arguments)
     if options.command is None:

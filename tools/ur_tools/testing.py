@@ -80,7 +80,7 @@ def _ctest(layout: Layout, package: Package) -> List[Test]:
 
 def _pytest(layout: Layout, name: str, folder: pathlib.Path) -> List[Test]:
     # The cache folder would otherwise be written into the sources.
-    command = [str(layout.python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "--color=no", "-ra"]
+    command = [str(layout.python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "--color=no", "-ra", "--disable-warnings"]
     return [Test(f"{name}: {file.stem}", [*command, str(file)], ROOT, PYTEST_LIMIT)
             for file in sorted(folder.rglob("test_*.py"))]
 
