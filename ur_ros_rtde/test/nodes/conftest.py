@@ -63,8 +63,8 @@ def make_ready(client, limit=30.0):
     reasons = []
     try:
         wait_for(home, limit, "the driver to take a motion")
-    except AssertionError:
-        raise AssertionError(f"not ready within {limit} s: {reasons[-1:]}") from None
+    except AssertionError as error:
+        raise AssertionError(f"{error}; the last reason: {reasons[-1:]}") from None
 
 
 @pytest.fixture

@@ -75,7 +75,7 @@ def test_a_wait_can_be_canceled(dashboard):
 
 def test_a_protective_stop_is_unlocked_once_the_robot_allows_it(dashboard, simulator):
     simulator.control("protective_stop", reason="a test")
-    assert query(dashboard, "safety_mode") == "PROTECTIVE_STOP"
+    wait_for(lambda: query(dashboard, "safety_mode") == "PROTECTIVE_STOP", 5.0, "the protective stop")
     early = command(dashboard, "unlock_protective_stop").result()
     assert early.error_code == ErrorCode.REJECTED_BY_ROBOT and early.answer in early.message
     wait_for(lambda: command(dashboard, "unlock_protective_stop").result().success, 10.0, "the unlocking")

@@ -135,14 +135,18 @@ def test_ctrl_c_in_the_middle_of_a_motion_decelerates_and_gives_the_result(simul
     assert state["safety_mode"] == "NORMAL"
 
 
-def test_when_the_driver_is_killed_the_robot_stops_by_itself(simulator, client, processes):
-    driver = processes(node("driver", simulator.address, "ur_type:=ur10e"))
-    make_ready(client)
-    client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.8, acceleration=2.0)
-    wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.5, 10.0, "the arm to move")
-    driver.kill()
-    wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 3.0, "the arm to stand still")
-    assert simulator.state()["actual"]["position"][0] < 2.3
+def test_when_the_driver_is_killed_the_robot_stops_by_itself(simulator, processes):
+    driver = processes(node("driver", simulator.address, "ur_type:=ur10e", namespace="doomed"))
+    client = Client("doomed")
+    try:
+        make_ready(client)
+        client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.8, acceleration=2.0)
+        wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.5, 10.0, "the arm to move")
+        driver.kill()
+        wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 3.0, "the arm to stand still")
+        assert simulator.state()["actual"]["position"][0] < 2.3
+    finally:
+        client.close()
 
 
 def test_a_controller_that_dies_ends_the_motion_and_is_found_again(addresses, processes):
