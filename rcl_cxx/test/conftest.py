@@ -126,6 +126,11 @@ class Ros:
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
 
+    def in_executor(self, function):
+        """The function's value, computed in the thread of the executor: rclpy loses an answer that arrives while its
+        action client, called in another thread, has yet to note the question."""
+        return result_of(self.executor.create_task(function))
+
     def call(self, service_type, name, request):
         client = self.node.create_client(service_type, name)
         try:

@@ -26,10 +26,21 @@ class Client:
 
     def send(self, order, feedback=None):
         callback = (lambda message: feedback.append(message.feedback)) if feedback is not None else None
-        return result_of(self.client.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=callback))
+        return result_of(self.start(order, callback))
+
+    def start(self, order, feedback_callback=None):
+        return self.ros.in_executor(lambda: self.client.send_goal_async(Fibonacci.Goal(order=order),
+                                                                        feedback_callback=feedback_callback))
+
+    def result(self, goal):
+        """A future."""
+        return self.ros.in_executor(goal.get_result_async)
+
+    def cancel_goal(self, goal):
+        return result_of(self.ros.in_executor(goal.cancel_goal_async))
 
     def run(self, order):
-        return result_of(self.send(order).get_result_async())
+        return result_of(self.result(self.send(order)))
 
     def cancel(self, goal_id=None, stamp=None):
         request = CancelGoal.Request()
@@ -61,7 +72,7 @@ def test_a_goal_gives_feedback_and_a_result(client):
     goal = client.send(8, feedback)
     assert goal.accepted
     assert goal.stamp.sec > 0
-    answer = result_of(goal.get_result_async())
+    answer = result_of(client.result(goal))
     assert answer.status == GoalStatus.STATUS_SUCCEEDED
     assert list(answer.result.sequence) == [0, 1, 1, 2, 3, 5, 8, 13]
     eventually(lambda: len(feedback) == 6)
@@ -70,9 +81,9 @@ def test_a_goal_gives_feedback_and_a_result(client):
 
 def test_a_result_can_be_asked_for_before_and_after_the_end_and_twice(client):
     goal = client.send(20)
-    before = [goal.get_result_async(), goal.get_result_async()]
+    before = [client.result(goal), client.result(goal)]
     assert [result_of(future).status for future in before] == [GoalStatus.STATUS_SUCCEEDED] * 2
-    after = result_of(goal.get_result_async())
+    after = result_of(client.result(goal))
     assert after.status == GoalStatus.STATUS_SUCCEEDED
     assert after.result == result_of(before[0]).result
 
@@ -89,17 +100,18 @@ def test_a_goal_whose_check_throws_is_refused(client, test_node):
 
 
 def test_many_goals_run_at_the_same_time(client):
-    goals = [client.client.send_goal_async(Fibonacci.Goal(order=order)) for order in range(2, 22)]
+    # Not more at a time than the depth of services, 10.
+    goals = [client.start(order) for order in range(20, 28)]
     handles = [result_of(goal) for goal in goals]
     assert all(handle.accepted for handle in handles)
-    results = [result_of(handle.get_result_async()) for handle in handles]
-    assert [len(result.result.sequence) for result in results] == list(range(2, 22))
+    results = [result_of(client.result(handle)) for handle in handles]
+    assert [len(result.result.sequence) for result in results] == list(range(20, 28))
 
 
 def test_a_goal_is_canceled(client):
     goal = client.send(RUN_UNTIL_CANCELED)
-    result = goal.get_result_async()
-    answer = result_of(goal.cancel_goal_async())
+    result = client.result(goal)
+    answer = client.cancel_goal(goal)
     assert answer.return_code == CancelGoal.Response.ERROR_NONE
     assert ids(answer.goals_canceling) == [bytes(goal.goal_id.uuid)]
     assert result_of(result).status == GoalStatus.STATUS_CANCELED
@@ -107,30 +119,30 @@ def test_a_goal_is_canceled(client):
 
 def test_a_cancellation_may_be_refused(client):
     goal = client.send(REFUSE_CANCEL)
-    answer = result_of(goal.cancel_goal_async())
+    answer = client.cancel_goal(goal)
     assert answer.return_code == CancelGoal.Response.ERROR_REJECTED
     assert not answer.goals_canceling
-    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_SUCCEEDED
+    assert result_of(client.result(goal)).status == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_a_canceled_goal_may_succeed(client):
     goal = client.send(SUCCEED_ON_CANCEL)
-    assert result_of(goal.cancel_goal_async()).return_code == CancelGoal.Response.ERROR_NONE
-    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_SUCCEEDED
+    assert client.cancel_goal(goal).return_code == CancelGoal.Response.ERROR_NONE
+    assert result_of(client.result(goal)).status == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_a_goal_may_be_canceled_by_the_handler_itself(client):
     goal = client.send(CANCEL_IN_HANDLER)
-    answer = result_of(goal.cancel_goal_async())
+    answer = client.cancel_goal(goal)
     assert answer.return_code == CancelGoal.Response.ERROR_NONE
     assert len(answer.goals_canceling) == 1
-    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_CANCELED
+    assert result_of(client.result(goal)).status == GoalStatus.STATUS_CANCELED
 
 
 def test_an_ended_goal_cannot_be_canceled(client):
     goal = client.send(3)
-    result_of(goal.get_result_async())
-    answer = result_of(goal.cancel_goal_async())
+    result_of(client.result(goal))
+    answer = client.cancel_goal(goal)
     assert answer.return_code == CancelGoal.Response.ERROR_GOAL_TERMINATED
 
 
@@ -146,7 +158,7 @@ def test_all_goals_are_canceled_at_once(client):
     assert answer.return_code == CancelGoal.Response.ERROR_NONE
     assert ids(answer.goals_canceling) == ids(goals)
     for goal in goals:
-        assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_CANCELED
+        assert result_of(client.result(goal)).status == GoalStatus.STATUS_CANCELED
     nothing = client.cancel()
     assert nothing.return_code == CancelGoal.Response.ERROR_NONE
     assert not nothing.goals_canceling
@@ -155,7 +167,7 @@ def test_all_goals_are_canceled_at_once(client):
 def test_goals_up_to_a_stamp_are_canceled(client):
     early, middle, late = (client.send(RUN_UNTIL_CANCELED) for _ in range(3))
     assert ids(client.cancel(stamp=middle.stamp).goals_canceling) == ids([early, middle])
-    assert result_of(middle.get_result_async()).status == GoalStatus.STATUS_CANCELED
+    assert result_of(client.result(middle)).status == GoalStatus.STATUS_CANCELED
     assert ids(client.cancel().goals_canceling) == ids([late])
 
 
@@ -169,8 +181,8 @@ def test_cancellations_race_with_results_and_every_goal_ends_once(client):
     outcomes = set()
     for order in range(2, 14):
         goal = client.send(order)
-        result = goal.get_result_async()
-        answer = result_of(goal.cancel_goal_async())
+        result = client.result(goal)
+        answer = client.cancel_goal(goal)
         status = result_of(result).status
         outcomes.add(status)
         if answer.return_code == CancelGoal.Response.ERROR_NONE:
@@ -188,8 +200,8 @@ def test_several_clients_have_goals_and_cancel_them_concurrently(ros, client):
         try:
             for round_ in range(5):
                 goal = client.send(RUN_UNTIL_CANCELED if (number + round_) % 2 else 6)
-                result_of(goal.cancel_goal_async())
-                assert result_of(goal.get_result_async()).status in (GoalStatus.STATUS_CANCELED,
+                client.cancel_goal(goal)
+                assert result_of(client.result(goal)).status in (GoalStatus.STATUS_CANCELED,
                                                                      GoalStatus.STATUS_SUCCEEDED)
         except Exception as error:
             failures.append(error)
@@ -232,7 +244,7 @@ def test_the_status_of_goals_is_published_for_late_comers_too(ros, client):
                 for entry in array.status_list}.get(bytes(goal.goal_id.uuid))
 
     eventually(lambda: status() == GoalStatus.STATUS_EXECUTING)
-    result_of(goal.cancel_goal_async())
+    client.cancel_goal(goal)
     eventually(lambda: status() == GoalStatus.STATUS_CANCELED)
     seen = [entry.status for array in arrays for entry in array.status_list
             if bytes(entry.goal_info.goal_id.uuid) == bytes(goal.goal_id.uuid)]
@@ -242,7 +254,7 @@ def test_the_status_of_goals_is_published_for_late_comers_too(ros, client):
 def test_results_expire(ros, test_node):
     client = Client(ros, "/forgetful")
     goal = client.send(3)
-    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_SUCCEEDED
+    assert result_of(client.result(goal)).status == GoalStatus.STATUS_SUCCEEDED
     assert client.result_by_id(goal.goal_id).status == GoalStatus.STATUS_SUCCEEDED
     eventually(lambda: client.result_by_id(goal.goal_id).status == GoalStatus.STATUS_UNKNOWN)
 
@@ -251,17 +263,17 @@ def test_goals_without_an_end_do_not_expire(ros, test_node):
     client = Client(ros, "/forgetful")
     goal = client.send(RUN_UNTIL_CANCELED)
     short = client.send(2)
-    result_of(short.get_result_async())
+    result_of(client.result(short))
     eventually(lambda: client.result_by_id(short.goal_id).status == GoalStatus.STATUS_UNKNOWN)
-    assert result_of(goal.cancel_goal_async()).return_code == CancelGoal.Response.ERROR_NONE
-    assert result_of(goal.get_result_async()).status == GoalStatus.STATUS_CANCELED
+    assert client.cancel_goal(goal).return_code == CancelGoal.Response.ERROR_NONE
+    assert result_of(client.result(goal)).status == GoalStatus.STATUS_CANCELED
 
 
 def test_goals_are_answered_when_the_node_ends(ros, start_node):
     process = start_node("--ros-args", "-r", "__ns:=/ending")
     client = Client(ros, "/ending/fibonacci")
     goals = [client.send(RUN_UNTIL_CANCELED) for _ in range(3)]
-    results = [goal.get_result_async() for goal in goals]
+    results = [client.result(goal) for goal in goals]
     # A request is here before the next one of the same client is answered.
     client.result_by_id(UUID(uuid=list(range(16))))
     assert process.stop() == 0
