@@ -43,11 +43,7 @@ void JerkSolver::start(const SpeedSpline & spline, std::vector<double> w)
   w_ = std::move(w);
   spline_ = &spline;
   change_spline(spline);
-  double duration = 0.0;
-  for (const double t : weight_) {
-    duration += t;
-  }
-  const double mu = 0.02 * duration / static_cast<double>(count());
+  const double mu = 0.1 * duration() / static_cast<double>(count());
   for (Multipliers & m : multipliers_) {
     for (Joints * values :
          {&m.station_plus, &m.station_minus, &m.begin_plus, &m.begin_minus, &m.end_plus, &m.end_minus}) {
@@ -61,6 +57,11 @@ void JerkSolver::start(const SpeedSpline & spline, std::vector<double> w)
 void JerkSolver::change_spline(const SpeedSpline & spline)
 {
   spline_ = &spline;
+  for (std::size_t i = 1; i + 1 < count(); ++i) {
+    // The other weights must not make a speed vanish.
+    const double neighbours = std::min(i > 1 ? a_[i] : w_[i], i + 2 < count() ? a_[i + 1] : w_[i]);
+    w_[i] = std::max(w_[i], 0.3 * neighbours);
+  }
   std::fill(weight_.begin(), weight_.end(), 0.0);
   for (std::size_t i = 0; i < count(); ++i) {
     // The ends are at rest: their share goes to the station beside them.
@@ -82,28 +83,43 @@ void JerkSolver::evaluate()
   }
 }
 
-// Largest use of a limit, as the factor on a: jerk grows with a^(3/2).
-double JerkSolver::excess() const
+// Largest use of the limits of station m and of the interval that begins there, as the factor on a: jerk grows with
+// a^(3/2).
+double JerkSolver::excess(std::size_t m) const
 {
   double worst = 0.0;
-  for (std::size_t m = 1; m < count(); ++m) {
+  if (m > 0) {
     const Joints use = ((grid_.d2[m] * a_[m] + grid_.d1[m] * b_[m]) * inverse_acceleration_).abs();
-    worst = std::max({worst, a_[m] / ceiling_[m], use.maxCoeff() / allowance_.acceleration[m]});
+    worst = std::max(a_[m] / ceiling_[m], use.maxCoeff() / allowance_.acceleration[m]);
   }
-  for (std::size_t i = 0; i < count(); ++i) {
-    for (const bool end : {false, true}) {
-      const JerkRow row = jerk_row(i, end);
-      const double use = (row.pa * row.value_a + row.pb * row.value_b + row.pc * c_[i]).abs().maxCoeff();
-      worst = std::max(worst, std::cbrt(std::pow(use / allowance_.jerk[i], 2)));
-    }
+  double jerk = 0.0;
+  for (const bool end : {false, true}) {
+    const JerkRow row = jerk_row(m, end);
+    jerk = std::max(jerk, (row.pa * row.value_a + row.pb * row.value_b + row.pc * c_[m]).abs().maxCoeff());
   }
-  return worst;
+  jerk /= allowance_.jerk[m];
+  return std::max(worst, std::cbrt(jerk * jerk));
+}
+
+std::vector<double> JerkSolver::excesses(const SpeedSpline & spline, const std::vector<double> & w)
+{
+  spline_ = &spline;
+  w_ = w;
+  evaluate();
+  std::vector<double> result(count());
+  for (std::size_t m = 0; m < count(); ++m) {
+    result[m] = excess(m);
+  }
+  return result;
 }
 
 void JerkSolver::scale_to_limits(double target)
 {
   for (int round = 0; round < 20; ++round) {
-    const double worst = excess();
+    double worst = 0.0;
+    for (std::size_t m = 0; m < count(); ++m) {
+      worst = std::max(worst, excess(m));
+    }
     if (worst <= target * 1.01) {
       return;
     }
@@ -181,28 +197,49 @@ double JerkSolver::mean_product() const
   return sum / (rows_per_interval * static_cast<double>(count()));
 }
 
+double JerkSolver::duration() const
+{
+  double total = 0.0;
+  for (std::size_t m = 1; m < count(); ++m) {
+    total += weight_[m] * spline_->speed(m) / std::sqrt(a_[m]);
+  }
+  return total;
+}
+
 double JerkSolver::gap() const
 {
-  double duration = 0.0;
-  for (std::size_t m = 1; m < count(); ++m) {
-    duration += weight_[m] * spline_->speed(m) / std::sqrt(a_[m]);
-  }
-  return mean_product() * rows_per_interval * static_cast<double>(count()) / duration;
+  return mean_product() * rows_per_interval * static_cast<double>(count()) / duration();
 }
 
 void JerkSolver::improve(int steps, double gap_limit)
 {
-  double reduction = 0.2;
-  for (int step = 0; step < steps && gap() > gap_limit; ++step) {
-    const double target = reduction * mean_product();
-    assemble(target);
+  double reduction = 0.3;
+  double before = duration();
+  bool settled = false;
+  double product = mean_product();
+  const double rows = rows_per_interval * static_cast<double>(count());
+  std::vector<double> last_w;
+  for (int step = 0; step < steps && !(settled && product * rows < gap_limit * before); ++step) {
+    ++steps_done;
+    assemble(reduction * product);
     if (!system_.solve()) {
       return;  // the present iterate obeys the limits
     }
-    const Steps lengths = find_step(system_.right, target);
+    const Steps lengths = find_step(system_.right, reduction * product);
+    last_w = w_;
     advance(system_.right, lengths);
+    const double now = duration();
+    if (!std::isfinite(now)) {
+      w_ = last_w;
+      evaluate();
+      return;
+    }
+    product = mean_product();
     const double shorter = std::min(lengths.primal, lengths.dual);
-    reduction = shorter > 0.8 ? 0.1 : shorter > 0.4 ? 0.25 : 0.5;
+    reduction = shorter > 0.8 ? 0.1 : shorter > 0.5 ? 0.25 : shorter > 0.2 ? 0.6 : 1.0;
+    settled = lengths.primal > 0.5 && std::abs(before - now) < 2.0 * gap_limit * now;
+    if (getenv("DBG2")) fprintf(stderr, "    step %d p %.3f d %.3f gap %.4f T %.4f\n", step, lengths.primal, lengths.dual, gap(), now);
+    before = now;
   }
 }
 
@@ -247,7 +284,7 @@ void JerkSolver::add_station(std::size_t m, double target)
 
   const double time = weight_[m] * spline_->speed(m) / std::sqrt(a_[m]);
   model.ga -= 0.5 * time / a_[m];
-  model.aa += 0.75 * time / (a_[m] * a_[m]);
+  model.aa += 0.3 * time / (a_[m] * a_[m]);
   spread_model(m, m, model);
 }
 

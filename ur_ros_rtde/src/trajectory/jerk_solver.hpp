@@ -32,6 +32,9 @@ class JerkSolver {
 
   /// Starts from coefficients `w` of `spline`, scaled down until they obey the limits.
   void start(const SpeedSpline & spline, std::vector<double> w);
+  /// How much coefficients `w` exceed the limits at each station and in the interval after it, as factors by which the
+  /// square of the speed is too high; 1: just at a limit.
+  std::vector<double> excesses(const SpeedSpline & spline, const std::vector<double> & w);
   /// Goes on with another spline of the same grid; keeps coefficients and multipliers.
   void change_spline(const SpeedSpline & spline);
   /// Up to `steps` steps, until the estimated loss of time is below `gap`, a fraction of the duration.
@@ -39,6 +42,8 @@ class JerkSolver {
 
   const std::vector<double> & coefficients() const { return w_; }
   double gap() const;
+  double duration() const;
+  int steps_done = 0;
 
  private:
   // Multipliers of the constraints that belong to interval i and to the station where it begins; plus and
@@ -64,7 +69,7 @@ class JerkSolver {
 
   std::size_t count() const { return grid_.intervals(); }
   void evaluate();
-  double excess() const;
+  double excess(std::size_t m) const;
   void scale_to_limits(double target);
   JerkRow jerk_row(std::size_t i, bool end) const;
   double mean_product() const;

@@ -7,6 +7,7 @@
 
 #include "trajectory/path_builder.hpp"
 #include "trajectory/timing.hpp"
+#include "trajectory/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
@@ -69,6 +70,24 @@ Status check_waypoints(const std::vector<Joints> & waypoints, const Limits & lim
   return {};
 }
 
+// Nothing leaves without having been looked at everywhere; what little is too much is taken away by slowing down.
+Status verify_or_slow(Motion & motion, const Limits & limits)
+{
+  constexpr int rounds = 4;
+  for (int round = 0;; ++round) {
+    Utilisation use;
+    const auto excess = first_excess(motion, limits, verification_step, use);
+    if (!excess) {
+      return {};
+    }
+    if (round == rounds || excess->quantity == Quantity::position || !std::isfinite(motion.duration())) {
+      const auto shared = std::make_shared<const Motion>(motion);
+      return failure(ErrorCode::invalid_goal, describe(*excess, Trajectory(shared).waypoint_at(excess->time)));
+    }
+    slow_to_limits(motion, 0, limits);
+  }
+}
+
 }  // namespace
 
 Expected<Trajectory> plan_path(std::span<const std::vector<double>> waypoints, const Limits & limits,
@@ -106,14 +125,13 @@ Expected<Trajectory> plan_path(const std::vector<Joints> & waypoints, const Limi
   for (const auto & [first, last] : path->blocks()) {
     time_block(*motion, first, last, limits);
   }
+  if (auto status = verify_or_slow(*motion, limits); !status) {
+    return tl::unexpected(status.error());
+  }
   if (options.speed_fraction < 1.0) {
     motion->stretch(1.0 / options.speed_fraction);
   }
-  Trajectory trajectory(std::move(motion));
-  if (const auto verified = trajectory.verify(limits); !verified) {
-    return tl::unexpected(verified.error());
-  }
-  return trajectory;
+  return Trajectory(std::move(motion));
 }
 
 }  // namespace ur_ros_rtde::trajectory

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <optional>
 
+#include "trajectory/first_guess.hpp"
 #include "trajectory/jerk_solver.hpp"
 #include "trajectory/reach.hpp"
 #include "trajectory/straight.hpp"
@@ -28,74 +31,19 @@ Grid coarse_grid(const Path & path, std::size_t first, std::size_t last)
   return uniform_grid(path, first, last, std::clamp<std::size_t>(1500 / (last - first), 4, 12));
 }
 
-// Slows down everything from piece `begin` on until no limit is exceeded.
+}  // namespace
+
 void slow_to_limits(Motion & motion, std::size_t begin, const Limits & limits)
 {
   constexpr double margin = 2e-4;  // for what happens between the points looked at
-  for (int round = 0; round < 6; ++round) {
-    const Utilisation use = largest_use(motion, begin, limits);
-    const double factor = std::max({use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)});
-    if (factor <= 1.0 - 0.5 * margin) {
-      return;
-    }
+  const Utilisation use = largest_use(motion, begin, limits);
+  const double factor = std::max({use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)});
+  if (factor > 1.0 - 0.5 * margin) {
     motion.stretch(factor * (1.0 + margin), begin);
   }
 }
 
-// The first guess of a(s) with rest at both ends approached as constant jerk does: a ~ s^(4/3).
-std::vector<double> first_squares(const Grid & grid, const Limits & limits)
-{
-  const Profile guess = fastest_without_jerk(grid, limits);
-  const auto ramp = [&](const Joints & direction) {
-    const double jerk = 0.5 * (limits.jerk / direction.abs().max(1e-300)).minCoeff();
-    return 0.25 * std::cbrt(std::pow(6.0, 4) * jerk * jerk);
-  };
-  const double begin = ramp(grid.d1.front());
-  const double end = ramp(grid.d1.back());
-  std::vector<double> squares(grid.stations(), 0.0);
-  double distance = 0.0;
-  for (std::size_t m = 1; m < squares.size(); ++m) {
-    distance += grid.width(m - 1);
-    squares[m] = std::min(guess.v[m] * guess.v[m], begin * std::cbrt(std::pow(distance, 4)));
-  }
-  distance = 0.0;
-  for (std::size_t m = squares.size() - 1; m-- > 0;) {
-    distance += grid.width(m);
-    squares[m] = std::min(squares[m], end * std::cbrt(std::pow(distance, 4)));
-  }
-  return squares;
-}
-
-struct Start {
-  Profile profile;
-  std::vector<double> w;
-};
-
-Start first_guess(const Grid & grid, const Limits & limits)
-{
-  const std::vector<double> squares = first_squares(grid, limits);
-  const std::size_t count = grid.intervals();
-  Start start;
-  start.w.assign(count, 0.0);
-  for (std::size_t i = 1; i + 1 < count; ++i) {
-    start.w[i] = 0.5 * (squares[i] + squares[i + 1]);
-  }
-  start.profile.v.assign(count + 1, 0.0);
-  start.profile.alpha.assign(count + 1, 0.0);
-  start.profile.time.assign(count, 0.0);
-  for (std::size_t m = 1; m < count; ++m) {
-    start.profile.v[m] = std::sqrt(squares[m]);
-    start.profile.alpha[m] = (start.w[m] - start.w[m - 1]) / (grid.width(m - 1) + grid.width(m));
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    start.profile.time[i] = interval_time(grid.width(i), start.profile.v[i], start.profile.alpha[i],
-                                          start.profile.v[i + 1], start.profile.alpha[i + 1]);
-  }
-  for (int round = 0; round < 2; ++round) {
-    start.profile = SpeedSpline(grid, start.profile).profile(grid, start.w);
-  }
-  return start;
-}
+namespace {
 
 // Takes back what `motion` (its pieces from `begin`, one per interval) uses too much. False when there is
 // nothing.
@@ -130,26 +78,90 @@ Grid grid_for_jerk(const Path & path, std::size_t first, std::size_t last, const
   return timed_grid(path, coarse, guess, step, 6);
 }
 
+// Divides the intervals of `motion` (its pieces from `begin`, one per interval) in which a limit is exceeded between
+// the stations. Returns the new grid and the same motion on it; no grid when there is nothing to divide.
+std::optional<std::pair<Grid, Profile>> divide(const Motion & motion, std::size_t begin, const Grid & grid,
+                                               const Limits & limits)
+{
+  std::pair<Grid, Profile> result;
+  auto & [fine, profile] = result;
+  fine.reserve(grid.intervals() * 3 / 2);
+  profile.v.push_back(0.0);
+  profile.alpha.push_back(0.0);
+  for (std::size_t i = 0; i < grid.intervals(); ++i) {
+    const TimePiece & piece = motion.timing[begin + i];
+    const PieceUse use = use_of(motion, piece, limits, inner_points);
+    const double worst = std::max(use.jerk.maxCoeff(), use.acceleration.maxCoeff());
+    const bool rest = i == 0 || i + 1 == grid.intervals();
+    const int parts = rest || worst < 1.03 ? 1 : worst < 1.3 ? 2 : 3;
+    double from = grid.begin[i];
+    for (int k = 1; k <= parts; ++k) {
+      const Place place = piece.at(piece.start + piece.duration * k / parts);
+      const double to = k == parts ? grid.end[i] : std::clamp(place.u, from, grid.end[i]);
+      fine.add(*motion.path, grid.piece[i], from, to);
+      profile.v.push_back(place.v);
+      profile.alpha.push_back(place.a);
+      profile.time.push_back(piece.duration / parts);
+      from = to;
+    }
+  }
+  profile.v.back() = profile.alpha.back() = 0.0;
+  return fine.intervals() > grid.intervals() ? std::optional(std::move(result)) : std::nullopt;
+}
+
+// Of the motion's pieces from `begin` on.
+Profile profile_of(const Motion & motion, std::size_t begin)
+{
+  Profile profile;
+  for (std::size_t k = begin; k < motion.timing.size(); ++k) {
+    const Place place = motion.timing[k].at(motion.timing[k].start);
+    profile.v.push_back(place.v);
+    profile.alpha.push_back(place.a);
+    profile.time.push_back(motion.timing[k].duration);
+  }
+  profile.v.push_back(0.0);
+  profile.alpha.push_back(0.0);
+  return profile;
+}
+
+// One grid's solution, appended to the motion. Gaps: how near to the optimum, for one speed spline after the other.
+Profile solve_on(const Grid & grid, Start start, const Limits & limits, const Allowance & allowance,
+                 std::initializer_list<double> gaps)
+{
+  SpeedSpline spline(grid, start.profile);
+  JerkSolver solver(grid, limits, allowance);
+  solver.start(spline, std::move(start.w));
+  Profile profile;
+  for (const double gap : gaps) {
+    if (!profile.v.empty()) {
+      spline = SpeedSpline(grid, profile);
+      solver.change_spline(spline);
+    }
+    solver.improve(profile.v.empty() ? 40 : 20, gap);
+    profile = spline.profile(grid, solver.coefficients());
+    if (getenv("DBG")) { double tt=0; for(double t: profile.time) tt+=t; fprintf(stderr,"n %zu gap %.4f T %.4f steps %d\n",grid.intervals(),solver.gap(),tt, solver.steps_done); }
+  }
+  return profile;
+}
+
 void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, const Limits & limits)
 {
-  const Grid grid = grid_for_jerk(*motion.path, first, last, limits);
-  Allowance allowance(grid);
-  Start guess = first_guess(grid, limits);
-  SpeedSpline spline(grid, guess.profile);
-  JerkSolver solver(grid, limits, allowance);
-  solver.start(spline, std::move(guess.w));
+  Grid grid = grid_for_jerk(*motion.path, first, last, limits);
   const std::size_t begin = motion.timing.size();
-  const double gaps[] = {0.05, 0.01, 0.002, 0.002, 0.002};
-  for (int round = 0; round < 5; ++round) {
-    solver.improve(12, gaps[round]);
-    const Profile profile = spline.profile(grid, solver.coefficients());
+  const auto take = [&](const Profile & profile) {
     motion.timing.resize(begin);
     motion.append(grid, profile, false);
-    if (round >= 2 && !tighten(motion, begin, limits, allowance)) {
-      break;
-    }
-    spline = SpeedSpline(grid, profile);
-    solver.change_spline(spline);
+    if (getenv("DBG")) { auto u=largest_use(motion,begin,limits); fprintf(stderr,"   use %.4f %.4f %.4f\n",u.velocity,u.acceleration,u.jerk);}
+  };
+  take(solve_on(grid, first_guess(grid, limits), limits, Allowance(grid), {0.1, 0.02}));
+  if (auto finer = divide(motion, begin, grid, limits)) {
+    grid = std::move(finer->first);
+    take(solve_on(grid, start_from(grid, std::move(finer->second)), limits, Allowance(grid), {0.02, 0.005}));
+  }
+  Allowance allowance(grid);
+  if (tighten(motion, begin, limits, allowance)) {
+    Profile profile = profile_of(motion, begin);
+    take(solve_on(grid, start_from(grid, std::move(profile)), limits, allowance, {0.005, 0.003}));
   }
   slow_to_limits(motion, begin, limits);
 }

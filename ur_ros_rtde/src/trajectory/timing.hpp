@@ -9,4 +9,7 @@ namespace ur_ros_rtde::trajectory {
 /// is slowed down.
 void time_block(Motion & motion, std::size_t first, std::size_t last, const Limits & limits);
 
+/// Slows down the pieces from `begin` on until no limit is exceeded where verification looks.
+void slow_to_limits(Motion & motion, std::size_t begin, const Limits & limits);
+
 }  // namespace ur_ros_rtde::trajectory

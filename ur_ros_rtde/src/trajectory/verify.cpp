@@ -19,7 +19,7 @@ Point point_at(const Motion & motion, const TimePiece & piece, double time)
 
 int steps_of(const TimePiece & piece, double step)
 {
-  return std::max(8, static_cast<int>(std::ceil(piece.duration / step)));
+  return std::max(6, static_cast<int>(std::ceil(piece.duration / step)));
 }
 
 std::optional<Excess> excess_of(Quantity quantity, const Joints & value, const Joints & limit, double time)

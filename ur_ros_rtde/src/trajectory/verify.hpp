@@ -21,7 +21,7 @@ struct PieceUse {
   Joints velocity, acceleration, jerk;  // largest |value| / limit of each joint
 };
 
-inline constexpr double verification_step = 0.002;  // s
+inline constexpr double verification_step = 0.004;  // s
 
 PieceUse use_of(const Motion & motion, const TimePiece & piece, const Limits & limits, int inner);
 

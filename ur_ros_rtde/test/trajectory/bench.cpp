@@ -1,0 +1,128 @@
+// The full proof of the trajectory room: trajectory_bench [PATHS=10000] [FIRST=0]
+// Prints how many random paths were planned, the largest use of each limit by finite differences at 10 kHz, the largest
+// miss of a waypoint beyond its tolerance, and planning times.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+
+#include "checks.hpp"
+#include "random_paths.hpp"
+
+using namespace ur_ros_rtde::trajectory;
+
+namespace {
+
+double processor_ms(std::clock_t since)
+{
+  return 1e3 * static_cast<double>(std::clock() - since) / CLOCKS_PER_SEC;
+}
+
+struct Totals {
+  int planned = 0, failed = 0, beyond = 0;
+  Utilisation use;
+  double miss = 0.0, end_speed = 0.0;
+  std::vector<double> ms_per_waypoint;
+};
+
+void prove(unsigned seed, bool jerk, Totals & totals)
+{
+  const auto path = test::random_path(seed);
+  const Limits limits = test::random_limits(seed, jerk);
+  const std::clock_t begin = std::clock();
+  const auto plan = plan_path(path.waypoints, limits, path.options);
+  totals.ms_per_waypoint.push_back(processor_ms(begin) / static_cast<double>(path.waypoints.size()));
+  if (!plan) {
+    ++totals.failed;
+    std::printf("seed %u (%s): %s\n", seed, path.kind.c_str(), plan.error().message.c_str());
+    return;
+  }
+  ++totals.planned;
+  const Utilisation use = test::use_by_differences(*plan, limits);
+  const double miss = test::worst_miss(*plan, path.waypoints) - path.options.blend_tolerance;
+  totals.use.velocity = std::max(totals.use.velocity, use.velocity);
+  totals.use.acceleration = std::max(totals.use.acceleration, use.acceleration);
+  totals.use.jerk = std::max(totals.use.jerk, use.jerk);
+  totals.miss = std::max(totals.miss, miss);
+  totals.end_speed = std::max(totals.end_speed, test::speed_at_ends(*plan));
+  if (std::max({use.velocity, use.acceleration, use.jerk}) > 1.0 || miss > 1e-8) {
+    ++totals.beyond;
+    std::printf("seed %u (%s): use %.5f %.5f %.5f, miss %.3g\n", seed, path.kind.c_str(), use.velocity,
+                use.acceleration, use.jerk, miss);
+  }
+}
+
+void random_paths(unsigned first, unsigned count, bool jerk)
+{
+  Totals totals;
+  for (unsigned seed = first; seed < first + count; ++seed) {
+    prove(seed, jerk, totals);
+  }
+  std::sort(totals.ms_per_waypoint.begin(), totals.ms_per_waypoint.end());
+  std::printf("%s jerk limits: %d planned, %d refused, %d beyond a limit or tolerance; largest use: velocity %.5f, "
+              "acceleration %.5f, jerk %.5f; miss beyond the tolerance %.2g rad; speed at the ends %.2g rad/s; "
+              "processor time per waypoint: median %.3f ms, worst %.3f ms\n",
+              jerk ? "with" : "without", totals.planned, totals.failed, totals.beyond, totals.use.velocity,
+              totals.use.acceleration, totals.use.jerk, totals.miss, totals.end_speed,
+              totals.ms_per_waypoint[totals.ms_per_waypoint.size() / 2], totals.ms_per_waypoint.back());
+}
+
+void planning_time(const char * what, const std::vector<Joints> & waypoints, const PathOptions & options)
+{
+  Limits limits;
+  limits.velocity.setConstant(3.14);
+  limits.acceleration.setConstant(default_acceleration);
+  limits.jerk.setConstant(default_jerk);
+  double best = 1e9;
+  double duration = 0.0;
+  for (int round = 0; round < 5; ++round) {
+    const std::clock_t begin = std::clock();
+    const auto plan = plan_path(waypoints, limits, options);
+    best = std::min(best, processor_ms(begin));
+    duration = plan ? plan->duration() : -1.0;
+  }
+  std::printf("%s, %zu waypoints: planned in %.1f ms (motion of %.1f s)\n", what, waypoints.size(), best, duration);
+}
+
+std::vector<Joints> curve(int count)
+{
+  std::vector<Joints> points;
+  for (int i = 0; i < count; ++i) {
+    Joints q;
+    for (int j = 0; j < joint_count; ++j) {
+      q[j] = std::sin(0.01 * (1.0 + 0.3 * j) * i + j);
+    }
+    points.push_back(q);
+  }
+  return points;
+}
+
+std::vector<Joints> jumps(int count)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> between(-1.0, 1.0);
+  std::vector<Joints> points(static_cast<std::size_t>(count));
+  for (Joints & q : points) {
+    for (double & value : q) {
+      value = between(random);
+    }
+  }
+  return points;
+}
+
+}  // namespace
+
+int main(int argc, char ** argv)
+{
+  const auto count = static_cast<unsigned>(argc > 1 ? std::atoi(argv[1]) : 10000);
+  const auto first = static_cast<unsigned>(argc > 2 ? std::atoi(argv[2]) : 0);
+  planning_time("smooth curve, through every waypoint", curve(1000), {});
+  planning_time("smooth curve, blended within 0.01 rad", curve(1000), {.blend_tolerance = 0.01});
+  planning_time("jumps, a stop at every waypoint", jumps(1000), {});
+  planning_time("jumps, blended within 0.05 rad", jumps(1000), {.blend_tolerance = 0.05});
+  for (const bool jerk : {true, false}) {
+    random_paths(first, count, jerk);
+  }
+  return 0;
+}

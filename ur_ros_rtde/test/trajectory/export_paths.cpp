@@ -1,0 +1,114 @@
+// Writes random paths and their timing for the oracle (oracle.py): trajectory_export FILE FIRST COUNT
+// JERK(0|1) STEP
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include "random_paths.hpp"
+#include "trajectory/motion.hpp"
+
+using namespace ur_ros_rtde::trajectory;
+
+namespace {
+
+class Writer {
+ public:
+  explicit Writer(const char * name) : file_(name, std::ios::binary) {}
+  void put(double value) { file_.write(reinterpret_cast<const char *>(&value), sizeof value); }
+  void put(const Joints & values)
+  {
+    for (const double value : values) {
+      put(value);
+    }
+  }
+
+ private:
+  std::ofstream file_;
+};
+
+// Times of the stations of one block: the borders of the path's pieces, and others about `step` apart.
+std::vector<double> station_times(const Motion & motion, std::size_t first, std::size_t last, double step)
+{
+  std::vector<double> times{motion.timing[first].start};
+  for (std::size_t k = first; k < last; ++k) {
+    const TimePiece & piece = motion.timing[k];
+    const bool border = k + 1 == last || motion.timing[k + 1].piece != piece.piece;
+    const double since = piece.end() - times.back();
+    if (border || since > step) {
+      const int parts = std::max(1, static_cast<int>(std::ceil(since / step)));
+      const double from = times.back();
+      for (int n = 1; n <= parts; ++n) {
+        times.push_back(from + since * n / parts);
+      }
+    }
+  }
+  return times;
+}
+
+void put_block(Writer & writer, const Motion & motion, std::size_t first, std::size_t last, double step)
+{
+  const std::vector<double> times = station_times(motion, first, last, step);
+  writer.put(static_cast<double>(times.size()));
+  writer.put(motion.timing[last - 1].end() - motion.timing[first].start);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const std::size_t k = std::clamp(motion.piece_at(times[i]), first, last - 1);
+    const TimePiece & piece = motion.timing[k];
+    const PathPiece & curve = motion.path->pieces[piece.piece];
+    const Place place = piece.at(std::clamp(times[i], piece.start, piece.end()));
+    const PathPoint point = curve.at(std::clamp(place.u, 0.0, curve.length));
+    writer.put(curve.start + place.u);
+    writer.put(place.v * place.v);
+    writer.put(point.d1);
+    writer.put(point.d2);
+    writer.put(point.d3);
+  }
+}
+
+void put_path(Writer & writer, unsigned seed, bool jerk, double step)
+{
+  const auto path = test::random_path(seed);
+  const Limits limits = test::random_limits(seed, jerk);
+  const auto plan = plan_path(path.waypoints, limits, path.options);
+  if (!plan) {
+    std::printf("seed %u (%s): %s\n", seed, path.kind.c_str(), plan.error().message.c_str());
+    return;
+  }
+  if (plan->duration() <= 0.0) {
+    return;  // nothing but repetitions of one waypoint
+  }
+  const Motion & motion = plan->motion();
+  const auto blocks = motion.path->blocks();
+  writer.put(seed);
+  writer.put(static_cast<double>(blocks.size()));
+  writer.put(limits.velocity);
+  writer.put(limits.acceleration);
+  writer.put(limits.jerk);
+  std::size_t begin = 0;
+  for (const auto & [first, last] : blocks) {
+    std::size_t end = begin;
+    while (end < motion.timing.size() && motion.timing[end].piece < last) {
+      ++end;
+    }
+    put_block(writer, motion, begin, end, step);
+    begin = end;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char ** argv)
+{
+  if (argc != 6) {
+    std::fprintf(stderr, "usage: trajectory_export FILE FIRST COUNT JERK(0|1) STEP\n");
+    return 2;
+  }
+  Writer writer(argv[1]);
+  const unsigned first = static_cast<unsigned>(std::atoi(argv[2]));
+  const unsigned count = static_cast<unsigned>(std::atoi(argv[3]));
+  for (unsigned seed = first; seed < first + count; ++seed) {
+    put_path(writer, seed, std::atoi(argv[4]) != 0, std::atof(argv[5]));
+  }
+  return 0;
+}
