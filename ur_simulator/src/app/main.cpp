@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -44,18 +45,40 @@ void place_surfaces(Controller & controller, const std::vector<double> & heights
   }
 }
 
+/// Ctrl-C and termination, taken between two control cycles: no handler that could interrupt anything.
+class Signals {
+ public:
+  Signals()
+  {
+    sigemptyset(&set_);
+    sigaddset(&set_, SIGINT);
+    sigaddset(&set_, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+  }
+  bool arrived() const
+  {
+    constexpr timespec at_once{0, 0};
+    return sigtimedwait(&set_, nullptr, &at_once) > 0;
+  }
+
+ private:
+  sigset_t set_;
+};
+
 int simulate(const ur_simulator::AppOptions & options)
 {
+  const Signals signals;
   Controller controller(options.simulator);
   place_surfaces(controller, options.surfaces);
   if (options.log) {
     controller.log().add_listener(print);
   }
-  boost::asio::signal_set signals(controller.io(), SIGINT, SIGTERM);
-  signals.async_wait([&controller](const boost::system::error_code & error, int) {
-    if (!error) {
+  constexpr int cycles_between_looks = 10;
+  controller.observe([&controller, &signals, cycle = 0]() mutable {
+    if (++cycle % cycles_between_looks == 0 && signals.arrived()) {
       controller.stop();
     }
+    return false;
   });
   print_ready(options, controller.ports());
   controller.run();
