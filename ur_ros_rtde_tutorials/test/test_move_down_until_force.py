@@ -1,0 +1,133 @@
+"""The plugin of this package, loaded by the driver from its own package, on the simulator."""
+
+import os
+
+import pytest
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import WrenchStamped
+from support import HOME, Client, Simulator, node, wait_for
+
+from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_msgs.msg import ErrorCode
+from ur_ros_rtde_tutorials.action import MoveDownUntilForce
+
+
+@pytest.fixture(scope="module")
+def simulator():
+    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
+    yield simulator
+    simulator.end()
+
+
+@pytest.fixture(scope="module")
+def driver(simulator):
+    driver = node("driver", simulator.address, "ur_type:=ur10e")
+    yield driver
+    driver.end()
+    print(driver.output())
+
+
+@pytest.fixture(scope="module")
+def client():
+    client = Client()
+    yield client
+    client.close()
+
+
+@pytest.fixture
+def robot(simulator, driver, client):
+    simulator.control("clear_surfaces")
+    simulator.control("clear_pushes")
+
+    def home():
+        goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0)
+        return goal.accepted and goal.result().success
+
+    wait_for(home, 30.0, "the driver to take a motion")
+    return client
+
+
+def height(simulator):
+    return simulator.state()["actual_tcp_pose"][2]
+
+
+def at_rest(simulator):
+    return max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01
+
+
+def down(client, **fields):
+    return client.send(MoveDownUntilForce, "move_down_until_force", **fields)
+
+
+def test_a_surface_stops_it(robot, simulator):
+    start = height(simulator)
+    simulator.control("place_surface", z=start - 0.1, stiffness=15000.0, damping=80.0)
+    goal = down(robot)
+    result = goal.succeeded(20.0)
+    assert at_rest(simulator)
+    assert 20.0 < abs(result.force) < 40.0
+    assert result.distance == pytest.approx(0.1, abs=0.005)
+    assert start - height(simulator) == pytest.approx(result.distance, abs=0.002)
+    assert 0.0 < result.stopping_time < 0.5
+    assert "flange" in result.message
+    assert result.final_state.tcp_pose.position.z == pytest.approx(height(simulator), abs=0.001)
+    progress = [feedback.motion.progress for feedback in goal.feedback]
+    distance = [feedback.distance for feedback in goal.feedback]
+    assert len(progress) > 10 and progress == sorted(progress) and 0.05 < progress[-1] < 0.12
+    assert distance[-1] == pytest.approx(progress[-1] * 1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_pushes_from_the_side_are_ignored(robot, simulator, axis):
+    wrenches = robot.listen(WrenchStamped, "wrench")
+    goal = down(robot, distance=0.1)
+    wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.01, 10.0, "the arm to go down")
+    push = [0.0] * 6
+    push["xyz".index(axis)] = 30.0
+    simulator.control("push", wrench=push, duration=0.3, frame="tool")
+    wait_for(lambda: any(abs(getattr(w.wrench.force, axis)) > 25.0 for w in list(wrenches)), 10.0, "the push to be felt")
+    status, result = goal.end()
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED, result.message
+    assert result.distance == pytest.approx(0.1, abs=0.003)
+
+
+def test_a_push_along_the_axis_stops_it(robot, simulator):
+    goal = down(robot, distance=0.3)
+    wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.01, 10.0, "the arm to go down")
+    simulator.control("push", wrench=[0.0, 0.0, -30.0, 0.0, 0.0, 0.0], duration=0.4, frame="tool")
+    result = goal.succeeded()
+    assert result.force < -20.0 and result.distance < 0.2
+
+
+def test_without_contact_it_ends_as_not_reached(robot, simulator):
+    status, result = down(robot, distance=0.05).end()
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED
+    assert "20 N" in result.message and "0.05 m" in result.message
+    assert at_rest(simulator)
+
+
+def test_a_force_that_is_there_at_the_start_is_zeroed(robot, simulator):
+    simulator.control("attach_load", mass=3.0)
+    try:
+        wait_for(lambda: abs(simulator.state()["actual_tcp_force"][2]) > 20.0, 5.0, "the load to be felt")
+        assert down(robot, distance=0.05).result().error_code == ErrorCode.NOT_REACHED
+    finally:
+        simulator.control("attach_load", mass=0.0)
+
+
+def test_cancel_decelerates(robot, simulator):
+    goal = down(robot, distance=0.3)
+    wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.02, 10.0, "the arm to go down")
+    goal.cancel()
+    status, result = goal.end()
+    assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
+    assert at_rest(simulator) and result.distance > 0.02
+
+
+@pytest.mark.parametrize("field, value", [("force", 0.0), ("distance", 0.0), ("speed", 2.0), ("acceleration", float("nan")),
+                                          ("deceleration", 0.0)])
+def test_a_bad_goal_is_refused(robot, field, value):
+    goal = down(robot, **{field: value})
+    assert not goal.accepted
+    refusal = robot.refusal(goal)
+    assert refusal.error_code == ErrorCode.INVALID_GOAL and refusal.message.startswith(f"{field} is")
