@@ -106,7 +106,7 @@ Grid timed_grid(const Path & path, const Grid & coarse, const Profile & profile,
     while (end < coarse.intervals() && coarse.piece[end] == coarse.piece[begin]) {
       total += profile.time[end++];
     }
-    const std::size_t floor = path.pieces[coarse.piece[begin]].straight() ? 1 : least;
+    const std::size_t floor = path.pieces[coarse.piece[begin]].degree > 3 ? least : 1;
     const auto wanted = static_cast<std::size_t>(std::ceil(total / step));
     split_piece(path, coarse, profile, begin, end, std::max(floor, wanted), fine);
     begin = end;

@@ -35,7 +35,7 @@ struct Profile {
 Grid uniform_grid(const Path & path, std::size_t first, std::size_t last, std::size_t count);
 
 /// Stations at about equal intervals of time `step` by `profile`, whose acceleration is constant in each
-/// interval of `coarse`; at least `least` intervals in a curved piece.
+/// interval of `coarse`; at least `least` intervals in a blend.
 Grid timed_grid(const Path & path, const Grid & coarse, const Profile & profile, double step,
                 std::size_t least);
 

@@ -8,14 +8,18 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-Status check_positive(std::string_view field, const Joints & values, bool may_be_infinite)
+// Numbers beyond these are mistakes, and would make motions that last for years or have no accuracy.
+constexpr double smallest = 1e-4;
+constexpr double largest = 1e7;
+
+Status check_range(std::string_view field, const Joints & values, bool may_be_infinite)
 {
   for (int j = 0; j < joint_count; ++j) {
-    const bool fine = values[j] > 0.0 && (may_be_infinite || std::isfinite(values[j]));
+    const bool fine = (values[j] >= smallest && values[j] <= largest) || (may_be_infinite && values[j] == unlimited);
     if (!fine) {
       return failure(ErrorCode::invalid_goal,
-                     fmt::format("{} limit of {} is {}: give a number above 0{}", field, joint_name(j),
-                                 values[j], may_be_infinite ? ", or infinity for none" : ""));
+                     fmt::format("{} limit of {} is {}: give a number from {} to {}{}", field, joint_name(j), values[j],
+                                 smallest, largest, may_be_infinite ? ", or infinity for none" : ""));
     }
   }
   return {};
@@ -43,13 +47,13 @@ Status check(const Limits & limits)
                                  joint_name(j), limits.position_min[j], limits.position_max[j]));
     }
   }
-  if (auto status = check_positive("velocity", limits.velocity, false); !status) {
+  if (auto status = check_range("velocity", limits.velocity, false); !status) {
     return status;
   }
-  if (auto status = check_positive("acceleration", limits.acceleration, false); !status) {
+  if (auto status = check_range("acceleration", limits.acceleration, false); !status) {
     return status;
   }
-  return check_positive("jerk", limits.jerk, true);
+  return check_range("jerk", limits.jerk, true);
 }
 
 std::string_view joint_name(int joint)

@@ -17,7 +17,7 @@ struct PathPoint {
 /// Polynomials in x = u / length, 0 <= x <= 1. A place on the piece is given by u = s - start, so that its
 /// accuracy does not depend on how long the whole path is.
 struct PathPiece {
-  static constexpr int max_degree = 6;
+  static constexpr int max_degree = 7;
 
   double start = 0.0;
   double length = 0.0;

@@ -49,11 +49,8 @@ class Builder {
   {
     place_.assign(line_.points.size(), 0.0);
     if (line_.points.size() > 1) {
-      if (shape_.tolerance > 0.0 && !is_straight(0, line_.points.size() - 1)) {
-        add_blended_lines();
-      } else {
-        add_smooth_runs();
-      }
+      add_runs();
+      finish_corners();
       place_.back() = path_.length();
     } else {
       add_straight(line_.points.front(), Joints::Zero(), 0.0);
@@ -80,21 +77,20 @@ class Builder {
     add(piece);
   }
 
-  void stop_here() { path_.stops.push_back(path_.pieces.size()); }
-
-  // --- tolerance 0 ---
-
+  // A corner is where the direction changes too much for a smooth curve: one that passes through the waypoint would swing
+  // out between the waypoints, by about an eighth of angle times distance.
   bool is_corner(std::size_t i) const
   {
     const double angle = line_.angle(i);
-    if (angle <= same_direction) {
-      return false;
+    const double nearer = std::min(line_.length[i - 1], line_.length[i]);
+    const double farther = std::max(line_.length[i - 1], line_.length[i]);
+    if (angle > shape_.corner_angle || nearer < smallest_radius * angle) {
+      return angle > same_direction;
     }
-    return angle > shape_.corner_angle ||
-           std::min(line_.length[i - 1], line_.length[i]) < smallest_radius * angle;
+    return shape_.tolerance > 0.0 && 0.125 * angle * farther > shape_.tolerance;
   }
 
-  void add_smooth_runs()
+  void add_runs()
   {
     const std::size_t last = line_.points.size() - 1;
     std::size_t first = 0;
@@ -103,8 +99,9 @@ class Builder {
         continue;
       }
       add_run(first, i);
+      place_[i] = path_.length();
       if (i < last) {
-        stop_here();
+        corners_.push_back({path_.pieces.size(), i});
       }
       first = i;
     }
@@ -166,57 +163,96 @@ class Builder {
     add(piece);
   }
 
-  // --- tolerance above 0 ---
+  // --- corners ---
 
-  // How far before and after point i its blend begins and ends. The direction changes from d0 to d1 along the
-  // quintic smoothstep, so the middle of the blend passes the corner at 2 * (5/64) * reach * |d1 - d0|.
-  double blend_reach(std::size_t i) const
+  struct Corner {
+    std::size_t piece = 0;  // the first one after it
+    std::size_t point = 0;
+  };
+
+  // How far before and after a corner its blend begins and ends. The direction changes along the quintic smoothstep, so
+  // between straight lines the middle of the blend passes the corner at 2 * (5/64) * reach * |d1 - d0|.
+  double blend_reach(const PathPiece & before, const PathPiece & after, const Joints & corner) const
   {
     constexpr double sag = 2.0 * 5.0 / 64.0;
-    const double turn = line_.turn(i).abs().maxCoeff();
-    return std::min({shape_.tolerance / (sag * turn), 0.5 * line_.length[i - 1], 0.5 * line_.length[i]});
+    const double turn = (after.at(0.0).d1 - before.at(before.length).d1).abs().maxCoeff();
+    double reach = std::min({shape_.tolerance / (sag * turn), 0.5 * before.length, 0.5 * after.length});
+    for (; reach > smallest_blend; reach *= 0.8) {
+      const PathPiece blend = make_blend(before, after, reach);
+      if ((blend.at(reach).q - corner).abs().maxCoeff() <= shape_.tolerance * (1.0 + 1e-9)) {
+        return reach;
+      }
+    }
+    return 0.0;
   }
 
-  void add_blended_lines()
+  // The polynomial that continues three derivatives on both sides; between straight lines of degree six, with
+  // q' = d0 + (d1 - d0) (10 x^3 - 15 x^4 + 6 x^5), inside the triangle of the corner.
+  static PathPiece make_blend(const PathPiece & before, const PathPiece & after, double reach)
   {
-    double cut = 0.0;  // of the current line, used by the blend at its beginning
-    for (std::size_t i = 0; i + 1 < line_.points.size(); ++i) {
-      const bool has_corner =
-          i + 2 < line_.points.size() && line_.turn(i + 1).matrix().norm() > same_direction;
-      const double reach = has_corner ? blend_reach(i + 1) : 0.0;
-      const bool blended = reach > smallest_blend;
-      const double rest = line_.length[i] - cut - (blended ? reach : 0.0);
-      if (rest > 1e-12 * line_.length[i]) {
-        add_straight(line_.points[i] + line_.direction[i] * cut, line_.direction[i], rest);
+    PathPiece blend;
+    blend.length = 2.0 * reach;
+    blend.degree = 7;
+    const double l = blend.length;
+    const PathPoint from = before.at(before.length - reach);
+    const PathPoint to = after.at(reach);
+    blend.c[0] = from.q;
+    blend.c[1] = from.d1 * l;
+    blend.c[2] = from.d2 * (l * l / 2.0);
+    blend.c[3] = from.d3 * (l * l * l / 6.0);
+    // What is missing at x = 1 of the position and of x-derivatives 1 to 3.
+    const Joints e0 = to.q - blend.c[0] - blend.c[1] - blend.c[2] - blend.c[3];
+    const Joints e1 = to.d1 * l - blend.c[1] - 2.0 * blend.c[2] - 3.0 * blend.c[3];
+    const Joints e2 = to.d2 * (l * l) - 2.0 * blend.c[2] - 6.0 * blend.c[3];
+    const Joints e3 = to.d3 * (l * l * l) - 6.0 * blend.c[3];
+    blend.c[4] = 35.0 * e0 - 15.0 * e1 + 2.5 * e2 - e3 / 6.0;
+    blend.c[5] = -84.0 * e0 + 39.0 * e1 - 7.0 * e2 + 0.5 * e3;
+    blend.c[6] = 70.0 * e0 - 34.0 * e1 + 6.5 * e2 - 0.5 * e3;
+    blend.c[7] = -20.0 * e0 + 10.0 * e1 - 2.0 * e2 + e3 / 6.0;
+    return blend;
+  }
+
+  // `piece` without `head` at its beginning and `tail` at its end.
+  static PathPiece cut(const PathPiece & piece, double head, double tail)
+  {
+    PathPiece rest = piece;
+    rest.length = piece.length - head - tail;
+    const PathPoint point = piece.at(head);
+    rest.c[0] = point.q;
+    rest.c[1] = point.d1 * rest.length;
+    if (!piece.straight()) {  // a cubic
+      rest.c[2] = point.d2 * (rest.length * rest.length / 2.0);
+      rest.c[3] = point.d3 * (rest.length * rest.length * rest.length / 6.0);
+    }
+    return rest;
+  }
+
+  // Puts stops or blends at the corners; both keep every other place on the path where it was.
+  void finish_corners()
+  {
+    const std::vector<PathPiece> pieces = std::move(path_.pieces);
+    path_.pieces.clear();
+    auto corner = corners_.begin();
+    double head = 0.0;
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      const bool ends_in_corner = corner != corners_.end() && corner->piece == k + 1;
+      const double reach = ends_in_corner && shape_.tolerance > 0.0
+                               ? blend_reach(pieces[k], pieces[k + 1], line_.points[corner->point])
+                               : 0.0;
+      if (pieces[k].length - head - reach > 1e-12 * pieces[k].length) {
+        add(head > 0.0 || reach > 0.0 ? cut(pieces[k], head, reach) : pieces[k]);
       }
-      place_[i + 1] = path_.length() + (blended ? reach : 0.0);
-      if (blended) {
-        add_blend(i + 1, reach);
-      } else if (has_corner) {
-        stop_here();
+      if (reach > 0.0) {
+        add(make_blend(pieces[k], pieces[k + 1], reach));
+      } else if (ends_in_corner) {
+        path_.stops.push_back(path_.pieces.size());
       }
-      cut = blended ? reach : 0.0;
+      corner += ends_in_corner ? 1 : 0;
+      head = reach;
     }
   }
 
-  // q'(x) = d0 + (d1 - d0) (10 x^3 - 15 x^4 + 6 x^5): three times continuously differentiable where it meets
-  // the lines, and inside the triangle of the corner.
-  void add_blend(std::size_t i, double reach)
-  {
-    PathPiece piece;
-    piece.length = 2.0 * reach;
-    piece.degree = 6;
-    const Joints turn = line_.turn(i) * piece.length;
-    piece.c[0] = line_.points[i] - line_.direction[i - 1] * reach;
-    piece.c[1] = line_.direction[i - 1] * piece.length;
-    piece.c[2].setZero();
-    piece.c[3].setZero();
-    piece.c[4] = 2.5 * turn;
-    piece.c[5] = -3.0 * turn;
-    piece.c[6] = turn;
-    add(piece);
-  }
-
+  std::vector<Corner> corners_;
   Polyline line_;
   PathShape shape_;
   Path path_;

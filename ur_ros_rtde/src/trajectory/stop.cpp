@@ -94,7 +94,7 @@ double longest_braking(const Limits & limits)
 
 class StopSearch {
  public:
-  StopSearch(const Motion & plan, const Limits & limits) : plan_(plan), limits_(limits) {}
+  StopSearch(const Motion & plan, Limits limits) : plan_(plan), limits_(std::move(limits)) {}
 
   // The stop from `time` on that is at rest first; none when the plan itself comes to rest before any.
   std::optional<Clock> find(double time)
@@ -129,7 +129,7 @@ class StopSearch {
   }
 
   const Motion & plan_;
-  const Limits & limits_;
+  Limits limits_;
   double best_end_ = 0.0;
   std::optional<Clock> best_;
 };
@@ -148,7 +148,7 @@ Trajectory Trajectory::stop_from(double time, const Limits & limits) const
     result->append(motion_->timing.front().piece, 1e-3, Place{});  // not yet begun: stay
     return Trajectory(std::move(result));
   }
-  const auto clock = StopSearch(*motion_, limits).find(now);
+  const auto clock = StopSearch(*motion_, slightly_within(limits, 5e-5)).find(now);
   if (!clock) {
     return *this;
   }

@@ -15,7 +15,8 @@ namespace ur_ros_rtde::trajectory {
 namespace {
 
 constexpr int inner_points = 3;  // looked at between two stations
-constexpr double most_stations = 100000;
+constexpr double most_stations = 50000;
+constexpr double shortest_step = 0.002;  // s, between stations
 
 double sum(const std::vector<double> & values)
 {
@@ -35,7 +36,7 @@ Grid coarse_grid(const Path & path, std::size_t first, std::size_t last)
 
 void slow_to_limits(Motion & motion, std::size_t begin, const Limits & limits)
 {
-  constexpr double margin = 2e-4;  // for what happens between the points looked at
+  constexpr double margin = 3e-4;  // for what happens between the points looked at
   const Utilisation use = largest_use(motion, begin, limits);
   const double factor = std::max({use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)});
   if (factor > 1.0 - 0.5 * margin) {
@@ -74,7 +75,7 @@ Grid grid_for_jerk(const Path & path, std::size_t first, std::size_t last, const
   const Profile guess = fastest_without_jerk(coarse, limits);
   const double total = sum(guess.time);
   const double jerk_time = (limits.acceleration / limits.jerk).maxCoeff();
-  const double step = std::clamp(0.3 * jerk_time, total / most_stations, total / 40.0);
+  const double step = std::min(std::max({0.3 * jerk_time, shortest_step, total / most_stations}), total / 40.0);
   return timed_grid(path, coarse, guess, step, 6);
 }
 
@@ -184,12 +185,13 @@ void time_block(Motion & motion, std::size_t first, std::size_t last, const Limi
   if (motion.path->length() <= 0.0) {
     return;  // a path of one point
   }
+  const Limits inner = slightly_within(limits);
   if (last - first == 1 && motion.path->pieces[first].straight()) {
-    append_straight_motion(motion, first, limits);
+    append_straight_motion(motion, first, inner);
   } else if (limits.has_jerk()) {
-    append_jerk_limited(motion, first, last, limits);
+    append_jerk_limited(motion, first, last, inner);
   } else {
-    append_fastest(motion, first, last, limits);
+    append_fastest(motion, first, last, inner);
   }
 }
 

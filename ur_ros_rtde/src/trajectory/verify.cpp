@@ -17,6 +17,28 @@ Point point_at(const Motion & motion, const TimePiece & piece, double time)
   return at_place(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
 }
 
+// The largest of values that come in equal steps, with the vertices of the parabolas through each three of them.
+struct Peak {
+  Joints largest = Joints::Zero();
+
+  void add(const Joints & value)
+  {
+    largest = largest.max(value);
+    if (++count_ >= 3) {
+      const Joints bend = (2.0 * before_ - first_ - value).max(1e-12);
+      const Joints slope = value - first_;
+      largest = (slope.abs() < 2.0 * bend).select(largest.max(before_ + slope * slope / (8.0 * bend)), largest);
+    }
+    first_ = before_;
+    before_ = value;
+  }
+
+ private:
+  int count_ = 0;
+  Joints first_ = Joints::Zero();
+  Joints before_ = Joints::Zero();
+};
+
 int steps_of(const TimePiece & piece, double step)
 {
   return std::max(6, static_cast<int>(std::ceil(piece.duration / step)));
@@ -61,14 +83,16 @@ std::optional<Excess> excess_at(const Point & point, const Limits & limits, doub
 
 PieceUse use_of(const Motion & motion, const TimePiece & piece, const Limits & limits, int inner)
 {
-  PieceUse use{Joints::Zero(), Joints::Zero(), Joints::Zero()};
+  Peak velocity;
+  Peak acceleration;
+  Peak jerk;
   for (int k = 0; k <= inner + 1; ++k) {
     const Point point = point_at(motion, piece, piece.start + piece.duration * k / (inner + 1));
-    use.velocity = use.velocity.max(point.velocity.abs() / limits.velocity);
-    use.acceleration = use.acceleration.max(point.acceleration.abs() / limits.acceleration);
-    use.jerk = use.jerk.max(point.jerk.abs() / limits.jerk);
+    velocity.add(point.velocity.abs() / limits.velocity);
+    acceleration.add(point.acceleration.abs() / limits.acceleration);
+    jerk.add(point.jerk.abs() / limits.jerk);
   }
-  return use;
+  return {velocity.largest, acceleration.largest, jerk.largest};
 }
 
 Utilisation largest_use(const Motion & motion, std::size_t begin, const Limits & limits)

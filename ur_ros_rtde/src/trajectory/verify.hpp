@@ -9,6 +9,15 @@ namespace ur_ros_rtde::trajectory {
 
 enum class Quantity { position, velocity, acceleration, jerk };
 
+/// Room for rounding, in what is planned and in what looks at it.
+inline Limits slightly_within(Limits limits, double margin = 1e-4)
+{
+  limits.velocity *= 1.0 - margin;
+  limits.acceleration *= 1.0 - margin;
+  limits.jerk *= 1.0 - margin;
+  return limits;
+}
+
 /// A value of one joint at one time that is beyond its limit.
 struct Excess {
   Quantity quantity = Quantity::position;
@@ -16,7 +25,7 @@ struct Excess {
   double time = 0.0, value = 0.0, limit = 0.0;
 };
 
-/// Uses of the limits at both ends of a time piece and at `inner` points between them.
+/// Largest uses of the limits in a time piece: at both ends, at `inner` points, and what is to be expected between them.
 struct PieceUse {
   Joints velocity, acceleration, jerk;  // largest |value| / limit of each joint
 };

@@ -122,6 +122,9 @@ int main(int argc, char ** argv)
   planning_time("jumps, a stop at every waypoint", jumps(1000), {});
   planning_time("jumps, blended within 0.05 rad", jumps(1000), {.blend_tolerance = 0.05});
   for (const bool jerk : {true, false}) {
+    if (count == 0) {
+      break;
+    }
     random_paths(first, count, jerk);
   }
   return 0;
