@@ -14,15 +14,16 @@ namespace ur_ros_rtde {
 /// mean "ended".
 struct MotionMark {
   AsyncStatus async;
-  std::uint64_t sequence = 0;
+  std::uint32_t program = 0;  ///< counts the ends of robot programs
 };
 
 struct MotionProgress {
-  bool started = false;   ///< an asynchronous operation has begun since the mark (it may have ended already)
-  bool running = false;   ///< the control script is still at it
-  bool at_rest = false;   ///< all joints have stood still for some cycles
-  unsigned progress = 0;  ///< of a path: index of the waypoint under way
-  bool finished() const { return started && !running && at_rest; }
+  bool started = false;  ///< an asynchronous operation has begun since the mark (it may have ended already)
+  bool running = false;  ///< the control script is still at it
+  bool at_rest = false;  ///< all joints have stood still for some cycles
+  bool program_ended = false;  ///< the robot program has ended since the mark, and the motion with it
+  unsigned progress = 0;       ///< of a path: index of the waypoint under way
+  bool finished() const { return started && !running && at_rest && !program_ended; }
 };
 
 enum class StopMeans {

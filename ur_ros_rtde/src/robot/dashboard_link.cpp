@@ -222,7 +222,10 @@ DashboardLink::DashboardLink(DashboardLinkOptions options, LogFunction log)
 {
 }
 
-DashboardLink::~DashboardLink() { stop(); }
+DashboardLink::~DashboardLink()
+{
+  stop();
+}
 
 void DashboardLink::on_link(std::function<void(const LinkStatus &)> function)
 {

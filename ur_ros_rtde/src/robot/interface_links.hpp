@@ -29,6 +29,8 @@ class InterfaceLinks {
   std::optional<Locked<ur_rtde::RTDEControlInterface>> control() const;
   std::optional<Locked<ur_rtde::RTDEIOInterface>> io() const;
   const std::shared_ptr<InterfaceLock> & control_lock() const { return control_lock_; }
+  /// Whether the control program answers, asked when nothing is under way; true when there is no asking now.
+  bool control_answers();
   /// A sign of life for the control program's watchdog. Does not wait for a command under way.
   void kick_watchdog();
 

@@ -98,7 +98,7 @@ Status stop_program(const std::string & address, milliseconds limit)
 bool MotionStopper::under_way() const
 {
   const auto view = tracker_.view();
-  if (!view.at_rest || view.async.running()) {
+  if (!view.at_rest || view.operating()) {
     return true;
   }
   const auto control = links_.control_pointer();
@@ -147,7 +147,7 @@ bool MotionStopper::wait_for_standstill(milliseconds limit) const
   const auto begin = tracker_.view().sequence;
   const auto deadline = std::chrono::steady_clock::now() + limit;
   Sample sample{};
-  while (std::chrono::steady_clock::now() < deadline) {
+  while (std::chrono::steady_clock::now() < deadline && state_.link().connected) {
     state_.wait_for_next(sample, milliseconds(20));
     const auto view = tracker_.view();
     // The status word of a move stays as it was when its program is stopped under it.
@@ -162,12 +162,9 @@ bool MotionStopper::wait_for_standstill(milliseconds limit) const
 Expected<StopReport> MotionStopper::stop(const StopOptions & options)
 {
   const std::lock_guard lock(mutex_);
-  const auto link = state_.link();
   const auto sample = state_.latest();
-  if (!link.connected || !sample) {
-    return failure(
-        ErrorCode::link_lost,
-        fmt::format("cannot tell the robot to stop: {}. Its watchdog stops it", link.error.message));
+  if (!state_.link().connected || !sample) {
+    return link_lost();
   }
   const auto begin = tracker_.view().controller_time;
   const auto report = [&](StopMeans means) {
@@ -176,14 +173,14 @@ Expected<StopReport> MotionStopper::stop(const StopOptions & options)
   if (!under_way()) {
     return report(StopMeans::nothing_moved);
   }
-  if (const auto condition = robot_condition(*sample); condition || !sample->program_running()) {
+  if (robot_condition(*sample) || !sample->program_running()) {
     if (wait_for_standstill(options.program_stop_limit)) {
       return report(StopMeans::stopped_by_robot);
     }
   } else if (command_stop(options) && wait_for_standstill(options.limit)) {
     return report(StopMeans::stop_command);
   }
-  const auto stopped = stop_program(address_, milliseconds(500));
+  const auto stopped = state_.link().connected ? stop_program(address_, milliseconds(500)) : Status();
   if (stopped && wait_for_standstill(options.program_stop_limit)) {
     return report(StopMeans::program_stopped);
   }
@@ -191,10 +188,20 @@ Expected<StopReport> MotionStopper::stop(const StopOptions & options)
   if (wait_for_standstill(options.program_stop_limit)) {
     return report(StopMeans::program_stopped);
   }
+  if (!state_.link().connected) {
+    return link_lost();
+  }
   return failure(ErrorCode::timeout,
                  fmt::format("the arm still moves after every way to stop it was tried{}: use the "
                              "emergency stop",
                              stopped ? "" : " (" + stopped.error().message + ")"));
+}
+
+tl::unexpected<Error> MotionStopper::link_lost() const
+{
+  return failure(ErrorCode::link_lost,
+                 fmt::format("cannot tell the robot to stop: {}. The watchdog of its program stops it",
+                             state_.link().error.message));
 }
 
 }  // namespace ur_ros_rtde

@@ -27,7 +27,9 @@ class MotionStopper {
   bool under_way() const;
   /// True when the control program has taken every stop it needed.
   bool command_stop(const StopOptions & options);
+  /// False also when the link is lost meanwhile.
   bool wait_for_standstill(std::chrono::milliseconds limit) const;
+  tl::unexpected<Error> link_lost() const;
 
   const std::string address_;
   const StateReceiver & state_;

@@ -12,15 +12,29 @@ class MotionTracker {
   struct View {
     bool at_rest = false;
     AsyncStatus async;
+    bool program_running = false;
+    /// Increases when the robot program ends or the link is made anew: what was under way before is over.
+    std::uint32_t program = 0;
     std::uint64_t sequence = 0;
     double controller_time = 0.0;
+    std::uint32_t link = 0;
+
+    /// An asynchronous operation; the word stays "running" when the program is stopped.
+    bool operating() const { return program_running && async.running(); }
   };
 
   void add(const Sample & sample)
   {
     const std::lock_guard lock(mutex_);
     standstill_.add(sample);
-    view_ = {standstill_.at_rest(), sample.async, sample.sequence, sample.controller_time};
+    const bool ended = (view_.program_running && !sample.program_running()) || sample.link != view_.link;
+    view_ = {standstill_.at_rest(),
+             sample.async,
+             sample.program_running(),
+             view_.program + (ended ? 1U : 0U),
+             sample.sequence,
+             sample.controller_time,
+             sample.link};
   }
   View view() const
   {

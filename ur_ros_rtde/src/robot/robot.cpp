@@ -59,7 +59,7 @@ class Robot::Impl {
         dashboard(dashboard_options(options), log),
         links(options),
         stopper(options.address, state, links, tracker),
-        supervisor(options, state, dashboard, links, log)
+        supervisor(options, state, dashboard, links, tracker, log)
   {
     state.on_link([this](const LinkStatus &) { supervisor.look_now(); });
     state.on_sample([this](const Sample & sample) { add(sample); });
@@ -262,7 +262,7 @@ Status Robot::motion_possible() const
 MotionMark Robot::mark_motion() const
 {
   const auto view = impl_->tracker.view();
-  return {view.async, view.sequence};
+  return {view.async, view.program};
 }
 
 MotionProgress Robot::motion_progress(const MotionMark & mark) const
@@ -272,6 +272,7 @@ MotionProgress Robot::motion_progress(const MotionMark & mark) const
   result.started = !(view.async == mark.async);
   result.running = view.async.running();
   result.at_rest = view.at_rest;
+  result.program_ended = view.program != mark.program;
   result.progress = view.async.running() ? view.async.progress() : 0;
   return result;
 }
@@ -279,7 +280,7 @@ MotionProgress Robot::motion_progress(const MotionMark & mark) const
 bool Robot::moving() const
 {
   const auto view = impl_->tracker.view();
-  return !view.at_rest || view.async.running();
+  return !view.at_rest || view.operating();
 }
 
 Expected<StopReport> Robot::stop_motion(const StopOptions & options)

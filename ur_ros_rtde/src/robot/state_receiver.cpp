@@ -216,7 +216,10 @@ StateReceiver::StateReceiver(StateReceiverOptions options, LogFunction log)
 {
 }
 
-StateReceiver::~StateReceiver() { stop(); }
+StateReceiver::~StateReceiver()
+{
+  stop();
+}
 
 void StateReceiver::on_sample(SampleFunction function)
 {

@@ -6,11 +6,14 @@
 #include <utility>
 
 #include "robot/condition.hpp"
+#include "robot/motion_stopper.hpp"
 
 namespace ur_ros_rtde {
 namespace {
 
 using std::chrono::milliseconds;
+
+constexpr milliseconds question_interval(500);
 
 RobotStatus stopped(const Error & error)
 {
@@ -43,8 +46,13 @@ const char * to_string(RobotState state)
 }
 
 Supervisor::Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard,
-                       InterfaceLinks & links, LogFunction log)
-    : options_(options), state_(state), dashboard_(dashboard), links_(links), report_(std::move(log))
+                       InterfaceLinks & links, const MotionTracker & tracker, LogFunction log)
+    : options_(options),
+      state_(state),
+      dashboard_(dashboard),
+      links_(links),
+      tracker_(tracker),
+      report_(std::move(log))
 {
   status_ = {RobotState::disconnected, ErrorCode::link_lost,
              fmt::format("connecting to {}", options_.address)};
@@ -180,7 +188,7 @@ RobotStatus Supervisor::look()
 
 RobotStatus Supervisor::look_at_program(const Sample & sample)
 {
-  if (program_ours_) {
+  if (program_ours_ && !program_replaced()) {
     return {RobotState::ready, ErrorCode::none, {}};
   }
   if (const auto dashboard = dashboard_.link(); !dashboard.connected) {
@@ -205,6 +213,24 @@ RobotStatus Supervisor::look_at_program(const Sample & sample)
     return stopped(ended.error());
   }
   return start_program();
+}
+
+/// A program that takes the place of another one leaves no trace in the runtime state; but it does not
+/// answer.
+bool Supervisor::program_replaced()
+{
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_question_ < question_interval || tracker_.view().operating() || !tracker_.view().at_rest) {
+    return false;
+  }
+  last_question_ = now;
+  if (links_.control_answers() || !program_ours_) {
+    return false;
+  }
+  program_ours_ = false;
+  program_ended_ = true;
+  links_.drop_control();
+  return true;
 }
 
 Status Supervisor::stop_other_program(const Sample & sample)

@@ -114,12 +114,15 @@ TEST_F(AMotion, ends_in_a_safeguard_stop_and_does_not_go_on_when_the_guard_close
 TEST_F(AMotion, ends_when_its_program_is_stopped_on_the_pendant)
 {
   make_both();
+  const auto mark = robot->mark_motion();
   move_joints();
   controller.control({{"command", "stop_program"}});
   ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
   EXPECT_EQ(robot->motion_possible().error().code, ErrorCode::program_stopped);
   ASSERT_TRUE(becomes_ready_again());
   EXPECT_TRUE(eventually([&] { return at_rest(); }));
+  EXPECT_TRUE(robot->motion_progress(mark).program_ended);
+  EXPECT_FALSE(robot->motion_progress(mark).finished()) << "it ended, but not where it should";
 }
 
 TEST_F(AMotion, does_not_go_on_when_a_program_paused_on_the_pendant_is_played_again)

@@ -160,8 +160,9 @@ TEST_F(AStop, comes_with_the_end_of_the_driver)
   make_both();
   move_joints();
   robot.reset();
-  const auto state = controller.state();
-  EXPECT_TRUE(state.at("at_rest").get<bool>());
+  for (const auto & velocity : controller.state().at("actual").at("velocity")) {
+    EXPECT_LT(std::abs(velocity.get<double>()), 0.01);
+  }
   EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
 }
 
