@@ -12,6 +12,7 @@
 #include "rtde/server.hpp"
 #include "safety/safety.hpp"
 #include "state/controller_state.hpp"
+#include "state/cycle_trace.hpp"
 #include "world/world.hpp"
 
 namespace ur_simulator::control_port {
@@ -29,6 +30,7 @@ struct Bench {
   std::map<std::string, Listener *> links;
   /// Cycles the host did not run in time since the start.
   const std::uint64_t & missed_cycles;
+  const CycleTrace & trace;
   /// Switches the controller off and, after so many s, on.
   std::function<void(double)> reboot;
 };

@@ -96,11 +96,34 @@ json log(Bench & bench, Fields & fields)
   return {{"entries", std::move(entries)}};
 }
 
+json trace(Bench & bench, Fields & fields)
+{
+  const auto after = static_cast<std::uint64_t>(fields.integer("after", 0, INT64_MAX, 0));
+  fields.finish();
+  json cycles = json::array();
+  bench.trace.for_each_cycle([&](const CycleTrace::Cycle & cycle) {
+    if (cycle.number > after) {
+      cycles.push_back({cycle.number, cycle.published, cycle.speed});
+    }
+  });
+  json commands = json::array();
+  bench.trace.for_each_command([&](const CycleTrace::Command & command) {
+    if (command.cycle >= after) {
+      commands.push_back({command.cycle, command.arrived, command.code});
+    }
+  });
+  return {{"cycles", std::move(cycles)}, {"commands", std::move(commands)}};
+}
+
 constexpr std::array table{
     Command{"state", "", "All of the state after the last cycle, in SI units.", state},
     Command{"registers", "", "The general purpose registers.", get_registers},
     Command{"log", "after (0)",
             "What the robot's log shows: the last 1000 entries, those numbered above 'after'.", log},
+    Command{"trace", "after (0)",
+            "By the host's clock, ns: the last 4096 cycles after 'after' as [cycle, packages sent, fastest "
+            "target joint rad/s], the last 256 commands in input integer register 0 as [cycle, arrived, code].",
+            trace},
 };
 
 }  // namespace

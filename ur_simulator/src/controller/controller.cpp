@@ -113,11 +113,17 @@ Controller::Controller(const SimulatorOptions & options)
               {"rtde", &rtde_.listener()},
               {"dashboard", &dashboard_.listener()}},
              missed_cycles_,
+             trace_,
              [this](double duration) { reboot(duration); }},
       control_(io_, options.address, options.ports.control,
                [this](const nlohmann::json & request) { return control(request); })
 {
-  rtde_.on_input([this](const rtde::InputField & field) { watchdog_.fed(field.name, state_.timestamp); });
+  rtde_.on_input([this](const rtde::InputField & field) {
+    watchdog_.fed(field.name, state_.timestamp);
+    if (field.name == "input_int_register_0") {
+      trace_.command_arrived(state_);
+    }
+  });
   log_.add_listener([this](const LogEntry & entry) { primary_.broadcast(primary::message_for(entry)); });
   arm_->teleport(initial_joints_, state_);
   if (options_.start_running) {
@@ -294,6 +300,7 @@ void Controller::take_safety_events()
 void Controller::publish()
 {
   rtde_.publish();
+  trace_.cycle_published(state_);
   if (realtime_.has_clients()) {
     realtime_.broadcast(realtime_packet_.encode(state_));
   }

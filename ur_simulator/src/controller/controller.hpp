@@ -84,6 +84,7 @@ class Controller {
 
   EventLog log_;
   ControllerState state_;
+  CycleTrace trace_;
   std::optional<Arm> arm_;
   std::optional<World> world_;
   std::optional<Safety> safety_;

@@ -211,6 +211,52 @@ TEST_F(UrRtdeControl, a_motion_ends_on_a_protective_stop)
   EXPECT_GT(distance(joints_of(controller), shifted(0.5)), 0.05);
 }
 
+TEST_F(UrRtdeControl, feels_the_contact_with_a_surface_and_stops_on_it)
+{
+  const double height = controller.state()["actual_tcp_pose"][2];
+  controller.control({{"command", "place_surface"}, {"z", height - 0.1}});
+  ur_rtde::RTDEReceiveInterface receive(controller.address());
+  ASSERT_TRUE(control.zeroFtSensor());
+  Joints pose = receive.getActualTCPPose();
+  pose[2] -= 0.2;
+  ASSERT_TRUE(control.moveL(pose, 0.05, 0.5, true));
+  ASSERT_TRUE(controller.wait_until(
+      [](const json & state) { return state["actual_tcp_force"][2].get<double>() > 20.0; }, seconds(10)));
+  control.stopL(10.0);
+  ASSERT_TRUE(wait_for_rest(controller));
+  EXPECT_NEAR(controller.state()["actual_tcp_pose"][2].get<double>(), height - 0.1, 0.01);
+  EXPECT_GT(receive.getActualTCPForce()[2], 10.0);
+  EXPECT_TRUE(control.isProgramRunning());
+}
+
+TEST_F(UrRtdeControl, its_watchdog_stops_the_program_when_nothing_is_sent)
+{
+  ASSERT_TRUE(control.setWatchdog(10.0));
+  EXPECT_TRUE(wait_for_program(controller, "STOPPED"));
+  EXPECT_TRUE(logged(controller, "RTDE watchdog"));
+}
+
+TEST_F(UrRtdeControl, uploads_its_script_again_after_a_stop)
+{
+  control.stopScript();
+  ASSERT_TRUE(wait_for_program(controller, "STOPPED"));
+  ASSERT_TRUE(control.reuploadScript());
+  // The library does not wait until its own copy of the state shows the program.
+  ASSERT_TRUE(controller.wait_until([this](const json &) { return control.isProgramRunning(); }, seconds(5)));
+  EXPECT_TRUE(control.moveJ(shifted(0.05), 1.0, 2.0));
+}
+
+TEST_F(UrRtdeControl, moves_along_a_path)
+{
+  Joints first = shifted(0.1);
+  Joints last = shifted(0.2);
+  for (Joints * waypoint : {&first, &last}) {
+    waypoint->insert(waypoint->end(), {1.0, 2.0, 0.0});  // speed, acceleration, blend radius
+  }
+  ASSERT_TRUE(control.moveJ({first, last}));
+  EXPECT_LT(distance(joints_of(controller), shifted(0.2)), 1e-3);
+}
+
 TEST_F(UrRtdeControl, stops_its_script)
 {
   control.stopScript();
