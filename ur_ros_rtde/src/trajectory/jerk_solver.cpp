@@ -11,13 +11,6 @@ namespace {
 constexpr double to_the_border = 0.95;  // part of the way to the nearest limit that a step may go
 constexpr double rows_per_interval = 6.0 * joint_count + 1.0;
 
-double length_to_border(const Joints & value, const Joints & change)
-{
-  // 1 / max(-change / value): the step at which the first value becomes zero.
-  const double fastest = (-change / value).maxCoeff();
-  return fastest > 0.0 ? to_the_border / fastest : 1e30;
-}
-
 }  // namespace
 
 JerkSolver::JerkSolver(const Grid & grid, const Limits & limits, const Allowance & allowance)
@@ -30,6 +23,9 @@ JerkSolver::JerkSolver(const Grid & grid, const Limits & limits, const Allowance
       a_(grid.stations()),
       b_(grid.stations()),
       c_(grid.intervals()),
+      use_(grid.intervals()),
+      begin_rows_(grid.intervals()),
+      end_rows_(grid.intervals()),
       multipliers_(grid.intervals()),
       change_(grid.intervals())
 {
@@ -80,6 +76,11 @@ void JerkSolver::evaluate()
   }
   for (std::size_t i = 0; i < count(); ++i) {
     c_[i] = (b_[i + 1] - b_[i]) / spline_->duration(i);
+    if (i > 0) {
+      use_[i] = (grid_.d2[i] * a_[i] + grid_.d1[i] * b_[i]) * inverse_acceleration_;
+    }
+    begin_rows_[i] = jerk_row(i, false);
+    end_rows_[i] = jerk_row(i, true);
   }
 }
 
@@ -89,15 +90,9 @@ double JerkSolver::excess(std::size_t m) const
 {
   double worst = 0.0;
   if (m > 0) {
-    const Joints use = ((grid_.d2[m] * a_[m] + grid_.d1[m] * b_[m]) * inverse_acceleration_).abs();
-    worst = std::max(a_[m] / ceiling_[m], use.maxCoeff() / allowance_.acceleration[m]);
+    worst = std::max(a_[m] / ceiling_[m], use_[m].abs().maxCoeff() / allowance_.acceleration[m]);
   }
-  double jerk = 0.0;
-  for (const bool end : {false, true}) {
-    const JerkRow row = jerk_row(m, end);
-    jerk = std::max(jerk, (row.pa * row.value_a + row.pb * row.value_b + row.pc * c_[m]).abs().maxCoeff());
-  }
-  jerk /= allowance_.jerk[m];
+  const double jerk = begin_rows_[m].value.abs().max(end_rows_[m].value.abs()).maxCoeff() / allowance_.jerk[m];
   return std::max(worst, std::cbrt(jerk * jerk));
 }
 
@@ -136,10 +131,8 @@ JerkSolver::JerkRow JerkSolver::jerk_row(std::size_t i, bool end) const
   const bool rest = station == 0 || station == count();
   JerkRow row;
   row.at = rest ? (station == 0 ? 1 : count() - 1) : station;
-  row.value_a = a_[row.at];
-  row.value_b = b_[row.at];
-  const double v = std::sqrt(row.value_a);
-  row.tangent = 0.5 * allowance_.jerk[i] / row.value_a;
+  const double v = std::sqrt(a_[row.at]);
+  row.tangent = 0.5 * allowance_.jerk[i] / a_[row.at];
   row.pc = grid_.d1[station] * inverse_jerk_ * (v / spline_->speed(row.at));
   if (rest) {
     row.pa.setZero();
@@ -148,6 +141,7 @@ JerkSolver::JerkRow JerkSolver::jerk_row(std::size_t i, bool end) const
     row.pa = (end ? grid_.d3_end[i] : grid_.d3_begin[i]) * inverse_jerk_ * v;
     row.pb = grid_.d2[station] * inverse_jerk_ * (3.0 * v);
   }
+  row.value = row.pa * a_[row.at] + row.pb * b_[row.at] + row.pc * c_[i];
   return row;
 }
 
@@ -161,18 +155,15 @@ void JerkSolver::balance_multipliers(double mu, double spread)
   for (std::size_t i = 0; i < count(); ++i) {
     Multipliers & m = multipliers_[i];
     if (i > 0) {
-      const Joints x = (grid_.d2[i] * a_[i] + grid_.d1[i] * b_[i]) * inverse_acceleration_;
-      balance(m.station_plus, allowance_.acceleration[i] - x);
-      balance(m.station_minus, allowance_.acceleration[i] + x);
+      balance(m.station_plus, allowance_.acceleration[i] - use_[i]);
+      balance(m.station_minus, allowance_.acceleration[i] + use_[i]);
       const double centre = mu / std::max(1.0 - a_[i] / ceiling_[i], 1e-9);
       m.speed = std::clamp(m.speed, centre / spread, centre * spread);
     }
-    for (const bool end : {false, true}) {
-      const JerkRow row = jerk_row(i, end);
-      const Joints y = row.pa * row.value_a + row.pb * row.value_b + row.pc * c_[i];
-      balance(end ? m.end_plus : m.begin_plus, allowance_.jerk[i] - y);
-      balance(end ? m.end_minus : m.begin_minus, allowance_.jerk[i] + y);
-    }
+    balance(m.begin_plus, allowance_.jerk[i] - begin_rows_[i].value);
+    balance(m.begin_minus, allowance_.jerk[i] + begin_rows_[i].value);
+    balance(m.end_plus, allowance_.jerk[i] - end_rows_[i].value);
+    balance(m.end_minus, allowance_.jerk[i] + end_rows_[i].value);
   }
 }
 
@@ -182,17 +173,16 @@ double JerkSolver::mean_product() const
   for (std::size_t i = 0; i < count(); ++i) {
     const Multipliers & m = multipliers_[i];
     if (i > 0) {
-      const Joints x = (grid_.d2[i] * a_[i] + grid_.d1[i] * b_[i]) * inverse_acceleration_;
-      sum += (m.station_plus * (allowance_.acceleration[i] - x)).sum();
-      sum += (m.station_minus * (allowance_.acceleration[i] + x)).sum();
+      const double f = allowance_.acceleration[i];
+      sum += (m.station_plus * (f - use_[i]) + m.station_minus * (f + use_[i])).sum();
       sum += m.speed * (1.0 - a_[i] / ceiling_[i]);
     }
-    for (const bool end : {false, true}) {
-      const JerkRow row = jerk_row(i, end);
-      const Joints y = row.pa * row.value_a + row.pb * row.value_b + row.pc * c_[i];
-      sum += ((end ? m.end_plus : m.begin_plus) * (allowance_.jerk[i] - y)).sum();
-      sum += ((end ? m.end_minus : m.begin_minus) * (allowance_.jerk[i] + y)).sum();
-    }
+    const double f = allowance_.jerk[i];
+    const Joints & begin = begin_rows_[i].value;
+    const Joints & end = end_rows_[i].value;
+    sum += (m.begin_plus * (f - begin) + m.begin_minus * (f + begin) + m.end_plus * (f - end) +
+            m.end_minus * (f + end))
+               .sum();
   }
   return sum / (rows_per_interval * static_cast<double>(count()));
 }
@@ -220,7 +210,6 @@ void JerkSolver::improve(int steps, double gap_limit)
   const double rows = rows_per_interval * static_cast<double>(count());
   std::vector<double> last_w;
   for (int step = 0; step < steps && !(settled && product * rows < gap_limit * before); ++step) {
-    ++steps_done;
     assemble(reduction * product);
     if (!system_.solve()) {
       return;  // the present iterate obeys the limits
@@ -238,7 +227,6 @@ void JerkSolver::improve(int steps, double gap_limit)
     const double shorter = std::min(lengths.primal, lengths.dual);
     reduction = shorter > 0.8 ? 0.1 : shorter > 0.5 ? 0.25 : shorter > 0.2 ? 0.6 : 1.0;
     settled = lengths.primal > 0.5 && std::abs(before - now) < 2.0 * gap_limit * now;
-    if (getenv("DBG2")) fprintf(stderr, "    step %d p %.3f d %.3f gap %.4f T %.4f\n", step, lengths.primal, lengths.dual, gap(), now);
     before = now;
   }
 }
@@ -266,9 +254,8 @@ void JerkSolver::add_station(std::size_t m, double target)
   const double f = allowance_.acceleration[m];
   const Joints pa = grid_.d2[m] * inverse_acceleration_;
   const Joints pb = grid_.d1[m] * inverse_acceleration_;
-  const Joints x = pa * a_[m] + pb * b_[m];
-  const Joints plus = (f - x).inverse();
-  const Joints minus = (f + x).inverse();
+  const Joints plus = (f - use_[m]).inverse();
+  const Joints minus = (f + use_[m]).inverse();
   const Joints stiffness = l.station_plus * plus + l.station_minus * minus;
   const Joints push = target * (plus - minus);
   Model model;
@@ -291,34 +278,31 @@ void JerkSolver::add_station(std::size_t m, double target)
 void JerkSolver::add_interval(std::size_t i, double target)
 {
   const Multipliers & l = multipliers_[i];
-  for (const bool end : {false, true}) {
-    Model model;
-    const JerkRow row = jerk_row(i, end);
-    add_jerk(row, allowance_.jerk[i], c_[i], end ? l.end_plus : l.begin_plus,
-             end ? l.end_minus : l.begin_minus, target, model);
-    spread_model(i, row.at, model);
-  }
+  const double f = allowance_.jerk[i];
+  spread_model(i, begin_rows_[i].at, jerk_model(begin_rows_[i], f, l.begin_plus, l.begin_minus, target));
+  spread_model(i, end_rows_[i].at, jerk_model(end_rows_[i], f, l.end_plus, l.end_minus, target));
 }
 
-void JerkSolver::add_jerk(const JerkRow & row, double f, double c, const Joints & plus, const Joints & minus,
-                          double target, Model & model) const
+JerkSolver::Model JerkSolver::jerk_model(const JerkRow & row, double f, const Joints & plus, const Joints & minus,
+                                         double target)
 {
-  const Joints y = row.pa * row.value_a + row.pb * row.value_b + row.pc * c;
-  const Joints up = (f - y).inverse();
-  const Joints down = (f + y).inverse();
+  const Joints up = (f - row.value).inverse();
+  const Joints down = (f + row.value).inverse();
   const Joints both = plus * up + minus * down;
-  const Joints difference = plus * up - minus * down;
+  const Joints tilt = row.tangent * (plus * up - minus * down);
   const Joints push = target * (up - down);
-  model.aa +=
-      (both * (row.pa * row.pa + row.tangent * row.tangent) + 2.0 * row.tangent * difference * row.pa).sum();
-  model.ab += ((both * row.pa + row.tangent * difference) * row.pb).sum();
-  model.ac += ((both * row.pa + row.tangent * difference) * row.pc).sum();
-  model.bb += (both * row.pb * row.pb).sum();
-  model.bc += (both * row.pb * row.pc).sum();
-  model.cc += (both * row.pc * row.pc).sum();
-  model.ga += (push * row.pa).sum() + target * row.tangent * (up + down).sum();
-  model.gb += (push * row.pb).sum();
-  model.gc += (push * row.pc).sum();
+  const Joints weighted_a = both * row.pa + tilt;
+  Model model;
+  model.aa = ((weighted_a + tilt) * row.pa + (row.tangent * row.tangent) * both).sum();
+  model.ab = (weighted_a * row.pb).sum();
+  model.ac = (weighted_a * row.pc).sum();
+  model.bb = (both * row.pb * row.pb).sum();
+  model.bc = (both * row.pb * row.pc).sum();
+  model.cc = (both * row.pc * row.pc).sum();
+  model.ga = (push * row.pa).sum() + target * row.tangent * (up + down).sum();
+  model.gb = (push * row.pb).sum();
+  model.gc = (push * row.pc).sum();
+  return model;
 }
 
 // Adds a model in (a_m, b_m, c_i), m = i or i + 1, to the system in w.
@@ -371,23 +355,34 @@ JerkSolver::Steps JerkSolver::find_step(const std::vector<double> & dw, double t
     if (i > 0) {
       station_step(i, spline_->a(dw, i), spline_->b(dw, i), target, steps);
     }
+    const double f = allowance_.jerk[i];
     const double dc = (spline_->b(dw, i + 1) - spline_->b(dw, i)) / spline_->duration(i);
     const Multipliers & l = multipliers_[i];
     Multipliers & d = change_[i];
-    for (const bool end : {false, true}) {
-      const JerkRow row = jerk_row(i, end);
+    const auto move = [&](const JerkRow & row) {
       const double da = spline_->a(dw, row.at);
-      const double db = spline_->b(dw, row.at);
-      if (end) {
-        jerk_step(row, allowance_.jerk[i], c_[i], da, db, dc, target, l.end_plus, l.end_minus, d.end_plus,
-                  d.end_minus, steps);
-      } else {
-        jerk_step(row, allowance_.jerk[i], c_[i], da, db, dc, target, l.begin_plus, l.begin_minus,
-                  d.begin_plus, d.begin_minus, steps);
-      }
-    }
+      return std::pair<Joints, double>(row.pa * da + row.pb * spline_->b(dw, row.at) + row.pc * dc, row.tangent * da);
+    };
+    const auto [begin, begin_tangent] = move(begin_rows_[i]);
+    const auto [end, end_tangent] = move(end_rows_[i]);
+    limit_step(f - begin_rows_[i].value, begin + begin_tangent, l.begin_plus, target, d.begin_plus, steps);
+    limit_step(f + begin_rows_[i].value, begin_tangent - begin, l.begin_minus, target, d.begin_minus, steps);
+    limit_step(f - end_rows_[i].value, end + end_tangent, l.end_plus, target, d.end_plus, steps);
+    limit_step(f + end_rows_[i].value, end_tangent - end, l.end_minus, target, d.end_minus, steps);
   }
   return steps;
+}
+
+// One side of six limits with `room` left, of which a full step takes `used`.
+void JerkSolver::limit_step(const Joints & room, const Joints & used, const Joints & multiplier, double target,
+                            Joints & change, Steps & steps)
+{
+  const Joints inverse = room.inverse();
+  change = (target + multiplier * used) * inverse - multiplier;
+  const double fastest = (used * inverse).maxCoeff();
+  const double dual = (-change / multiplier).maxCoeff();
+  steps.primal = fastest * steps.primal > to_the_border ? to_the_border / fastest : steps.primal;
+  steps.dual = dual * steps.dual > to_the_border ? to_the_border / dual : steps.dual;
 }
 
 void JerkSolver::station_step(std::size_t m, double da, double db, double target, Steps & steps)
@@ -395,15 +390,9 @@ void JerkSolver::station_step(std::size_t m, double da, double db, double target
   const Multipliers & l = multipliers_[m];
   Multipliers & d = change_[m];
   const double f = allowance_.acceleration[m];
-  const Joints x = (grid_.d2[m] * a_[m] + grid_.d1[m] * b_[m]) * inverse_acceleration_;
   const Joints dx = (grid_.d2[m] * da + grid_.d1[m] * db) * inverse_acceleration_;
-  const Joints room_plus = f - x;
-  const Joints room_minus = f + x;
-  d.station_plus = (target + l.station_plus * dx) / room_plus - l.station_plus;
-  d.station_minus = (target - l.station_minus * dx) / room_minus - l.station_minus;
-  steps.primal = std::min({steps.primal, length_to_border(room_plus, -dx), length_to_border(room_minus, dx)});
-  steps.dual = std::min({steps.dual, length_to_border(l.station_plus, d.station_plus),
-                         length_to_border(l.station_minus, d.station_minus)});
+  limit_step(f - use_[m], dx, l.station_plus, target, d.station_plus, steps);
+  limit_step(f + use_[m], -dx, l.station_minus, target, d.station_minus, steps);
 
   const double room = 1.0 - a_[m] / ceiling_[m];
   const double used = da / ceiling_[m];
@@ -417,22 +406,6 @@ void JerkSolver::station_step(std::size_t m, double da, double db, double target
   if (d.speed < 0.0) {
     steps.dual = std::min(steps.dual, -to_the_border * l.speed / d.speed);
   }
-}
-
-void JerkSolver::jerk_step(const JerkRow & row, double f, double c, double da, double db, double dc,
-                           double target, const Joints & plus, const Joints & minus, Joints & dplus,
-                           Joints & dminus, Steps & steps) const
-{
-  const Joints y = row.pa * row.value_a + row.pb * row.value_b + row.pc * c;
-  const Joints dy = row.pa * da + row.pb * db + row.pc * dc;
-  const double tangent = row.tangent * da;
-  const Joints room_plus = f - y;
-  const Joints room_minus = f + y;
-  dplus = (target + plus * (dy + tangent)) / room_plus - plus;
-  dminus = (target + minus * (tangent - dy)) / room_minus - minus;
-  steps.primal = std::min(
-      {steps.primal, length_to_border(room_plus, -dy - tangent), length_to_border(room_minus, dy - tangent)});
-  steps.dual = std::min({steps.dual, length_to_border(plus, dplus), length_to_border(minus, dminus)});
 }
 
 void JerkSolver::advance(const std::vector<double> & dw, const Steps & steps)

@@ -43,7 +43,6 @@ class JerkSolver {
   const std::vector<double> & coefficients() const { return w_; }
   double gap() const;
   double duration() const;
-  int steps_done = 0;
 
  private:
   // Multipliers of the constraints that belong to interval i and to the station where it begins; plus and
@@ -57,7 +56,7 @@ class JerkSolver {
     std::size_t at = 0;
     Joints pa, pb, pc;
     double tangent = 0.0;  // f / (2 a): of the linearised right-hand side
-    double value_a = 0.0, value_b = 0.0;
+    Joints value;
   };
   // Second-order model in three variables: station's a and b, interval's c.
   struct Model {
@@ -78,15 +77,13 @@ class JerkSolver {
   void assemble(double target);
   void add_station(std::size_t m, double target);
   void add_interval(std::size_t i, double target);
-  void add_jerk(const JerkRow & row, double f, double c, const Joints & plus, const Joints & minus,
-                double target, Model & model) const;
+  static Model jerk_model(const JerkRow & row, double f, const Joints & plus, const Joints & minus, double target);
   void spread_model(std::size_t i, std::size_t m, const Model & model);
 
   Steps find_step(const std::vector<double> & dw, double target);
   void station_step(std::size_t m, double da, double db, double target, Steps & steps);
-  void jerk_step(const JerkRow & row, double f, double c, double da, double db, double dc, double target,
-                 const Joints & plus, const Joints & minus, Joints & dplus, Joints & dminus,
-                 Steps & steps) const;
+  static void limit_step(const Joints & room, const Joints & used, const Joints & multiplier, double target,
+                         Joints & change, Steps & steps);
   void advance(const std::vector<double> & dw, const Steps & steps);
 
   const Grid & grid_;
@@ -96,6 +93,8 @@ class JerkSolver {
   std::vector<double> ceiling_;  // highest a at each station
   std::vector<double> weight_;   // t_m
   std::vector<double> w_, a_, b_, c_;
+  std::vector<Joints> use_;  // of the acceleration limits at each station
+  std::vector<JerkRow> begin_rows_, end_rows_;
   std::vector<Multipliers> multipliers_, change_;
   Pentadiagonal system_;
 };

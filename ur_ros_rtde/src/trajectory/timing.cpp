@@ -140,7 +140,6 @@ Profile solve_on(const Grid & grid, Start start, const Limits & limits, const Al
     }
     solver.improve(profile.v.empty() ? 40 : 20, gap);
     profile = spline.profile(grid, solver.coefficients());
-    if (getenv("DBG")) { double tt=0; for(double t: profile.time) tt+=t; fprintf(stderr,"n %zu gap %.4f T %.4f steps %d\n",grid.intervals(),solver.gap(),tt, solver.steps_done); }
   }
   return profile;
 }
@@ -152,17 +151,17 @@ void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, c
   const auto take = [&](const Profile & profile) {
     motion.timing.resize(begin);
     motion.append(grid, profile, false);
-    if (getenv("DBG")) { auto u=largest_use(motion,begin,limits); fprintf(stderr,"   use %.4f %.4f %.4f\n",u.velocity,u.acceleration,u.jerk);}
   };
   take(solve_on(grid, first_guess(grid, limits), limits, Allowance(grid), {0.1, 0.02}));
   if (auto finer = divide(motion, begin, grid, limits)) {
     grid = std::move(finer->first);
     take(solve_on(grid, start_from(grid, std::move(finer->second)), limits, Allowance(grid), {0.02, 0.005}));
+  } else {
+    take(solve_on(grid, start_from(grid, profile_of(motion, begin)), limits, Allowance(grid), {0.005}));
   }
   Allowance allowance(grid);
   if (tighten(motion, begin, limits, allowance)) {
-    Profile profile = profile_of(motion, begin);
-    take(solve_on(grid, start_from(grid, std::move(profile)), limits, allowance, {0.005, 0.003}));
+    take(solve_on(grid, start_from(grid, profile_of(motion, begin)), limits, allowance, {0.005, 0.003}));
   }
   slow_to_limits(motion, begin, limits);
 }

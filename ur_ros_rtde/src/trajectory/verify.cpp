@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ur_ros_rtde::trajectory {
 namespace {
@@ -66,6 +67,10 @@ std::optional<Excess> excess_of_position(const Joints & q, const Limits & limits
 
 std::optional<Excess> excess_at(const Point & point, const Limits & limits, double time)
 {
+  // A number that is none would pass every comparison with a limit.
+  if (!(point.position + point.velocity + point.acceleration + point.jerk).isFinite().all()) {
+    return Excess{Quantity::position, 0, time, std::numeric_limits<double>::quiet_NaN(), limits.position_max[0]};
+  }
   auto excess = excess_of_position(point.position, limits, time);
   if (!excess) {
     excess = excess_of(Quantity::velocity, point.velocity, limits.velocity, time);
