@@ -175,9 +175,12 @@ TEST_F(Services, answer_calls)
 
 TEST_F(Services, answer_many_calls_at_once)
 {
+  // The default depth, 10, would let the middleware drop some.
+  const rcl_cxx::QoS deep = rcl_cxx::QoS::services_default().with_depth(100);
   const auto service = node->create_service<SetBool>(
-      "set", [](const SetBool::Request & request, auto & response) { response.success = request.data; });
-  const auto client = node->create_client<SetBool>("set");
+      "set", [](const SetBool::Request & request, auto & response) { response.success = request.data; },
+      deep);
+  const auto client = node->create_client<SetBool>("set", deep);
   ASSERT_TRUE(client->wait_for_service(kLimit));
   std::vector<std::future<SetBool::Response>> answers;
   SetBool::Request request;
