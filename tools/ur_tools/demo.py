@@ -47,7 +47,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     return options
 
 
-def _answers(address: str, port: int) -> bool:
+def answers(address: str, port: int) -> bool:
     try:
         socket.create_connection((address, port), 0.2).close()
         return True
@@ -60,7 +60,7 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> N
     say.step(f"Starting the simulated controller of a {options.model.upper()} at {options.address}")
     programs.start("simulator", [program(layout, "ur_simulator", "ur_simulator"), "--address", options.address,
                                  "--model", options.model], env)
-    programs.wait_until(lambda: _answers(options.address, 29999), 10.0, "the simulator's ports")
+    programs.wait_until(lambda: answers(options.address, 29999), 10.0, "the simulator's ports")
     say.step("Starting the nodes " + ", ".join(NODES))
     for node in NODES:
         programs.start(node, [program(layout, "ur_ros_rtde", node), "--ros-args", "-p", f"robot_ip:={options.address}"], env)

@@ -1,0 +1,79 @@
+"""Goal -> first RTDE command, and cancel -> deceleration begins, seen by a Python client and by the simulator's trace."""
+
+import time
+
+import rclpy
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from ur_ros_rtde_msgs.action import MoveJ, SetPayload
+
+CONTROL_CYCLE = 2.0  # ms
+
+
+class Commands:
+    def __init__(self, control):
+        self.control = control
+        self.node = Node("bench_commands")
+        self.move_j = ActionClient(self.node, MoveJ, "move_j")
+        self.set_payload = ActionClient(self.node, SetPayload, "set_payload")
+        for client in (self.move_j, self.set_payload):
+            if not client.wait_for_server(timeout_sec=15.0):
+                raise SystemExit("bench: the command server's actions do not appear")
+
+    def close(self):
+        self.node.destroy_node()
+
+    def _finish(self, future, limit=30.0):
+        rclpy.spin_until_future_complete(self.node, future, timeout_sec=limit)
+        if not future.done():
+            raise SystemExit(f"bench: no answer within {limit:g} s")
+        return future.result()
+
+    def _accepted(self, client, goal):
+        handle = self._finish(client.send_goal_async(goal))
+        if not handle.accepted:
+            raise SystemExit("bench: a goal was refused; see the topic goal_refusals")
+        return handle
+
+    def _cycle(self):
+        return self.control.request("state")["state"]["cycle"]
+
+    def goal_to_command(self, count):
+        """ms from sending the goal (in Python) to the arrival of its command at the controller."""
+        result = []
+        for index in range(count):
+            before = self._cycle()
+            sent = time.time_ns()
+            handle = self._accepted(self.set_payload, SetPayload.Goal(mass=0.5 + 0.01 * (index % 10)))
+            self._finish(handle.get_result_async())
+            commands = self.control.request("trace", after=before)["commands"]
+            arrived = [when for _, when, _ in commands if when > sent]
+            if arrived:
+                result.append((arrived[0] - sent) * 1e-6)
+        return result
+
+    def cancel_to_deceleration(self, count):
+        """ms from sending the cancel request to the first cycle whose target is slower."""
+        result = []
+        for index in range(count):
+            joints = list(self.control.request("state")["state"]["actual"]["position"])
+            joints[0] += 1.0 if index % 2 == 0 else -1.0
+            handle = self._accepted(self.move_j, MoveJ.Goal(joint_positions=joints, speed=0.4, acceleration=4.0))
+            outcome = handle.get_result_async()
+            self._until_speed(0.399)
+            before = self._cycle()
+            sent = time.time_ns()
+            self._finish(handle.cancel_goal_async())
+            self._finish(outcome)
+            cycles = self.control.request("trace", after=before)["cycles"]
+            slower = [when for _, when, speed in cycles if when > sent and speed < 0.398]
+            if slower:
+                result.append((slower[0] - sent) * 1e-6)
+        return result
+
+    def _until_speed(self, speed, limit=5.0):
+        deadline = time.monotonic() + limit
+        while max(map(abs, self.control.request("state")["state"]["target"]["velocity"])) < speed:
+            if time.monotonic() > deadline:
+                raise SystemExit("bench: the arm did not reach its speed")
+            rclpy.spin_once(self.node, timeout_sec=0.005)

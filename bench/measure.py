@@ -1,0 +1,67 @@
+"""Measures a running simulator and driver, and prints JSON. Started by `./ur bench`, which starts both."""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import rclpy
+from commands import Commands
+from stream_latency import latencies, percentile, receive_in_python
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
+from control_port import ControlPort  # noqa: E402
+
+TRACE_SECONDS = 7.0  # the simulator keeps 4096 cycles: 8 s at 500 Hz
+
+
+def summary(values):
+    return {"p50": percentile(values, 0.5), "p99": percentile(values, 0.99), "count": len(values)} if values else None
+
+
+def receive_in_cpp(program, seconds):
+    output = subprocess.run([program, str(seconds)], check=True, capture_output=True, text=True, timeout=seconds + 30).stdout
+    return [tuple(map(int, line.split())) for line in output.splitlines()]
+
+
+def cpu_seconds(pid):
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def cpu_percent(pids, seconds):
+    """Of one core, by name, over an interval in which nothing but the stream runs."""
+    before, begin = {name: cpu_seconds(pid) for name, pid in pids.items()}, time.monotonic()
+    time.sleep(seconds)
+    elapsed = time.monotonic() - begin
+    return {name: 100.0 * (cpu_seconds(pid) - before[name]) / elapsed for name, pid in pids.items()}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--address", required=True)
+    parser.add_argument("--subscriber", required=True, help="the C++ subscriber")
+    parser.add_argument("--pid", action="append", default=[], metavar="NAME=PID", help="a process whose load is measured")
+    parser.add_argument("--repeat", type=int, default=40, help="goals and cancels")
+    options = parser.parse_args()
+    rclpy.init()
+    with ControlPort(options.address) as control:
+        figures = {}
+        for name, receive in (("C++", lambda s: receive_in_cpp(options.subscriber, s)), ("rclpy", receive_in_python)):
+            received = receive(TRACE_SECONDS)
+            figures[f"package to {name} subscriber"] = summary(latencies(received, control.request("trace")))
+        pids = {name: int(pid) for name, pid in (pair.split("=") for pair in options.pid)}
+        figures["cpu"] = cpu_percent(pids, 5.0)
+        commands = Commands(control)
+        figures["goal to first RTDE command"] = summary(commands.goal_to_command(options.repeat))
+        figures["cancel to deceleration"] = summary(commands.cancel_to_deceleration(options.repeat // 2))
+        commands.close()
+    rclpy.try_shutdown()
+    print(json.dumps(figures))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,55 @@
+"""Controller package -> subscriber: joins what subscribers received with the simulator's trace of what was sent when.
+
+A message's stamp is when the driver had the package, so the package is the last one sent before the stamp.
+"""
+
+import bisect
+import time
+
+import rclpy
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+
+# The stamp is computed from a monotonic clock; the two clocks are read one after the other.
+CLOCK_TOLERANCE = 20_000  # ns
+
+
+def percentile(values, fraction):
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(fraction * len(ordered)))]
+
+
+def latencies(received, trace):
+    """ms from sending to receiving, for [(stamp, received)] in ns."""
+    sent = [published for _, published, _ in trace["cycles"]]
+    result = []
+    for stamp, when in received:
+        index = bisect.bisect_right(sent, stamp + CLOCK_TOLERANCE) - 1
+        if index >= 0:
+            result.append((when - sent[index]) * 1e-6)
+    return result
+
+
+def receive_in_python(seconds):
+    """[(stamp, received)] in ns of joint_states."""
+    received = []
+
+    def take(message):
+        stamp = message.header.stamp
+        received.append((stamp.sec * 1_000_000_000 + stamp.nanosec, time.time_ns()))
+
+    node = Node("bench_subscriber")
+    qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+    node.create_subscription(JointState, "joint_states", take, qos)
+    executor = rclpy.executors.SingleThreadedExecutor()
+    executor.add_node(node)
+    limit = time.monotonic() + 15.0
+    while not received and time.monotonic() < limit:
+        executor.spin_once(timeout_sec=0.1)
+    received.clear()
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        executor.spin_once(timeout_sec=0.1)
+    node.destroy_node()
+    return received
