@@ -137,6 +137,8 @@ RobotOptions robot_options()
 {
   RobotOptions result;
   result.address = own_address();
+  result.silence_limit = 500ms;
+  result.watchdog_frequency = 2.0;
   return result;
 }
 
@@ -144,6 +146,7 @@ StateReceiverOptions receiver_options()
 {
   StateReceiverOptions result;
   result.address = own_address();
+  result.silence_limit = 500ms;
   return result;
 }
 

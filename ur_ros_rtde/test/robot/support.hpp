@@ -70,6 +70,8 @@ class OtherService {
 std::size_t open_descriptors();
 std::size_t running_threads();
 
+/// Patient with a host on which many tests run at once; tests of the limits set them to what they are by
+/// default.
 RobotOptions robot_options();
 StateReceiverOptions receiver_options();
 

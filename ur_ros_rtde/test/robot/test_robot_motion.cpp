@@ -154,7 +154,12 @@ TEST_F(AMotion, ends_when_the_controller_dies_in_the_middle_of_it)
 
 TEST_F(AMotion, is_stopped_by_the_watchdog_when_the_link_is_half_open)
 {
-  make_both();
+  controller.start();
+  auto options = robot_options();
+  options.silence_limit = RobotOptions().silence_limit;
+  options.watchdog_frequency = RobotOptions().watchdog_frequency;
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
   move_joints();
   controller.control({{"command", "stall_links"}, {"which", "rtde"}});
   ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));

@@ -218,7 +218,9 @@ TEST_F(AStateReceiver, notices_a_closed_connection_and_a_reset_one)
 TEST_F(AStateReceiver, notices_a_half_open_link_by_missing_packages)
 {
   controller.start();
-  const auto receiver = this->receiver();
+  auto options = receiver_options();
+  options.silence_limit = StateReceiverOptions().silence_limit;
+  const auto receiver = this->receiver(options);
   ASSERT_TRUE(connected(*receiver));
   controller.control({{"command", "stall_links"}, {"which", "rtde"}});
   ASSERT_TRUE(eventually([&] { return !receiver->link().connected; }));

@@ -30,7 +30,9 @@ class DriverProcess {
  private:
   [[noreturn]] static void move_forever()
   {
-    Robot robot(robot_options());
+    auto options = robot_options();
+    options.watchdog_frequency = RobotOptions().watchdog_frequency;
+    Robot robot(options);
     robot.start();
     if (robot.wait_until_ready(30s)) {
       robot.control()->speedJ({0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0);
