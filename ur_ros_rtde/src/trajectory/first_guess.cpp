@@ -35,7 +35,8 @@ std::vector<double> ramps(const Grid & grid, const Limits & limits)
 }
 
 // The least value within `reach` seconds before and after.
-std::vector<double> least_nearby(const std::vector<double> & values, const std::vector<double> & time, double reach)
+std::vector<double> least_nearby(const std::vector<double> & values, const std::vector<double> & time,
+                                 double reach)
 {
   std::vector<double> result(values.size());
   std::deque<std::size_t> window;  // indices of increasing values
@@ -56,7 +57,8 @@ std::vector<double> least_nearby(const std::vector<double> & values, const std::
 }
 
 // The mean over `reach` seconds before and after; beyond both ends as at the ends.
-std::vector<double> mean_nearby(const std::vector<double> & values, const std::vector<double> & time, double reach)
+std::vector<double> mean_nearby(const std::vector<double> & values, const std::vector<double> & time,
+                                double reach)
 {
   const std::size_t last = values.size() - 1;
   std::vector<double> sum(values.size(), 0.0);

@@ -4,9 +4,9 @@
 
 namespace ur_ros_rtde::trajectory {
 
-/// A timing from rest to rest to start the jerk solver from, and the coefficients of its speed spline: the fastest
-/// timing without jerk limits, made smooth over the time that the joints need to build up their acceleration, and slowed
-/// down at both ends as constant jerk does. It may exceed the jerk limits.
+/// A timing from rest to rest to start the jerk solver from, and the coefficients of its speed spline: the
+/// fastest timing without jerk limits, made smooth over the time that the joints need to build up their
+/// acceleration, and slowed down at both ends as constant jerk does. It may exceed the jerk limits.
 struct Start {
   Profile profile;
   std::vector<double> w;

@@ -84,15 +84,16 @@ void JerkSolver::evaluate()
   }
 }
 
-// Largest use of the limits of station m and of the interval that begins there, as the factor on a: jerk grows with
-// a^(3/2).
+// Largest use of the limits of station m and of the interval that begins there, as the factor on a: jerk
+// grows with a^(3/2).
 double JerkSolver::excess(std::size_t m) const
 {
   double worst = 0.0;
   if (m > 0) {
     worst = std::max(a_[m] / ceiling_[m], use_[m].abs().maxCoeff() / allowance_.acceleration[m]);
   }
-  const double jerk = begin_rows_[m].value.abs().max(end_rows_[m].value.abs()).maxCoeff() / allowance_.jerk[m];
+  const double jerk =
+      begin_rows_[m].value.abs().max(end_rows_[m].value.abs()).maxCoeff() / allowance_.jerk[m];
   return std::max(worst, std::cbrt(jerk * jerk));
 }
 
@@ -283,8 +284,8 @@ void JerkSolver::add_interval(std::size_t i, double target)
   spread_model(i, end_rows_[i].at, jerk_model(end_rows_[i], f, l.end_plus, l.end_minus, target));
 }
 
-JerkSolver::Model JerkSolver::jerk_model(const JerkRow & row, double f, const Joints & plus, const Joints & minus,
-                                         double target)
+JerkSolver::Model JerkSolver::jerk_model(const JerkRow & row, double f, const Joints & plus,
+                                         const Joints & minus, double target)
 {
   const Joints up = (f - row.value).inverse();
   const Joints down = (f + row.value).inverse();
@@ -361,7 +362,8 @@ JerkSolver::Steps JerkSolver::find_step(const std::vector<double> & dw, double t
     Multipliers & d = change_[i];
     const auto move = [&](const JerkRow & row) {
       const double da = spline_->a(dw, row.at);
-      return std::pair<Joints, double>(row.pa * da + row.pb * spline_->b(dw, row.at) + row.pc * dc, row.tangent * da);
+      return std::pair<Joints, double>(row.pa * da + row.pb * spline_->b(dw, row.at) + row.pc * dc,
+                                       row.tangent * da);
     };
     const auto [begin, begin_tangent] = move(begin_rows_[i]);
     const auto [end, end_tangent] = move(end_rows_[i]);
@@ -374,8 +376,8 @@ JerkSolver::Steps JerkSolver::find_step(const std::vector<double> & dw, double t
 }
 
 // One side of six limits with `room` left, of which a full step takes `used`.
-void JerkSolver::limit_step(const Joints & room, const Joints & used, const Joints & multiplier, double target,
-                            Joints & change, Steps & steps)
+void JerkSolver::limit_step(const Joints & room, const Joints & used, const Joints & multiplier,
+                            double target, Joints & change, Steps & steps)
 {
   const Joints inverse = room.inverse();
   change = (target + multiplier * used) * inverse - multiplier;

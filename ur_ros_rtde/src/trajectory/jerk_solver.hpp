@@ -32,8 +32,8 @@ class JerkSolver {
 
   /// Starts from coefficients `w` of `spline`, scaled down until they obey the limits.
   void start(const SpeedSpline & spline, std::vector<double> w);
-  /// How much coefficients `w` exceed the limits at each station and in the interval after it, as factors by which the
-  /// square of the speed is too high; 1: just at a limit.
+  /// How much coefficients `w` exceed the limits at each station and in the interval after it, as factors by
+  /// which the square of the speed is too high; 1: just at a limit.
   std::vector<double> excesses(const SpeedSpline & spline, const std::vector<double> & w);
   /// Goes on with another spline of the same grid; keeps coefficients and multipliers.
   void change_spline(const SpeedSpline & spline);
@@ -77,7 +77,8 @@ class JerkSolver {
   void assemble(double target);
   void add_station(std::size_t m, double target);
   void add_interval(std::size_t i, double target);
-  static Model jerk_model(const JerkRow & row, double f, const Joints & plus, const Joints & minus, double target);
+  static Model jerk_model(const JerkRow & row, double f, const Joints & plus, const Joints & minus,
+                          double target);
   void spread_model(std::size_t i, std::size_t m, const Model & model);
 
   Steps find_step(const std::vector<double> & dw, double target);

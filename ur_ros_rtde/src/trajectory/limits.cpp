@@ -15,11 +15,13 @@ constexpr double largest = 1e7;
 Status check_range(std::string_view field, const Joints & values, bool may_be_infinite)
 {
   for (int j = 0; j < joint_count; ++j) {
-    const bool fine = (values[j] >= smallest && values[j] <= largest) || (may_be_infinite && values[j] == unlimited);
+    const bool fine =
+        (values[j] >= smallest && values[j] <= largest) || (may_be_infinite && values[j] == unlimited);
     if (!fine) {
-      return failure(ErrorCode::invalid_goal,
-                     fmt::format("{} limit of {} is {}: give a number from {} to {}{}", field, joint_name(j), values[j],
-                                 smallest, largest, may_be_infinite ? ", or infinity for none" : ""));
+      return failure(
+          ErrorCode::invalid_goal,
+          fmt::format("{} limit of {} is {}: give a number from {} to {}{}", field, joint_name(j), values[j],
+                      smallest, largest, may_be_infinite ? ", or infinity for none" : ""));
     }
   }
   return {};

@@ -77,8 +77,8 @@ class Builder {
     add(piece);
   }
 
-  // A corner is where the direction changes too much for a smooth curve: one that passes through the waypoint would swing
-  // out between the waypoints, by about an eighth of angle times distance.
+  // A corner is where the direction changes too much for a smooth curve: one that passes through the waypoint
+  // would swing out between the waypoints, by about an eighth of angle times distance.
   bool is_corner(std::size_t i) const
   {
     const double angle = line_.angle(i);
@@ -170,8 +170,9 @@ class Builder {
     std::size_t point = 0;
   };
 
-  // How far before and after a corner its blend begins and ends. The direction changes along the quintic smoothstep, so
-  // between straight lines the middle of the blend passes the corner at 2 * (5/64) * reach * |d1 - d0|.
+  // How far before and after a corner its blend begins and ends. The direction changes along the quintic
+  // smoothstep, so between straight lines the middle of the blend passes the corner at 2 * (5/64) * reach *
+  // |d1 - d0|.
   double blend_reach(const PathPiece & before, const PathPiece & after, const Joints & corner) const
   {
     constexpr double sag = 2.0 * 5.0 / 64.0;

@@ -70,7 +70,8 @@ Status check_waypoints(const std::vector<Joints> & waypoints, const Limits & lim
   return {};
 }
 
-// Nothing leaves without having been looked at everywhere; what little is too much is taken away by slowing down.
+// Nothing leaves without having been looked at everywhere; what little is too much is taken away by slowing
+// down.
 Status verify_or_slow(Motion & motion, const Limits & limits)
 {
   constexpr int rounds = 4;
@@ -82,7 +83,8 @@ Status verify_or_slow(Motion & motion, const Limits & limits)
     }
     if (round == rounds || excess->quantity == Quantity::position || !std::isfinite(motion.duration())) {
       const auto shared = std::make_shared<const Motion>(motion);
-      return failure(ErrorCode::invalid_goal, describe(*excess, Trajectory(shared).waypoint_at(excess->time)));
+      return failure(ErrorCode::invalid_goal,
+                     describe(*excess, Trajectory(shared).waypoint_at(excess->time)));
     }
     slow_to_limits(motion, 0, limits);
   }

@@ -74,13 +74,15 @@ Grid grid_for_jerk(const Path & path, std::size_t first, std::size_t last, const
   const Grid coarse = coarse_grid(path, first, last);
   const Profile guess = fastest_without_jerk(coarse, limits);
   const double total = sum(guess.time);
-  const double jerk_time = (limits.acceleration / limits.jerk).maxCoeff();
-  const double step = std::min(std::max({0.3 * jerk_time, shortest_step, total / most_stations}), total / 40.0);
+  const double jerk_time = (limits.acceleration / limits.jerk).minCoeff();
+  const double step =
+      std::min(std::max({0.3 * jerk_time, shortest_step, total / most_stations}), total / 100.0);
   return timed_grid(path, coarse, guess, step, 6);
 }
 
-// Divides the intervals of `motion` (its pieces from `begin`, one per interval) in which a limit is exceeded between
-// the stations. Returns the new grid and the same motion on it; no grid when there is nothing to divide.
+// Divides the intervals of `motion` (its pieces from `begin`, one per interval) in which a limit is exceeded
+// between the stations. Returns the new grid and the same motion on it; no grid when there is nothing to
+// divide.
 std::optional<std::pair<Grid, Profile>> divide(const Motion & motion, std::size_t begin, const Grid & grid,
                                                const Limits & limits)
 {
@@ -125,7 +127,8 @@ Profile profile_of(const Motion & motion, std::size_t begin)
   return profile;
 }
 
-// One grid's solution, appended to the motion. Gaps: how near to the optimum, for one speed spline after the other.
+// One grid's solution, appended to the motion. Gaps: how near to the optimum, for one speed spline after the
+// other.
 Profile solve_on(const Grid & grid, Start start, const Limits & limits, const Allowance & allowance,
                  std::initializer_list<double> gaps)
 {
@@ -153,15 +156,18 @@ void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, c
     motion.append(grid, profile, false);
   };
   take(solve_on(grid, first_guess(grid, limits), limits, Allowance(grid), {0.1, 0.02}));
-  if (auto finer = divide(motion, begin, grid, limits)) {
-    grid = std::move(finer->first);
-    take(solve_on(grid, start_from(grid, std::move(finer->second)), limits, Allowance(grid), {0.02, 0.005}));
-  } else {
-    take(solve_on(grid, start_from(grid, profile_of(motion, begin)), limits, Allowance(grid), {0.005}));
+  for (int round = 0; round < 2; ++round) {
+    if (auto finer = divide(motion, begin, grid, limits)) {
+      grid = std::move(finer->first);
+      take(solve_on(grid, start_from(grid, std::move(finer->second)), limits, Allowance(grid), {0.02}));
+    }
   }
   Allowance allowance(grid);
-  if (tighten(motion, begin, limits, allowance)) {
-    take(solve_on(grid, start_from(grid, profile_of(motion, begin)), limits, allowance, {0.005, 0.003}));
+  for (int round = 0; round < 3; ++round) {
+    if (!tighten(motion, begin, limits, allowance) && round > 0) {
+      break;
+    }
+    take(solve_on(grid, start_from(grid, profile_of(motion, begin)), limits, allowance, {0.004}));
   }
   slow_to_limits(motion, begin, limits);
 }

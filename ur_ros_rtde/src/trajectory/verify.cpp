@@ -18,7 +18,8 @@ Point point_at(const Motion & motion, const TimePiece & piece, double time)
   return at_place(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
 }
 
-// The largest of values that come in equal steps, with the vertices of the parabolas through each three of them.
+// The largest of values that come in equal steps, with the vertices of the parabolas through each three of
+// them.
 struct Peak {
   Joints largest = Joints::Zero();
 
@@ -28,7 +29,8 @@ struct Peak {
     if (++count_ >= 3) {
       const Joints bend = (2.0 * before_ - first_ - value).max(1e-12);
       const Joints slope = value - first_;
-      largest = (slope.abs() < 2.0 * bend).select(largest.max(before_ + slope * slope / (8.0 * bend)), largest);
+      largest =
+          (slope.abs() < 2.0 * bend).select(largest.max(before_ + slope * slope / (8.0 * bend)), largest);
     }
     first_ = before_;
     before_ = value;
@@ -69,7 +71,8 @@ std::optional<Excess> excess_at(const Point & point, const Limits & limits, doub
 {
   // A number that is none would pass every comparison with a limit.
   if (!(point.position + point.velocity + point.acceleration + point.jerk).isFinite().all()) {
-    return Excess{Quantity::position, 0, time, std::numeric_limits<double>::quiet_NaN(), limits.position_max[0]};
+    return Excess{Quantity::position, 0, time, std::numeric_limits<double>::quiet_NaN(),
+                  limits.position_max[0]};
   }
   auto excess = excess_of_position(point.position, limits, time);
   if (!excess) {

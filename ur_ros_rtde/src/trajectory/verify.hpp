@@ -25,7 +25,8 @@ struct Excess {
   double time = 0.0, value = 0.0, limit = 0.0;
 };
 
-/// Largest uses of the limits in a time piece: at both ends, at `inner` points, and what is to be expected between them.
+/// Largest uses of the limits in a time piece: at both ends, at `inner` points, and what is to be expected
+/// between them.
 struct PieceUse {
   Joints velocity, acceleration, jerk;  // largest |value| / limit of each joint
 };

@@ -1,6 +1,6 @@
 // The full proof of the trajectory room: trajectory_bench [PATHS=10000] [FIRST=0]
-// Prints how many random paths were planned, the largest use of each limit by finite differences at 10 kHz, the largest
-// miss of a waypoint beyond its tolerance, and planning times.
+// Prints how many random paths were planned, the largest use of each limit by finite differences at 10 kHz,
+// the largest miss of a waypoint beyond its tolerance, and planning times.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -60,12 +60,13 @@ void random_paths(unsigned first, unsigned count, bool jerk)
     prove(seed, jerk, totals);
   }
   std::sort(totals.ms_per_waypoint.begin(), totals.ms_per_waypoint.end());
-  std::printf("%s jerk limits: %d planned, %d refused, %d beyond a limit or tolerance; largest use: velocity %.5f, "
-              "acceleration %.5f, jerk %.5f; miss beyond the tolerance %.2g rad; speed at the ends %.2g rad/s; "
-              "processor time per waypoint: median %.3f ms, worst %.3f ms\n",
-              jerk ? "with" : "without", totals.planned, totals.failed, totals.beyond, totals.use.velocity,
-              totals.use.acceleration, totals.use.jerk, totals.miss, totals.end_speed,
-              totals.ms_per_waypoint[totals.ms_per_waypoint.size() / 2], totals.ms_per_waypoint.back());
+  std::printf(
+      "%s jerk limits: %d planned, %d refused, %d beyond a limit or tolerance; largest use: velocity %.5f, "
+      "acceleration %.5f, jerk %.5f; miss beyond the tolerance %.2g rad; speed at the ends %.2g rad/s; "
+      "processor time per waypoint: median %.3f ms, worst %.3f ms\n",
+      jerk ? "with" : "without", totals.planned, totals.failed, totals.beyond, totals.use.velocity,
+      totals.use.acceleration, totals.use.jerk, totals.miss, totals.end_speed,
+      totals.ms_per_waypoint[totals.ms_per_waypoint.size() / 2], totals.ms_per_waypoint.back());
 }
 
 void planning_time(const char * what, const std::vector<Joints> & waypoints, const PathOptions & options)
@@ -82,7 +83,8 @@ void planning_time(const char * what, const std::vector<Joints> & waypoints, con
     best = std::min(best, processor_ms(begin));
     duration = plan ? plan->duration() : -1.0;
   }
-  std::printf("%s, %zu waypoints: planned in %.1f ms (motion of %.1f s)\n", what, waypoints.size(), best, duration);
+  std::printf("%s, %zu waypoints: planned in %.1f ms (motion of %.1f s)\n", what, waypoints.size(), best,
+              duration);
 }
 
 std::vector<Joints> curve(int count)

@@ -22,9 +22,10 @@ Utilisation use_by_differences(const Trajectory & trajectory, const Limits & lim
     const Joints jerk = (q[3] - 3.0 * q[2] + 3.0 * q[1] - q[0]) / (h * h * h);
     // A position is rounded to its own last digit, and taken at a time rounded to its last digit.
     const Joints rounding = 4.0 * epsilon * (q[3].abs() + velocity.abs() * time);
-    use.velocity = std::max(use.velocity, ((velocity.abs() - 2.0 * rounding / h) / limits.velocity).maxCoeff());
-    use.acceleration =
-        std::max(use.acceleration, ((acceleration.abs() - 4.0 * rounding / (h * h)) / limits.acceleration).maxCoeff());
+    use.velocity =
+        std::max(use.velocity, ((velocity.abs() - 2.0 * rounding / h) / limits.velocity).maxCoeff());
+    use.acceleration = std::max(
+        use.acceleration, ((acceleration.abs() - 4.0 * rounding / (h * h)) / limits.acceleration).maxCoeff());
     use.jerk = std::max(use.jerk, ((jerk.abs() - 8.0 * rounding / (h * h * h)) / limits.jerk).maxCoeff());
     std::rotate(q, q + 1, q + 4);
   }

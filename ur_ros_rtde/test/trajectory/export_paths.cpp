@@ -28,16 +28,20 @@ class Writer {
   std::ofstream file_;
 };
 
-// Times of the stations of one block: the borders of the path's pieces, and others about `step` apart.
+// Times of the stations of one block: the borders of the path's pieces, two in each of our own intervals in a
+// blend (an oracle that does not look there exceeds the limits), and others at most `step` apart; at least
+// 300.
 std::vector<double> station_times(const Motion & motion, std::size_t first, std::size_t last, double step)
 {
   std::vector<double> times{motion.timing[first].start};
+  const double longest = std::min(step, (motion.timing[last - 1].end() - times[0]) / 300.0);
   for (std::size_t k = first; k < last; ++k) {
     const TimePiece & piece = motion.timing[k];
+    const bool blend = motion.path->pieces[piece.piece].degree > 3;
     const bool border = k + 1 == last || motion.timing[k + 1].piece != piece.piece;
     const double since = piece.end() - times.back();
-    if (border || since > step) {
-      const int parts = std::max(1, static_cast<int>(std::ceil(since / step)));
+    if (blend || border || since > longest) {
+      const int parts = std::max(blend ? 2 : 1, static_cast<int>(std::ceil(since / longest)));
       const double from = times.back();
       for (int n = 1; n <= parts; ++n) {
         times.push_back(from + since * n / parts);

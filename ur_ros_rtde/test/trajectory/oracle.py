@@ -36,24 +36,29 @@ def with_jerk(limits, rows):
     """Successive convex programs around the exported speeds, until the duration settles."""
     import copp_py as copp
 
-    s = rows[:, 0] - rows[0, 0]
-    d1, d2, d3 = (np.ascontiguousarray(rows[:, k:k + 6]) for k in (2, 8, 14))
+    # In units of s in which the stations are about 0.01 apart, the solver's numbers are of similar size.
+    unit = 0.01 * len(rows) / (rows[-1, 0] - rows[0, 0])
+    s = (rows[:, 0] - rows[0, 0]) * unit
+    d1, d2, d3 = (np.ascontiguousarray(rows[:, k:k + 6]) / unit ** n for n, k in enumerate((2, 8, 14), 1))
     robot = copp.Robot(6, capacity=len(s))
     robot.append_s(s)
     robot.set_q(d1, d1, d2, 0, dddq=d3)
     robot.add_velocity_limits(limits[0], -limits[0], start_idx_s=0)
     robot.add_acceleration_limits(limits[1], -limits[1], start_idx_s=0)
     robot.add_jerk_limits(limits[2], -limits[2], start_idx_s=0)
-    a = np.maximum(rows[:, 1], 1e-9)
+    a = np.maximum(rows[:, 1] * unit ** 2, 1e-9)
     best = np.inf
     for _ in range(5):
-        problem = copp.solver.topp3_socp.Problem(
-            robot.constraints, a, idx_s_start=0, a_boundary=(0.0, 0.0), b_boundary=(0.0, 0.0), num_stationary_max=1)
-        options = copp.clarabel.Options(allow_almost_solved=True)
-        try:
-            profile = copp.solver.topp3_socp.solve(problem, options)
-        except Exception as error:  # the oracle's own numerical failures are no result
-            print("  oracle:", str(error)[:100])
+        profile = None
+        for solver in (copp.solver.topp3_socp, copp.solver.topp3_lp):
+            problem = solver.Problem(robot.constraints, a, idx_s_start=0, a_boundary=(0.0, 0.0),
+                                     b_boundary=(0.0, 0.0), num_stationary_max=1)
+            try:
+                profile = solver.solve(problem, copp.clarabel.Options(allow_almost_solved=True))
+                break
+            except Exception:  # a numerical failure of the oracle; its other formulation may do
+                continue
+        if profile is None:
             break
         result = copp.interpolation.s_to_t_topp3(s, profile, 0.0)
         duration = result[0] if isinstance(result, tuple) else np.asarray(result).ravel()[-1]
@@ -114,6 +119,8 @@ def main():
         else:
             print(f"seed {seed}  blocks {len(blocks)}  oracle found no solution")
     ratios = np.array(ratios)
+    if not len(ratios):
+        return
     print(f"{len(ratios)} paths: median {np.median(ratios):.4f}, 95 % {np.quantile(ratios, .95):.4f}, "
           f"worst {ratios.max():.4f}")
 

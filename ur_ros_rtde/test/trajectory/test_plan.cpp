@@ -65,7 +65,8 @@ TEST(StraightLine, takes_the_textbook_time_when_only_jerk_matters)
 
 TEST(StraightLine, takes_the_textbook_time_without_jerk_limits)
 {
-  const auto plan = plan_path(std::vector<Joints>{only(5, 1.0), only(5, -1.0)}, same_limits(10.0, 2.0, unlimited));
+  const auto plan =
+      plan_path(std::vector<Joints>{only(5, 1.0), only(5, -1.0)}, same_limits(10.0, 2.0, unlimited));
   ASSERT_TRUE(plan);
   EXPECT_NEAR(plan->duration(), 2.0 * std::sqrt(2.0 / 2.0), 1e-3);
 }

@@ -21,7 +21,8 @@ TEST(Stop, keeps_the_limits_and_the_path_from_any_moment)
       const Trajectory stop = plan->stop_from(time, limits);
       EXPECT_GE(stop.duration(), time);
       EXPECT_LE(stop.duration(), plan->duration() + 1e-9);
-      EXPECT_LT((stop.sample(0.99 * time).position - plan->sample(0.99 * time).position).abs().maxCoeff(), 1e-12);
+      EXPECT_LT((stop.sample(0.99 * time).position - plan->sample(0.99 * time).position).abs().maxCoeff(),
+                1e-12);
       EXPECT_LT(speed_at_ends(stop), 1e-5) << "seed " << seed << " part " << part;
       EXPECT_LE(stop.progress(stop.duration()), 1.0);
       const Utilisation use = use_by_differences(stop, limits);

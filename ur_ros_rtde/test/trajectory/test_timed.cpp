@@ -20,7 +20,8 @@ Limits limits()
   return result;
 }
 
-// Unevenly spaced samples of a known motion from rest to rest: q = (1 - cos(pi t / 2)) / 2 * (j + 1) / 6, 0 <= t <= 2.
+// Unevenly spaced samples of a known motion from rest to rest: q = (1 - cos(pi t / 2)) / 2 * (j + 1) / 6, 0
+// <= t <= 2.
 TimedWaypoints samples(int order)
 {
   TimedWaypoints waypoints;
@@ -145,11 +146,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadTimed{"times_decreasing", [](TimedWaypoints & w) { w.times[4] = 0.1; }, "times[4] is 0.1"},
         BadTimed{"time_nan", [](TimedWaypoints & w) { w.times[4] = nan_value; }, "times[4] is nan"},
         BadTimed{"time_infinite", [](TimedWaypoints & w) { w.times.back() = INFINITY; }, "times[9] is inf"},
-        BadTimed{"position_missing", [](TimedWaypoints & w) { w.positions.pop_back(); }, "positions has 9 entries"},
-        BadTimed{"velocity_missing", [](TimedWaypoints & w) { w.velocities.pop_back(); }, "velocities has 9 entries"},
+        BadTimed{"position_missing", [](TimedWaypoints & w) { w.positions.pop_back(); },
+                 "positions has 9 entries"},
+        BadTimed{"velocity_missing", [](TimedWaypoints & w) { w.velocities.pop_back(); },
+                 "velocities has 9 entries"},
         BadTimed{"acceleration_missing", [](TimedWaypoints & w) { w.accelerations.pop_back(); },
                  "accelerations has 9 entries"},
-        BadTimed{"five_joints", [](TimedWaypoints & w) { w.positions[2].pop_back(); }, "positions[2] has 5 values"},
+        BadTimed{"five_joints", [](TimedWaypoints & w) { w.positions[2].pop_back(); },
+                 "positions[2] has 5 values"},
         BadTimed{"seven_velocities", [](TimedWaypoints & w) { w.velocities[2].push_back(0); },
                  "velocities[2] has 7 values"},
         BadTimed{"position_nan", [](TimedWaypoints & w) { w.positions[3][1] = nan_value; },

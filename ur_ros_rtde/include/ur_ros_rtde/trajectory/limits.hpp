@@ -38,8 +38,8 @@ struct Limits {
 Limits make_limits(const ArmLimits & arm, double acceleration = default_acceleration,
                    double jerk = default_jerk);
 
-/// Refuses limits that are zero, negative, NaN or beyond 1e-4 to 1e7, an empty position range, and what time-optimal timing
-/// cannot do without: finite velocity and acceleration limits.
+/// Refuses limits that are zero, negative, NaN or beyond 1e-4 to 1e7, an empty position range, and what
+/// time-optimal timing cannot do without: finite velocity and acceleration limits.
 Status check(const Limits & limits);
 
 /// "shoulder_pan_joint", … as ROS names them.
