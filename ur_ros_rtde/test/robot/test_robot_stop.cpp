@@ -19,6 +19,7 @@ StopOptions decelerating(double joint, double linear)
 TEST_F(AStop, of_an_arm_at_rest_does_nothing)
 {
   make_both();
+  ASSERT_TRUE(eventually([&] { return at_rest(); })) << "rest takes some cycles to be known";
   const auto report = robot->stop_motion();
   ASSERT_TRUE(report);
   EXPECT_EQ(report->means, StopMeans::nothing_moved);
