@@ -28,13 +28,13 @@ class Writer {
   std::ofstream file_;
 };
 
-// Times of the stations of one block: the borders of the path's pieces, two in each of our own intervals in a
-// blend (an oracle that does not look there exceeds the limits), and others at most `step` apart; at least
-// 300.
+// Times of the stations of one block: the borders of the path's pieces, two in each of our own intervals in a blend (an
+// oracle that does not look there exceeds the limits), and others at most `step` apart; at least 300, or 40 on a line.
 std::vector<double> station_times(const Motion & motion, std::size_t first, std::size_t last, double step)
 {
   std::vector<double> times{motion.timing[first].start};
-  const double longest = std::min(step, (motion.timing[last - 1].end() - times[0]) / 300.0);
+  const bool line = motion.timing[first].piece == motion.timing[last - 1].piece;
+  const double longest = std::min(step, (motion.timing[last - 1].end() - times[0]) / (line ? 40.0 : 300.0));
   for (std::size_t k = first; k < last; ++k) {
     const TimePiece & piece = motion.timing[k];
     const bool blend = motion.path->pieces[piece.piece].degree > 3;

@@ -31,7 +31,7 @@ class RandomPaths : public testing::TestWithParam<bool> {};
 
 TEST_P(RandomPaths, keep_all_limits_and_pass_all_waypoints)
 {
-  for (unsigned seed = 0; seed < 160; ++seed) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
     const RandomPath path = random_path(seed);
     const Limits limits = random_limits(seed, GetParam());
     const auto plan = plan_path(path.waypoints, limits, path.options);
