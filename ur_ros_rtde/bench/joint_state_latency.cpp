@@ -1,4 +1,5 @@
-// Prints, for each message of joint_states, its stamp and when it was received: ns since the epoch, by the host's clock.
+// Prints, for each message of joint_states, its stamp and when it was received: ns since the epoch, by the
+// host's clock.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>

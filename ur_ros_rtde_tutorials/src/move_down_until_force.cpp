@@ -41,8 +41,7 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
         break;
       }
       if (run.motion_ended()) {
-        return Outcome::failure(ErrorCode::not_reached, fmt::format("no force above {} N on {} m downwards",
-                                                                    goal.force, goal.distance));
+        return missed(goal, run);
       }
       if (auto why = run.sleep_for(2ms)) {
         return *why;
@@ -58,6 +57,15 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
     run.feedback().force = run.result().force = force;
     run.feedback().distance = run.result().distance = distance;
     run.progress(std::clamp(distance / goal.distance, 0.0, 1.0));
+  }
+
+  static Outcome missed(const Goal & goal, Run & run)
+  {
+    if (Outcome ended = run.until_motion_ends(); !ended) {
+      return ended;  // it had not even begun
+    }
+    return Outcome::failure(ErrorCode::not_reached,
+                            fmt::format("no force above {} N on {} m downwards", goal.force, goal.distance));
   }
 
   static Outcome standstill(const Goal & goal, Run & run, double start)

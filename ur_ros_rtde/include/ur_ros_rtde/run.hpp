@@ -53,6 +53,9 @@ class Run {
   [[nodiscard]] std::optional<Interruption> until(const std::function<bool()> & condition,
                                                   std::chrono::nanoseconds timeout);
 
+  /// The same for what has to come: `otherwise` is the failure when it has not come within `timeout`.
+  [[nodiscard]] Outcome expect(const std::function<bool()> & condition, std::chrono::nanoseconds timeout,
+                               const std::string & otherwise, ErrorCode code = ErrorCode::rejected_by_robot);
   /// Waits for the first package of the controller after `sample` and puts it there: for loops that follow
   /// the controller's cycle.
   [[nodiscard]] std::optional<Interruption> next(Sample & sample);

@@ -53,12 +53,11 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
     const auto arrived = [&] {
       return largest_error(goal.joint_positions, run.state().actual_q) < tolerance;
     };
-    const auto why = run.until(arrived, settling_limit);  // servo control lags behind by lookahead_time
+    // Servo control lags behind by lookahead_time.
+    const Outcome outcome =
+        run.expect(arrived, settling_limit, "the arm did not get to joint_positions", ErrorCode::not_reached);
     run.control()->servoStop(goal.deceleration);
-    if (why && why->code == ErrorCode::timeout) {
-      return Outcome::failure(ErrorCode::not_reached, "the arm did not get to joint_positions");
-    }
-    return why ? Outcome(*why) : Outcome::success();
+    return outcome;
   }
 
   /// A target for each control cycle. A host that comes late goes on from where it was: the arm is slower

@@ -21,15 +21,10 @@ class SetDigitalOutput : public Command<ur_ros_rtde_msgs::action::SetDigitalOutp
       run.io()->setToolDigitalOut(static_cast<std::uint8_t>(goal.pin - 16), goal.state);
     }
     const auto is_set = [&] { return (((run.state().digital_outputs >> goal.pin) & 1U) != 0) == goal.state; };
-    const auto why = run.until(is_set, std::chrono::seconds(1));
-    if (why && why->code == ErrorCode::timeout) {
-      return Outcome::failure(
-          ErrorCode::rejected_by_robot,
-          fmt::format("output {} stays {}: the installation on the robot may have given it "
-                      "another task",
-                      goal.pin, goal.state ? "off" : "on"));
-    }
-    return why ? Outcome(*why) : Outcome::success();
+    return run.expect(
+        is_set, std::chrono::seconds(1),
+        fmt::format("output {} stays {}: the installation on the robot may have given it another task",
+                    goal.pin, goal.state ? "off" : "on"));
   }
 };
 

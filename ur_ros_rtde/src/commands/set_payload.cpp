@@ -29,11 +29,7 @@ class SetPayload : public Command<ur_ros_rtde_msgs::action::SetPayload> {
              (std::abs(sample.payload - goal.mass) < tolerance &&
               std::hypot(set[0] - cog.x, set[1] - cog.y, set[2] - cog.z) < tolerance);
     };
-    const auto why = run.until(is_set, std::chrono::seconds(1));
-    if (why && why->code == ErrorCode::timeout) {
-      return Outcome::failure(ErrorCode::rejected_by_robot, "the robot still reports another payload");
-    }
-    return why ? Outcome(*why) : Outcome::success();
+    return run.expect(is_set, std::chrono::seconds(1), "the robot still reports another payload");
   }
 };
 

@@ -17,11 +17,7 @@ class SetSpeedSlider : public Command<ur_ros_rtde_msgs::action::SetSpeedSlider> 
   {
     run.io()->setSpeedSlider(goal.fraction);
     const auto is_set = [&] { return std::abs(run.state().target_speed_fraction - goal.fraction) < 0.01; };
-    const auto why = run.until(is_set, std::chrono::seconds(1));
-    if (why && why->code == ErrorCode::timeout) {
-      return Outcome::failure(ErrorCode::rejected_by_robot, "the robot still reports another speed");
-    }
-    return why ? Outcome(*why) : Outcome::success();
+    return run.expect(is_set, std::chrono::seconds(1), "the robot still reports another speed");
   }
 };
 

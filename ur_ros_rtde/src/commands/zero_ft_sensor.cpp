@@ -16,7 +16,8 @@ class ZeroFtSensor : public Command<ur_ros_rtde_msgs::action::ZeroFtSensor> {
       const Vector6 f = run.flange_force();
       return std::hypot(f[0], f[1], f[2]) < zero_force;
     };
-    const auto why = run.until(reads_zero, std::chrono::seconds(1));
+    const Outcome outcome =
+        run.expect(reads_zero, std::chrono::seconds(1), "the sensor does not read zero afterwards");
     const Vector6 f = run.flange_force();
     auto & wrench = run.result().wrench;
     wrench.force.x = f[0];
@@ -25,10 +26,7 @@ class ZeroFtSensor : public Command<ur_ros_rtde_msgs::action::ZeroFtSensor> {
     wrench.torque.x = f[3];
     wrench.torque.y = f[4];
     wrench.torque.z = f[5];
-    if (why && why->code == ErrorCode::timeout) {
-      return Outcome::failure(ErrorCode::rejected_by_robot, "the sensor does not read zero afterwards");
-    }
-    return why ? Outcome(*why) : Outcome::success();
+    return outcome;
   }
 };
 

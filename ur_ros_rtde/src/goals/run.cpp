@@ -149,6 +149,16 @@ std::optional<Interruption> Run::until(const std::function<bool()> & condition,
   return why;
 }
 
+Outcome Run::expect(const std::function<bool()> & condition, std::chrono::nanoseconds timeout,
+                    const std::string & otherwise, ErrorCode code)
+{
+  const auto why = wait(condition, Clock::now() + timeout);
+  if (!why) {
+    return Outcome::success();
+  }
+  return why->code == ErrorCode::timeout ? Outcome::failure(code, otherwise) : Outcome(*why);
+}
+
 std::optional<Interruption> Run::next(Sample & sample)
 {
   const auto deadline = Clock::now() + package_limit;

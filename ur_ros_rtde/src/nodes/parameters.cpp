@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace ur_ros_rtde {
 namespace {
@@ -87,6 +88,14 @@ std::string declare_robot_ip(rcl_cxx::Node & node)
   return address;
 }
 
+std::chrono::milliseconds declare_silence_limit(rcl_cxx::Node & node)
+{
+  const double seconds = declare_number(
+      node, "silence_limit", 0.1, 0.02, 10.0,
+      "s: the link counts as lost, and a motion ends, when the controller has sent nothing for so long");
+  return std::chrono::milliseconds(std::lround(1000.0 * seconds));
+}
+
 PluginChoice declare_plugin_choice(rcl_cxx::Node & node)
 {
   const std::vector<std::string> none;
@@ -121,6 +130,7 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
   auto port = described("Port at which the External Control URCap finds this node");
   port.integer_range = rcl_cxx::IntegerRange{1, 65535};
   robot.urcap_port = static_cast<std::uint16_t>(node.declare_parameter<int>("urcap_port", 50002, port));
+  robot.silence_limit = declare_silence_limit(node);
   robot.watchdog_frequency = declare_number(
       node, "watchdog_frequency", robot.watchdog_frequency, 0.0, 100.0,
       "Hz: the robot stops the arm after 1/watchdog_frequency s without a sign of life of this "

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <rcl_cxx/node.hpp>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@ namespace ur_ros_rtde {
 /// them; they throw rcl_cxx::ParameterError with name, value and what it may be.
 
 std::string declare_robot_ip(rcl_cxx::Node & node);
+
+/// After which silence of the controller the link counts as lost.
+std::chrono::milliseconds declare_silence_limit(rcl_cxx::Node & node);
 
 struct PluginChoice {
   std::vector<std::string> plugins;

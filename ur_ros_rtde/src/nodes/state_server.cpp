@@ -14,6 +14,7 @@ StateServer::StateServer(const rcl_cxx::Context::SharedPtr & context)
 {
   StateReceiverOptions source;
   source.address = declare_robot_ip(*node_);
+  source.silence_limit = declare_silence_limit(*node_);
   RobotStateReceiver::Options options = declare_state_options(*node_);
   source.frequency = options.frequency;
   source_ = std::make_unique<StateReceiver>(source, log_into(node_->logger()));

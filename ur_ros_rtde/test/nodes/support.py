@@ -75,6 +75,12 @@ class Process:
     def interrupt(self):
         self._process.send_signal(signal.SIGINT)
 
+    def pause(self):
+        self._process.send_signal(signal.SIGSTOP)
+
+    def go_on(self):
+        self._process.send_signal(signal.SIGCONT)
+
     def kill(self):
         self._process.kill()
         self._process.wait(10.0)
@@ -130,7 +136,10 @@ class Simulator:
 
 
 def node(name, address, *parameters, namespace="", env=None, arguments=()):
+    # Patient: with other tests beside it, a simulator on a small machine may be late by more than a robot ever is.
+    patience = ["silence_limit:=2.0", "watchdog_frequency:=2.0"]
     command = [program("ur_ros_rtde", name), "--ros-args", "-p", f"robot_ip:={address}"]
+    parameters = [*(p for p in patience if not any(q.split(":=")[0] == p.split(":=")[0] for q in parameters)), *parameters]
     for parameter in parameters:
         command += ["-p", parameter]
     if namespace:

@@ -185,3 +185,24 @@ def test_preempting_stops_the_motion_that_runs_and_carries_out_the_new_one(simul
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PREEMPTED
     assert "move_j" in result.message
     second.succeeded()
+
+
+def test_a_controller_that_falls_silent_ends_the_motion_within_the_limit(addresses, processes):
+    simulator = processes(Simulator(addresses[1]))
+    processes(node("driver", addresses[1], "silence_limit:=0.3", namespace="silent"))
+    client = Client("silent")
+    try:
+        make_ready(client)
+        goal = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.5)
+        wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
+        simulator.process.pause()
+        try:
+            begin = time.monotonic()
+            status, result = goal.end(10.0)
+            assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.LINK_LOST, result.message
+            assert time.monotonic() - begin < 5.0
+        finally:
+            simulator.process.go_on()
+        make_ready(client)
+    finally:
+        client.close()
