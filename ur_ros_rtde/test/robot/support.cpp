@@ -137,8 +137,8 @@ RobotOptions robot_options()
 {
   RobotOptions result;
   result.address = own_address();
-  result.silence_limit = 500ms;
-  result.watchdog_frequency = 2.0;
+  result.silence_limit = 1000ms;
+  result.watchdog_frequency = 1.0;
   return result;
 }
 
@@ -146,7 +146,7 @@ StateReceiverOptions receiver_options()
 {
   StateReceiverOptions result;
   result.address = own_address();
-  result.silence_limit = 500ms;
+  result.silence_limit = 1000ms;
   return result;
 }
 

@@ -156,8 +156,8 @@ TEST_F(AMotion, is_stopped_by_the_watchdog_when_the_link_is_half_open)
 {
   controller.start();
   auto options = robot_options();
-  options.silence_limit = RobotOptions().silence_limit;
-  options.watchdog_frequency = RobotOptions().watchdog_frequency;
+  options.silence_limit = 300ms;
+  options.watchdog_frequency = 4.0;
   make_robot(options);
   ASSERT_TRUE(becomes_ready());
   move_joints();
