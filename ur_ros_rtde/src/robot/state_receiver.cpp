@@ -187,10 +187,10 @@ void StateReceiver::Impl::run(const std::stop_token & stop)
                                               to_string(*version_), frequency_));
       set_link({true, {}});
       const Error end = follow(stop);
-      set_link({false, end});
       if (!stop.stop_requested()) {
         report_.once(LogLevel::error, fmt::format("{}; trying to connect again", end.message));
       }
+      set_link({false, end});
     } else {
       const auto again = std::chrono::duration<double>(options_.retry_interval).count();
       report_.once(LogLevel::error,
