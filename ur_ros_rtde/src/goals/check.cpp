@@ -1,6 +1,7 @@
 #include "ur_ros_rtde/check.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

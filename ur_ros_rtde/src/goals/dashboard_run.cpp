@@ -1,6 +1,7 @@
 #include "ur_ros_rtde/dashboard_run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <ur_rtde/dashboard_client.h>
 
 #include <algorithm>

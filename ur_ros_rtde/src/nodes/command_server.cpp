@@ -1,6 +1,7 @@
 #include "nodes/command_server.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "nodes/node_log.hpp"
 #include "plugins/plugin_selection.hpp"

@@ -1,6 +1,7 @@
 #include "nodes/fake_joints.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

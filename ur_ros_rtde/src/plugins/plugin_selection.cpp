@@ -1,6 +1,7 @@
 #include "plugins/plugin_selection.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
