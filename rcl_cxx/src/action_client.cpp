@@ -55,7 +55,7 @@ ActionClientBase::ActionClientBase(std::shared_ptr<detail::ActionClientCore> cor
 ActionClientBase::~ActionClientBase()
 {
   core_->close();
-  core_->forget_all();
+  core_->retire();
 }
 
 const std::string & ActionClientBase::action_name() const noexcept

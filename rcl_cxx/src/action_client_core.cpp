@@ -90,7 +90,7 @@ void ActionClientCore::stop() noexcept
   ignore_rcl(rcl_action_client_set_status_subscription_callback(&client_, nullptr, nullptr));
 }
 
-void ActionClientCore::forget_all()
+void ActionClientCore::retire()
 {
   // Destroyed after the lock is released: their futures break, and whoever waits for them wakes up.
   std::map<std::int64_t, Goal> unanswered;
@@ -99,6 +99,7 @@ void ActionClientCore::forget_all()
   std::map<std::int64_t, std::promise<CancelResponse>> cancellations;
   std::vector<ErasedGoalCallbacks> callbacks;
   const std::lock_guard lock(mutex_);
+  retired_ = true;
   for (const auto & [id, goal] : goals_) {
     callbacks.push_back(std::exchange(goal->callbacks, {}));  // a user's handle keeps the goal itself
   }
@@ -165,6 +166,9 @@ std::future<CancelResponse> ActionClientCore::cancel(const GoalId & id, std::int
   auto future = promise.get_future();
   std::int64_t sequence = 0;
   const std::lock_guard lock(mutex_);
+  if (retired_) {
+    throw Error(fmt::format("goal {} cannot be canceled: its action client is gone", id.short_string()));
+  }
   check_rcl(rcl_action_send_cancel_request(&client_, &request, &sequence), name_, "cannot ask to cancel");
   cancellations_.emplace(sequence, std::move(promise));
   return future;

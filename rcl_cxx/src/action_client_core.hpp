@@ -52,8 +52,8 @@ class ActionClientCore : public Entity {
   GoalId send(const void * goal, ErasedGoalCallbacks callbacks);
   void abandon(const GoalId & id) noexcept;
   std::future<CancelResponse> cancel(const GoalId & id, std::int64_t stamp_ns);
-  /// Drops all that waits for an answer.
-  void forget_all();
+  /// The user's client object is destroyed: drops all that waits for an answer, and sends nothing any more.
+  void retire();
 
  protected:
   void execute(std::size_t source) override;
@@ -77,6 +77,7 @@ class ActionClientCore : public Entity {
   rcl_action_client_t client_;
 
   mutable std::mutex mutex_;
+  bool retired_ = false;
   std::map<std::int64_t, Goal> unanswered_;      // by sequence number of the goal request
   std::map<std::int64_t, Goal> without_result_;  // by sequence number of the result request
   std::map<GoalId, Goal> goals_;                 // sent and not ended
