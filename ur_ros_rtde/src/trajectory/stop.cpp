@@ -1,138 +1,79 @@
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "trajectory/motion.hpp"
+#include "trajectory/slow_clock.hpp"
 #include "trajectory/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double wait_step = 0.008;   // s, between the moments at which braking may begin
-constexpr int fit_pieces = 24;        // of the stop, at least
-constexpr double check_step = 0.004;  // s
-
-// A stop slows the clock of the planned motion: its time runs at rate 1 - (3 x^2 - 2 x^3), x = t / length
-// from 0 to 1. So the arm stays on its path, and starts to brake without a jump of the acceleration.
-struct Clock {
-  double begin;   // planned time when the braking begins
-  double length;  // s
-
-  double time(double t) const
-  {
-    const double x = t / length;
-    return begin + length * (x - x * x * x + 0.5 * x * x * x * x);
-  }
-  double rate(double t) const
-  {
-    const double x = t / length;
-    return 1.0 - x * x * (3.0 - 2.0 * x);
-  }
-  double change(double t) const
-  {
-    const double x = t / length;
-    return -6.0 * x * (1.0 - x) / length;
-  }
-  // When the clock shows `planned`, begin < planned < time(length).
-  double when(double planned) const
-  {
-    double low = 0.0;
-    double high = length;
-    for (int round = 0; round < 60; ++round) {
-      const double middle = 0.5 * (low + high);
-      (time(middle) < planned ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-  }
-};
-
-// The planned place, by the slowed clock, on the planned piece `index`.
-Place slowed_place(const Motion & plan, std::size_t index, const Clock & clock, double t)
+// The place on the planned piece `index` that the slowed clock shows, as seen from the beginning (or the end) of the
+// clock's phase: between phases r'' jumps, r and r' do not.
+Place slowed_place(const Motion & plan, std::size_t index, const ClockState & clock)
 {
   const TimePiece & piece = plan.timing[index];
-  const Place place = piece.at(std::clamp(clock.time(t), piece.start, piece.end()));
-  const double rate = clock.rate(t);
-  return {place.u, place.v * rate, place.a * rate * rate + place.v * clock.change(t), 0.0};
+  const Place place = piece.at(std::clamp(clock.planned, piece.start, piece.end()));
+  return {place.u, place.v * clock.rate, place.a * clock.rate * clock.rate + place.v * clock.change, 0.0};
 }
 
-// The braking part alone, its time from 0.
-Motion braking(const Motion & plan, const Clock & clock)
+// Ends of the parts in which both the plan and the clock are smooth.
+std::vector<double> part_ends(const Motion & plan, const SlowClock & clock)
 {
+  std::vector<double> ends;
+  for (std::size_t k = 1; k < clock.phases.size(); ++k) {
+    ends.push_back(clock.phases[k].begin);
+  }
+  const double landing = clock.phases.back().begin;
+  constexpr int landing_parts = 16;
+  for (int k = 1; k <= landing_parts; ++k) {
+    ends.push_back(landing + (clock.end - landing) * k / landing_parts);
+  }
+  const double last = clock.at(clock.end).planned;
+  for (std::size_t i = plan.piece_at(clock.phases.front().state.planned); plan.timing[i].end() < last; ++i) {
+    ends.push_back(clock.when(plan.timing[i].end()));
+  }
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
+// The braking alone, its time from 0.
+Motion braking(const Motion & plan, const SlowClock & clock)
+{
+  constexpr double shortest = 1e-7;  // s; shorter parts are joined with the next
   Motion result;
   result.path = plan.path;
-  const double last_planned = std::min(clock.time(clock.length), plan.duration());
-  const double end = last_planned < clock.time(clock.length) ? clock.when(last_planned) : clock.length;
-  const double step = clock.length / fit_pieces;
   double from = 0.0;
-  std::size_t index = plan.piece_at(clock.begin);
-  while (from < end) {
-    double to = std::min(from + step, end);
-    const double border = plan.timing[index].end();
-    const bool crosses = border < last_planned && clock.time(to) >= border;
-    if (crosses) {
-      to = std::clamp(clock.when(border), from, to);
+  for (const double to : part_ends(plan, clock)) {
+    if (to - from < shortest) {
+      continue;
     }
-    if (to - from > 1e-9) {
-      result.append(plan.timing[index].piece, to - from, slowed_place(plan, index, clock, from),
-                    slowed_place(plan, index, clock, to));
-      from = to;
-    } else if (!crosses) {
-      break;
-    }
-    index += crosses ? 1 : 0;
+    const ClockState begin = clock.at(from);
+    const ClockState end = clock.at(to);
+    const std::size_t index = plan.piece_at(clock.at(0.5 * (from + to)).planned);
+    result.append(plan.timing[index].piece, to - from, slowed_place(plan, index, begin), slowed_place(plan, index, end));
+    from = to;
   }
   return result;
 }
 
-// Longest braking worth a try: four times what the joints need from full speed.
-double longest_braking(const Limits & limits)
+// The quickest braking that obeys the limits everywhere: the less of them it means to use, the less it exceeds them
+// between the moments that the search looks at.
+std::optional<Motion> find_braking(const Motion & plan, double planned, const Limits & limits)
 {
-  const Joints ramp = limits.velocity / limits.acceleration;
-  const Joints settle = limits.acceleration / limits.jerk;
-  return 4.0 * (ramp + settle).maxCoeff();
-}
-
-class StopSearch {
- public:
-  StopSearch(const Motion & plan, Limits limits) : plan_(plan), limits_(std::move(limits)) {}
-
-  // The stop from `time` on that is at rest first; none when the plan itself comes to rest before any.
-  std::optional<Clock> find(double time)
-  {
-    best_end_ = plan_.duration();
-    const double longest = longest_braking(limits_);
-    for (double begin = time; begin < best_end_; begin += wait_step) {
-      const double room = std::min(longest, best_end_ - begin);
-      if (obeys({begin, room})) {
-        shorten(begin, room);
-      }
+  for (const double reserve : {0.0, 0.02, 0.06, 0.15, 0.3, 0.5, 0.7, 0.85}) {
+    const auto clock = find_slow_clock(plan, planned, limits, reserve);
+    if (!clock) {
+      continue;
     }
-    return best_;
-  }
-
- private:
-  bool obeys(const Clock & clock) const
-  {
+    Motion motion = braking(plan, *clock);
     Utilisation use;
-    return !first_excess(braking(plan_, clock), limits_, check_step, use);
-  }
-
-  void shorten(double begin, double feasible)
-  {
-    double infeasible = 0.0;
-    while (feasible - infeasible > 0.02 * feasible) {
-      const double middle = 0.5 * (feasible + infeasible);
-      (obeys({begin, middle}) ? feasible : infeasible) = middle;
+    if (!first_excess(motion, limits, verification_step, use)) {
+      return motion;
     }
-    best_ = Clock{begin, feasible};
-    best_end_ = begin + feasible;
   }
-
-  const Motion & plan_;
-  Limits limits_;
-  double best_end_ = 0.0;
-  std::optional<Clock> best_;
-};
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -148,15 +89,14 @@ Trajectory Trajectory::stop_from(double time, const Limits & limits) const
     result->append(motion_->timing.front().piece, 1e-3, Place{});  // not yet begun: stay
     return Trajectory(std::move(result));
   }
-  const auto clock = StopSearch(*motion_, slightly_within(limits, 5e-5)).find(now);
-  if (!clock) {
+  const auto brake = find_braking(*motion_, now, slightly_within(limits, 5e-5));
+  if (!brake) {
     return *this;
   }
-  const std::size_t index = motion_->piece_at(clock->begin);
-  result->timing.assign(motion_->timing.begin(),
-                        motion_->timing.begin() + static_cast<std::ptrdiff_t>(index) + 1);
-  result->timing.back().duration = clock->begin - result->timing.back().start;
-  for (TimePiece piece : braking(*motion_, *clock).timing) {
+  const std::size_t index = motion_->piece_at(now);
+  result->timing.assign(motion_->timing.begin(), motion_->timing.begin() + static_cast<std::ptrdiff_t>(index) + 1);
+  result->timing.back().duration = now - result->timing.back().start;
+  for (TimePiece piece : brake->timing) {
     piece.start = result->duration();
     result->timing.push_back(piece);
   }

@@ -87,6 +87,29 @@ void planning_time(const char * what, const std::vector<Joints> & waypoints, con
               duration);
 }
 
+// Stops from 200 moments of random plans.
+void stops()
+{
+  std::vector<double> ms;
+  std::vector<double> seconds;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const auto path = test::random_path(seed);
+    const Limits limits = test::random_limits(seed, true);
+    const auto plan = plan_path(path.waypoints, limits, path.options);
+    for (int part = 1; plan && part < 6; ++part) {
+      const double time = plan->duration() * part / 6.0;
+      const std::clock_t begin = std::clock();
+      const Trajectory stop = plan->stop_from(time, limits);
+      ms.push_back(processor_ms(begin));
+      seconds.push_back(stop.duration() - time);
+    }
+  }
+  std::sort(ms.begin(), ms.end());
+  std::sort(seconds.begin(), seconds.end());
+  std::printf("stops along the path: computed in median %.2f ms, worst %.2f ms; at rest after median %.3f s, worst %.3f s\n",
+              ms[ms.size() / 2], ms.back(), seconds[seconds.size() / 2], seconds.back());
+}
+
 std::vector<Joints> curve(int count)
 {
   std::vector<Joints> points;
@@ -123,6 +146,7 @@ int main(int argc, char ** argv)
   planning_time("smooth curve, blended within 0.01 rad", curve(1000), {.blend_tolerance = 0.01});
   planning_time("jumps, a stop at every waypoint", jumps(1000), {});
   planning_time("jumps, blended within 0.05 rad", jumps(1000), {.blend_tolerance = 0.05});
+  stops();
   for (const bool jerk : {true, false}) {
     if (count == 0) {
       break;
