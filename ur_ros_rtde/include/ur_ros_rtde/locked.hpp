@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -9,8 +10,9 @@
 
 namespace ur_ros_rtde {
 
-/// A recursive lock whose wait has a limit. (std::recursive_timed_mutex waits with pthread_mutex_clocklock,
-/// which ThreadSanitizer of the compilers we support does not know.)
+/// A recursive lock whose wait has a limit, given in the order of asking: a thread that calls in a loop does
+/// not keep the others out. (std::recursive_timed_mutex waits with pthread_mutex_clocklock, which
+/// ThreadSanitizer of the compilers we support does not know.)
 class InterfaceLock {
  public:
   /// False when another thread still held it after `limit`.
@@ -20,6 +22,7 @@ class InterfaceLock {
  private:
   std::mutex mutex_;
   std::condition_variable released_;
+  std::deque<std::thread::id> waiting_;
   std::thread::id owner_;
   unsigned depth_ = 0;
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "ur_ros_rtde/error.hpp"
 
 namespace ur_ros_rtde {
@@ -14,12 +16,17 @@ bool InterfaceLock::try_lock_for(std::chrono::milliseconds limit)
     ++depth_;
     return true;
   }
-  if (!released_.wait_for(lock, limit, [this] { return depth_ == 0; })) {
-    return false;
+  waiting_.push_back(self);
+  const bool mine = released_.wait_for(lock, limit, [&] { return depth_ == 0 && waiting_.front() == self; });
+  waiting_.erase(std::find(waiting_.begin(), waiting_.end(), self));
+  if (mine) {
+    owner_ = self;
+    depth_ = 1;
+  } else {
+    lock.unlock();
+    released_.notify_all();  // the next in line may have waited for this thread
   }
-  owner_ = self;
-  depth_ = 1;
-  return true;
+  return mine;
 }
 
 void InterfaceLock::unlock()
@@ -31,7 +38,7 @@ void InterfaceLock::unlock()
     }
     owner_ = {};
   }
-  released_.notify_one();
+  released_.notify_all();
 }
 
 std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> acquire(InterfaceLock & lock, const char * what,

@@ -47,6 +47,20 @@ TEST_F(LockedCounter, lets_one_call_in_at_a_time)
   EXPECT_EQ(counter->most_inside, 1);
 }
 
+TEST_F(LockedCounter, lets_a_thread_in_though_another_calls_in_a_loop)
+{
+  std::atomic<bool> done{false};
+  std::jthread greedy([&] {
+    while (!done) {
+      locked()->add();
+    }
+  });
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_NO_THROW(locked()->add());
+  }
+  done = true;
+}
+
 TEST_F(LockedCounter, can_be_used_twice_in_one_expression)
 {
   EXPECT_EQ(locked()->add(locked()->add(2)), 4);
