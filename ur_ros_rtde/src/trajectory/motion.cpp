@@ -43,7 +43,10 @@ void Motion::append(std::size_t path_piece, double span, const Place & from, con
   piece.duration = span;
   piece.piece = path_piece;
   // Quintic Hermite interpolation in x = t / span.
-  const double rise = to.u - from.u;
+  // Over a short time the difference of two places is all rounding; the speeds tell better how far it goes.
+  constexpr double brief = 5e-4;  // s
+  const double rise =
+      span < brief ? span * (0.5 * (from.v + to.v) + span * (from.a - to.a) / 12.0) : to.u - from.u;
   const double v0 = from.v * span;
   const double v1 = to.v * span;
   const double a0 = from.a * span * span;

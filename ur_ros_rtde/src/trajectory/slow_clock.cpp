@@ -1,7 +1,6 @@
 #include "trajectory/slow_clock.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace ur_ros_rtde::trajectory {
@@ -19,7 +18,8 @@ class Search {
  public:
   Search(const Motion & plan, const Limits & limits, double reserve)
       : plan_(plan), acceleration_(limits.acceleration), jerk_(limits.jerk), usable_(1.0 - reserve)
-  {}
+  {
+  }
 
   std::optional<SlowClock> find(double planned)
   {
@@ -75,7 +75,8 @@ class Search {
     return result;
   }
 
-  // Whether r'' = bend keeps the limits for `time`, seen at three moments: where the plan's jerk jumps, on both sides.
+  // Whether r'' = bend keeps the limits for `time`, seen at three moments: where the plan's jerk jumps, on
+  // both sides.
   bool keeps(const ClockState & s, double bend, double time) const
   {
     for (const double part : {0.02, 0.5, 0.98}) {
@@ -120,8 +121,8 @@ class Search {
     return false;
   }
 
-  // The lowest bend for the next step that keeps the limits and leaves a way back. `way_back` holds the bend that begins
-  // the way back from here, and receives that of the next state.
+  // The lowest bend for the next step that keeps the limits and leaves a way back. `way_back` holds the bend
+  // that begins the way back from here, and receives that of the next state.
   double hardest(const ClockState & s, double & way_back) const
   {
     const Range allowed = range(s);
@@ -173,11 +174,16 @@ class Search {
 
 }  // namespace
 
-ClockState SlowClock::at(double time) const
+const SlowClock::Phase & SlowClock::phase_at(double time) const
 {
   const auto after = std::upper_bound(phases.begin(), phases.end(), time,
                                       [](double value, const Phase & phase) { return value < phase.begin; });
-  const Phase & phase = after == phases.begin() ? phases.front() : *(after - 1);
+  return after == phases.begin() ? phases.front() : *(after - 1);
+}
+
+ClockState SlowClock::at(double time) const
+{
+  const Phase & phase = phase_at(time);
   ClockState state = phase.state.after(std::min(time, end) - phase.begin, phase.bend);
   if (time >= end) {
     state.rate = state.change = 0.0;
@@ -196,7 +202,8 @@ double SlowClock::when(double planned) const
   return 0.5 * (low + high);
 }
 
-std::optional<SlowClock> find_slow_clock(const Motion & plan, double planned, const Limits & limits, double reserve)
+std::optional<SlowClock> find_slow_clock(const Motion & plan, double planned, const Limits & limits,
+                                         double reserve)
 {
   return Search(plan, limits, reserve).find(planned);
 }

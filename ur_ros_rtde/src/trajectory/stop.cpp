@@ -8,13 +8,14 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-// The place on the planned piece `index` that the slowed clock shows, as seen from the beginning (or the end) of the
-// clock's phase: between phases r'' jumps, r and r' do not.
-Place slowed_place(const Motion & plan, std::size_t index, const ClockState & clock)
+// The place on the planned piece `index` that the slowed clock shows when its r'' is `bend`.
+Place slowed_place(const Motion & plan, std::size_t index, const ClockState & clock, double bend)
 {
   const TimePiece & piece = plan.timing[index];
   const Place place = piece.at(std::clamp(clock.planned, piece.start, piece.end()));
-  return {place.u, place.v * clock.rate, place.a * clock.rate * clock.rate + place.v * clock.change, 0.0};
+  const double r = clock.rate;
+  return {place.u, place.v * r, place.a * r * r + place.v * clock.change,
+          place.j * r * r * r + 3.0 * place.a * r * clock.change + place.v * bend};
 }
 
 // Ends of the parts in which both the plan and the clock are smooth.
@@ -40,7 +41,7 @@ std::vector<double> part_ends(const Motion & plan, const SlowClock & clock)
 // The braking alone, its time from 0.
 Motion braking(const Motion & plan, const SlowClock & clock)
 {
-  constexpr double shortest = 1e-7;  // s; shorter parts are joined with the next
+  constexpr double shortest = 1e-9;  // s; shorter parts are joined with the next
   Motion result;
   result.path = plan.path;
   double from = 0.0;
@@ -48,17 +49,18 @@ Motion braking(const Motion & plan, const SlowClock & clock)
     if (to - from < shortest) {
       continue;
     }
-    const ClockState begin = clock.at(from);
-    const ClockState end = clock.at(to);
-    const std::size_t index = plan.piece_at(clock.at(0.5 * (from + to)).planned);
-    result.append(plan.timing[index].piece, to - from, slowed_place(plan, index, begin), slowed_place(plan, index, end));
+    const double middle = 0.5 * (from + to);
+    const double bend = clock.bend_at(middle);
+    const std::size_t index = plan.piece_at(clock.at(middle).planned);
+    const Place begin = slowed_place(plan, index, clock.at(from), bend);
+    result.append(plan.timing[index].piece, to - from, begin, slowed_place(plan, index, clock.at(to), bend));
     from = to;
   }
   return result;
 }
 
-// The quickest braking that obeys the limits everywhere: the less of them it means to use, the less it exceeds them
-// between the moments that the search looks at.
+// The quickest braking that obeys the limits everywhere: the less of them it means to use, the less it
+// exceeds them between the moments that the search looks at.
 std::optional<Motion> find_braking(const Motion & plan, double planned, const Limits & limits)
 {
   for (const double reserve : {0.0, 0.02, 0.06, 0.15, 0.3, 0.5, 0.7, 0.85}) {
@@ -89,13 +91,23 @@ Trajectory Trajectory::stop_from(double time, const Limits & limits) const
     result->append(motion_->timing.front().piece, 1e-3, Place{});  // not yet begun: stay
     return Trajectory(std::move(result));
   }
-  const auto brake = find_braking(*motion_, now, slightly_within(limits, 5e-5));
+  // Should no braking from here pass its verification, one that begins a little later does.
+  constexpr double wait = 0.025;  // s
+  std::optional<Motion> brake;
+  double begin = now;
+  for (; begin < duration(); begin += wait) {
+    brake = find_braking(*motion_, begin, slightly_within(limits, 5e-5));
+    if (brake) {
+      break;
+    }
+  }
   if (!brake) {
     return *this;
   }
-  const std::size_t index = motion_->piece_at(now);
-  result->timing.assign(motion_->timing.begin(), motion_->timing.begin() + static_cast<std::ptrdiff_t>(index) + 1);
-  result->timing.back().duration = now - result->timing.back().start;
+  const std::size_t index = motion_->piece_at(begin);
+  result->timing.assign(motion_->timing.begin(),
+                        motion_->timing.begin() + static_cast<std::ptrdiff_t>(index) + 1);
+  result->timing.back().duration = begin - result->timing.back().start;
   for (TimePiece piece : brake->timing) {
     piece.start = result->duration();
     result->timing.push_back(piece);

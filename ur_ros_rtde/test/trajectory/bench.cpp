@@ -106,8 +106,10 @@ void stops()
   }
   std::sort(ms.begin(), ms.end());
   std::sort(seconds.begin(), seconds.end());
-  std::printf("stops along the path: computed in median %.2f ms, worst %.2f ms; at rest after median %.3f s, worst %.3f s\n",
-              ms[ms.size() / 2], ms.back(), seconds[seconds.size() / 2], seconds.back());
+  std::printf(
+      "stops along the path: computed in median %.2f ms, worst %.2f ms; at rest after median %.3f s, worst "
+      "%.3f s\n",
+      ms[ms.size() / 2], ms.back(), seconds[seconds.size() / 2], seconds.back());
 }
 
 std::vector<Joints> curve(int count)

@@ -28,8 +28,9 @@ class Writer {
   std::ofstream file_;
 };
 
-// Times of the stations of one block: the borders of the path's pieces, two in each of our own intervals in a blend (an
-// oracle that does not look there exceeds the limits), and others at most `step` apart; at least 300, or 40 on a line.
+// Times of the stations of one block: the borders of the path's pieces, two in each of our own intervals in a
+// blend (an oracle that does not look there exceeds the limits), and others at most `step` apart; at least
+// 300, or 40 on a line.
 std::vector<double> station_times(const Motion & motion, std::size_t first, std::size_t last, double step)
 {
   std::vector<double> times{motion.timing[first].start};

@@ -42,9 +42,11 @@ class Trajectory {
   /// The last waypoint reached at `time`.
   std::size_t waypoint_at(double time) const;
 
-  /// This trajectory until `time`, then along the same path to rest, as soon as `limits` allow. Where the
-  /// motion already brakes with all its limits allow, the additional braking begins when they leave room. Its
-  /// time axis is this trajectory's: switch to it at any moment up to `time`. Takes about a millisecond.
+  /// This trajectory until `time`, then along the same path to rest, as soon as `limits` (those it was
+  /// planned with) allow. Where the motion already brakes with all they allow, the additional braking begins
+  /// when they leave room. Its time axis is this trajectory's: switch to it at any moment up to `time`.
+  /// Finding it takes about a millisecond, at worst some tens: ask for a `time` that far ahead. Where nothing
+  /// stops sooner than the plan itself, the plan.
   Trajectory stop_from(double time, const Limits & limits) const;
 
   /// The same motion at `fraction` of the speed: velocities times fraction, accelerations times its square.
