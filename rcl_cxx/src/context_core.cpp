@@ -135,7 +135,8 @@ void ContextCore::on_signal(int signal)
 
 bool ContextCore::shutdown(const std::string & reason)
 {
-  const auto self = shared_from_this();  // a callback may let go of the Context, spin() returns before the end of this
+  // A callback may let go of the Context, and spin() returns before the end of this.
+  const auto self = shared_from_this();
   {
     const std::lock_guard lock(mutex_);
     if (state_.load() != State::running) {

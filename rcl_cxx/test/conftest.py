@@ -1,10 +1,11 @@
 """A node of rcl_cxx in a process of its own, and rclpy to look at it. Waits are for conditions, for at most LIMIT."""
 
+import fcntl
 import os
 import pathlib
 import signal
-import socket
 import subprocess
+import tempfile
 import threading
 import time
 
@@ -14,12 +15,17 @@ _own_domain = None
 
 
 def _take_own_domain():
-    """A ROS domain that no other test has: whoever has bound its port owns it, as with ROS's domain_coordinator."""
+    """A ROS domain that no other test of this machine has: whoever has locked its file owns it, until the process ends.
+
+    The project's test runner does the same, and then names the domain in the environment.
+    """
     global _own_domain
-    for domain in range(1, 101):
-        lock = socket.socket()
+    folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
+    folder.mkdir(exist_ok=True)
+    for domain in range(1, 102):
+        lock = (folder / str(domain)).open("w")
         try:
-            lock.bind(("", 22119 + domain))
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             lock.close()
             continue

@@ -1,27 +1,24 @@
-#include <arpa/inet.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 namespace {
-constexpr int kFirstPort = 22119;
-constexpr int kLastDomain = 100;
+constexpr int kLastDomain = 101;
 
-/// A ROS domain that no other test has: whoever listens on its port owns it (as ROS's domain_coordinator
-/// does), until the process ends.
+/// A ROS domain that no other test of this machine has: whoever has locked its file owns it, until the
+/// process ends. The project's test runner does the same, and then names the domain in the environment.
 void take_own_domain()
 {
+  const auto folder = std::filesystem::temp_directory_path() / ("ur-domains-" + std::to_string(::getuid()));
+  std::filesystem::create_directories(folder);
   for (int domain = 1; domain <= kLastDomain; ++domain) {
-    const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address = {};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(kFirstPort + domain));
-    address.sin_addr.s_addr = htonl(INADDR_ANY);
-    if (::bind(fd, reinterpret_cast<sockaddr *>(&address), sizeof(address)) == 0) {
+    const int fd = ::open((folder / std::to_string(domain)).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0) {
       ::setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);
       return;
     }

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 
 #include "rcl_cxx/rcl_cxx.hpp"
@@ -90,7 +91,9 @@ int shut_down_slowly(int fd, std::chrono::milliseconds grace)
   context->on_pre_shutdown([&] {
     tell_ready(fd);
     const timespec limit{10, 0};
-    ::sigtimedwait(&set, nullptr, &limit);
+    while (::sigtimedwait(&set, nullptr, &limit) < 0 && errno == EINTR) {
+      // The handler of one of the other signals ran in this thread.
+    }
   });
   tell_ready(fd);
   return context->wait_for_shutdown(kLimit) ? kStopped : 1;
