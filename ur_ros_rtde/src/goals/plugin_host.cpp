@@ -4,8 +4,9 @@ namespace ur_ros_rtde {
 
 PluginHost::PluginHost(rcl_cxx::Node & node)
     : node_(node),
+      // Latched: a client may be refused before its subscription has been matched.
       refusals_(node.create_publisher<ur_ros_rtde_msgs::msg::GoalRefused>("goal_refusals",
-                                                                          rcl_cxx::QoS::reliable(100)))
+                                                                          rcl_cxx::QoS::latched(100)))
 {
 }
 

@@ -33,12 +33,12 @@ JerkSolver::JerkSolver(const Grid & grid, const Limits & limits, const Allowance
   }
 }
 
-void JerkSolver::start(const SpeedSpline & spline, std::vector<double> w)
+void JerkSolver::start(const SpeedSpline & spline, std::vector<double> w, double gap)
 {
   w_ = std::move(w);
   spline_ = &spline;
   change_spline(spline);
-  const double mu = 0.1 * duration() / static_cast<double>(count());
+  const double mu = gap * duration() / (rows_per_interval * static_cast<double>(count()));
   for (Multipliers & m : multipliers_) {
     for (Joints * values :
          {&m.station_plus, &m.station_minus, &m.begin_plus, &m.begin_minus, &m.end_plus, &m.end_minus}) {

@@ -30,8 +30,9 @@ class JerkSolver {
  public:
   JerkSolver(const Grid & grid, const Limits & limits, const Allowance & allowance);
 
-  /// Starts from coefficients `w` of `spline`, scaled down until they obey the limits.
-  void start(const SpeedSpline & spline, std::vector<double> w);
+  /// Starts from coefficients `w` of `spline`, scaled down until they obey the limits. `gap`: what they may
+  /// be away from the optimum, as a fraction of the duration.
+  void start(const SpeedSpline & spline, std::vector<double> w, double gap);
   /// How much coefficients `w` exceed the limits at each station and in the interval after it, as factors by
   /// which the square of the speed is too high; 1: just at a limit.
   std::vector<double> excesses(const SpeedSpline & spline, const std::vector<double> & w);

@@ -129,12 +129,12 @@ Profile profile_of(const Motion & motion, std::size_t begin)
 
 // One grid's solution, appended to the motion. Gaps: how near to the optimum, for one speed spline after the
 // other.
-Profile solve_on(const Grid & grid, Start start, const Limits & limits, const Allowance & allowance,
-                 std::initializer_list<double> gaps)
+Profile solve_on(const Grid & grid, Start start, double away, const Limits & limits,
+                 const Allowance & allowance, std::initializer_list<double> gaps)
 {
   SpeedSpline spline(grid, start.profile);
   JerkSolver solver(grid, limits, allowance);
-  solver.start(spline, std::move(start.w));
+  solver.start(spline, std::move(start.w), away);
   Profile profile;
   for (const double gap : gaps) {
     if (!profile.v.empty()) {
@@ -155,11 +155,11 @@ void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, c
     motion.timing.resize(begin);
     motion.append(grid, profile, false);
   };
-  take(solve_on(grid, first_guess(grid, limits), limits, Allowance(grid), {0.1, 0.02}));
+  take(solve_on(grid, first_guess(grid, limits), 4.0, limits, Allowance(grid), {0.1, 0.02}));
   for (int round = 0; round < 2; ++round) {
     if (auto finer = divide(motion, begin, grid, limits)) {
       grid = std::move(finer->first);
-      take(solve_on(grid, start_from(grid, std::move(finer->second)), limits, Allowance(grid), {0.02}));
+      take(solve_on(grid, start_from(grid, std::move(finer->second)), 0.3, limits, Allowance(grid), {0.02}));
     }
   }
   Allowance allowance(grid);
@@ -167,7 +167,7 @@ void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, c
     if (!tighten(motion, begin, limits, allowance) && round > 0) {
       break;
     }
-    take(solve_on(grid, start_from(grid, profile_of(motion, begin)), limits, allowance, {0.004}));
+    take(solve_on(grid, start_from(grid, profile_of(motion, begin)), 0.1, limits, allowance, {0.004}));
   }
   slow_to_limits(motion, begin, limits);
 }

@@ -13,10 +13,11 @@ import rclpy
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from ur_ros_rtde_msgs.msg import GoalRefused
 
+LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 
@@ -169,7 +170,7 @@ class Goal:
         """Status and result."""
         assert self.accepted, self._client.refusal(self)
         if self._result is None:
-            self._result = self.handle.get_result_async()
+            self._result = self._client.in_executor(self.handle.get_result_async)
         answer = wait_for(lambda: self._result.done() and self._result.result(), limit, "the result")
         return answer.status, answer.result
 
@@ -183,7 +184,7 @@ class Goal:
         return result
 
     def cancel(self):
-        future = self.handle.cancel_goal_async()
+        future = self._client.in_executor(self.handle.cancel_goal_async)
         return wait_for(lambda: future.done() and future.result(), 10.0, "the answer to the cancel request")
 
 
@@ -198,7 +199,7 @@ class Client:
         self._executor.add_node(self.node)
         self._actions, self._services, self._topics = {}, {}, {}
         self.refusals = []
-        self.node.create_subscription(GoalRefused, "goal_refusals", self.refusals.append, 100)
+        self.node.create_subscription(GoalRefused, "goal_refusals", self.refusals.append, LATCHED)
         self._thread = threading.Thread(target=self._executor.spin, daemon=True)
         self._thread.start()
 
@@ -208,14 +209,20 @@ class Client:
         self.node.destroy_node()
         self.context.try_shutdown()
 
+    def in_executor(self, send):
+        """What `send` returns, called in the executor's thread: rclpy forgets an answer that comes while another thread is
+        still sending the request."""
+        task = self._executor.create_task(send)
+        return wait_for(lambda: task.done() and task.result(), 10.0, "the executor to send")
+
     def send(self, action, name, **fields):
         if name not in self._actions:
             self._actions[name] = ActionClient(self.node, action, name)
         client = self._actions[name]
         wait_for(client.server_is_ready, 20.0, f"the action {name}")
         goal = Goal(self, None)
-        goal._future = client.send_goal_async(
-            action.Goal(**fields), feedback_callback=lambda message: goal.feedback.append(message.feedback))
+        goal._future = self.in_executor(lambda: client.send_goal_async(
+            action.Goal(**fields), feedback_callback=lambda message: goal.feedback.append(message.feedback)))
         return goal
 
     def refusal(self, goal):
@@ -227,7 +234,7 @@ class Client:
             self._services[name] = self.node.create_client(service, name)
         client = self._services[name]
         wait_for(client.service_is_ready, 20.0, f"the service {name}")
-        future = client.call_async(service.Request(**fields))
+        future = self.in_executor(lambda: client.call_async(service.Request(**fields)))
         return wait_for(lambda: future.done() and future.result(), 10.0, f"the answer of {name}")
 
     def listen(self, message, topic):

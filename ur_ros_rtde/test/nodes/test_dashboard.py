@@ -132,11 +132,11 @@ def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
         refused = client.send(DashboardQuery, "dashboard/robot_mode")
         assert not refused.accepted
         assert client.refusal(refused).error_code == ErrorCode.LINK_LOST
-        simulator = Simulator(address)
+        simulator = processes(Simulator(address))
         wait_for(lambda: _accepted(client), 15.0, "the connection")
         simulator.kill()
         wait_for(lambda: _not_connected(client), 15.0, "the loss to be noticed")
-        processes(simulator.start())
+        simulator.start()
         wait_for(lambda: _accepted(client), 15.0, "the connection to be back")
         assert server.running()
     finally:

@@ -150,7 +150,7 @@ def test_when_the_driver_is_killed_the_robot_stops_by_itself(simulator, processe
 
 
 def test_a_controller_that_dies_ends_the_motion_and_is_found_again(addresses, processes):
-    simulator = Simulator(addresses[1])
+    simulator = processes(Simulator(addresses[1]))
     driver = processes(node("driver", addresses[1], namespace="frail"))
     client = Client("frail")
     try:
@@ -162,7 +162,7 @@ def test_a_controller_that_dies_ends_the_motion_and_is_found_again(addresses, pr
         assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.LINK_LOST, result.message
         refused = client.send(MoveJ, "move_j", joint_positions=HOME)
         assert not refused.accepted and client.refusal(refused).message
-        processes(simulator.start())
+        simulator.start()
         make_ready(client)
         assert driver.running()
     finally:

@@ -20,8 +20,9 @@ Utilisation use_by_differences(const Trajectory & trajectory, const Limits & lim
     const Joints velocity = (q[3] - q[2]) / h;
     const Joints acceleration = (q[3] - 2.0 * q[2] + q[1]) / (h * h);
     const Joints jerk = (q[3] - 3.0 * q[2] + 3.0 * q[1] - q[0]) / (h * h * h);
-    // A position is rounded to its own last digit, and taken at a time rounded to its last digit.
-    const Joints rounding = 4.0 * epsilon * (q[3].abs() + velocity.abs() * time);
+    // A position has the accuracy of the sums it is made of, and is taken at a time rounded to its last
+    // digit.
+    const Joints rounding = 8.0 * epsilon * (1.0 + q[3].abs() + velocity.abs() * time);
     use.velocity =
         std::max(use.velocity, ((velocity.abs() - 2.0 * rounding / h) / limits.velocity).maxCoeff());
     use.acceleration = std::max(

@@ -120,10 +120,11 @@ constexpr std::array table{
     Command{"registers", "", "The general purpose registers.", get_registers},
     Command{"log", "after (0)",
             "What the robot's log shows: the last 1000 entries, those numbered above 'after'.", log},
-    Command{"trace", "after (0)",
-            "By the host's clock, ns: the last 4096 cycles after 'after' as [cycle, packages sent, fastest "
-            "target joint rad/s], the last 256 commands in input integer register 0 as [cycle, arrived, code].",
-            trace},
+    Command{
+        "trace", "after (0)",
+        "By the host's clock, ns: the last 4096 cycles after 'after' as [cycle, packages sent, fastest "
+        "target joint rad/s], the last 256 commands in input integer register 0 as [cycle, arrived, code].",
+        trace},
 };
 
 }  // namespace

@@ -62,8 +62,8 @@ class JointHistory {
 /// What robot builtins ask of the controller as a whole. Called on the controller's thread, from inside
 /// Machine::cycle(): remember the request and act after the cycle.
 struct ScriptRequests {
-  std::function<void()> power_down;              ///< powerdown()
-  std::function<void()> protective_stop;         ///< protective_stop()
+  std::function<void()> power_down;       ///< powerdown()
+  std::function<void()> protective_stop;  ///< protective_stop()
 };
 
 /// Where the robot builtins act. Everything outlives the library.

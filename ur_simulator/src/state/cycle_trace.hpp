@@ -8,8 +8,8 @@
 
 namespace ur_simulator {
 
-/// What happened when, by the host's clock: the last cycles and the last commands, for measuring what lies between
-/// the controller and a client on the same host. No allocation.
+/// What happened when, by the host's clock: the last cycles and the last commands, for measuring what lies
+/// between the controller and a client on the same host. No allocation.
 class CycleTrace {
  public:
   using Clock = std::chrono::system_clock;

@@ -27,7 +27,10 @@ inline std::string float64(double value)
 }
 
 /// The beginning of a data package: its recipe.
-inline std::string package_for(int recipe) { return std::string(1, static_cast<char>(recipe)); }
+inline std::string package_for(int recipe)
+{
+  return std::string(1, static_cast<char>(recipe));
+}
 
 inline std::uint64_t number(std::string_view bytes)
 {
