@@ -13,12 +13,16 @@ import rclpy
 from force_figure import JOINTS, draw
 from rclpy.action import ActionClient
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from recorder import Recorder, mark_events, write_csv
+from ur_ros_rtde_msgs.msg import ErrorCode, GoalRefused
 from ur_ros_rtde_tutorials.action import MoveDownUntilForce
 
 from control_port import ControlPort
 
 DISCOVERY_LIMIT = 20.0  # s
+READY_LIMIT = 15.0  # s from the first refusal until the robot is ready
+LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 STANDSTILL = 0.002  # rad/s
 NEW_LINE = "\n" if sys.stdout.isatty() else ""  # after the progress line, which only a terminal gets
 AFTERWARDS = 0.8  # s recorded after the standstill
@@ -29,6 +33,8 @@ class Experiment:
         self.node, self.control, self.options = node, control, options
         self.recorder = Recorder(node)
         self.client = ActionClient(node, MoveDownUntilForce, "move_down_until_force")
+        node.create_subscription(GoalRefused, "goal_refusals", self.on_refusal, LATCHED)
+        self.refusals = {}
         self.goal_handle = self.result = None
         self.pushes = []
 
@@ -54,14 +60,25 @@ class Experiment:
             force=self.options.threshold, distance=min(1.0, self.options.drop + 0.1), speed=self.options.speed
         )
         print(f"goal: down {goal.distance:.2f} m at {goal.speed:g} m/s until {goal.force:g} N along the flange Z axis")
-        sent = self.client.send_goal_async(goal, feedback_callback=self.on_feedback)
-        self.wait(sent.done, 10.0, "the answer to the goal")
-        self.goal_handle = sent.result()
-        if not self.goal_handle.accepted:
-            raise SystemExit("goal refused: the reason is in the log of command_server and on the topic goal_refusals")
+        deadline = time.monotonic() + READY_LIMIT
+        while not self.accepted(goal):
+            refusal = self.refusals.get(bytes(self.goal_handle.goal_id.uuid))
+            if refusal is None or refusal.error_code != ErrorCode.NOT_READY or time.monotonic() > deadline:
+                raise SystemExit(f"goal refused: {refusal.message if refusal else 'see the log of command_server'}")
         self.recorder.start()
         print("goal accepted")
         self.result = self.goal_handle.get_result_async()
+
+    def accepted(self, goal):
+        sent = self.client.send_goal_async(goal, feedback_callback=self.on_feedback)
+        self.wait(sent.done, 10.0, "the answer to the goal")
+        self.goal_handle = sent.result()
+        goal_id = bytes(self.goal_handle.goal_id.uuid)
+        self.wait(lambda: self.goal_handle.accepted or goal_id in self.refusals, 10.0, "the reason of the refusal")
+        return self.goal_handle.accepted
+
+    def on_refusal(self, refusal):
+        self.refusals[bytes(refusal.goal_id.uuid)] = refusal
 
     def on_feedback(self, _message):
         if not sys.stdout.isatty():

@@ -122,7 +122,7 @@ constexpr std::array table{
             "What the robot's log shows: the last 1000 entries, those numbered above 'after'.", log},
     Command{
         "trace", "after (0)",
-        "By the host's clock, ns: the last 4096 cycles after 'after' as [cycle, packages sent, fastest "
+        "By the host's clock, ns: the last 4096 cycles after 'after' as [cycle, sending began, fastest "
         "target joint rad/s], the last 256 commands in input integer register 0 as [cycle, arrived, code].",
         trace},
 };

@@ -299,8 +299,8 @@ void Controller::take_safety_events()
 
 void Controller::publish()
 {
+  trace_.cycle_publishing(state_);
   rtde_.publish();
-  trace_.cycle_published(state_);
   if (realtime_.has_clients()) {
     realtime_.broadcast(realtime_packet_.encode(state_));
   }

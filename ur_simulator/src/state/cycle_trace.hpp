@@ -16,7 +16,7 @@ class CycleTrace {
 
   struct Cycle {
     std::uint64_t number = 0;
-    std::int64_t published = 0;  ///< ns since the epoch, when the cycle's RTDE packages had been sent
+    std::int64_t published = 0;  ///< ns since the epoch, when sending the cycle's RTDE packages began
     double speed = 0.0;          ///< of the fastest joint's target, rad/s
   };
   struct Command {
@@ -25,8 +25,8 @@ class CycleTrace {
     std::int32_t code = 0;     ///< input integer register 0: ur_rtde's command number
   };
 
-  /// After the packages of a cycle were sent.
-  void cycle_published(const ControllerState & state)
+  /// Before the packages of a cycle are sent: a client may have its own before the last is out.
+  void cycle_publishing(const ControllerState & state)
   {
     cycles_[cycle_count_++ % cycles_.size()] = {state.cycle, now(),
                                                 state.target.velocity.cwiseAbs().maxCoeff()};
