@@ -6,6 +6,7 @@ ignored marked blue, the stop red.
 
 import argparse
 import os
+import pathlib
 import socket
 import sys
 import time
@@ -33,6 +34,8 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--drop", type=float, metavar="M",
                         help="distance of the table below the tool, m (default: by the size of the arm)")
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
+    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "demo", metavar="FOLDER",
+                        help="where the CSV and the picture go (default: demo)")
     parser.add_argument("--keep-running", action="store_true",
                         help="leave simulator and nodes running afterwards, until Ctrl-C")
     options = parser.parse_args(arguments)
@@ -70,7 +73,7 @@ def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace)
     say.step("move_down_until_force")
     command = [layout.python, ROOT / "demo" / "force_experiment.py", "--address", options.address, "--model",
                options.model.upper().replace("E", "e"), "--threshold", options.threshold, "--speed", options.speed,
-               "--drop", options.drop, "--output", ROOT / "demo"]
+               "--drop", options.drop, "--output", options.output]
     return programs.run([str(part) for part in command], run_environment(layout), limit=300.0)
 
 

@@ -50,6 +50,7 @@ class Result:
     failures: List[str]
     seconds: float
     output: str
+    failed_at_first: List[str] = field(default_factory=list)  # passed when run again, alone
 
 
 # --- What there is to run ---------------------------------------------------------------------------------------------
@@ -146,6 +147,7 @@ class Runner:
         self._env.update(_sanitizer_environment())
         self._env["ROS_LOG_DIR"] = str(folder / "ros")
         self._env["PYTHONDONTWRITEBYTECODE"] = "1"
+        self._env["UR_LAYOUT"] = f"{options.layout.ros}:{options.layout.variant}"
         self._env[isolation.MARK] = str(os.getpid())
         self._lock = threading.Lock()
         self._count = 0
@@ -232,8 +234,22 @@ def _run_all(options: Options, tests: List[Test], folder: pathlib.Path) -> List[
             raise
         finally:
             status.clear()
+        if options.repeat == 1:
+            results = [_once_more(runner, status, result) for result in results]
     known_file.write_text(json.dumps(known, indent=0, sort_keys=True))
     return results
+
+
+def _once_more(runner: Runner, status: say.Status, result: Result) -> Result:
+    """A test that failed beside others gets one more run with the machine to itself, and the summary says so."""
+    if not result.failures:
+        return result
+    status.show(f"once more, alone: {result.test.name}")
+    alone = runner.run(result.test)
+    if alone is None or alone.failures:
+        return result
+    alone.failed_at_first = result.failures
+    return alone
 
 
 def _report(status: say.Status, result: Result, done: int, total: int) -> None:
@@ -254,6 +270,11 @@ def _summary(results: List[Result], checks: List[lint.Check], seconds: float) ->
         say.line(f"    {name:28} {sum(r.passed for r in group):5} passed {sum(len(r.failures) for r in group):4} failed")
     bad = sorted({f"{result.test.name} {case}".rstrip() for result in results for case in result.failures}
                  | {check.name for check in checks if not check.ok})
+    shaky = sorted(f"{result.test.name} {case}".rstrip() for result in results for case in result.failed_at_first)
+    if shaky:
+        say.line("Failed beside other tests, passed alone:")
+        for name in shaky:
+            say.line(f"    {name}")
     if bad:
         say.line("Failed:")
         for name in bad:
