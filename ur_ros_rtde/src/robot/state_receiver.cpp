@@ -59,6 +59,7 @@ class StateReceiver::Impl {
   std::optional<ControllerVersion> version_;
   double frequency_ = 0.0;
   Sample latest_{};
+  std::uint32_t latest_link_ = 0;  ///< of latest_; the receiving thread's own
   std::shared_ptr<ur_rtde::RTDEReceiveInterface> interface_;
 
   std::jthread thread_;
@@ -118,7 +119,12 @@ Status StateReceiver::Impl::connect()
 
 void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader, Clock::time_point arrival)
 {
+  const double before = sample.controller_time;
   reader.read(sample);
+  if (sample.controller_time == before && sample.link == latest_link_) {
+    return;  // read with the one before, as its fields were written just before it was counted
+  }
+  latest_link_ = sample.link;
   ++sample.sequence;
   sample.received = arrival;
   sample.stamp = std::chrono::system_clock::now() -
