@@ -67,6 +67,7 @@ ActionServerCore::ActionServerCore(std::shared_ptr<NodeCore> node, ErasedActionS
     : Entity(std::move(node), fmt::format("action server {}", name)),
       erased_(std::move(erased)),
       ops_(*erased_.ops),
+      answers_(std::make_shared<ResponseRetry>(this->node())),
       server_(rcl_action_get_zero_initialized_server())
 {
   const rcl_action_server_options_t rcl_options = to_rcl(options);
@@ -167,6 +168,7 @@ void ActionServerCore::retire() noexcept
 {
   node()->context().remove_callback(shutdown_callback_);
   close();
+  answers_->stop();
   abort_all("the action server was destroyed");
   // Handles may find this for a moment yet: the executor's thread may hold it.
   const std::lock_guard lock(mutex_);
@@ -246,8 +248,8 @@ bool ActionServerCore::finish_locked(GoalCore & goal, GoalStatus status,
     return false;
   }
   goal.result_response = std::move(result_response);
-  for (rmw_request_id_t & request : goal.result_requests) {
-    send_result_locked(request, goal.result_response.get());
+  for (const rmw_request_id_t & request : goal.result_requests) {
+    send_result(request, goal.result_response);
   }
   goal.result_requests.clear();
   publish_status_locked();
@@ -273,14 +275,6 @@ void ActionServerCore::publish_status_locked()
   }
   rcl_reset_error();
   ignore_rcl(rcl_action_goal_status_array_fini(&status));
-}
-
-void ActionServerCore::send_result_locked(rmw_request_id_t & id, void * response)
-{
-  const rcl_ret_t code = rcl_action_send_result_response(&server_, &id, response);
-  if (code != RCL_RET_OK) {
-    RCL_CXX_WARN(node()->logger(), "{}: a result did not reach its client: {}", name_, take_rcl_error());
-  }
 }
 
 void ActionServerCore::expire()

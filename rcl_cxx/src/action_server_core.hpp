@@ -5,6 +5,7 @@
 
 #include <action_msgs/srv/cancel_goal.hpp>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -14,6 +15,7 @@
 #include "entity.hpp"
 #include "goal_core.hpp"
 #include "rcl_cxx/action_server.hpp"
+#include "response_retry.hpp"
 
 namespace rcl_cxx::detail {
 class TimerCore;
@@ -69,7 +71,7 @@ class ActionServerCore : public Entity {
   tl::expected<std::shared_ptr<GoalHandleBase>, std::string> accept(const GoalId & id,
                                                                     const std::shared_ptr<void> & request);
   void run_accepted(std::shared_ptr<GoalHandleBase> handle) noexcept;
-  bool send_goal_response(rmw_request_id_t & id, const GoalHandleBase * accepted);
+  void announce(const rmw_request_id_t & request, std::shared_ptr<GoalHandleBase> accepted);
   void process_cancel(const action_msgs::srv::CancelGoal::Request & request,
                       action_msgs::srv::CancelGoal::Response & response);
   bool decide_cancel(GoalCore & goal);
@@ -77,15 +79,21 @@ class ActionServerCore : public Entity {
   void tell_canceling(GoalHandleBase & handle) noexcept;
   std::shared_ptr<GoalCore> find(const GoalId & id) const;
 
+  using Send = rcl_ret_t (*)(const rcl_action_server_t *, rmw_request_id_t *, void *);
+  /// `done` is told whether it was delivered; that may be seconds later.
+  void answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
+              std::function<void(bool)> done = {});
+  void send_result(const rmw_request_id_t & request, std::shared_ptr<void> response);
+
   // Under the lock.
   bool finish_locked(GoalCore & goal, GoalStatus status, std::shared_ptr<void> result_response);
   bool transition_locked(GoalCore & goal, GoalStatus status);
   void publish_status_locked();
-  void send_result_locked(rmw_request_id_t & id, void * response);
   void schedule_expiry_locked();
 
   const ErasedActionServer erased_;
   const ActionServerOps & ops_;
+  const std::shared_ptr<ResponseRetry> answers_;
   std::string name_;
   bool results_expire_ = true;
   std::chrono::nanoseconds result_timeout_{0};

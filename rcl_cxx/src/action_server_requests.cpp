@@ -31,19 +31,30 @@ void ActionServerCore::take_goal()
   check_rcl(code, name_, "cannot take a goal");
   const GoalId id = ops_.goal_id_of_goal_request(request.get());
   auto accepted = decide_goal(id, request.get()).and_then([&] { return accept(id, request); });
-  if (!accepted) {
+  if (accepted) {
+    announce(request_id, std::move(*accepted));
+  } else {
     RCL_CXX_WARN(node()->logger(), "{}: goal {} refused: {}", name_, id.short_string(), accepted.error());
-    send_goal_response(request_id, nullptr);
-    return;
+    answer(&rcl_action_send_goal_response, request_id, ops_.make_goal_response(false, 0, 0));
   }
-  if (!send_goal_response(request_id, accepted->get())) {
-    return;  // nobody would know of it; dropping the handle aborts the goal
-  }
-  {
-    const std::lock_guard lock(mutex_);
-    publish_status_locked();
-  }
-  run_accepted(std::move(*accepted));
+}
+
+void ActionServerCore::announce(const rmw_request_id_t & request, std::shared_ptr<GoalHandleBase> accepted)
+{
+  const std::int64_t stamp = accepted->accepted_ns();
+  auto response = ops_.make_goal_response(true, static_cast<std::int32_t>(stamp / kNsPerSecond),
+                                          static_cast<std::uint32_t>(stamp % kNsPerSecond));
+  answer(&rcl_action_send_goal_response, request, std::move(response), [this, accepted](bool delivered) {
+    if (!delivered || !accepted->is_active()) {
+      return;  // nobody knows of the goal, dropping its handle aborts it; or it has ended while its client
+               // was looked for
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      publish_status_locked();
+    }
+    run_accepted(accepted);
+  });
 }
 
 tl::expected<void, std::string> ActionServerCore::decide_goal(const GoalId & id,
@@ -83,18 +94,29 @@ tl::expected<std::shared_ptr<GoalHandleBase>, std::string> ActionServerCore::acc
   return handle;
 }
 
-bool ActionServerCore::send_goal_response(rmw_request_id_t & id, const GoalHandleBase * accepted)
+void ActionServerCore::answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
+                              std::function<void(bool)> done)
 {
-  const std::int64_t stamp = accepted != nullptr ? accepted->accepted_ns() : 0;
-  const std::shared_ptr<void> response =
-      ops_.make_goal_response(accepted != nullptr, static_cast<std::int32_t>(stamp / kNsPerSecond),
-                              static_cast<std::uint32_t>(stamp % kNsPerSecond));
-  const rcl_ret_t code = rcl_action_send_goal_response(&server_, &id, response.get());
-  if (code != RCL_RET_OK) {
-    RCL_CXX_WARN(node()->logger(), "{}: the answer to a goal did not reach its client: {}", name_,
-                 take_rcl_error());
-  }
-  return code == RCL_RET_OK;
+  const auto self = std::static_pointer_cast<ActionServerCore>(shared_from_this());
+  answers_->send(
+      [self, send, request, response] {
+        rmw_request_id_t to = request;
+        return send(&self->server_, &to, response.get());
+      },
+      [self, done = std::move(done)](rcl_ret_t code) {
+        if (code != RCL_RET_OK) {
+          RCL_CXX_WARN(self->node()->logger(), "{}: an answer did not reach its client: {}", self->name_,
+                       take_rcl_error());
+        }
+        if (done) {
+          done(code == RCL_RET_OK);
+        }
+      });
+}
+
+void ActionServerCore::send_result(const rmw_request_id_t & request, std::shared_ptr<void> response)
+{
+  answer(&rcl_action_send_result_response, request, std::move(response));
 }
 
 void ActionServerCore::run_accepted(std::shared_ptr<GoalHandleBase> handle) noexcept
@@ -125,12 +147,9 @@ void ActionServerCore::take_cancel()
     return;
   }
   check_rcl(code, name_, "cannot take a request to cancel");
-  action_msgs::srv::CancelGoal::Response response;
-  process_cancel(request, response);
-  if (rcl_action_send_cancel_response(&server_, &request_id, &response) != RCL_RET_OK) {
-    RCL_CXX_WARN(node()->logger(), "{}: the answer to a cancellation did not reach its client: {}", name_,
-                 take_rcl_error());
-  }
+  const auto response = std::make_shared<action_msgs::srv::CancelGoal::Response>();
+  process_cancel(request, *response);
+  answer(&rcl_action_send_cancel_response, request_id, response);
 }
 
 void ActionServerCore::process_cancel(const action_msgs::srv::CancelGoal::Request & request,
@@ -238,9 +257,9 @@ void ActionServerCore::take_result()
   const std::lock_guard lock(mutex_);
   const auto found = goals_.find(id);
   if (found == goals_.end()) {
-    send_result_locked(request_id, ops_.make_result_response(GoalStatus::unknown).get());
+    send_result(request_id, ops_.make_result_response(GoalStatus::unknown));
   } else if (found->second->result_response) {
-    send_result_locked(request_id, found->second->result_response.get());
+    send_result(request_id, found->second->result_response);
   } else {
     found->second->result_requests.push_back(request_id);
   }

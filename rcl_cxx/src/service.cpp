@@ -22,6 +22,7 @@ ServiceCore::ServiceCore(std::shared_ptr<NodeCore> node, ErasedService erased, c
                          const QoS & qos)
     : Entity(std::move(node), fmt::format("service {}", name)),
       erased_(std::move(erased)),
+      answers_(std::make_shared<ResponseRetry>(this->node())),
       service_(rcl_get_zero_initialized_service())
 {
   rcl_service_options_t options = rcl_service_get_default_options();
@@ -52,26 +53,32 @@ void ServiceCore::execute(std::size_t /*source*/)
   try {
     erased_.callback(request.get(), response.get());
   } catch (...) {
-    respond(id, response.get());  // a client must not hang because a server failed
+    respond(id, response);  // a client must not hang because a server failed
     throw;
   }
-  respond(id, response.get());
+  respond(id, response);
 }
 
-void ServiceCore::respond(rmw_request_id_t & id, void * response)
+void ServiceCore::respond(const rmw_request_id_t & id, const std::shared_ptr<void> & response)
 {
-  const rcl_ret_t code = rcl_send_response(&service_, &id, response);
-  if (code == RCL_RET_TIMEOUT) {
-    // The client is gone, or not discovered yet.
-    RCL_CXX_WARN(node()->logger(), "{}: the response did not reach its client: {}", name_, take_rcl_error());
-    return;
-  }
-  check_rcl(code, label(), "cannot send the response");
+  const auto self = std::static_pointer_cast<ServiceCore>(shared_from_this());
+  answers_->send(
+      [self, id, response] {
+        rmw_request_id_t to = id;
+        return rcl_send_response(&self->service_, &to, response.get());
+      },
+      [self](rcl_ret_t code) {
+        if (code != RCL_RET_OK) {
+          RCL_CXX_WARN(self->node()->logger(), "{}: a response did not reach its client: {}", self->name_,
+                       take_rcl_error());
+        }
+      });
 }
 
 void ServiceCore::stop() noexcept
 {
   ignore_rcl(rcl_service_set_on_new_request_callback(&service_, nullptr, nullptr));
+  answers_->stop();
 }
 }  // namespace detail
 

@@ -8,6 +8,7 @@
 #include "entity.hpp"
 #include "rcl_cxx/qos.hpp"
 #include "rcl_cxx/service.hpp"
+#include "response_retry.hpp"
 
 namespace rcl_cxx::detail {
 class ServiceCore : public Entity {
@@ -25,9 +26,10 @@ class ServiceCore : public Entity {
   void stop() noexcept override;
 
  private:
-  void respond(rmw_request_id_t & id, void * response);
+  void respond(const rmw_request_id_t & id, const std::shared_ptr<void> & response);
 
   const ErasedService erased_;
+  const std::shared_ptr<ResponseRetry> answers_;
   rcl_service_t service_;
   std::string name_;
 };

@@ -133,8 +133,11 @@ class Ros:
         rclpy.shutdown(context=self.context)
 
     def in_executor(self, function):
-        """The function's value, computed in the thread of the executor: rclpy loses an answer that arrives while its
-        action client, called in another thread, has yet to note the question."""
+        """The function's value, computed in the thread of the executor.
+
+        rclpy's action client wants that: made in another thread, the executor may meet it half-made, and used in
+        another thread, it loses an answer that arrives before it has noted the question.
+        """
         return result_of(self.executor.create_task(function))
 
     def call(self, service_type, name, request):

@@ -5,6 +5,7 @@
 #include <future>
 #include <std_msgs/msg/string.hpp>
 
+#include "../src/response_retry.hpp"
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "ros_fixture.hpp"
 
@@ -224,6 +225,48 @@ TEST_F(Timers, may_destroy_themselves_in_their_callback)
 }
 
 using WhileSpinning = Spinning;
+
+class Answers : public InThread {
+ protected:
+  std::shared_ptr<rcl_cxx::detail::ResponseRetry> answers =
+      std::make_shared<rcl_cxx::detail::ResponseRetry>(node.core());
+  int attempts = 0;
+  std::vector<rcl_ret_t> done;
+};
+
+TEST_F(Answers, are_done_with_at_once_when_their_client_is_known)
+{
+  answers->send([&] { return ++attempts, RCL_RET_OK; }, [&](rcl_ret_t code) { done.push_back(code); });
+  EXPECT_EQ(attempts, 1);
+  EXPECT_THAT(done, ElementsAre(RCL_RET_OK));
+}
+
+TEST_F(Answers, are_tried_again_until_their_client_is_known)
+{
+  answers->send([&] { return ++attempts < 3 ? RCL_RET_TIMEOUT : RCL_RET_OK; },
+                [&](rcl_ret_t code) { done.push_back(code); });
+  EXPECT_TRUE(done.empty());
+  answers->send([] { return RCL_RET_TIMEOUT; }, [](rcl_ret_t) {});
+  EXPECT_TRUE(executor.spin_until([&] { return !done.empty(); }, kLimit));
+  EXPECT_EQ(attempts, 3);
+  EXPECT_THAT(done, ElementsAre(RCL_RET_OK));
+}
+
+TEST_F(Answers, are_given_up_in_the_end)
+{
+  answers->send([&] { return ++attempts, RCL_RET_TIMEOUT; }, [&](rcl_ret_t code) { done.push_back(code); });
+  EXPECT_TRUE(executor.spin_until([&] { return !done.empty(); }, 2 * kLimit));
+  EXPECT_GT(attempts, 5);
+  EXPECT_THAT(done, ElementsAre(RCL_RET_TIMEOUT));
+}
+
+TEST_F(Answers, are_not_tried_after_the_end)
+{
+  answers->send([&] { return ++attempts, RCL_RET_TIMEOUT; }, [&](rcl_ret_t code) { done.push_back(code); });
+  answers->stop();
+  EXPECT_FALSE(executor.spin_until([&] { return attempts > 1; }, std::chrono::milliseconds(200)));
+  EXPECT_TRUE(done.empty());
+}
 
 TEST_F(WhileSpinning, callbacks_never_overlap)
 {

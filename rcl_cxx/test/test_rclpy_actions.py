@@ -21,7 +21,7 @@ class Client:
     def __init__(self, ros, name):
         self.ros = ros
         self.name = name
-        self.client = ActionClient(ros.node, Fibonacci, name)
+        self.client = ros.in_executor(lambda: ActionClient(ros.node, Fibonacci, name))
         assert self.client.wait_for_server(LIMIT)
 
     def send(self, order, feedback=None):
@@ -60,7 +60,7 @@ def client(ros, test_node):
     client = Client(ros, "/fibonacci")
     yield client
     client.cancel()
-    client.client.destroy()
+    ros.in_executor(client.client.destroy)
 
 
 def ids(goals):
