@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "action_messages.hpp"
 #include "node_core.hpp"
@@ -17,6 +18,9 @@ enum Source : std::size_t { kGoal, kCancel, kResult };
 
 // "For ever", and yet small enough that rcl can add it to the time of day.
 constexpr std::int64_t kCenturyNs = 100LL * 365 * 24 * 3600 * 1'000'000'000;
+
+// A client asks for the result as soon as it knows that its goal is accepted. It need not, though.
+constexpr std::chrono::milliseconds kGraceForRequests{250};
 
 // rcl compares "later than the timeout", in ROS time: a look exactly at it would come to nothing.
 constexpr std::chrono::milliseconds kExpirySlack{5};
@@ -99,7 +103,7 @@ void ActionServerCore::start()
   expiry_->cancel();
   shutdown_callback_ = node()->context().add_callback(ContextCore::Phase::library_before, [weak] {
     if (const auto self = weak.lock()) {
-      self->abort_all("shutdown");
+      self->abort_all("shutdown", self->node()->in_own_callback());
     }
   });
   check_rcl(rcl_action_server_set_goal_service_callback(&server_, &on_event, source(kGoal)), label(),
@@ -128,7 +132,7 @@ void ActionServerCore::execute(std::size_t source)
     case kCancel:
       return take_cancel();
     default:
-      return take_result();
+      take_result();
   }
 }
 
@@ -149,18 +153,37 @@ std::shared_ptr<GoalCore> ActionServerCore::find(const GoalId & id) const
   return found == goals_.end() ? nullptr : found->second;
 }
 
-void ActionServerCore::abort_all(const char * why) noexcept
+void ActionServerCore::abort_all(const char * why, bool serve) noexcept
 {
-  std::size_t aborted = 0;
-  const std::lock_guard lock(mutex_);
-  for (const auto & [id, goal] : goals_) {
-    if (!is_terminal(goal->status())) {
-      aborted +=
-          finish_locked(*goal, GoalStatus::aborted, ops_.make_result_response(GoalStatus::aborted)) ? 1 : 0;
+  std::vector<std::shared_ptr<GoalCore>> aborted;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto & [id, goal] : goals_) {
+      if (!is_terminal(goal->status()) &&
+          finish_locked(*goal, GoalStatus::aborted, ops_.make_result_response(GoalStatus::aborted))) {
+        aborted.push_back(goal);
+      }
     }
   }
-  if (aborted > 0) {
-    RCL_CXX_WARN(node()->logger(), "{}: goals aborted that were running: {} ({})", name_, aborted, why);
+  if (aborted.empty()) {
+    return;
+  }
+  RCL_CXX_WARN(node()->logger(), "{}: goals aborted that were running: {} ({})", name_, aborted.size(), why);
+  try {
+    await_requests(aborted, serve);
+  } catch (const std::exception & error) {
+    RCL_CXX_WARN(node()->logger(), "{}: {}", name_, error.what());
+  }
+}
+
+void ActionServerCore::await_requests(const std::vector<std::shared_ptr<GoalCore>> & goals, bool serve)
+{
+  const auto deadline = std::chrono::steady_clock::now() + kGraceForRequests;
+  const auto sent = [](const std::shared_ptr<GoalCore> & goal) { return goal->result_sent.load(); };
+  while (!std::all_of(goals.begin(), goals.end(), sent) && std::chrono::steady_clock::now() < deadline) {
+    if (!serve || !take_result()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
 }
 
@@ -169,7 +192,7 @@ void ActionServerCore::retire() noexcept
   node()->context().remove_callback(shutdown_callback_);
   close();
   answers_->stop();
-  abort_all("the action server was destroyed");
+  abort_all("the action server was destroyed", true);
   // Handles may find this for a moment yet: the executor's thread may hold it.
   const std::lock_guard lock(mutex_);
   for (const auto & [id, goal] : goals_) {
@@ -249,7 +272,7 @@ bool ActionServerCore::finish_locked(GoalCore & goal, GoalStatus status,
   }
   goal.result_response = std::move(result_response);
   for (const rmw_request_id_t & request : goal.result_requests) {
-    send_result(request, goal.result_response);
+    send_result(request, goal);
   }
   goal.result_requests.clear();
   publish_status_locked();

@@ -46,8 +46,9 @@ class ActionServerCore : public Entity {
 
   const std::string & action_name() const noexcept { return name_; }
   std::size_t active_goal_count() const;
-  /// Aborts what is active, with empty results. The server goes on.
-  void abort_all(const char * why) noexcept;
+  /// Aborts what is active, with empty results, and gives clients that were just told of the acceptance of
+  /// their goals a moment to ask for the results: here if `serve`, otherwise in the executor's thread.
+  void abort_all(const char * why, bool serve) noexcept;
   /// The user's server object is destroyed: after close() and abort_all() nothing reaches a goal any more.
   void retire() noexcept;
 
@@ -64,7 +65,7 @@ class ActionServerCore : public Entity {
   void start();
   void take_goal();
   void take_cancel();
-  void take_result();
+  bool take_result();
   void expire();
 
   tl::expected<void, std::string> decide_goal(const GoalId & id, const void * request) noexcept;
@@ -83,7 +84,9 @@ class ActionServerCore : public Entity {
   /// `done` is told whether it was delivered; that may be seconds later.
   void answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
               std::function<void(bool)> done = {});
-  void send_result(const rmw_request_id_t & request, std::shared_ptr<void> response);
+  void send_result(const rmw_request_id_t & request, GoalCore & goal);
+
+  void await_requests(const std::vector<std::shared_ptr<GoalCore>> & goals, bool serve);
 
   // Under the lock.
   bool finish_locked(GoalCore & goal, GoalStatus status, std::shared_ptr<void> result_response);

@@ -114,9 +114,10 @@ void ActionServerCore::answer(Send send, const rmw_request_id_t & request, std::
       });
 }
 
-void ActionServerCore::send_result(const rmw_request_id_t & request, std::shared_ptr<void> response)
+void ActionServerCore::send_result(const rmw_request_id_t & request, GoalCore & goal)
 {
-  answer(&rcl_action_send_result_response, request, std::move(response));
+  answer(&rcl_action_send_result_response, request, goal.result_response);
+  goal.result_sent = true;
 }
 
 void ActionServerCore::run_accepted(std::shared_ptr<GoalHandleBase> handle) noexcept
@@ -244,25 +245,26 @@ void ActionServerCore::tell_canceling(GoalHandleBase & handle) noexcept
   }
 }
 
-void ActionServerCore::take_result()
+bool ActionServerCore::take_result()
 {
   const std::shared_ptr<void> request = ops_.make_result_request();
   rmw_request_id_t request_id;
   const rcl_ret_t code = rcl_action_take_result_request(&server_, &request_id, request.get());
   if (nothing_to_take(code)) {
-    return;
+    return false;
   }
   check_rcl(code, name_, "cannot take a request for a result");
   const GoalId id = ops_.goal_id_of_result_request(request.get());
   const std::lock_guard lock(mutex_);
   const auto found = goals_.find(id);
   if (found == goals_.end()) {
-    send_result(request_id, ops_.make_result_response(GoalStatus::unknown));
+    answer(&rcl_action_send_result_response, request_id, ops_.make_result_response(GoalStatus::unknown));
   } else if (found->second->result_response) {
-    send_result(request_id, found->second->result_response);
+    send_result(request_id, *found->second);
   } else {
     found->second->result_requests.push_back(request_id);
   }
+  return true;
 }
 
 }  // namespace rcl_cxx::detail

@@ -31,6 +31,9 @@ class GoalCore {
   GoalStatus status() const noexcept { return status_.load(); }
   std::shared_ptr<ActionServerCore> server() const noexcept { return server_.lock(); }
 
+  /// Its result has been sent to someone.
+  std::atomic<bool> result_sent{false};
+
   // --- the rest only under the server's lock ---
 
   /// False if the state machine has no such transition now.

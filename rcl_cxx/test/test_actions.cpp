@@ -79,8 +79,9 @@ class Actions : public Spinning {
   static rcl_cxx::ActionResult<Fibonacci> result(
       const std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>> & goal)
   {
-    EXPECT_EQ(goal->result().wait_for(kLimit), std::future_status::ready);
-    return goal->result().get();
+    const bool ready = goal->result().wait_for(kLimit) == std::future_status::ready;
+    EXPECT_TRUE(ready);
+    return ready ? goal->result().get() : rcl_cxx::ActionResult<Fibonacci>();
   }
 
   template <typename T>
@@ -344,6 +345,19 @@ TEST_F(ActionEnd, of_the_server_aborts_its_goals)
   EXPECT_FALSE(handle->succeed());
   EXPECT_FALSE(handle->publish_feedback(Fibonacci::Feedback()));
   EXPECT_EQ(result(goal).status, GoalStatus::aborted);
+}
+
+TEST_F(ActionEnd, of_the_server_answers_who_has_just_been_accepted)
+{
+  for (std::size_t round = 0; round < 10; ++round) {
+    serve();
+    auto response = client->send_goal(goal_of(5));
+    accepted(round);
+    server.reset();
+    const auto goal = get(std::move(response));
+    ASSERT_TRUE(goal);
+    EXPECT_EQ(result(goal).status, GoalStatus::aborted);
+  }
 }
 
 TEST_F(ActionEnd, of_the_context_aborts_its_goals_after_the_users_callbacks)
