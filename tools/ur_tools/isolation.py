@@ -77,6 +77,19 @@ def _segments_in_use() -> Set[str]:
             at = line.find("/dev/shm/")
             if at >= 0:
                 used.add(line[at:].split(" (deleted)")[0])
+    return used | _files_open()
+
+
+def _files_open() -> Set[str]:
+    """Lock files are open without being mapped."""
+    used: Set[str] = set()
+    for link in pathlib.Path("/proc").glob("[0-9]*/fd/*"):
+        try:
+            target = os.readlink(link)
+        except OSError:
+            continue
+        if target.startswith("/dev/shm/"):
+            used.add(target.split(" (deleted)")[0])
     return used
 
 

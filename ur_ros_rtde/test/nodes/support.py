@@ -217,7 +217,7 @@ class Client:
 
     def send(self, action, name, **fields):
         if name not in self._actions:
-            self._actions[name] = ActionClient(self.node, action, name)
+            self._actions[name] = self.in_executor(lambda: ActionClient(self.node, action, name))
         client = self._actions[name]
         wait_for(client.server_is_ready, 20.0, f"the action {name}")
         goal = Goal(self, None)

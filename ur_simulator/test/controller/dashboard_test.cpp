@@ -1,4 +1,6 @@
+#include <chrono>
 #include <regex>
+#include <stdexcept>
 
 #include "support/raw_socket.hpp"
 #include "support/simulator_test.hpp"
@@ -173,7 +175,17 @@ TEST_F(Dashboard, shutdown_switches_the_controller_off)
 {
   EXPECT_EQ(client.ask("shutdown"), "Shutting down");
   EXPECT_TRUE(client.socket().closed_by_peer());
-  EXPECT_THROW(RawSocket(controller.address(), 29999), std::runtime_error);
+  const auto refused = [address = controller.address()] {
+    try {
+      RawSocket(address, 29999);
+      return false;
+    } catch (const std::runtime_error &) {
+      return true;
+    }
+  };
+  // The connections go first, the ports right after.
+  EXPECT_TRUE(
+      controller.wait_until([&](const nlohmann::json &) { return refused(); }, std::chrono::seconds(5)));
 }
 
 TEST(DashboardOfACb3, knows_user_roles_but_no_operational_modes)
