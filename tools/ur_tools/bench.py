@@ -5,14 +5,12 @@ A ratio below 1 is better than the aim. Figures of a busy machine say more about
 
 import argparse
 import json
-import os
 import subprocess
 import sys
 import time
 from typing import Dict, List, Optional, Tuple
 
-from . import say
-from .demo import NODES, answers
+from . import cell, say
 from .environment import program, run_environment
 from .layout import ROOT, Layout
 from .processes import Programs
@@ -41,15 +39,12 @@ def parse(arguments: List[str]) -> argparse.Namespace:
 
 def _start(programs: Programs, layout: Layout, options: argparse.Namespace, env: Dict[str, str]) -> "tuple[Dict[str, int], float]":
     """The process ids by name, and how long the command server took to be ready."""
-    simulator = programs.start("simulator", [program(layout, "ur_simulator", "ur_simulator"), "--address", options.address,
-                                             "--model", options.model], env)
-    programs.wait_until(lambda: answers(options.address, 29999), 10.0, "the simulator's ports")
+    simulator = cell.start_simulator(programs, layout, env, options.address, options.model)
     pids = {"simulator": simulator.process.pid}
     ready = 0.0
-    for node in NODES:
+    for node in cell.NODES:
         begin = time.monotonic()
-        started = programs.start(node, [program(layout, "ur_ros_rtde", node), "--ros-args", "-p",
-                                        f"robot_ip:={options.address}"], env)
+        started = cell.start_node(programs, layout, env, node, options.address)
         pids[node] = started.process.pid
         if node == "command_server":
             programs.wait_until(lambda: "the robot is ready" in started.output and "commands: " in started.output, 20.0,
@@ -95,18 +90,5 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     return 0
 
 
-def main() -> int:
-    ros, _, variant = os.environ.get("UR_LAYOUT", "kilted:").partition(":")
-    options = parse(sys.argv[1:])
-    try:
-        return run(options, Layout(ros, variant))
-    except say.Failure as failure:
-        say.line(f"\n{failure}")
-        return 1
-    except KeyboardInterrupt:
-        say.line("\nStopped.")
-        return 130
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cell.main(parse, run))

@@ -5,19 +5,16 @@ ignored marked blue, the stop red.
 """
 
 import argparse
-import os
 import pathlib
-import socket
 import sys
 import time
 from typing import List
 
-from . import say
-from .environment import program, run_environment
+from . import cell, say
+from .environment import run_environment
 from .layout import ROOT, Layout
 from .processes import Programs
 
-NODES = ("robot_state_receiver", "command_server", "dashboard_server")
 # m between the tool and the table: what each size of arm can go down from its start pose.
 DROP = {"ur3": 0.15, "ur3e": 0.15}
 DEFAULT_DROP = 0.3
@@ -50,23 +47,13 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     return options
 
 
-def answers(address: str, port: int) -> bool:
-    try:
-        socket.create_connection((address, port), 0.2).close()
-        return True
-    except OSError:
-        return False
-
-
 def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> None:
     env = run_environment(layout)
     say.step(f"Starting the simulated controller of a {options.model.upper()} at {options.address}")
-    programs.start("simulator", [program(layout, "ur_simulator", "ur_simulator"), "--address", options.address,
-                                 "--model", options.model], env)
-    programs.wait_until(lambda: answers(options.address, 29999), 10.0, "the simulator's ports")
-    say.step("Starting the nodes " + ", ".join(NODES))
-    for node in NODES:
-        programs.start(node, [program(layout, "ur_ros_rtde", node), "--ros-args", "-p", f"robot_ip:={options.address}"], env)
+    cell.start_simulator(programs, layout, env, options.address, options.model)
+    say.step("Starting the nodes " + ", ".join(cell.NODES))
+    for node in cell.NODES:
+        cell.start_node(programs, layout, env, node, options.address)
 
 
 def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace) -> int:
@@ -96,18 +83,5 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     return code
 
 
-def main() -> int:
-    ros, _, variant = os.environ.get("UR_LAYOUT", "kilted:").partition(":")
-    options = parse(sys.argv[1:])
-    try:
-        return run(options, Layout(ros, variant))
-    except say.Failure as failure:
-        say.line(f"\n{failure}")
-        return 1
-    except KeyboardInterrupt:
-        say.line("\nStopped.")
-        return 130
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cell.main(parse, run))
