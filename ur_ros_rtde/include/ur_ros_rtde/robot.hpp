@@ -15,6 +15,7 @@
 #include "ur_ros_rtde/log.hpp"
 #include "ur_ros_rtde/motion.hpp"
 #include "ur_ros_rtde/sample.hpp"
+#include "ur_ros_rtde/script.hpp"
 
 namespace ur_rtde {
 class DashboardClient;
@@ -53,7 +54,7 @@ struct RobotOptions {
 enum class RobotState {
   disconnected,  ///< no controller at the address
   connecting,    ///< there is one; interfaces and control program are being set up
-  ready,         ///< takes motion commands
+  ready,         ///< takes motion commands, or runs a script that was sent in their place
   stopped,       ///< connected, but it cannot move: see the cause
 };
 
@@ -116,6 +117,16 @@ class Robot {
   /// stops the program by way of the dashboard server. An error means that nobody knows whether the arm
   /// stands.
   Expected<StopReport> stop_motion(const StopOptions & options = {});
+
+  /// Sends `script` to the controller and waits for its end, however that comes. `script` is a whole program
+  /// (`def … end`, or `sec … end` for a secondary one) or the body of one, which is put into a function of
+  /// its own. A script that must end early, or late, is stopped: the arm decelerates.
+  ///
+  /// A program replaces the control program: hold Resource::script. Meanwhile status() stays ready, control()
+  /// throws RobotError (busy), and the controller ends the program when this process gives no sign of life
+  /// any more (RobotOptions::watchdog_frequency). On return the control program runs again, unless the robot
+  /// is stopped or the link is lost.
+  ScriptReport run_script(const std::string & script, const ScriptOptions & options = {});
 
   Arbiter & arbiter();
 
