@@ -3,7 +3,7 @@
 # Makes the plugins of the shared library <target> known to the servers of ur_ros_rtde: installs the library into lib,
 # and <plugins.xml> with an entry in the ament index. The same files and the same entry as
 # pluginlib_export_plugin_description_file(ur_ros_rtde <plugins.xml>) makes, without needing pluginlib.
-# Once for each package; call it before ament_package().
+# Once for each library, each description with a file name of its own; call it before ament_package().
 function(ur_ros_rtde_register_plugins target description)
   if(NOT TARGET ${target})
     message(FATAL_ERROR "ur_ros_rtde_register_plugins: there is no target ${target}")
@@ -14,5 +14,14 @@ function(ur_ros_rtde_register_plugins target description)
   endif()
   install(TARGETS ${target} LIBRARY DESTINATION lib ARCHIVE DESTINATION lib RUNTIME DESTINATION bin)
   install(FILES "${description}" DESTINATION share/${PROJECT_NAME})
-  ament_index_register_resource(ur_ros_rtde__pluginlib__plugin CONTENT "share/${PROJECT_NAME}/${name}\n")
+
+  get_property(first DIRECTORY PROPERTY UR_ROS_RTDE_FIRST_PLUGINS)
+  if(NOT first)
+    set(first ${target})
+    set_property(DIRECTORY PROPERTY UR_ROS_RTDE_FIRST_PLUGINS ${target})
+    # Evaluated when all calls have been made.
+    ament_index_register_resource(ur_ros_rtde__pluginlib__plugin
+      CONTENT "$<JOIN:$<TARGET_PROPERTY:${target},UR_ROS_RTDE_DESCRIPTIONS>,\n>\n")
+  endif()
+  set_property(TARGET ${first} APPEND PROPERTY UR_ROS_RTDE_DESCRIPTIONS "share/${PROJECT_NAME}/${name}")
 endfunction()
