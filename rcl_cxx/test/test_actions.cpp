@@ -1,106 +1,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <condition_variable>
 #include <future>
 #include <mutex>
 #include <optional>
-#include <test_msgs/action/fibonacci.hpp>
 
-#include "rcl_cxx/rcl_cxx.hpp"
-#include "ros_fixture.hpp"
+#include "action_fixture.hpp"
 
-using Fibonacci = test_msgs::action::Fibonacci;
-using Handle = rcl_cxx::GoalHandle<Fibonacci>;
-using rcl_cxx::CancelCode;
-using rcl_cxx::GoalStatus;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::UnorderedElementsAre;
 
 namespace {
-Fibonacci::Goal goal_of(int order)
-{
-  Fibonacci::Goal goal;
-  goal.order = order;
-  return goal;
-}
-
-Fibonacci::Result result_of(std::vector<int> sequence)
-{
-  Fibonacci::Result result;
-  result.sequence.assign(sequence.begin(), sequence.end());
-  return result;
-}
-
-/// A server that only keeps the handles: the test does what a worker would.
-class Actions : public Spinning {
- protected:
-  ~Actions() override { context->shutdown("end of the test"); }
-
-  void serve(const rcl_cxx::ActionServerOptions & options = {})
-  {
-    rcl_cxx::ActionHandlers<Fibonacci> handlers;
-    handlers.goal = [this](const rcl_cxx::GoalId & id, const Fibonacci::Goal & goal) {
-      return on_goal ? on_goal(id, goal) : tl::expected<void, std::string>{};
-    };
-    handlers.accepted = [this](std::shared_ptr<Handle> handle) {
-      if (on_accepted) {
-        on_accepted(std::move(handle));
-        return;
-      }
-      const std::lock_guard lock(mutex);
-      handles.push_back(std::move(handle));
-    };
-    handlers.cancel = [this](Handle & handle) { return !on_cancel || on_cancel(handle); };
-    server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers), options);
-    client = node->create_action_client<Fibonacci>("fibonacci");
-    ASSERT_TRUE(client->wait_for_server(kLimit));
-  }
-
-  std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>> send(int order,
-                                                             rcl_cxx::SendGoalOptions<Fibonacci> options = {})
-  {
-    auto response = client->send_goal(goal_of(order), std::move(options));
-    return response.wait_for(kLimit) == std::future_status::ready ? response.get() : nullptr;
-  }
-
-  /// The server's side of the n-th goal.
-  std::shared_ptr<Handle> accepted(std::size_t n)
-  {
-    EXPECT_TRUE(eventually([&] {
-      const std::lock_guard lock(mutex);
-      return handles.size() > n;
-    }));
-    const std::lock_guard lock(mutex);
-    return handles.at(n);
-  }
-
-  static rcl_cxx::ActionResult<Fibonacci> result(
-      const std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>> & goal)
-  {
-    const bool ready = goal->result().wait_for(kLimit) == std::future_status::ready;
-    EXPECT_TRUE(ready);
-    return ready ? goal->result().get() : rcl_cxx::ActionResult<Fibonacci>();
-  }
-
-  template <typename T>
-  static T get(std::future<T> future)
-  {
-    EXPECT_EQ(future.wait_for(kLimit), std::future_status::ready);
-    return future.get();
-  }
-
-  std::mutex mutex;
-  std::vector<std::shared_ptr<Handle>> handles;
-  std::function<tl::expected<void, std::string>(const rcl_cxx::GoalId &, const Fibonacci::Goal &)> on_goal;
-  std::function<void(std::shared_ptr<Handle>)> on_accepted;
-  std::function<bool(Handle &)> on_cancel;
-  std::shared_ptr<rcl_cxx::ActionServer<Fibonacci>> server;
-  std::shared_ptr<rcl_cxx::ActionClient<Fibonacci>> client;
-};
 using ActionGoals = Actions;
-using ActionCancel = Actions;
 using ActionEnd = Actions;
 using ActionCalls = Actions;
 }  // namespace
@@ -229,110 +140,6 @@ TEST_F(ActionGoals, send_feedback_to_their_own_client)
   EXPECT_TRUE(accepted(1)->publish_feedback(feedback));
   EXPECT_TRUE(eventually([&] { return second == 42; }));
   EXPECT_EQ(first, 0);
-}
-
-TEST_F(ActionCancel, is_granted_and_ends_as_canceled)
-{
-  serve();
-  const auto goal = send(5);
-  const auto handle = accepted(0);
-  const auto response = get(goal->cancel());
-  EXPECT_EQ(response.code, CancelCode::none);
-  EXPECT_THAT(response.goals, ElementsAre(goal->goal_id()));
-  EXPECT_TRUE(handle->is_canceling());
-  EXPECT_TRUE(handle->canceled(result_of({1})));
-  EXPECT_EQ(result(goal).status, GoalStatus::canceled);
-  EXPECT_THAT(result(goal).result.sequence, ElementsAre(1));
-}
-
-TEST_F(ActionCancel, that_is_refused_leaves_the_goal_alone)
-{
-  serve();
-  on_cancel = [](Handle &) { return false; };
-  const auto goal = send(5);
-  const auto handle = accepted(0);
-  const auto response = get(goal->cancel());
-  EXPECT_EQ(response.code, CancelCode::rejected);
-  EXPECT_TRUE(response.goals.empty());
-  EXPECT_EQ(handle->status(), GoalStatus::executing);
-  EXPECT_TRUE(handle->succeed());
-}
-
-TEST_F(ActionCancel, whose_handler_throws_is_refused)
-{
-  serve();
-  on_cancel = [](Handle &) -> bool { throw std::runtime_error("is logged"); };
-  const auto goal = send(5);
-  EXPECT_EQ(get(goal->cancel()).code, CancelCode::rejected);
-  EXPECT_TRUE(accepted(0)->is_active());
-}
-
-TEST_F(ActionCancel, may_be_carried_out_by_its_handler)
-{
-  serve();
-  on_cancel = [](Handle & handle) { return handle.canceled(result_of({3})); };
-  const auto goal = send(5);
-  const auto response = get(goal->cancel());
-  EXPECT_EQ(response.code, CancelCode::none);
-  EXPECT_EQ(result(goal).status, GoalStatus::canceled);
-}
-
-TEST_F(ActionCancel, loses_against_a_result_that_comes_first)
-{
-  serve();
-  on_cancel = [](Handle & handle) {
-    handle.succeed();
-    return true;
-  };
-  const auto goal = send(5);
-  const auto response = get(goal->cancel());
-  EXPECT_EQ(response.code, CancelCode::goal_terminated);
-  EXPECT_TRUE(response.goals.empty());
-  EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
-  EXPECT_EQ(get(goal->cancel()).code, CancelCode::goal_terminated);
-}
-
-TEST_F(ActionCancel, of_an_unknown_goal_says_so)
-{
-  serve();
-  EXPECT_EQ(get(client->cancel_goal(rcl_cxx::GoalId::random())).code, CancelCode::unknown_goal);
-}
-
-TEST_F(ActionCancel, of_all_or_of_earlier_goals)
-{
-  serve();
-  const auto one = send(1);
-  const auto two = send(2);
-  const auto three = send(3);
-  EXPECT_THAT(get(client->cancel_goals_before(accepted(1)->accepted_ns())).goals,
-              UnorderedElementsAre(one->goal_id(), two->goal_id()));
-  EXPECT_FALSE(accepted(2)->is_canceling());
-  EXPECT_THAT(get(client->cancel_all_goals()).goals, ElementsAre(three->goal_id()));
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_TRUE(accepted(i)->canceled());
-  }
-  const auto nothing = get(client->cancel_all_goals());
-  EXPECT_EQ(nothing.code, CancelCode::none);
-  EXPECT_TRUE(nothing.goals.empty());
-}
-
-TEST_F(ActionCancel, races_with_results_without_losing_a_goal)
-{
-  serve();
-  for (std::size_t round = 0; round < 20; ++round) {
-    const auto goal = send(1);
-    const auto handle = accepted(round);
-    std::thread worker([&] {
-      if (!(handle->is_canceling() && handle->canceled())) {
-        handle->succeed();
-      }
-    });
-    const auto response = get(goal->cancel());
-    worker.join();
-    const GoalStatus end = result(goal).status;
-    EXPECT_TRUE(end == GoalStatus::canceled || end == GoalStatus::succeeded);
-    EXPECT_TRUE(response.code == CancelCode::none || end == GoalStatus::succeeded);
-  }
 }
 
 TEST_F(ActionEnd, of_the_server_aborts_its_goals)

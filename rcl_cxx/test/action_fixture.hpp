@@ -1,0 +1,98 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <memory>
+#include <mutex>
+#include <test_msgs/action/fibonacci.hpp>
+#include <vector>
+
+#include "rcl_cxx/rcl_cxx.hpp"
+#include "ros_fixture.hpp"
+
+using Fibonacci = test_msgs::action::Fibonacci;
+using Handle = rcl_cxx::GoalHandle<Fibonacci>;
+using rcl_cxx::CancelCode;
+using rcl_cxx::GoalStatus;
+
+inline Fibonacci::Goal goal_of(int order)
+{
+  Fibonacci::Goal goal;
+  goal.order = order;
+  return goal;
+}
+
+inline Fibonacci::Result result_of(std::vector<int> sequence)
+{
+  Fibonacci::Result result;
+  result.sequence.assign(sequence.begin(), sequence.end());
+  return result;
+}
+
+/// A server that only keeps the handles: the test does what a worker would.
+class Actions : public Spinning {
+ protected:
+  ~Actions() override { context->shutdown("end of the test"); }
+
+  void serve(const rcl_cxx::ActionServerOptions & options = {})
+  {
+    rcl_cxx::ActionHandlers<Fibonacci> handlers;
+    handlers.goal = [this](const rcl_cxx::GoalId & id, const Fibonacci::Goal & goal) {
+      return on_goal ? on_goal(id, goal) : tl::expected<void, std::string>{};
+    };
+    handlers.accepted = [this](std::shared_ptr<Handle> handle) {
+      if (on_accepted) {
+        on_accepted(std::move(handle));
+        return;
+      }
+      const std::lock_guard lock(mutex);
+      handles.push_back(std::move(handle));
+    };
+    handlers.cancel = [this](Handle & handle) { return !on_cancel || on_cancel(handle); };
+    server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers), options);
+    client = node->create_action_client<Fibonacci>("fibonacci");
+    ASSERT_TRUE(client->wait_for_server(kLimit));
+  }
+
+  std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>> send(int order,
+                                                             rcl_cxx::SendGoalOptions<Fibonacci> options = {})
+  {
+    auto response = client->send_goal(goal_of(order), std::move(options));
+    return response.wait_for(kLimit) == std::future_status::ready ? response.get() : nullptr;
+  }
+
+  /// The server's side of the n-th goal.
+  std::shared_ptr<Handle> accepted(std::size_t n)
+  {
+    EXPECT_TRUE(eventually([&] {
+      const std::lock_guard lock(mutex);
+      return handles.size() > n;
+    }));
+    const std::lock_guard lock(mutex);
+    return handles.at(n);
+  }
+
+  static rcl_cxx::ActionResult<Fibonacci> result(
+      const std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>> & goal)
+  {
+    const bool ready = goal->result().wait_for(kLimit) == std::future_status::ready;
+    EXPECT_TRUE(ready);
+    return ready ? goal->result().get() : rcl_cxx::ActionResult<Fibonacci>();
+  }
+
+  template <typename T>
+  static T get(std::future<T> future)
+  {
+    EXPECT_EQ(future.wait_for(kLimit), std::future_status::ready);
+    return future.get();
+  }
+
+  std::mutex mutex;
+  std::vector<std::shared_ptr<Handle>> handles;
+  std::function<tl::expected<void, std::string>(const rcl_cxx::GoalId &, const Fibonacci::Goal &)> on_goal;
+  std::function<void(std::shared_ptr<Handle>)> on_accepted;
+  std::function<bool(Handle &)> on_cancel;
+  std::shared_ptr<rcl_cxx::ActionServer<Fibonacci>> server;
+  std::shared_ptr<rcl_cxx::ActionClient<Fibonacci>> client;
+};
