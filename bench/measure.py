@@ -1,4 +1,4 @@
-"""Measures a running simulator and driver, and prints JSON. Started by `./ur bench`, which starts both."""
+"""Measures a running simulator and driver, and writes JSON. Started by `./ur bench`, which starts both."""
 
 import argparse
 import json
@@ -32,6 +32,11 @@ def cpu_seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def resident_megabytes(pid):
+    status = Path(f"/proc/{pid}/status").read_text()
+    return next(int(line.split()[1]) for line in status.splitlines() if line.startswith("VmRSS:")) / 1024.0
+
+
 def cpu_percent(pids, seconds):
     """Of one core, by name, over an interval in which nothing but the stream runs."""
     before, begin = {name: cpu_seconds(pid) for name, pid in pids.items()}, time.monotonic()
@@ -45,6 +50,7 @@ def main():
     parser.add_argument("--address", required=True)
     parser.add_argument("--subscriber", required=True, help="the C++ subscriber")
     parser.add_argument("--pid", action="append", default=[], metavar="NAME=PID", help="a process whose load is measured")
+    parser.add_argument("--output", required=True, type=Path, metavar="FILE", help="where the JSON goes")
     parser.add_argument("--repeat", type=int, default=40, help="goals and cancels")
     options = parser.parse_args()
     rclpy.init()
@@ -55,12 +61,13 @@ def main():
             figures[f"package to {name} subscriber"] = summary(latencies(received, control.request("trace")))
         pids = {name: int(pid) for name, pid in (pair.split("=") for pair in options.pid)}
         figures["cpu"] = cpu_percent(pids, 5.0)
+        figures["memory"] = {name: resident_megabytes(pid) for name, pid in pids.items()}
         commands = Commands(control)
         figures["goal to first RTDE command"] = summary(commands.goal_to_command(options.repeat))
         figures["cancel to deceleration"] = summary(commands.cancel_to_deceleration(options.repeat // 2))
         commands.close()
     rclpy.try_shutdown()
-    print(json.dumps(figures))
+    options.output.write_text(json.dumps(figures))
 
 
 if __name__ == "__main__":

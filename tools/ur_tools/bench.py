@@ -5,7 +5,6 @@ A ratio below 1 is better than the aim. Figures of a busy machine say more about
 
 import argparse
 import json
-import subprocess
 import sys
 import time
 from typing import Dict, List, Optional, Tuple
@@ -24,6 +23,10 @@ AIMS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
     ("goal to first RTDE command", "p50", 1.0, "ms"),
     ("cancel to deceleration", "p50", 5.0, "ms"),
     ("cpu", "simulator", 10.0, "% of a core"),
+    ("cpu", "robot_state_receiver", 10.0, "% of a core"),
+    ("cpu", "command_server", 10.0, "% of a core"),
+    ("cpu", "dashboard_server", 10.0, "% of a core"),
+    ("memory", "command_server", 100.0, "MB"),
     ("start to ready", None, 2.0, "s"),
 )
 
@@ -53,15 +56,17 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace, env:
     return pids, ready
 
 
-def _measure(layout: Layout, options: argparse.Namespace, pids: Dict[str, int], env: Dict[str, str]) -> dict:
+def _measure(programs: Programs, layout: Layout, options: argparse.Namespace, pids: Dict[str, int],
+             env: Dict[str, str]) -> dict:
+    output = layout.log / "bench" / "figures.json"
+    output.unlink(missing_ok=True)
     command = [str(layout.python), str(ROOT / "bench" / "measure.py"), "--address", options.address, "--subscriber",
-               str(program(layout, "ur_ros_rtde", "joint_state_latency")), "--repeat", str(options.repeat)]
+               str(program(layout, "ur_ros_rtde", "joint_state_latency")), "--repeat", str(options.repeat), "--output", str(output)]
     for name, pid in pids.items():
         command += ["--pid", f"{name}={pid}"]
-    result = subprocess.run(command, env=env, stdout=subprocess.PIPE, universal_newlines=True, timeout=300)
-    if result.returncode != 0:
+    if programs.run(command, env, 300.0) != 0:
         raise say.Failure("the measurement ended early, see above")
-    return json.loads(result.stdout)
+    return json.loads(output.read_text())
 
 
 def _print(figures: dict) -> None:
@@ -69,13 +74,11 @@ def _print(figures: dict) -> None:
     for name, part, aim, unit in AIMS:
         value = figures.get(name)
         if part is not None and value is not None:
-            value = value[part]
+            value = value.get(part)
         if value is None:
             say.line(f"{name:30} {part or '':16} nothing measured")
             continue
         say.line(f"{name:30} {part or '':16} {value:10.3f} {aim:8g}  {value / aim:5.2f}  {unit}")
-    for name, value in figures["cpu"].items():
-        say.line(f"{'cpu':30} {name:20} {value:6.1f} % of a core")
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
@@ -83,7 +86,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     with Programs(layout.log / "bench") as programs:
         say.step("Starting simulator and nodes, measuring for about a minute")
         pids, ready = _start(programs, layout, options, env)
-        figures = _measure(layout, options, pids, env)
+        figures = _measure(programs, layout, options, pids, env)
         figures["start to ready"] = ready
         programs.check()
         _print(figures)
