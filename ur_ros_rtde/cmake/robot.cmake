@@ -4,6 +4,8 @@ find_package(tl-expected REQUIRED)
 find_package(ur_rtde_vendor REQUIRED)
 find_package(Threads REQUIRED)
 
+include(${CMAKE_CURRENT_LIST_DIR}/script.cmake)
+
 file(GLOB robot_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/robot/*.cpp)
 add_library(ur_ros_rtde_robot SHARED ${robot_sources})
 target_compile_features(ur_ros_rtde_robot PUBLIC cxx_std_20)
@@ -15,4 +17,4 @@ target_include_directories(ur_ros_rtde_robot
   PRIVATE src)
 target_link_libraries(ur_ros_rtde_robot
   PUBLIC ur_rtde::rtde tl::expected Threads::Threads
-  PRIVATE fmt::fmt)
+  PRIVATE ur_ros_rtde_script fmt::fmt)

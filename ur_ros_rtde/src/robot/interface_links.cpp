@@ -68,6 +68,9 @@ Status InterfaceLinks::start_watchdog(RTDEControlInterface & control) const
 
 Status InterfaceLinks::start_control()
 {
+  if (resume_parked()) {
+    return {};
+  }
   for (const auto port : {rtde_port, script_port}) {
     if (const auto reachable = TcpStream::connect(options_.address, port, options_.connect_timeout);
         !reachable) {
@@ -94,25 +97,85 @@ Status InterfaceLinks::start_control()
   }
 }
 
+bool InterfaceLinks::take_control_lock(RTDEControlInterface & control, int attempts)
+{
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    control.abandonCommand();
+    if (control_lock_->try_lock_for(std::chrono::milliseconds(20))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void InterfaceLinks::park_control()
+{
+  std::shared_ptr<RTDEControlInterface> control;
+  {
+    const std::lock_guard lock(mutex_);
+    control = parked_ = std::exchange(control_, nullptr);
+  }
+  if (!control || !take_control_lock(*control, 25)) {
+    return;
+  }
+  try {
+    control->setCommandTimeout(std::chrono::milliseconds(500));
+    control->stopScript();
+  } catch (const std::exception &) {
+    // It is stopped by other means, then.
+  }
+  control->setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
+  control_lock_->unlock();
+}
+
+bool InterfaceLinks::control_parked() const
+{
+  const std::lock_guard lock(mutex_);
+  return parked_ != nullptr;
+}
+
+bool InterfaceLinks::resume_parked()
+{
+  std::shared_ptr<RTDEControlInterface> control;
+  {
+    const std::lock_guard lock(mutex_);
+    control = parked_;
+  }
+  bool works = false;
+  try {
+    works = control && control->isConnected() && control->reuploadScript();
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    while (works && !control->isProgramRunning()) {
+      works = control->waitForNextState() && std::chrono::steady_clock::now() < deadline;
+    }
+    works = works && start_watchdog(*control);
+  } catch (const std::exception &) {
+    works = false;
+  }
+  const std::lock_guard lock(mutex_);
+  parked_.reset();
+  if (works) {
+    control_ = std::move(control);
+  } else if (control) {
+    control->disconnect();
+  }
+  return works;
+}
+
 void InterfaceLinks::drop_control()
 {
   std::shared_ptr<RTDEControlInterface> control;
   {
     const std::lock_guard lock(mutex_);
-    control = std::exchange(control_, nullptr);
-  }
-  if (!control) {
-    return;
+    control = control_ ? control_ : parked_;
+    control_.reset();
+    parked_.reset();
   }
   // The robot lets each input register have one client: the connection must be gone before the next one, even
   // if somebody else still holds the interface.
-  for (int attempt = 0; attempt < 50; ++attempt) {
-    control->abandonCommand();
-    if (control_lock_->try_lock_for(std::chrono::milliseconds(20))) {
-      control->disconnect();
-      control_lock_->unlock();
-      return;
-    }
+  if (control && take_control_lock(*control, 50)) {
+    control->disconnect();
+    control_lock_->unlock();
   }
 }
 
@@ -165,7 +228,12 @@ bool InterfaceLinks::control_answers()
 
 void InterfaceLinks::kick_watchdog()
 {
-  if (const auto control = control_pointer()) {
+  std::shared_ptr<RTDEControlInterface> control;
+  {
+    const std::lock_guard lock(mutex_);
+    control = control_ ? control_ : parked_;
+  }
+  if (control) {
     control->kickWatchdog();
   }
 }

@@ -18,8 +18,13 @@ class InterfaceLinks {
   /// Takes as long as the connect timeout; does nothing when there is one that works.
   Status ensure_io();
   /// Uploads and starts the control program, then its watchdog. Up to some seconds if the robot does not
-  /// start it. The program that ran before must have been stopped.
+  /// start it. The program that ran before must have been stopped. Over the parked connection, if there is
+  /// one that works.
   Status start_control();
+  /// Ends the control program and keeps its connection, over which the signs of life go on: another program
+  /// is to run in its place. There is no control interface until start_control().
+  void park_control();
+  bool control_parked() const;
   /// Ends the connection; a command that waits in it returns. Returns when the robot can take another control
   /// interface.
   void drop_control();
@@ -36,10 +41,14 @@ class InterfaceLinks {
 
  private:
   Status start_watchdog(ur_rtde::RTDEControlInterface & control) const;
+  /// The lock of the control interface, giving a command that holds it up; false when that does not help.
+  bool take_control_lock(ur_rtde::RTDEControlInterface & control, int attempts);
+  bool resume_parked();
 
   const RobotOptions options_;
   mutable std::mutex mutex_;
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_;
+  std::shared_ptr<ur_rtde::RTDEControlInterface> parked_;
   std::shared_ptr<ur_rtde::RTDEIOInterface> io_;
   std::shared_ptr<InterfaceLock> control_lock_ = std::make_shared<InterfaceLock>();
   std::shared_ptr<InterfaceLock> io_lock_ = std::make_shared<InterfaceLock>();

@@ -10,6 +10,7 @@
 #include "robot/interface_links.hpp"
 #include "robot/motion_stopper.hpp"
 #include "robot/motion_tracker.hpp"
+#include "robot/script_runner.hpp"
 #include "robot/supervisor.hpp"
 #include "ur_ros_rtde/dashboard_link.hpp"
 #include "ur_ros_rtde/state_receiver.hpp"
@@ -59,7 +60,8 @@ class Robot::Impl {
         dashboard(dashboard_options(options), log),
         links(options),
         stopper(options.address, state, links, tracker),
-        supervisor(options, state, dashboard, links, tracker, log)
+        supervisor(options, state, dashboard, links, tracker, log),
+        scripts(options, state, tracker, links, supervisor)
   {
     state.on_link([this](const LinkStatus &) { supervisor.look_now(); });
     state.on_sample([this](const Sample & sample) { add(sample); });
@@ -80,6 +82,7 @@ class Robot::Impl {
   InterfaceLinks links;
   MotionStopper stopper;
   Supervisor supervisor;
+  ScriptRunner scripts;
 
  private:
   void end_program();
@@ -112,6 +115,9 @@ void Robot::Impl::feed_watchdog(const Sample & sample)
 
 Error Robot::Impl::why_not() const
 {
+  if (supervisor.gave_way()) {
+    return {ErrorCode::busy, "a script runs in place of the control program: wait for its end, or cancel it"};
+  }
   const auto status = supervisor.status();
   if (status.state != RobotState::ready) {
     return {status.cause, status.message};
@@ -240,6 +246,9 @@ Status Robot::motion_possible() const
   if (const auto condition = robot_condition(*sample)) {
     return tl::unexpected(*condition);
   }
+  if (impl_->supervisor.gave_way()) {
+    return {};
+  }
   if (!sample->program_running()) {
     return failure(
         ErrorCode::program_stopped,
@@ -286,6 +295,11 @@ bool Robot::moving() const
 Expected<StopReport> Robot::stop_motion(const StopOptions & options)
 {
   return impl_->stopper.stop(options);
+}
+
+ScriptReport Robot::run_script(const std::string & script, const ScriptOptions & options)
+{
+  return impl_->scripts.run(script, options);
 }
 
 Arbiter & Robot::arbiter()

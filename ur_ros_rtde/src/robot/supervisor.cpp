@@ -139,6 +139,7 @@ void Supervisor::run(const std::stop_token & stop)
       return;
     }
     set(now);
+    settle_turn(now);
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, options_.retry_interval, [this] { return look_requested_; });
     look_requested_ = false;
@@ -147,6 +148,7 @@ void Supervisor::run(const std::stop_token & stop)
 
 RobotStatus Supervisor::look()
 {
+  turn_at_look_ = turn();
   const auto link = state_.link();
   const auto sample = state_.latest();
   if (!link.connected || !sample) {
@@ -164,13 +166,16 @@ RobotStatus Supervisor::look()
     program_ours_ = false;
     links_.drop_control();
   }
+  const auto condition = robot_condition(*sample);
+  if (turn_at_look_ == Turn::others || (turn_at_look_ == Turn::asked_for && program_ours_)) {
+    return look_at_turn(*sample, condition);
+  }
   if (!program_ours_ && links_.control_pointer()) {
     // Whatever ended it, it must not go on from where it was: not after a protective stop is unlocked, not on
     // the pendant's play.
     program_ended_ = true;
     links_.drop_control();
   }
-  const auto condition = robot_condition(*sample);
   if (!program_ours_ && program_ended_ && sample->runtime_state != RuntimeState::stopped &&
       !sample->program_running()) {
     if (const auto ended = stop_other_program(*sample); !ended && !condition) {
@@ -255,7 +260,9 @@ Status Supervisor::stop_other_program(const Sample & sample)
 
 RobotStatus Supervisor::start_program()
 {
-  set({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
+  if (!links_.control_parked()) {
+    set({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
+  }
   if (const auto started = links_.start_control(); !started) {
     return {RobotState::connecting, started.error().code, started.error().message};
   }

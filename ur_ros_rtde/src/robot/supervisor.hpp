@@ -34,11 +34,26 @@ class Supervisor {
   void add(const Sample & sample);
   void look_now();
 
+  /// Ends the control program for another program to run in its place, until take_back(). Refused when it
+  /// does not run.
+  Status give_way(std::chrono::milliseconds limit);
+  /// The other program has ended: starts the control program again, and returns when it runs or cannot.
+  Status take_back(std::chrono::milliseconds limit);
+  bool gave_way() const;
+
  private:
+  /// Whose turn it is to run a program.
+  enum class Turn { own, asked_for, others, coming_back };
+
   void run(const std::stop_token & stop);
   RobotStatus look();
   RobotStatus look_at_program(const Sample & sample);
   RobotStatus start_program();
+  RobotStatus look_at_turn(const Sample & sample, const std::optional<Error> & condition);
+  /// Who waits for the turn to come back, or to be given, is answered.
+  void settle_turn(const RobotStatus & now);
+  Turn turn() const;
+  bool end_own_program(const Sample & sample);
   bool program_replaced();
   Status stop_other_program(const Sample & sample);
   bool wait_for_runtime(RuntimeState runtime, std::chrono::milliseconds limit) const;
@@ -57,12 +72,14 @@ class Supervisor {
   bool program_ended_ = false;
   std::uint32_t link_ = 0;
   std::chrono::steady_clock::time_point last_question_{};
-  std::uint64_t seen_ = 0;  ///< modes of the sample before, receiving thread only
+  Turn turn_at_look_ = Turn::own;  ///< what the look under way goes by
+  std::uint64_t seen_ = 0;         ///< modes of the sample before, receiving thread only
 
   mutable std::mutex mutex_;
   mutable std::condition_variable_any changed_;
   RobotStatus status_;
   bool look_requested_ = false;
+  Turn turn_ = Turn::own;
   std::jthread thread_;
 };
 

@@ -162,6 +162,23 @@ Status TcpStream::read(std::span<std::byte> data, Clock::time_point deadline)
   return {};
 }
 
+Expected<std::size_t> TcpStream::read_some(std::span<std::byte> data, Clock::time_point deadline)
+{
+  while (wait_for(POLLIN, deadline)) {
+    const auto got = ::recv(descriptor_, data.data(), data.size(), 0);
+    if (got > 0) {
+      return static_cast<std::size_t>(got);
+    }
+    if (got == 0) {
+      return failure(ErrorCode::link_lost, fmt::format("{} closed the connection", name_));
+    }
+    if (errno != EINTR && errno != EAGAIN && errno != EWOULDBLOCK) {
+      return failure(ErrorCode::link_lost, fmt::format("{}: {}", name_, system_text(errno)));
+    }
+  }
+  return 0;
+}
+
 Expected<std::string> TcpStream::read_line(Clock::time_point deadline)
 {
   std::string line;

@@ -30,6 +30,8 @@ class TcpStream {
   Status write(std::string_view text, Clock::time_point deadline);
   /// Exactly data.size() bytes.
   Status read(std::span<std::byte> data, Clock::time_point deadline);
+  /// What has come, at most data.size() bytes, waiting for the first until the deadline: 0, if nothing came.
+  Expected<std::size_t> read_some(std::span<std::byte> data, Clock::time_point deadline);
   /// Up to and without the line feed; at most 1,000 bytes.
   Expected<std::string> read_line(Clock::time_point deadline);
 

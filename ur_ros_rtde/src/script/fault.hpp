@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+
+namespace ur_ros_rtde::script {
+
+/// What is wrong with a script.
+struct Fault {
+  int line = 0;  ///< from 1; 0: not a matter of one line
+  std::string message;
+};
+
+template <class T>
+using Result = tl::expected<T, Fault>;
+
+inline tl::unexpected<Fault> fault(int line, std::string message)
+{
+  return tl::unexpected<Fault>(Fault{line, std::move(message)});
+}
+
+}  // namespace ur_ros_rtde::script

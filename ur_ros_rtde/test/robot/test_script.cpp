@@ -1,0 +1,305 @@
+#include <atomic>
+#include <thread>
+
+#include "robot_fixture.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct AScript : RobotFixture {
+  static ScriptOptions secondary()
+  {
+    ScriptOptions options;
+    options.kind = ScriptKind::secondary;
+    options.limit = 5s;
+    return options;
+  }
+
+  /// A long joint motion.
+  static std::string turning()
+  {
+    return "def turn():\n"
+           "  q = get_actual_joint_positions()\n"
+           "  q[0] = q[0] + 3\n"
+           "  movej(q, a=2, v=0.8)\n"
+           "end\n";
+  }
+
+  bool turns() { return std::abs(robot->latest()->actual_qd[0]) > 0.7; }
+
+  /// The control program is back, and works.
+  testing::AssertionResult is_back()
+  {
+    if (const auto ready = robot->ready_to_move(); !ready) {
+      return testing::AssertionFailure() << ready.error().message << "\n" << log.text();
+    }
+    const auto q = robot->receive()->getActualQ();
+    const auto mark = robot->mark_motion();
+    auto there = q;
+    there[5] += 0.02;
+    if (!robot->control()->moveJ(there, 1.0, 2.0, true) ||
+        !eventually([&] { return robot->motion_progress(mark).finished(); })) {
+      return testing::AssertionFailure() << "it does not move any more\n" << log.text();
+    }
+    return testing::AssertionSuccess();
+  }
+};
+
+TEST_F(AScript, runs_to_its_end_and_tells_what_it_wrote)
+{
+  make_both();
+  const auto report = robot->run_script(
+      "def f():\n  textmsg(\"one\")\n  sync()\n  textmsg(\"two \", 2)\n  q = get_actual_joint_positions()\n"
+      "  q[0] = q[0] + 0.1\n  movej(q, a=3, v=1)\nend\n");
+  EXPECT_TRUE(report) << report.error.message;
+  EXPECT_EQ(report.end, ScriptEnd::finished);
+  EXPECT_EQ(report.text, (std::vector<std::string>{"one", "two 2"}));
+  EXPECT_GT(report.duration, 0.1);
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, is_followed_even_if_it_takes_no_time_at_all)
+{
+  make_both();
+  for (int i = 0; i < 3; ++i) {
+    const auto report = robot->run_script("textmsg(\"there\")");
+    EXPECT_TRUE(report) << report.error.message;
+    EXPECT_EQ(report.text, std::vector<std::string>{"there"});
+  }
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, gives_the_robot_back_within_a_second)
+{
+  make_both();
+  std::vector<Clock::time_point> text;
+  ScriptOptions options;
+  options.on_text = [&](const std::string &) { text.push_back(Clock::now()); };
+  ASSERT_TRUE(robot->run_script("textmsg(\"done\")", options));
+  ASSERT_EQ(text.size(), 1U);
+  ASSERT_TRUE(robot->ready_to_move());
+  const std::chrono::duration<double> back = Clock::now() - text.front();
+  RecordProperty("back_after_s", std::to_string(back.count()));
+  EXPECT_LT(back.count(), 1.0);
+  const std::lock_guard lock(mutex);
+  EXPECT_EQ(statuses.back().state, RobotState::ready);
+  EXPECT_EQ(log.count("a program was running"), 0U) << log.text();
+}
+
+TEST_F(AScript, that_does_not_compile_is_reported_with_its_line)
+{
+  make_both();
+  const auto report = robot->run_script("def f():\n  sync()\n\n  sync(1, 2, 3) nonsense\nend\n");
+  EXPECT_EQ(report.end, ScriptEnd::compile_error) << report.error.message;
+  EXPECT_EQ(report.error.code, ErrorCode::rejected_by_robot);
+  EXPECT_EQ(report.line, 4) << report.error.message;
+  EXPECT_NE(report.error.message.find("line 4"), std::string::npos) << report.error.message;
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, that_fails_is_reported_with_its_line)
+{
+  make_both();
+  const auto report = robot->run_script("def f():\n  textmsg(\"so far\")\n  a = [1, 2]\n  b = a[7]\nend\n");
+  EXPECT_EQ(report.end, ScriptEnd::runtime_error) << report.error.message;
+  EXPECT_EQ(report.line, 4) << report.error.message;
+  EXPECT_EQ(report.text, std::vector<std::string>{"so far"});
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, with_blocks_that_do_not_match_is_not_even_sent)
+{
+  make_both();
+  const auto report = robot->run_script("def f():\n  while True:\n  sync()\nend\n");
+  EXPECT_EQ(report.end, ScriptEnd::refused);
+  EXPECT_EQ(report.error.code, ErrorCode::invalid_goal);
+  EXPECT_EQ(report.line, 1) << report.error.message;
+  EXPECT_TRUE(robot->control()->isProgramRunning()) << "the control program was not disturbed";
+}
+
+TEST_F(AScript, that_is_canceled_is_stopped_with_the_arm)
+{
+  make_both();
+  ScriptOptions options;
+  options.interrupted = [&]() -> std::optional<Error> {
+    return turns() ? std::optional(Error{ErrorCode::canceled, "enough"}) : std::nullopt;
+  };
+  recording = true;
+  const auto report = robot->run_script(turning(), options);
+  recording = false;
+  EXPECT_EQ(report.end, ScriptEnd::interrupted);
+  EXPECT_EQ(report.error.code, ErrorCode::canceled);
+  EXPECT_EQ(report.error.message, "enough");
+  EXPECT_TRUE(at_rest());
+  EXPECT_LT(highest_deceleration(0), 20.0) << "it decelerates";
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, that_takes_too_long_is_stopped_with_the_arm)
+{
+  make_both();
+  ScriptOptions options;
+  options.limit = 700ms;
+  const auto report = robot->run_script(turning(), options);
+  EXPECT_EQ(report.end, ScriptEnd::timeout);
+  EXPECT_EQ(report.error.code, ErrorCode::timeout);
+  EXPECT_TRUE(at_rest());
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, that_somebody_stops_does_not_count_as_finished)
+{
+  make_both();
+  ScriptOptions options;
+  std::atomic<bool> told{false};
+  options.interrupted = [&]() -> std::optional<Error> {
+    if (turns() && !told.exchange(true)) {
+      controller.control({{"command", "stop_program"}});
+    }
+    return std::nullopt;
+  };
+  const auto report = robot->run_script(turning(), options);
+  EXPECT_EQ(report.end, ScriptEnd::stopped);
+  EXPECT_EQ(report.error.code, ErrorCode::program_stopped);
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, ends_with_a_protective_stop_and_does_not_go_on)
+{
+  make_both();
+  ScriptOptions options;
+  std::atomic<bool> told{false};
+  options.interrupted = [&]() -> std::optional<Error> {
+    if (turns() && !told.exchange(true)) {
+      controller.control({{"command", "protective_stop"}, {"reason", "test"}});
+    }
+    return std::nullopt;
+  };
+  const auto report = robot->run_script(turning(), options);
+  EXPECT_EQ(report.end, ScriptEnd::robot_stopped);
+  EXPECT_EQ(report.error.code, ErrorCode::protective_stop);
+  EXPECT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
+  const double before = robot->latest()->actual_q[0];
+  ASSERT_TRUE(eventually(
+      [&] {
+        try {
+          robot->dashboard()->unlockProtectiveStop();
+          return true;
+        } catch (const std::exception &) {
+          return false;
+        }
+      },
+      20s));
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_NEAR(robot->latest()->actual_q[0], before, 0.01);
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, ends_with_the_link_and_is_not_left_running)
+{
+  make_both();
+  ScriptOptions options;
+  std::atomic<bool> told{false};
+  options.interrupted = [&]() -> std::optional<Error> {
+    if (turns() && !told.exchange(true)) {
+      controller.control({{"command", "drop_links"}});
+    }
+    return std::nullopt;
+  };
+  const auto report = robot->run_script(turning(), options);
+  EXPECT_EQ(report.end, ScriptEnd::link_lost);
+  EXPECT_EQ(report.error.code, ErrorCode::link_lost);
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(eventually([&] { return at_rest(); }));
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, is_stopped_by_its_watchdog_when_the_driver_gives_no_sign_of_life)
+{
+  make_both();
+  ScriptOptions options;
+  std::atomic<bool> told{false};
+  options.interrupted = [&]() -> std::optional<Error> {
+    if (turns() && !told.exchange(true)) {
+      controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+      EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
+      controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", false}});
+    }
+    return std::nullopt;
+  };
+  const auto report = robot->run_script(turning(), options);
+  EXPECT_FALSE(report);
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(AScript, keeps_the_control_interface_to_itself)
+{
+  make_both();
+  ScriptOptions options;
+  std::optional<ErrorCode> found;
+  options.on_text = [&](const std::string &) {
+    EXPECT_TRUE(robot->ready_to_move()) << "who preempts the script may be admitted";
+    EXPECT_EQ(robot->run_script("sync()").error.code, ErrorCode::busy);
+    try {
+      robot->control();
+    } catch (const RobotError & error) {
+      found = error.error().code;
+    }
+  };
+  EXPECT_TRUE(robot->run_script("textmsg(\"now\")\nsleep(0.1)", options));
+  EXPECT_EQ(found, ErrorCode::busy);
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, is_refused_while_the_robot_is_not_ready)
+{
+  make_both();
+  controller.control({{"command", "protective_stop"}, {"reason", "test"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
+  const auto report = robot->run_script("sync()");
+  EXPECT_EQ(report.end, ScriptEnd::refused);
+  EXPECT_EQ(report.error.code, ErrorCode::protective_stop);
+}
+
+TEST_F(AScript, leaves_the_robot_usable_when_a_callback_throws)
+{
+  make_both();
+  ScriptOptions options;
+  options.interrupted = [&]() -> std::optional<Error> {
+    if (turns()) {
+      throw std::runtime_error("thrown");
+    }
+    return std::nullopt;
+  };
+  EXPECT_THROW(robot->run_script(turning(), options), std::runtime_error);
+  EXPECT_TRUE(eventually([&] { return at_rest(); }));
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(AScript, runs_beside_a_motion_if_it_is_a_secondary_program)
+{
+  make_both();
+  move_joints();
+  const auto report = robot->run_script("sec s():\n  set_standard_digital_out(2, True)\nend\n", secondary());
+  EXPECT_TRUE(report) << report.error.message;
+  EXPECT_TRUE(turns()) << "the motion goes on";
+  EXPECT_TRUE(eventually([&] { return (robot->latest()->digital_outputs & 4U) != 0; }));
+  EXPECT_TRUE(robot->stop_motion());
+}
+
+TEST_F(AScript, that_is_secondary_is_reported_with_its_errors_lines)
+{
+  make_both();
+  const auto wrong = robot->run_script("sec s():\n  nonsense nonsense\nend\n", secondary());
+  EXPECT_EQ(wrong.end, ScriptEnd::compile_error) << wrong.error.message;
+  EXPECT_EQ(wrong.line, 2) << wrong.error.message;
+  const auto failing = robot->run_script("a = [1]\nb = a[3]\n", secondary());
+  EXPECT_EQ(failing.end, ScriptEnd::runtime_error) << failing.error.message;
+  EXPECT_EQ(failing.line, 2) << failing.error.message;
+  EXPECT_TRUE(is_back());
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test
