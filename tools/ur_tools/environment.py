@@ -1,5 +1,6 @@
 """The environment in which our programs, rclpy and our interfaces are found."""
 
+import json
 import os
 import pathlib
 import shutil
@@ -10,7 +11,7 @@ from .layout import DOWNLOADS, Layout
 # What another ROS installation may have left in the user's environment. rcl of the wheels ends with 102 if
 # RMW_IMPLEMENTATION names anything else than the middleware it is linked with.
 FOREIGN = ("RMW_IMPLEMENTATION", "ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "ROS_LOCALHOST_ONLY", "PYTHONHOME",
-           "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "PYTHONPATH", "LD_LIBRARY_PATH",
+           "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "COLCON_DEFAULTS_FILE", "PYTHONPATH", "LD_LIBRARY_PATH",
            "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
 
 
@@ -59,6 +60,19 @@ def run_environment(layout: Layout) -> Dict[str, str]:
     env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     # Everything runs on this machine; nothing is announced to the network unless the user asks for it.
     env.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    return env
+
+
+def workspace_environment(layout: Layout) -> Dict[str, str]:
+    """run_environment(), in which `colcon build` of somebody's own workspace needs no arguments either."""
+    env = run_environment(layout)
+    env["CMAKE_PREFIX_PATH"] = str(layout.install)
+    env["PATH"] = _path(layout.install / "lib" / "ur_ros_rtde", env["PATH"])  # no `ros2 run` here
+    defaults = layout.base / "colcon_defaults.yaml"
+    arguments = ["-GNinja", "-DCMAKE_BUILD_TYPE=Release", f"-DROS_WHEELS_PREFIX={layout.venv}",
+                 f"-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES={layout.provider}", "-Wno-unused-cli"]
+    defaults.write_text(json.dumps({"build": {"cmake-args": arguments}}))
+    env["COLCON_DEFAULTS_FILE"] = str(defaults)
     return env
 
 

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
@@ -9,8 +10,8 @@ import sys
 from typing import List, Optional
 
 from . import build as building
-from . import lint, say, testing
-from .environment import program, run_environment
+from . import lint, new, say, testing
+from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, ROOT, SANITIZERS, STATE, Layout
 
 DESCRIPTION = """\
@@ -57,7 +58,7 @@ def command_sim(options: argparse.Namespace) -> int:
 
 def command_shell(options: argparse.Namespace) -> int:
     layout = _build(options)
-    env = run_environment(layout)
+    env = workspace_environment(layout)
     command = _forwarded(options)
     if command:
         return subprocess.run(command, env=env).returncode
@@ -86,6 +87,10 @@ def command_demo(options: argparse.Namespace) -> int:
 
 def command_bench(options: argparse.Namespace) -> int:
     return _python_command("bench", options)
+
+
+def command_new(options: argparse.Namespace) -> int:
+    return new.run(options.kind, options.name, options.package, options.directory)
 
 
 def command_format(options: argparse.Namespace) -> int:
@@ -154,6 +159,13 @@ def _parser() -> argparse.ArgumentParser:
     add_forwarding("sim", command_sim, "run the simulated controller; options go to ur_simulator (`./ur sim -- --help`)")
     add_forwarding("bench", command_bench, "measure latency and load")
     add_forwarding("shell", command_shell, "a shell, or one command, in which everything is found")
+
+    sub = add("new", command_new, "write a package with a plugin of your own: a command, a dashboard command or an extension")
+    sub.add_argument("kind", choices=new.KINDS)
+    sub.add_argument("name", help="of the plugin and its action: pick_part")
+    sub.add_argument("--package", default="", metavar="NAME", help="of the package (default: the plugin's name and kind)")
+    sub.add_argument("--directory", type=pathlib.Path, default=pathlib.Path("."), metavar="DIR",
+                     help="where the package is written (default: here)")
 
     for name, function, text in (("format", command_format, "format all C++ files"),
                                  ("lint", command_lint, "check formatting, paths and, with --tidy, clang-tidy")):

@@ -1,0 +1,64 @@
+"""./ur new: a package with a plugin of one's own, complete: it builds, loads and does something."""
+
+import pathlib
+import re
+from typing import Dict
+
+from . import say
+from .layout import ROOT
+
+TEMPLATES = ROOT / "tools" / "templates"
+KINDS = tuple(sorted(path.name for path in TEMPLATES.iterdir() if path.is_dir()))
+_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+
+
+def _checked(what: str, name: str) -> str:
+    if not _NAME.fullmatch(name):
+        raise say.Failure(f"{what} is \"{name}\": it must be lower case letters, digits and single underscores and begin with a "
+                          "letter, as in pick_part")
+    return name
+
+
+def _snake(pascal: str) -> str:
+    """As rosidl names the header of an interface."""
+    return re.sub("([a-z0-9])([A-Z])", r"\1_\2", re.sub("(.)([A-Z][a-z]+)", r"\1_\2", pascal)).lower()
+
+
+def _pascal(name: str) -> str:
+    pascal = "".join(part.capitalize() for part in name.split("_"))
+    if _snake(pascal) != name:
+        raise say.Failure(f"the name is \"{name}\": ROS would take its interface {pascal} for {_snake(pascal)}; use that")
+    return pascal
+
+
+def _words(name: str, package: str) -> Dict[str, str]:
+    """What stands in the templates, and what takes its place."""
+    return {"my_package": package, "my_command": name, "MyCommand": _pascal(name)}
+
+
+def _filled(text: str, words: Dict[str, str]) -> str:
+    return re.sub("|".join(words), lambda match: words[match.group()], text)
+
+
+def create(kind: str, name: str, package: str, folder: pathlib.Path) -> pathlib.Path:
+    """Writes the package into `folder`, which exists; gives its path."""
+    words = _words(_checked("the name", name), _checked("the package", package or f"{name}_{kind}"))
+    target = folder / words["my_package"]
+    if not folder.is_dir():
+        raise say.Failure(f"there is no folder {folder}; make it first, or name another with --directory")
+    if target.exists():
+        raise say.Failure(f"{target} is there already; remove it, or choose another name with --package")
+    for source in sorted(path for path in (TEMPLATES / kind).rglob("*") if path.is_file()):
+        file = target / _filled(str(source.relative_to(TEMPLATES / kind)), words)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(_filled(source.read_text(), words))
+    return target
+
+
+def run(kind: str, name: str, package: str, folder: pathlib.Path) -> int:
+    target = create(kind, name, package, folder)
+    for file in sorted(path for path in target.rglob("*") if path.is_file()):
+        say.line(f"    {file.relative_to(folder)}")
+    say.line("`colcon build` in the workspace it lies in (`./ur shell` where no ROS is installed) builds it; "
+             "docs/writing_a_plugin.md goes on from there.")
+    return 0
