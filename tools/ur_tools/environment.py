@@ -67,7 +67,8 @@ def workspace_environment(layout: Layout) -> Dict[str, str]:
     """run_environment(), in which `colcon build` of somebody's own workspace needs no arguments either."""
     env = run_environment(layout)
     env["CMAKE_PREFIX_PATH"] = str(layout.install)
-    env["PATH"] = _path(layout.install / "lib" / "ur_ros_rtde", env["PATH"])  # no `ros2 run` here
+    folders = [layout.install / "lib" / name for name in ("ur_ros_rtde", "ur_ros_rtde_cli")]
+    env["PATH"] = _path(*folders, env["PATH"])  # there is no `ros2 run` here
     defaults = layout.base / "colcon_defaults.yaml"
     arguments = ["-GNinja", "-DCMAKE_BUILD_TYPE=Release", f"-DROS_WHEELS_PREFIX={layout.venv}",
                  f"-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES={layout.provider}", "-Wno-unused-cli"]

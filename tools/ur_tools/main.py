@@ -21,6 +21,12 @@ only what changed. All of it lies in .ur/; `./ur clean` removes it.
 """
 
 
+# What is handed to `ur` of ur_ros_rtde_cli.
+CLI = {"call": "send a goal: ./ur call move_j \"{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0]}\"",
+       "state": "show the state of the robot", "plugins": "list the plugins that are installed",
+       "record": "record the robot's state into a CSV file"}
+
+
 def _add_build_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help="ROS 2 distribution (default: kilted)")
     parser.add_argument("-j", "--jobs", type=int, default=0, metavar="N", help="parallel jobs (default: all cores)")
@@ -89,6 +95,13 @@ def command_bench(options: argparse.Namespace) -> int:
     return _python_command("bench", options)
 
 
+def command_cli(options: argparse.Namespace) -> int:
+    """`./ur call …` is `ur call …` of ur_ros_rtde_cli, where it is found."""
+    layout = _build(options)
+    command = str(program(layout, "ur_ros_rtde_cli", "ur"))
+    os.execve(command, [command, options.command, *_forwarded(options)], workspace_environment(layout))
+
+
 def command_new(options: argparse.Namespace) -> int:
     return new.run(options.kind, options.name, options.package, options.directory)
 
@@ -137,7 +150,7 @@ def _parser() -> argparse.ArgumentParser:
 
     def add_forwarding(name: str, function, text: str) -> None:
         # Its own options go to the program; only those before them are ours.
-        sub = add(name, function, text, add_help=name not in ("demo", "bench"))
+        sub = add(name, function, text, add_help=name not in ("demo", "bench", *CLI))
         _add_build_options(sub)
         sub.add_argument("arguments", nargs=argparse.REMAINDER, help="handed on as they are")
 
@@ -160,6 +173,8 @@ def _parser() -> argparse.ArgumentParser:
     add_forwarding("bench", command_bench, "measure latency and load")
     add_forwarding("shell", command_shell, "a shell, or one command, in which everything is found")
 
+    for name, text in CLI.items():
+        add_forwarding(name, command_cli, text)
     sub = add("new", command_new, "write a package with a plugin of your own: a command, a dashboard command or an extension")
     sub.add_argument("kind", choices=new.KINDS)
     sub.add_argument("name", help="of the plugin and its action: pick_part")
@@ -182,7 +197,7 @@ def _parser() -> argparse.ArgumentParser:
 def _parse(arguments: List[str]) -> argparse.Namespace:
     """argparse, except that what demo and bench do not share with the other commands is theirs."""
     parser = _parser()
-    if arguments[:1] not in (["demo"], ["bench"], ["sim"]):
+    if not arguments or arguments[0] not in ("demo", "bench", "sim", *CLI):
         return parser.parse_args(arguments)
     options, unknown = parser.parse_known_args(arguments[:1] + _ours_first(arguments[1:]))
     options.arguments = unknown + list(options.arguments)

@@ -1,0 +1,42 @@
+"""Arguments of `ur`."""
+
+import argparse
+import sys
+from typing import List, Optional
+
+from . import call, plugins, record, state
+from .problem import Problem
+
+DESCRIPTION = """\
+Calls the actions of ur_ros_rtde, shows the robot's state, lists the plugins, records. Ends with 0 when what was asked for has
+been done, 1 when it failed, 2 when it was refused or cannot be meant.
+"""
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="ur", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", metavar="command", required=True)
+    for module in (call, state, plugins, record):
+        name = module.__name__.rpartition(".")[2]
+        text = module.__doc__.splitlines()[0]
+        sub = commands.add_parser(name, help=text[0].lower() + text[1:].rstrip("."), description=module.__doc__,
+                                  formatter_class=argparse.RawDescriptionHelpFormatter)
+        sub.add_argument("--namespace", default="", metavar="NS", help="of the robot's nodes (default: none)")
+        module.add_arguments(sub)
+        sub.set_defaults(run=module.run)
+    return parser
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    options = _parser().parse_args(arguments)
+    try:
+        return options.run(options)
+    except Problem as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        sys.stderr.close()
+        return 0
