@@ -62,6 +62,10 @@ class Process:
         return wait_for(lambda: next((line for line in list(self.lines) if text in line), None), limit,
                         f"'{text}' in the output:\n{self.output()}")
 
+    @property
+    def pid(self):
+        return self._process.pid
+
     def running(self):
         return self._process.poll() is None
 
@@ -97,14 +101,14 @@ class Process:
 
 
 class Simulator:
-    def __init__(self, address, *arguments):
+    def __init__(self, address, *arguments, model="ur10e"):
         self.address = address
-        self._arguments = arguments
+        self._arguments = ["--model", model, *arguments]
         self.process = None
         self.start()
 
     def start(self):
-        self.process = Process([program("ur_simulator", "ur_simulator"), "--address", self.address, "--model", "ur10e",
+        self.process = Process([program("ur_simulator", "ur_simulator"), "--address", self.address,
                                 "--joints", ",".join(map(str, HOME)), *self._arguments])
         wait_for(self._connect, 20.0, "the simulator's control port")
         return self
@@ -154,6 +158,10 @@ class Goal:
         self.feedback = []
         self._result = None
 
+    def answered(self):
+        """Accepted or refused."""
+        return self._future.done()
+
     @property
     def handle(self):
         return wait_for(lambda: self._future.done() and self._future.result(), 10.0, "the answer to the goal")
@@ -166,12 +174,27 @@ class Goal:
     def id(self):
         return bytes(self.handle.goal_id.uuid)
 
-    def end(self, limit=30.0):
-        """Status and result."""
+    def ask_for_result_when_accepted(self):
+        """At once, in the executor's thread; otherwise it is asked for when somebody wants to know."""
+
+        def ask(future):
+            handle = future.result()
+            if handle is not None and handle.accepted:
+                self._result = handle.get_result_async()
+
+        self._future.add_done_callback(ask)
+
+    def ended(self):
+        """Whether its result has come."""
         assert self.accepted, self._client.refusal(self)
         if self._result is None:
             self._result = self._client.in_executor(self.handle.get_result_async)
-        answer = wait_for(lambda: self._result.done() and self._result.result(), limit, "the result")
+        return self._result.done()
+
+    def end(self, limit=30.0):
+        """Status and result."""
+        wait_for(self.ended, limit, "the result")
+        answer = self._result.result()
         return answer.status, answer.result
 
     def result(self, limit=30.0):
@@ -191,9 +214,9 @@ class Goal:
 class Client:
     """A node of the test's own, served in a thread."""
 
-    def __init__(self, namespace=""):
+    def __init__(self, namespace="", domain=None):
         self.context = rclpy.Context()
-        rclpy.init(context=self.context)
+        rclpy.init(context=self.context, domain_id=domain)
         self.node = rclpy.create_node("test_client", namespace=namespace or None, context=self.context)
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
@@ -216,13 +239,16 @@ class Client:
         return wait_for(lambda: task.done() and task.result(), 10.0, "the executor to send")
 
     def send(self, action, name, **fields):
+        return self.send_goal(action, name, action.Goal(**fields))
+
+    def send_goal(self, action, name, message):
         if name not in self._actions:
             self._actions[name] = self.in_executor(lambda: ActionClient(self.node, action, name))
         client = self._actions[name]
         wait_for(client.server_is_ready, 20.0, f"the action {name}")
         goal = Goal(self, None)
         goal._future = self.in_executor(lambda: client.send_goal_async(
-            action.Goal(**fields), feedback_callback=lambda message: goal.feedback.append(message.feedback)))
+            message, feedback_callback=lambda message: goal.feedback.append(message.feedback)))
         return goal
 
     def refusal(self, goal):

@@ -1,0 +1,51 @@
+"""Commands stay short. A command that may be longer stands here with its lines, which may only become fewer."""
+
+import statistics
+
+import pytest
+from ur_tools import boilerplate
+
+LONG = {
+    "servo_j": 61,  # generates the targets of a motion itself
+}
+
+COMMANDS = boilerplate.commands()
+
+SOURCE = """
+namespace {
+int helper();
+}
+class A : public Command<X> {
+  // a comment
+  void check() {}
+
+};
+UR_ROS_RTDE_EXPORT(A, "a")
+"""
+
+
+def test_lines_are_counted_from_class_to_export_without_comments():
+    assert boilerplate.measure(SOURCE) == {"a": 4}
+
+
+def test_commands_that_share_a_file_share_its_lines():
+    assert boilerplate.measure(SOURCE + 'UR_ROS_RTDE_EXPORT(B, "b")\n') == {"a": 2.5, "b": 2.5}
+
+
+@pytest.mark.parametrize("dashboard, aim", [(False, boilerplate.COMMAND_AIM), (True, boilerplate.DASHBOARD_AIM)])
+def test_the_typical_command_is_short(dashboard, aim):
+    lines = [command.lines for command in COMMANDS if (command.group == "dashboard") == dashboard]
+    assert statistics.median(lines) <= aim
+
+
+def test_a_long_command_is_one_that_is_known():
+    too_long = [f"{command.name}: {command.lines:g} lines, {LONG.get(command.name, command.aim)} at most"
+                for command in COMMANDS if command.lines > LONG.get(command.name, command.aim)]
+    assert not too_long, "\n".join(too_long)
+
+
+def test_the_list_of_long_commands_is_as_short_as_it_can_be():
+    lines = {command.name: command for command in COMMANDS}
+    needless = [name for name, most in LONG.items() if name not in lines or lines[name].lines <= lines[name].aim
+                or lines[name].lines < most]
+    assert not needless, "take out, or lower: " + ", ".join(needless)

@@ -1,0 +1,109 @@
+"""What the comments of .action and .msg files say of their fields: lengths, ranges, texts."""
+
+import math
+import os
+import pathlib
+import re
+from dataclasses import dataclass
+from typing import Optional
+
+NUMERIC = re.compile(r"(float|u?int)\d+")
+NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?(?: pi)?"
+
+
+def _number(text):
+    return float(text[:-3]) * math.pi if text.endswith(" pi") else float(text)
+
+
+@dataclass
+class Field:
+    type: str
+    name: str
+    comment: str
+
+    @property
+    def numeric(self):
+        return NUMERIC.match(self.type) is not None
+
+    @property
+    def length(self):
+        """Of an array that has to have one: "exactly 6"."""
+        found = re.search(r"exactly (\d+)", self.comment)
+        return int(found.group(1)) if found else None
+
+    @property
+    def may_be_empty(self):
+        return bool(re.search(r"\bnone\b", self.comment)) or self.counts is None and self.length is None
+
+    @property
+    def counts(self):
+        """The number of elements of an array of messages: "1 to 1000"."""
+        found = re.match(r"\W*(\d+) to (\d+)", self.comment)
+        return (int(found.group(1)), int(found.group(2))) if found and "[]" in self.type else None
+
+    def too_low(self):
+        """A value below everything the comment allows; None if it names no such limit."""
+        if self._above_zero():
+            return 0.0
+        lows = [low for low, _ in self._ranges()]
+        if lows:
+            return min(lows) - max(1e-6, 1e-3 * abs(min(lows)))
+        return -1.0 if re.search(r"\bat most\b", self.comment) else None
+
+    def too_high(self):
+        highs = [high for _, high in self._ranges()]
+        highs += [_number(text) for text in re.findall(rf"\bat most ({NUMBER})", self.comment)]
+        return max(highs) + max(1e-6, 1e-3 * abs(max(highs))) if highs else None
+
+    def _above_zero(self):
+        return re.search(r"\babove 0\b", self.comment, re.I) is not None
+
+    def _ranges(self):
+        for low, high in re.findall(rf"({NUMBER}) to ({NUMBER})", self.comment):
+            yield _number(low), _number(high)
+        for limit in re.findall(rf"within \+-({NUMBER})", self.comment):
+            yield -_number(limit), _number(limit)
+
+
+def _file(name):
+    package, folder, message = name.split("/")
+    for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep):
+        file = pathlib.Path(prefix, "share", package, folder, f"{message}.{folder}")
+        if file.is_file():
+            return file
+    raise FileNotFoundError(f"{name} is in no prefix of AMENT_PREFIX_PATH")
+
+
+def parse(file):
+    """The sections of an interface file, each a list of Fields. Comments that go on in lines of their own are joined."""
+    parts = [[]]
+    for line in file.read_text().splitlines():
+        if line.strip() == "---":
+            parts.append([])
+            continue
+        found = re.match(r"([\w/]+(?:\[[^\]]*\])?)\s+(\w+)\b(?!\s*=)[^#]*(?:#\s*(.*))?$", line)
+        if found:
+            parts[-1].append(Field(found.group(1), found.group(2), (found.group(3) or "").strip()))
+        elif re.match(r"\s+#", line) and parts[-1]:
+            parts[-1][-1].comment += " " + line.strip("# \t")
+    return parts
+
+
+def fields(name, part=0):
+    """By name, of "ur_ros_rtde_msgs/action/MoveJ" or a message; of others than ours nothing is known."""
+    kind = name if name.count("/") == 2 else name.replace("/", "/msg/")
+    try:
+        return {field.name: field for field in parse(_file(kind))[part]}
+    except FileNotFoundError:
+        return {}
+
+
+def field(name, kind) -> Optional[Field]:
+    return fields(kind).get(name)
+
+
+def description(kind):
+    """The comment that a file begins with."""
+    lines = _file(kind).read_text().splitlines()
+    end = next(index for index, line in enumerate(lines) if not line.startswith("#"))
+    return " ".join(line.strip("# ") for line in lines[:end])

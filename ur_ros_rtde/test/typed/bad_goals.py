@@ -1,0 +1,171 @@
+"""Bad goals, made from a good one by what its types and the comments of its .action file say."""
+
+import math
+from dataclasses import dataclass
+
+import action_files
+import messages
+from messages import FLOATS, INTEGERS
+
+NOT_FINITE = (math.nan, math.inf, -math.inf)
+FAR = 1e30  # out of every range
+GEOMETRY = ("geometry_msgs/Point", "geometry_msgs/Vector3")
+QUATERNION = "geometry_msgs/Quaternion"
+POSE = "geometry_msgs/Pose"
+
+# What makes a command look at all fields of its goal; the goal need not be a good one any more.
+ALL_IN_USE = {
+    "ur_ros_rtde_msgs/action/GetForwardKinematics": {"use_tcp": True},
+    "ur_ros_rtde_msgs/action/GetJacobian": {"use_tcp": True},
+    "ur_ros_rtde_msgs/action/Jog": {"frame": 2},
+    "ur_ros_rtde_msgs/action/EnableExternalFtSensor": {"enable": True},
+}
+# Fields that a command of a shared type has no use for, as their comments say: what they hold does not matter.
+WITHOUT_USE = {
+    ("is_pose_within_safety_limits", "near"),
+    ("get_jacobian", "joint_velocities"),
+    ("move_c", "via.orientation"),
+    ("send_secondary_script", "path"),
+}
+
+
+@dataclass(frozen=True)
+class BadGoal:
+    what: str  # "speed = nan"
+    named: str  # what the refusal has to contain
+    goal: object
+
+
+def make(name, kind, good):
+    """All bad goals of the action `name` of type `kind`, from the goal `good`."""
+    good = messages.fill(good, ALL_IN_USE.get(kind, {}))
+    bad = [*_of_floats(good, kind), *_of_integers(good, kind), *_of_arrays(good, kind), *_of_texts(good, kind),
+           *_of_quaternions(good, kind), *_of_flags(good, kind)]
+    return [case for case in bad if _in_use(name, case, good)]
+
+
+def _in_use(name, case, good):
+    if any(name == command and case.what.startswith(field) for command, field in WITHOUT_USE):
+        return False
+    # Of a waypoint of move_path: the joint positions, if given, else the pose; `via` of arcs only.
+    if name == "move_path":
+        index = case.what.partition("[")[2].partition("]")[0]
+        waypoint = good.waypoints[int(index)] if index.isdigit() else None
+        if waypoint is not None and ".via" in case.what:
+            return waypoint.type == 3 and "orientation" not in case.what
+        return waypoint is None or ".pose" not in case.what or not len(waypoint.joint_positions)
+    return True
+
+
+def _bad(good, path, value, what=None):
+    return BadGoal(f"{messages.text(path)} = {value if what is None else what}", _named(path),
+                   messages.changed(good, path, value))
+
+
+def _named(path):
+    """What a refusal has to name: the field, with its index; of a vector the vector; of what lies deep its upper parts."""
+    if path[-1] in ("x", "y", "z", "w"):
+        path = path[:-1]
+    names = [index for index, part in enumerate(path) if isinstance(part, str)]
+    end = names[2] if len(names) > 2 else len(path)
+    return messages.text(path[:end])
+
+
+def _comment(leaf, kind):
+    return action_files.field(leaf.field, leaf.owner or kind)
+
+
+def _with_full_arrays(good, kind):
+    """The goal itself, and for each optional array that it leaves empty one in which it is filled."""
+    yield good, None
+    for array in messages.arrays(good):
+        field = _comment(array, kind)
+        if field and field.length and not len(messages.at(good, array.path)) and field.numeric:
+            yield messages.changed(good, array.path, [0.5] * field.length), array.path
+
+
+def _of_floats(good, kind):
+    for goal, only in _with_full_arrays(good, kind):
+        for leaf in messages.leaves(goal):
+            if leaf.kind not in FLOATS or (only is not None and leaf.path[:-1] != only):
+                continue
+            for value in NOT_FINITE:
+                yield _bad(goal, leaf.path, value)
+            for value in _out_of_range(leaf, kind):
+                yield _bad(goal, leaf.path, value)
+
+
+def _out_of_range(leaf, kind):
+    if leaf.owner in GEOMETRY:
+        return [FAR, -FAR]
+    field = _comment(leaf, kind)
+    if field is None or isinstance(leaf.path[-1], int) and leaf.path[-1] not in (0, 5):
+        return []
+    low, high = field.too_low(), field.too_high()
+    return [value for value in (low, None if low is None else min(-1.0, 10.0 * low), high, None if high is None else FAR)
+            if value is not None]
+
+
+def _of_integers(good, kind):
+    for leaf in messages.leaves(good):
+        field = _comment(leaf, kind)
+        if leaf.kind in INTEGERS and field is not None:
+            yield _bad(good, leaf.path, INTEGERS[leaf.kind][1])
+
+
+def _of_arrays(good, kind):
+    for array in messages.arrays(good):
+        field, values = _comment(array, kind), list(messages.at(good, array.path))
+        if array.kind.endswith("]"):
+            continue  # of fixed length: a wrong one cannot be sent
+        for length in _wrong_lengths(field, values):
+            filler = values[:1] or [0.5]
+            yield _bad(good, array.path, (values + filler * length)[:length], f"{length} elements")
+
+
+def _wrong_lengths(field, values):
+    if field is None:
+        return [len(values) - 1] if len(values) > 1 and isinstance(values[0], float) else []
+    if field.length:
+        return [field.length - 1, field.length + 1] + ([] if field.may_be_empty else [0])
+    if field.counts:
+        fewest, most = field.counts
+        return [fewest - 1] + ([most + 1] if most <= 1000 else [])
+    return []
+
+
+def _of_texts(good, kind):
+    for leaf in messages.leaves(good):
+        field = _comment(leaf, kind)
+        if leaf.kind != "string" or field is None:
+            continue
+        if "one line" in field.comment:
+            for value in ("", "two\nlines", "a bell \a"):
+                yield _bad(good, leaf.path, value, repr(value))
+        longest = _longest(field.comment)
+        if longest:
+            yield _bad(good, leaf.path, "x" * (longest + 1), f"{longest + 1} bytes")
+
+
+def _longest(comment):
+    words = comment.replace(";", " ").split()
+    for number, unit in zip(words, words[1:]):
+        if number.isdigit() and unit in ("characters", "MB"):
+            return int(number) * (2**20 if unit == "MB" else 1)
+    return None
+
+
+def _of_quaternions(good, kind):
+    for path in messages.messages_of(good, QUATERNION):
+        field = action_files.field(path[0], kind)
+        if field is None or "a zero quaternion:" not in field.comment:
+            zero = messages.load(QUATERNION)(x=0.0, y=0.0, z=0.0, w=0.0)
+            yield _bad(good, path, zero, "zero")
+
+
+def _of_flags(good, kind):
+    """Of an array of flags "at least one" has to be set."""
+    for array in messages.arrays(good):
+        field = _comment(array, kind)
+        if array.kind.startswith("boolean") and field is not None and "at least one" in field.comment:
+            yield _bad(good, array.path, [False] * len(messages.at(good, array.path)), "none set")

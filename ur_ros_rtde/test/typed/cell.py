@@ -1,0 +1,197 @@
+"""A robot cell of a test's own: simulator, driver and client, on an address and in a ROS domain of their own."""
+
+import fcntl
+import os
+import pathlib
+import tempfile
+import time
+
+import messages
+from action_msgs.msg import GoalStatus, GoalStatusArray
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from support import HOME, Client, Simulator, node, wait_for
+
+from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ
+from ur_ros_rtde_msgs.msg import ErrorCode
+
+LAST_DOMAIN = 101  # above it, ports may lie in the range the system gives out itself
+EXAMPLE_LIMIT = 20.0  # s, within which the example of the documentation has to succeed
+SETTINGS = ("tcp_offset", "payload", "io", "robot_mode", "safety_mode", "remote_control", "freedrive", "popup")
+STATUS = QoSProfile(depth=50, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
+AT_REST = 0.01  # rad/s
+RETRY = 0.05  # s
+CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper() and isinstance(value, int)}
+
+
+class Domain:
+    """A ROS domain that no other test of this machine has: whoever has locked its file owns it. The project's test runner does
+    the same."""
+
+    def __init__(self):
+        folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
+        folder.mkdir(exist_ok=True)
+        for self.number in range(1, LAST_DOMAIN + 1):
+            self._lock = (folder / str(self.number)).open("w")
+            try:
+                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return
+            except OSError:
+                self._lock.close()
+        raise RuntimeError("all ROS domains are in use by other tests")
+
+    def close(self):
+        self._lock.close()
+
+
+def address(number):
+    """Loopback addresses of this run's own: ./ur test gives each test file one."""
+    given = os.environ.get("UR_TEST_ADDRESS", "127.0.1.200").split(".")
+    return ".".join([given[0], str(int(given[1]) + number), given[2], given[3]])
+
+
+class WatchingClient(Client):
+    """Also keeps how goals ended by the status topics, on which an end that follows another would be seen."""
+
+    def __init__(self, domain):
+        self._endings, self._watched = {}, set()
+        super().__init__(domain=domain)
+
+    def send_goal(self, action, name, message):
+        if name not in self._watched:
+            self._watched.add(name)
+            self.node.create_subscription(GoalStatusArray, f"{name}/_action/status", self._see, STATUS)
+        goal = super().send_goal(action, name, message)
+        goal.ask_for_result_when_accepted()
+        return goal
+
+    def _see(self, message):
+        for entry in message.status_list:
+            if entry.status in TERMINAL:
+                self._endings.setdefault(bytes(entry.goal_info.goal_id.uuid), set()).add(entry.status)
+
+    def endings(self, goal):
+        return wait_for(lambda: self._endings.get(goal.id), 5.0, "the goal's end on the status topic")
+
+    def forget(self, goal):
+        """For those who send goals for hours."""
+        self._endings.pop(goal.id, None)
+
+
+class Cell:
+    def __init__(self, number):
+        self.number = number
+        self._domain = Domain()
+        self._env = {"ROS_DOMAIN_ID": str(self._domain.number)}
+        self.simulator = Simulator(address(number))
+        self.client = WatchingClient(self._domain.number)
+        self.driver = None
+        self.start_driver()
+
+    def close(self):
+        self.driver.end()
+        self.client.close()
+        self.simulator.end()
+        self._domain.close()
+
+    def start_driver(self):
+        self.driver = node("driver", self.simulator.address, "ur_type:=ur10e", env=self._env)
+
+    def restart_simulator(self):
+        if self.simulator.process.running():
+            self.simulator.kill()
+        self.simulator.start()
+
+    # --- Goals ---
+
+    def good_goal(self, example):
+        kind = messages.load(example.type)
+        return kind, messages.fill(kind.Goal(), example.goal)
+
+    def send(self, example):
+        kind, message = self.good_goal(example)
+        return self.client.send_goal(kind, example.action, message)
+
+    def refusal(self, goal):
+        return self.client.refusal(goal).message
+
+    # --- The state in which an example begins ---
+
+    def prepare(self, example=None):
+        """Arm at home, ready, nothing in its way, then the example's scene."""
+        assert self.driver.running(), self.driver.output()
+        self.restore()
+        for command in example.scene if example else ():
+            self.simulator.control(**command)
+
+    def restore(self):
+        if not self.simulator.process.running():
+            self.restart_simulator()
+        self._undo()
+        self.home()
+
+    def _undo(self):
+        control = self.simulator.control
+        for command in ("clear_surfaces", "clear_pushes"):
+            control(command)
+        control("speed_slider", fraction=1.0)
+        control("set_sensor_noise", force=0.0)
+        state = self.simulator.state()
+        if state["popup"] is not None:
+            control("close_popup")
+        if not state["remote_control"]:
+            control("remote_control", on=True)
+        if state["robot_mode"] != "RUNNING" and state["safety_mode"] in ("NORMAL", "REDUCED"):
+            control("power", to="running")
+
+    def home(self, limit=30.0):
+        """By the driver's own means: returns when it takes motions."""
+        reasons = ["none"]
+
+        def there():
+            goal = self.client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
+            if goal.accepted and goal.result().success:
+                return True
+            reasons.append(goal.result().message if goal.accepted else self.refusal(goal))
+            time.sleep(RETRY)
+            return False
+
+        try:
+            wait_for(there, limit, "the driver to take a motion")
+        except AssertionError as error:
+            raise AssertionError(f"{error}; the last reason: {reasons[-1]}") from None
+
+    def settings(self):
+        """What an example may leave changed for the next one."""
+        state = self.simulator.state()
+        return {name: state[name] for name in SETTINGS}
+
+    # --- What holds whatever happened ---
+
+    def at_rest(self):
+        return max(map(abs, self.simulator.state()["actual"]["velocity"])) < AT_REST
+
+    def wait_for_rest(self, limit=3.0):
+        wait_for(self.at_rest, limit, "the arm to stand still")
+
+    def unlock(self):
+        """Of a protective stop, over the dashboard, which takes it 5 s after the stop at the earliest."""
+
+        def unlocked():
+            goal = self.client.send(DashboardCommand, "dashboard/unlock_protective_stop", timeout=10.0)
+            return goal.accepted and goal.result().success or time.sleep(RETRY)
+
+        if self.simulator.state()["safety_mode"] == "PROTECTIVE_STOP":  # without power there was none
+            wait_for(unlocked, 20.0, "the protective stop to be unlocked")
+
+    def power_up(self):
+        for name in ("dashboard/power_on", "dashboard/brake_release"):
+            goal = self.client.send(DashboardCommand, name, timeout=20.0)
+            assert goal.accepted, self.refusal(goal)
+            goal.succeeded()
+
+
+def described(status, result):
+    name = {value: key for key, value in vars(GoalStatus).items() if key.startswith("STATUS_")}.get(status, status)
+    return f"{name}, {CODES.get(result.error_code, result.error_code)}: {result.message}"
+

@@ -1,0 +1,72 @@
+"""The documentation of the commands: docs/commands/*.md has a section with an example for each action."""
+
+import json
+import pathlib
+import re
+import shlex
+from dataclasses import dataclass, field
+from typing import List
+
+import yaml
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+FOLDER = ROOT / "docs" / "commands"
+INDEX = FOLDER / "README.md"
+
+
+@dataclass
+class Example:
+    action: str  # "move_j"
+    type: str  # "ur_ros_rtde_msgs/action/MoveJ"
+    goal: dict
+    scene: List[dict] = field(default_factory=list)  # commands to the simulator's control port
+
+
+@dataclass
+class Section:
+    name: str
+    file: pathlib.Path
+    text: str
+
+    def example(self):
+        """The first `ros2 action send_goal` of the section that sends to this action."""
+        for command in _commands(self.text):
+            if command[:3] == ["ros2", "action", "send_goal"]:
+                action, kind, goal = [word for word in command[3:] if word not in ("--feedback", "-f")]
+                if action == f"/{self.name}":
+                    return Example(self.name, kind, yaml.safe_load(goal) or {}, self.scene())
+        raise ValueError(f"{self.file.name}: the section {self.name} has no `ros2 action send_goal /{self.name} …`")
+
+    def scene(self):
+        found = re.search(r"<!--\s*scene:\s*(.*?)\s*-->", self.text, re.S)
+        return json.loads(found.group(1)) if found else []
+
+
+def _commands(text):
+    for block in re.findall(r"^```bash\n(.*?)^```", text, re.S | re.M):
+        for line in block.replace("\\\n", " ").splitlines():
+            yield shlex.split(line, comments=True)
+
+
+def sections():
+    """In the order of the files; a name may wrongly be there twice."""
+    found = []
+    for file in sorted(FOLDER.glob("*.md")):
+        if file == INDEX:
+            continue
+        parts = re.split(r"^### (.*)$", file.read_text(), flags=re.M)
+        for title, text in zip(parts[1::2], parts[2::2]):
+            # A heading of a higher level ends the section.
+            found.append(Section(title.strip().strip("`"), file, re.split(r"^##? ", text, flags=re.M)[0]))
+    return found
+
+
+def section(name):
+    for candidate in sections():
+        if candidate.name == name:
+            return candidate
+    raise ValueError(f"{name} has no section `### {name}` in docs/commands/*.md")
+
+
+def example(name):
+    return section(name).example()

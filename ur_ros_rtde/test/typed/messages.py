@@ -1,0 +1,121 @@
+"""ROS messages by introspection: made from YAML, walked through, changed at a path."""
+
+import copy
+import importlib
+import re
+from dataclasses import dataclass
+from typing import Tuple, Union
+
+Path = Tuple[Union[str, int], ...]  # ("waypoints", 0, "positions", 3)
+FLOATS = ("double", "float")
+INTEGERS = {f"{sign}int{bits}": ((0, 2**bits - 1) if sign else (-2**(bits - 1), 2**(bits - 1) - 1))
+            for sign in ("", "u") for bits in (8, 16, 32, 64)}
+
+
+def load(name):
+    """The class of "ur_ros_rtde_msgs/action/MoveJ" or "geometry_msgs/Pose"."""
+    package, *kind, message = name.split("/")
+    return getattr(importlib.import_module(f"{package}.{kind[0] if kind else 'msg'}"), message)
+
+
+def element_type(kind):
+    """Of an array or sequence; None for what is neither. "sequence<double, 3>" and "double[6]" give "double"."""
+    found = re.fullmatch(r"sequence<([^,>]+).*>|(.+)\[\d+\]", kind)
+    return (found.group(1) or found.group(2)) if found else None
+
+
+def is_message(kind):
+    return "/" in kind
+
+
+def fill(message, values):
+    """Sets what the mapping `values` names; a wrong name or type raises with the field."""
+    kinds = message.get_fields_and_field_types()
+    for name, value in (values or {}).items():
+        if name not in kinds:
+            raise ValueError(f"{type(message).__name__} has no field {name}; it has {', '.join(kinds)}")
+        try:
+            setattr(message, name, _converted(kinds[name], value, getattr(message, name)))
+        except (AssertionError, TypeError) as error:
+            raise ValueError(f"{name}: {value!r} does not fit {kinds[name]}: {error}") from None
+    return message
+
+
+def _converted(kind, value, present):
+    element = element_type(kind)
+    if element is not None:
+        return [_converted(element, item, None) for item in value]
+    if is_message(kind):
+        return fill(copy.deepcopy(present) if present is not None else load(kind)(), value)
+    # YAML knows 1 and 1.0 apart, who writes a goal does not.
+    return float(value) if kind in FLOATS and isinstance(value, int) and not isinstance(value, bool) else value
+
+
+@dataclass(frozen=True)
+class Leaf:
+    path: Path
+    kind: str
+    owner: str  # the message type that the field belongs to, "" for the goal itself
+    field: str  # the field's name there
+
+
+def leaves(message, path=(), owner=""):
+    """Every field that is no message, and every element of those that are arrays."""
+    for name, kind in message.get_fields_and_field_types().items():
+        value, here, element = getattr(message, name), (*path, name), element_type(kind)
+        if element is None:
+            if is_message(kind):
+                yield from leaves(value, here, kind)
+            else:
+                yield Leaf(here, kind, owner, name)
+        else:
+            for index, item in enumerate(value):
+                if is_message(element):
+                    yield from leaves(item, (*here, index), element)
+                else:
+                    yield Leaf((*here, index), element, owner, name)
+
+
+def arrays(message, path=(), owner=""):
+    """Every field that is an array, however deep: as a Leaf whose path ends at the array."""
+    for name, kind in message.get_fields_and_field_types().items():
+        value, here, element = getattr(message, name), (*path, name), element_type(kind)
+        if element is not None:
+            yield Leaf(here, kind, owner, name)
+        for where, item in ([(here, value)] if element is None else [((*here, i), item) for i, item in enumerate(value)]):
+            if is_message(element or kind):
+                yield from arrays(item, where, element or kind)
+
+
+def messages_of(message, kind, path=()):
+    """Paths of all messages of type `kind` in it."""
+    for name, found in message.get_fields_and_field_types().items():
+        value, here, element = getattr(message, name), (*path, name), element_type(found)
+        for where, item in ([(here, value)] if element is None else [((*here, i), item) for i, item in enumerate(value)]):
+            if not is_message(element or found):
+                continue
+            if (element or found) == kind:
+                yield where
+            yield from messages_of(item, kind, where)
+
+
+def at(message, path):
+    for part in path:
+        message = message[part] if isinstance(part, int) else getattr(message, part)
+    return message
+
+
+def changed(message, path, value):
+    """A copy of the message with another value at the path."""
+    copied = copy.deepcopy(message)
+    owner = at(copied, path[:-1])
+    if isinstance(path[-1], int):
+        owner[path[-1]] = value
+    else:
+        setattr(owner, path[-1], value)
+    return copied
+
+
+def text(path):
+    """("waypoints", 0, "speed") as "waypoints[0].speed"."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path).lstrip(".")

@@ -1,0 +1,92 @@
+"""What can happen to a goal while it is carried out, and what has to hold whatever its command."""
+
+import time
+from dataclasses import dataclass
+from typing import Callable, Optional, Tuple
+
+import action_files
+import messages
+from action_msgs.msg import GoalStatus
+from cell import described
+
+from ur_ros_rtde_msgs.msg import ErrorCode
+
+MIDDLE = 0.35  # s after which a goal that has not ended counts as one in the middle
+RESULT_LIMIT = 6.0  # s from a disturbance to the result
+PATIENCE = 2.0  # s for a command that moves no arm and may wait for a state as long as its timeout says
+MOVING = 0.02  # rad/s
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    name: str
+    happen: Callable  # of the cell
+    codes: Tuple[int, ...]  # of a goal that moves the arm
+    recover: Callable  # of the cell, as its user would
+    again: bool = False  # the same example once more, afterwards
+
+
+def moves_arm(example):
+    """A command that the base class stops: its feedback tells of a motion."""
+    return "motion" in messages.load(example.type).Feedback.get_fields_and_field_types()
+
+
+def cancel_counts_as_success(example):
+    text = " ".join(field.comment for field in action_files.fields(example.type).values())
+    return "counts as success" in text + " " + action_files.description(example.type)
+
+
+def begin(cell, example):
+    """The example's goal in the middle of being carried out; None if its command ends at once."""
+    cell.prepare(example)
+    goal = cell.send(example)
+    assert goal.accepted, f"refused: {cell.refusal(goal)}"
+    moves, start = moves_arm(example), time.monotonic()
+    while not goal.ended():
+        passed = time.monotonic() - start
+        speeds = cell.simulator.state()["actual"]["velocity"] if moves else ()
+        if passed > MIDDLE and (passed > 1.0 or not moves or max(map(abs, speeds)) > MOVING):
+            return goal
+        time.sleep(0.01)
+    status, result = goal.end()
+    assert result.success, f"before anything happened: {described(status, result)}"
+    return None
+
+
+def disturb(cell, example, disturbance) -> Optional[str]:
+    """Its outcome in words; None for a command that ends at once."""
+    goal = begin(cell, example)
+    if goal is None:
+        return None
+    disturbance.happen(cell)
+    outcome = check_end(cell, goal, example, disturbance)
+    disturbance.recover(cell)
+    cell.restore()
+    if disturbance.again:
+        cell.prepare(example)
+        cell.send(example).succeeded()
+    return outcome
+
+
+def _give_up(cell, goal):
+    """Cancels it, if it has not ended by itself and there still is somebody to ask."""
+    end = time.monotonic() + PATIENCE
+    while not goal.ended() and time.monotonic() < end:
+        time.sleep(0.01)
+    if not goal.ended() and cell.driver.running():
+        goal.cancel()
+
+
+def check_end(cell, goal, example, disturbance):
+    if not moves_arm(example):
+        _give_up(cell, goal)
+    status, result = goal.end(RESULT_LIMIT)
+    text = described(status, result)
+    if moves_arm(example):
+        assert status == GoalStatus.STATUS_ABORTED and result.error_code in disturbance.codes, text
+    assert result.success == (status == GoalStatus.STATUS_SUCCEEDED) == (result.error_code == ErrorCode.NONE), text
+    assert result.success or result.message, f"a failure without a reason: {text}"
+    if cell.simulator.process.running():
+        cell.wait_for_rest()
+    assert cell.client.endings(goal) == {status}, f"it ended as {cell.client.endings(goal)}"
+    return text

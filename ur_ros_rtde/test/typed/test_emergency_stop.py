@@ -1,0 +1,14 @@
+"""What every command does in the middle of an emergency stop. Those that end at once are in test_momentary_commands.py."""
+
+import pytest
+from disturbances import EMERGENCY_STOP
+from scenarios import disturb
+
+
+def scenario(cell, example):
+    return disturb(cell, example, EMERGENCY_STOP)
+
+
+def test_emergency_stop_ends_the_goal_and_the_arm_stands_still(plugin, outcome):
+    if outcome is None:
+        pytest.skip("ends at once")

@@ -1,0 +1,14 @@
+"""What every command does in the middle of the end of the node. Those that end at once are in test_momentary_commands.py."""
+
+import pytest
+from disturbances import SHUTDOWN
+from scenarios import disturb
+
+
+def scenario(cell, example):
+    return disturb(cell, example, SHUTDOWN)
+
+
+def test_shutdown_ends_the_goal_and_the_arm_stands_still(plugin, outcome):
+    if outcome is None:
+        pytest.skip("ends at once")

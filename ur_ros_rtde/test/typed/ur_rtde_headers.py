@@ -1,0 +1,65 @@
+"""The public functions of ur_rtde's interfaces, and what docs/commands/README.md says of each.
+
+A function is covered by the action of its name: moveJ_IK by move_j_ik, powerOn by power_on or dashboard/power_on. Where the names
+differ, the row of the action in a table of the index has the function in one of its cells:
+    | `stop_l` | `stopL` | … |
+A function that is left out has a row of its own, with the reason:
+    | `disconnect` | ends the interface, which the driver owns |
+"""
+
+import os
+import pathlib
+import re
+
+HEADERS = {"RTDEControlInterface": "rtde_control_interface.h", "RTDEIOInterface": "rtde_io_interface.h",
+           "DashboardClient": "dashboard_client.h"}
+_CODE = re.compile(r"`([\w/]+)(?:\(\))?`")
+
+
+def _header(name):
+    for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep):
+        file = pathlib.Path(prefix, "include", "ur_rtde", name)
+        if file.is_file():
+            return file.read_text()
+    raise FileNotFoundError(f"ur_rtde/{name} is in no prefix of AMENT_PREFIX_PATH")
+
+
+def functions(interface):
+    """Names of the public member functions, but for constructors and the destructor."""
+    text = re.sub(r"/\*.*?\*/|//[^\n]*", "", _header(HEADERS[interface]), flags=re.S)
+    text = re.sub(r"=\s*\{[^{}]*\}", "", text)  # default arguments
+    body = text[re.search(rf"class\s+(?:\w+\s+)*{interface}\b[^;]*?\{{", text).end():]
+    public, found, depth = False, set(), 0
+    for part in re.split(r"([{}]|\b(?:public|private|protected)\s*:)", body):
+        if part == "}" and depth == 0:
+            break
+        depth += {"{": 1, "}": -1}.get(part, 0)
+        if part.endswith(":"):
+            public = part.startswith("public") if depth == 0 else public
+        elif public and depth == 0:
+            found |= set(re.findall(r"\b([a-zA-Z]\w*)\s*\([^()]*(?:\([^()]*\)[^()]*)*\)\s*(?:const\s*)?(?:;|$)", part))
+    return sorted(name for name in found if name != interface)
+
+
+def snake_case(name):
+    """moveJ_IK: move_j_ik; getActualTCPPose: get_actual_tcp_pose; setTcp: set_tcp."""
+    words = re.sub(r"([a-z0-9])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3_\2\4", name)
+    return re.sub(r"_+", "_", words).lower()
+
+
+def index_rows(text):
+    """Of all tables: what the first cell names, the names in the other cells, and the text of the second cell."""
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        first = _CODE.findall(cells[0])
+        if line.startswith("|") and first and len(cells) > 1:
+            yield first, {name for cell in cells[1:] for name in _CODE.findall(cell)}, cells[1]
+
+
+def uncovered(names, actions, index):
+    """Those functions that are neither an action nor left out with a reason."""
+    rows = list(index_rows(index))
+    mapped = {name for first, others, _ in rows if set(first) & actions for name in others}
+    left_out = {name for first, _, reason in rows if not set(first) & actions and reason for name in first}
+    return [name for name in names if name not in mapped | left_out
+            and not {snake_case(name), f"dashboard/{snake_case(name)}"} & actions]
