@@ -9,7 +9,7 @@ import sys
 import time
 from typing import Dict, List, Optional, Tuple
 
-from . import cell, say
+from . import boilerplate, cell, say
 from .environment import program, run_environment
 from .layout import ROOT, Layout
 from .processes import Programs
@@ -90,6 +90,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         figures["start to ready"] = ready
         programs.check()
         _print(figures)
+        say.line("\n" + boilerplate.table())
     return 0
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Dict, List, Optional
 
 from . import build as building
-from . import isolation, lint, say
+from . import boilerplate, isolation, lint, say
 from .environment import run_environment
 from .layout import ROOT, Layout
 from .packages import Package
@@ -134,9 +134,10 @@ def _report_of(test: Test, base: pathlib.Path) -> pathlib.Path:
 
 
 def _sanitizer_environment() -> Dict[str, str]:
+    suppressions = ROOT / "tools" / "sanitizers" / "thread.txt"
     return {"ASAN_OPTIONS": "detect_leaks=0:strict_string_checks=1:detect_stack_use_after_return=1",
             "UBSAN_OPTIONS": "print_stacktrace=1",
-            "TSAN_OPTIONS": "halt_on_error=1:second_deadlock_stack=1"}
+            "TSAN_OPTIONS": f"halt_on_error=1:second_deadlock_stack=1:suppressions={suppressions}"}
 
 
 class Runner:
@@ -296,4 +297,6 @@ def run(options: Options) -> int:
     say.step(f"Running {len(tests)} tests")
     with isolation.CleanUp():
         results = _run_all(options, tests, folder)
+    if checks:
+        say.line("\n" + boilerplate.table())
     return _summary(results, checks, time.monotonic() - start)

@@ -214,10 +214,10 @@ class Goal:
 class Client:
     """A node of the test's own, served in a thread."""
 
-    def __init__(self, namespace="", domain=None):
+    def __init__(self, namespace="", domain=None, name="test_client"):
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=domain)
-        self.node = rclpy.create_node("test_client", namespace=namespace or None, context=self.context)
+        self.node = rclpy.create_node(name, namespace=namespace or None, context=self.context)
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
         self._actions, self._services, self._topics = {}, {}, {}

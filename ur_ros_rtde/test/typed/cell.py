@@ -53,9 +53,9 @@ def address(number):
 class WatchingClient(Client):
     """Also keeps how goals ended by the status topics, on which an end that follows another would be seen."""
 
-    def __init__(self, domain):
+    def __init__(self, domain=None, name="test_client"):
         self._endings, self._watched = {}, set()
-        super().__init__(domain=domain)
+        super().__init__(domain=domain, name=name)
 
     def send_goal(self, action, name, message):
         if name not in self._watched:

@@ -1,0 +1,132 @@
+"""Clients that send goal after goal, each a node of its own, and what becomes of the goals."""
+
+import contextlib
+import threading
+import time
+from collections import Counter
+
+import messages
+from cell import CODES, WatchingClient
+from goals import Mix
+
+ANSWER_LIMIT = 15.0  # s from a goal to its acceptance or refusal
+RESULT_LIMIT = 45.0  # s from acceptance to the result: the longest example and the longest fault included
+BETWEEN = 0.02  # s between two goals
+AFTER_REFUSAL = 0.2  # s
+
+
+class Gate:
+    """Lets goals begin, or not, and counts those that have begun and not ended."""
+
+    def __init__(self):
+        self._changed = threading.Condition()
+        self._open = True
+        self._live = 0
+        self._idle_since = time.monotonic()
+
+    def set(self, is_open):
+        with self._changed:
+            self._open = is_open
+            self._changed.notify_all()
+
+    def enter(self, stop):
+        """False when the run is over."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._open or stop.is_set())
+            if stop.is_set():
+                return False
+            self._live += 1
+            return True
+
+    @contextlib.contextmanager
+    def passed(self):
+        """For goals that are part of the run itself."""
+        with self._changed:
+            self._live += 1
+        try:
+            yield
+        finally:
+            self.leave()
+
+    def leave(self):
+        with self._changed:
+            self._live -= 1
+            self._idle_since = time.monotonic()
+            self._changed.notify_all()
+
+    def touch(self):
+        """What went on without a goal has an excuse until now."""
+        with self._changed:
+            self._idle_since = time.monotonic()
+
+    def idle_for(self):
+        """s since the last goal ended; 0 while one is carried out."""
+        with self._changed:
+            return 0.0 if self._live else time.monotonic() - self._idle_since
+
+    def wait_until_idle(self, limit):
+        with self._changed:
+            return self._changed.wait_for(lambda: self._live == 0, limit)
+
+
+class Goals:
+    """One client."""
+
+    def __init__(self, name, random, gate, journal):
+        self._name, self._mix, self._gate, self._journal = name, Mix(random), gate, journal
+        self._stop = threading.Event()
+        self._client = WatchingClient(name=name.replace(" ", "_"))
+        self.outcomes = Counter()
+        self._thread = threading.Thread(target=self._run, name=name)
+
+    def start(self):
+        self._thread.start()
+
+    def stop(self):
+        self._stop.set()
+        self._gate.set(True)
+
+    def join(self):
+        self._thread.join(ANSWER_LIMIT + RESULT_LIMIT)
+        if self._thread.is_alive():
+            self._journal.violate(self._name, "the client does not end")
+        self._client.close()
+
+    def _run(self):
+        while self._gate.enter(self._stop):
+            outcome = "refused"
+            try:
+                outcome = self._carry_out(self._mix.next())
+            except AssertionError as error:
+                self._journal.violate(self._name, str(error))
+                return
+            finally:
+                self._gate.leave()
+            self.outcomes[outcome] += 1
+            self._stop.wait(AFTER_REFUSAL if outcome.startswith("refused") else BETWEEN)
+
+    def _carry_out(self, plan):
+        self._journal.write(self._name, plan.text())
+        goal = self._client.send_goal(messages.load(plan.type), plan.name, plan.message())
+        if not goal.accepted:
+            refusal = self._client.refusal(goal)
+            self._journal.write(self._name, f"  refused, {CODES[refusal.error_code]}: {refusal.message}")
+            return f"refused, {CODES[refusal.error_code]}"
+        if plan.cancel_after is not None:
+            self._cancel(goal, plan.cancel_after)
+        return self._result(plan, goal)
+
+    def _cancel(self, goal, after):
+        end = time.monotonic() + after
+        while time.monotonic() < end and not goal.ended():
+            time.sleep(0.01)
+        goal.cancel()
+
+    def _result(self, plan, goal):
+        status, result = goal.end(RESULT_LIMIT)
+        code = CODES[result.error_code]
+        self._journal.write(self._name, f"  {plan.name} {goal.id.hex()[:8]}: {code}: {result.message}")
+        endings = self._client.endings(goal)
+        assert endings == {status}, f"{plan.name}, goal {goal.id.hex()}, has more than one end: {endings}, result {status}"
+        self._client.forget(goal)
+        return "succeeded" if result.success else f"failed, {code}"

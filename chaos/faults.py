@@ -1,0 +1,100 @@
+"""Random faults of controller, links, people and host; each with how long it lasts."""
+
+from dataclasses import dataclass
+from typing import Callable
+
+LINKS = ("rtde", "dashboard", "script", "realtime", "all")
+
+
+@dataclass(frozen=True)
+class Kind:
+    name: str
+    weight: float
+    longest: float  # s that it lasts at most; what has no duration of its own is over at once
+    happen: Callable  # of the robot and of random
+
+
+def _control(command, **fields):
+    return lambda robot, random: robot.simulator.control(command, **fields)
+
+
+def _drop(robot, random):
+    robot.simulator.control("drop_links", which=random.choice(LINKS), reset=random.random() < 0.5)
+
+
+def _stall(robot, random):
+    robot.simulator.control("stall_links", which=random.choice(LINKS))
+
+
+def _half_open(robot, random):
+    """Silent first; what is at the other end has forgotten the connections when they speak again."""
+    robot.simulator.control("stall_links", which="all")
+    robot.after_fault(lambda: robot.simulator.control("drop_links", which="all", reset=True))
+
+
+def _garbage(robot, random):
+    robot.simulator.control("send_garbage", which=random.choice(LINKS[:2]), bytes=random.randrange(1, 2000))
+
+
+def _refuse(robot, random):
+    robot.simulator.control("refuse_connections")
+    robot.simulator.control("drop_links")
+
+
+def _push(robot, random):
+    force = [random.uniform(-150.0, 150.0) for _ in range(3)]
+    robot.simulator.control("push", force=force, duration=random.uniform(0.05, 0.5))
+
+
+def _kill_simulator(robot, random):
+    robot.simulator.kill()
+
+
+def _pause_simulator(robot, random):
+    robot.simulator.process.pause()
+
+
+def _pause_driver(robot, random):
+    robot.driver.pause()
+
+
+KINDS = (
+    Kind("drop", 3.0, 0.0, _drop),
+    Kind("stall", 3.0, 1.5, _stall),
+    Kind("half-open", 1.0, 1.5, _half_open),
+    Kind("garbage", 2.0, 0.0, _garbage),
+    Kind("refused connections", 1.0, 1.0, _refuse),
+    Kind("reboot", 0.5, 0.0, _control("reboot", duration=0.5)),
+    Kind("protective stop", 1.0, 0.5, _control("protective_stop", reason="chaos")),
+    Kind("emergency stop", 1.0, 0.5, _control("emergency_stop")),
+    Kind("safeguard stop", 1.5, 0.5, _control("safeguard")),
+    Kind("program stopped", 2.0, 0.0, _control("stop_program")),
+    Kind("program paused", 1.0, 0.5, _control("pause_program")),
+    Kind("local control", 1.0, 0.5, _control("remote_control", on=False)),
+    Kind("speed slider at 0", 1.0, 1.0, _control("speed_slider", fraction=0.0)),
+    Kind("push", 2.0, 0.0, _push),
+    Kind("controller killed", 1.0, 0.5, _kill_simulator),
+    Kind("controller paused", 1.0, 1.0, _pause_simulator),
+    Kind("driver paused", 2.0, 0.3, _pause_driver),
+)
+
+
+@dataclass(frozen=True)
+class Fault:
+    kind: Kind
+    after: float  # s of undisturbed work before it
+    lasts: float  # s
+    quiet: bool  # no new goals until it is over: what has ended must stand still
+    seed: int  # of what its kind draws
+
+    def text(self):
+        return f"{self.kind.name} for {self.lasts:.2f} s{', no new goals' if self.quiet else ''}"
+
+
+def sequence(random):
+    """Without end; the same for the same seed."""
+    while True:
+        kind = random.choices(KINDS, [kind.weight for kind in KINDS])[0]
+        shortest = min(0.05, kind.longest)
+        yield Fault(kind, random.uniform(0.1, 0.8), random.uniform(shortest, kind.longest), random.random() < 0.5,
+                    random.randrange(2**32))

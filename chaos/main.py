@@ -1,0 +1,204 @@
+"""Random goals and random faults on a simulated robot. Started by `./ur chaos`."""
+
+import argparse
+import itertools
+import pathlib
+import random
+import sys
+import time
+from collections import defaultdict
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+for folder in ("ur_ros_rtde/test/nodes", "ur_ros_rtde/test/typed", "demo", "tools"):
+    sys.path.insert(0, str(ROOT / folder))
+
+import faults  # noqa: E402
+import report  # noqa: E402
+from cell import WatchingClient  # noqa: E402
+from clients import RESULT_LIMIT, Gate, Goals  # noqa: E402
+from journal import Journal, Violation  # noqa: E402
+from robot import Robot  # noqa: E402
+from support import HOME, wait_for  # noqa: E402
+from ur_tools import say  # noqa: E402
+from watch import Loads, Watch  # noqa: E402
+
+from ur_ros_rtde_msgs.action import MoveJ  # noqa: E402
+from ur_ros_rtde_msgs.msg import ErrorCode  # noqa: E402
+
+READY_LIMIT = 10.0  # s from the end of a fault's cause to the first motion that is taken
+REST_LIMIT = 1.0  # s
+SOAK_PERIOD = 10.0  # s between two looks at the driver's load without faults
+
+
+class Chaos:
+    def __init__(self, options, journal, robot):
+        self._options, self._journal, self._robot = options, journal, robot
+        self._gate = Gate()
+        self._watch = Watch(robot, self._gate, journal)
+        self._loads = Loads(robot.driver.pid)
+        self._probe = WatchingClient(name="probe")
+        self._clients = [Goals(f"client {number}", random.Random(f"{options.seed}/{number}"), self._gate, journal)
+                         for number in range(options.clients)]
+        self._status = say.Status(10.0)
+        self._recoveries = defaultdict(list)
+        self._begin = time.monotonic()
+
+    def run(self):
+        self._until_ready(30.0)
+        self._watch.start()
+        for client in self._clients:
+            client.start()
+        try:
+            self._soak() if self._options.faults == 0 else self._faults()
+            self._end_quietly()
+        finally:
+            for client in self._clients:
+                client.stop()
+            for client in self._clients:
+                client.join()
+            self._watch.stop()
+            self._probe.close()
+            self._status.clear()
+
+    # --- The two kinds of run ---
+
+    def _faults(self):
+        sequence = faults.sequence(random.Random(f"{self._options.seed}/faults"))
+        for number, fault in enumerate(itertools.islice(sequence, self._options.faults), 1):
+            if self._over():
+                return
+            self._show(f"fault {number} of {self._options.faults}, {fault.kind.name}")
+            self._fault(fault)
+
+    def _soak(self):
+        while not self._over():
+            self._show("no faults")
+            self._wait(min(SOAK_PERIOD, 0.02 * 60.0 * self._options.minutes))
+            self._gate.set(False)
+            self._quiet()
+            self._gate.set(True)
+
+    def _over(self):
+        return self._options.minutes and time.monotonic() - self._begin > 60.0 * self._options.minutes
+
+    # --- One fault ---
+
+    def _fault(self, fault):
+        self._wait(fault.after)
+        if fault.quiet:
+            self._gate.set(False)
+        self._journal.write("fault", fault.text())
+        if fault.kind.name == "push":
+            self._watch.excused.set()
+        fault.kind.happen(self._robot, random.Random(fault.seed))
+        self._wait(fault.lasts)
+        self._robot.clear()
+        self._journal.write("fault", "its cause is gone")
+        self._gate.touch()
+        cleared = time.monotonic()
+        with self._gate.passed():
+            ready = self._until_ready()
+        self._recoveries[fault.kind.name].append(ready - cleared if ready else None)
+        self._watch.excused.clear()
+        if fault.quiet:
+            self._quiet()
+        self._gate.set(True)
+
+    def _quiet(self):
+        """No goal any more: the arm stands still, and the driver holds what it always holds."""
+        if not self._gate.wait_until_idle(RESULT_LIMIT):
+            raise Violation(f"a goal has no result {RESULT_LIMIT:g} s after the last fault")
+        self._journal.check()
+        wait_for(lambda: self._robot.joint_speed() < 0.02, REST_LIMIT, "the arm to stand still after the last goal")
+        self._loads.sample()
+
+    def _until_ready(self, limit=READY_LIMIT):
+        """Until a motion is taken, or another one is in its way. The time of that; None if the other one was at once."""
+        reasons = []
+
+        def taken():
+            self._journal.check()
+            goal = self._probe.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
+            if goal.accepted:
+                return goal, time.monotonic()
+            refusal = self._probe.refusal(goal)
+            reasons.append(refusal.message)
+            return (None, time.monotonic()) if refusal.error_code == ErrorCode.BUSY else None
+
+        try:
+            goal, when = wait_for(taken, limit, "a motion to be taken again")
+        except AssertionError as error:
+            raise Violation(f"{error}; the last reason: {reasons[-1:]}") from None
+        if goal is not None:
+            goal.end(RESULT_LIMIT)
+        return when if goal is not None or len(reasons) > 1 else None
+
+    def _end_quietly(self):
+        self._gate.set(False)
+        self._quiet()
+        with self._gate.passed():
+            self._probe.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
+        grown = self._loads.verdict()
+        if grown:
+            raise Violation("the driver's " + "; ".join(grown))
+
+    # --- What the user sees ---
+
+    def _wait(self, seconds):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self._journal.check()
+            time.sleep(min(0.05, max(0.0, end - time.monotonic())))
+        self._journal.check()
+
+    def _show(self, what):
+        number = sum(sum(client.outcomes.values()) for client in self._clients)
+        self._status.show(f"{time.monotonic() - self._begin:.0f} s: {what}; {number} goals have ended")
+
+    def tables(self):
+        return [*report.faults(self._recoveries), *report.goals(client.outcomes for client in self._clients),
+                f"    driver: {self._loads.text()}", f"    {time.monotonic() - self._begin:.0f} s"]
+
+
+def _run(options, journal):
+    """What was violated first; None if nothing."""
+    robot = Robot(options.address)
+    chaos = None
+    try:
+        journal.write("chaos", f"seed {options.seed}; the driver is process {robot.driver.pid}")
+        chaos = Chaos(options, journal, robot)
+        chaos.run()
+        return journal.violation
+    except (Violation, AssertionError, OSError) as error:
+        journal.write("chaos", f"{type(error).__name__}: {error}")
+        return journal.violation or str(error) or type(error).__name__
+    finally:
+        if chaos:
+            print("\n".join(chaos.tables()), flush=True)
+        robot.close()
+        (options.log / "driver.log").write_text(robot.driver.output())
+        (options.log / "simulator.log").write_text(robot.simulator.process.output())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--address", required=True)
+    parser.add_argument("--faults", type=int, required=True)
+    parser.add_argument("--minutes", type=float, required=True)
+    parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument("--clients", type=int, required=True)
+    parser.add_argument("--log", type=pathlib.Path, required=True)
+    options = parser.parse_args()
+    options.log.mkdir(parents=True, exist_ok=True)
+    journal = Journal(options.log / "journal.log")
+    violated = _run(options, journal)
+    journal.close()
+    if violated:
+        print(f"\nVIOLATED: {violated}\nseed {options.seed}; what happened: {options.log}/journal.log, driver.log, simulator.log", flush=True)
+        return 1
+    print("    every goal had one result, the arm stood still after the last, nothing grew, nothing was stuck")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

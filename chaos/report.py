@@ -1,0 +1,27 @@
+"""The tables at the end of a run."""
+
+from collections import Counter
+
+
+def _percentile(values, fraction):
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(fraction * len(ordered)))]
+
+
+def faults(recoveries):
+    """`recoveries`: by the fault's name, s from the end of its cause until a motion was taken again; None where a motion went on."""
+    if not recoveries:
+        return []
+    rows = [f"    {'fault':24} {'count':>5} {'recovery p50':>13} {'max':>9}"]
+    for name, all_of_them in sorted(recoveries.items()):
+        seconds = [value for value in all_of_them if value is not None]
+        figures = f"{_percentile(seconds, 0.5):11.3f} s {max(seconds):7.3f} s" if seconds else f"{'-':>13} {'-':>9}"
+        rows.append(f"    {name:24} {len(all_of_them):5} {figures}")
+    return rows
+
+
+def goals(outcomes):
+    total = Counter()
+    for outcome in outcomes:
+        total += outcome
+    return [f"    {'goals':32} {sum(total.values()):6}"] + [f"      {name:30} {count:6}" for name, count in total.most_common()]

@@ -1,0 +1,82 @@
+"""Watches the arm and the driver while all the rest goes on."""
+
+import threading
+import time
+
+from control_port import ControlPort, ControlPortError
+from robot import load_of
+
+PERIOD = 0.1  # s
+REST_AFTER = 1.0  # s after the last goal has ended
+AT_REST = 0.02  # rad/s
+
+
+class Watch:
+    """No goal: no motion. And the driver runs."""
+
+    def __init__(self, robot, gate, journal):
+        self._robot, self._gate, self._journal = robot, gate, journal
+        self._stop = threading.Event()
+        self.excused = threading.Event()  # somebody pushes the arm, or it has no power
+        self._thread = threading.Thread(target=self._run, name="watch")
+
+    def start(self):
+        self._thread.start()
+
+    def stop(self):
+        self._stop.set()
+        self._thread.join(10.0)
+
+    def _run(self):
+        port = None
+        while not self._stop.wait(PERIOD):
+            if not self._robot.driver.running():
+                self._journal.violate("driver", "the process has ended")
+                return
+            try:
+                port = port or ControlPort(self._robot.simulator.address, timeout=2.0)
+                self._look(port.request("state")["state"])
+            except (OSError, ValueError, ControlPortError):
+                port = None  # a fault of the simulator
+
+    def _look(self, state):
+        speed = max(map(abs, state["actual"]["velocity"]))
+        idle = self._gate.idle_for()
+        if speed > AT_REST and idle > REST_AFTER and not self.excused.is_set():
+            self._journal.violate("arm", f"moves at {speed:.3f} rad/s, {idle:.1f} s after the last goal ended")
+
+
+class Loads:
+    """Descriptors, threads and memory of the driver, after warm-up and at the end."""
+
+    EXTRA_DESCRIPTORS = 6
+    EXTRA_THREADS = 3
+    EXTRA_MEMORY = 12.0  # MB: what the allocator keeps varies
+
+    def __init__(self, pid):
+        self._pid = pid
+        self.samples = []
+
+    def sample(self):
+        self.samples.append((time.monotonic(), *load_of(self._pid)))
+
+    def verdict(self):
+        """What has grown from the second quarter, after the warm-up, to the last; empty if nothing."""
+        if len(self.samples) < 8:
+            return []
+        quarter = len(self.samples) // 4
+        before, after = self._least(quarter, 2 * quarter), self._least(len(self.samples) - quarter, len(self.samples))
+        limits = (self.EXTRA_DESCRIPTORS, self.EXTRA_THREADS, self.EXTRA_MEMORY)
+        return [f"{name} grew from {b:g} to {a:g}" for name, b, a, limit in
+                zip(("descriptors", "threads", "memory (MB)"), before, after, limits) if a > b + limit]
+
+    def _least(self, begin, end):
+        """The least of each: what is in use for a moment does not count."""
+        return [min(sample[column] for sample in self.samples[begin:end]) for column in (1, 2, 3)]
+
+    def text(self):
+        if not self.samples:
+            return "not measured"
+        first, last = self.samples[0], self.samples[-1]
+        return ", ".join(f"{name} {a:.0f} to {b:.0f}" for name, a, b in
+                         zip(("descriptors", "threads", "memory (MB)"), first[1:], last[1:]))

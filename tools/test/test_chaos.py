@@ -1,0 +1,106 @@
+"""./ur chaos: a short run, and that it notices what must not be."""
+
+import itertools
+import os
+import pathlib
+import random
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.202")
+for folder in ("chaos", "demo", "ur_ros_rtde/test/nodes", "ur_ros_rtde/test/typed"):
+    sys.path.insert(0, str(ROOT / folder))
+
+import clients  # noqa: E402
+import faults  # noqa: E402
+import goals  # noqa: E402
+import journal  # noqa: E402
+import watch  # noqa: E402
+
+
+def chaos(*arguments):
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT / "tools"), os.environ.get("PYTHONPATH", "")])}
+    return subprocess.Popen([sys.executable, "-m", "ur_tools.chaos", *arguments], env=env, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True)
+
+
+def test_a_short_run_finds_nothing():
+    process = chaos("--address", ADDRESS, "--faults", "20", "--seed", "3")
+    output, _ = process.communicate(timeout=240)
+    assert process.returncode == 0, output
+    assert "every goal had one result" in output
+    assert re.search(r"fault +count +recovery p50 +max", output) and re.search(r"succeeded +\d+", output)
+
+
+def driver_of(process, log):
+    """The process id of the driver, as the journal tells it."""
+    deadline = time.monotonic() + 60.0
+    while True:
+        found = re.search(r"the driver is process (\d+)", log.read_text() if log.exists() else "")
+        if found:
+            return int(found.group(1))
+        assert time.monotonic() < deadline and process.poll() is None
+        time.sleep(0.05)
+
+
+def test_a_violation_ends_the_run_with_the_seed_and_the_log(tmp_path):
+    process = chaos("--address", ADDRESS, "--faults", "1000", "--seed", "11", "--log", str(tmp_path))
+    os.kill(driver_of(process, tmp_path / "journal.log"), signal.SIGKILL)
+    output, _ = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert "VIOLATED: " in output and "seed 11" in output and str(tmp_path / "journal.log") in output
+    assert "./ur chaos --faults 1000 --seed 11" in output
+
+
+@pytest.mark.parametrize("arguments", [("--faults", "-1"), ("--clients", "0"), ("--minutes", "-2")])
+def test_options_out_of_range_are_refused(arguments):
+    process = chaos(*arguments)
+    output, _ = process.communicate(timeout=30)
+    assert process.returncode == 2 and "cannot be negative" in output
+
+
+def test_help_explains_the_options():
+    output, _ = chaos("--help").communicate(timeout=30)
+    for option in ("--faults", "--seed", "--minutes", "--clients"):
+        assert option in output
+
+
+def drawn(seed):
+    mix = goals.Mix(random.Random(seed))
+    sequence = faults.sequence(random.Random(seed))
+    return [mix.next().text() for _ in range(50)], [fault.text() for fault in itertools.islice(sequence, 50)]
+
+
+def test_the_seed_draws_the_same_goals_and_faults_again():
+    assert drawn(5) == drawn(5)
+    assert drawn(5) != drawn(6)
+
+
+def test_goals_that_are_drawn_fit_their_actions():
+    mix = goals.Mix(random.Random(1))
+    for _ in range(300):
+        mix.next().message()
+
+
+def test_what_grows_after_the_warm_up_is_named():
+    loads = watch.Loads(os.getpid())
+    loads.samples = [(0.0, 50 + 2 * number, 20, 60.0) for number in range(40)]
+    assert loads.verdict() == ["descriptors grew from 70 to 110"]
+    loads.samples = [(0.0, 50, 20, 60.0)] * 10 + [(0.0, 80, 30, 90.0)] * 30  # the warm-up
+    assert loads.verdict() == []
+
+
+@pytest.mark.parametrize("speed, live, violated", [(0.5, 0, True), (0.5, 1, False), (0.0, 0, False)])
+def test_a_motion_without_a_goal_is_a_violation(tmp_path, monkeypatch, speed, live, violated):
+    gate, log = clients.Gate(), journal.Journal(tmp_path / "journal.log")
+    monkeypatch.setattr(gate, "idle_for", lambda: 0.0 if live else 5.0)
+    watcher = watch.Watch(None, gate, log)
+    watcher._look({"actual": {"velocity": [0.0, -speed, 0.0, 0.0, 0.0, 0.0]}})
+    assert bool(log.violation) == violated
+    log.close()

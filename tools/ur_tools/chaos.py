@@ -1,0 +1,62 @@
+"""./ur chaos: random goals from several clients while random faults happen to a simulated robot, its links and its people.
+
+What has to hold all the time: every goal that is accepted has exactly one result, the arm moves only while a goal does, the
+driver does not end, its descriptors, threads and memory stay as they were after the first quarter, and after each fault it takes
+motions again. The same seed gives the same goals and faults in the same order. With --faults 0 it is a soak: goals only.
+"""
+
+import argparse
+import pathlib
+import random
+import sys
+from typing import List
+
+from . import cell, say
+from .environment import run_environment
+from .layout import ROOT, Layout
+from .processes import Programs
+
+SOAK_MINUTES = 30.0
+FAULT_SECONDS = 60.0  # more than the longest fault takes, its goals and their ends included
+
+
+def parse(arguments: List[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="./ur chaos", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--faults", type=int, default=100, metavar="N", help="how many; 0: a soak (default: 100)")
+    parser.add_argument("--seed", type=int, metavar="S", help="of the goals and faults (default: a new one)")
+    parser.add_argument("--minutes", type=float, default=0.0, metavar="M",
+                        help=f"ends after this time at the latest (default: no limit; of a soak {SOAK_MINUTES:g})")
+    parser.add_argument("--clients", type=int, default=3, metavar="N", help="nodes that send goals, 1 to 20 (default: 3)")
+    parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
+    parser.add_argument("--log", type=pathlib.Path, metavar="FOLDER",
+                        help="where the logs go (default: a folder of the seed's name in .ur)")
+    options = parser.parse_args(arguments)
+    if options.faults < 0 or options.minutes < 0.0 or not 1 <= options.clients <= 20:
+        parser.error("--faults and --minutes cannot be negative, --clients is 1 to 20")
+    if options.seed is None:
+        options.seed = random.SystemRandom().randrange(10**6)
+    if options.faults == 0 and options.minutes == 0.0:
+        options.minutes = SOAK_MINUTES
+    return options
+
+
+def run(options: argparse.Namespace, layout: Layout) -> int:
+    what = f"{options.faults} faults" if options.faults else f"{options.minutes:g} minutes without faults"
+    say.step(f"Seed {options.seed}: {what}, {options.clients} clients")
+    log = options.log or layout.log / "chaos" / str(options.seed)
+    command = [str(layout.python), str(ROOT / "chaos" / "main.py"), "--log", str(log)]
+    for name in ("address", "faults", "minutes", "seed", "clients"):
+        command += [f"--{name}", str(getattr(options, name))]
+    limit = 120.0 + max(FAULT_SECONDS * options.faults, 120.0 * options.minutes)
+    env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
+    with Programs(log) as programs:
+        code = programs.run(command, env, limit)
+    if code != 0:
+        say.line(f"The same goals and faults again: ./ur chaos --faults {options.faults} --seed {options.seed} "
+                 f"--minutes {options.minutes:g} --clients {options.clients}")
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(cell.main(parse, run))

@@ -1,0 +1,52 @@
+"""Draws a plan of plan_trajectory: positions, velocities, accelerations and jerks of the joints against their limits."""
+
+import json
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
+
+JOINTS = ("shoulder pan", "shoulder lift", "elbow", "wrist 1", "wrist 2", "wrist 3")
+COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
+QUANTITIES = (("position", "rad"), ("velocity", "rad/s"), ("acceleration", "rad/s²"), ("jerk", "rad/s³"))
+# Lines at so many waypoints say nothing any more.
+MOST_MARKS = 60
+
+
+def _limits(limits, quantity, joint):
+    if quantity == "position":
+        return limits["position_min"][joint], limits["position_max"][joint]
+    limit = limits[quantity][joint]
+    return (None, None) if limit is None else (-limit, limit)
+
+
+def _draw(axes, plan, quantity, unit):
+    """One quantity; dashed: the limits near what is drawn, or they would make it flat."""
+    time, values = plan["samples"]["time"], plan["samples"][quantity]
+    for joint, (name, colour) in enumerate(zip(JOINTS, COLOURS)):
+        axes.plot(time, [row[joint] for row in values], color=colour, linewidth=1.1, label=name)
+    largest = max(max(map(abs, row)) for row in values) or 1.0
+    for limit in {limit for joint in range(6) for limit in _limits(plan["limits"], quantity, joint)}:
+        if limit is not None and abs(limit) < 1.5 * largest:
+            axes.axhline(limit, color="tab:red", linewidth=0.8, linestyle="--")
+    if len(plan["waypoint_times"]) <= MOST_MARKS:
+        for mark in plan["waypoint_times"]:
+            axes.axvline(mark, color="#cccccc", linewidth=0.6, zorder=0)
+    axes.set_ylabel(f"{quantity} [{unit}]")
+    axes.margins(x=0.0)
+
+
+def draw(plan, path):
+    figure, all_axes = plt.subplots(4, 1, figsize=(9.0, 10.0), sharex=True)
+    for axes, (quantity, unit) in zip(all_axes, QUANTITIES):
+        _draw(axes, plan, quantity, unit)
+    all_axes[0].legend(ncol=6, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, 1.25), frameon=False)
+    all_axes[-1].set_xlabel("time [s]; grey: waypoints, red: limits")
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+
+
+if __name__ == "__main__":
+    draw(json.load(sys.stdin), sys.argv[1])
