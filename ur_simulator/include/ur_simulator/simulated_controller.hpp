@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ur_simulator {
 
@@ -30,6 +31,9 @@ struct SimulatorOptions {
   Ports ports;
   /// Where the joints stand at first, rad; nothing: tool down above the table in front of the robot.
   std::optional<std::array<double, 6>> initial_joints;
+  std::vector<std::string> urcaps;  ///< what is installed: "onrobot_soft_gripper"
+  /// Where the dashboard's reports and support files are written too; empty: they stay on the simulated disk.
+  std::string reports_folder;
   bool start_running = true;  ///< powered on, brakes released; false: power off, as after boot
   bool remote_control = true;
   std::uint64_t seed = 1;  ///< of the sensor noise

@@ -75,6 +75,9 @@ void declare(CLI::App & app, AppOptions & options)
       ->delimiter(',');
   app.add_option("--surface", options.surface_texts, "a horizontal elastic surface: z=height in m");
   app.add_option("--seed", simulator.seed, "seed of the sensor noise")->capture_default_str();
+  app.add_option("--urcap", simulator.urcaps, "an installed URCap: onrobot_soft_gripper");
+  app.add_option("--reports-folder", simulator.reports_folder,
+                 "where reports and support files of the dashboard are written too");
   app.add_flag("--powered-off", options.powered_off, "start as after boot, powered off");
   app.add_flag("--local-control", options.local_control, "start in local control");
   app.add_flag("--realtime-priority", simulator.realtime_priority, "try SCHED_FIFO");

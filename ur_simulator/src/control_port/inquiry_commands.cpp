@@ -67,6 +67,15 @@ json registers(const Registers & registers)
   return {{"integers", registers.integers}, {"doubles", registers.doubles}};
 }
 
+json gripper(const Bench & bench)
+{
+  const SoftGripper * gripper = bench.world.gripper();
+  if (gripper == nullptr) {
+    return nullptr;
+  }
+  return {{"width", gripper->width()}, {"target", gripper->target()}, {"busy", gripper->busy()}};
+}
+
 json state(Bench & bench, Fields & fields)
 {
   fields.finish();
@@ -162,6 +171,9 @@ json to_json(const Bench & bench)
           {"at_rest", bench.arm.at_rest()},
           {"steady", s.steady},
           {"freedrive", s.freedrive},
+          {"force_mode", bench.arm.in_force_mode()},
+          {"external_sensor", s.external_sensor.enabled},
+          {"gripper", gripper(bench)},
           {"io", io(s.io)},
           {"clients", clients(bench)},
           {"actual_execution_time", s.actual_execution_time}};

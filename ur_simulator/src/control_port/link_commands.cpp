@@ -1,4 +1,5 @@
 #include <array>
+#include <chrono>
 #include <functional>
 #include <vector>
 
@@ -65,6 +66,18 @@ json stall_links(Bench & bench, Fields & fields)
   return to_connections(bench, fields, [stalled](Connection & connection) { connection.stall(stalled); });
 }
 
+json delay_links(Bench & bench, Fields & fields)
+{
+  const std::chrono::milliseconds by(fields.integer("ms", 0, 60000));
+  return to_connections(bench, fields, [by](Connection & connection) { connection.delay(by); });
+}
+
+json lose_commands(Bench & bench, Fields & fields)
+{
+  const auto count = static_cast<std::uint64_t>(fields.integer("count", 0, 1000000, 1));
+  return to_connections(bench, fields, [count](Connection & connection) { connection.lose(count); });
+}
+
 json send_garbage(Bench & bench, Fields & fields)
 {
   const auto bytes = static_cast<std::size_t>(fields.integer("bytes", 1, 65536, 64));
@@ -113,6 +126,11 @@ constexpr std::array table{
         "stall_links", "which, clients as drop_links; stalled true|false (true)",
         "Connections stay open but nothing is read or sent, as behind a pulled cable; false lets them go on.",
         stall_links},
+    Command{"delay_links", "which, clients as drop_links; ms 0..60000",
+            "Everything on these connections is so late, both ways; 0 ends it. New connections are not late.",
+            delay_links},
+    Command{"lose_commands", "which, clients as drop_links; count (1)",
+            "The next pieces of data that these clients send are lost.", lose_commands},
     Command{"send_garbage", "which, clients as drop_links; bytes 1..65536 (64)",
             "Sends bytes that mean nothing.", send_garbage},
     Command{"refuse_connections", "which (all)", "Closes ports; open connections stay.", refuse_connections},

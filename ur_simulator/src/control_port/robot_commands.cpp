@@ -129,7 +129,31 @@ json run_script(Bench & bench, Fields & fields)
 json play(Bench & bench, Fields & fields)
 {
   fields.finish();
-  return done(bench.pendant.play());
+  Pendant::Answer answer;
+  // A program that is fetched starts later, or leaves its reason in the log.
+  auto waiting = std::make_shared<Pendant::Answer *>(&answer);
+  bench.pendant.play([waiting](const Pendant::Answer & result) {
+    if (*waiting != nullptr) {
+      **waiting = result;
+    }
+  });
+  *waiting = nullptr;
+  return done(answer);
+}
+
+json store_external_control(Bench & bench, Fields & fields)
+{
+  const std::string name = fields.text("name", "external_control.urp");
+  ProgramHost host;
+  host.address = fields.text("host");
+  host.port = static_cast<std::uint16_t>(fields.integer("port", 1, 65535, host.port));
+  const bool load = fields.boolean("load", true);
+  fields.finish();
+  bench.pendant.store_external_control(name, host);
+  if (load && !bench.pendant.load_program(name)) {
+    throw RequestError("field 'name' is '" + name + "': it cannot be loaded");
+  }
+  return json::object();
 }
 
 json pause_program(Bench & bench, Fields & fields)
@@ -142,6 +166,15 @@ json stop_program(Bench & bench, Fields & fields)
 {
   fields.finish();
   bench.pendant.stop();
+  return json::object();
+}
+
+json kill_program(Bench & bench, Fields & fields)
+{
+  fields.finish();
+  if (!bench.pendant.runner().kill()) {
+    throw RequestError("no program is running");
+  }
   return json::object();
 }
 
@@ -180,10 +213,17 @@ constexpr std::array table{
     Command{"remote_control", "on true|false (true)", "Remote or local control.", remote_control},
     Command{"store_program", "name; script; load true|false (false)",
             "Puts a program on the controller's disk.", store_program},
+    Command{
+        "store_external_control", "name (external_control.urp); host; port (50002); load true|false (true)",
+        "Puts a program of the External Control URCap on the disk, which asks that host for what it runs.",
+        store_external_control},
     Command{"run_script", "script", "Runs a script as if it came through a script port.", run_script},
     Command{"play", "", "The pendant's play button.", play},
     Command{"pause_program", "", "The pendant's pause button.", pause_program},
     Command{"stop_program", "", "The pendant's stop button.", stop_program},
+    Command{"kill_program", "",
+            "The program is gone from one cycle to the next; neither the log nor any message says so.",
+            kill_program},
     Command{"speed_slider", "fraction 0..1", "Moves the pendant's speed slider.", speed_slider},
     Command{"close_popup", "", "Answers the popup that is open.", close_popup},
 };

@@ -131,6 +131,20 @@ json set_analog_input(Bench & bench, Fields & fields)
   return json::object();
 }
 
+json gripper(Bench & bench, Fields & fields)
+{
+  SoftGripper * gripper = bench.world.gripper();
+  if (gripper == nullptr) {
+    throw RequestError("there is no gripper: start the simulator with --urcap onrobot_soft_gripper");
+  }
+  const bool stuck = fields.boolean("stuck", gripper->stuck());
+  const double object = fields.number("object", {0.0, SoftGripper::widest}, 0.0);
+  fields.finish();
+  gripper->set_stuck(stuck);
+  gripper->set_object(object);
+  return {{"width", gripper->width()}, {"busy", gripper->busy()}, {"holds_object", gripper->holds_object()}};
+}
+
 constexpr std::array table{
     Command{"push", "force [3] N or wrench [6] N, N m; duration s (0.3); frame base|tool (base)",
             "A hand pushes at the TCP: a half-sine with this peak.", push},
@@ -145,6 +159,9 @@ constexpr std::array table{
             "What really hangs at the flange, whatever the payload setting says.", attach_load},
     Command{"set_sensor_noise", "force N; torque N m (0)",
             "Standard deviation of the force sensor's noise; 0 is none.", set_sensor_noise},
+    Command{"gripper", "stuck true|false (as it is); object mm, 0 nothing (0)",
+            "Lets the gripper hang, or puts something of that width between its cups; answers its width.",
+            gripper},
     Command{"set_joints", "joints [6] rad", "Puts the arm elsewhere at once and stops the program.",
             set_joints},
     Command{"set_digital_input", "number 0..17 (8..15 configurable, 16, 17 tool); value true|false",

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <boost/asio/post.hpp>
+#include <cmath>
 #include <exception>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "control_port/commands.hpp"
+#include "net/fetch.hpp"
 #include "primary/messages.hpp"
+#include "primary/robot_state.hpp"
 
 namespace ur_simulator {
 namespace {
@@ -20,6 +23,7 @@ using Clock = std::chrono::steady_clock;
 // A late host is caught up with up to this many cycles in a row; beyond, the simulated time falls behind
 // instead of the sockets starving.
 constexpr int most_cycles_to_catch_up = 10;
+constexpr double robot_state_period = 0.1;  // s
 
 const RobotModel & model_of(const SimulatorOptions & options)
 {
@@ -65,6 +69,28 @@ Vector6 joints_of(const SimulatorOptions & options, const RobotModel & model)
   return joints;
 }
 
+PendantOptions pendant_options(const SimulatorOptions & options, const PolyscopeVersion & version)
+{
+  PendantOptions result;
+  result.version = version;
+  result.remote_control = options.remote_control;
+  result.reports_folder = options.reports_folder;
+  return result;
+}
+
+World world_of(const SimulatorOptions & options, double cycle_time)
+{
+  World world(cycle_time, options.seed);
+  for (const std::string & urcap : options.urcaps) {
+    if (urcap != "onrobot_soft_gripper") {
+      throw std::runtime_error(
+          fmt::format("URCap '{}' (--urcap) is not known: there is onrobot_soft_gripper", urcap));
+    }
+    world.mount_gripper();
+  }
+  return world;
+}
+
 LogLevel level_of(SafetyEvent::Level level)
 {
   switch (level) {
@@ -88,11 +114,10 @@ Controller::Controller(const SimulatorOptions & options)
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(version_.cycle_time()))),
       initial_joints_(joints_of(options, model_)),
       arm_(std::in_place, model_, version_.cycle_time(), initial_joints_),
-      world_(std::in_place, version_.cycle_time(), options.seed),
+      world_(world_of(options, version_.cycle_time())),
       safety_(std::in_place, model_, version_.cycle_time()),
       runner_(std::in_place, program_access()),
-      pendant_(std::in_place, model_, PendantOptions{version_, options.remote_control}, state_, *safety_,
-               *runner_, log_),
+      pendant_(std::in_place, model_, pendant_options(options, version_), state_, *safety_, *runner_, log_),
       primary_(io_, options.address, options.ports.primary, *pendant_, primary::version_message(version_)),
       secondary_(io_, options.address, options.ports.secondary, *pendant_,
                  primary::version_message(version_)),
@@ -123,6 +148,9 @@ Controller::Controller(const SimulatorOptions & options)
     if (field.name == "input_int_register_0") {
       trace_.command_arrived(state_);
     }
+  });
+  pendant_->fetch_programs_by([this](const ProgramHost & host, auto done) {
+    fetch(io_, host.address, host.port, "request_program\n", std::move(done));
   });
   log_.add_listener([this](const LogEntry & entry) { primary_.broadcast(primary::message_for(entry)); });
   arm_->teleport(initial_joints_, state_);
@@ -230,6 +258,7 @@ void Controller::cycle()
     step_robot();
     publish();
   }
+  dashboard_.cycle();
   observers_.remove_if([](const Observer & observer) { return observer(); });
   state_.actual_execution_time = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
@@ -290,7 +319,12 @@ void Controller::obey(const SafetyOrders & orders)
 void Controller::take_safety_events()
 {
   while (const auto event = safety_->take_event()) {
-    log_.add(level_of(event->level), "safety", event->message);
+    LogEntry entry;
+    entry.level = level_of(event->level);
+    entry.source = "safety";
+    entry.text = event->message;
+    entry.kind = entry.level == LogLevel::info ? LogKind::text : LogKind::safety;
+    log_.add(std::move(entry));
     if (event->level == SafetyEvent::Level::error) {
       pendant_->show_safety_popup(event->message);
     }
@@ -301,6 +335,14 @@ void Controller::publish()
 {
   trace_.cycle_publishing(state_);
   rtde_.publish();
+  const auto cycles = static_cast<std::uint64_t>(std::lround(robot_state_period / version_.cycle_time()));
+  const bool state_is_due =
+      state_.cycle % cycles == 0 && (primary_.has_clients() || secondary_.has_clients());
+  if (state_is_due) {
+    const std::string message = primary::robot_state_message(model_, state_);
+    primary_.broadcast(message);
+    secondary_.broadcast(message);
+  }
   if (realtime_.has_clients()) {
     realtime_.broadcast(realtime_packet_.encode(state_));
   }

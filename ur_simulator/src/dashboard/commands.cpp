@@ -43,11 +43,6 @@ std::string load(Pendant & p, Text file)
   return fmt::format("{}: {}", missing ? "File not found" : "Error while loading program", file);
 }
 
-std::string play(Pendant & p, Text)
-{
-  return either(p.play(), "Starting program", "play");
-}
-
 std::string stop(Pendant & p, Text)
 {
   p.stop();
@@ -242,15 +237,15 @@ std::string quit(Pendant &, Text)
   return "Disconnected";
 }
 
-std::string no_files(Pendant &, Text)
+std::string save_log(Pendant & p, Text)
 {
-  return "Error: the simulated controller writes no reports";
+  return p.reports().save_log();
 }
 
 constexpr auto never = Since::never;
 constexpr std::array table{
     Command{"load", {}, true, load},
-    Command{"play", {}, true, play},
+    Command{"play", {}, true, nullptr, play},
     Command{"stop", {}, true, stop},
     Command{"pause", {}, true, pause},
     Command{"quit", {}, false, quit},
@@ -282,8 +277,9 @@ constexpr std::array table{
     Command{"is in remote control", {v(5, 6), never}, false, is_in_remote_control},
     Command{"get serial number", {v(5, 6), v(3, 12)}, false, get_serial_number},
     Command{"get robot model", {v(5, 6), v(3, 12)}, false, get_robot_model},
-    Command{"generate flight report", {v(5, 8), v(3, 13)}, false, no_files},
-    Command{"generate support file", {v(5, 8), v(3, 13)}, false, no_files},
+    Command{"generate flight report", {v(5, 8), v(3, 13)}, false, nullptr, generate_flight_report},
+    Command{"generate support file", {v(5, 8), v(3, 13)}, false, nullptr, generate_support_file},
+    Command{"saveLog", {v(5, 8), v(3, 13)}, false, save_log},
 };
 
 bool begins_with(Text line, Text name)

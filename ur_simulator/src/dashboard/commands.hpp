@@ -15,7 +15,14 @@ struct Command {
   Since since;
   bool needs_remote_control;  ///< refused by an e-Series in local control
   std::string (*reply)(Pendant & pendant, std::string_view argument);
+  /// In the place of `reply` where the answer may take its time; asked each cycle until there is one.
+  ReportWriter::Pending (*begin)(Pendant & pendant, std::string_view argument) = nullptr;
 };
+
+// Those that take their time.
+ReportWriter::Pending play(Pendant & pendant, std::string_view argument);
+ReportWriter::Pending generate_flight_report(Pendant & pendant, std::string_view type);
+ReportWriter::Pending generate_support_file(Pendant & pendant, std::string_view folder);
 
 /// All commands except quit and shutdown's effect on the connection, which the server carries out.
 std::span<const Command> commands();

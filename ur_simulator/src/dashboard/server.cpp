@@ -27,7 +27,7 @@ Server::~Server()
 void Server::accept(const std::shared_ptr<Connection> & connection)
 {
   const std::uint64_t id = connection->id();
-  clients_.emplace(id, Client{connection, {}, pendant_.remote_control()});
+  clients_.emplace(id, Client{connection, {}, pendant_.remote_control(), nullptr});
   connection->send("Connected: Universal Robots Dashboard Server\n");
   connection->start(
       [this, id](std::string_view bytes) {
@@ -45,7 +45,8 @@ void Server::receive(Client & client, std::string_view bytes)
   client.received.append(bytes);
   std::string received = std::move(client.received);
   std::size_t begin = 0;
-  for (std::size_t end = received.find('\n'); end != std::string::npos; end = received.find('\n', begin)) {
+  for (std::size_t end = received.find('\n'); end != std::string::npos && !client.pending;
+       end = received.find('\n', begin)) {
     std::string_view line = std::string_view(received).substr(begin, end - begin);
     if (line.ends_with('\r')) {
       line.remove_suffix(1);
@@ -65,6 +66,27 @@ void Server::receive(Client & client, std::string_view bytes)
   client.received = received.substr(begin);
 }
 
+void Server::cycle()
+{
+  for (auto next = clients_.begin(); next != clients_.end();) {
+    Client & client = (next++)->second;
+    if (client.pending) {
+      deliver(client);
+      if (!client.pending) {
+        receive(client, {});
+      }
+    }
+  }
+}
+
+void Server::deliver(Client & client)
+{
+  if (const auto reply = client.pending()) {
+    client.pending = nullptr;
+    client.connection->send(*reply + "\n");
+  }
+}
+
 void Server::answer(Client & client, std::string_view line)
 {
   std::string_view argument;
@@ -79,6 +101,11 @@ void Server::answer(Client & client, std::string_view line)
         "Command is not allowed due to safety reasons, please switch robot to Remote Control mode and "
         "reconnect to port "
         "29999\n");
+    return;
+  }
+  if (command->begin != nullptr) {
+    client.pending = command->begin(pendant_, argument);
+    deliver(client);
     return;
   }
   client.connection->send(command->reply(pendant_, argument) + "\n");

@@ -17,9 +17,23 @@ std::string_view name(LogLevel level)
   return "unknown";
 }
 
-void EventLog::add(LogLevel level, std::string_view source, std::string text)
+void EventLog::add(LogLevel level, std::string_view source, std::string text, std::int32_t line,
+                   std::int32_t column)
 {
-  entries_.push_back({++count_, timestamp_, level, std::string(source), std::move(text)});
+  LogEntry entry;
+  entry.level = level;
+  entry.source = source;
+  entry.text = std::move(text);
+  entry.line = line;
+  entry.column = column;
+  add(std::move(entry));
+}
+
+void EventLog::add(LogEntry entry)
+{
+  entry.number = ++count_;
+  entry.timestamp = timestamp_;
+  entries_.push_back(std::move(entry));
   if (entries_.size() > kept) {
     entries_.pop_front();
   }

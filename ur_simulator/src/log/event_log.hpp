@@ -14,12 +14,20 @@ enum class LogLevel { info, warning, error };
 /// "info", "warning" or "error".
 std::string_view name(LogLevel level);
 
+/// What the primary interface makes of an entry beyond its text.
+enum class LogKind { text, program_started, program_ended, popup, safety };
+
 struct LogEntry {
   std::uint64_t number = 0;  ///< counts from 1, never reused
   double timestamp = 0.0;    ///< s on the controller's clock
   LogLevel level = LogLevel::info;
   std::string source;  ///< room that says it: "rtde", "program", …
   std::string text;
+  std::int32_t line = -1;    ///< of the program's text that it is about, 1-based; -1: none
+  std::int32_t column = -1;  ///< 1-based; -1: none
+  LogKind kind = LogKind::text;
+  std::string title;      ///< of a popup; a program's name
+  bool blocking = false;  ///< popup
 };
 
 /// What a robot would show on its log tab: the most recent entries, in order. Belongs to the controller's
@@ -32,7 +40,10 @@ class EventLog {
   void set_time(double timestamp) { timestamp_ = timestamp; }
   /// Called for every further entry.
   void add_listener(Listener listener) { listeners_.push_back(std::move(listener)); }
-  void add(LogLevel level, std::string_view source, std::string text);
+  void add(LogLevel level, std::string_view source, std::string text, std::int32_t line = -1,
+           std::int32_t column = -1);
+  /// The log numbers and dates the entry.
+  void add(LogEntry entry);
   void info(std::string_view source, std::string text) { add(LogLevel::info, source, std::move(text)); }
   void warning(std::string_view source, std::string text) { add(LogLevel::warning, source, std::move(text)); }
   void error(std::string_view source, std::string text) { add(LogLevel::error, source, std::move(text)); }

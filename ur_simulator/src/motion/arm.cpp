@@ -1,10 +1,9 @@
-#include "motion/arm_impl.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "common/pose.hpp"
+#include "motion/arm_impl.hpp"
 
 namespace ur_simulator {
 namespace {
@@ -24,6 +23,7 @@ void Arm::Impl::ramp_scaling(ControllerState & current) const
 
 void Arm::Impl::brake_hard(double deceleration)
 {
+  drop_deviation();
   slot = JointSpeed::stop(model, deceleration);
   given_up = true;
   is_stop = true;
@@ -42,28 +42,6 @@ Arm::Arm(const RobotModel & model, double cycle_time, const Vector6 & initial_po
 }
 
 Arm::~Arm() = default;
-
-MotionStart Arm::move_joint(const Vector6 & target, const MoveOptions & options)
-{
-  if (const auto refusal =
-          first_of({impl_->not_ready("movej"), not_finite("movej", "target", target),
-                    bad_options("movej", options), beyond_joint_limits("movej", impl_->model, target)})) {
-    return tl::unexpected(*refusal);
-  }
-  return impl_->begin(JointMove(impl_->model, impl_->setpoint, target, options));
-}
-
-MotionStart Arm::move_linear(const Vector6 & tcp_pose, const MoveOptions & options)
-{
-  if (const auto refusal = first_of({impl_->not_ready("movel"), not_finite("movel", "pose", tcp_pose),
-                                     bad_options("movel", options)})) {
-    return tl::unexpected(*refusal);
-  }
-  if (const auto refusal = impl_->unreachable("movel", tcp_pose)) {
-    return tl::unexpected(*refusal);
-  }
-  return impl_->begin(LinearMove(impl_->path(), impl_->setpoint, tcp_pose, options));
-}
 
 MotionStart Arm::servo_joint(const Vector6 & target, double time, double lookahead, double gain)
 {
@@ -99,6 +77,9 @@ MotionStart Arm::speed_linear(const Vector6 & tcp_twist, double acceleration, do
 
 MotionStart Arm::stop_joint(double deceleration)
 {
+  if (impl_->guided()) {
+    return skipped_motion;  // there is nothing that the program moves
+  }
   if (const auto refusal =
           first_of({impl_->not_ready("stopj"), not_positive("stopj", "deceleration", deceleration)})) {
     return tl::unexpected(*refusal);
@@ -108,6 +89,9 @@ MotionStart Arm::stop_joint(double deceleration)
 
 MotionStart Arm::stop_linear(double deceleration)
 {
+  if (impl_->guided()) {
+    return skipped_motion;
+  }
   if (const auto refusal =
           first_of({impl_->not_ready("stopl"), not_positive("stopl", "deceleration", deceleration)})) {
     return tl::unexpected(*refusal);
@@ -156,8 +140,8 @@ bool Arm::at_rest() const
 void Arm::pause()
 {
   impl_->paused = true;
-  const bool by_speed =
-      std::holds_alternative<JointSpeed>(impl_->slot) || std::holds_alternative<LinearSpeed>(impl_->slot);
+  const bool by_speed = std::holds_alternative<JointSpeed>(impl_->slot) ||
+                        std::holds_alternative<LinearSpeed>(impl_->slot) || impl_->guided();
   if (by_speed) {
     abandon_all();  // it follows no path in time that could stand still
   }
@@ -201,14 +185,18 @@ void Arm::step(ControllerState & state)
     // The brakes are on: whatever was moving stands where it is.
     arm.slot = std::monostate();
     arm.follower.freeze();
-    arm.setpoint = {arm.follower.position(), Vector6::Zero()};
+    arm.commanded = {arm.follower.position(), Vector6::Zero()};
+    arm.drop_deviation();
   } else {
     if (!arm.may_move() && arm.motion() != nullptr && !(arm.is_stop && arm.given_up)) {
       arm.brake_hard(fault_deceleration);
     }
-    arm.advance({arm.cycle_time, state.speed_scaling});
-    arm.follower.advance(arm.setpoint.position);
+    const Tick tick{arm.cycle_time, state.speed_scaling};
+    arm.advance(tick);
+    arm.lead_joints(tick);
   }
+  state.freedrive = arm.guided();
+  state.in_force_mode = arm.force.has_value();
   arm.writer.write(arm.setpoint, arm.follower, state);
 }
 
@@ -219,7 +207,8 @@ void Arm::teleport(const Vector6 & position, ControllerState & state)
     throw std::invalid_argument(*refusal);
   }
   impl_->slot = std::monostate();
-  impl_->setpoint = {position, Vector6::Zero()};
+  impl_->commanded = {position, Vector6::Zero()};
+  impl_->drop_deviation();
   impl_->follower.jump_to(position);
   impl_->state = &state;
   impl_->writer.forget();

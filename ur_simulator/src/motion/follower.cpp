@@ -18,6 +18,12 @@ void Follower::advance(const Vector6 & target)
   velocity_ = step.cwiseAbs().maxCoeff() < 1e-9 ? Vector6(Vector6::Zero()) : Vector6(step / cycle_time_);
 }
 
+void Follower::match(const Vector6 & position, const Vector6 & velocity)
+{
+  position_ = position;
+  velocity_ = velocity;
+}
+
 void Follower::jump_to(const Vector6 & position)
 {
   position_ = position;

@@ -15,6 +15,8 @@ class Follower {
   Follower(double cycle_time, const Vector6 & position);
   void advance(const Vector6 & target);
   void jump_to(const Vector6 & position);
+  /// The joints move by themselves, not by their servo loops.
+  void match(const Vector6 & position, const Vector6 & velocity);
   /// The brakes hold the joints where they are.
   void freeze() { velocity_.setZero(); }
 

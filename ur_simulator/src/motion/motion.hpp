@@ -20,6 +20,8 @@ class Motion {
   virtual bool done() const = 0;
   /// From now on decelerate along the path to standstill, then be done.
   virtual void brake() = 0;
+  /// Does it say where the joints are, rather than where their servo loops are to lead them?
+  virtual bool leads_actual() const { return false; }
 };
 
 }  // namespace ur_simulator

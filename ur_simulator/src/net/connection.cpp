@@ -1,5 +1,6 @@
 #include "net/connection.hpp"
 
+#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/error.hpp>
 #include <exception>
@@ -9,7 +10,8 @@ namespace ur_simulator {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
-Connection::Connection(tcp::socket socket, std::uint64_t id) : socket_(std::move(socket)), id_(id)
+Connection::Connection(tcp::socket socket, std::uint64_t id)
+    : socket_(std::move(socket)), id_(id), late_timer_(socket_.get_executor())
 {
   boost::system::error_code ignored;
   socket_.non_blocking(true, ignored);
@@ -53,7 +55,14 @@ void Connection::take(const boost::system::error_code & error, std::size_t size)
     return;
   }
   if (size > 0) {
-    deliver(std::string_view(received_.data(), size));
+    const std::string_view bytes(received_.data(), size);
+    if (to_lose_ > 0) {
+      --to_lose_;
+    } else if (delay_.count() > 0 || !late_.empty()) {
+      keep(false, bytes);
+    } else {
+      deliver(bytes);
+    }
   }
   if (open_) {
     read();
@@ -85,6 +94,15 @@ void Connection::send(std::string_view bytes)
   if (!open_ || closing_ || bytes.empty()) {
     return;
   }
+  if (delay_.count() > 0 || !late_.empty()) {
+    keep(true, bytes);
+  } else {
+    write(bytes);
+  }
+}
+
+void Connection::write(std::string_view bytes)
+{
   const std::size_t written = queue_.empty() && !stalled_ ? write_now(bytes) : 0;
   if (!open_ || written == bytes.size()) {
     return;
@@ -101,6 +119,10 @@ bool Connection::send_or_drop(std::string_view bytes)
 {
   if (!open_ || closing_ || stalled_ || !queue_.empty()) {
     return false;
+  }
+  if (delay_.count() > 0 || !late_.empty()) {
+    keep(true, bytes);
+    return true;
   }
   const std::size_t written = write_now(bytes);
   if (written > 0 && written < bytes.size()) {
@@ -134,9 +156,57 @@ void Connection::flush_when_writable()
                      });
 }
 
+void Connection::delay(std::chrono::milliseconds by)
+{
+  delay_ = by;
+}
+
+void Connection::keep(bool outgoing, std::string_view bytes)
+{
+  late_bytes_ += bytes.size();
+  if (late_bytes_ > queue_limit) {
+    close();
+    return;
+  }
+  // Never before what was sent earlier, also when the delay has become shorter.
+  const auto due = std::chrono::steady_clock::now() + delay_;
+  late_.push_back({late_.empty() ? due : std::max(due, late_.back().due), outgoing, std::string(bytes)});
+  if (late_.size() == 1) {
+    wait_for_kept();
+  }
+}
+
+void Connection::wait_for_kept()
+{
+  late_timer_.expires_at(late_.front().due);
+  late_timer_.async_wait([self = shared_from_this()](const boost::system::error_code & error) {
+    if (!error) {
+      self->release_kept();
+    }
+  });
+}
+
+void Connection::release_kept()
+{
+  const auto now = std::chrono::steady_clock::now();
+  while (open_ && !late_.empty() && late_.front().due <= now) {
+    // What is delivered may be answered: that comes after it, hence it stays in the queue meanwhile.
+    const bool outgoing = late_.front().outgoing;
+    const std::string bytes = std::move(late_.front().bytes);
+    late_bytes_ -= bytes.size();
+    outgoing ? write(bytes) : deliver(bytes);
+    late_.pop_front();
+  }
+  if (open_ && !late_.empty()) {
+    wait_for_kept();
+  } else if (open_ && closing_ && queue_.empty()) {
+    close();
+  }
+}
+
 void Connection::close_after_sending()
 {
-  if (queue_.empty()) {
+  if (queue_.empty() && late_.empty()) {
     close();
   } else {
     closing_ = true;
@@ -174,6 +244,7 @@ void Connection::close()
   }
   open_ = false;
   boost::system::error_code ignored;
+  late_timer_.cancel();
   socket_.close(ignored);
   finish();
 }

@@ -2,8 +2,11 @@
 
 #include <array>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/system/error_code.hpp>
+#include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -37,6 +40,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void reset();
   /// A stalled connection neither reads nor writes but stays open, as behind a pulled cable.
   void stall(bool stalled);
+  /// From now on everything, both ways, is this late, as over a bad line. 0: no more.
+  void delay(std::chrono::milliseconds by);
+  /// The next `pieces` that arrive are lost, as if they had never been sent.
+  void lose(std::uint64_t pieces) { to_lose_ = pieces; }
 
   std::uint64_t id() const { return id_; }
   bool open() const { return open_; }
@@ -53,6 +60,18 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::size_t write_now(std::string_view bytes);
   void flush_when_writable();
   void finish();
+  void write(std::string_view bytes);
+  /// Keeps what was sent or received until its time has come.
+  void keep(bool outgoing, std::string_view bytes);
+  void wait_for_kept();
+  void release_kept();
+
+  /// Bytes on their way over a bad line.
+  struct Late {
+    std::chrono::steady_clock::time_point due;
+    bool outgoing;
+    std::string bytes;
+  };
 
   boost::asio::ip::tcp::socket socket_;
   std::uint64_t id_;
@@ -66,6 +85,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool waiting_to_write_ = false;
   bool closing_ = false;
   bool stalled_ = false;
+  std::chrono::milliseconds delay_{0};
+  boost::asio::steady_timer late_timer_;
+  std::deque<Late> late_;
+  std::size_t late_bytes_ = 0;
+  std::uint64_t to_lose_ = 0;
 };
 
 }  // namespace ur_simulator

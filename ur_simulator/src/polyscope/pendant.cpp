@@ -29,13 +29,21 @@ Pendant::Pendant(const RobotModel & model, const PendantOptions & options, Contr
       safety_(safety),
       runner_(runner),
       log_(log),
-      remote_control_(options.remote_control)
+      remote_control_(options.remote_control),
+      reports_(state, log, options.serial_number, options.reports_folder)
 {
 }
 
 void Pendant::store_program(const std::string & name, const std::string & script)
 {
   programs_.insert_or_assign(file_name(name), script);
+  external_.erase(file_name(name));
+}
+
+void Pendant::store_external_control(const std::string & name, const ProgramHost & host)
+{
+  store_program(name, "");
+  external_.insert_or_assign(file_name(name), host);
 }
 
 tl::expected<void, Pendant::LoadError> Pendant::load_program(const std::string & name)
@@ -44,7 +52,8 @@ tl::expected<void, Pendant::LoadError> Pendant::load_program(const std::string &
   if (found == programs_.end()) {
     return tl::make_unexpected(LoadError::not_found);
   }
-  if (const auto compiled = runner_.compile(found->second); !compiled) {
+  const bool fetched = external_.contains(found->first);
+  if (const auto compiled = runner_.compile(found->second); !fetched && !compiled) {
     log_.error(source, fmt::format("'{}' cannot be loaded: {}", name, compiled.error().text()));
     return tl::make_unexpected(LoadError::not_a_program);
   }
@@ -55,7 +64,13 @@ tl::expected<void, Pendant::LoadError> Pendant::load_program(const std::string &
 
 bool Pendant::load_installation(const std::string & name)
 {
-  return file_name(name) == installation_;
+  const std::string file = file_name(name);
+  if (file != installation_ && !(file.ends_with(".installation") && programs_.contains(file))) {
+    return false;
+  }
+  runner_.stop("an installation was loaded");
+  installation_ = file;
+  return true;
 }
 
 Pendant::Answer Pendant::can_run() const
@@ -79,11 +94,16 @@ Pendant::Answer Pendant::start(std::string_view script)
   if (!program) {
     return tl::make_unexpected(program.error().text());
   }
-  const bool secondary = program->secondary();
+  return start(std::move(*program), script);
+}
+
+Pendant::Answer Pendant::start(urscript::Program program, std::string_view script)
+{
+  const bool secondary = program.secondary();
   if (const Answer can = can_run(); !secondary && !can) {
     return can;
   }
-  runner_.start(std::move(*program));
+  runner_.start(std::move(program));
   if (!secondary) {
     last_script_ = script;
   }
@@ -95,8 +115,17 @@ Pendant::Answer Pendant::run_script(std::string_view text)
   Answer answer;
   if (!remote_control_ && options_.version.is_e_series()) {
     answer = tl::make_unexpected(std::string("the robot is in local control: switch it to remote control"));
+  } else if (manual()) {
+    answer = tl::make_unexpected(std::string("the operational mode is MANUAL: set it to automatic"));
   } else {
-    answer = start(text);
+    auto program = runner_.compile(text);
+    if (!program) {
+      const urscript::CompileError & error = program.error();
+      log_.add(LogLevel::error, "program", "script was not started: " + error.text(), error.line,
+               error.column);
+      return tl::make_unexpected(error.text());
+    }
+    answer = start(std::move(*program), text);
   }
   if (!answer) {
     log_.error("program", "script was not started: " + answer.error());
@@ -104,7 +133,48 @@ Pendant::Answer Pendant::run_script(std::string_view text)
   return answer;
 }
 
-Pendant::Answer Pendant::play()
+void Pendant::play(const std::function<void(const Answer &)> & done)
+{
+  const auto host = external_.find(loaded_);
+  const Answer can = can_run();
+  if (runner_.running() || host == external_.end() || !fetch_ || !can) {
+    done(play_now());
+    return;
+  }
+  if (fetching_) {
+    done(tl::make_unexpected(std::string("the program is being fetched already")));
+    return;
+  }
+  fetching_ = true;
+  fetch_(host->second,
+         [this, done, from = host->second](const tl::expected<std::string, std::string> & text) {
+           fetching_ = false;
+           done(play_fetched(from, text));
+         });
+}
+
+Pendant::Answer Pendant::play_fetched(const ProgramHost & host,
+                                      const tl::expected<std::string, std::string> & text)
+{
+  std::string script = "def external_control():\n";
+  if (text) {
+    script += text.value();
+  } else {
+    // What the URCap puts in the place of a program that it could not get.
+    script += fmt::format(
+        "popup(\"The connection to the remote PC at {}:{} could not be established. Reason: {}\", \"Receive "
+        "program failed\", False, True, blocking=True)\nsync()",
+        host.address, host.port, text.error());
+    log_.error(source, fmt::format("no program from {}:{}: {}", host.address, host.port, text.error()));
+  }
+  const Answer answer = start(script + "\nend\n");
+  if (!answer) {
+    log_.error(source, "play was refused: " + answer.error());
+  }
+  return answer;
+}
+
+Pendant::Answer Pendant::play_now()
 {
   Answer answer = can_run();
   if (answer && runner_.running()) {

@@ -34,7 +34,7 @@ void ProgramRunner::start(urscript::Program program)
   name_ = machine->program().name();
   primary_ = std::move(machine);
   access_.state.runtime_state = RuntimeState::playing;
-  access_.log.info(source, fmt::format("program '{}' started", name_));
+  log(LogKind::program_started, fmt::format("program '{}' started", name_));
 }
 
 void ProgramRunner::start_secondary(std::unique_ptr<urscript::Machine> machine)
@@ -53,8 +53,28 @@ void ProgramRunner::stop(std::string_view why)
     return;
   }
   primary_->stop();
-  access_.log.info(source, fmt::format("program '{}' stopped: {}", name_, why));
+  log(LogKind::program_ended, fmt::format("program '{}' stopped: {}", name_, why));
   end(RuntimeState::stopping);
+}
+
+void ProgramRunner::log(LogKind kind, std::string text)
+{
+  LogEntry entry;
+  entry.source = source;
+  entry.text = std::move(text);
+  entry.kind = kind;
+  entry.title = name_;
+  access_.log.add(std::move(entry));
+}
+
+bool ProgramRunner::kill()
+{
+  if (!primary_) {
+    return false;
+  }
+  primary_->stop();
+  end(RuntimeState::stopped);
+  return true;
 }
 
 void ProgramRunner::shut_down()
@@ -70,6 +90,7 @@ void ProgramRunner::end(RuntimeState next)
   popup_.reset();
   access_.watchdog.clear();
   access_.state.runtime_state = next;
+  access_.arm.end_program();
   access_.arm.resume();
 }
 
@@ -129,11 +150,13 @@ void ProgramRunner::run_primary()
     case urscript::MachineStatus::running:
       return;
     case urscript::MachineStatus::finished:
-      access_.log.info(source, fmt::format("program '{}' ended", name_));
+      log(LogKind::program_ended, fmt::format("program '{}' ended", name_));
       break;
     case urscript::MachineStatus::failed:
-      access_.log.error(source, fmt::format("program '{}' failed in line {}: {}", name_,
-                                            primary_->error().line, primary_->error().message));
+      access_.log.add(LogLevel::error, source,
+                      fmt::format("program '{}' failed in line {}: {}", name_, primary_->error().line,
+                                  primary_->error().message),
+                      primary_->error().line);
       break;
   }
   end(RuntimeState::stopping);
@@ -144,9 +167,10 @@ void ProgramRunner::run_secondaries()
   std::erase_if(secondaries_, [this](const std::unique_ptr<urscript::Machine> & machine) {
     const urscript::MachineStatus status = machine->cycle();
     if (status == urscript::MachineStatus::failed) {
-      access_.log.error(source,
-                        fmt::format("secondary program '{}' failed in line {}: {}", machine->program().name(),
-                                    machine->error().line, machine->error().message));
+      access_.log.add(LogLevel::error, source,
+                      fmt::format("secondary program '{}' failed in line {}: {}", machine->program().name(),
+                                  machine->error().line, machine->error().message),
+                      machine->error().line);
     }
     return status != urscript::MachineStatus::running;
   });
@@ -160,7 +184,14 @@ void ProgramRunner::text_message(const std::string & text)
 void ProgramRunner::show_popup(const urscript::Popup & popup)
 {
   popup_ = popup;
-  access_.log.info("popup", fmt::format("{}: {}", popup.title, popup.message));
+  LogEntry entry;
+  entry.level = popup.error ? LogLevel::error : popup.warning ? LogLevel::warning : LogLevel::info;
+  entry.source = "popup";
+  entry.text = fmt::format("{}: {}", popup.title, popup.message);
+  entry.kind = LogKind::popup;
+  entry.title = popup.title;
+  entry.blocking = popup.blocking;
+  access_.log.add(std::move(entry));
 }
 
 }  // namespace ur_simulator

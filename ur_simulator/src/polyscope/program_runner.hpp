@@ -37,6 +37,8 @@ class ProgramRunner final : public urscript::Host {
   void start(urscript::Program program);
   /// Ends the program; the arm decelerates.
   void stop(std::string_view why);
+  /// A fault on demand: the program is gone, and nothing says so. False when none runs.
+  bool kill();
   /// Ends all programs at once, `sec` programs too (the controller switches off).
   void shut_down();
   /// Ramp down and wait, or go on; false when no program runs (is paused).
@@ -64,6 +66,7 @@ class ProgramRunner final : public urscript::Host {
   void run_secondaries();
   void follow_ramps();
   void end(RuntimeState next);
+  void log(LogKind kind, std::string text);
 
   ProgramAccess access_;
   std::string name_;

@@ -24,6 +24,11 @@ inline void put_u64(std::string & to, std::uint64_t value)
   put_u32(to, static_cast<std::uint32_t>(value));
 }
 
+inline void put_f32(std::string & to, float value)
+{
+  put_u32(to, std::bit_cast<std::uint32_t>(value));
+}
+
 inline void put_f64(std::string & to, double value)
 {
   put_u64(to, std::bit_cast<std::uint64_t>(value));

@@ -1,5 +1,7 @@
 #include "primary/messages.hpp"
 
+#include <algorithm>
+
 #include "primary/big_endian.hpp"
 
 namespace ur_simulator::primary {
@@ -7,7 +9,14 @@ namespace {
 
 constexpr std::uint8_t robot_message = 20;
 
-enum class MessageType : std::uint8_t { text = 0, version = 3, runtime_exception = 10 };
+enum class MessageType : std::uint8_t {
+  text = 0,
+  popup = 2,
+  version = 3,
+  error_code = 6,
+  key = 7,
+  runtime_exception = 10
+};
 
 std::string begin(MessageType type, double timestamp)
 {
@@ -60,13 +69,67 @@ std::string runtime_exception_message(double timestamp, std::int32_t line, std::
   return finish(std::move(message));
 }
 
+std::string key_message(double timestamp, std::string_view title, std::string_view text)
+{
+  std::string message = begin(MessageType::key, timestamp);
+  put_u32(message, 0);  // code
+  put_u32(message, 0);  // argument
+  put_u8(message, static_cast<std::uint8_t>(title.size()));
+  message += title;
+  message += text;
+  return finish(std::move(message));
+}
+
+std::string error_code_message(double timestamp, LogLevel level, std::string_view text)
+{
+  constexpr std::uint32_t no_data = 0;
+  // Report levels of the interface: 1 information, 2 warning, 3 violation.
+  const std::uint32_t report_level = level == LogLevel::error ? 3 : level == LogLevel::warning ? 2 : 1;
+  std::string message = begin(MessageType::error_code, timestamp);
+  put_u32(message, 0);  // code: the robot's numbers are not modelled
+  put_u32(message, 0);  // argument
+  put_u32(message, report_level);
+  put_u32(message, no_data);
+  put_u32(message, 0);
+  message += text;
+  return finish(std::move(message));
+}
+
+std::string popup_message(const LogEntry & entry)
+{
+  const std::string title = entry.title.substr(0, 255);  // its length is one byte
+  std::string message = begin(MessageType::popup, entry.timestamp);
+  put_u32(message, static_cast<std::uint32_t>(entry.number));
+  put_u8(message, 0);  // requested type: none, it is a message
+  put_u8(message, entry.level == LogLevel::warning ? 1 : 0);
+  put_u8(message, entry.level == LogLevel::error ? 1 : 0);
+  put_u8(message, entry.blocking ? 1 : 0);
+  put_u8(message, static_cast<std::uint8_t>(title.size()));
+  message += title;
+  // The log names the title before the text.
+  message += entry.text.substr(std::min(entry.text.size(), entry.title.size() + 2));
+  return finish(std::move(message));
+}
+
 std::string message_for(const LogEntry & entry)
 {
+  switch (entry.kind) {
+    case LogKind::program_started:
+      return key_message(entry.timestamp, "PROGRAM_XXX_STARTED", entry.title);
+    case LogKind::program_ended:
+      return key_message(entry.timestamp, "PROGRAM_XXX_STOPPED", entry.title);
+    case LogKind::popup:
+      return popup_message(entry);
+    case LogKind::safety:
+      return error_code_message(entry.timestamp, entry.level, entry.text);
+    case LogKind::text:
+      break;
+  }
   if (entry.source == "textmsg") {
     return text_message(entry.timestamp, entry.text);
   }
   if (entry.source == "program" && entry.level == LogLevel::error) {
-    return runtime_exception_message(entry.timestamp, -1, -1, entry.text);
+    return runtime_exception_message(entry.timestamp, entry.line, entry.column, entry.text);
   }
   return {};
 }

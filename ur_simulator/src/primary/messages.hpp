@@ -18,6 +18,13 @@ std::string text_message(double timestamp, std::string_view text);
 std::string runtime_exception_message(double timestamp, std::int32_t line, std::int32_t column,
                                       std::string_view text);
 
+/// A program started ("PROGRAM_XXX_STARTED") or ended ("PROGRAM_XXX_STOPPED"): title and the program's name.
+std::string key_message(double timestamp, std::string_view title, std::string_view text);
+/// What the safety system reports.
+std::string error_code_message(double timestamp, LogLevel level, std::string_view text);
+/// A popup on the pendant's screen.
+std::string popup_message(const LogEntry & entry);
+
 /// The message that a log entry becomes on the primary interface, or "".
 std::string message_for(const LogEntry & entry);
 

@@ -14,18 +14,6 @@ struct Missing {
 const std::vector<Missing> & motions()
 {
   static const std::vector<Missing> entries{
-      {"movec", {"pose_via", "pose_to", "a", "v", "r", "mode"}, 2},
-      {"movep", {"pose", "a", "v", "r"}, 1},
-      {"optimovej", {"q", "a", "v", "r"}, 1},
-      {"optimovel", {"pose", "a", "v", "r"}, 1},
-      {"servoc", {"pose", "a", "v", "r"}, 1},
-      {"force_mode", {"task_frame", "selection_vector", "wrench", "type", "limits"}, 5},
-      {"freedrive_mode", {"freeAxes", "feature"}, 0},
-      {"teach_mode", {}, 0},
-      {"tool_contact", {"direction"}, 0},
-      {"direct_torque", {"torque", "friction_comp", "viscous_scale", "coulomb_scale"}, 1},
-      {"screw_driving", {"f", "v_limit"}, 1},
-      {"end_screw_driving", {}, 0},
       {"set_pos", {"q"}, 1},
       {"path_offset_enable", {}, 0},
       {"path_offset_disable", {"a"}, 0},

@@ -105,12 +105,24 @@ Outcome set_gravity(Robot & robot, Arguments arguments)
   return Value();
 }
 
-Outcome external_sensor(Arguments arguments)
+Outcome external_sensor(Robot & robot, Arguments arguments)
 {
   ArgumentReader in(arguments);
-  const bool enable = in.boolean(0, "enable");
-  in.require(!enable, "an external force/torque sensor is not modelled by the simulator yet");
-  return in ? Outcome(Value()) : in.failure();
+  ExternalSensor sensor;
+  sensor.enabled = in.boolean(0, "enable");
+  sensor.mass = in.given(1) ? in.number(1, "sensor_mass") : 0.0;
+  in.require(sensor.mass >= 0.0, fmt::format("sensor_mass = {} kg is negative", sensor.mass));
+  if (in.given(2)) {
+    sensor.measuring_offset = in.three(2, "sensor_measuring_offset");
+  }
+  if (in.given(3)) {
+    sensor.center_of_gravity = in.three(3, "sensor_cog");
+  }
+  if (!in) {
+    return in.failure();
+  }
+  robot.state().external_sensor = sensor;
+  return Value();
 }
 
 }  // namespace
@@ -128,11 +140,9 @@ void add_installation_builtins(Library & library, const RobotPtr & robot)
                  robot->access.world.zero_sensor();
                  return Value();
                }});
-  const std::vector<urscript::Parameter> sensor{"enable", "sensor_mass", "sensor_measuring_offset",
-                                                "sensor_cog"};
   for (const char * name : {"enable_external_ft_sensor", "ft_rtde_input_enable"}) {
-    library.add(
-        {name, sensor, 1, [](CallContext &, Arguments arguments) { return external_sensor(arguments); }});
+    add_bound(library, robot, name, {"enable", "sensor_mass", "sensor_measuring_offset", "sensor_cog"}, 1,
+              external_sensor);
   }
 }
 

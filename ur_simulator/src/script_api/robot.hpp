@@ -43,6 +43,7 @@ void add_bound(Library & library, const RobotPtr & robot, const char * name,
 // The groups of make_robot_library.
 void add_move_builtins(Library & library, const RobotPtr & robot);
 void add_speed_builtins(Library & library, const RobotPtr & robot);
+void add_force_builtins(Library & library, const RobotPtr & robot);
 void add_hand_guiding_builtins(Library & library, const RobotPtr & robot);
 void add_state_builtins(Library & library, const RobotPtr & robot);
 void add_kinematics_builtins(Library & library, const RobotPtr & robot);
@@ -52,6 +53,8 @@ void add_register_builtins(Library & library, const RobotPtr & robot);
 void add_digital_io_builtins(Library & library, const RobotPtr & robot);
 void add_analog_io_builtins(Library & library, const RobotPtr & robot);
 void add_controller_builtins(Library & library, const RobotPtr & robot);
+/// What the URCap of the gripper contributes, when there is one.
+void add_gripper_builtins(Library & library, const RobotPtr & robot);
 void add_builtins_not_modelled(Library & library);
 
 }  // namespace ur_simulator::script_api

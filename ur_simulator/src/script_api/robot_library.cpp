@@ -27,6 +27,7 @@ std::shared_ptr<const urscript::Library> make_robot_library(const RobotAccess & 
   urscript::add_standard_builtins(*library);
   script_api::add_move_builtins(*library, robot);
   script_api::add_speed_builtins(*library, robot);
+  script_api::add_force_builtins(*library, robot);
   script_api::add_hand_guiding_builtins(*library, robot);
   script_api::add_state_builtins(*library, robot);
   script_api::add_kinematics_builtins(*library, robot);
@@ -36,6 +37,7 @@ std::shared_ptr<const urscript::Library> make_robot_library(const RobotAccess & 
   script_api::add_digital_io_builtins(*library, robot);
   script_api::add_analog_io_builtins(*library, robot);
   script_api::add_controller_builtins(*library, robot);
+  script_api::add_gripper_builtins(*library, robot);
   return library;
 }
 

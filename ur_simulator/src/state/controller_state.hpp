@@ -38,6 +38,14 @@ struct Payload {
   Vector6 inertia = Vector6::Zero();            ///< Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m^2
 };
 
+/// ft_rtde_input_enable(): a sensor whose readings come by RTDE takes the place of the one in the flange.
+struct ExternalSensor {
+  bool enabled = false;
+  double mass = 0.0;                           ///< kg, of the sensor: part of the payload that it cannot feel
+  Vector3 measuring_offset = Vector3::Zero();  ///< m, of its measuring point in the flange frame
+  Vector3 center_of_gravity = Vector3::Zero();  ///< m, of the sensor in the flange frame
+};
+
 struct JointState {
   Vector6 position = Vector6::Zero();      ///< rad
   Vector6 velocity = Vector6::Zero();      ///< rad/s
@@ -67,6 +75,9 @@ struct ControllerState {
       Vector6::Zero();  ///< at and in the flange frame, with the weight of the load, not zeroed
   Vector6 contact_wrench =
       Vector6::Zero();  ///< what surfaces and hands truly do to the tool: no noise, filter or load
+  /// What pushes the tool beyond what the controller knows: contact, and the weight of a load that differs
+  /// from the payload that was set.
+  Vector6 tool_wrench = Vector6::Zero();
   Vector3 tool_acceleration =
       Vector3(0.0, 0.0, -9.81);  ///< accelerometer at the flange, in flange axes, m/s^2
 
@@ -88,14 +99,16 @@ struct ControllerState {
   std::uint32_t robot_status_bits = 0;   ///< as RTDE's, written by Safety::step
   std::uint32_t safety_status_bits = 0;  ///< as RTDE's, written by Safety::step
   bool freedrive = false;
+  bool in_force_mode = false;
   bool steady = true;
   double collision_force_ratio = 0.0;
 
+  ExternalSensor external_sensor;
   Io io;
-  Registers inputs;   ///< written by RTDE clients, read by the program
-  Registers outputs;  ///< written by the program, read by RTDE clients
-  Vector6 external_force_torque = Vector6::Zero();
-  double actual_execution_time = 0.0;  ///< ms the last cycle took
+  Registers inputs;                                 ///< written by RTDE clients, read by the program
+  Registers outputs;                                ///< written by the program, read by RTDE clients
+  Vector6 external_force_torque = Vector6::Zero();  ///< RTDE input, flange axes
+  double actual_execution_time = 0.0;               ///< ms the last cycle took
 };
 
 }  // namespace ur_simulator

@@ -26,6 +26,12 @@ std::string describe(const MotionFault & fault)
       return fmt::format(
           "joint {} would exceed its speed limit: {:.3f} rad/s (limit {:.3f} rad/s); move slower", joint,
           fault.value, fault.limit);
+    case MotionFault::Kind::force_mode_deviation:
+      return fmt::format(
+          "force mode: the TCP deviates by {:.4f} m or rad from the program along axis {} of the task frame, "
+          "which "
+          "is not compliant (limit {:.4f}); press less, or raise the limit",
+          fault.value, fault.joint, fault.limit);
     case MotionFault::Kind::unreachable:
       return "the path leads out of the robot's reach";
   }

@@ -43,6 +43,18 @@ Vector6 ForceTorqueSensor::noise()
   return result;
 }
 
+Vector6 ForceTorqueSensor::measured(const ControllerState & state)
+{
+  const ExternalSensor & external = state.external_sensor;
+  if (!external.enabled) {
+    return state.ft_raw_wrench;
+  }
+  // It feels what hangs below it: of the payload, all but itself.
+  const Payload itself{external.mass, external.center_of_gravity, Vector6::Zero()};
+  return shift_wrench(state.external_force_torque, external.measuring_offset) +
+         load_wrench(itself, state.tool_acceleration);
+}
+
 void ForceTorqueSensor::step(const Payload & load, ControllerState & state)
 {
   const Transform tcp = to_transform(state.actual_tcp_pose);
@@ -53,13 +65,18 @@ void ForceTorqueSensor::step(const Payload & load, ControllerState & state)
   const Vector6 contact = rotate_pair(to_base.transpose(), shift_wrench(state.contact_wrench, lever));
   state.ft_raw_wrench = contact + load_wrench(load, state.tool_acceleration) + noise();
 
-  const Vector6 compensated = state.ft_raw_wrench - load_wrench(state.payload, state.tool_acceleration);
+  const Vector3 upward = to_base.transpose() * state.gravity;
+  const Vector6 unknown = load_wrench(load, upward) - load_wrench(state.payload, upward);
+  state.tool_wrench = state.contact_wrench + shift_wrench(rotate_pair(to_base, unknown), -lever);
+
+  const Vector6 compensated = measured(state) - load_wrench(state.payload, state.tool_acceleration);
   filtered_ = first_ ? compensated : Vector6(filtered_ + filter_gain_ * (compensated - filtered_));
   first_ = false;
   if (zero_requested_) {
     offset_ = filtered_;
     zero_requested_ = false;
   }
+  force_ = to_base * filtered_.head<3>();
   state.actual_tcp_force = shift_wrench(rotate_pair(to_base, filtered_ - offset_), -lever);
 }
 

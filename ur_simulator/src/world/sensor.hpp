@@ -18,9 +18,12 @@ class ForceTorqueSensor {
   void set_noise(double force, double torque);
   /// From state.contact_wrench and the true load: writes ft_raw_wrench and actual_tcp_force.
   void step(const Payload & load, ControllerState & state);
+  /// Reading without the zero offset, in base axes: what a change of force shows in.
+  Vector3 force() const { return force_; }
 
  private:
   Vector6 noise();
+  static Vector6 measured(const ControllerState & state);
 
   double filter_gain_;
   double force_noise_ = 0.5;
@@ -29,6 +32,7 @@ class ForceTorqueSensor {
   std::normal_distribution<double> normal_;
   Vector6 filtered_ = Vector6::Zero();
   Vector6 offset_ = Vector6::Zero();
+  Vector3 force_ = Vector3::Zero();
   bool first_ = true;
   bool zero_requested_ = false;
 };

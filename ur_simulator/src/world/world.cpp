@@ -61,7 +61,8 @@ Vector3 surface_force(const Surface & surface, const ControllerState & state)
 
 }  // namespace
 
-World::World(double cycle_time, std::uint64_t seed) : cycle_time_(cycle_time), sensor_(cycle_time, seed)
+World::World(double cycle_time, std::uint64_t seed)
+    : cycle_time_(cycle_time), sensor_(cycle_time, seed), contact_watch_(cycle_time)
 {
   surfaces_.reserve(max_surfaces);
   pushes_.reserve(max_pushes);
@@ -148,6 +149,10 @@ void World::step(ControllerState & state)
 {
   state.contact_wrench = contact(state) + advance_pushes(state);
   sensor_.step(load_, state);
+  if (gripper_) {
+    gripper_->step(cycle_time_);
+  }
+  contact_watch_.record(sensor_.force(), state);
 }
 
 }  // namespace ur_simulator

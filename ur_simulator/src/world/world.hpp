@@ -2,13 +2,16 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
 #include "common/types.hpp"
 #include "state/controller_state.hpp"
+#include "world/contact_watch.hpp"
 #include "world/sensor.hpp"
+#include "world/soft_gripper.hpp"
 
 namespace ur_simulator {
 
@@ -59,11 +62,22 @@ class World {
   void attach_load(const Payload & load);
   const Payload & load() const { return load_; }
 
+  /// A gripper at the flange, or nullptr.
+  SoftGripper * gripper() { return gripper_ ? &*gripper_ : nullptr; }
+  const SoftGripper * gripper() const { return gripper_ ? &*gripper_ : nullptr; }
+  void mount_gripper() { gripper_.emplace(); }
+
   /// zero_ftsensor(): the reading becomes 0 at the next step, then shows changes from there. RTDE's
   /// ft_raw_wrench goes on unchanged.
   void zero_sensor();
   /// Noise of the sensor's reading, standard deviation in N and N m (0 switches it off).
   void set_sensor_noise(double force, double torque);
+  /// tool_contact(): how many cycles ago a contact began that holds the tool up in this direction (base axes,
+  /// any length; zero: whichever), 0 when there is none.
+  std::size_t contact_steps(const Vector3 & direction, double threshold) const
+  {
+    return contact_watch_.steps(direction, threshold);
+  }
   /// Computes the wrench on the tool from the actual state and writes the force fields.
   void step(ControllerState & state);
 
@@ -81,6 +95,8 @@ class World {
   std::vector<ActivePush> pushes_;
   Payload load_;
   ForceTorqueSensor sensor_;
+  ContactWatch contact_watch_;
+  std::optional<SoftGripper> gripper_;
 };
 
 }  // namespace ur_simulator

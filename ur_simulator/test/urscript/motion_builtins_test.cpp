@@ -175,15 +175,7 @@ TEST(Waypoint, is_the_target_of_the_move_that_runs)
 TEST(NotModelled, says_so_instead_of_pretending)
 {
   RobotRig rig;
-  EXPECT_EQ(rig.error_of("freedrive_mode()"), "freedrive_mode: not modelled by the simulator yet");
-  EXPECT_EQ(rig.error_of("force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,1,0,0,0], 2, [1,1,1,1,1,1])"),
-            "force_mode: not modelled by the simulator yet");
-  EXPECT_EQ(
-      rig.error_of("def t():\n end_force_mode()\n end_freedrive_mode()\n force_mode_set_damping(0.025)\n "
-                   "force_mode_set_gain_scaling(0.5)\n x = get_freedrive_status()\nend"),
-      "");
-  EXPECT_EQ(rig.error_of("force_mode_set_damping(2)"),
-            "force_mode_set_damping: damping = 2 is outside of [0, 1]");
+  EXPECT_EQ(rig.error_of("set_pos([0,0,0,0,0,0])"), "set_pos: not modelled by the simulator yet");
 }
 
 }  // namespace
