@@ -30,14 +30,25 @@ Vector6 CartesianPath::twist(const Setpoint & now) const
   return jacobian(frames, frames[5] * offset_.translation()) * now.velocity;
 }
 
+std::optional<Vector6> CartesianPath::joints(const Transform & pose, const Vector6 & seed) const
+{
+  const auto found = inverse_nearest(*model_, pose * offset_inverse_, seed);
+  return found ? std::optional<Vector6>(*found) : std::nullopt;
+}
+
+bool CartesianPath::same_tool(const CartesianPath & other) const
+{
+  return offset_.matrix() == other.offset_.matrix();
+}
+
 std::optional<MotionFault> CartesianPath::follow(const Transform & pose, double duration,
                                                  Setpoint & now) const
 {
-  const auto joints = inverse_nearest(*model_, pose * offset_inverse_, now.position);
-  if (!joints) {
+  const auto next = joints(pose, now.position);
+  if (!next) {
     return out_of_reach(now.position);
   }
-  const Vector6 velocity = (*joints - now.position) / duration;
+  const Vector6 velocity = (*next - now.position) / duration;
   Eigen::Index worst = 0;
   const double excess = velocity.cwiseAbs().cwiseQuotient(model_->velocity_max).maxCoeff(&worst);
   const double jump = (velocity - now.velocity).cwiseAbs().maxCoeff();
@@ -46,7 +57,7 @@ std::optional<MotionFault> CartesianPath::follow(const Transform & pose, double 
     return MotionFault{singular ? MotionFault::Kind::singularity : MotionFault::Kind::joint_speed_limit,
                        static_cast<int>(worst), std::abs(velocity[worst]), model_->velocity_max[worst]};
   }
-  now = {*joints, velocity};
+  now = {*next, velocity};
   return std::nullopt;
 }
 

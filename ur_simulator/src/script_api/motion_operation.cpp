@@ -48,13 +48,18 @@ MoveOperation::MoveOperation(RobotPtr robot, MotionId motion, Start start, Arriv
 
 tl::expected<std::optional<Value>, std::string> MoveOperation::poll(CallContext & context)
 {
+  // In its blend it goes on to its target, whether the program has something to blend with it or not.
+  const bool in_blend = robot().access.arm.in_blend(motion());
   auto result = MotionOperation::poll(context);
-  if (!result || !*result || arrived_(robot().state())) {
+  if (!result || !*result || in_blend || arrived_(robot().state())) {
     return result;
   }
   const MotionStart again = start_(robot().access.arm);
   if (!again) {
     return tl::unexpected(again.error());
+  }
+  if (*again == skipped_motion) {
+    return Value();  // it was stopped so near to its target that its blend has begun
   }
   follow(*again);
   robot().moving = this;
@@ -81,6 +86,9 @@ Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start, MoveOpera
   const MotionStart motion = start(robot->access.arm);
   if (!motion) {
     return Failure{motion.error()};
+  }
+  if (*motion == skipped_motion) {
+    return Value();
   }
   return std::make_unique<MoveOperation>(robot, *motion, std::move(start), std::move(arrived));
 }

@@ -21,6 +21,7 @@ class MotionOperation : public urscript::Operation {
 
  protected:
   Robot & robot() { return *robot_; }
+  MotionId motion() const { return motion_; }
   void follow(MotionId motion) { motion_ = motion; }
 
  private:
@@ -47,7 +48,7 @@ class MoveOperation final : public MotionOperation {
 
 /// Starts a motion that ends by itself (servoj, speedj, stopj, …), or tells why it cannot.
 Outcome begin_motion(const RobotPtr & robot, const std::function<MotionStart(Arm & arm)> & start);
-/// Starts a motion to a target.
+/// Starts a motion to a target; a value when the motion is skipped.
 Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start, MoveOperation::Arrived arrived);
 
 }  // namespace ur_simulator::script_api

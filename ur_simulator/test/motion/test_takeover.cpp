@@ -17,13 +17,31 @@ std::string start_any_motion(ArmRig & rig, RandomVectors & random)
   const Vector6 target = default_position(rig.model) + random.six(0.8);
   const double acceleration = 0.2 + std::abs(random.number(5.0));
   const double speed = 0.05 + std::abs(random.number(2.0));
-  switch (random.below(8)) {
+  const Vector6 pose = forward_tcp(rig.model, target, rig.state.tcp_offset);
+  const Vector6 via = forward_tcp(rig.model, default_position(rig.model) + random.six(0.8), Vector6::Zero());
+  const MoveOptions options{acceleration, speed, 0.0, std::max(0.0, random.number(0.1))};
+  switch (random.below(13)) {
     case 0:
-      rig.arm.move_joint(target, {acceleration, speed});
+      rig.arm.move_joint(target, options);
       return "movej";
     case 1:
-      rig.arm.move_linear(forward_tcp(rig.model, target, rig.state.tcp_offset), {acceleration, speed});
+      rig.arm.move_linear(pose, options);
       return "movel";
+    case 8:
+      rig.arm.move_process(pose, options);
+      return "movep";
+    case 9:
+      rig.arm.move_circular(via, pose, CircleMode::unconstrained, options);
+      return "movec";
+    case 10:
+      rig.arm.servo_circular(pose, options);
+      return "servoc";
+    case 11:
+      rig.arm.move_joint_optimally(target, {0.3, 0.3, 0.0, options.blend_radius});
+      return "optimovej";
+    case 12:
+      rig.arm.move_linear_optimally(pose, {0.3, 0.3, 0.0, options.blend_radius});
+      return "optimovel";
     case 2:
       rig.arm.servo_joint(target, 0.01, 0.1, 300.0);
       return "servoj";
@@ -76,6 +94,46 @@ TEST_P(AnyModel, never_leaps_whatever_motion_replaces_whatever_other)
     rig.arm.take_fault();
   }
   EXPECT_GT(moving, 150) << "too few takeovers in flight to mean anything";
+}
+
+TEST_P(AnyModel, never_leaps_in_a_blend_of_whatever_with_whatever)
+{
+  ArmRig rig(GetParam());
+  RandomVectors random(13);
+  int blends = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vector6 target = default_position(rig.model) + random.six(0.6);
+    const Vector6 pose = forward_tcp(rig.model, target, Vector6::Zero());
+    const Vector6 via = forward_tcp(rig.model, target + random.six(0.3), Vector6::Zero());
+    const MoveOptions options{0.5 + std::abs(random.number(3.0)), 0.1 + std::abs(random.number(1.0)), 0.0,
+                              std::abs(random.number(0.1))};
+    MotionStart motion;
+    switch (random.below(4)) {
+      case 0:
+        motion = rig.arm.move_joint(target, options);
+        break;
+      case 1:
+        motion = rig.arm.move_linear(pose, options);
+        break;
+      case 2:
+        motion = rig.arm.move_process(pose, options);
+        break;
+      default:
+        motion = rig.arm.move_circular(via, pose, CircleMode::unconstrained, options);
+        break;
+    }
+    ASSERT_TRUE(motion) << motion.error();
+    for (double t = 0.0; !rig.arm.finished(*motion) && t < 30.0; t += rig.dt) {
+      rig.step();
+      ASSERT_LT(rig.hardest, hardest_allowed) << i;
+      ASSERT_TRUE((rig.fastest.array() <= rig.model.velocity_max.array() * 1.001).all()) << i;
+    }
+    ASSERT_TRUE(rig.arm.finished(*motion)) << i;
+    blends += rig.arm.in_blend(*motion) ? 1 : 0;
+    rig.arm.take_fault();
+  }
+  rig.until_rest(10.0);
+  EXPECT_GT(blends, 80) << "too few blends to mean anything";
 }
 
 TEST_P(AnyModel, has_a_velocity_that_is_the_change_of_its_position)
