@@ -2,29 +2,11 @@
 #include <regex>
 #include <stdexcept>
 
-#include "support/raw_socket.hpp"
+#include "support/dashboard_client.hpp"
 #include "support/simulator_test.hpp"
 
 namespace ur_simulator::testing {
 namespace {
-
-class DashboardClient {
- public:
-  explicit DashboardClient(const std::string & address) : socket_(address, 29999)
-  {
-    greeting = socket_.receive_line();
-  }
-  std::string ask(const std::string & command)
-  {
-    socket_.send(command + "\n");
-    return socket_.receive_line();
-  }
-  RawSocket & socket() { return socket_; }
-  std::string greeting;
-
- private:
-  RawSocket socket_;
-};
 
 bool wait_for_mode(SimulatedController & controller, const std::string & mode)
 {
