@@ -9,8 +9,8 @@
 namespace ur_simulator {
 namespace {
 
-// Of the admittance that the arm shows at scaling 1. Chosen so that contact with 20 N/mm settles without
-// ringing at the default of ur_rtde (0.5) and rings at 2; the robot's own figures are not published.
+// Of the admittance that the arm shows at scaling 1. Chosen so that contact settles without ringing on
+// surfaces of 2 to 200 N/mm (docs/simulator_physics.md); the robot's own figures are not published.
 constexpr double mass = 25.0;            // kg
 constexpr double inertia = 1.0;          // kg m^2
 constexpr double rate_time = 0.1;        // s
