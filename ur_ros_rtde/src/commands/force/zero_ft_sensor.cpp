@@ -1,7 +1,7 @@
 #include <cmath>
 #include <ur_ros_rtde_msgs/action/zero_ft_sensor.hpp>
 
-#include "ur_ros_rtde/command.hpp"
+#include "commands/force/compliance.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -11,7 +11,7 @@ constexpr double zero_force = 5.0;  // N: above the noise of the sensors, below 
 class ZeroFtSensor : public Command<ur_ros_rtde_msgs::action::ZeroFtSensor> {
   Outcome run(const Goal &, Run & run) override
   {
-    run.control()->zeroFtSensor();
+    must_do(run.control()->zeroFtSensor(), "zero the sensor");
     const auto reads_zero = [&] {
       const Vector6 f = run.flange_force();
       return std::hypot(f[0], f[1], f[2]) < zero_force;

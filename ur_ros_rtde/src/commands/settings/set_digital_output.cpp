@@ -1,8 +1,6 @@
-#include <fmt/format.h>
-
 #include <ur_ros_rtde_msgs/action/set_digital_output.hpp>
 
-#include "ur_ros_rtde/command.hpp"
+#include "commands/settings/await.hpp"
 
 namespace ur_ros_rtde {
 
@@ -13,18 +11,15 @@ class SetDigitalOutput : public Command<ur_ros_rtde_msgs::action::SetDigitalOutp
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    if (goal.pin < 8) {
-      run.io()->setStandardDigitalOut(goal.pin, goal.state);
-    } else if (goal.pin < 16) {
-      run.io()->setConfigurableDigitalOut(static_cast<std::uint8_t>(goal.pin - 8), goal.state);
-    } else {
-      run.io()->setToolDigitalOut(static_cast<std::uint8_t>(goal.pin - 16), goal.state);
-    }
-    const auto is_set = [&] { return (((run.state().digital_outputs >> goal.pin) & 1U) != 0) == goal.state; };
-    return run.expect(
-        is_set, std::chrono::seconds(1),
-        fmt::format("output {} stays {}: the installation on the robot may have given it another task",
-                    goal.pin, goal.state ? "off" : "on"));
+    return switch_output(run, goal.pin, goal.state, [&](auto & io) {
+      if (goal.pin < 8) {
+        return io.setStandardDigitalOut(goal.pin, goal.state);
+      }
+      if (goal.pin < 16) {
+        return io.setConfigurableDigitalOut(static_cast<std::uint8_t>(goal.pin - 8), goal.state);
+      }
+      return io.setToolDigitalOut(static_cast<std::uint8_t>(goal.pin - 16), goal.state);
+    });
   }
 };
 

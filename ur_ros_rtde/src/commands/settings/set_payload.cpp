@@ -1,12 +1,8 @@
-#include <cmath>
 #include <ur_ros_rtde_msgs/action/set_payload.hpp>
 
-#include "ur_ros_rtde/command.hpp"
+#include "commands/settings/await.hpp"
 
 namespace ur_ros_rtde {
-namespace {
-constexpr double tolerance = 1e-3;  // kg, m
-}
 
 class SetPayload : public Command<ur_ros_rtde_msgs::action::SetPayload> {
   void check(const Goal & goal, Check & check) const override
@@ -17,19 +13,9 @@ class SetPayload : public Command<ur_ros_rtde_msgs::action::SetPayload> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    const auto & cog = goal.center_of_gravity;
-    // To ur_rtde's control script a centre of exactly zero means: as it was.
-    const double z = cog.x == 0.0 && cog.y == 0.0 && cog.z == 0.0 ? 1e-9 : cog.z;
-    run.control()->setPayload(goal.mass, {cog.x, cog.y, z});
-    const auto is_set = [&] {
-      const Sample sample = run.state();
-      const Vector3 & set = sample.payload_cog;
-      // Controllers before 5.5 do not report it.
-      return std::isnan(sample.payload) ||
-             (std::abs(sample.payload - goal.mass) < tolerance &&
-              std::hypot(set[0] - cog.x, set[1] - cog.y, set[2] - cog.z) < tolerance);
-    };
-    return run.expect(is_set, std::chrono::seconds(1), "the robot still reports another payload");
+    must_do(run.control()->setPayload(goal.mass, center_for_ur(goal.center_of_gravity)), "set the payload");
+    const auto is_set = [&] { return payload_is(run.state(), goal.mass, goal.center_of_gravity); };
+    return run.expect(is_set, setting_limit, "the robot still reports another payload");
   }
 };
 
