@@ -67,11 +67,19 @@ class Run {
   /// rotation vector.
   [[nodiscard]] Outcome until_joints_reached(const std::vector<double> & positions);
   [[nodiscard]] Outcome until_pose_reached(const std::vector<double> & pose);
+  /// Until the arm is there and stands still, with progress, for motions of whose end the controller says
+  /// nothing: servo control, scripts. A failure (not_reached) when it has stood still elsewhere for two
+  /// seconds.
+  [[nodiscard]] Outcome until_at_joints(const std::vector<double> & positions);
+  [[nodiscard]] Outcome until_at_pose(const std::vector<double> & pose);
   /// The last asynchronous move has ended, or nothing of it began within a second.
   bool motion_ended() const;
   /// The arm stands still (by its joints' velocities). Nothing if it does; timeout.
   [[nodiscard]] std::optional<Interruption> until_standstill(
       std::chrono::nanoseconds limit = std::chrono::seconds(5));
+
+  /// Robot::run_script, ended early when the goal has to end, with feedback meanwhile. Hold Resource::script.
+  ScriptReport run_script(const std::string & script, ScriptOptions options = {});
 
   /// For the feedback; 0 to 1.
   void progress(double fraction) { progress_ = fraction; }
@@ -89,8 +97,9 @@ class Run {
   virtual void publish_feedback() {}
 
  private:
-  Outcome until_reached(const std::function<double(const Sample &)> & distance, double tolerance,
-                        const char * unit);
+  using Distance = std::function<double(const Sample &)>;
+  Outcome until_reached(const Distance & distance, double tolerance, const char * unit);
+  Outcome until_at(const Distance & distance, double tolerance, const char * unit);
   std::optional<Interruption> wait(const std::function<bool()> & condition,
                                    std::chrono::steady_clock::time_point deadline);
   void feed_back();
@@ -121,6 +130,8 @@ class GoalRun : public Run {
   typename A::Result & result() { return result_; }
   /// For fields of your own; `motion` is filled in for you.
   typename A::Feedback & feedback() { return feedback_; }
+  /// For feedback without a field `motion`, which is not published by itself.
+  void publish() { publish_(feedback_); }
 
  private:
   void publish_feedback() override

@@ -49,6 +49,20 @@ std::vector<double> to_ur(const geometry_msgs::msg::Twist & twist)
   return {twist.linear.x, twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y, twist.angular.z};
 }
 
+geometry_msgs::msg::Pose to_ros(const Vector6 & pose)
+{
+  const Quaternion q = quaternion(rotation(pose));
+  geometry_msgs::msg::Pose message;
+  message.position.x = pose[0];
+  message.position.y = pose[1];
+  message.position.z = pose[2];
+  message.orientation.x = q.x;
+  message.orientation.y = q.y;
+  message.orientation.z = q.z;
+  message.orientation.w = q.w;
+  return message;
+}
+
 void Check::fail(ErrorCode code, std::string message)
 {
   error_ = Error{code, std::move(message)};
@@ -67,22 +81,32 @@ Check & Check::that(bool holds, std::string message, ErrorCode code)
   return *this;
 }
 
-Check & Check::joints(std::string_view field, const std::vector<double> & values)
+Check & Check::each_joint(std::string_view field, const std::vector<double> & values, const Vector6 & limits,
+                          std::string_view unit)
 {
-  if (!ok()) {
-    return *this;
-  }
-  if (values.size() != 6) {
-    fail(ErrorCode::invalid_goal, fmt::format("{} has {} values, it takes 6: {}", field, values.size(),
-                                              fmt::join(joint_names(), ", ")));
-    return *this;
-  }
-  const ArmLimits arm = limits();
-  for (std::size_t i = 0; i < 6; ++i) {
-    in_range(fmt::format("{}[{}] ({})", field, i, joint_names()[i]), values[i], -arm.position[i],
-             arm.position[i], "rad");
+  that(values.size() == 6,
+       fmt::format("{} has {} values, it takes 6: {}", field, values.size(), fmt::join(joint_names(), ", ")));
+  for (std::size_t i = 0; i < 6 && ok(); ++i) {
+    in_range(fmt::format("{}[{}] ({})", field, i, joint_names()[i]), values[i], -limits[i], limits[i], unit);
   }
   return *this;
+}
+
+Check & Check::joints(std::string_view field, const std::vector<double> & values)
+{
+  return each_joint(field, values, limits().position, "rad");
+}
+
+Check & Check::joint_velocities(std::string_view field, const std::vector<double> & values)
+{
+  constexpr double highest = 3.14;  // ur_rtde takes no more
+  Vector6 velocity = limits().velocity;
+  for (double & limit : velocity) {
+    limit = std::min(limit, highest);
+  }
+  return each_joint(field, values, velocity, "rad/s")
+      .that(std::any_of(values.begin(), values.end(), [](double value) { return value != 0.0; }),
+            fmt::format("{} is zero: nothing would move", field));
 }
 
 Check & Check::in_range(std::string_view field, double value, double low, double high, std::string_view unit)
@@ -172,16 +196,20 @@ Check & Check::ready()
 
 Check & Check::reachable(std::string_view field, const geometry_msgs::msg::Pose & pose)
 {
+  return ok() ? reachable(field, to_ur(pose)) : *this;
+}
+
+Check & Check::reachable(std::string_view field, const std::vector<double> & target)
+{
   if (!ready().ok() || preflight_ == nullptr || preflight_->robot().moving()) {
     return *this;  // while another motion is being preempted, only the move itself can tell
   }
-  const std::vector<double> target = to_ur(pose);
   auto control = preflight_->robot().control();
   if (control->isPoseWithinSafetyLimits(target)) {
     return *this;
   }
-  const auto & p = pose.position;
-  const std::string where = fmt::format("{} ({:.3f}, {:.3f}, {:.3f}) m", field, p.x, p.y, p.z);
+  const std::string where =
+      fmt::format("{} ({:.3f}, {:.3f}, {:.3f}) m", field, target[0], target[1], target[2]);
   if (control->getInverseKinematicsHasSolution(target)) {
     fail(ErrorCode::safety_violation, fmt::format("{} is outside the robot's safety limits", where));
   } else {
@@ -191,15 +219,27 @@ Check & Check::reachable(std::string_view field, const geometry_msgs::msg::Pose 
   return *this;
 }
 
+std::optional<Sample> Check::newest()
+{
+  if (!ready().ok() || preflight_ == nullptr) {
+    return std::nullopt;
+  }
+  auto sample = preflight_->robot().latest();
+  that(sample.has_value(), "the robot has not told its state yet: try again", ErrorCode::not_ready);
+  return sample;
+}
+
+std::optional<Sample> Check::start()
+{
+  const auto sample = newest();
+  return sample && !preflight_->robot().moving() ? sample : std::nullopt;
+}
+
 Check & Check::reachable_in(std::string_view field, const std::vector<double> & positions, double time,
                             double peak)
 {
-  if (!ready().ok() || preflight_ == nullptr) {
-    return *this;
-  }
-  const auto sample = preflight_->robot().latest();
+  const auto sample = newest();
   if (!sample) {
-    fail(ErrorCode::not_ready, "the robot has not told its joint positions yet: try again");
     return *this;
   }
   const ArmLimits arm = limits();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/conversions.hpp"
 
 namespace ur_ros_rtde {
@@ -21,20 +22,11 @@ constexpr std::chrono::seconds package_limit{1};
 constexpr double joint_tolerance = 0.005;     // rad
 constexpr double position_tolerance = 0.002;  // m
 constexpr double rotation_share = 0.2;        // m/rad: what a rotation counts as, so that 0.01 rad is 2 mm
-
-geometry_msgs::msg::Pose to_ros(const Vector6 & pose)
-{
-  const Quaternion q = quaternion(rotation(pose));
-  geometry_msgs::msg::Pose message;
-  message.position.x = pose[0];
-  message.position.y = pose[1];
-  message.position.z = pose[2];
-  message.orientation.x = q.x;
-  message.orientation.y = q.y;
-  message.orientation.z = q.z;
-  message.orientation.w = q.w;
-  return message;
-}
+constexpr std::chrono::minutes longest_motion{10};
+/// Of motions of which the controller does not say that they have ended; where they stand still is the end.
+constexpr double servo_joint_tolerance = 0.01;      // rad
+constexpr double servo_position_tolerance = 0.004;  // m
+constexpr std::chrono::seconds settling_limit{2};
 
 Vector6 unknown()
 {
@@ -67,6 +59,25 @@ Vector6 to_array(const std::vector<double> & values)
   Vector6 array;
   std::copy(values.begin(), values.end(), array.begin());
   return array;
+}
+
+/// rad, of the joint that is farthest away.
+std::function<double(const Sample &)> distance_to_joints(const std::vector<double> & positions)
+{
+  return [target = to_array(positions)](const Sample & sample) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < target.size(); ++i) {
+      largest = std::max(largest, std::abs(target[i] - sample.actual_q[i]));
+    }
+    return largest;
+  };
+}
+
+std::function<double(const Sample &)> distance_to_pose(const std::vector<double> & pose)
+{
+  return [target = to_array(pose)](const Sample & sample) {
+    return pose_distance(sample.actual_tcp_pose, target);
+  };
 }
 }  // namespace
 
@@ -204,8 +215,7 @@ Outcome Run::until_motion_ends(std::chrono::nanoseconds limit)
   return Outcome::success();
 }
 
-Outcome Run::until_reached(const std::function<double(const Sample &)> & distance, double tolerance,
-                           const char * unit)
+Outcome Run::until_reached(const Distance & distance, double tolerance, const char * unit)
 {
   const double whole = distance(state());
   const auto look = [&] {
@@ -213,7 +223,7 @@ Outcome Run::until_reached(const std::function<double(const Sample &)> & distanc
     progress(whole > tolerance ? std::clamp(1.0 - left / whole, 0.0, 1.0) : 1.0);
     return motion_ended();
   };
-  if (auto why = until(look, std::chrono::minutes(10))) {
+  if (auto why = until(look, longest_motion)) {
     return *why;
   }
   const double left = distance(state());
@@ -230,23 +240,55 @@ Outcome Run::until_reached(const std::function<double(const Sample &)> & distanc
 
 Outcome Run::until_joints_reached(const std::vector<double> & positions)
 {
-  const Vector6 target = to_array(positions);
-  const auto distance = [&target](const Sample & sample) {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < target.size(); ++i) {
-      largest = std::max(largest, std::abs(target[i] - sample.actual_q[i]));
-    }
-    return largest;
-  };
-  return until_reached(distance, joint_tolerance, "rad");
+  return until_reached(distance_to_joints(positions), joint_tolerance, "rad");
 }
 
 Outcome Run::until_pose_reached(const std::vector<double> & pose)
 {
-  const Vector6 target = to_array(pose);
-  return until_reached(
-      [&target](const Sample & sample) { return pose_distance(sample.actual_tcp_pose, target); },
-      position_tolerance, "m");
+  return until_reached(distance_to_pose(pose), position_tolerance, "m");
+}
+
+Outcome Run::until_at(const Distance & distance, double tolerance, const char * unit)
+{
+  const double whole = std::max(distance(state()), tolerance);
+  auto moved = Clock::now();
+  bool there = false;
+  const auto look = [&] {
+    const double left = distance(state());
+    progress(std::max(progress(), std::clamp(1.0 - left / whole, 0.0, 1.0)));
+    const bool at_rest = robot_.motion_progress(mark_).at_rest;
+    moved = at_rest ? moved : Clock::now();
+    there = at_rest && left <= tolerance;
+    return there || Clock::now() - moved > settling_limit;
+  };
+  if (auto why = until(look, longest_motion)) {
+    return *why;
+  }
+  if (there) {
+    progress(1.0);
+    return Outcome::success();
+  }
+  return Outcome::failure(ErrorCode::not_reached,
+                          fmt::format("the arm ended {:.4f} {} before the target", distance(state()), unit));
+}
+
+Outcome Run::until_at_joints(const std::vector<double> & positions)
+{
+  return until_at(distance_to_joints(positions), servo_joint_tolerance, "rad");
+}
+
+Outcome Run::until_at_pose(const std::vector<double> & pose)
+{
+  return until_at(distance_to_pose(pose), servo_position_tolerance, "m");
+}
+
+ScriptReport Run::run_script(const std::string & script, ScriptOptions options)
+{
+  options.interrupted = [this] {
+    feed_back();
+    return interruption();
+  };
+  return robot_.run_script(script, options);
 }
 
 std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> Run::motion_feedback() const

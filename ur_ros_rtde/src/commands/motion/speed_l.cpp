@@ -1,7 +1,7 @@
-#include <algorithm>
 #include <ur_ros_rtde_msgs/action/speed_l.hpp>
 
 #include "ur_ros_rtde/command.hpp"
+#include "velocity.hpp"
 
 namespace ur_ros_rtde {
 
@@ -16,26 +16,13 @@ class SpeedL : public Command<ur_ros_rtde_msgs::action::SpeedL> {
 
   StopOptions stop_options(const Goal & goal) const override
   {
-    StopOptions options;
-    options.linear_deceleration = goal.deceleration;
-    return options;
+    return {.linear_deceleration = goal.deceleration};
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
     run.control()->speedL(to_ur(goal.twist), goal.acceleration, 0.0);
-    const double begin = run.state().controller_time;
-    const auto time_is_over = [&] {
-      run.progress(std::clamp((run.state().controller_time - begin) / goal.time, 0.0, 1.0));
-      return run.progress() >= 1.0;
-    };
-    if (auto why = run.until(time_is_over, std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                               std::chrono::duration<double>(goal.time + 5.0)))) {
-      return *why;
-    }
-    run.control()->speedStop(goal.deceleration);
-    const auto why = run.until_standstill();
-    return why ? Outcome(*why) : Outcome::success();
+    return hold_velocity(run, goal.time, goal.deceleration);
   }
 };
 

@@ -1,7 +1,6 @@
-#include <chrono>
 #include <ur_ros_rtde_msgs/action/stop.hpp>
 
-#include "ur_ros_rtde/command.hpp"
+#include "decelerate.hpp"
 
 namespace ur_ros_rtde {
 
@@ -22,16 +21,7 @@ class Stop : public Command<ur_ros_rtde_msgs::action::Stop> {
         .in_range("linear_deceleration", goal.linear_deceleration, 0.1, 150.0, "m/s^2");
   }
 
-  Outcome run(const Goal & goal, Run & run) override
-  {
-    const auto report = run.robot().stop_motion(stop_options(goal));
-    if (!report) {
-      return report.error();
-    }
-    run.result().time_to_standstill = std::chrono::duration<double>(run.elapsed()).count();
-    return Outcome::success(run.displaced().empty() ? to_string(report->means)
-                                                    : run.displaced() + " was stopped");
-  }
+  Outcome run(const Goal & goal, Run & run) override { return decelerate(run, stop_options(goal)); }
 };
 
 UR_ROS_RTDE_EXPORT(Stop, "stop")

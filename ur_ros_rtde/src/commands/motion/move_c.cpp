@@ -1,0 +1,41 @@
+#include <ur_ros_rtde_msgs/action/move_c.hpp>
+
+#include "path.hpp"
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+Waypoints path(const ur_ros_rtde_msgs::action::MoveC::Goal & goal)
+{
+  Waypoints waypoints(1);
+  waypoints[0].type = waypoints[0].MOVE_C;
+  waypoints[0].via = goal.via;
+  waypoints[0].pose = goal.pose;
+  waypoints[0].speed = goal.speed;
+  waypoints[0].acceleration = goal.acceleration;
+  return waypoints;
+}
+}  // namespace
+
+class MoveC : public Command<ur_ros_rtde_msgs::action::MoveC> {
+  Resource resource() const override { return Resource::script; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.pose("via", goal.via)
+        .pose("pose", goal.pose)
+        .above_zero("speed", goal.speed, 3.0, "m/s")
+        .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2")
+        .in_range("mode", goal.mode, Goal::UNCONSTRAINED, Goal::FIXED)
+        .reachable("pose", goal.pose);
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    return run_path(run, path(goal), [](std::uint32_t) {}, goal.mode);
+  }
+};
+
+UR_ROS_RTDE_EXPORT(MoveC, "move_c")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,116 @@
+#include "path.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace ur_ros_rtde {
+namespace {
+using Waypoint = ur_ros_rtde_msgs::msg::PathWaypoint;
+
+constexpr std::size_t most = 1000;
+/// The robot takes some milliseconds for each: the rest show when the arm gets there.
+constexpr std::size_t asked_beforehand = 20;
+constexpr std::chrono::hours longest_path{24};
+constexpr std::string_view mark = "ur_ros_rtde: waypoint ";
+
+void check_waypoint(Check & check, const std::string & name, const Waypoint & waypoint)
+{
+  const bool by_joints = !waypoint.joint_positions.empty();
+  check.in_range(name + ".type", waypoint.type, Waypoint::MOVE_J, Waypoint::MOVE_C)
+      .pose(name + ".pose", waypoint.pose)
+      .pose(name + ".via", waypoint.via)
+      .that(!by_joints || waypoint.type <= Waypoint::MOVE_L,
+            name + " has joint_positions, which MOVE_P and MOVE_C do not take: give its pose");
+  if (by_joints) {
+    check.joints(name + ".joint_positions", waypoint.joint_positions);
+  }
+  if (waypoint.type == Waypoint::MOVE_J) {
+    check.above_zero(name + ".speed", waypoint.speed, 3.14, "rad/s")
+        .above_zero(name + ".acceleration", waypoint.acceleration, 40.0, "rad/s^2");
+  } else {
+    check.above_zero(name + ".speed", waypoint.speed, 3.0, "m/s")
+        .above_zero(name + ".acceleration", waypoint.acceleration, 150.0, "m/s^2");
+  }
+  check.in_range(name + ".blend_radius", waypoint.blend_radius, 0.0, 2.0, "m");
+}
+
+std::string pose_text(const geometry_msgs::msg::Pose & pose)
+{
+  return fmt::format("p[{:.9f}]", fmt::join(to_ur(pose), ", "));
+}
+
+/// The call for one waypoint (UR, Script Manual: movej, movel, movep, movec).
+std::string call(const Waypoint & waypoint, int arc_mode)
+{
+  const std::string target = waypoint.joint_positions.empty()
+                                 ? pose_text(waypoint.pose)
+                                 : fmt::format("[{:.9f}]", fmt::join(waypoint.joint_positions, ", "));
+  const std::string speed = fmt::format("a={:.6f}, v={:.6f}, r={:.6f}", waypoint.acceleration, waypoint.speed,
+                                        waypoint.blend_radius);
+  switch (waypoint.type) {
+    case Waypoint::MOVE_J:
+      return fmt::format("movej({}, {})", target, speed);
+    case Waypoint::MOVE_L:
+      return fmt::format("movel({}, {})", target, speed);
+    case Waypoint::MOVE_P:
+      return fmt::format("movep({}, {})", target, speed);
+    default:
+      return fmt::format("movec({}, {}, {}, mode={})", pose_text(waypoint.via), target, speed, arc_mode);
+  }
+}
+
+std::string program(const Waypoints & waypoints, int arc_mode)
+{
+  std::string text;
+  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+    text += fmt::format("textmsg(\"{}{}\")\n{}\n", mark, i, call(waypoints[i], arc_mode));
+  }
+  return text;
+}
+}  // namespace
+
+void check_path(Check & check, std::string_view name, const Waypoints & waypoints)
+{
+  check.that(!waypoints.empty() && waypoints.size() <= most,
+             fmt::format("{} has {} entries, it may have 1 to {}", name, waypoints.size(), most));
+  for (std::size_t i = 0; i < waypoints.size() && check.ok(); ++i) {
+    check_waypoint(check, fmt::format("{}[{}]", name, i), waypoints[i]);
+  }
+  if (check.ok()) {
+    check.that(waypoints.back().blend_radius == 0.0,
+               fmt::format("the last of {} has a blend_radius of {} m, it has to be 0: the arm stops there",
+                           name, waypoints.back().blend_radius));
+  }
+  for (std::size_t i = 0; i < std::min(waypoints.size(), asked_beforehand) && check.ok(); ++i) {
+    if (waypoints[i].joint_positions.empty()) {
+      check.reachable(fmt::format("{}[{}].pose", name, i), waypoints[i].pose);
+    }
+  }
+}
+
+Outcome run_path(Run & run, const Waypoints & waypoints,
+                 const std::function<void(std::uint32_t)> & heading_for, int arc_mode)
+{
+  ScriptOptions options;
+  options.limit = longest_path;
+  options.on_text = [&](const std::string & text) {
+    std::uint32_t index = 0;
+    if (text.starts_with(mark) &&
+        std::from_chars(text.data() + mark.size(), text.data() + text.size(), index).ec == std::errc()) {
+      run.progress(index / static_cast<double>(waypoints.size()));
+      heading_for(index);
+    }
+  };
+  const ScriptReport report = run.run_script(program(waypoints, arc_mode), options);
+  if (!report) {
+    return report.error;
+  }
+  const Waypoint & last = waypoints.back();
+  return last.joint_positions.empty() ? run.until_at_pose(to_ur(last.pose))
+                                      : run.until_at_joints(last.joint_positions);
+}
+
+}  // namespace ur_ros_rtde

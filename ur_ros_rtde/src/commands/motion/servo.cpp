@@ -1,0 +1,87 @@
+#include "servo.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ur_ros_rtde/conversions.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+constexpr double highest_linear_speed = 3.0;    // m/s
+constexpr double highest_angular_speed = 3.14;  // rad/s
+
+/// From one pose to the other, in the first one's frame.
+Vector6 way(const Vector6 & from, const std::vector<double> & to)
+{
+  Vector6 target;
+  std::copy_n(to.begin(), target.size(), target.begin());
+  return pose_trans(pose_inverse(from), target);
+}
+}  // namespace
+
+Outcome end_servo(Run & run, Outcome outcome, double deceleration)
+{
+  if (outcome) {
+    run.control()->servoStop(deceleration);
+  }
+  return outcome;
+}
+
+double smooth_step(double u)
+{
+  return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+}
+
+std::optional<Interruption> follow(Run & run, double duration,
+                                   const std::function<void(double share, double cycle)> & send)
+{
+  const auto version = run.robot().version();
+  const double cycle = 1.0 / (version ? version->frequency() : 500.0);
+  Sample sample = run.state();
+  for (double time = 0.0; time < duration;) {
+    const double before = sample.controller_time;
+    if (auto why = run.next(sample)) {
+      return why;
+    }
+    time += std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
+    run.progress(smooth_step(std::min(time / duration, 1.0)));
+    send(run.progress(), cycle);
+  }
+  return std::nullopt;
+}
+
+std::vector<double> joints_between(const Vector6 & from, const std::vector<double> & to, double s)
+{
+  std::vector<double> joints(from.begin(), from.end());
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    joints[i] += s * (to[i] - from[i]);
+  }
+  return joints;
+}
+
+std::vector<double> pose_between(const Vector6 & from, const std::vector<double> & to, double s)
+{
+  Vector6 part = way(from, to);
+  for (double & value : part) {
+    value *= s;
+  }
+  const Vector6 pose = pose_trans(from, part);
+  return {pose.begin(), pose.end()};
+}
+
+void check_tcp_speed(Check & check, const Vector6 & from, const std::vector<double> & to, double time)
+{
+  const Vector6 part = way(from, to);
+  const double linear = smooth_step_peak * std::hypot(part[0], part[1], part[2]);
+  const double angular = smooth_step_peak * std::hypot(part[3], part[4], part[5]);
+  const double shortest = std::max(linear / highest_linear_speed, angular / highest_angular_speed);
+  check.that(time >= shortest,
+             fmt::format(
+                 "the TCP would need {:.3f} m/s and {:.3f} rad/s to get to pose in {:.3f} s, its limits "
+                 "are {} m/s and {} rad/s: use a time of at least {:.3f} s",
+                 linear / time, angular / time, time, highest_linear_speed, highest_angular_speed, shortest));
+}
+
+}  // namespace ur_ros_rtde
