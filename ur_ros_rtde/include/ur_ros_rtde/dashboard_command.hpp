@@ -9,121 +9,134 @@
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/dashboard_run.hpp"
-#include "ur_ros_rtde/goal_book.hpp"
+#include "ur_ros_rtde/goal_server.hpp"
 #include "ur_ros_rtde/plugin.hpp"
 
 namespace ur_ros_rtde {
 
-/// A command to the dashboard server as an action of type `A`, for dashboard_server; see Command<A>.
+/// Why the dashboard server cannot be spoken to, if so.
+Status dashboard_ready(const DashboardLink & link);
+/// `text` is one of `texts`, if there are any.
+void check_text(const std::string & text, const std::vector<std::string> & texts, Check & check);
+
+/// A command to the dashboard server as an action of type `A`, for dashboard_server; see Command<A>. For most
+/// it is enough to say what the command is:
 ///
 ///     class PowerOff : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
-///       Outcome run(const Goal & goal, Run & run) override
+///       Request request(const Goal &) const override
 ///       {
-///         return run.command("power off", "Powering off", Effect{"robotmode", {"POWER_OFF"}}, goal.timeout);
+///         return {.line = "power off", .reply = "Powering off", .effect = Effect{"robotmode",
+///         {"POWER_OFF"}}};
 ///       }
 ///     };
 ///     UR_ROS_RTDE_EXPORT(PowerOff, "dashboard/power_off")
 template <typename A>
-class DashboardCommand : public DashboardPlugin {
+class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
  public:
   using Action = A;
   using Goal = typename A::Goal;
   using Result = typename A::Result;
   using Feedback = typename A::Feedback;
+  using Request = DashboardRequest;
+  using Limits = DashboardLimits;
   using Run = DashboardGoalRun<A>;
 
+  ~DashboardCommand() override { this->end_service(); }
+
+  virtual Request request(const Goal &) const { return {}; }
+  virtual Limits limits() const { return {}; }
   /// By default a field `timeout` and a field `text` of the goal.
-  virtual void check(const Goal & goal, Check & check) const
-  {
-    if constexpr (requires { goal.timeout; }) {
-      check.above_zero("timeout", goal.timeout, 600.0, "s");
-    }
-    if constexpr (requires { goal.text; }) {
-      check.line("text", goal.text, 1000);
-    }
-  }
-  virtual Outcome run(const Goal & goal, Run & run) = 0;
+  virtual void check(const Goal & goal, Check & check) const;
+  /// By default what request() says.
+  virtual Outcome run(const Goal & goal, Run & run);
 
   void start_action_server(DashboardHost & host, const std::string & name) override;
-  void stop_action_server() override { server_.reset(); }
+  void stop_action_server() override { this->end_service(); }
 
  private:
   using Handle = rcl_cxx::GoalHandle<A>;
-  Status examine(const Goal & goal) const;
-  void carry_out(Handle & handle, const std::shared_ptr<Interrupt> & interrupt);
+  tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id, const Goal & goal) override;
+  void carry_out(Handle & handle, GoalBook::Ticket & ticket) override;
+  void give_up(Handle & handle, const Outcome & outcome) override;
   void conclude(Handle & handle, Run & run, const Outcome & outcome);
 
   DashboardLink * link_ = nullptr;
   std::unique_ptr<GoalBook> book_;
-  typename rcl_cxx::ActionServer<A>::SharedPtr server_;
 };
 
-/// Why the dashboard server cannot be spoken to, if so.
-Status dashboard_ready(const DashboardLink & link);
+template <typename A>
+void DashboardCommand<A>::check(const Goal & goal, Check & check) const
+{
+  if constexpr (requires { goal.timeout; }) {
+    check.above_zero("timeout", goal.timeout, 600.0, "s");
+  }
+  if constexpr (requires { goal.text; }) {
+    check.line("text", goal.text, 1000);
+    check_text(goal.text, limits().texts, check);
+  }
+}
+
+template <typename A>
+Outcome DashboardCommand<A>::run(const Goal & goal, Run & run)
+{
+  const Request wanted = request(goal);
+  if constexpr (requires { goal.timeout; }) {
+    return run.carry_out(wanted, goal.timeout);
+  } else {
+    return run.carry_out(wanted, wanted.timeout);
+  }
+}
 
 template <typename A>
 void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::string & name)
 {
   link_ = &host.link();
   book_ = std::make_unique<GoalBook>(host, host.node().resolve_service_name(name));
-  rcl_cxx::ActionHandlers<A> handlers;
-  handlers.goal = [this](const rcl_cxx::GoalId & id, const Goal & goal) {
-    return book_->admit(id, [&](GoalBook::Ticket &) { return examine(goal); });
-  };
-  handlers.accepted = [this](std::shared_ptr<Handle> handle) {
-    const Status started = book_->start(
-        handle->goal_id(),
-        [this, handle](std::shared_ptr<GoalBook::Ticket> ticket) { carry_out(*handle, ticket->interrupt); });
-    if (!started) {
-      Run run(*link_, std::make_shared<Interrupt>(), {});
-      conclude(*handle, run, started);
+  this->serve(host.node(), name, *book_);
+}
+
+template <typename A>
+tl::expected<void, std::string> DashboardCommand<A>::admit(const rcl_cxx::GoalId & id, const Goal & goal)
+{
+  return book_->admit(id, [&](GoalBook::Ticket &) -> Status {
+    Check result;
+    check(goal, result);
+    if (!result.ok()) {
+      return tl::unexpected(*result.error());
     }
-  };
-  handlers.cancel = [](Handle &) { return true; };
-  handlers.canceling = [this](Handle & handle) { book_->cancel(handle.goal_id()); };
-  server_ = host.node().template create_action_server<A>(name, std::move(handlers));
+    const Status ready = dashboard_ready(*link_);
+    return ready ? supported(book_->action(), limits(), *link_) : ready;
+  });
 }
 
 template <typename A>
-Status DashboardCommand<A>::examine(const Goal & goal) const
+void DashboardCommand<A>::carry_out(Handle & handle, GoalBook::Ticket & ticket)
 {
-  Check result;
-  check(goal, result);
-  return result.ok() ? dashboard_ready(*link_) : Status(tl::unexpected(*result.error()));
-}
-
-template <typename A>
-void DashboardCommand<A>::carry_out(Handle & handle, const std::shared_ptr<Interrupt> & interrupt)
-{
-  Run goal_run(*link_, interrupt, [&handle]([[maybe_unused]] const std::string & state) {
+  Run goal_run(*link_, ticket.interrupt, [&handle]([[maybe_unused]] const std::string & state) {
     if constexpr (requires(Feedback & feedback) { feedback.state; }) {
       Feedback feedback;
       feedback.state = state;
       handle.publish_feedback(feedback);
     }
   });
-  const Outcome outcome = book_->guarded(*interrupt, [&] { return run(handle.goal(), goal_run); });
+  const Outcome outcome = book_->guarded(*ticket.interrupt, [&] { return run(handle.goal(), goal_run); });
   conclude(handle, goal_run, outcome);
+}
+
+template <typename A>
+void DashboardCommand<A>::give_up(Handle & handle, const Outcome & outcome)
+{
+  Run run(*link_, std::make_shared<Interrupt>(), {});
+  conclude(handle, run, outcome);
 }
 
 template <typename A>
 void DashboardCommand<A>::conclude(Handle & handle, Run & run, const Outcome & outcome)
 {
-  Result & result = run.result();
-  result.success = static_cast<bool>(outcome);
-  result.error_code = static_cast<std::uint16_t>(outcome.code());
-  result.message = outcome.message();
-  if constexpr (requires { result.answer; }) {
-    result.answer = run.answer();
+  if constexpr (requires { run.result().answer; }) {
+    run.result().answer = run.answer();
   }
-  book_->finish(handle.goal_id(), outcome);
-  if (outcome) {
-    handle.succeed(result);
-  } else if (outcome.code() == ErrorCode::canceled && handle.is_canceling()) {
-    handle.canceled(result);
-  } else {
-    handle.abort(result);
-  }
+  this->finish(handle, run.result(), outcome);
 }
 
 }  // namespace ur_ros_rtde

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "ur_ros_rtde/link.hpp"
@@ -44,12 +45,19 @@ class DashboardLink {
   /// From PolyScope 5.6 on; refreshed with each heartbeat. None: unknown, or the controller has no such
   /// setting.
   std::optional<bool> in_remote_control() const;
+  /// PolyScope's; of the controller last connected to.
+  std::optional<ControllerVersion> version() const;
 
   /// Throws RobotError (link_lost, with the cause) without a connection.
   Locked<ur_rtde::DashboardClient> dashboard() const;
   /// Runs `function`; whatever it throws becomes the error: rejected_by_robot with the robot's answer, or
   /// link_lost (and the connection is made anew).
   Status call(const std::function<void(ur_rtde::DashboardClient &)> & function);
+  /// Sends a line and returns the answer, on a connection of its own: for what takes the robot its time
+  /// (loading a program, a report) while others ask on. Errors: link_lost; timeout, when `limit` has passed;
+  /// canceled, when stop is requested.
+  Expected<std::string> request(const std::string & line, std::chrono::milliseconds limit,
+                                const std::stop_token & stop = {}) const;
 
  private:
   class Impl;

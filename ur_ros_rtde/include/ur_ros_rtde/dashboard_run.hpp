@@ -20,6 +20,37 @@ struct Effect {
   std::vector<std::string> states;
 };
 
+/// The version of PolyScope from which on there is something.
+struct Since {
+  unsigned major = 0;
+  unsigned minor = 0;
+};
+constexpr Since never{~0U, 0};
+
+/// A command or question to the dashboard server (UR, "Dashboard Server e-Series, port 29999", "…
+/// CB-Series").
+struct DashboardRequest {
+  std::string line;
+  /// How the answer begins when it is done. Empty: a question, any answer to which is one.
+  std::string reply{};
+  /// With an empty question: nothing to be seen.
+  Effect effect{};
+  /// s, for answer and effect, where the goal has no field `timeout`.
+  double timeout = 60.0;
+};
+
+/// What has such a command, and what may be said with it.
+struct DashboardLimits {
+  Since e_series{5, 0};
+  Since cb3{3, 0};
+  /// What the goal's field `text` may be; empty: any line.
+  std::vector<std::string> texts{};
+};
+
+/// not_supported, naming the versions, when the controller's is not within `limits`; success while it is not
+/// known.
+Status supported(const std::string & action, const DashboardLimits & limits, const DashboardLink & link);
+
 /// What a dashboard command has in hand while it carries out a goal, in the goal's own thread.
 class DashboardRun {
  public:
@@ -27,17 +58,22 @@ class DashboardRun {
 
   DashboardRun(DashboardLink & link, std::shared_ptr<Interrupt> interrupt, PublishState publish);
 
-  /// Sends a line to the dashboard server and returns its answer. Throws RobotError (link_lost).
+  /// Sends a line to the dashboard server and returns its answer, which has to come within 2.5 s. Throws
+  /// RobotError (link_lost).
   std::string ask(const std::string & line);
   /// ask(), without the label that some answers have: "RUNNING" of "Robotmode: RUNNING".
   std::string ask_value(const std::string & question);
 
   /// Gives a command, whose answer has to begin with `reply`, and waits until the robot's state shows that it
-  /// has taken effect; without an Effect where none can be seen.
-  Outcome command(const std::string & line, const std::string & reply,
-                  const std::optional<Effect> & effect = std::nullopt, double timeout = 0.0);
+  /// has taken effect; with an Effect without a question, not. `timeout`: s, for both together.
+  Outcome command(const std::string & line, const std::string & reply, const Effect & effect = {},
+                  double timeout = 60.0);
   /// Asks; the answer, without its label, is the result.
   Outcome query(const std::string & question);
+  /// Sends a line on a connection of its own; the answer, whatever it is, is the result.
+  Outcome raw(const std::string & line, double timeout = 60.0);
+  /// command() or query(), as the request is.
+  Outcome carry_out(const DashboardRequest & request, double timeout);
 
   /// Why the goal has to end now, if it has to.
   std::optional<Interruption> interruption() const { return interrupt_->requested(); }
@@ -48,7 +84,9 @@ class DashboardRun {
   const std::string & answer() const { return answer_; }
 
  private:
-  Outcome until(const Effect & effect, double timeout);
+  using Clock = std::chrono::steady_clock;
+  Outcome rejection(const std::string & line);
+  Outcome until(const Effect & effect, Clock::time_point deadline, double timeout);
 
   DashboardLink & link_;
   std::shared_ptr<Interrupt> interrupt_;

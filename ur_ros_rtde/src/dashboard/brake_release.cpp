@@ -3,9 +3,9 @@
 namespace ur_ros_rtde {
 
 class BrakeRelease : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
-  Outcome run(const Goal & goal, Run & run) override
+  Request request(const Goal &) const override
   {
-    return run.command("brake release", "Brake releasing", Effect{"robotmode", {"RUNNING"}}, goal.timeout);
+    return {"brake release", "Brake releasing", {"robotmode", {"RUNNING"}}};
   }
 };
 

@@ -3,7 +3,7 @@
 namespace ur_ros_rtde {
 
 class ClosePopup : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
-  Outcome run(const Goal &, Run & run) override { return run.command("close popup", "closing popup"); }
+  Request request(const Goal &) const override { return {"close popup", "closing popup"}; }
 };
 
 UR_ROS_RTDE_EXPORT(ClosePopup, "dashboard/close_popup")

@@ -3,7 +3,8 @@
 namespace ur_ros_rtde {
 
 class GetSerialNumber : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
-  Outcome run(const Goal &, Run & run) override { return run.query("get serial number"); }
+  Limits limits() const override { return {{5, 6}, {3, 12}}; }
+  Request request(const Goal &) const override { return {"get serial number"}; }
 };
 
 UR_ROS_RTDE_EXPORT(GetSerialNumber, "dashboard/get_serial_number")

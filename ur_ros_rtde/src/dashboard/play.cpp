@@ -3,9 +3,9 @@
 namespace ur_ros_rtde {
 
 class Play : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
-  Outcome run(const Goal & goal, Run & run) override
+  Request request(const Goal &) const override
   {
-    return run.command("play", "Starting program", Effect{"programState", {"PLAYING"}}, goal.timeout);
+    return {"play", "Starting program", {"programState", {"PLAYING"}}};
   }
 };
 

@@ -3,7 +3,7 @@
 namespace ur_ros_rtde {
 
 class PolyscopeVersion : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
-  Outcome run(const Goal &, Run & run) override { return run.query("PolyscopeVersion"); }
+  Request request(const Goal &) const override { return {"PolyscopeVersion"}; }
 };
 
 UR_ROS_RTDE_EXPORT(PolyscopeVersion, "dashboard/polyscope_version")

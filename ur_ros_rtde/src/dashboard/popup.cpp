@@ -3,10 +3,7 @@
 namespace ur_ros_rtde {
 
 class Popup : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardText> {
-  Outcome run(const Goal & goal, Run & run) override
-  {
-    return run.command("popup " + goal.text, "showing popup");
-  }
+  Request request(const Goal & goal) const override { return {"popup " + goal.text, "showing popup"}; }
 };
 
 UR_ROS_RTDE_EXPORT(Popup, "dashboard/popup")

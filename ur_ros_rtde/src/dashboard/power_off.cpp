@@ -3,9 +3,9 @@
 namespace ur_ros_rtde {
 
 class PowerOff : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
-  Outcome run(const Goal & goal, Run & run) override
+  Request request(const Goal &) const override
   {
-    return run.command("power off", "Powering off", Effect{"robotmode", {"POWER_OFF"}}, goal.timeout);
+    return {"power off", "Powering off", {"robotmode", {"POWER_OFF"}}};
   }
 };
 

@@ -3,9 +3,9 @@
 namespace ur_ros_rtde {
 
 class PowerOn : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
-  Outcome run(const Goal & goal, Run & run) override
+  Request request(const Goal &) const override
   {
-    return run.command("power on", "Powering on", Effect{"robotmode", {"IDLE", "RUNNING"}}, goal.timeout);
+    return {"power on", "Powering on", {"robotmode", {"IDLE", "RUNNING"}}};
   }
 };
 

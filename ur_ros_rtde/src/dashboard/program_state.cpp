@@ -3,7 +3,7 @@
 namespace ur_ros_rtde {
 
 class GetProgramState : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
-  Outcome run(const Goal &, Run & run) override { return run.query("programState"); }
+  Request request(const Goal &) const override { return {"programState"}; }
 };
 
 UR_ROS_RTDE_EXPORT(GetProgramState, "dashboard/program_state")

@@ -3,7 +3,7 @@
 namespace ur_ros_rtde {
 
 class GetRobotMode : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
-  Outcome run(const Goal &, Run & run) override { return run.query("robotmode"); }
+  Request request(const Goal &) const override { return {"robotmode"}; }
 };
 
 UR_ROS_RTDE_EXPORT(GetRobotMode, "dashboard/robot_mode")

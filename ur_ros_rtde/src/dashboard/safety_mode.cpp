@@ -3,7 +3,7 @@
 namespace ur_ros_rtde {
 
 class GetSafetyMode : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
-  Outcome run(const Goal &, Run & run) override { return run.query("safetymode"); }
+  Request request(const Goal &) const override { return {"safetymode"}; }
 };
 
 UR_ROS_RTDE_EXPORT(GetSafetyMode, "dashboard/safety_mode")

@@ -3,10 +3,7 @@
 namespace ur_ros_rtde {
 
 class StopProgram : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
-  Outcome run(const Goal & goal, Run & run) override
-  {
-    return run.command("stop", "Stopped", Effect{"programState", {"STOPPED"}}, goal.timeout);
-  }
+  Request request(const Goal &) const override { return {"stop", "Stopped", {"programState", {"STOPPED"}}}; }
 };
 
 UR_ROS_RTDE_EXPORT(StopProgram, "dashboard/stop")

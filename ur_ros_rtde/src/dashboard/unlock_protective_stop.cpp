@@ -3,10 +3,10 @@
 namespace ur_ros_rtde {
 
 class UnlockProtectiveStop : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
-  Outcome run(const Goal & goal, Run & run) override
+  Limits limits() const override { return {{5, 0}, {3, 1}}; }
+  Request request(const Goal &) const override
   {
-    return run.command("unlock protective stop", "Protective stop releasing",
-                       Effect{"safetymode", {"NORMAL", "REDUCED"}}, goal.timeout);
+    return {"unlock protective stop", "Protective stop releasing", {"safetymode", {"NORMAL", "REDUCED"}}};
   }
 };
 

@@ -12,7 +12,10 @@
 
 namespace ur_ros_rtde {
 namespace {
-using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+/// What every version of the dashboard server answers to a line that it does not know.
+constexpr std::string_view not_understood = "could not understand";
 
 /// The dashboard server tells nothing unasked, so states are asked for.
 constexpr std::chrono::milliseconds question_interval{50};
@@ -20,6 +23,13 @@ constexpr std::chrono::milliseconds question_interval{50};
 bool begins_with(std::string_view text, std::string_view beginning)
 {
   return text.substr(0, beginning.size()) == beginning;
+}
+
+std::string availability(const char * series, const Since & since)
+{
+  return since.major == never.major
+             ? fmt::format("{} does not have it", series)
+             : fmt::format("{} has it from PolyScope {}.{} on", series, since.major, since.minor);
 }
 
 bool is_one_of(const std::string & state, const std::vector<std::string> & states)
@@ -38,6 +48,28 @@ Status dashboard_ready(const DashboardLink & link)
   return failure(ErrorCode::link_lost, status.error.message.empty()
                                            ? std::string("not yet connected to the dashboard server")
                                            : status.error.message);
+}
+
+void check_text(const std::string & text, const std::vector<std::string> & texts, Check & check)
+{
+  check.that(texts.empty() || std::find(texts.begin(), texts.end(), text) != texts.end(),
+             fmt::format("text is \"{}\", it may be {}", text, fmt::join(texts, ", ")));
+}
+
+Status supported(const std::string & action, const DashboardLimits & limits, const DashboardLink & link)
+{
+  const auto version = link.version();
+  if (!version) {
+    return {};
+  }
+  const Since & since = version->cb3() ? limits.cb3 : limits.e_series;
+  if (std::pair(version->major, version->minor) >= std::pair(since.major, since.minor)) {
+    return {};
+  }
+  return failure(ErrorCode::not_supported,
+                 fmt::format("{}: the controller has PolyScope {}; {}, {}", action, to_string(*version),
+                             availability("an e-Series controller", limits.e_series),
+                             availability("a CB3", limits.cb3)));
 }
 
 DashboardRun::DashboardRun(DashboardLink & link, std::shared_ptr<Interrupt> interrupt, PublishState publish)
@@ -71,29 +103,59 @@ std::string DashboardRun::ask_value(const std::string & question)
 Outcome DashboardRun::query(const std::string & question)
 {
   answer_ = ask_value(question);
+  return begins_with(answer_, not_understood) ? rejection(question) : Outcome::success(answer_);
+}
+
+Outcome DashboardRun::raw(const std::string & line, double timeout)
+{
+  const auto answer = link_.request(line, std::chrono::ceil<std::chrono::milliseconds>(Seconds(timeout)),
+                                    interrupt_->token());
+  if (!answer) {
+    if (auto why = interruption()) {
+      return *why;
+    }
+    return Outcome::failure(answer.error().code,
+                            fmt::format("{}, {:.1f} s after \"{}\"", answer.error().message, timeout, line));
+  }
+  answer_ = *answer;
   return Outcome::success(answer_);
 }
 
-Outcome DashboardRun::command(const std::string & line, const std::string & reply,
-                              const std::optional<Effect> & effect, double timeout)
+Outcome DashboardRun::command(const std::string & line, const std::string & reply, const Effect & effect,
+                              double timeout)
 {
-  answer_ = ask(line);
-  if (!begins_with(answer_, reply)) {
-    const auto remote = link_.in_remote_control();
-    return Outcome::failure(
-        ErrorCode::rejected_by_robot,
-        fmt::format("the dashboard server answered \"{}\" to \"{}\"{}", answer_, line,
-                    remote == false
-                        ? ": the robot is in local control, switch it to remote on the teach pendant"
-                        : ""));
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(timeout));
+  if (Outcome answered = raw(line, timeout); !answered) {
+    return answered;
   }
-  return effect ? until(*effect, timeout) : Outcome::success(answer_);
+  if (!begins_with(answer_, reply)) {
+    return rejection(line);
+  }
+  return effect.question.empty() ? Outcome::success(answer_) : until(effect, deadline, timeout);
 }
 
-Outcome DashboardRun::until(const Effect & effect, double timeout)
+Outcome DashboardRun::carry_out(const DashboardRequest & request, double timeout)
 {
-  const auto deadline =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout));
+  return request.reply.empty() ? query(request.line)
+                               : command(request.line, request.reply, request.effect, timeout);
+}
+
+Outcome DashboardRun::rejection(const std::string & line)
+{
+  std::string answer = fmt::format("the dashboard server answered \"{}\" to \"{}\"", answer_, line);
+  if (begins_with(answer_, not_understood)) {
+    return Outcome::failure(ErrorCode::not_supported,
+                            answer + ": this version of PolyScope does not have it");
+  }
+  // Asked anew: what the heartbeat knows may be older than the command.
+  if (link_.in_remote_control() && ask("is in remote control") == "false") {
+    answer += ": the robot is in local control, switch it to remote on the teach pendant";
+  }
+  return Outcome::failure(ErrorCode::rejected_by_robot, answer);
+}
+
+Outcome DashboardRun::until(const Effect & effect, Clock::time_point deadline, double timeout)
+{
   std::string shown;
   while (true) {
     const std::string state = ask_value(effect.question);

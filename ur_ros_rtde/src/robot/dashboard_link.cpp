@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "robot/dashboard_request.hpp"
 #include "robot/ports.hpp"
 #include "robot/reporter.hpp"
 #include "robot/rtde_probe.hpp"
@@ -20,12 +21,18 @@ namespace {
 
 using ur_rtde::DashboardClient;
 
-/// "is in remote control" came with PolyScope 5.6; a CB3 has no such setting.
-bool knows_remote_control(const std::string & polyscope_version)
+std::optional<ControllerVersion> parse_version(const std::string & text)
 {
-  unsigned major = 0;
-  unsigned minor = 0;
-  return std::sscanf(polyscope_version.c_str(), "%u.%u", &major, &minor) == 2 && major == 5 && minor >= 6;
+  ControllerVersion version;
+  const int found = std::sscanf(text.c_str(), "%u.%u.%u.%u", &version.major, &version.minor, &version.bugfix,
+                                &version.build);
+  return found >= 2 ? std::optional(version) : std::nullopt;
+}
+
+/// "is in remote control" came with PolyScope 5.6; a CB3 has no such setting.
+bool knows_remote_control(const std::optional<ControllerVersion> & version)
+{
+  return version && version->major == 5 && version->minor >= 6;
 }
 
 }  // namespace
@@ -49,6 +56,8 @@ class DashboardLink::Impl {
   mutable std::mutex mutex_;
   LinkStatus link_;
   std::optional<bool> remote_;
+  std::optional<ControllerVersion> version_;
+  const DashboardLinkOptions options_;
   std::jthread thread_;
 
  private:
@@ -58,7 +67,6 @@ class DashboardLink::Impl {
   void broken(const std::shared_ptr<DashboardClient> & client, const std::string & why);
   void wait(const std::stop_token & stop, std::chrono::milliseconds duration);
 
-  const DashboardLinkOptions options_;
   Reporter report_;
   std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
   std::shared_ptr<DashboardClient> client_;
@@ -75,7 +83,7 @@ Status DashboardLink::Impl::connect()
   try {
     auto client = std::make_shared<DashboardClient>(options_.address, dashboard_port);
     client->connect(static_cast<std::uint32_t>(options_.connect_timeout.count()));
-    const auto version = client->polyscopeVersion();
+    const auto version = parse_version(client->polyscopeVersion());
     knows_remote_ = knows_remote_control(version);
     std::optional<bool> remote;
     if (knows_remote_) {
@@ -83,6 +91,7 @@ Status DashboardLink::Impl::connect()
     }
     const std::lock_guard lock(mutex_);
     client_ = std::move(client);
+    version_ = version;
     remote_ = remote;
     broken_ = false;
     return {};
@@ -259,6 +268,12 @@ std::optional<bool> DashboardLink::in_remote_control() const
   return impl_->remote_;
 }
 
+std::optional<ControllerVersion> DashboardLink::version() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->version_;
+}
+
 Locked<DashboardClient> DashboardLink::dashboard() const
 {
   return impl_->dashboard();
@@ -267,6 +282,12 @@ Locked<DashboardClient> DashboardLink::dashboard() const
 Status DashboardLink::call(const std::function<void(DashboardClient &)> & function)
 {
   return impl_->call(function);
+}
+
+Expected<std::string> DashboardLink::request(const std::string & line, std::chrono::milliseconds limit,
+                                             const std::stop_token & stop) const
+{
+  return dashboard_request(impl_->options_.address, line, limit, stop);
 }
 
 }  // namespace ur_ros_rtde

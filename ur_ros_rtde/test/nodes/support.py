@@ -263,11 +263,11 @@ class Client:
         future = self.in_executor(lambda: client.call_async(service.Request(**fields)))
         return wait_for(lambda: future.done() and future.result(), 10.0, f"the answer of {name}")
 
-    def listen(self, message, topic):
-        """All messages from now on."""
+    def listen(self, message, topic, latched=False):
+        """All messages from now on; the last one before, too, if they are latched."""
         messages = []
-        self._topics.setdefault(topic, []).append(self.node.create_subscription(
-            message, topic, messages.append, QoSProfile(depth=2000, reliability=ReliabilityPolicy.RELIABLE)))
+        qos = LATCHED if latched else QoSProfile(depth=2000, reliability=ReliabilityPolicy.RELIABLE)
+        self._topics.setdefault(topic, []).append(self.node.create_subscription(message, topic, messages.append, qos))
         return messages
 
 

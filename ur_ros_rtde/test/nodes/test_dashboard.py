@@ -38,6 +38,21 @@ def query(client, name):
     return client.send(DashboardQuery, f"dashboard/{name}").succeeded().answer
 
 
+def text(client, name, words):
+    return client.send(DashboardText, f"dashboard/{name}", text=words)
+
+
+WAIT = "def wait():\n  while True:\n    sync()\n  end\nend\n"
+
+
+@pytest.fixture
+def program(dashboard, simulator):
+    """wait.urp, loaded and stopped, which runs until it is told otherwise."""
+    simulator.control("store_program", name="wait.urp", script=WAIT, load=True)
+    command(dashboard, "stop").succeeded()
+    return "wait.urp"
+
+
 def test_queries_answer_without_their_label(dashboard):
     assert query(dashboard, "robot_mode") == "RUNNING"
     assert query(dashboard, "safety_mode") == "NORMAL"
@@ -82,12 +97,116 @@ def test_a_protective_stop_is_unlocked_once_the_robot_allows_it(dashboard, simul
     assert query(dashboard, "safety_mode") == "NORMAL"
 
 
-def test_a_program_is_played_and_stopped(dashboard, simulator):
-    simulator.control("store_program", name="wait.urp", script="def wait():\n  while True:\n    sync()\n  end\nend\n", load=True)
+def test_a_program_is_played_paused_gone_on_with_and_stopped(dashboard, program):
     command(dashboard, "play").succeeded()
-    assert query(dashboard, "program_state").startswith("PLAYING")
+    assert query(dashboard, "program_state") == f"PLAYING {program}"
+    assert query(dashboard, "running") == "true"
+    command(dashboard, "pause").succeeded()
+    assert query(dashboard, "program_state") == f"PAUSED {program}"
+    assert query(dashboard, "running") == "false"
+    command(dashboard, "play").succeeded()
+    assert query(dashboard, "running") == "true"
     command(dashboard, "stop").succeeded()
-    assert query(dashboard, "program_state").startswith("STOPPED")
+    assert query(dashboard, "program_state") == f"STOPPED {program}"
+
+
+def test_a_program_is_loaded_by_its_name(dashboard, simulator, program):
+    simulator.control("store_program", name="other.urp", script=WAIT)
+    assert text(dashboard, "load", "other.urp").succeeded().answer == "Loading program: other.urp"
+    assert query(dashboard, "program_state") == "STOPPED other.urp"
+    assert query(dashboard, "get_loaded_program") == "/programs/other.urp"
+    assert query(dashboard, "is_program_saved").lower() == "true other.urp"
+
+
+@pytest.mark.parametrize("name", ["load", "load_installation"])
+def test_what_is_not_on_the_controllers_disk_is_not_loaded(dashboard, program, name):
+    result = text(dashboard, name, "nowhere.urp").result()
+    assert result.error_code == ErrorCode.REJECTED_BY_ROBOT and result.answer == "File not found: nowhere.urp"
+    assert query(dashboard, "get_loaded_program") == f"/programs/{program}"
+
+
+def test_an_installation_is_loaded(dashboard):
+    assert text(dashboard, "load_installation", "default.installation").succeeded().answer.startswith("Loading installation: ")
+
+
+def test_the_safety_system_is_restarted_after_a_fault(dashboard, simulator):
+    simulator.control("fault", reason="a test")
+    wait_for(lambda: query(dashboard, "safety_mode") == "FAULT", 5.0, "the fault")
+    assert query(dashboard, "safety_status") == "FAULT"
+    command(dashboard, "close_safety_popup").succeeded()
+    command(dashboard, "restart_safety").succeeded()
+    assert query(dashboard, "robot_mode") == "POWER_OFF" and query(dashboard, "safety_mode") == "NORMAL"
+
+
+def test_the_operational_mode_is_taken_and_given_back(dashboard):
+    text(dashboard, "set_operational_mode", "automatic").succeeded()
+    assert query(dashboard, "get_operational_mode") == "AUTOMATIC"
+    assert command(dashboard, "clear_operational_mode").succeeded().answer.startswith("No longer controlling")
+    assert query(dashboard, "get_operational_mode") == "NONE"
+
+
+def test_a_line_is_written_into_the_log_of_the_controller(dashboard, simulator):
+    text(dashboard, "add_to_log", "a line of the test").succeeded()
+    assert any(entry["text"] == "a line of the test" for entry in simulator.control("log")["entries"])
+
+
+def test_the_controller_tells_what_it_is(dashboard):
+    assert query(dashboard, "get_robot_model") == "UR10"
+    assert query(dashboard, "version").startswith("5.25")
+    assert query(dashboard, "is_in_remote_control") == "true"
+
+
+@pytest.mark.parametrize("name, words", [("set_operational_mode", "manual, automatic"),
+                                         ("generate_flight_report", "controller, software, system")])
+def test_only_words_that_the_controller_knows_are_sent(dashboard, name, words):
+    goal = text(dashboard, name, "nonsense")
+    assert not goal.accepted
+    refusal = dashboard.refusal(goal)
+    assert refusal.error_code == ErrorCode.INVALID_GOAL and "nonsense" in refusal.message and words in refusal.message
+
+
+def test_any_line_can_be_sent_as_it_is(dashboard):
+    assert text(dashboard, "raw", "robotmode").succeeded().answer == "Robotmode: RUNNING"
+    assert text(dashboard, "raw", "make tea").succeeded().answer == "could not understand: 'make tea'"
+    # It ends a connection that is the line's own.
+    assert text(dashboard, "raw", "quit").succeeded().answer == "Disconnected"
+    assert query(dashboard, "robot_mode") == "RUNNING"
+
+
+@pytest.mark.parametrize("action, name, fields", [(DashboardQuery, "get_user_role", {}),
+                                                  (DashboardText, "set_user_role", {"text": "operator"})])
+def test_what_the_controller_is_too_new_for_is_refused_with_its_version(dashboard, action, name, fields):
+    goal = dashboard.send(action, f"dashboard/{name}", **fields)
+    assert not goal.accepted
+    refusal = dashboard.refusal(goal)
+    assert refusal.error_code == ErrorCode.NOT_SUPPORTED
+    assert "PolyScope 5.25" in refusal.message and "a CB3 has it from PolyScope 3.1 on" in refusal.message
+
+
+def test_a_cb3_has_user_roles_and_no_operational_modes(addresses, processes):
+    processes(Simulator(addresses[2], model="ur10"))
+    processes(node("dashboard_server", addresses[2], namespace="old"))
+    client = Client("old")
+    try:
+        wait_for(lambda: _accepted(client), 20.0, "the dashboard server to be connected")
+        text(client, "set_user_role", "operator").succeeded()
+        assert query(client, "get_user_role") == "OPERATOR"
+        goal = command(client, "clear_operational_mode")
+        assert not goal.accepted and client.refusal(goal).error_code == ErrorCode.NOT_SUPPORTED
+    finally:
+        client.close()
+
+
+def test_a_shut_down_controller_is_gone(addresses, processes):
+    processes(Simulator(addresses[3]))
+    processes(node("dashboard_server", addresses[3], namespace="going"))
+    client = Client("going")
+    try:
+        wait_for(lambda: _accepted(client), 20.0, "the dashboard server to be connected")
+        assert command(client, "shutdown").succeeded().answer == "Shutting down"
+        wait_for(lambda: _not_connected(client), 15.0, "the loss to be noticed")
+    finally:
+        client.close()
 
 
 def test_popups_open_and_close(dashboard):
@@ -113,15 +232,13 @@ def test_a_bad_timeout_is_refused(dashboard, timeout):
 def test_local_control_is_named_as_the_reason(dashboard, simulator):
     simulator.control("remote_control", on=False)
     try:
-        result = wait_for(lambda: _local_refusal(dashboard), 10.0, "the reason")
-        assert result.error_code == ErrorCode.REJECTED_BY_ROBOT
+        result = command(dashboard, "power_off").result()
+        assert result.error_code == ErrorCode.REJECTED_BY_ROBOT and "local control" in result.message
+        assert query(dashboard, "is_in_remote_control") == "false"
     finally:
         simulator.control("remote_control", on=True)
-
-
-def _local_refusal(client):
-    result = command(client, "power_off").result()
-    return result if "local control" in result.message else None
+    # An e-Series keeps to the mode in which a client connected: this one is not kept to it.
+    command(dashboard, "power_off").succeeded()
 
 
 def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
