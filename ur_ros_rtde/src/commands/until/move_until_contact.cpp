@@ -1,0 +1,36 @@
+#include <ur_ros_rtde_msgs/action/move_until_contact.hpp>
+
+#include "contact.hpp"
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+
+class MoveUntilContact : public Command<ur_ros_rtde_msgs::action::MoveUntilContact> {
+  Resource resource() const override { return Resource::script; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.twist("twist", goal.twist)
+        .vector("direction", goal.direction, any_length)
+        .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2")
+        .above_zero("timeout", goal.timeout, 3600.0, "s")
+        .above_zero("distance", goal.distance, 3.0, "m")
+        .polyscope(contact_polyscope);
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const auto found = [&](const Contact & contact) {
+      run.result().contact = true;
+      run.result().contact_state.joint_positions = contact.joint_positions;
+      run.result().contact_state.tcp_pose = to_ros(contact.tcp_pose);
+    };
+    return move_until_contact(
+        run, {goal.twist, goal.direction, goal.acceleration, goal.timeout, goal.distance, goal.retract},
+        found);
+  }
+};
+
+UR_ROS_RTDE_EXPORT(MoveUntilContact, "move_until_contact")
+
+}  // namespace ur_ros_rtde
