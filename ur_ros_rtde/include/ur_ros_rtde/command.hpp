@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ur_ros_rtde/command_goals.hpp"
+#include "ur_ros_rtde/goal_server.hpp"
 #include "ur_ros_rtde/plugin.hpp"
 
 namespace ur_ros_rtde {
@@ -31,13 +32,15 @@ namespace ur_ros_rtde {
 /// uint16 error_code, string message`; a field `ArmState final_state` in it and a field `MotionFeedback
 /// motion` in the feedback are filled in if there are such.
 template <typename A>
-class Command : public CommandPlugin {
+class Command : public CommandPlugin, private GoalServer<A> {
  public:
   using Action = A;
   using Goal = typename A::Goal;
   using Result = typename A::Result;
   using Feedback = typename A::Feedback;
   using Run = GoalRun<A>;
+
+  ~Command() override { this->end_service(); }
 
   /// What the goal's fields may be; then what needs the robot. Runs in the server's thread: no waiting.
   virtual void check(const Goal &, Check &) const {}
@@ -48,48 +51,48 @@ class Command : public CommandPlugin {
   virtual Resource resource() const { return Resource::motion; }
   /// Never refused for being busy: who is in the way has to end.
   virtual bool takes_over() const { return false; }
+  /// A new goal ends the one of the same action that runs, instead of being refused for it.
+  virtual bool replaces_its_own() const { return false; }
+  /// Switches a mode of the arm on or off that lasts beyond the goal (freedrive_start): success leaves the
+  /// arm as it is, moving or not.
+  virtual bool switches_mode() const { return false; }
+  /// Accepted, and going on, whatever the robot's state is: only its dashboard server has to be there.
+  virtual bool any_state() const { return false; }
   /// How the arm is stopped if run() ends, or has to end, while it moves.
   virtual StopOptions stop_options(const Goal &) const { return {}; }
 
   void start_action_server(CommandHost & host, const std::string & name) override;
-  void stop_action_server() override { server_.reset(); }
+  void stop_action_server() override { this->end_service(); }
 
  private:
   using Handle = rcl_cxx::GoalHandle<A>;
-  void carry_out(Handle & handle, GoalBook::Ticket & ticket);
+  tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id, const Goal & goal) override;
+  void carry_out(Handle & handle, GoalBook::Ticket & ticket) override;
+  void give_up(Handle & handle, const Outcome & outcome) override;
   void conclude(Handle & handle, Run & run, const Outcome & outcome);
 
   std::unique_ptr<CommandGoals> goals_;
-  typename rcl_cxx::ActionServer<A>::SharedPtr server_;
 };
 
 template <typename A>
 void Command<A>::start_action_server(CommandHost & host, const std::string & name)
 {
-  goals_ = std::make_unique<CommandGoals>(host, host.node().resolve_service_name(name),
-                                          CommandTraits{resource(), takes_over()});
-  rcl_cxx::ActionHandlers<A> handlers;
-  handlers.goal = [this](const rcl_cxx::GoalId & id, const Goal & goal) {
-    return goals_->admit(id, [&](Check & result) { check(goal, result); });
-  };
-  handlers.accepted = [this](std::shared_ptr<Handle> handle) {
-    const Status started = goals_->start(
-        handle->goal_id(),
-        [this, handle](std::shared_ptr<GoalBook::Ticket> ticket) { carry_out(*handle, *ticket); });
-    if (!started) {
-      Run run(goals_->host().robot(), std::make_shared<Interrupt>(), false, {});
-      conclude(*handle, run, started);
-    }
-  };
-  handlers.cancel = [](Handle &) { return true; };
-  handlers.canceling = [this](Handle & handle) { goals_->cancel(handle.goal_id()); };
-  server_ = host.node().template create_action_server<A>(name, std::move(handlers));
+  goals_ = std::make_unique<CommandGoals>(
+      host, host.node().resolve_service_name(name),
+      CommandTraits{resource(), takes_over(), replaces_its_own(), switches_mode(), any_state()});
+  this->serve(host.node(), name, goals_->book());
+}
+
+template <typename A>
+tl::expected<void, std::string> Command<A>::admit(const rcl_cxx::GoalId & id, const Goal & goal)
+{
+  return goals_->admit(id, [&](Check & result) { check(goal, result); });
 }
 
 template <typename A>
 void Command<A>::carry_out(Handle & handle, GoalBook::Ticket & ticket)
 {
-  Run goal_run(goals_->host().robot(), ticket.interrupt, goals_->moves(),
+  Run goal_run(goals_->host().robot(), ticket.interrupt, goals_->needs_motion(),
                [&handle](const Feedback & feedback) { handle.publish_feedback(feedback); });
   const Outcome outcome = goals_->carry_out(handle.goal_id(), ticket, stop_options(handle.goal()), [&] {
     goal_run.set_displaced(ticket.displaced);
@@ -99,23 +102,19 @@ void Command<A>::carry_out(Handle & handle, GoalBook::Ticket & ticket)
 }
 
 template <typename A>
+void Command<A>::give_up(Handle & handle, const Outcome & outcome)
+{
+  Run run(goals_->host().robot(), std::make_shared<Interrupt>(), false, {});
+  conclude(handle, run, outcome);
+}
+
+template <typename A>
 void Command<A>::conclude(Handle & handle, Run & run, const Outcome & outcome)
 {
-  Result & result = run.result();
-  result.success = static_cast<bool>(outcome);
-  result.error_code = static_cast<std::uint16_t>(outcome.code());
-  result.message = outcome.message();
-  if constexpr (requires { result.final_state; }) {
-    result.final_state = run.arm_state();
+  if constexpr (requires { run.result().final_state; }) {
+    run.result().final_state = run.arm_state();
   }
-  goals_->finish(handle.goal_id(), outcome);
-  if (outcome) {
-    handle.succeed(result);
-  } else if (outcome.code() == ErrorCode::canceled && handle.is_canceling()) {
-    handle.canceled(result);
-  } else {
-    handle.abort(result);
-  }
+  this->finish(handle, run.result(), outcome);
 }
 
 }  // namespace ur_ros_rtde

@@ -17,6 +17,12 @@ struct CommandTraits {
   Resource resource = Resource::motion;
   /// Is never refused for being busy: whoever is in the way has to end. Needs the link only.
   bool takes_over = false;
+  /// A new goal ends the one of the same action that runs.
+  bool replaces_its_own = false;
+  /// Switches a mode on or off that lasts beyond the goal: success leaves the arm as it is.
+  bool switches_mode = false;
+  /// Is accepted, and goes on, whatever the robot's state: only its dashboard server has to be there.
+  bool any_state = false;
 };
 
 /// The part of Command<A> that is compiled once: the goals of a command, their arbitration, and the
@@ -26,26 +32,24 @@ class CommandGoals {
   CommandGoals(CommandHost & host, std::string action, CommandTraits traits);
 
   CommandHost & host() { return host_; }
+  GoalBook & book() { return book_; }
+  /// The goal ends when the robot cannot move any more.
+  bool needs_motion() const { return moves() && !traits_.any_state; }
   bool moves() const { return traits_.resource == Resource::motion || traits_.resource == Resource::script; }
 
   tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id,
                                         const std::function<void(Check &)> & check);
-  /// In a thread of the goal's own.
-  Status start(const rcl_cxx::GoalId & id, std::function<void(std::shared_ptr<GoalBook::Ticket>)> work)
-  {
-    return book_.start(id, std::move(work));
-  }
-  void cancel(const rcl_cxx::GoalId & id) { book_.cancel(id); }
   /// Gets what the command needs, runs `body`, and brings the arm to a standstill if `body` has not.
   Outcome carry_out(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket, const StopOptions & stop,
                     const std::function<Outcome()> & body);
-  void finish(const rcl_cxx::GoalId & id, const Outcome & outcome) { book_.finish(id, outcome); }
 
  private:
   class RobotPreflight;
 
   Claim claim(const rcl_cxx::GoalId & id, const GoalBook::Ticket & ticket) const;
   Status readiness() const;
+  /// Whoever is in the way will be asked to end when the goal begins.
+  bool preempts() const;
   Status take(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket, const StopOptions & stop);
   Outcome settle(Outcome outcome, const GoalBook::Ticket & ticket, StopOptions stop);
 

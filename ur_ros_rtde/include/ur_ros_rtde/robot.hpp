@@ -112,6 +112,11 @@ class Robot {
   MotionProgress motion_progress(const MotionMark & mark) const;
   /// Any joint moves, or an asynchronous operation is under way.
   bool moving() const;
+  /// Freedrive or teach mode is on: somebody may be moving the arm by hand.
+  bool guided() const;
+  /// From now on the control program stops the arm when it has had no sign of life for 1/frequency s (Hz, 1
+  /// to 100), until it is started anew: then it is RobotOptions::watchdog_frequency again.
+  Status set_watchdog(double frequency);
 
   /// Whatever moves: decelerates, waits for standstill by actual joint velocities. If that does not work,
   /// stops the program by way of the dashboard server. An error means that nobody knows whether the arm

@@ -30,9 +30,7 @@ class CommandGoals::RobotPreflight : public Preflight {
     if (Status ready = goals_.readiness(); !ready) {
       return ready;
     }
-    const CommandTraits & traits = goals_.traits_;
-    if (ticket_.lease || traits.resource == Resource::none || traits.takes_over ||
-        goals_.host_.preempts_when_busy()) {
+    if (ticket_.lease || goals_.traits_.resource == Resource::none || goals_.preempts()) {
       return {};
     }
     auto lease = robot().arbiter().acquire(goals_.claim(id_, ticket_));
@@ -64,10 +62,29 @@ Claim CommandGoals::claim(const rcl_cxx::GoalId & id, const GoalBook::Ticket & t
           }};
 }
 
+bool CommandGoals::preempts() const
+{
+  if (traits_.takes_over || host_.preempts_when_busy()) {
+    return true;
+  }
+  const auto holder = host_.robot().arbiter().holder(traits_.resource);
+  return traits_.replaces_its_own && holder && holder->owner == book_.action();
+}
+
 Status CommandGoals::readiness() const
 {
+  Robot & robot = host_.robot();
+  if (traits_.any_state) {
+    [[maybe_unused]] const auto dashboard = robot.dashboard();  // throws why there is none
+    return {};
+  }
   if (moves() && !traits_.takes_over) {
-    return host_.robot().ready_to_move();
+    if (const Status ready = robot.ready_to_move(); !ready || traits_.switches_mode || !robot.guided()) {
+      return ready;
+    }
+    return failure(
+        ErrorCode::busy,
+        "somebody may be moving the arm by hand: end that first (freedrive_stop, end_teach_mode, stop)");
   }
   const RobotStatus status = host_.robot().status();
   if (status.state == RobotState::disconnected || status.state == RobotState::connecting) {
@@ -132,7 +149,7 @@ Outcome CommandGoals::carry_out(const rcl_cxx::GoalId & id, GoalBook::Ticket & t
 
 Outcome CommandGoals::settle(Outcome outcome, const GoalBook::Ticket &, StopOptions stop)
 {
-  if (outcome && !host_.robot().moving()) {
+  if (outcome && (traits_.switches_mode || !host_.robot().moving())) {
     return outcome;
   }
   if (gives_way(outcome.code())) {
