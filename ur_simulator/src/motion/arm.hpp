@@ -92,7 +92,7 @@ class Arm {
   /// The program ended: force mode, freedrive and their settings end with it.
   void end_program();
 
-  /// May the URScript call that started this motion return? movej, movel: target reached; stopj, stopl:
+  /// May the URScript call that started this motion return? Paths: at the target, in the blend; stopj, stopl:
   /// standstill; servoj: its time is up; speedj, speedl: time is up or, without one, the velocity is reached.
   /// Also when replaced, abandoned, stopped by safety.
   bool finished(MotionId motion) const;

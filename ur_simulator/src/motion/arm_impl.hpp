@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <functional>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -128,8 +127,9 @@ struct Arm::Impl {
   Refusal no_cartesian(std::string_view call, const Vector6 & pose, const MoveOptions & options) const;
   /// Lays what starts next; `path` and the motion in the slot must stay as long as the planner.
   PathPlanner planner(const CartesianPath & path);
-  MotionStart begin_path(const Transform & target, double blend_radius,
-                         const std::function<PathMove(const PathPlanner & planner)> & lay);
+  /// `lay` makes the path out of the planner.
+  template <typename Lay>
+  MotionStart begin_path(const Transform & target, double blend_radius, Lay lay);
 
   void ramp_scaling(ControllerState & current) const;
   void advance(const Tick & tick);

@@ -25,8 +25,8 @@ PathPlanner Arm::Impl::planner(const CartesianPath & path)
   return {model, path, setpoint, cycle_time, blends ? before : nullptr};
 }
 
-MotionStart Arm::Impl::begin_path(const Transform & target, double blend_radius,
-                                  const std::function<PathMove(const PathPlanner & planner)> & lay)
+template <typename Lay>
+MotionStart Arm::Impl::begin_path(const Transform & target, double blend_radius, Lay lay)
 {
   const CartesianPath tool = path();
   const PathPlanner laid = planner(tool);
