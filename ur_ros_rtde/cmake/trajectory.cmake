@@ -1,9 +1,10 @@
-# ur_ros_rtde_trajectory: path, time-optimal timing and splines, without ROS and without a robot.
+# ur_ros_rtde_trajectory: kinematics, path, time-optimal timing and splines, without ROS and without a robot.
 find_package(Eigen3 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(tl-expected REQUIRED)
 
-file(GLOB trajectory_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/../src/trajectory/*.cpp)
+file(GLOB trajectory_sources CONFIGURE_DEPENDS
+  ${CMAKE_CURRENT_LIST_DIR}/../src/trajectory/*.cpp ${CMAKE_CURRENT_LIST_DIR}/../src/kinematics/*.cpp)
 add_library(ur_ros_rtde_trajectory SHARED ${trajectory_sources})
 target_compile_features(ur_ros_rtde_trajectory PUBLIC cxx_std_20)
 target_compile_options(ur_ros_rtde_trajectory PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion

@@ -36,6 +36,9 @@ constexpr std::array models{
     Model{"ur10e", {two_turns, degrees(120, 120, 180, 180, 180, 180), 1.3}},
     Model{"ur12e", {two_turns, degrees(120, 120, 180, 180, 180, 180), 1.3}},
     Model{"ur16e", {two_turns, degrees(120, 120, 180, 180, 180, 180), 0.9}},
+    Model{"ur8long", {two_turns, degrees(180, 180, 240, 300, 300, 300), 1.75}},
+    Model{"ur15", {two_turns, degrees(180, 180, 240, 300, 300, 300), 1.3}},
+    Model{"ur18", {two_turns, degrees(180, 180, 240, 300, 300, 300), 0.95}},
     Model{"ur20", {two_turns, degrees(120, 120, 150, 210, 210, 210), 1.75}},
     Model{"ur30", {two_turns, degrees(120, 120, 150, 210, 210, 210), 1.3}},
 };

@@ -48,6 +48,7 @@ void Grid::reserve(std::size_t count)
 {
   d1.reserve(count + 1);
   d2.reserve(count + 1);
+  top_speed.reserve(count + 1);
   piece.reserve(count);
   begin.reserve(count);
   end.reserve(count);
@@ -63,12 +64,15 @@ void Grid::add(const Path & path, std::size_t piece_index, double from, double t
     d1.push_back(point.d1);
     d2.push_back(point.d2);
     d3_begin.push_back(point.d3);
+    top_speed.push_back(curve.top_speed);
   } else if (piece.back() != piece_index) {
     d3_begin.push_back(curve.at(from).d3);
   } else {
     d3_begin.push_back(d3_end.back());
   }
   const PathPoint point = curve.at(to);
+  top_speed.back() = std::min(top_speed.back(), curve.top_speed);
+  top_speed.push_back(curve.top_speed);
   d1.push_back(point.d1);
   d2.push_back(point.d2);
   d3_end.push_back(point.d3);

@@ -13,6 +13,7 @@ struct Grid {
   std::vector<double> begin, end;        ///< of each interval, from the beginning of its piece
   std::vector<Joints> d1, d2;            ///< q' and q'' at each station
   std::vector<Joints> d3_begin, d3_end;  ///< q''' at both ends of each interval
+  std::vector<double> top_speed;         ///< of the path itself at each station
 
   std::size_t intervals() const { return piece.size(); }
   std::size_t stations() const { return d1.size(); }

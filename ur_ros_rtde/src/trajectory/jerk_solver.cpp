@@ -29,7 +29,7 @@ JerkSolver::JerkSolver(const Grid & grid, const Limits & limits, const Allowance
       change_(grid.intervals())
 {
   for (std::size_t m = 0; m < grid.stations(); ++m) {
-    ceiling_[m] = std::min(highest_square_speed(grid.d1[m], limits), 1e12);
+    ceiling_[m] = std::min(highest_square_speed(grid, m, limits), 1e12);
   }
 }
 

@@ -21,6 +21,7 @@ struct PathPiece {
 
   double start = 0.0;
   double length = 0.0;
+  double top_speed = unlimited;  ///< of s, 1/s, beside what the limits of the joints allow
   int degree = 1;
   std::array<Joints, max_degree + 1> c;  ///< c[k] belongs to x^k
 

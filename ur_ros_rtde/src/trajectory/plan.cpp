@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "trajectory/path_builder.hpp"
-#include "trajectory/timing.hpp"
-#include "trajectory/verify.hpp"
+#include "trajectory/time_path.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
@@ -70,30 +69,7 @@ Status check_waypoints(const std::vector<Joints> & waypoints, const Limits & lim
   return {};
 }
 
-// Nothing leaves without having been looked at everywhere; what little is too much is taken away by slowing
-// down.
-Status verify_or_slow(Motion & motion, const Limits & limits)
-{
-  constexpr int rounds = 4;
-  for (int round = 0;; ++round) {
-    Utilisation use;
-    const auto excess = first_excess(motion, limits, verification_step, use);
-    if (!excess) {
-      return {};
-    }
-    if (round == rounds || excess->quantity == Quantity::position || !std::isfinite(motion.duration())) {
-      const auto shared = std::make_shared<const Motion>(motion);
-      return failure(ErrorCode::invalid_goal,
-                     describe(*excess, Trajectory(shared).waypoint_at(excess->time)));
-    }
-    slow_to_limits(motion, 0, limits);
-  }
-}
-
-}  // namespace
-
-Expected<Trajectory> plan_path(std::span<const std::vector<double>> waypoints, const Limits & limits,
-                               const PathOptions & options)
+Expected<std::vector<Joints>> read_waypoints(std::span<const std::vector<double>> waypoints)
 {
   if (auto status = check_count(waypoints.size()); !status) {
     return tl::unexpected(status.error());
@@ -107,7 +83,31 @@ Expected<Trajectory> plan_path(std::span<const std::vector<double>> waypoints, c
     }
     points.push_back(*point);
   }
-  return plan_path(points, limits, options);
+  return points;
+}
+
+}  // namespace
+
+Status check_path(std::span<const std::vector<double>> waypoints, const Limits & limits)
+{
+  const auto points = read_waypoints(waypoints);
+  if (!points) {
+    return tl::unexpected(points.error());
+  }
+  if (auto status = check(limits); !status) {
+    return status;
+  }
+  return check_waypoints(*points, limits);
+}
+
+Expected<Trajectory> plan_path(std::span<const std::vector<double>> waypoints, const Limits & limits,
+                               const PathOptions & options)
+{
+  const auto points = read_waypoints(waypoints);
+  if (!points) {
+    return tl::unexpected(points.error());
+  }
+  return plan_path(*points, limits, options);
 }
 
 Expected<Trajectory> plan_path(const std::vector<Joints> & waypoints, const Limits & limits,
@@ -121,19 +121,15 @@ Expected<Trajectory> plan_path(const std::vector<Joints> & waypoints, const Limi
   if (auto status = check_waypoints(waypoints, limits); !status) {
     return tl::unexpected(status.error());
   }
-  auto motion = std::make_shared<Motion>();
   auto path = std::make_shared<Path>(build_path(waypoints, {options.blend_tolerance, options.corner_angle}));
-  motion->path = path;
-  for (const auto & [first, last] : path->blocks()) {
-    time_block(*motion, first, last, limits);
-  }
-  if (auto status = verify_or_slow(*motion, limits); !status) {
-    return tl::unexpected(status.error());
+  auto motion = time_path(std::move(path), limits, options.stop);
+  if (!motion) {
+    return tl::unexpected(motion.error());
   }
   if (options.speed_fraction < 1.0) {
-    motion->stretch(1.0 / options.speed_fraction);
+    (*motion)->stretch(1.0 / options.speed_fraction);
   }
-  return Trajectory(std::move(motion));
+  return Trajectory(std::move(*motion));
 }
 
 }  // namespace ur_ros_rtde::trajectory

@@ -91,7 +91,7 @@ class Interval {
 
 double ceiling(const Grid & grid, const Limits & limits, std::size_t i)
 {
-  double a = std::min(highest_square_speed(grid.d1[i], limits), 1e12);
+  double a = std::min(highest_square_speed(grid, i, limits), 1e12);
   const Joints & d3 = i < grid.intervals() ? grid.d3_begin[i] : grid.d3_end[i - 1];
   for (int j = 0; j < joint_count; ++j) {
     const double bend = std::abs(grid.d2[i][j]);
@@ -108,10 +108,11 @@ double ceiling(const Grid & grid, const Limits & limits, std::size_t i)
 
 }  // namespace
 
-double highest_square_speed(const Joints & d1, const Limits & limits)
+double highest_square_speed(const Grid & grid, std::size_t station, const Limits & limits)
 {
-  const double speed = (limits.velocity / d1.abs().max(1e-300)).minCoeff();
-  return speed * speed;
+  const double speed = (limits.velocity / grid.d1[station].abs().max(1e-300)).minCoeff();
+  const double top = std::min(speed, grid.top_speed[station]);
+  return top * top;
 }
 
 Profile fastest_without_jerk(const Grid & grid, const Limits & limits)

@@ -11,8 +11,8 @@ namespace ur_ros_rtde::trajectory {
 /// Jerk limits only bound the speed where the path itself, passed at constant speed, would exceed them.
 Profile fastest_without_jerk(const Grid & grid, const Limits & limits);
 
-/// Highest square of the speed that velocity limits allow at station i; infinite where the path does not
-/// move.
-double highest_square_speed(const Joints & d1, const Limits & limits);
+/// Highest square of the speed that velocity limits, and the path itself, allow at a station; infinite where
+/// nothing limits it.
+double highest_square_speed(const Grid & grid, std::size_t station, const Limits & limits);
 
 }  // namespace ur_ros_rtde::trajectory

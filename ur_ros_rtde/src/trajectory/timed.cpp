@@ -6,7 +6,6 @@
 
 #include "trajectory/motion.hpp"
 #include "trajectory/spline.hpp"
-#include "ur_ros_rtde/trajectory/plan.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
@@ -24,11 +23,11 @@ Status check_times(const std::vector<double> & times)
   if (times.empty()) {
     return failure(ErrorCode::invalid_goal, "times is empty: give at least one waypoint");
   }
-  if (times.size() > max_waypoints) {
+  if (times.size() > max_timed_waypoints) {
     return failure(ErrorCode::invalid_goal,
                    fmt::format("times has {} entries, at most {} are possible: send the "
                                "trajectory in parts",
-                               times.size(), max_waypoints));
+                               times.size(), max_timed_waypoints));
   }
   if (!(std::abs(times[0]) < 1e-9)) {
     return failure(
@@ -108,48 +107,48 @@ Status check_rest(std::vector<Joints> & velocities)
   return {};
 }
 
-Expected<Knots> read_knots(const TimedWaypoints & waypoints)
+// What is given; lists that are not stay empty.
+Expected<Knots> read_given(const TimedWaypoints & waypoints)
 {
   if (auto status = check_times(waypoints.times); !status) {
     return tl::unexpected(status.error());
+  }
+  if (waypoints.velocities.empty() && !waypoints.accelerations.empty()) {
+    return failure(ErrorCode::invalid_goal,
+                   "accelerations are given without velocities: give both or neither");
   }
   const std::size_t count = waypoints.times.size();
   Knots knots;
   for (std::size_t i = 0; i + 1 < count; ++i) {
     knots.widths.push_back(waypoints.times[i + 1] - waypoints.times[i]);
   }
-  auto positions = read_list("positions", waypoints.positions, count);
-  if (!positions) {
-    return tl::unexpected(positions.error());
+  const auto read = [count](std::string_view field, const auto & list, std::vector<Joints> & into) -> Status {
+    return read_list(field, list, count).map([&into](std::vector<Joints> values) {
+      into = std::move(values);
+    });
+  };
+  Status status = read("positions", waypoints.positions, knots.q);
+  if (status && !waypoints.velocities.empty()) {
+    status =
+        read("velocities", waypoints.velocities, knots.v).and_then([&knots] { return check_rest(knots.v); });
   }
-  knots.q = std::move(*positions);
-  if (waypoints.velocities.empty()) {
-    if (!waypoints.accelerations.empty()) {
-      return failure(ErrorCode::invalid_goal,
-                     "accelerations are given without velocities: give both or neither");
+  if (status && !waypoints.accelerations.empty()) {
+    status = read("accelerations", waypoints.accelerations, knots.a);
+  }
+  return status.map([&knots] { return std::move(knots); });
+}
+
+Expected<Knots> read_knots(const TimedWaypoints & waypoints)
+{
+  return read_given(waypoints).map([](Knots knots) {
+    if (knots.v.empty()) {
+      knots.v = spline_velocities(knots);
     }
-    knots.v = spline_velocities(knots);
-    knots.a = estimated_accelerations(knots);
+    if (knots.a.empty()) {
+      knots.a = estimated_accelerations(knots);
+    }
     return knots;
-  }
-  auto velocities = read_list("velocities", waypoints.velocities, count);
-  if (!velocities) {
-    return tl::unexpected(velocities.error());
-  }
-  knots.v = std::move(*velocities);
-  if (auto status = check_rest(knots.v); !status) {
-    return tl::unexpected(status.error());
-  }
-  if (waypoints.accelerations.empty()) {
-    knots.a = estimated_accelerations(knots);
-    return knots;
-  }
-  auto accelerations = read_list("accelerations", waypoints.accelerations, count);
-  if (!accelerations) {
-    return tl::unexpected(accelerations.error());
-  }
-  knots.a = std::move(*accelerations);
-  return knots;
+  });
 }
 
 PathPiece quintic(const Knots & knots, std::size_t i, double start)
@@ -191,6 +190,42 @@ Trajectory make_trajectory(const Knots & knots, const std::vector<double> & time
 }
 
 }  // namespace
+
+Status check_timed(const TimedWaypoints & waypoints, const Limits & limits)
+{
+  if (auto status = check(limits); !status) {
+    return status;
+  }
+  const auto knots = read_given(waypoints);
+  if (!knots) {
+    return tl::unexpected(knots.error());
+  }
+  for (std::size_t i = 0; i < knots->q.size(); ++i) {
+    for (int j = 0; j < joint_count; ++j) {
+      if (knots->q[i][j] < limits.position_min[j] || knots->q[i][j] > limits.position_max[j]) {
+        return failure(
+            ErrorCode::invalid_goal,
+            fmt::format("positions[{}] of {} is {:.6g} rad, outside its limits {:.6g} to {:.6g} rad", i,
+                        joint_name(j), knots->q[i][j], limits.position_min[j], limits.position_max[j]));
+      }
+    }
+  }
+  return {};
+}
+
+void begin_at(TimedWaypoints & waypoints, const Joints & start)
+{
+  if (waypoints.times.empty() || !(waypoints.times.front() >= shortest_step)) {
+    return;
+  }
+  waypoints.times.insert(waypoints.times.begin(), 0.0);
+  waypoints.positions.insert(waypoints.positions.begin(), {start.begin(), start.end()});
+  for (auto * list : {&waypoints.velocities, &waypoints.accelerations}) {
+    if (!list->empty()) {
+      list->insert(list->begin(), std::vector<double>(joint_count, 0.0));
+    }
+  }
+}
 
 Expected<Trajectory> plan_timed(const TimedWaypoints & waypoints, const Limits & limits)
 {

@@ -42,6 +42,17 @@ struct Peak {
   Joints before_ = Joints::Zero();
 };
 
+// Of what the path itself allows; the speed is a polynomial in time, so a few moments will do.
+double largest_share_of_speed(const Motion & motion, const TimePiece & piece, int inner)
+{
+  const double top = motion.path->pieces[piece.piece].top_speed;
+  double largest = 0.0;
+  for (int k = 0; std::isfinite(top) && k <= inner + 1; ++k) {
+    largest = std::max(largest, piece.at(piece.start + piece.duration * k / (inner + 1)).v / top);
+  }
+  return largest;
+}
+
 int steps_of(const TimePiece & piece, double step)
 {
   return std::max(6, static_cast<int>(std::ceil(piece.duration / step)));
@@ -100,7 +111,7 @@ PieceUse use_of(const Motion & motion, const TimePiece & piece, const Limits & l
     acceleration.add(point.acceleration.abs() / limits.acceleration);
     jerk.add(point.jerk.abs() / limits.jerk);
   }
-  return {velocity.largest, acceleration.largest, jerk.largest};
+  return {velocity.largest, acceleration.largest, jerk.largest, largest_share_of_speed(motion, piece, inner)};
 }
 
 Utilisation largest_use(const Motion & motion, std::size_t begin, const Limits & limits)
@@ -109,7 +120,7 @@ Utilisation largest_use(const Motion & motion, std::size_t begin, const Limits &
   for (std::size_t k = begin; k < motion.timing.size(); ++k) {
     const PieceUse use =
         use_of(motion, motion.timing[k], limits, steps_of(motion.timing[k], verification_step) - 1);
-    largest.velocity = std::max(largest.velocity, use.velocity.maxCoeff());
+    largest.velocity = std::max({largest.velocity, use.velocity.maxCoeff(), use.speed});
     largest.acceleration = std::max(largest.acceleration, use.acceleration.maxCoeff());
     largest.jerk = std::max(largest.jerk, use.jerk.maxCoeff());
   }
@@ -131,6 +142,10 @@ std::optional<Excess> first_excess(const Motion & motion, const Limits & limits,
       if (auto excess = excess_at(point, limits, time)) {
         return excess;
       }
+      const double share = piece.at(time).v / motion.path->pieces[piece.piece].top_speed;
+      if (share > 1.0 + rounding) {
+        return Excess{Quantity::path_speed, 0, time, share, 1.0};
+      }
     }
   }
   return std::nullopt;
@@ -138,6 +153,10 @@ std::optional<Excess> first_excess(const Motion & motion, const Limits & limits,
 
 std::string describe(const Excess & excess, std::size_t waypoint)
 {
+  if (excess.quantity == Quantity::path_speed) {
+    return fmt::format("speed along the path is {:.6g} of what is allowed at {:.4f} s (after waypoint {})",
+                       excess.value, excess.time, waypoint);
+  }
   static constexpr std::array names{"position", "velocity", "acceleration", "jerk"};
   static constexpr std::array units{"rad", "rad/s", "rad/s^2", "rad/s^3"};
   const auto index = static_cast<std::size_t>(excess.quantity);

@@ -7,7 +7,7 @@
 
 namespace ur_ros_rtde::trajectory {
 
-enum class Quantity { position, velocity, acceleration, jerk };
+enum class Quantity { position, velocity, acceleration, jerk, path_speed };
 
 /// Room for rounding, in what is planned and in what looks at it.
 inline Limits slightly_within(Limits limits, double margin = 1e-4)
@@ -18,7 +18,7 @@ inline Limits slightly_within(Limits limits, double margin = 1e-4)
   return limits;
 }
 
-/// A value of one joint at one time that is beyond its limit.
+/// A value of one joint at one time that is beyond its limit; of path_speed: the share of what is allowed.
 struct Excess {
   Quantity quantity = Quantity::position;
   int joint = 0;
@@ -29,6 +29,7 @@ struct Excess {
 /// between them.
 struct PieceUse {
   Joints velocity, acceleration, jerk;  // largest |value| / limit of each joint
+  double speed = 0.0;                   // of the path's own top speed
 };
 
 inline constexpr double verification_step = 0.004;  // s

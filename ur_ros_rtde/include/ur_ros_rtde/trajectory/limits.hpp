@@ -20,7 +20,7 @@ inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 /// Defaults where the caller gives none: Universal Robots publishes no acceleration limit of the joints;
 /// these are gentle enough for every model with its rated payload, as MoveIt's configurations are.
 inline constexpr double default_acceleration = 5.0;  ///< rad/s^2
-inline constexpr double default_jerk = 50.0;         ///< rad/s^3: full acceleration after 0.1 s
+inline constexpr double default_jerk = 100.0;        ///< rad/s^3: full acceleration after 0.05 s
 
 /// What each joint may do. Positions lie within [position_min, position_max]; the others are symmetric.
 struct Limits {

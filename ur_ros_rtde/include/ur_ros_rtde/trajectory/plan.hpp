@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "ur_ros_rtde/trajectory/trajectory.hpp"
@@ -19,7 +20,12 @@ struct PathOptions {
   double corner_angle = 0.35;
   /// Of the fastest motion. 0 < fraction <= 1: velocities times fraction, accelerations times its square.
   double speed_fraction = 1.0;
+  /// Ends the planning (canceled) between two parts of the path, when it is not wanted any more.
+  std::stop_token stop = {};
 };
+
+/// What plan_path refuses without planning, in some milliseconds: count, sizes, numbers, positions, limits.
+Status check_path(std::span<const std::vector<double>> waypoints, const Limits & limits);
 
 /// The fastest motion through joint positions without times, at rest at both ends, that keeps `limits` in
 /// every joint at every moment: it is verified before it is returned. Without jerk limits

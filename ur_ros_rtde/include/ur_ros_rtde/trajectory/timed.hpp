@@ -6,6 +6,8 @@
 
 namespace ur_ros_rtde::trajectory {
 
+inline constexpr std::size_t max_timed_waypoints = 100000;
+
 /// A motion whose times are given. All lists that are not empty have the same length.
 struct TimedWaypoints {
   std::vector<double> times;                       ///< s, any spacing, strictly increasing, the first is 0
@@ -13,6 +15,14 @@ struct TimedWaypoints {
   std::vector<std::vector<double>> velocities;     ///< rad/s; may be empty. Zero at both ends
   std::vector<std::vector<double>> accelerations;  ///< rad/s^2; may be empty; only together with velocities
 };
+
+/// What plan_timed refuses without planning: lengths, numbers, times, positions beyond their limits, ends in
+/// motion.
+Status check_timed(const TimedWaypoints & waypoints, const Limits & limits);
+
+/// A first time above 0 is how long the way from `start`, at rest, to the first position may take: puts
+/// `start` in front, at 0.
+void begin_at(TimedWaypoints & waypoints, const Joints & start);
 
 /// The trajectory that is at each position at its time, or the reason why it cannot be: a limit that it would
 /// exceed (the first one, with joint, time, waypoint, value and limit), or bad input. Times are never

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <algorithm>
+
+#include "streaming/execute.hpp"
+#include "streaming/goal_fields.hpp"
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+
+/// What the commands of the group `trajectory` share: the arm's limits, and the fields that their goals,
+/// results and feedback have in common.
+template <typename A>
+class TrajectoryCommand : public Command<A> {
+ public:
+  using Goal = typename A::Goal;
+  using Run = GoalRun<A>;
+
+  void start_action_server(CommandHost & host, const std::string & name) override
+  {
+    host_ = &host;
+    Command<A>::start_action_server(host, name);
+  }
+
+ protected:
+  CommandHost & host() const { return *host_; }
+  const ArmLimits & arm() const { return host_->limits(); }
+
+  /// All but plan, start_tolerance and approach.
+  Execution execution(const Goal & goal, Run & run) const;
+  /// With the result's own fields.
+  static Outcome finish(const Executed & executed, Run & run)
+  {
+    run.result().max_tracking_error = executed.max_tracking_error;
+    return executed.outcome;
+  }
+
+ private:
+  CommandHost * host_ = nullptr;
+};
+
+template <typename A>
+Execution TrajectoryCommand<A>::execution(const Goal & goal, Run & run) const
+{
+  Execution execution;
+  execution.servo = {goal.lookahead_time, goal.gain, goal.max_tracking_error,
+                     [this] { return host_->takeover_stop().has_value(); }};
+  execution.planned = [&run](const trajectory::Trajectory & plan) {
+    run.result().duration = plan.duration();
+  };
+  execution.watch = [&run](const trajectory::Trajectory & plan, const StreamState & state) {
+    run.progress(plan.progress(state.time));
+    const std::size_t next = plan.waypoint_at(state.time) + 1;
+    run.feedback().waypoint = static_cast<std::uint32_t>(std::min(next, plan.waypoint_count() - 1));
+    run.feedback().tracking_error = state.tracking_error;
+    run.feedback().time_left = plan.duration() - state.time;
+    return Status();
+  };
+  return execution;
+}
+
+}  // namespace ur_ros_rtde

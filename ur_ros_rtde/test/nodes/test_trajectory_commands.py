@@ -1,0 +1,273 @@
+"""execute_trajectory and execute_parametrized_trajectory, on the simulator."""
+
+import math
+
+import pytest
+from action_msgs.msg import GoalStatus
+from sensor_msgs.msg import JointState
+from conftest import make_ready
+from support import HOME, JOINTS, seconds, wait_for
+from trajectories import Watcher, distance_to_line, point, timed, turned, wave, waypoints
+
+from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
+from ur_ros_rtde_msgs.msg import ErrorCode
+
+NAN = math.nan
+LAG = 0.03  # lookahead_time: as stiff as it gets
+
+
+def send(robot, positions, **fields):
+    return robot.send(ExecuteTrajectory, "execute_trajectory", waypoints=waypoints(*positions), **fields)
+
+
+def send_timed(robot, trajectory, **fields):
+    return robot.send(ExecuteParametrizedTrajectory, "execute_parametrized_trajectory", trajectory=trajectory, **fields)
+
+
+def nearest(states, positions):
+    return min(max(abs(a - b) for a, b in zip(state.position, positions)) for state in states)
+
+
+def wait_for_progress(goal, progress):
+    wait_for(lambda: any(f.motion.progress > progress for f in goal.feedback), 20.0, f"a progress of {progress}")
+
+
+def test_it_passes_through_every_waypoint(robot):
+    corners = [HOME, turned(0.3), turned(0.3, 0.2), turned(0.1, 0.1, -0.2), HOME]
+    states = robot.listen(JointState, "joint_states")
+    goal = send(robot, corners, lookahead_time=LAG)
+    result = goal.succeeded()
+    assert result.final_state.joint_positions == pytest.approx(HOME, abs=0.005)
+    for corner in corners:
+        assert nearest(states, corner) < 0.01
+    assert 0.0 < result.max_tracking_error < 0.02
+
+
+def test_it_takes_as_long_as_planned_and_says_where_it_is(robot, simulator):
+    begin = simulator.state()["timestamp"]
+    goal = send(robot, wave(200), lookahead_time=LAG)
+    result = goal.succeeded()
+    took = simulator.state()["timestamp"] - begin
+    assert result.duration < took < result.duration + 2.0
+    feedback = goal.feedback
+    progress = [f.motion.progress for f in feedback]
+    indices = [f.waypoint for f in feedback]
+    assert progress == sorted(progress) and indices == sorted(indices) and indices[-1] <= 199
+    assert all(abs(f.tracking_error) < 0.05 for f in feedback)
+    left = [f.time_left for f in feedback[1:]]
+    assert left == sorted(left, reverse=True) and left[0] <= result.duration
+
+
+def test_a_speed_fraction_slows_it_down(robot):
+    fast = send(robot, [HOME, turned(0.3), HOME]).succeeded()
+    slow = send(robot, [HOME, turned(0.3), HOME], speed_fraction=0.5).succeeded()
+    assert slow.duration == pytest.approx(2.0 * fast.duration, rel=1e-6)
+
+
+def test_limits_of_a_joint_count(robot, simulator):
+    watcher = Watcher(simulator)
+    watcher.look()
+    watcher.speeds.clear()
+    goal = send(robot, [HOME, turned(0.5)], max_velocity=[0.2] * 6, max_acceleration=[1.0] * 6, max_jerk=[10.0] * 6)
+    wait_for(lambda: watcher.look() and goal._future.done() and goal.end(20.0), 20.0, "the end")
+    assert goal.succeeded().duration == pytest.approx(0.5 / 0.2 + 0.2 / 1.0 + 1.0 / 10.0, abs=0.01)
+    assert max(watcher.look()) < 0.2 * 1.03
+
+
+def test_corners_are_blended_within_the_tolerance(robot):
+    corner = turned(0.4)
+    states = robot.listen(JointState, "joint_states")
+    through = send(robot, [HOME, corner, turned(0.4, 0.3)], lookahead_time=LAG).succeeded()
+    send(robot, [turned(0.4, 0.3), HOME], lookahead_time=LAG).succeeded()
+    states.clear()
+    round_it = send(robot, [HOME, corner, turned(0.4, 0.3)], blend_tolerance=0.05, lookahead_time=LAG).succeeded()
+    assert round_it.duration < 0.95 * through.duration
+    assert nearest(states, corner) < 0.05 + 0.005
+
+
+def test_elsewhere_it_is_refused_or_approaches(robot):
+    elsewhere = [turned(0.2), turned(0.3)]
+    refused = send(robot, elsewhere)
+    assert not refused.accepted
+    message = robot.refusal(refused).message
+    assert "shoulder_pan_joint" in message and "0.2000 rad away" in message and "start_tolerance is 0.0100" in message
+    send(robot, elsewhere, approach=True).succeeded()
+    send(robot, [turned(0.3003), turned(0.25)]).succeeded()  # the last bit needs no approach
+    send(robot, [HOME], approach=True).succeeded()
+
+
+def test_one_waypoint_repetitions_and_reversals_are_no_problem(robot):
+    send(robot, [HOME]).succeeded()
+    send(robot, [HOME, HOME, HOME]).succeeded()
+    send(robot, [HOME, turned(0.1), turned(0.1), HOME, turned(1e-7), turned(0.1), HOME]).succeeded()
+
+
+def test_ten_thousand_waypoints_are_planned_while_the_node_goes_on(robot):
+    goal = send(robot, wave(10000, 0.6), lookahead_time=LAG)
+    assert goal.accepted
+    assert not send(robot, [HOME]).accepted  # answered meanwhile: busy
+    result = goal.succeeded(60.0)
+    assert result.duration > 1.0
+
+
+@pytest.mark.parametrize("slider", [1.0, 0.3])
+def test_a_cancel_decelerates_along_the_path(robot, simulator, slider):
+    simulator.control("speed_slider", fraction=slider)
+    end = turned(1.0, -0.4, 0.5)
+    states = robot.listen(JointState, "joint_states")
+    goal = send(robot, [HOME, end], lookahead_time=LAG)
+    wait_for_progress(goal, 0.2)
+    goal.cancel()
+    status, result = goal.end(10.0)
+    simulator.control("speed_slider", fraction=1.0)
+    assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
+    assert 0.0 < result.final_state.joint_positions[0] < 0.95
+    assert max(distance_to_line(state.position, HOME, end) for state in states) < 0.005
+    assert simulator.state()["at_rest"]
+
+
+def test_the_speed_slider_slows_the_time_axis(robot, simulator):
+    path = [HOME, turned(0.5), HOME]
+    begin = simulator.state()["timestamp"]
+    planned = send(robot, path, lookahead_time=LAG).succeeded().duration
+    whole = simulator.state()["timestamp"] - begin
+    simulator.control("speed_slider", fraction=0.5)
+    begin = simulator.state()["timestamp"]
+    send(robot, path, lookahead_time=LAG).succeeded()
+    slow = simulator.state()["timestamp"] - begin
+    simulator.control("speed_slider", fraction=1.0)
+    assert slow - whole == pytest.approx(planned, rel=0.2)
+
+
+def test_a_host_that_is_late_skips_nothing(robot, simulator, driver):
+    watcher = Watcher(simulator)
+    watcher.look()
+    watcher.speeds.clear()
+    goal = send(robot, [HOME, turned(1.2), HOME], max_velocity=[0.5] * 6, lookahead_time=LAG)
+    for progress in (0.1, 0.3, 0.6):
+        wait_for_progress(goal, progress)
+        cycle = simulator.state()["cycle"]
+        driver.pause()
+        wait_for(lambda: simulator.state()["cycle"] > cycle + 30, 10.0, "30 cycles without the host")
+        driver.go_on()
+        watcher.look()
+    wait_for(lambda: watcher.look() and goal._future.done() and goal.end(20.0), 20.0, "the end")
+    goal.succeeded()
+    assert max(watcher.look()) < 0.5 * 1.05
+
+
+def test_too_far_behind_it_ends_and_stops(robot, simulator):
+    goal = send(robot, [HOME, turned(1.0)], max_tracking_error=0.0005, gain=100.0, lookahead_time=0.2)
+    status, result = goal.end(20.0)
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED
+    assert "behind the trajectory" in result.message and "0.000" in result.message
+    wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
+
+
+def test_a_protective_stop_ends_it(robot, simulator):
+    goal = send(robot, [HOME, turned(1.0)])
+    wait_for_progress(goal, 0.1)
+    simulator.control("protective_stop")
+    _, result = goal.end(10.0)
+    assert result.error_code == ErrorCode.PROTECTIVE_STOP
+    simulator.control("unlock_protective_stop")
+    make_ready(robot)
+
+
+BAD_PATHS = [
+    ({"waypoints": []}, "waypoints is empty"),
+    ({"waypoints": waypoints(HOME, HOME[:5])}, "waypoint 1 has 5 values"),
+    ({"waypoints": waypoints(HOME, turned(NAN))}, "waypoint 1 of shoulder_pan_joint is nan"),
+    ({"waypoints": waypoints(HOME, turned(0.0, -5.0))}, "waypoint 1: position of shoulder_lift_joint is -6.57"),
+    ({"max_velocity": [1.0] * 5}, "max_velocity has 5 values"),
+    ({"max_velocity": [1.0, 0.0, 1.0, 1.0, 1.0, 1.0]}, "max_velocity[1] (shoulder_lift_joint) is 0"),
+    ({"max_velocity": [3.0] * 6}, "max_velocity[0] (shoulder_pan_joint) is 3 rad/s"),
+    ({"max_acceleration": [-1.0] * 6}, "max_acceleration[0] (shoulder_pan_joint) is -1"),
+    ({"max_acceleration": [41.0] * 6}, "at most 40"),
+    ({"max_jerk": [math.inf] * 6}, "max_jerk[0]"),
+    ({"max_jerk": [1.0] * 5 + [NAN]}, "max_jerk[5] (wrist_3_joint) is nan"),
+    ({"speed_fraction": 0.0}, "speed_fraction is 0"),
+    ({"blend_tolerance": -0.1}, "blend_tolerance is -0.1"),
+    ({"start_tolerance": 0.0}, "start_tolerance is 0"),
+    ({"lookahead_time": 0.01}, "lookahead_time is 0.01"),
+    ({"gain": NAN}, "gain is nan"),
+    ({"max_tracking_error": 0.0}, "max_tracking_error is 0"),
+    ({"waypoints": waypoints(*[HOME] * 10001)}, "10001 entries"),
+]
+
+
+@pytest.mark.parametrize("fields, what", BAD_PATHS, ids=[what for _, what in BAD_PATHS])
+def test_a_bad_path_is_refused_with_the_reason(driver, client, fields, what):
+    goal = client.send(ExecuteTrajectory, "execute_trajectory", **{"waypoints": waypoints(HOME), **fields})
+    assert not goal.accepted
+    refusal = client.refusal(goal)
+    assert refusal.error_code == ErrorCode.INVALID_GOAL and what in refusal.message, refusal.message
+
+
+def arc(times, size=0.3):
+    """A motion from rest to rest, with its derivatives."""
+    end = times[-1]
+    w = math.pi / end
+    return [point(t, turned(0.5 * size * (1 - math.cos(w * t))), [0.5 * size * w * math.sin(w * t)] + [0.0] * 5,
+                  [0.5 * size * w * w * math.cos(w * t)] + [0.0] * 5) for t in times]
+
+
+def test_given_times_are_kept(robot):
+    times = [0.0, 0.4, 0.5, 1.3, 2.0]
+    points = arc(times)
+    points[-1].velocities = [0.0] * 6
+    states = robot.listen(JointState, "joint_states")
+    goal = send_timed(robot, timed(*points), lookahead_time=LAG, gain=2000.0, max_jerk=[1e5] * 6)
+    assert goal.succeeded().duration == pytest.approx(2.0)
+    moving = [s for s in states if abs(s.position[0] - HOME[0]) > 0.002]
+    # From when the arm has left home to each position as planned: differences of the controller's stamps.
+    crossed = {}
+    for part, wanted in ((0.25, 2.0 / 3.0), (0.5, 1.0), (0.75, 4.0 / 3.0)):
+        crossed[wanted] = seconds(next(s for s in moving if s.position[0] - HOME[0] >= 0.3 * part).header.stamp)
+    assert crossed[1.0] - crossed[2.0 / 3.0] == pytest.approx(1.0 / 3.0, abs=0.05)
+    assert crossed[4.0 / 3.0] - crossed[1.0] == pytest.approx(1.0 / 3.0, abs=0.05)
+
+
+def test_positions_alone_and_names_in_any_order(robot):
+    names = [JOINTS[i] for i in (5, 3, 1, 0, 2, 4)]
+    sort = lambda positions: [positions[i] for i in (5, 3, 1, 0, 2, 4)]  # noqa: E731
+    target = turned(0.2, 0.1, 0.0, -0.1)
+    send_timed(robot, timed(point(0.0, sort(HOME)), point(1.0, sort(turned(0.1, 0.05, 0.0, -0.05))), point(2.0, sort(target)),
+                            names=names)).succeeded()
+    result = send_timed(robot, timed(point(2.0, target), point(2.5, target), names=[])).succeeded()
+    assert result.final_state.joint_positions == pytest.approx(target, abs=0.005)
+
+
+def test_too_fast_is_ended_with_the_first_limit_before_anything_moves(robot, simulator):
+    before = simulator.state()["target"]["q"] if "q" in simulator.state()["target"] else None
+    goal = send_timed(robot, timed(point(0.0, HOME), point(0.1, turned(0.5)), point(0.5, turned(0.5))))
+    status, result = goal.end(10.0)
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.INVALID_GOAL
+    assert "velocity of shoulder_pan_joint" in result.message or "acceleration of shoulder_pan_joint" in result.message
+    assert "its limit" in result.message
+    if before is not None:
+        assert simulator.state()["target"]["q"] == before
+
+
+BAD_TIMES = [
+    (timed(point(0.0, HOME)), "trajectory.points has 1 points"),
+    (timed(), "trajectory.points has 0 points"),
+    (timed(point(0.0, HOME), point(0.0, HOME)), "times[1] is 0"),
+    (timed(point(0.0, HOME), point(2.0, HOME), point(1.0, HOME)), "times[2] is 1"),
+    (timed(point(0.0, HOME), point(1.0, HOME[:4])), "points[1].positions has 4 values"),
+    (timed(point(0.0, HOME), point(1.0, turned(NAN))), "positions[1] of shoulder_pan_joint is nan"),
+    (timed(point(0.0, HOME), point(1.0, turned(7.0))), "positions[1] of shoulder_pan_joint is 7"),
+    (timed(point(0.0, HOME, [0.0] * 6), point(1.0, HOME)), "points[1].velocities has 0 values"),
+    (timed(point(0.0, HOME, [0.0] * 6), point(1.0, HOME, [0.5] * 6)), "begins and ends at rest"),
+    (timed(point(0.0, HOME), point(1.0, HOME), names=JOINTS[:5]), "joint_names has 5 names"),
+    (timed(point(0.0, HOME), point(1.0, HOME), names=[*JOINTS[:5], "elbow"]), "joint_names has no wrist_3_joint"),
+    (timed(point(0.0, HOME), point(1.0, HOME), names=["a_" + JOINTS[0], *["b_" + n for n in JOINTS[1:]]]), "several arms"),
+]
+
+
+@pytest.mark.parametrize("trajectory, what", BAD_TIMES, ids=[what for _, what in BAD_TIMES])
+def test_a_bad_timing_is_refused_with_the_reason(driver, client, trajectory, what):
+    goal = client.send(ExecuteParametrizedTrajectory, "execute_parametrized_trajectory", trajectory=trajectory)
+    assert not goal.accepted
+    refusal = client.refusal(goal)
+    assert refusal.error_code == ErrorCode.INVALID_GOAL and what in refusal.message, refusal.message
