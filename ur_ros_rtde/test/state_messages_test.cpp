@@ -17,6 +17,9 @@ Sample sample()
   made.actual_qd = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
   made.actual_current_as_torque = {10, 20, 30, 40, 50, 60};
   made.actual_tcp_pose = {0.4, -0.2, 0.3, 0.0, pi, 0.0};  // the tool looks down
+  made.actual_tcp_speed = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+  made.target_q = {6, 5, 4, 3, 2, 1};
+  made.target_moment = {1, 2, 3, 4, 5, 6};
   made.actual_tcp_force = {1.0, 2.0, 5.0, 0.1, 0.2, 0.5};
   made.digital_inputs = (1U << 3U) | (1U << 17U);
   made.digital_outputs = 1U << 8U;
@@ -33,6 +36,8 @@ TEST(StateMessages, are_all_of_one_stamp)
   EXPECT_EQ(messages.tcp_pose.header.stamp, messages.joint_state.header.stamp);
   EXPECT_EQ(messages.wrench.header.stamp, messages.joint_state.header.stamp);
   EXPECT_EQ(messages.io_state.header.stamp, messages.joint_state.header.stamp);
+  EXPECT_EQ(messages.tcp_speed.header.stamp, messages.joint_state.header.stamp);
+  EXPECT_EQ(messages.target_joint_state.header.stamp, messages.joint_state.header.stamp);
 }
 
 TEST(StateMessages, name_joints_and_frames_with_the_prefix)
@@ -64,6 +69,18 @@ TEST(StateMessages, give_the_wrench_in_the_orientation_of_the_tool)
   EXPECT_NEAR(wrench.force.y, 2.0, 1e-12);
   EXPECT_NEAR(wrench.force.z, -5.0, 1e-12);
   EXPECT_NEAR(wrench.torque.z, -0.5, 1e-12);
+}
+
+TEST(StateMessages, tell_the_speed_of_the_tcp_in_the_base_frame_and_what_is_aimed_at)
+{
+  StateMessages messages("left_");
+  messages.fill(sample());
+  EXPECT_EQ(messages.tcp_speed.header.frame_id, "left_base");
+  EXPECT_DOUBLE_EQ(messages.tcp_speed.twist.linear.z, 0.3);
+  EXPECT_DOUBLE_EQ(messages.tcp_speed.twist.angular.x, 0.4);
+  EXPECT_EQ(messages.target_joint_state.name, messages.joint_state.name);
+  EXPECT_EQ(messages.target_joint_state.position, (std::vector<double>{6, 5, 4, 3, 2, 1}));
+  EXPECT_EQ(messages.target_joint_state.effort, (std::vector<double>{1, 2, 3, 4, 5, 6}));
 }
 
 TEST(StateMessages, show_each_pin_by_its_number)

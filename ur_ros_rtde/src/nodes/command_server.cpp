@@ -13,7 +13,11 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
 {
   const CommandServerParameters parameters = declare_command_server(*node_);
   choice_ = declare_plugin_choice(*node_);
+  driver_state_ = std::make_unique<DriverStateTopic>(*node_);
   robot_ = std::make_unique<Robot>(parameters.robot, log_into(node_->logger()));
+  robot_->on_status([this](const RobotStatus & status) { driver_state_->publish(status); });
+  diagnostics_ = std::make_unique<Diagnostics>(*node_, parameters.robot.address,
+                                               [this] { return diagnose_driver(*robot_); });
   host_ = std::make_unique<CommandHost>(
       *node_, *robot_, CommandHost::Options{parameters.preempt_when_busy, parameters.limits});
 }

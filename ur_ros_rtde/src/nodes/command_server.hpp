@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "nodes/diagnostics.hpp"
+#include "nodes/driver_state.hpp"
 #include "nodes/parameters.hpp"
 #include "nodes/server.hpp"
 #include "plugins/plugin_set.hpp"
@@ -24,8 +26,10 @@ class CommandServer : public Server {
  private:
   PluginSet<CommandPlugin, CommandHost> plugins_;  // its libraries go last
   rcl_cxx::Node::SharedPtr node_;
+  std::unique_ptr<DriverStateTopic> driver_state_;  // outlives the robot, which calls it
   std::unique_ptr<Robot> robot_;
   std::unique_ptr<CommandHost> host_;
+  std::unique_ptr<Diagnostics> diagnostics_;
   PluginChoice choice_;
 };
 

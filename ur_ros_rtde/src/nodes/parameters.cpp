@@ -7,6 +7,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "ur_ros_rtde/rtde_outputs.hpp"
+
 namespace ur_ros_rtde {
 namespace {
 rcl_cxx::ParameterOptions described(std::string description)
@@ -55,6 +57,19 @@ std::string declare_tf_prefix(rcl_cxx::Node & node)
         fmt::format("parameter tf_prefix is \"{}\", it may have letters, digits, '_' and '/'", prefix));
   }
   return prefix;
+}
+
+std::vector<std::string> declare_robot_state_fields(rcl_cxx::Node & node)
+{
+  auto options = described("RTDE outputs to publish on robot_state, by name; none: no such topic");
+  options.additional_constraints =
+      "names of the table \"Robot controller outputs\" in UR's \"Real-Time Data Exchange (RTDE) Guide\"";
+  const auto fields = node.declare_parameter("robot_state_fields", std::vector<std::string>{}, options);
+  if (const Status known = check_rtde_outputs(fields); !known) {
+    throw rcl_cxx::ParameterError("robot_state_fields",
+                                  "parameter robot_state_fields: " + known.error().message);
+  }
+  return fields;
 }
 
 ArmLimits declare_arm_limits(rcl_cxx::Node & node)
@@ -114,6 +129,7 @@ RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node)
                                "Quality of service of the published state, by name");
   options.frequency = declare_number(node, "rtde_frequency", 500.0, 1.0, 500.0,
                                      "Hz, of the published state; a CB3 controller gives at most 125");
+  options.fields = declare_robot_state_fields(node);
   return options;
 }
 

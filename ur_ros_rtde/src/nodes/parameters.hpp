@@ -25,7 +25,7 @@ struct PluginChoice {
 };
 PluginChoice declare_plugin_choice(rcl_cxx::Node & node);
 
-/// tf_prefix, qos, rtde_frequency
+/// tf_prefix, qos, rtde_frequency, robot_state_fields
 RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node);
 
 struct CommandServerParameters {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "nodes/node_log.hpp"
+
 namespace ur_ros_rtde {
 namespace {
 using Clock = std::chrono::steady_clock;
@@ -12,16 +14,36 @@ namespace srv = ur_ros_rtde_msgs::srv;
 /// A package that has not come after this many periods, and at least this time, does not come.
 constexpr double missing_periods = 5.0;
 constexpr double least_age = 0.5;  // s
+
+template <typename M>
+void publish_if_heard(rcl_cxx::Publisher<M> & publisher, const M & message)
+{
+  if (publisher.subscription_count() > 0) {
+    publisher.publish(message);
+  }
+}
 }  // namespace
 
-RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options)
-    : node_(node), options_(std::move(options)), newest_(options_.tf_prefix), shown_(newest_.joint_state)
+RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, Source source)
+    : node_(node),
+      options_(std::move(options)),
+      source_(std::move(source)),
+      newest_(options_.tf_prefix),
+      shown_(newest_.joint_state),
+      latched_(node),
+      field_topics_(node,
+                    {options_.address, options_.tf_prefix, options_.qos, options_.frequency, options_.fields},
+                    log_into(node.logger())),
+      recording_(node, options_.address),
+      diagnostics_(node, options_.address, [this] { return diagnose(); })
 {
   const rcl_cxx::QoS qos = rcl_cxx::QoS::from_name(options_.qos);
   joint_states_ = node_.create_publisher<sensor_msgs::msg::JointState>("joint_states", qos);
   tcp_pose_ = node_.create_publisher<geometry_msgs::msg::PoseStamped>("tcp_pose", qos);
   wrench_ = node_.create_publisher<geometry_msgs::msg::WrenchStamped>("wrench", qos);
   io_state_ = node_.create_publisher<ur_ros_rtde_msgs::msg::IOState>("io_state", qos);
+  tcp_speed_ = node_.create_publisher<geometry_msgs::msg::TwistStamped>("tcp_speed", qos);
+  target_joint_states_ = node_.create_publisher<sensor_msgs::msg::JointState>("target_joint_states", qos);
 
   get_joint_state_ = serve<srv::GetJointState>("get_joint_state", &StateMessages::joint_state,
                                                &srv::GetJointState::Response::joint_state);
@@ -57,11 +79,11 @@ typename rcl_cxx::Service<S>::SharedPtr RobotStateReceiver::serve(const std::str
 
 Status RobotStateReceiver::freshness() const
 {
-  const auto problem = [this] { return options_.link_problem ? options_.link_problem() : std::string(); };
+  const auto problem = [this] { return source_().link.error.message; };
   if (!received_) {
     return failure(ErrorCode::link_lost, fmt::format("the robot has not told its state yet: {}", problem()));
   }
-  const double age = std::chrono::duration<double>(Clock::now() - *received_).count();
+  const double age = std::chrono::duration<double>(Clock::now() - received_->received).count();
   if (age > std::max(least_age, missing_periods / options_.frequency)) {
     return failure(
         ErrorCode::link_lost,
@@ -74,6 +96,9 @@ bool RobotStateReceiver::is_due(const Sample & sample)
 {
   const double period = 1.0 / options_.frequency;
   const double cycle = 0.001;  // half of the shortest control cycle
+  if (sample.link != link_) {
+    agreed_frequency_ = source_().frequency;
+  }
   if (sample.link != link_ || sample.controller_time > next_due_ + period) {
     link_ = sample.link;
     next_due_ = sample.controller_time;
@@ -88,10 +113,12 @@ bool RobotStateReceiver::is_due(const Sample & sample)
 void RobotStateReceiver::publish(const Sample & sample)
 {
   const bool due = is_due(sample);
+  packages_.add(sample, agreed_frequency_);
+  latched_.publish(sample);
   {
     const std::lock_guard lock(mutex_);
     newest_.fill(sample);
-    received_ = sample.received;
+    received_ = sample;
   }
   if (!due) {
     return;
@@ -106,6 +133,23 @@ void RobotStateReceiver::publish(const Sample & sample)
   tcp_pose_->publish(newest_.tcp_pose);
   wrench_->publish(newest_.wrench);
   io_state_->publish(newest_.io_state);
+  publish_if_heard(*tcp_speed_, newest_.tcp_speed);
+  publish_if_heard(*target_joint_states_, newest_.target_joint_state);
+}
+
+std::vector<Diagnosis> RobotStateReceiver::diagnose()
+{
+  const StateSource source = source_();
+  if (!source.link.connected) {
+    latched_.publish_no_controller();
+  }
+  std::optional<Sample> sample;
+  {
+    const std::lock_guard lock(mutex_);
+    sample = received_;
+  }
+  return {diagnose_link(source, options_.address), diagnose_packages(source, packages_.report()),
+          diagnose_robot(source, sample)};
 }
 
 void RobotStateReceiver::set_faking(const std_srvs::srv::SetBool::Request & request,

@@ -12,8 +12,13 @@
 #include <ur_ros_rtde_msgs/srv/get_joint_state.hpp>
 #include <ur_ros_rtde_msgs/srv/get_tcp_pose.hpp>
 #include <ur_ros_rtde_msgs/srv/get_wrench.hpp>
+#include <vector>
 
 #include "nodes/fake_joints.hpp"
+#include "nodes/field_topics.hpp"
+#include "nodes/latched_state.hpp"
+#include "nodes/recording_services.hpp"
+#include "nodes/state_diagnostics.hpp"
 #include "nodes/state_messages.hpp"
 #include "ur_ros_rtde/error.hpp"
 #include "ur_ros_rtde/sample.hpp"
@@ -30,11 +35,13 @@ class RobotStateReceiver {
     std::string qos = "reliable";
     /// Hz
     double frequency = 500.0;
-    /// What is the matter with the link, for the answers when nothing comes.
-    std::function<std::string()> link_problem;
+    /// RTDE outputs for robot_state.
+    std::vector<std::string> fields;
+    std::string address;
   };
+  using Source = std::function<StateSource()>;
 
-  RobotStateReceiver(rcl_cxx::Node & node, Options options);
+  RobotStateReceiver(rcl_cxx::Node & node, Options options, Source source);
 
   /// In the thread that receives; allocates nothing.
   void publish(const Sample & sample);
@@ -48,27 +55,37 @@ class RobotStateReceiver {
   void set_faking(const std_srvs::srv::SetBool::Request & request,
                   std_srvs::srv::SetBool::Response & response);
   void take_fake(const sensor_msgs::msg::JointState & message);
+  std::vector<Diagnosis> diagnose();
 
   rcl_cxx::Node & node_;
   const Options options_;
+  const Source source_;
   mutable std::mutex mutex_;
   StateMessages newest_;  ///< always the real state
-  std::optional<std::chrono::steady_clock::time_point> received_;
+  std::optional<Sample> received_;
   std::uint32_t link_ = 0;
   double next_due_ = 0.0;
   FakeJoints fake_;
   sensor_msgs::msg::JointState shown_;
+  LatchedState latched_;
+  PackageStatistics packages_;
+  double agreed_frequency_ = 0.0;  ///< of link_
 
   rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr joint_states_;
   rcl_cxx::Publisher<geometry_msgs::msg::PoseStamped>::SharedPtr tcp_pose_;
   rcl_cxx::Publisher<geometry_msgs::msg::WrenchStamped>::SharedPtr wrench_;
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::IOState>::SharedPtr io_state_;
+  rcl_cxx::Publisher<geometry_msgs::msg::TwistStamped>::SharedPtr tcp_speed_;
+  rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr target_joint_states_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetJointState>::SharedPtr get_joint_state_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetTcpPose>::SharedPtr get_tcp_pose_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetWrench>::SharedPtr get_wrench_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetIOState>::SharedPtr get_io_state_;
   rcl_cxx::Service<std_srvs::srv::SetBool>::SharedPtr publish_fake_;
   rcl_cxx::Subscription<sensor_msgs::msg::JointState>::SharedPtr fake_joint_states_;
+  FieldTopics field_topics_;
+  RecordingServices recording_;
+  Diagnostics diagnostics_;
 };
 
 }  // namespace ur_ros_rtde

@@ -6,7 +6,7 @@
 #include "ur_ros_rtde/conversions.hpp"
 
 namespace ur_ros_rtde {
-namespace {
+
 builtin_interfaces::msg::Time to_time(std::chrono::system_clock::time_point stamp)
 {
   const auto since = std::chrono::duration_cast<std::chrono::nanoseconds>(stamp.time_since_epoch());
@@ -16,7 +16,6 @@ builtin_interfaces::msg::Time to_time(std::chrono::system_clock::time_point stam
   time.nanosec = static_cast<std::uint32_t>((since - seconds).count());
   return time;
 }
-}  // namespace
 
 StateMessages::StateMessages(const std::string & tf_prefix)
 {
@@ -26,7 +25,9 @@ StateMessages::StateMessages(const std::string & tf_prefix)
   joint_state.position.resize(6);
   joint_state.velocity.resize(6);
   joint_state.effort.resize(6);
+  target_joint_state = joint_state;
   tcp_pose.header.frame_id = tf_prefix + "base";
+  tcp_speed.header.frame_id = tf_prefix + "base";
   wrench.header.frame_id = tf_prefix + "tool0_controller";
 }
 
@@ -34,6 +35,8 @@ void StateMessages::fill(const Sample & sample)
 {
   const auto stamp = to_time(sample.stamp);
   joint_state.header.stamp = stamp;
+  target_joint_state.header.stamp = stamp;
+  tcp_speed.header.stamp = stamp;
   tcp_pose.header.stamp = stamp;
   wrench.header.stamp = stamp;
   io_state.header.stamp = stamp;
@@ -43,6 +46,21 @@ void StateMessages::fill(const Sample & sample)
   std::copy(sample.actual_qd.begin(), sample.actual_qd.end(), joint_state.velocity.begin());
   std::copy(efforts.begin(), efforts.end(), joint_state.effort.begin());
 
+  std::copy(sample.target_q.begin(), sample.target_q.end(), target_joint_state.position.begin());
+  std::copy(sample.target_qd.begin(), sample.target_qd.end(), target_joint_state.velocity.begin());
+  std::copy(sample.target_moment.begin(), sample.target_moment.end(), target_joint_state.effort.begin());
+  fill_tool(sample);
+
+  for (std::size_t pin = 0; pin < io_state.digital_inputs.size(); ++pin) {
+    io_state.digital_inputs[pin] = ((sample.digital_inputs >> pin) & 1U) != 0;
+    io_state.digital_outputs[pin] = ((sample.digital_outputs >> pin) & 1U) != 0;
+  }
+  io_state.analog_inputs = sample.analog_inputs;
+  io_state.analog_outputs = sample.analog_outputs;
+}
+
+void StateMessages::fill_tool(const Sample & sample)
+{
   const Vector6 & pose = sample.actual_tcp_pose;
   const Quaternion q = quaternion(rotation(pose));
   tcp_pose.pose.position.x = pose[0];
@@ -53,6 +71,14 @@ void StateMessages::fill(const Sample & sample)
   tcp_pose.pose.orientation.z = q.z;
   tcp_pose.pose.orientation.w = q.w;
 
+  const Vector6 & speed = sample.actual_tcp_speed;
+  tcp_speed.twist.linear.x = speed[0];
+  tcp_speed.twist.linear.y = speed[1];
+  tcp_speed.twist.linear.z = speed[2];
+  tcp_speed.twist.angular.x = speed[3];
+  tcp_speed.twist.angular.y = speed[4];
+  tcp_speed.twist.angular.z = speed[5];
+
   const Vector6 force = tcp_frame_force(sample);
   wrench.wrench.force.x = force[0];
   wrench.wrench.force.y = force[1];
@@ -60,13 +86,6 @@ void StateMessages::fill(const Sample & sample)
   wrench.wrench.torque.x = force[3];
   wrench.wrench.torque.y = force[4];
   wrench.wrench.torque.z = force[5];
-
-  for (std::size_t pin = 0; pin < io_state.digital_inputs.size(); ++pin) {
-    io_state.digital_inputs[pin] = ((sample.digital_inputs >> pin) & 1U) != 0;
-    io_state.digital_outputs[pin] = ((sample.digital_outputs >> pin) & 1U) != 0;
-  }
-  io_state.analog_inputs = sample.analog_inputs;
-  io_state.analog_outputs = sample.analog_outputs;
 }
 
 }  // namespace ur_ros_rtde

@@ -16,20 +16,28 @@ StateServer::StateServer(const rcl_cxx::Context::SharedPtr & context)
   source.address = declare_robot_ip(*node_);
   source.silence_limit = declare_silence_limit(*node_);
   RobotStateReceiver::Options options = declare_state_options(*node_);
+  options.address = source.address;
   source.frequency = options.frequency;
   source_ = std::make_unique<StateReceiver>(source, log_into(node_->logger()));
-  options.link_problem = [this] { return source_->link().error.message; };
-  receiver_ = std::make_unique<RobotStateReceiver>(*node_, options);
+  receiver_ = std::make_unique<RobotStateReceiver>(*node_, options, [this] {
+    return StateSource{source_->link(), source_->version(), source_->frequency()};
+  });
   source_->on_sample([this](const Sample & sample) { receiver_->publish(sample); });
 }
 
 SharedStateServer::SharedStateServer(const rcl_cxx::Context::SharedPtr & context, Robot & robot)
     : node_(std::make_shared<rcl_cxx::Node>(context, node_name))
 {
-  declare_robot_ip(*node_);
+  const std::string address = declare_robot_ip(*node_);
   RobotStateReceiver::Options options = declare_state_options(*node_);
-  options.link_problem = [&robot] { return robot.status().message; };
-  receiver_ = std::make_unique<RobotStateReceiver>(*node_, options);
+  options.address = address;
+  receiver_ = std::make_unique<RobotStateReceiver>(*node_, options, [&robot] {
+    const RobotStatus status = robot.status();
+    const auto version = robot.version();
+    return StateSource{{status.state != RobotState::disconnected, {status.cause, status.message}},
+                       version,
+                       version ? version->frequency() : 0.0};
+  });
   robot.on_sample([this](const Sample & sample) { receiver_->publish(sample); });
 }
 
