@@ -20,6 +20,8 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
                                                [this] { return diagnose_driver(*robot_); });
   host_ = std::make_unique<CommandHost>(
       *node_, *robot_, CommandHost::Options{parameters.preempt_when_busy, parameters.limits});
+  teleoperation_ =
+      std::make_unique<Teleoperation>(*host_, parameters.teleoperation, log_into(node_->logger()));
 }
 
 CommandServer::~CommandServer()
@@ -44,6 +46,7 @@ void CommandServer::start()
 
 std::vector<std::string> CommandServer::close()
 {
+  teleoperation_->close();
   return host_->goals().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
 }
 

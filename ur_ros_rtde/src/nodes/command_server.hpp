@@ -7,12 +7,13 @@
 #include "nodes/parameters.hpp"
 #include "nodes/server.hpp"
 #include "plugins/plugin_set.hpp"
+#include "teleoperation/teleoperation.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
 #include "ur_ros_rtde/robot.hpp"
 
 namespace ur_ros_rtde {
 
-/// The node command_server: the robot, and the command plugins.
+/// The node command_server: the robot, the command plugins, and the streams.
 class CommandServer : public Server {
  public:
   explicit CommandServer(const rcl_cxx::Context::SharedPtr & context);
@@ -29,6 +30,7 @@ class CommandServer : public Server {
   std::unique_ptr<DriverStateTopic> driver_state_;  // outlives the robot, which calls it
   std::unique_ptr<Robot> robot_;
   std::unique_ptr<CommandHost> host_;
+  std::unique_ptr<Teleoperation> teleoperation_;
   std::unique_ptr<Diagnostics> diagnostics_;
   PluginChoice choice_;
 };

@@ -89,6 +89,32 @@ ArmLimits declare_arm_limits(rcl_cxx::Node & node)
                              "ur5e, ur10e, …, or empty for any",
                              model));
 }
+
+TeleoperationOptions declare_teleoperation(rcl_cxx::Node & node, const ArmLimits & limits)
+{
+  TeleoperationOptions options;
+  options.limits = limits;
+  options.timeout =
+      declare_number(node, "stream_timeout", options.timeout, 0.02, 1.0,
+                     "s: a stream of servo_joint, servo_pose or twist ends, and the arm decelerates, when no "
+                     "message has come for so long; the next one begins after such a pause");
+  options.max_joint_jump = declare_number(node, "stream_max_joint_jump", options.max_joint_jump, 0.001, 1.0,
+                                          "rad: how far a target of a stream may be from where the arm is "
+                                          "sent, a joint or the rotation of a pose");
+  options.max_linear_jump =
+      declare_number(node, "stream_max_linear_jump", options.max_linear_jump, 0.001, 1.0,
+                     "m: how far a pose of a stream may be from where the TCP is sent");
+  options.acceleration = declare_number(node, "stream_acceleration", options.acceleration, 0.01, 150.0,
+                                        "m/s^2: with which the TCP gets to the velocity of a twist");
+  options.deceleration = declare_number(node, "stream_deceleration", options.deceleration, 0.1, 40.0,
+                                        "rad/s^2 and m/s^2: of the stop at the end of a stream");
+  options.lookahead_time =
+      declare_number(node, "stream_lookahead_time", options.lookahead_time, 0.03, 0.2,
+                     "s: how far ahead the controller smooths servo_joint and servo_pose; small is stiff");
+  options.gain = declare_number(node, "stream_gain", options.gain, 100.0, 2000.0,
+                                "of the controller's position control in servo_joint and servo_pose");
+  return options;
+}
 }  // namespace
 
 std::string declare_robot_ip(rcl_cxx::Node & node)
@@ -161,6 +187,7 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
                      "What happens to a motion that comes while another runs: it is refused, or the other is "
                      "stopped for it") == "preempt";
   parameters.limits = declare_arm_limits(node);
+  parameters.teleoperation = declare_teleoperation(node, parameters.limits);
   return parameters;
 }
 

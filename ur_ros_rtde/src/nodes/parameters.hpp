@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "nodes/robot_state_receiver.hpp"
+#include "teleoperation/options.hpp"
 #include "ur_ros_rtde/arm_limits.hpp"
 #include "ur_ros_rtde/robot.hpp"
 
@@ -32,6 +33,7 @@ struct CommandServerParameters {
   RobotOptions robot;
   bool preempt_when_busy = false;
   ArmLimits limits;
+  TeleoperationOptions teleoperation;
 };
 CommandServerParameters declare_command_server(rcl_cxx::Node & node);
 

@@ -1,0 +1,207 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "teleoperation/follower.hpp"
+#include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde/conversions.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+constexpr double periods_ahead = 1.5;
+constexpr double highest_linear_speed = 3.0;    // m/s
+constexpr double highest_angular_speed = 3.14;  // rad/s
+
+std::vector<double> to_ur(const Vector6 & values)
+{
+  return {values.begin(), values.end()};
+}
+
+/// The time of a straight line, as a share of which has passed.
+class Line {
+ public:
+  /// Takes `duration` s.
+  void begin(double duration)
+  {
+    duration_ = duration;
+    passed_ = 0.0;
+  }
+  double advance(double elapsed)
+  {
+    passed_ = std::min(passed_ + elapsed, duration_);
+    return duration_ > 0.0 ? passed_ / duration_ : 1.0;
+  }
+
+ private:
+  double duration_ = 0.0;
+  double passed_ = 0.0;
+};
+
+/// The controller finds the joints for a pose or a twist by itself, and close to a singularity they may have
+/// to be quick.
+Status joints_slow_enough(const Sample & sample, const ArmLimits & limits)
+{
+  for (std::size_t i = 0; i < limits.velocity.size(); ++i) {
+    if (!(std::abs(sample.target_qd[i]) <= limits.velocity[i])) {
+      return failure(ErrorCode::safety_violation,
+                     fmt::format("{} would turn at {:.2f} rad/s, its limit is {:.2f} rad/s: the arm is close "
+                                 "to a singularity, or the stream too fast",
+                                 joint_names()[i], std::abs(sample.target_qd[i]), limits.velocity[i]));
+    }
+  }
+  return {};
+}
+
+class JointFollower : public Follower {
+ public:
+  explicit JointFollower(const TeleoperationOptions & options) : options_(options) {}
+
+  void begin(const Sample & sample, double cycle) override
+  {
+    cycle_ = cycle;
+    from_ = to_ = at_ = sample.actual_q;
+    line_.begin(0.0);
+  }
+
+  Status aim(const StreamTarget & target, double period) override
+  {
+    double duration = periods_ahead * period;
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      const double jump = std::abs(target.values[i] - at_[i]);
+      if (!(jump <= options_.max_joint_jump)) {
+        return failure(
+            ErrorCode::invalid_goal,
+            fmt::format("the target of {} is {:.3f} rad from where it is sent, it may be {:.3f} rad: "
+                        "begin where the arm is, and move on more slowly",
+                        joint_names()[i], jump, options_.max_joint_jump));
+      }
+      duration = std::max(duration, jump / options_.limits.velocity[i]);
+    }
+    from_ = at_;
+    to_ = target.values;
+    line_.begin(duration);
+    return {};
+  }
+
+  Status advance(Run & run, const Sample &, double elapsed) override
+  {
+    const double share = line_.advance(elapsed);
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      at_[i] = from_[i] + share * (to_[i] - from_[i]);
+    }
+    run.control()->servoJ(to_ur(at_), 0.0, 0.0, cycle_, options_.lookahead_time, options_.gain);
+    return {};
+  }
+
+ private:
+  const TeleoperationOptions options_;
+  double cycle_ = 0.0;
+  Vector6 from_{}, to_{}, at_{};
+  Line line_;
+};
+
+class PoseFollower : public Follower {
+ public:
+  explicit PoseFollower(const TeleoperationOptions & options) : options_(options) {}
+
+  void begin(const Sample & sample, double cycle) override
+  {
+    cycle_ = cycle;
+    from_ = at_ = sample.actual_tcp_pose;
+    way_ = {};
+    line_.begin(0.0);
+  }
+
+  Status aim(const StreamTarget & target, double period) override
+  {
+    const Vector6 way = pose_trans(pose_inverse(at_), target.values);
+    const double distance = std::hypot(way[0], way[1], way[2]);
+    const double angle = std::hypot(way[3], way[4], way[5]);
+    if (!(distance <= options_.max_linear_jump && angle <= options_.max_joint_jump)) {
+      return failure(
+          ErrorCode::invalid_goal,
+          fmt::format("the target is {:.3f} m and {:.3f} rad from where the TCP is sent, it may be "
+                      "{:.3f} m and {:.3f} rad: begin where the arm is, and move on more slowly",
+                      distance, angle, options_.max_linear_jump, options_.max_joint_jump));
+    }
+    from_ = at_;
+    way_ = way;
+    line_.begin(
+        std::max({periods_ahead * period, distance / highest_linear_speed, angle / highest_angular_speed}));
+    return {};
+  }
+
+  Status advance(Run & run, const Sample & sample, double elapsed) override
+  {
+    if (Status slow = joints_slow_enough(sample, options_.limits); !slow) {
+      return slow;
+    }
+    Vector6 part = way_;
+    const double share = line_.advance(elapsed);
+    for (double & value : part) {
+      value *= share;
+    }
+    at_ = pose_trans(from_, part);
+    run.control()->servoL(to_ur(at_), 0.0, 0.0, cycle_, options_.lookahead_time, options_.gain);
+    return {};
+  }
+
+ private:
+  const TeleoperationOptions options_;
+  double cycle_ = 0.0;
+  Vector6 from_{}, at_{};
+  Vector6 way_{};  ///< in the frame of from_
+  Line line_;
+};
+
+class TwistFollower : public Follower {
+ public:
+  explicit TwistFollower(const TeleoperationOptions & options) : options_(options) {}
+
+  void begin(const Sample &, double) override { target_ = {}; }
+
+  Status aim(const StreamTarget & target, double) override
+  {
+    target_ = target;
+    return {};
+  }
+
+  Status advance(Run & run, const Sample & sample, double) override
+  {
+    if (Status slow = joints_slow_enough(sample, options_.limits); !slow) {
+      return slow;
+    }
+    Vector6 twist = target_.values;
+    if (target_.in_tool_frame) {
+      const Vector3 orientation = rotation(sample.actual_tcp_pose);
+      const Vector3 linear = rotate(orientation, {twist[0], twist[1], twist[2]});
+      const Vector3 angular = rotate(orientation, {twist[3], twist[4], twist[5]});
+      twist = {linear[0], linear[1], linear[2], angular[0], angular[1], angular[2]};
+    }
+    run.control()->speedL(to_ur(twist), options_.acceleration, 0.0);
+    return {};
+  }
+
+ private:
+  const TeleoperationOptions options_;
+  StreamTarget target_{};
+};
+}  // namespace
+
+std::unique_ptr<Follower> follow_joints(const TeleoperationOptions & options)
+{
+  return std::make_unique<JointFollower>(options);
+}
+
+std::unique_ptr<Follower> follow_poses(const TeleoperationOptions & options)
+{
+  return std::make_unique<PoseFollower>(options);
+}
+
+std::unique_ptr<Follower> follow_twists(const TeleoperationOptions & options)
+{
+  return std::make_unique<TwistFollower>(options);
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,79 @@
+#include "teleoperation/stream_messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ur_ros_rtde/check.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+/// What a check found, or the target.
+Expected<StreamTarget> checked(const Check & check, const std::vector<double> & values, bool in_tool = false)
+{
+  if (!check.ok()) {
+    return tl::unexpected(*check.error());
+  }
+  StreamTarget target;
+  std::copy_n(values.begin(), target.values.size(), target.values.begin());
+  target.in_tool_frame = in_tool;
+  return target;
+}
+
+Status only_in(const std::string & frame_id, std::string_view frames, bool known)
+{
+  return known ? Status()
+               : failure(ErrorCode::invalid_goal,
+                         fmt::format("header.frame_id is \"{}\", it may be {}", frame_id, frames));
+}
+}  // namespace
+
+Expected<StreamTarget> joint_target(const sensor_msgs::msg::JointState & message, const ArmLimits & limits)
+{
+  Check check;
+  check.that(message.position.size() == message.name.size(),
+             fmt::format("it has {} names and {} positions, it needs one position a name",
+                         message.name.size(), message.position.size()));
+  std::vector<double> positions(joint_names().size());
+  for (std::size_t i = 0; i < positions.size() && check.ok(); ++i) {
+    const auto named = [&](const std::string & name) { return name.ends_with(joint_names()[i]); };
+    const auto found = std::find_if(message.name.begin(), message.name.end(), named);
+    check.that(found != message.name.end(), fmt::format("it has no {}", joint_names()[i]));
+    if (!check.ok()) {
+      break;
+    }
+    positions[i] = message.position[static_cast<std::size_t>(found - message.name.begin())];
+    check.that(std::find_if(found + 1, message.name.end(), named) == message.name.end(),
+               fmt::format("it has {} twice", joint_names()[i]));
+  }
+  check.each_joint("position", positions, limits.position, "rad");
+  return checked(check, positions);
+}
+
+Expected<StreamTarget> pose_target(const geometry_msgs::msg::PoseStamped & message)
+{
+  const std::string & frame = message.header.frame_id;
+  if (Status known = only_in(frame, "base", frame.ends_with("base")); !known) {
+    return tl::unexpected(known.error());
+  }
+  Check check;
+  check.pose("pose", message.pose);
+  return checked(check, check.ok() ? to_ur(message.pose) : std::vector<double>(6));
+}
+
+Expected<StreamTarget> twist_target(const geometry_msgs::msg::TwistStamped & message)
+{
+  const std::string & frame = message.header.frame_id;
+  const bool in_tool = frame.ends_with("tool0_controller");
+  if (Status known = only_in(frame, "base or tool0_controller", in_tool || frame.ends_with("base")); !known) {
+    return tl::unexpected(known.error());
+  }
+  const std::vector<double> values = to_ur(message.twist);
+  Check check;
+  if (std::any_of(values.begin(), values.end(), [](double value) { return value != 0.0; })) {
+    check.twist("twist", message.twist);
+  }
+  return checked(check, values, in_tool);
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,34 @@
+#include "teleoperation/teleoperation.hpp"
+
+#include "teleoperation/stream_messages.hpp"
+
+namespace ur_ros_rtde {
+
+Teleoperation::Teleoperation(CommandHost & host, const TeleoperationOptions & options,
+                             const LogFunction & log)
+    : joints_(host.node().resolve_topic_name("servo_joint"), host, options, follow_joints(options), log),
+      poses_(host.node().resolve_topic_name("servo_pose"), host, options, follow_poses(options), log),
+      twists_(host.node().resolve_topic_name("twist"), host, options, follow_twists(options), log)
+{
+  // One that was lost is not worth waiting for.
+  const auto newest_only = rcl_cxx::QoS::best_effort(1);
+  joint_messages_ = host.node().create_subscription<sensor_msgs::msg::JointState>(
+      "servo_joint", newest_only, [this, limits = options.limits](const sensor_msgs::msg::JointState & m) {
+        joints_.put(joint_target(m, limits));
+      });
+  pose_messages_ = host.node().create_subscription<geometry_msgs::msg::PoseStamped>(
+      "servo_pose", newest_only,
+      [this](const geometry_msgs::msg::PoseStamped & m) { poses_.put(pose_target(m)); });
+  twist_messages_ = host.node().create_subscription<geometry_msgs::msg::TwistStamped>(
+      "twist", newest_only,
+      [this](const geometry_msgs::msg::TwistStamped & m) { twists_.put(twist_target(m)); });
+}
+
+void Teleoperation::close()
+{
+  joints_.close();
+  poses_.close();
+  twists_.close();
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <geometry_msgs/msg/pose_stamped.hpp>
+#include <geometry_msgs/msg/twist_stamped.hpp>
+#include <memory>
+#include <rcl_cxx/node.hpp>
+#include <sensor_msgs/msg/joint_state.hpp>
+
+#include "teleoperation/stream.hpp"
+
+namespace ur_ros_rtde {
+
+/// The topics servo_joint, servo_pose and twist of a node.
+class Teleoperation {
+ public:
+  Teleoperation(CommandHost & host, const TeleoperationOptions & options, const LogFunction & log);
+  /// Ends what lives; no stream begins afterwards.
+  void close();
+
+ private:
+  Stream joints_, poses_, twists_;
+  rcl_cxx::Subscription<sensor_msgs::msg::JointState>::SharedPtr joint_messages_;
+  rcl_cxx::Subscription<geometry_msgs::msg::PoseStamped>::SharedPtr pose_messages_;
+  rcl_cxx::Subscription<geometry_msgs::msg::TwistStamped>::SharedPtr twist_messages_;
+};
+
+}  // namespace ur_ros_rtde

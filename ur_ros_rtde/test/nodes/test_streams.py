@@ -1,0 +1,259 @@
+"""Streams: the topics servo_joint, servo_pose and twist."""
+
+import math
+import threading
+import time
+
+import pytest
+from geometry_msgs.msg import PoseStamped, TwistStamped
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import JointState
+from support import HOME, JOINTS, node, seconds, wait_for
+
+from ur_ros_rtde_msgs.action import MoveJ, Stop
+from ur_ros_rtde_msgs.msg import ErrorCode
+from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
+
+TIMEOUT = 0.2  # s; other tests beside this one make its publisher late
+
+
+@pytest.fixture(scope="module")
+def driver(simulator):
+    driver = node("driver", simulator.address, "ur_type:=ur10e", f"stream_timeout:={TIMEOUT}")
+    yield driver
+    driver.end()
+    print(driver.output())
+
+
+class Publisher(threading.Thread):
+    """Publishes `message(t)` at a rate, t s after the beginning, until `duration` has passed or it is ended."""
+
+    def __init__(self, client, kind, topic, message, rate=50.0, duration=60.0):
+        super().__init__(daemon=True)
+        self._message, self._period, self._duration = message, 1.0 / rate, duration
+        self._publisher = client.node.create_publisher(kind, topic, QoSProfile(depth=1))
+        self._over = threading.Event()
+        wait_for(lambda: self._publisher.get_subscription_count() > 0, 10.0, f"somebody who listens to {topic}")
+        self.start()
+
+    def run(self):
+        begin = time.monotonic()
+        number = 0
+        while not self._over.is_set() and time.monotonic() - begin < self._duration:
+            self._publisher.publish(self._message(time.monotonic() - begin))
+            number += 1
+            self._over.wait(max(0.0, begin + number * self._period - time.monotonic()))
+
+    def end(self):
+        self._over.set()
+        self.join(5.0)
+        return time.time()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.end()
+
+
+def joint_message(positions, names=JOINTS):
+    return JointState(name=list(names), position=[float(p) for p in positions])
+
+
+def turned(angle, joint=0):
+    return [position + (angle if i == joint else 0.0) for i, position in enumerate(HOME)]
+
+
+def state(client):
+    return client.call(GetJointState, "get_joint_state").joint_state
+
+
+def speed_now(client):
+    return max(map(abs, state(client).velocity))
+
+
+def pose_now(client):
+    return client.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose
+
+
+def lines(driver, text):
+    return [line for line in list(driver.lines) if text in line]
+
+
+def pause():
+    time.sleep(TIMEOUT + 0.1)
+
+
+@pytest.fixture(autouse=True)
+def no_stream_before():
+    pause()
+
+
+def twist_message(frame, z=0.0):
+    message = TwistStamped()
+    message.header.frame_id = frame
+    message.twist.linear.z = z
+    return message
+
+
+def swing(t):
+    """0.3 rad and back in 4 s, at rest at both ends: at most 0.24 rad/s and 0.37 rad/s^2."""
+    return 0.15 * (1.0 - math.cos(2.0 * math.pi * min(t, 4.0) / 4.0))
+
+
+def test_servo_joint_at_50_hz_moves_smoothly(robot):
+    states = robot.listen(JointState, "joint_states")
+    with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(turned(swing(t)))) as publisher:
+        publisher.join(4.5)
+    recorded = list(states)
+    positions = [s.position[0] for s in recorded]
+    assert max(positions) == pytest.approx(0.3, abs=0.01)
+    assert positions[-1] == pytest.approx(0.0, abs=0.02)
+    # Accelerations over 50 ms, of which a target that is held between messages would make ten times as much.
+    window = 0.05
+    accelerations, later = [], 0
+    for i, s in enumerate(recorded):
+        while later < len(recorded) and seconds(recorded[later].header.stamp) < seconds(s.header.stamp) + window:
+            later += 1
+        if later == len(recorded):
+            break
+        gap = seconds(recorded[later].header.stamp) - seconds(s.header.stamp)
+        if gap < 1.5 * window:
+            accelerations.append((recorded[later].velocity[0] - s.velocity[0]) / gap)
+    assert len(accelerations) > 200
+    assert max(map(abs, accelerations)) < 3.0 * 0.37
+
+
+def test_names_may_come_in_any_order_and_with_others(robot):
+    names = [*reversed(JOINTS), "finger_joint"]
+    target = turned(0.1, joint=5)
+    values = [*reversed(target), 0.3]
+    ramp = lambda t: [h + min(t / 0.5, 1.0) * (v - h) for h, v in zip([*reversed(HOME), 0.3], values)]
+    with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(ramp(t), names)):
+        wait_for(lambda: list(state(robot).position) == pytest.approx(target, abs=0.005), 5.0, "the arm to be there")
+
+
+def test_a_stream_that_stops_is_followed_by_deceleration_within_the_timeout(robot):
+    states = robot.listen(JointState, "joint_states")
+    publisher = Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", -0.1), rate=100.0)
+    wait_for(lambda: states and max(map(abs, states[-1].velocity)) > 0.1, 10.0, "the arm to move")
+    time.sleep(0.3)
+    publisher.end()
+    last = seconds(state(robot).header.stamp)
+    wait_for(lambda: speed_now(robot) < 0.005, 5.0, "the arm to stand still")
+    recorded = [(seconds(s.header.stamp), max(map(abs, s.velocity))) for s in list(states)]
+    rest = next(stamp for stamp, speed in recorded if stamp > last and speed < 0.01)
+    assert rest - last < TIMEOUT + 0.1 / 2.0 + 0.15, "timeout, 0.1 m/s at 2 m/s^2, and some reserve"
+    top = max(speed for _, speed in recorded)
+    full = max(stamp for stamp, speed in recorded if stamp < rest and speed > 0.9 * top)
+    assert rest - full > 0.02, "it stopped dead instead of decelerating in 50 ms"
+    pause()
+    robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
+
+
+@pytest.mark.parametrize("frame, sign", [("base", 1.0), ("tool0_controller", -1.0), ("left_base", 1.0)])
+def test_twist_moves_along_the_axes_of_its_frame(robot, frame, sign):
+    start = pose_now(robot).position
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message(frame, 0.05)):
+        wait_for(lambda: abs(pose_now(robot).position.z - start.z) > 0.03, 5.0, "the TCP to move")
+    end = pose_now(robot).position
+    assert sign * (end.z - start.z) > 0.02 and math.hypot(end.x - start.x, end.y - start.y) < 0.003
+
+
+def test_servo_pose_follows_a_line(robot):
+    start = pose_now(robot)
+
+    def message(t):
+        target = PoseStamped()
+        target.header.frame_id = "base"
+        target.pose.orientation = start.orientation
+        for axis in "xyz":
+            setattr(target.pose.position, axis, getattr(start.position, axis))
+        target.pose.position.y += 0.1 * min(t, 1.5) / 1.5
+        return target
+
+    with Publisher(robot, PoseStamped, "servo_pose", message):
+        wait_for(lambda: pose_now(robot).position.y - start.position.y == pytest.approx(0.1, abs=0.003), 6.0, "the pose")
+    end = pose_now(robot).position
+    assert (end.x, end.z) == pytest.approx((start.position.x, start.position.z), abs=0.003)
+
+
+def test_a_goal_is_refused_while_a_stream_lives_and_accepted_after_it(robot):
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base")):
+        wait_for(lambda: not (goal := robot.send(MoveJ, "move_j", joint_positions=HOME)).accepted and
+                 robot.refusal(goal).error_code == ErrorCode.BUSY and "/twist" in robot.refusal(goal).message,
+                 5.0, "a refusal that names the stream")
+    pause()
+    robot.send(MoveJ, "move_j", joint_positions=HOME).succeeded()
+
+
+def test_a_stream_is_refused_while_a_goal_moves_the_arm(robot, driver):
+    goal = robot.send(MoveJ, "move_j", joint_positions=turned(0.8), speed=0.4)
+    wait_for(lambda: speed_now(robot) > 0.1, 10.0, "the arm to move")
+    before = len(lines(driver, "/twist: the stream moves nothing"))
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.1)):
+        goal.succeeded()
+        assert list(state(robot).position) == pytest.approx(turned(0.8), abs=0.005)
+        time.sleep(0.5)
+        assert speed_now(robot) < 0.01, "it must not begin in the middle of a stream"
+    assert len(lines(driver, "/twist: the stream moves nothing")) == before + 1, "logged once"
+
+
+def test_stop_ends_a_stream_until_there_has_been_a_pause(robot):
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", -0.05)):
+        wait_for(lambda: speed_now(robot) > 0.03, 10.0, "the arm to move")
+        result = robot.send(Stop, "stop").succeeded()
+        assert "/twist" in result.message
+        time.sleep(3.0 * TIMEOUT)
+        assert speed_now(robot) < 0.01
+    pause()
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.05)):
+        wait_for(lambda: speed_now(robot) > 0.03, 10.0, "the arm to move by a fresh stream")
+
+
+BAD = [
+    ("a jump", JointState, "servo_joint", lambda t: joint_message(turned(0.5 if t > 0.5 else 0.0)), "shoulder_pan_joint"),
+    ("a missing joint", JointState, "servo_joint", lambda t: joint_message(HOME[:5], JOINTS[:5]), "wrist_3_joint"),
+    ("NaN", JointState, "servo_joint", lambda t: joint_message(turned(math.nan if t > 0.5 else 0.0)), "nan"),
+    ("a frame", TwistStamped, "twist", lambda t: twist_message("camera"), "camera"),
+    ("too fast", TwistStamped, "twist", lambda t: twist_message("base", 3.5 if t > 0.5 else 0.0), "3.5"),
+]
+
+
+@pytest.mark.parametrize("kind, topic, message, text", [case[1:] for case in BAD], ids=[case[0] for case in BAD])
+def test_a_target_that_cannot_be_ends_the_stream_and_is_logged_once(robot, driver, kind, topic, message, text):
+    told = f"/{topic}: the stream moves nothing"
+    before = len(lines(driver, told))
+    with Publisher(robot, kind, topic, message):
+        wait_for(lambda: len(lines(driver, told)) > before, 5.0, "the reason in the log")
+        time.sleep(0.5)
+        assert speed_now(robot) < 0.01
+    assert len(lines(driver, told)) == before + 1 and text in lines(driver, told)[-1]
+    assert state(robot).position[0] == pytest.approx(0.0, abs=0.02)
+
+
+def test_a_protective_stop_ends_a_stream_which_does_not_go_on_by_itself(robot, simulator):
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", -0.05)):
+        wait_for(lambda: speed_now(robot) > 0.03, 10.0, "the arm to move")
+        simulator.control("protective_stop", reason="a test")
+        wait_for(lambda: speed_now(robot) < 0.01, 5.0, "the arm to stand still")
+        wait_for(lambda: _unlocked(simulator), 10.0, "the protective stop to be unlocked")
+        wait_for(lambda: simulator.state()["program"]["state"] == "PLAYING", 10.0, "the control program to be back")
+        time.sleep(0.5)
+        assert speed_now(robot) < 0.01
+
+
+def _unlocked(simulator):
+    try:
+        simulator.control("unlock_protective_stop")
+        return True
+    except AssertionError:
+        return False
+
+
+def test_a_message_becomes_a_command_within_some_cycles(robot, driver):
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base"), rate=200.0, duration=2.0) as publisher:
+        publisher.join(5.0)
+    line = driver.wait_for_output("ms from message to command")
+    mean = float(lines(driver, "ms from message to command")[-1].split(" messages, ")[1].split(" ms")[0])
+    assert mean < 20.0, line

@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "teleoperation/follower.hpp"
+#include "teleoperation/stream_messages.hpp"
+#include "ur_ros_rtde/check.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+sensor_msgs::msg::JointState joints(double first)
+{
+  sensor_msgs::msg::JointState message;
+  message.name = {joint_names().begin(), joint_names().end()};
+  message.position = {first, 0.1, 0.2, 0.3, 0.4, 0.5};
+  return message;
+}
+
+std::string why_not(const Expected<StreamTarget> & target)
+{
+  return target ? "" : target.error().message;
+}
+
+TEST(AJointMessage, is_read_by_name_whatever_its_order_prefix_and_company)
+{
+  auto message = joints(0.7);
+  std::reverse(message.name.begin(), message.name.end());
+  std::reverse(message.position.begin(), message.position.end());
+  for (auto & name : message.name) {
+    name = "left_" + name;
+  }
+  message.name.insert(message.name.begin(), "finger_joint");
+  message.position.insert(message.position.begin(), 0.02);
+  const auto target = joint_target(message, widest_arm_limits());
+  ASSERT_TRUE(target) << why_not(target);
+  EXPECT_EQ(target->values, (Vector6{0.7, 0.1, 0.2, 0.3, 0.4, 0.5}));
+}
+
+TEST(AJointMessage, is_refused_by_the_name_of_what_is_wrong)
+{
+  auto missing = joints(0.0);
+  missing.name.pop_back();
+  missing.position.pop_back();
+  EXPECT_EQ(why_not(joint_target(missing, widest_arm_limits())), "it has no wrist_3_joint");
+  auto twice = joints(0.0);
+  twice.name.push_back("elbow_joint");
+  twice.position.push_back(0.0);
+  EXPECT_EQ(why_not(joint_target(twice, widest_arm_limits())), "it has elbow_joint twice");
+  auto short_of_positions = joints(0.0);
+  short_of_positions.position.pop_back();
+  EXPECT_NE(why_not(joint_target(short_of_positions, widest_arm_limits())), "");
+  for (const double wrong : {nan, 6.3, -std::numeric_limits<double>::infinity()}) {
+    EXPECT_NE(why_not(joint_target(joints(wrong), widest_arm_limits())).find("shoulder_pan_joint"),
+              std::string::npos);
+  }
+}
+
+TEST(APoseMessage, has_to_be_in_the_base_frame_and_a_pose)
+{
+  geometry_msgs::msg::PoseStamped message;
+  EXPECT_NE(why_not(pose_target(message)).find("frame_id"), std::string::npos);
+  message.header.frame_id = "base_link";
+  EXPECT_NE(why_not(pose_target(message)).find("base_link"), std::string::npos);
+  message.header.frame_id = "left_base";
+  message.pose.position.z = 0.5;
+  EXPECT_TRUE(pose_target(message)) << why_not(pose_target(message));
+  message.pose.orientation.w = 0.0;
+  EXPECT_NE(why_not(pose_target(message)).find("orientation"), std::string::npos);
+}
+
+TEST(ATwistMessage, knows_two_frames_and_may_be_zero)
+{
+  geometry_msgs::msg::TwistStamped message;
+  message.header.frame_id = "tool0_controller";
+  const auto zero = twist_target(message);
+  ASSERT_TRUE(zero) << why_not(zero);
+  EXPECT_TRUE(zero->in_tool_frame);
+  message.header.frame_id = "base";
+  message.twist.linear.x = 0.2;
+  EXPECT_FALSE(twist_target(message)->in_tool_frame);
+  for (const double wrong : {nan, 3.2}) {
+    message.twist.linear.x = wrong;
+    EXPECT_NE(why_not(twist_target(message)).find("twist.linear"), std::string::npos);
+  }
+  message.header.frame_id = "camera";
+  EXPECT_NE(why_not(twist_target(message)).find("camera"), std::string::npos);
+}
+
+TEST(AFollower, takes_no_target_that_is_too_far_from_where_the_arm_is)
+{
+  TeleoperationOptions options;
+  Sample sample{};
+  sample.actual_q = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
+  const auto follower = follow_joints(options);
+  follower->begin(sample, 0.002);
+  EXPECT_TRUE(follower->aim({{0.15, 0.1, 0.2, 0.3, 0.4, 0.5}}, 0.02));
+  const auto refused = follower->aim({{0.0, 0.1, 0.45, 0.3, 0.4, 0.5}}, 0.02);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("elbow_joint"), std::string::npos);
+  EXPECT_FALSE(follower->aim({{nan, 0.1, 0.2, 0.3, 0.4, 0.5}}, 0.02));
+}
+
+TEST(AFollower, of_poses_looks_at_both_way_and_turn)
+{
+  TeleoperationOptions options;
+  Sample sample{};
+  sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
+  const auto follower = follow_poses(options);
+  follower->begin(sample, 0.002);
+  EXPECT_TRUE(follower->aim({{0.45, 0.1, 0.3, 0.0, 3.1, 0.0}}, 0.02));
+  EXPECT_FALSE(follower->aim({{0.55, 0.1, 0.3, 0.0, 3.1, 0.0}}, 0.02));
+  EXPECT_FALSE(follower->aim({{0.4, 0.1, 0.3, 0.0, 2.8, 0.0}}, 0.02));
+  // The same orientation, written with the opposite axis, is no turn.
+  EXPECT_TRUE(follower->aim({{0.4, 0.1, 0.3, 0.0, 3.1 - 2.0 * 3.14159265358979, 0.0}}, 0.02));
+}
+}  // namespace
+}  // namespace ur_ros_rtde
