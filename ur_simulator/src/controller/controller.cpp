@@ -10,9 +10,11 @@
 #include <utility>
 
 #include "control_port/commands.hpp"
+#include "controller/network_socket.hpp"
 #include "net/fetch.hpp"
 #include "primary/messages.hpp"
 #include "primary/robot_state.hpp"
+#include "script_api/script_socket.hpp"
 
 namespace ur_simulator {
 namespace {
@@ -168,9 +170,16 @@ RobotAccess Controller::access()
           &joint_history_};
 }
 
+std::shared_ptr<const urscript::Library> Controller::library()
+{
+  return with_sockets(*make_robot_library(access()), [this](const std::string & host, std::uint16_t port) {
+    return NetworkSocket::open(io_, host, port);
+  });
+}
+
 ProgramAccess Controller::program_access()
 {
-  return {state_, *arm_, watchdog_, log_, make_robot_library(access()), version_.cycle_time()};
+  return {state_, *arm_, watchdog_, log_, library(), version_.cycle_time()};
 }
 
 Ports Controller::ports() const

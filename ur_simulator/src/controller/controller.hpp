@@ -67,6 +67,7 @@ class Controller {
   void power_switch(bool on);
 
   RobotAccess access();
+  std::shared_ptr<const urscript::Library> library();
   ProgramAccess program_access();
 
   const RobotModel & model_;

@@ -70,11 +70,14 @@ void Server::cycle()
 {
   for (auto next = clients_.begin(); next != clients_.end();) {
     Client & client = (next++)->second;
-    if (client.pending) {
-      deliver(client);
-      if (!client.pending) {
-        receive(client, {});
-      }
+    if (!client.pending) {
+      continue;
+    }
+    // Sending may end the client: only its connection is sure to be there afterwards.
+    const std::shared_ptr<Connection> connection = client.connection;
+    deliver(client);
+    if (connection->open() && !client.pending) {
+      receive(client, {});
     }
   }
 }

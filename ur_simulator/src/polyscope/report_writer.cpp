@@ -56,16 +56,15 @@ ReportWriter::Pending ReportWriter::begin_support_file(std::string_view folder)
 
 ReportWriter::Pending ReportWriter::after(double time, std::function<std::string()> finish)
 {
-  if (busy_) {
+  // By the clock, which a reboot sets back: the client that asked may be gone before its report is done.
+  const double now = state_.timestamp;
+  if (now >= begun_ && now < due_) {
     return at_once("Error: Another report is already being generated");
   }
-  busy_ = true;
-  return [this, due = state_.timestamp + time, finish = std::move(finish)]() -> std::optional<std::string> {
-    if (state_.timestamp < due) {
-      return std::nullopt;
-    }
-    busy_ = false;
-    return finish();
+  begun_ = now;
+  due_ = now + time;
+  return [this, due = due_, finish = std::move(finish)]() -> std::optional<std::string> {
+    return state_.timestamp < due ? std::nullopt : std::optional(finish());
   };
 }
 

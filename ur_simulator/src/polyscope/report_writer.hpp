@@ -50,7 +50,8 @@ class ReportWriter {
   std::string folder_;
   std::map<std::string, std::string> files_;
   std::uint64_t reports_ = 0;
-  bool busy_ = false;
+  double begun_ = 0.0;  ///< s, of the report that was asked for last
+  double due_ = 0.0;    ///< s
 };
 
 }  // namespace ur_simulator

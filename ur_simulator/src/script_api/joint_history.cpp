@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "script_api/robot_library.hpp"
 
 namespace ur_simulator {
@@ -9,10 +11,11 @@ void JointHistory::record(const Vector6 & position)
 
 std::optional<Vector6> JointHistory::back(std::size_t steps) const
 {
-  if (steps >= count_ || steps >= capacity) {
+  if (count_ == 0 || steps >= capacity) {
     return std::nullopt;
   }
-  return positions_[(count_ - 1 - steps) % capacity];
+  // Just switched on, it has stood where the first record says.
+  return positions_[(count_ - 1 - std::min(steps, count_ - 1)) % capacity];
 }
 
 }  // namespace ur_simulator
