@@ -9,7 +9,7 @@ import sys
 import time
 from typing import Dict, List, Optional, Tuple
 
-from . import boilerplate, cell, say
+from . import bench_trajectory, boilerplate, cell, say
 from .environment import program, run_environment
 from .layout import ROOT, Layout
 from .processes import Programs
@@ -37,6 +37,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
     parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")
     parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals and cancels to measure (default: 40)")
+    bench_trajectory.add_options(parser)
     return parser.parse_args(arguments)
 
 
@@ -82,6 +83,8 @@ def _print(figures: dict) -> None:
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
+    if options.trajectory:
+        return bench_trajectory.run(options, layout)
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
     with Programs(layout.log / "bench") as programs:
         say.step("Starting simulator and nodes, measuring for about a minute")

@@ -77,7 +77,7 @@ def command_shell(options: argparse.Namespace) -> int:
 
 
 def _python_command(name: str, options: argparse.Namespace) -> int:
-    """demo, bench and chaos, as modules of their own: their help needs no build."""
+    """demo, bench, chaos and plan, as modules of their own: their help needs no build."""
     arguments = _forwarded(options)
     layout = _layout(options)
     if not any(argument in ("-h", "--help") for argument in arguments):
@@ -93,6 +93,10 @@ def command_demo(options: argparse.Namespace) -> int:
 
 def command_bench(options: argparse.Namespace) -> int:
     return _python_command("bench", options)
+
+
+def command_plan(options: argparse.Namespace) -> int:
+    return _python_command("plan", options)
 
 
 def command_chaos(options: argparse.Namespace) -> int:
@@ -154,7 +158,7 @@ def _parser() -> argparse.ArgumentParser:
 
     def add_forwarding(name: str, function, text: str) -> None:
         # Its own options go to the program; only those before them are ours.
-        sub = add(name, function, text, add_help=name not in ("demo", "bench", "chaos", *CLI))
+        sub = add(name, function, text, add_help=name not in ("demo", "bench", "chaos", "plan", *CLI))
         _add_build_options(sub)
         sub.add_argument("arguments", nargs=argparse.REMAINDER, help="handed on as they are")
 
@@ -175,6 +179,7 @@ def _parser() -> argparse.ArgumentParser:
 
     add_forwarding("sim", command_sim, "run the simulated controller; options go to ur_simulator (`./ur sim -- --help`)")
     add_forwarding("bench", command_bench, "measure latency and load")
+    add_forwarding("plan", command_plan, "plan a trajectory without a robot, draw it against its limits")
     add_forwarding("chaos", command_chaos, "random goals while random faults happen; with --faults 0 a soak")
     add_forwarding("shell", command_shell, "a shell, or one command, in which everything is found")
 
@@ -200,9 +205,9 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _parse(arguments: List[str]) -> argparse.Namespace:
-    """argparse, except that what demo, bench and chaos do not share with the other commands is theirs."""
+    """argparse, except that what demo, bench, chaos and plan do not share with the other commands is theirs."""
     parser = _parser()
-    if not arguments or arguments[0] not in ("demo", "bench", "chaos", "sim", *CLI):
+    if not arguments or arguments[0] not in ("demo", "bench", "chaos", "plan", "sim", *CLI):
         return parser.parse_args(arguments)
     options, unknown = parser.parse_known_args(arguments[:1] + _ours_first(arguments[1:]))
     options.arguments = unknown + list(options.arguments)

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <thread>
+#include <vector>
 
 #include "checks.hpp"
 #include "random_paths.hpp"
@@ -14,9 +16,12 @@ using namespace ur_ros_rtde::trajectory;
 
 namespace {
 
-double processor_ms(std::clock_t since)
+/// Of this thread. ms
+double processor_time()
 {
-  return 1e3 * static_cast<double>(std::clock() - since) / CLOCKS_PER_SEC;
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
 struct Totals {
@@ -24,15 +29,28 @@ struct Totals {
   Utilisation use;
   double miss = 0.0, end_speed = 0.0;
   std::vector<double> ms_per_waypoint;
+
+  void add(const Totals & other)
+  {
+    planned += other.planned;
+    failed += other.failed;
+    beyond += other.beyond;
+    use.velocity = std::max(use.velocity, other.use.velocity);
+    use.acceleration = std::max(use.acceleration, other.use.acceleration);
+    use.jerk = std::max(use.jerk, other.use.jerk);
+    miss = std::max(miss, other.miss);
+    end_speed = std::max(end_speed, other.end_speed);
+    ms_per_waypoint.insert(ms_per_waypoint.end(), other.ms_per_waypoint.begin(), other.ms_per_waypoint.end());
+  }
 };
 
 void prove(unsigned seed, bool jerk, Totals & totals)
 {
   const auto path = test::random_path(seed);
   const Limits limits = test::random_limits(seed, jerk);
-  const std::clock_t begin = std::clock();
+  const double begin = processor_time();
   const auto plan = plan_path(path.waypoints, limits, path.options);
-  totals.ms_per_waypoint.push_back(processor_ms(begin) / static_cast<double>(path.waypoints.size()));
+  totals.ms_per_waypoint.push_back((processor_time() - begin) / static_cast<double>(path.waypoints.size()));
   if (!plan) {
     ++totals.failed;
     std::printf("seed %u (%s): %s\n", seed, path.kind.c_str(), plan.error().message.c_str());
@@ -55,9 +73,21 @@ void prove(unsigned seed, bool jerk, Totals & totals)
 
 void random_paths(unsigned first, unsigned count, bool jerk)
 {
+  const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<Totals> parts(threads);
+  {
+    std::vector<std::jthread> workers;
+    for (unsigned part = 0; part < threads; ++part) {
+      workers.emplace_back([&, part] {
+        for (unsigned seed = first + part; seed < first + count; seed += threads) {
+          prove(seed, jerk, parts[part]);
+        }
+      });
+    }
+  }
   Totals totals;
-  for (unsigned seed = first; seed < first + count; ++seed) {
-    prove(seed, jerk, totals);
+  for (const Totals & part : parts) {
+    totals.add(part);
   }
   std::sort(totals.ms_per_waypoint.begin(), totals.ms_per_waypoint.end());
   std::printf(
@@ -78,9 +108,9 @@ void planning_time(const char * what, const std::vector<Joints> & waypoints, con
   double best = 1e9;
   double duration = 0.0;
   for (int round = 0; round < 5; ++round) {
-    const std::clock_t begin = std::clock();
+    const double begin = processor_time();
     const auto plan = plan_path(waypoints, limits, options);
-    best = std::min(best, processor_ms(begin));
+    best = std::min(best, processor_time() - begin);
     duration = plan ? plan->duration() : -1.0;
   }
   std::printf("%s, %zu waypoints: planned in %.1f ms (motion of %.1f s)\n", what, waypoints.size(), best,
@@ -98,9 +128,9 @@ void stops()
     const auto plan = plan_path(path.waypoints, limits, path.options);
     for (int part = 1; plan && part < 6; ++part) {
       const double time = plan->duration() * part / 6.0;
-      const std::clock_t begin = std::clock();
+      const double begin = processor_time();
       const Trajectory stop = plan->stop_from(time, limits);
-      ms.push_back(processor_ms(begin));
+      ms.push_back(processor_time() - begin);
       seconds.push_back(stop.duration() - time);
     }
   }
