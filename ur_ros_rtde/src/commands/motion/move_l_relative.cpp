@@ -29,6 +29,7 @@ class MoveLRelative : public Command<ur_ros_rtde_msgs::action::MoveLRelative> {
     const double angle = std::hypot(goal.rotation.x, goal.rotation.y, goal.rotation.z);
     check.in_range("frame", goal.frame, Goal::BASE, Goal::TOOL)
         .vector("translation", goal.translation, 3.0, "m")
+        .vector("rotation", goal.rotation, std::numbers::pi, "rad")  // std::hypot(0, 0, nan) may be 0
         .in_range("the length of rotation", angle, 0.0, std::numbers::pi, "rad")
         .above_zero("speed", goal.speed, 3.0, "m/s")
         .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2");
