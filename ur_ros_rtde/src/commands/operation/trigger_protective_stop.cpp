@@ -1,0 +1,26 @@
+#include <ur_ros_rtde_msgs/action/trigger.hpp>
+
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+
+class TriggerProtectiveStop : public Command<ur_ros_rtde_msgs::action::Trigger> {
+  /// Whatever moves the arm.
+  Resource resource() const override { return Resource::none; }
+
+  Outcome run(const Goal &, Run & run) override
+  {
+    // Beside the control program, so that it works whatever that is doing, and beside scripts.
+    ScriptOptions options;
+    options.kind = ScriptKind::secondary;
+    options.limit = std::chrono::seconds(1);
+    const ScriptReport report = run.run_script("protective_stop()", options);
+    const auto stopped = [&] { return run.state().safety().protective_stopped; };
+    return run.expect(stopped, std::chrono::seconds(1),
+                      "the robot is in no protective stop; " + report.error.message);
+  }
+};
+
+UR_ROS_RTDE_EXPORT(TriggerProtectiveStop, "trigger_protective_stop")
+
+}  // namespace ur_ros_rtde
