@@ -1,4 +1,4 @@
-// What of the unmodified ur_rtde library deals with forces, hands and torques.
+// What of the ur_rtde library deals with forces, hands and torques.
 #include <ur_rtde/rtde_control_interface.h>
 #include <ur_rtde/rtde_receive_interface.h>
 
@@ -212,6 +212,13 @@ TEST_F(UrRtdeForce, lets_an_external_sensor_take_over)
   ASSERT_TRUE(control.ftRtdeInputEnable(true));
   EXPECT_TRUE(controller.wait_until([](const json & state) { return state["external_sensor"].get<bool>(); },
                                     seconds(5)));
+  ASSERT_TRUE(control.setExternalForceTorque({0.0, 0.0, -12.0, 0.0, 0.0, 0.0}));
+  EXPECT_TRUE(controller.wait_until(
+      [](const json & state) {
+        const auto force = state["actual_tcp_force"].get<Numbers>();
+        return std::abs(std::hypot(force[0], force[1], force[2]) - 12.0) < 0.5;
+      },
+      seconds(5)));
   EXPECT_TRUE(control.ftRtdeInputEnable(false));
 }
 
