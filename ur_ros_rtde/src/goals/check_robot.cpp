@@ -1,20 +1,22 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/interfaces.hpp"
 
 namespace ur_ros_rtde {
+namespace {
+constexpr double furthest_frame = 100.0;  // m: far beyond any cell, near enough for exact arithmetic
+}
 
 Check & Check::frame(std::string_view field, const geometry_msgs::msg::Pose & frame)
 {
-  const auto & p = frame.position;
+  geometry_msgs::msg::Vector3 position;
+  position.x = frame.position.x;
+  position.y = frame.position.y;
+  position.z = frame.position.z;
   geometry_msgs::msg::Pose turn = frame;
   turn.position = {};
-  return that(std::isfinite(p.x + p.y + p.z),
-              fmt::format("{}.position is ({}, {}, {}) m, it must be finite", field, p.x, p.y, p.z))
-      .pose(field, turn);
+  return vector(fmt::format("{}.position", field), position, furthest_frame, "m").pose(field, turn);
 }
 
 Check & Check::polyscope(unsigned minor, std::optional<unsigned> cb3_minor)
