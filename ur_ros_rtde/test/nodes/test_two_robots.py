@@ -10,6 +10,7 @@ from conftest import make_ready
 from ur_ros_rtde_msgs.action import MoveJ
 
 RECEIVERS = 10
+LIMIT = 60.0  # s: of a busy machine
 
 
 def test_two_robots_move_at_once_and_apart(addresses, processes):
@@ -39,16 +40,16 @@ def test_two_robots_move_at_once_and_apart(addresses, processes):
 
 def test_ten_state_receivers_on_one_robot_have_the_same_states_while_it_moves(simulator, driver, client, processes):
     for number in range(RECEIVERS):
-        processes(node("robot_state_receiver", simulator.address, "rtde_frequency:=50.0", namespace=f"watcher_{number}"))
+        processes(node("robot_state_receiver", simulator.address, "rtde_frequency:=20.0", namespace=f"watcher_{number}"))
     make_ready(client)
     states = [client.listen(JointState, f"/watcher_{number}/joint_states") for number in range(RECEIVERS)]
-    wait_for(lambda: all(states), 30.0, "joint states of all of them")
+    wait_for(lambda: all(states), LIMIT, "joint states of all of them")
     clients = simulator.state()["clients"]
     client.send(MoveJ, "move_j", joint_positions=[0.5, *HOME[1:]], speed=1.0).succeeded()
     assert simulator.state()["clients"] == clients, "one of them lost its connection"
     end = time.time()
     wait_for(lambda: all(messages[-1].header.stamp.sec + 1e-9 * messages[-1].header.stamp.nanosec > end for messages in states),
-             10.0, "a state after the motion of each of them")
+             LIMIT, "a state after the motion of each of them")
     for messages in states:
         assert messages[-1].position[0] == pytest.approx(0.5, abs=0.005)
         assert max(state.position[0] for state in list(messages)) > min(state.position[0] for state in list(messages)) + 0.4

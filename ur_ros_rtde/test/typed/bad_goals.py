@@ -1,6 +1,7 @@
 """Bad goals, made from a good one by what its types and the comments of its .action file say."""
 
 import math
+import re
 from dataclasses import dataclass
 
 import action_files
@@ -11,7 +12,7 @@ NOT_FINITE = (math.nan, math.inf, -math.inf)
 FAR = 1e30  # out of every range
 GEOMETRY = ("geometry_msgs/Point", "geometry_msgs/Vector3")
 QUATERNION = "geometry_msgs/Quaternion"
-POSE = "geometry_msgs/Pose"
+OURS = ("", "ur_ros_rtde_msgs", "ur_ros_rtde_tutorials")
 
 # What makes a command look at all fields of its goal; the goal need not be a good one any more.
 ALL_IN_USE = {
@@ -32,7 +33,7 @@ WITHOUT_USE = {
 @dataclass(frozen=True)
 class BadGoal:
     what: str  # "speed = nan"
-    named: str  # what the refusal has to contain
+    named: str  # what the refusal has to name, as a regular expression
     goal: object
 
 
@@ -63,16 +64,16 @@ def _bad(good, path, value, what=None):
 
 
 def _named(path):
-    """What a refusal has to name: the field, with its index; of a vector the vector; of what lies deep its upper parts."""
-    if path[-1] in ("x", "y", "z", "w"):
-        path = path[:-1]
-    names = [index for index, part in enumerate(path) if isinstance(part, str)]
-    end = names[2] if len(names) > 2 else len(path)
-    return messages.text(path[:end])
+    """The field with its index, of a vector the vector; of what lies in a list of messages which of them it is."""
+    for index in path[:-1]:
+        if isinstance(index, int) and path[-1] != index:
+            return rf"[a-z](\[{index}\]| {index}\b)"  # "poses[3]", "waypoint 3"
+    return re.escape(messages.text(path[:-1] if path[-1] in ("x", "y", "z", "w") else path))
 
 
 def _comment(leaf, kind):
-    return action_files.field(leaf.field, leaf.owner or kind)
+    """Of our own messages; others say nothing of what is allowed here."""
+    return action_files.field(leaf.field, leaf.owner or kind) if leaf.owner.partition("/")[0] in OURS else None
 
 
 def _with_full_arrays(good, kind):

@@ -11,7 +11,7 @@ from action_msgs.msg import GoalStatus, GoalStatusArray
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from support import HOME, Client, Simulator, node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ
+from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 LAST_DOMAIN = 101  # above it, ports may lie in the range the system gives out itself
@@ -79,12 +79,12 @@ class WatchingClient(Client):
 
 
 class Cell:
-    def __init__(self, number):
-        self.number = number
+    def __init__(self, number, model="ur10e"):
+        self.number, self.model = number, model
         self._domain = Domain()
         self._env = {"ROS_DOMAIN_ID": str(self._domain.number)}
-        self.simulator = Simulator(address(number))
-        self.client = WatchingClient(self._domain.number)
+        self.simulator = Simulator(address(number), model=model)
+        self.client = WatchingClient(self._domain.number, f"test_client_{number}")
         self.driver = None
         self.start_driver()
 
@@ -95,12 +95,18 @@ class Cell:
         self._domain.close()
 
     def start_driver(self):
-        self.driver = node("driver", self.simulator.address, "ur_type:=ur10e", env=self._env)
+        self.driver = node("driver", self.simulator.address, f"ur_type:={self.model}", env=self._env)
 
     def restart_simulator(self):
         if self.simulator.process.running():
             self.simulator.kill()
         self.simulator.start()
+        # The dashboard link looks for its server now and then only.
+        wait_for(self._dashboard_answers, 20.0, "the dashboard server")
+
+    def _dashboard_answers(self):
+        goal = self.client.send(DashboardQuery, "dashboard/robot_mode")
+        return goal.accepted and goal.result().success or time.sleep(RETRY)
 
     # --- Goals ---
 
@@ -122,7 +128,14 @@ class Cell:
         assert self.driver.running(), self.driver.output()
         self.restore()
         for command in example.scene if example else ():
-            self.simulator.control(**command)
+            self._arrange(dict(command))
+
+    def _arrange(self, command):
+        """One step of a scene; `then_wait` gives it time, in seconds of the simulator's."""
+        seconds = command.pop("then_wait", 0.0)
+        self.simulator.control(**command)
+        end = self.simulator.state()["timestamp"] + seconds
+        wait_for(lambda: self.simulator.state()["timestamp"] >= end, 10.0 + 5.0 * seconds, f"{seconds} s")
 
     def restore(self):
         if not self.simulator.process.running():

@@ -4,6 +4,7 @@ import queue
 from concurrent.futures import ThreadPoolExecutor
 
 from cell import Cell
+from documentation import Example
 
 LOG_LINES = 15  # of the driver's, with a failure
 
@@ -23,8 +24,7 @@ class Cells:
     def _run(self, scenario, arguments):
         place = self._places.get()
         try:
-            if not isinstance(place, Cell):
-                place = Cell(place)
+            place = self._cell_for(getattr(arguments[0], "controller", Example.controller), place)
             return self._carry_out(scenario, place, arguments)
         except Exception:
             # A cell in which something went wrong is not used again: it must not spoil the next plugin's outcome.
@@ -34,6 +34,15 @@ class Cells:
             raise
         finally:
             self._places.put(place)
+
+    @staticmethod
+    def _cell_for(model, place):
+        if isinstance(place, Cell):
+            if place.model == model:
+                return place
+            place.close()
+            place = place.number
+        return Cell(place, model)
 
     @staticmethod
     def _carry_out(scenario, cell, arguments):

@@ -20,6 +20,7 @@ class Example:
     type: str  # "ur_ros_rtde_msgs/action/MoveJ"
     goal: dict
     scene: List[dict] = field(default_factory=list)  # commands to the simulator's control port
+    controller: str = "ur10e"  # the model
 
 
 @dataclass
@@ -34,18 +35,29 @@ class Section:
             if command[:3] == ["ros2", "action", "send_goal"]:
                 action, kind, goal = [word for word in command[3:] if word not in ("--feedback", "-f")]
                 if action == f"/{self.name}":
-                    return Example(self.name, kind, yaml.safe_load(goal) or {}, self.scene())
+                    return Example(self.name, kind, yaml.safe_load(goal) or {}, self.scene(), self.controller())
         raise ValueError(f"{self.file.name}: the section {self.name} has no `ros2 action send_goal /{self.name} …`")
 
     def scene(self):
         found = re.search(r"<!--\s*scene:\s*(.*?)\s*-->", self.text, re.S)
         return json.loads(found.group(1)) if found else []
 
+    def controller(self):
+        """What the example is for, where that is not an e-Series."""
+        found = re.search(r"<!--\s*controller:\s*(\w+)\s*-->", self.text)
+        return found.group(1) if found else Example.controller
+
 
 def _commands(text):
     for block in re.findall(r"^```bash\n(.*?)^```", text, re.S | re.M):
+        command = ""
         for line in block.replace("\\\n", " ").splitlines():
-            yield shlex.split(line, comments=True)
+            command += line + " "
+            try:
+                yield shlex.split(command, comments=True)
+            except ValueError:
+                continue  # a quoted text goes on in the next line
+            command = ""
 
 
 def sections():

@@ -1,10 +1,13 @@
 """Every bad goal that follows from a command's types and comments is refused before acceptance, naming the field."""
 
+import re
+
 import bad_goals
 
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 CODES = (ErrorCode.INVALID_GOAL, ErrorCode.UNREACHABLE, ErrorCode.SAFETY_VIOLATION)
+SHOWN = 20
 AT_ONCE = 20  # goal_refusals keeps the last 100
 
 
@@ -17,6 +20,8 @@ def scenario(cell, example):
         part = cases[begin:begin + AT_ONCE]
         goals = [cell.client.send_goal(kind, example.action, case.goal) for case in part]
         wrong += [text for case, goal in zip(part, goals) for text in _wrong(cell, case, goal)]
+        if any(goal.accepted for goal in goals):
+            cell.restart_simulator()  # what it switched on would be in the way of the next
     assert cell.driver.running(), cell.driver.output()
     return len(cases), wrong
 
@@ -29,9 +34,9 @@ def _wrong(cell, case, goal):
     refusal = cell.client.refusal(goal)
     if refusal.error_code not in CODES:
         return [f"{case.what}: refused with {refusal.error_code} instead of INVALID_GOAL: {refusal.message}"]
-    return [] if case.named in refusal.message else [f"{case.what}: the reason does not name {case.named}: {refusal.message}"]
+    return [] if re.search(case.named, refusal.message) else [f"{case.what}: the reason does not name {case.named}: {refusal.message}"]
 
 
 def test_bad_goals_are_refused_with_the_field(plugin, outcome):
     number, wrong = outcome
-    assert not wrong, f"{len(wrong)} of {number} bad goals:\n" + "\n".join(wrong)
+    assert not wrong, f"{len(wrong)} of {number} bad goals:\n" + "\n".join(wrong[:SHOWN])

@@ -1,0 +1,143 @@
+"""Force mode, freedrive and teach mode, torques and external sensors, on the simulator's physics."""
+
+import math
+
+import pytest
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import Pose, Vector3, Wrench
+from support import wait_for
+from test_commands import is_at_rest, joints_now, pose_now, turned
+
+from ur_ros_rtde_msgs.action import (DirectTorque, EnableExternalFtSensor, ForceMode, Freedrive, MoveJ, SetExternalForceTorque,
+                                     SetForceModeParameter, TeachMode, Trigger, ZeroFtSensor)
+from ur_ros_rtde_msgs.msg import ErrorCode
+
+ALONG_Z = [False, False, True, False, False, False]
+
+
+def down(force):
+    return Wrench(force=Vector3(z=-force))
+
+
+def press(robot, simulator, force, **fields):
+    """Force mode onto a surface five millimetres below the TCP, until the arm presses with `force`."""
+    robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
+    simulator.control("place_surface", z=pose_now(robot).position.z - 0.005, stiffness=20000.0)
+    goal = robot.send(ForceMode, "force_mode", task_frame=Pose(), compliant=ALONG_Z, wrench=down(force),
+                      limits=[0.1, 0.1, 0.03, 0.5, 0.5, 0.5], **fields)
+
+    def felt():
+        return goal.feedback and goal.feedback[-1].wrench.force.z == pytest.approx(force, abs=0.15 * force)
+
+    assert goal.accepted, robot.refusal(goal).message
+    wait_for(felt, 15.0, f"{force} N, now {[round(f.wrench.force.z, 1) for f in goal.feedback[-5:]]}")
+    return goal
+
+
+def test_force_mode_presses_with_the_force_it_was_asked_for_until_it_is_canceled(robot, simulator):
+    before = pose_now(robot).position
+    goal = press(robot, simulator, 20.0)
+    assert simulator.state()["force_mode"]
+    goal.cancel()
+    status, result = goal.end()
+    assert (status, result.success) == (GoalStatus.STATUS_SUCCEEDED, True), result.message
+    assert not simulator.state()["force_mode"] and is_at_rest(robot)
+    after = pose_now(robot).position
+    assert (after.x, after.y) == pytest.approx((before.x, before.y), abs=0.003)
+    assert before.z - after.z == pytest.approx(0.005, abs=0.003)
+
+
+def test_force_mode_ends_by_itself_after_its_duration(robot, simulator):
+    goal = robot.send(ForceMode, "force_mode", compliant=ALONG_Z, wrench=down(5.0), limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5],
+                      duration=1.0)
+    goal.succeeded()
+    assert not simulator.state()["force_mode"] and is_at_rest(robot)
+    progress = [feedback.motion.progress for feedback in goal.feedback]
+    assert progress == sorted(progress) and progress[-1] > 0.8
+
+
+def test_force_mode_ends_with_a_stop_of_the_robot(robot, simulator):
+    goal = press(robot, simulator, 20.0)
+    simulator.control("protective_stop", reason="a test")
+    status, result = goal.end()
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.PROTECTIVE_STOP)
+    assert not simulator.state()["force_mode"]
+    simulator.control("clear_surfaces")
+    wait_for(lambda: unlocked(simulator), 15.0, "the protective stop to be unlocked")
+
+
+def unlocked(simulator):
+    try:
+        simulator.control("unlock_protective_stop")
+        return True
+    except AssertionError:
+        return False
+
+
+def test_a_motion_goes_on_in_force_mode_that_was_started_and_stopped(robot, simulator):
+    start = robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=Wrench(), duration=0.0)
+    start.succeeded()
+    assert simulator.state()["force_mode"]
+    robot.send(MoveJ, "move_j", joint_positions=turned(0.2), speed=0.5).succeeded()
+    assert simulator.state()["force_mode"], "a motion that succeeds leaves it on"
+    robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=down(3.0)).succeeded()
+    robot.send(Trigger, "force_mode_stop").succeeded()
+    assert not simulator.state()["force_mode"] and is_at_rest(robot)
+
+
+def test_damping_and_gain_are_set(robot):
+    robot.send(SetForceModeParameter, "force_mode_set_damping", value=0.5).succeeded()
+    robot.send(SetForceModeParameter, "force_mode_set_gain_scaling", value=1.5).succeeded()
+    for name, value in (("force_mode_set_damping", 1.5), ("force_mode_set_gain_scaling", 2.5)):
+        refused = robot.send(SetForceModeParameter, name, value=value)
+        assert not refused.accepted and "value" in robot.refusal(refused).message
+
+
+@pytest.mark.parametrize("action,name", [(Freedrive, "freedrive"), (TeachMode, "teach_mode")])
+def test_the_arm_can_be_pushed_while_it_is_guided_and_stands_still_afterwards(robot, simulator, action, name):
+    goal = robot.send(action, name)
+    wait_for(lambda: goal.accepted and simulator.state()["freedrive"], 10.0, "the arm to be free")
+    before = pose_now(robot).position
+    simulator.control("push", force=[0.0, 60.0, 0.0], duration=3.0)
+    wait_for(lambda: abs(pose_now(robot).position.y - before.y) > 0.02, 10.0, "the arm to give way")
+    goal.cancel()
+    assert goal.end()[0] == GoalStatus.STATUS_SUCCEEDED
+    assert not simulator.state()["freedrive"]
+    wait_for(lambda: is_at_rest(robot), 2.0, "standstill")
+
+
+@pytest.mark.parametrize("start,stop,action", [("freedrive_start", "freedrive_stop", Freedrive),
+                                               ("teach_mode_start", "end_teach_mode", Trigger)])
+def test_motions_are_refused_while_somebody_may_hold_the_arm(robot, simulator, start, stop, action):
+    robot.send(action, start).succeeded()
+    assert simulator.state()["freedrive"]
+    refused = robot.send(MoveJ, "move_j", joint_positions=turned(0.1))
+    assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
+    robot.send(Trigger, stop).succeeded()
+    assert not simulator.state()["freedrive"]
+    robot.send(MoveJ, "move_j", joint_positions=turned(0.1)).succeeded()
+
+
+def test_direct_torque_turns_a_joint_and_comes_to_rest(robot):
+    before = joints_now(robot).position[5]
+    robot.send(DirectTorque, "direct_torque", joint_torques=[0.0, 0.0, 0.0, 0.0, 0.0, 2.0], duration=0.4,
+               max_joint_speed=3.0).succeeded()
+    assert joints_now(robot).position[5] > before + 0.005 and is_at_rest(robot)
+
+
+def test_direct_torque_ends_when_a_joint_gets_too_fast(robot):
+    status, result = robot.send(DirectTorque, "direct_torque", joint_torques=[0.0, 0.0, 0.0, 0.0, 0.0, 10.0], duration=20.0,
+                                max_joint_speed=0.3).end()
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.SAFETY_VIOLATION), result.message
+    assert "max_joint_speed" in result.message
+    wait_for(lambda: is_at_rest(robot), 2.0, "standstill")
+
+
+def test_the_readings_of_an_external_sensor_count(robot, simulator):
+    robot.send(EnableExternalFtSensor, "ft_rtde_input_enable", enable=True, sensor_mass=0.0).succeeded()
+    assert simulator.state()["external_sensor"]
+    robot.send(SetExternalForceTorque, "set_external_force_torque", wrench=Wrench(force=Vector3(z=12.0))).succeeded()
+    wait_for(lambda: math.hypot(*simulator.state()["actual_tcp_force"][:3]) == pytest.approx(12.0, abs=2.0), 5.0,
+             "the force that was given")
+    robot.send(EnableExternalFtSensor, "ft_rtde_input_enable", enable=False).succeeded()
+    assert not simulator.state()["external_sensor"]

@@ -1,0 +1,115 @@
+"""Bringing the robot into operation from any state, and out of it."""
+
+import pytest
+from action_msgs.msg import GoalStatus
+from support import HOME, wait_for
+from test_commands import turned, wait_until_moving
+
+from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Trigger
+from ur_ros_rtde_msgs.msg import ErrorCode
+
+
+def make_ready(robot, **fields):
+    goal = robot.send(MakeReady, "make_ready", **fields)
+    result = goal.succeeded(60.0)
+    robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
+    return result, [feedback.state for feedback in goal.feedback]
+
+
+def not_made_ready(robot, code, **fields):
+    status, result = robot.send(MakeReady, "make_ready", **fields).end()
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, code), result.message
+    return result.message
+
+
+def protectively_stopped(simulator):
+    wait_for(lambda: simulator.state()["safety_mode"] == "PROTECTIVE_STOP", 5.0, "the protective stop")
+
+
+def test_a_robot_that_is_ready_is_ready_at_once(robot):
+    _, states = make_ready(robot)
+    assert states == []
+
+
+def test_from_off_to_ready_with_progress(robot, simulator):
+    robot.send(DashboardCommand, "stand_down").succeeded()
+    assert simulator.state()["robot_mode"] == "POWER_OFF"
+    _, states = make_ready(robot)
+    told = " / ".join(states)
+    assert told.index("powering on") < told.index("releasing the brakes"), told
+
+
+def test_from_idle(robot, simulator):
+    simulator.control("power", to="off")
+    simulator.control("power", to="on")
+    _, states = make_ready(robot)
+    assert any("brakes" in state for state in states)
+
+
+def test_from_a_protective_stop_with_its_popup_and_never_going_on_with_the_motion(robot, simulator):
+    goal = robot.send(MoveJ, "move_j", joint_positions=turned(1.5), speed=0.5)
+    wait_until_moving(robot)
+    robot.send(Trigger, "trigger_protective_stop").succeeded()
+    assert goal.end()[1].error_code == ErrorCode.PROTECTIVE_STOP
+    protectively_stopped(simulator)
+    assert "unlock_protective_stop" in not_made_ready(robot, ErrorCode.PROTECTIVE_STOP, unlock_protective_stop=False)
+    robot.send(MakeReady, "make_ready").succeeded(60.0)
+    stopped_at = simulator.state()["actual"]["position"][0]
+    begin = simulator.state()["timestamp"]
+    wait_for(lambda: simulator.state()["timestamp"] > begin + 0.5, 10.0, "half a second")
+    assert simulator.state()["actual"]["position"][0] == pytest.approx(stopped_at, abs=1e-3)
+
+
+def test_a_protective_stop_can_be_triggered_while_a_script_moves_the_arm(robot, simulator):
+    goal = robot.send(SendScript, "send_script", script=f"movej({turned(1.5)}, a=1, v=0.5)")
+    wait_until_moving(robot)
+    robot.send(Trigger, "trigger_protective_stop").succeeded()
+    assert goal.end()[1].error_code == ErrorCode.PROTECTIVE_STOP
+    make_ready(robot)
+
+
+def test_after_the_program_was_stopped(robot, simulator):
+    robot.send(DashboardCommand, "dashboard/stop").end()
+    make_ready(robot)
+
+
+def test_from_a_violation_only_when_it_is_allowed(robot, simulator):
+    simulator.control("violation", reason="a test")
+    wait_for(lambda: simulator.state()["safety_mode"] == "VIOLATION", 5.0, "the violation")
+    assert "restart_safety" in not_made_ready(robot, ErrorCode.SAFETY_VIOLATION)
+    make_ready(robot, restart_safety=True)
+
+
+@pytest.mark.parametrize("trouble,way_out,code", [
+    (("emergency_stop", {"pressed": True}), ("emergency_stop", {"pressed": False}), ErrorCode.EMERGENCY_STOP),
+    (("safeguard", {"open": True}), ("safeguard", {"open": False}), ErrorCode.SAFEGUARD_STOP),
+    (("remote_control", {"on": False}), ("remote_control", {"on": True}), ErrorCode.NOT_READY),
+])
+def test_what_only_people_may_do_is_left_to_them(robot, simulator, trouble, way_out, code):
+    if trouble[0] == "remote_control":
+        simulator.control("power", to="off")
+    simulator.control(trouble[0], **trouble[1])
+    try:
+        wait_for(lambda: robot.send(MakeReady, "make_ready").end()[1].error_code == code, 10.0, "the reason")
+    finally:
+        simulator.control(way_out[0], **way_out[1])
+    make_ready(robot)
+
+
+def test_cancel_and_timeout_end_the_wait(robot, simulator):
+    simulator.control("power", to="off")
+    goal = robot.send(MakeReady, "make_ready")
+    wait_for(lambda: goal.feedback, 10.0, "the first step")
+    goal.cancel()
+    assert goal.end()[0] == GoalStatus.STATUS_CANCELED
+    assert "still" in not_made_ready(robot, ErrorCode.TIMEOUT, timeout=0.01)
+    make_ready(robot)
+
+
+def test_stand_down_ends_the_motion_that_runs(robot, simulator):
+    goal = robot.send(MoveJ, "move_j", joint_positions=turned(1.5), speed=0.5)
+    wait_until_moving(robot)
+    robot.send(DashboardCommand, "stand_down").succeeded()
+    assert goal.end()[1].error_code == ErrorCode.PREEMPTED
+    assert simulator.state()["robot_mode"] == "POWER_OFF"
+    make_ready(robot)
