@@ -15,7 +15,7 @@ Check & Check::frame(std::string_view field, const geometry_msgs::msg::Pose & fr
   position.y = frame.position.y;
   position.z = frame.position.z;
   geometry_msgs::msg::Pose turn = frame;
-  turn.position = {};
+  turn.position = geometry_msgs::msg::Point();
   return vector(fmt::format("{}.position", field), position, furthest_frame, "m").pose(field, turn);
 }
 
