@@ -66,7 +66,8 @@ class Mix:
         there = plugins.find()
         self._motions = [name for name in (*MOTIONS, *HOMEWARD, *HOMEWARD) if name in there]
         self._examples = [section.example() for section in documentation.sections()
-                          if section.name in there and section.name not in LEFT_OUT and not section.scene()]
+                          if section.name in there and section.name not in LEFT_OUT and not section.scene()
+                          and section.setup() == documentation.Setup()]
 
     def next(self):
         # Everything is drawn for every goal, so that one of another kind does not shift those that follow.

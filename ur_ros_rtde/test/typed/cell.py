@@ -8,6 +8,7 @@ import time
 
 import messages
 from action_msgs.msg import GoalStatus, GoalStatusArray
+from documentation import Setup
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from support import HOME, Client, Simulator, node, wait_for
 
@@ -79,11 +80,11 @@ class WatchingClient(Client):
 
 
 class Cell:
-    def __init__(self, number, model="ur10e"):
-        self.number, self.model = number, model
+    def __init__(self, number, setup=Setup()):
+        self.number, self.setup = number, setup
         self._domain = Domain()
         self._env = {"ROS_DOMAIN_ID": str(self._domain.number)}
-        self.simulator = Simulator(address(number), model=model)
+        self.simulator = Simulator(address(number), model=setup.controller)
         self.client = WatchingClient(self._domain.number, f"test_client_{number}")
         self.driver = None
         self.start_driver()
@@ -95,7 +96,8 @@ class Cell:
         self._domain.close()
 
     def start_driver(self):
-        self.driver = node("driver", self.simulator.address, f"ur_type:={self.model}", env=self._env)
+        self.driver = node("driver", self.simulator.address, f"ur_type:={self.setup.controller}", *self.setup.parameters,
+                           env=self._env)
 
     def restart_simulator(self):
         if self.simulator.process.running():

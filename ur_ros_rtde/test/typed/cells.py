@@ -4,7 +4,7 @@ import queue
 from concurrent.futures import ThreadPoolExecutor
 
 from cell import Cell
-from documentation import Example
+from documentation import Setup
 
 LOG_LINES = 15  # of the driver's, with a failure
 
@@ -24,7 +24,7 @@ class Cells:
     def _run(self, scenario, arguments):
         place = self._places.get()
         try:
-            place = self._cell_for(getattr(arguments[0], "controller", Example.controller), place)
+            place = self._cell_for(getattr(arguments[0], "setup", Setup()), place)
             return self._carry_out(scenario, place, arguments)
         except Exception:
             # A cell in which something went wrong is not used again: it must not spoil the next plugin's outcome.
@@ -36,13 +36,13 @@ class Cells:
             self._places.put(place)
 
     @staticmethod
-    def _cell_for(model, place):
+    def _cell_for(setup, place):
         if isinstance(place, Cell):
-            if place.model == model:
+            if place.setup == setup:
                 return place
             place.close()
             place = place.number
-        return Cell(place, model)
+        return Cell(place, setup)
 
     @staticmethod
     def _carry_out(scenario, cell, arguments):

@@ -5,7 +5,7 @@ import pathlib
 import re
 import shlex
 from dataclasses import dataclass, field
-from typing import List
+from typing import List, Tuple
 
 import yaml
 
@@ -14,13 +14,21 @@ FOLDER = ROOT / "docs" / "commands"
 INDEX = FOLDER / "README.md"
 
 
+@dataclass(frozen=True)
+class Setup:
+    """Of a cell."""
+
+    controller: str = "ur10e"  # the model
+    parameters: Tuple[str, ...] = ()  # of the driver
+
+
 @dataclass
 class Example:
     action: str  # "move_j"
     type: str  # "ur_ros_rtde_msgs/action/MoveJ"
     goal: dict
     scene: List[dict] = field(default_factory=list)  # commands to the simulator's control port
-    controller: str = "ur10e"  # the model
+    setup: Setup = Setup()
 
 
 @dataclass
@@ -35,17 +43,18 @@ class Section:
             if command[:3] == ["ros2", "action", "send_goal"]:
                 action, kind, goal = [word for word in command[3:] if word not in ("--feedback", "-f")]
                 if action == f"/{self.name}":
-                    return Example(self.name, kind, yaml.safe_load(goal) or {}, self.scene(), self.controller())
+                    return Example(self.name, kind, yaml.safe_load(goal) or {}, self.scene(), self.setup())
         raise ValueError(f"{self.file.name}: the section {self.name} has no `ros2 action send_goal /{self.name} …`")
 
-    def scene(self):
-        found = re.search(r"<!--\s*scene:\s*(.*?)\s*-->", self.text, re.S)
-        return json.loads(found.group(1)) if found else []
+    def _comment(self, name):
+        found = re.search(rf"<!--\s*{name}:\s*(.*?)\s*-->", self.text, re.S)
+        return found.group(1) if found else None
 
-    def controller(self):
-        """What the example is for, where that is not an e-Series."""
-        found = re.search(r"<!--\s*controller:\s*(\w+)\s*-->", self.text)
-        return found.group(1) if found else Example.controller
+    def scene(self):
+        return json.loads(self._comment("scene") or "[]")
+
+    def setup(self):
+        return Setup(self._comment("controller") or Setup.controller, tuple((self._comment("parameters") or "").split()))
 
 
 def _commands(text):
