@@ -90,7 +90,7 @@ double PathPlanner::within(const PathLeg & leg, double length, double radius, bo
   const auto outside = [&](double distance) {
     return (away(distance).translation() - centre).norm() > radius;
   };
-  constexpr int steps = 64;
+  constexpr int steps = 32;
   int first = 1;
   while (first <= steps && !outside(length * first / steps)) {
     ++first;
@@ -99,7 +99,7 @@ double PathPlanner::within(const PathLeg & leg, double length, double radius, bo
     return length;
   }
   double in = length * (first - 1) / steps, out = length * first / steps;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 32; ++i) {
     const double middle = 0.5 * (in + out);
     (outside(middle) ? out : in) = middle;
   }
