@@ -13,7 +13,6 @@ namespace ur_ros_rtde {
 namespace {
 
 using Clock = TcpStream::Clock;
-/// A robot that is starting up may take seconds to greet.
 constexpr std::chrono::milliseconds connect_limit{5000};
 constexpr std::chrono::milliseconds step{50};
 constexpr std::size_t longest_answer = 64 * 1024;
@@ -65,7 +64,7 @@ Expected<std::string> dashboard_request(const std::string & address, const std::
     return tl::unexpected(stream.error());
   }
   std::string received;
-  if (const auto greeting = next_line(*stream, received, {Clock::now() + connect_limit, stop}); !greeting) {
+  if (const auto greeting = next_line(*stream, received, {begin + limit, stop}); !greeting) {
     return greeting;
   }
   if (const auto sent = stream->write(line + "\n", begin + limit); !sent) {

@@ -165,6 +165,26 @@ def test_only_words_that_the_controller_knows_are_sent(dashboard, name, words):
     assert refusal.error_code == ErrorCode.INVALID_GOAL and "nonsense" in refusal.message and words in refusal.message
 
 
+def test_a_report_takes_its_time_and_questions_go_on_meanwhile(dashboard):
+    goal = text(dashboard, "generate_flight_report", "controller")
+    assert query(dashboard, "robot_mode") == "RUNNING"
+    assert not goal.ended()
+    second = text(dashboard, "generate_flight_report", "system").result()
+    assert second.error_code == ErrorCode.REJECTED_BY_ROBOT and "Another report" in second.message
+    assert goal.succeeded().answer.startswith("Flight Report generated with id")
+
+
+def test_the_wait_for_a_report_can_be_canceled(dashboard):
+    goal = text(dashboard, "generate_flight_report", "software")
+    wait_for(goal.answered, 10.0, "the goal to be accepted")
+    goal.cancel()
+    status, result = goal.end(5.0)
+    assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
+    # The controller goes on with it: only then there may be another one.
+    wait_for(lambda: text(dashboard, "generate_support_file", "/programs").result().success, 30.0, "the support file")
+    command(dashboard, "save_log").succeeded()
+
+
 def test_any_line_can_be_sent_as_it_is(dashboard):
     assert text(dashboard, "raw", "robotmode").succeeded().answer == "Robotmode: RUNNING"
     assert text(dashboard, "raw", "make tea").succeeded().answer == "could not understand: 'make tea'"
