@@ -33,7 +33,7 @@ def test_a_script_is_read_from_a_file(robot, tmp_path):
     assert list(send(robot, path=str(file)).succeeded().output) == ["from a file"]
 
 
-@pytest.mark.parametrize("script,line", [("def bad():\n  sync()\n  movej(\nend\n", 3), ("sync()\nno_such_function()\n", 2)])
+@pytest.mark.parametrize("script,line", [("def bad():\n  sync()\n  x = = 3\nend\n", 3), ("sync()\nno_such_function()\n", 2)])
 def test_a_compile_error_is_the_result_with_its_line(robot, script, line):
     status, result = send(robot, script).end()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.REJECTED_BY_ROBOT), result.message
