@@ -12,7 +12,7 @@ from documentation import Setup
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from support import HOME, Client, Simulator, node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, MoveJ
+from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 LAST_DOMAIN = 101  # above it, ports may lie in the range the system gives out itself
@@ -22,6 +22,7 @@ STATUS = QoSProfile(depth=50, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 AT_REST = 0.01  # rad/s
 RETRY = 0.05  # s
+PREPARING = 3.0  # s to get home from wherever an example has led to
 CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper() and isinstance(value, int)}
 
 
@@ -103,8 +104,6 @@ class Cell:
         if self.simulator.process.running():
             self.simulator.kill()
         self.simulator.start()
-        # The dashboard link looks for its server now and then only.
-        wait_for(self._dashboard_answers, 20.0, "the dashboard server")
 
     def _dashboard_answers(self):
         goal = self.client.send(DashboardQuery, "dashboard/robot_mode")
@@ -128,7 +127,12 @@ class Cell:
     def prepare(self, example=None):
         """Arm at home, ready, nothing in its way, then the example's scene."""
         assert self.driver.running(), self.driver.output()
-        self.restore()
+        try:
+            self.restore(PREPARING)
+        except (AssertionError, OSError):
+            # What was there before left it so: a fresh controller, to which the driver has to connect in any case.
+            self.restart_simulator()
+            self.restore()
         for command in example.scene if example else ():
             self._arrange(dict(command))
 
@@ -139,11 +143,12 @@ class Cell:
         end = self.simulator.state()["timestamp"] + seconds
         wait_for(lambda: self.simulator.state()["timestamp"] >= end, 10.0 + 5.0 * seconds, f"{seconds} s")
 
-    def restore(self):
+    def restore(self, limit=30.0):
         if not self.simulator.process.running():
             self.restart_simulator()
-        self._undo()
-        self.home()
+        self.home(limit)
+        # That link looks for its server now and then only.
+        wait_for(self._dashboard_answers, 20.0, "the dashboard server")
 
     def _undo(self):
         control = self.simulator.control
@@ -159,11 +164,12 @@ class Cell:
         if state["robot_mode"] != "RUNNING" and state["safety_mode"] in ("NORMAL", "REDUCED"):
             control("power", to="running")
 
-    def home(self, limit=30.0):
+    def home(self, limit):
         """By the driver's own means: returns when it takes motions."""
         reasons = ["none"]
 
         def there():
+            self._undo()
             goal = self.client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
             if goal.accepted and goal.result().success:
                 return True
@@ -175,6 +181,12 @@ class Cell:
             wait_for(there, limit, "the driver to take a motion")
         except AssertionError as error:
             raise AssertionError(f"{error}; the last reason: {reasons[-1]}") from None
+
+    def stop(self):
+        """Ends what goals have switched on: force mode, freedrive, teach mode."""
+        goal = self.client.send(Stop, "stop")
+        if goal.accepted:
+            goal.end()
 
     def settings(self):
         """What an example may leave changed for the next one."""

@@ -12,7 +12,9 @@ from cell import described
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 MIDDLE = 0.35  # s after which a goal that has not ended counts as one in the middle
+COMPLIANT = 0.6  # s after which an arm that does not move waits for somebody to push it
 RESULT_LIMIT = 6.0  # s from a disturbance to the result
+ATTEMPTS = 3  # to meet a goal in its middle
 PATIENCE = 2.0  # s for a command that moves no arm and may wait for a state as long as its timeout says
 MOVING = 0.02  # rad/s
 
@@ -45,24 +47,30 @@ def begin(cell, example):
     while not goal.ended():
         passed = time.monotonic() - start
         speeds = cell.simulator.state()["actual"]["velocity"] if moves else ()
-        if passed > MIDDLE and (passed > 1.0 or not moves or max(map(abs, speeds)) > MOVING):
+        if passed > MIDDLE and (passed > COMPLIANT or not moves or max(map(abs, speeds)) > MOVING):
             return goal
         time.sleep(0.01)
     status, result = goal.end()
     assert result.success, f"before anything happened: {described(status, result)}"
+    if moves:
+        cell.stop()
     return None
 
 
 def disturb(cell, example, disturbance) -> Optional[str]:
     """Its outcome in words; None for a command that ends at once."""
-    goal = begin(cell, example)
-    if goal is None:
-        return None
-    disturbance.happen(cell)
+    for left in reversed(range(ATTEMPTS)):
+        goal = begin(cell, example)
+        if goal is None:
+            return None
+        disturbance.happen(cell)
+        if not (left and moves_arm(example) and goal.end(RESULT_LIMIT)[1].success):
+            break
+        disturbance.recover(cell)  # it was as good as there: once more
     outcome = check_end(cell, goal, example, disturbance)
     disturbance.recover(cell)
     cell.restore()
-    if disturbance.again:
+    if disturbance.again and moves_arm(example):
         cell.prepare(example)
         cell.send(example).succeeded()
     return outcome

@@ -3,6 +3,7 @@
 import disturbances
 import pytest
 from conftest import examples
+from documentation import Setup
 from scenarios import RESULT_LIMIT, described, moves_arm
 from support import wait_for
 
@@ -13,7 +14,7 @@ ANSWER_LIMIT = 10.0  # s
 
 def momentary():
     """What moves no arm, and of the dashboard what only asks: nothing whose order would matter."""
-    return [example for example in examples().values() if not moves_arm(example)
+    return [example for example in examples().values() if not moves_arm(example) and example.setup == Setup()
             and ("/" not in example.action or example.type.endswith("DashboardQuery"))]
 
 
