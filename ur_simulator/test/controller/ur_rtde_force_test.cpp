@@ -231,7 +231,7 @@ TEST(UrRtdeTorque, leads_the_joints_by_torques_from_5_26_on)
   const double before = controller.state()["actual"]["position"][0].get<double>();
   for (int i = 0; i < 250; ++i) {
     const auto begin = control.initPeriod();
-    ASSERT_TRUE(control.directTorque({20.0, 0, 0, 0, 0, 0}));
+    ASSERT_TRUE(control.directTorque({5.0, 0, 0, 0, 0, 0}));
     control.waitPeriod(begin);
   }
   EXPECT_GT(controller.state()["actual"]["position"][0].get<double>(), before + 0.02);
