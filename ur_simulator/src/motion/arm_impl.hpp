@@ -31,8 +31,8 @@ constexpr double default_force_scaling = 1.0;
 constexpr double default_force_damping = 0.025;
 
 /// Room for any motion, in place: motions start within the control cycle, where nothing is allocated.
-using MotionSlot = std::variant<std::monostate, PathMove, JointServo, JointSpeed, LinearSpeed,
-                                Freedrive, TorqueControl>;
+using MotionSlot =
+    std::variant<std::monostate, PathMove, JointServo, JointSpeed, LinearSpeed, Freedrive, TorqueControl>;
 
 inline Motion * motion_in(MotionSlot & slot)
 {
