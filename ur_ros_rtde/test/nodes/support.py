@@ -101,9 +101,9 @@ class Process:
 
 
 class Simulator:
-    def __init__(self, address, *arguments, model="ur10e"):
+    def __init__(self, address, *arguments, model="ur10e", urcap="onrobot_soft_gripper"):
         self.address = address
-        self._arguments = ["--model", model, *arguments]
+        self._arguments = ["--model", model, *(["--urcap", urcap] if urcap else []), *arguments]
         self.process = None
         self.start()
 
