@@ -6,9 +6,9 @@ import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Pose, Vector3, Wrench
 from support import wait_for
-from test_commands import is_at_rest, joints_now, pose_now, turned
+from test_commands import is_at_rest, joints_now, pose_now, turned, wait_until_moving
 
-from ur_ros_rtde_msgs.action import (DirectTorque, EnableExternalFtSensor, ForceMode, Freedrive, MoveJ, SetExternalForceTorque,
+from ur_ros_rtde_msgs.action import (DirectTorque, EnableExternalFtSensor, ForceMode, Freedrive, MoveJ, MoveL, SetExternalForceTorque,
                                      SetForceModeParameter, TeachMode, Trigger, ZeroFtSensor)
 from ur_ros_rtde_msgs.msg import ErrorCode
 
@@ -74,14 +74,36 @@ def unlocked(simulator):
         return False
 
 
-def test_a_motion_goes_on_in_force_mode_that_was_started_and_stopped(robot, simulator):
-    start = robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=Wrench(), duration=0.0)
-    start.succeeded()
-    assert simulator.state()["force_mode"]
-    robot.send(MoveJ, "move_j", joint_positions=turned(0.2), speed=0.5).succeeded()
-    assert simulator.state()["force_mode"], "a motion that succeeds leaves it on"
-    robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=down(3.0)).succeeded()
+def test_a_motion_goes_along_a_surface_in_force_mode_that_was_started(robot, simulator):
+    robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
+    simulator.control("place_surface", z=pose_now(robot).position.z - 0.005, stiffness=20000.0)
+    fields = dict(compliant=ALONG_Z, limits=[0.1, 0.1, 0.03, 0.5, 0.5, 0.5])
+
+    def pressing(force):
+        return simulator.state()["contact_wrench"][2] == pytest.approx(force, abs=5.0)
+
+    robot.send(ForceMode, "force_mode_start", wrench=down(15.0), **fields).succeeded()
+    wait_for(lambda: pressing(15.0) and is_at_rest(robot), 10.0, "15 N")
+    robot.send(ForceMode, "force_mode_start", wrench=down(30.0), **fields).succeeded()
+    wait_for(lambda: pressing(30.0) and is_at_rest(robot), 10.0, "30 N, changed")
+    target = pose_now(robot)
+    target.position.y += 0.1
+    motion = robot.send(MoveL, "move_l", pose=target, speed=0.03)
+    wait_until_moving(robot, 0.02)
+    refused = robot.send(Trigger, "force_mode_stop")
+    assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
+    motion.succeeded()
+    assert simulator.state()["force_mode"] and pressing(30.0), "a motion that succeeds leaves it on"
     robot.send(Trigger, "force_mode_stop").succeeded()
+    assert not simulator.state()["force_mode"] and is_at_rest(robot)
+
+
+def test_a_motion_that_is_canceled_ends_force_mode(robot, simulator):
+    robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
+    motion = robot.send(MoveJ, "move_j", joint_positions=turned(1.0), speed=0.3)
+    wait_until_moving(robot)
+    motion.cancel()
+    assert motion.end()[0] == GoalStatus.STATUS_CANCELED
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
 
 
@@ -119,10 +141,10 @@ def test_motions_are_refused_while_somebody_may_hold_the_arm(robot, simulator, s
 
 
 def test_direct_torque_turns_a_joint_and_comes_to_rest(robot):
-    before = joints_now(robot).position[5]
-    robot.send(DirectTorque, "direct_torque", joint_torques=[0.0, 0.0, 0.0, 0.0, 0.0, 2.0], duration=0.4,
+    before = joints_now(robot).position[0]
+    robot.send(DirectTorque, "direct_torque", joint_torques=[15.0, 0.0, 0.0, 0.0, 0.0, 0.0], duration=0.3,
                max_joint_speed=3.0).succeeded()
-    assert joints_now(robot).position[5] > before + 0.005 and is_at_rest(robot)
+    assert joints_now(robot).position[0] > before + 0.01 and is_at_rest(robot)
 
 
 def test_direct_torque_ends_when_a_joint_gets_too_fast(robot):
