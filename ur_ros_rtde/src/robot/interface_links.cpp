@@ -204,26 +204,11 @@ std::optional<Locked<RTDEIOInterface>> InterfaceLinks::io() const
   return io_ ? std::optional(Locked(io_, io_lock_, "IO interface")) : std::nullopt;
 }
 
-bool InterfaceLinks::control_answers()
+bool InterfaceLinks::control_silent() const
 {
-  constexpr std::uint32_t ended_by_themselves =
-      RTDEControlInterface::MOTION_MOVE_JOINT | RTDEControlInterface::MOTION_MOVE_LINEAR;
+  constexpr std::chrono::milliseconds patience(50);
   const auto control = control_pointer();
-  if (!control || (control->getStartedMotions() & ~ended_by_themselves) != 0 ||
-      !control_lock_->try_lock_for(std::chrono::milliseconds(0))) {
-    return true;
-  }
-  const std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> unlock(
-      control_lock_.get(), [](InterfaceLock * lock) { lock->unlock(); });
-  control->setCommandTimeout(std::chrono::milliseconds(300));
-  bool answered = true;
-  try {
-    control->getTCPOffset();
-  } catch (const std::exception &) {
-    answered = false;
-  }
-  control->setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
-  return answered;
+  return control && control->getSilence() > patience;
 }
 
 void InterfaceLinks::kick_watchdog()

@@ -34,8 +34,9 @@ class InterfaceLinks {
   std::optional<Locked<ur_rtde::RTDEControlInterface>> control() const;
   std::optional<Locked<ur_rtde::RTDEIOInterface>> io() const;
   const std::shared_ptr<InterfaceLock> & control_lock() const { return control_lock_; }
-  /// Whether the control program answers, asked when nothing is under way; true when there is no asking now.
-  bool control_answers();
+  /// The control program has given no sign of life for some time, though nothing keeps it from it: another
+  /// one runs in its place.
+  bool control_silent() const;
   /// A sign of life for the control program's watchdog. Does not wait for a command under way.
   void kick_watchdog();
 

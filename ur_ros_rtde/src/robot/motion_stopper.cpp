@@ -150,9 +150,7 @@ bool MotionStopper::wait_for_standstill(milliseconds limit) const
   while (std::chrono::steady_clock::now() < deadline && state_.link().connected) {
     state_.wait_for_next(sample, milliseconds(20));
     const auto view = tracker_.view();
-    // The status word of a move stays as it was when its program is stopped under it.
-    const bool moving = !view.at_rest || (view.async.running() && sample.program_running());
-    if (view.sequence >= begin + cycles && !moving) {
+    if (view.sequence >= begin + cycles && view.at_rest && !view.operating()) {
       return true;
     }
   }

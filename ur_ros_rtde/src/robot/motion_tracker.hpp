@@ -19,8 +19,11 @@ class MotionTracker {
     double controller_time = 0.0;
     std::uint32_t link = 0;
 
-    /// An asynchronous operation; the word stays "running" when the program is stopped.
-    bool operating() const { return program_running && async.running(); }
+    /// The word of the program before: it stays as it was, "running" perhaps, until this one writes it.
+    bool async_is_old = false;
+
+    /// An asynchronous operation.
+    bool operating() const { return program_running && !async_is_old && async.running(); }
   };
 
   void add(const Sample & sample)
@@ -28,13 +31,15 @@ class MotionTracker {
     const std::lock_guard lock(mutex_);
     standstill_.add(sample);
     const bool ended = (view_.program_running && !sample.program_running()) || sample.link != view_.link;
+    const bool same_word = sample.async == view_.async;
     view_ = {standstill_.at_rest(),
              sample.async,
              sample.program_running(),
              view_.program + (ended ? 1U : 0U),
              sample.sequence,
              sample.controller_time,
-             sample.link};
+             sample.link,
+             !sample.program_running() || ended || (view_.async_is_old && same_word)};
   }
   View view() const
   {

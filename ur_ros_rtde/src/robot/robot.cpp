@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <ur_rtde/rtde_control_interface.h>
 
+#include <algorithm>
+#include <atomic>
 #include <stdexcept>
 #include <utility>
 
@@ -60,8 +62,9 @@ class Robot::Impl {
         dashboard(dashboard_options(options), log),
         links(options),
         stopper(options.address, state, links, tracker),
-        supervisor(options, state, dashboard, links, tracker, log),
-        scripts(options, state, tracker, links, supervisor)
+        supervisor(options, state, dashboard, links, log),
+        scripts(options, state, tracker, links, supervisor),
+        kicked_for_(options.watchdog_frequency)
   {
     state.on_link([this](const LinkStatus &) { supervisor.look_now(); });
     state.on_sample([this](const Sample & sample) { add(sample); });
@@ -71,6 +74,7 @@ class Robot::Impl {
 
   void add(const Sample & sample);
   void feed_watchdog(const Sample & sample);
+  Status set_watchdog(double frequency);
   Error why_not() const;
 
   const RobotOptions options;
@@ -87,6 +91,7 @@ class Robot::Impl {
  private:
   void end_program();
   std::chrono::steady_clock::time_point last_kick_{};  ///< receiving thread only
+  std::atomic<double> kicked_for_;                     ///< Hz, of the fastest watchdog that may be running
 };
 
 void Robot::Impl::add(const Sample & sample)
@@ -102,15 +107,31 @@ void Robot::Impl::add(const Sample & sample)
 /// Driven by the packages: a link on which nothing comes any more gives no sign of life either.
 void Robot::Impl::feed_watchdog(const Sample & sample)
 {
-  if (options.watchdog_frequency == 0.0) {
+  const double frequency = kicked_for_;
+  if (frequency == 0.0) {
     return;
   }
   constexpr double kicks_a_period = 5.0;
-  const std::chrono::duration<double> interval(1.0 / (kicks_a_period * options.watchdog_frequency));
+  const std::chrono::duration<double> interval(1.0 / (kicks_a_period * frequency));
   if (sample.received - last_kick_ >= interval) {
     last_kick_ = sample.received;
     links.kick_watchdog();
   }
+}
+
+Status Robot::Impl::set_watchdog(double frequency)
+{
+  const auto control = links.control();
+  if (!control) {
+    return tl::unexpected(why_not());
+  }
+  kicked_for_ = std::max(kicked_for_.load(), frequency);  // before it is needed
+  if (!(*control)->setWatchdog(frequency)) {
+    return failure(ErrorCode::rejected_by_robot, "the control program did not set its watchdog");
+  }
+  // A program that is started anew has the watchdog of the options.
+  kicked_for_ = std::max(options.watchdog_frequency, frequency);
+  return {};
 }
 
 Error Robot::Impl::why_not() const
@@ -290,6 +311,18 @@ bool Robot::moving() const
 {
   const auto view = impl_->tracker.view();
   return !view.at_rest || view.operating();
+}
+
+bool Robot::guided() const
+{
+  using Control = ur_rtde::RTDEControlInterface;
+  const auto control = impl_->links.control_pointer();
+  return control && (control->getStartedMotions() & (Control::MOTION_FREEDRIVE | Control::MOTION_TEACH)) != 0;
+}
+
+Status Robot::set_watchdog(double frequency)
+{
+  return impl_->set_watchdog(frequency);
 }
 
 Expected<StopReport> Robot::stop_motion(const StopOptions & options)

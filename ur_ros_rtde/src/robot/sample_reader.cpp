@@ -173,7 +173,7 @@ SampleReader::SampleReader(std::shared_ptr<RobotState> state, int register_offse
 
 SampleReader::~SampleReader() = default;
 
-void SampleReader::read(Sample & sample) const
+SampleReader::Package SampleReader::read(Sample & sample) const
 {
   const auto sequence = sample.sequence;
   const auto link = sample.link;
@@ -187,6 +187,7 @@ void SampleReader::read(Sample & sample) const
   for (const auto & copy : copies_) {
     copy(sample);
   }
+  return {state_->getPackageCount(), state_->getPackageTime()};
 }
 
 }  // namespace ur_ros_rtde

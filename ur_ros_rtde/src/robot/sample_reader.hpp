@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -20,7 +22,12 @@ class SampleReader {
   /// upper range.
   SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset);
   ~SampleReader();
-  void read(Sample & sample) const;
+
+  struct Package {
+    std::uint64_t count;  ///< of all that came on this connection
+    std::chrono::steady_clock::time_point arrival;
+  };
+  Package read(Sample & sample) const;
 
  private:
   std::shared_ptr<ur_rtde::RobotState> state_;

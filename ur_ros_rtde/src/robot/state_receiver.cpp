@@ -20,6 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double highest_frequency = 500.0;
+constexpr std::chrono::milliseconds longest_wait(10);
 
 /// ur_rtde must not change the priority of our thread: it would, to SCHED_FIFO 90, on a real-time kernel.
 constexpr int keep_priority = -1;
@@ -59,7 +60,6 @@ class StateReceiver::Impl {
   std::optional<ControllerVersion> version_;
   double frequency_ = 0.0;
   Sample latest_{};
-  std::uint32_t latest_link_ = 0;  ///< of latest_; the receiving thread's own
   std::shared_ptr<ur_rtde::RTDEReceiveInterface> interface_;
 
   std::jthread thread_;
@@ -67,7 +67,7 @@ class StateReceiver::Impl {
  private:
   Status connect();
   Error follow(const std::stop_token & stop);
-  void publish(Sample & sample, const SampleReader & reader, Clock::time_point arrival);
+  std::uint64_t publish(Sample & sample, const SampleReader & reader);
   void set_link(LinkStatus status);
   double choose_frequency(const ControllerVersion & version);
 
@@ -117,18 +117,15 @@ Status StateReceiver::Impl::connect()
   }
 }
 
-void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader, Clock::time_point arrival)
+/// The number of the package that was read.
+std::uint64_t StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader)
 {
-  const double before = sample.controller_time;
-  reader.read(sample);
-  if (sample.controller_time == before && sample.link == latest_link_) {
-    return;  // read with the one before, as its fields were written just before it was counted
-  }
-  latest_link_ = sample.link;
+  const auto package = reader.read(sample);
   ++sample.sequence;
-  sample.received = arrival;
-  sample.stamp = std::chrono::system_clock::now() -
-                 std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - arrival);
+  sample.received = package.arrival;
+  sample.stamp =
+      std::chrono::system_clock::now() -
+      std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - package.arrival);
   {
     const std::lock_guard lock(mutex_);
     latest_ = sample;
@@ -137,6 +134,7 @@ void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader, 
   if (sample_function_) {
     sample_function_(sample);
   }
+  return package.count;
 }
 
 Error StateReceiver::Impl::follow(const std::stop_token & stop)
@@ -149,16 +147,19 @@ Error StateReceiver::Impl::follow(const std::stop_token & stop)
                std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
   Sample sample = latest_;
   ++sample.link;
+  // This host may have been busy, not the controller: the last of the time is for ur_rtde's thread to read
+  // what may lie there.
+  const auto last_wait = std::min(longest_wait, silence_limit / 2);
   std::uint64_t packages = 0;
   while (!stop.stop_requested()) {
-    if (state->waitForPackage(packages, std::chrono::milliseconds(10))) {
-      publish(sample, reader, state->getPackageTime());
+    const auto left = state->getPackageTime() + silence_limit - last_wait - Clock::now();
+    const auto wait = std::clamp<Clock::duration>(left, std::chrono::milliseconds(1), longest_wait);
+    if (state->waitForPackage(packages, std::chrono::ceil<std::chrono::microseconds>(wait))) {
+      packages = publish(sample, reader);
     } else if (!interface->isConnected()) {
       return {ErrorCode::link_lost, fmt::format("{} closed the RTDE connection", options_.address)};
-    } else if (Clock::now() - state->getPackageTime() > silence_limit &&
-               // This host may have been busy, not the controller: let ur_rtde's thread read what may lie
-               // there.
-               !state->waitForPackage(packages, std::chrono::milliseconds(10))) {
+    } else if (auto count = packages; Clock::now() - state->getPackageTime() >= silence_limit - last_wait &&
+                                      !state->waitForPackage(count, last_wait)) {
       return {ErrorCode::link_lost,
               fmt::format("no RTDE package from {} for {} ms: the link or the controller hangs",
                           options_.address, silence_limit.count())};

@@ -13,8 +13,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds question_interval(500);
-
 RobotStatus stopped(const Error & error)
 {
   return {RobotState::stopped, error.code, error.message};
@@ -46,13 +44,8 @@ const char * to_string(RobotState state)
 }
 
 Supervisor::Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard,
-                       InterfaceLinks & links, const MotionTracker & tracker, LogFunction log)
-    : options_(options),
-      state_(state),
-      dashboard_(dashboard),
-      links_(links),
-      tracker_(tracker),
-      report_(std::move(log))
+                       InterfaceLinks & links, LogFunction log)
+    : options_(options), state_(state), dashboard_(dashboard), links_(links), report_(std::move(log))
 {
   status_ = {RobotState::disconnected, ErrorCode::link_lost,
              fmt::format("connecting to {}", options_.address)};
@@ -88,8 +81,10 @@ Status Supervisor::wait_until_ready(milliseconds limit, std::stop_token stop) co
 
 void Supervisor::add(const Sample & sample)
 {
-  if (program_ours_ && !sample.program_running()) {
+  // A program that takes the place of another one leaves no trace in the runtime state.
+  if (program_ours_ && (!sample.program_running() || links_.control_silent())) {
     program_ours_ = false;
+    look_now();
   }
   if (const auto now = modes(sample); now != seen_) {
     seen_ = now;
@@ -193,7 +188,7 @@ RobotStatus Supervisor::look()
 
 RobotStatus Supervisor::look_at_program(const Sample & sample)
 {
-  if (program_ours_ && !program_replaced()) {
+  if (program_ours_) {
     return {RobotState::ready, ErrorCode::none, {}};
   }
   if (const auto dashboard = dashboard_.link(); !dashboard.connected) {
@@ -218,24 +213,6 @@ RobotStatus Supervisor::look_at_program(const Sample & sample)
     return stopped(ended.error());
   }
   return start_program();
-}
-
-/// A program that takes the place of another one leaves no trace in the runtime state; but it does not
-/// answer.
-bool Supervisor::program_replaced()
-{
-  const auto now = std::chrono::steady_clock::now();
-  if (now - last_question_ < question_interval || tracker_.view().operating() || !tracker_.view().at_rest) {
-    return false;
-  }
-  last_question_ = now;
-  if (links_.control_answers() || !program_ours_) {
-    return false;
-  }
-  program_ours_ = false;
-  program_ended_ = true;
-  links_.drop_control();
-  return true;
 }
 
 Status Supervisor::stop_other_program(const Sample & sample)

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "robot/interface_links.hpp"
-#include "robot/motion_tracker.hpp"
 #include "robot/reporter.hpp"
 #include "ur_ros_rtde/dashboard_link.hpp"
 #include "ur_ros_rtde/robot.hpp"
@@ -21,7 +20,7 @@ namespace ur_ros_rtde {
 class Supervisor {
  public:
   Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard,
-             InterfaceLinks & links, const MotionTracker & tracker, LogFunction log);
+             InterfaceLinks & links, LogFunction log);
   ~Supervisor() { stop(); }
 
   std::function<void(const RobotStatus &)> status_function;  ///< set before start()
@@ -54,7 +53,6 @@ class Supervisor {
   void settle_turn(const RobotStatus & now);
   Turn turn() const;
   bool end_own_program(const Sample & sample);
-  bool program_replaced();
   Status stop_other_program(const Sample & sample);
   bool wait_for_runtime(RuntimeState runtime, std::chrono::milliseconds limit) const;
   void set(const RobotStatus & status);
@@ -63,7 +61,6 @@ class Supervisor {
   StateReceiver & state_;
   DashboardLink & dashboard_;
   InterfaceLinks & links_;
-  const MotionTracker & tracker_;
   Reporter report_;
 
   /// Our control program was seen to run, and not seen to end.
@@ -71,7 +68,6 @@ class Supervisor {
   /// It has ended since the link was made: a program that plays now is somebody else's.
   bool program_ended_ = false;
   std::uint32_t link_ = 0;
-  std::chrono::steady_clock::time_point last_question_{};
   Turn turn_at_look_ = Turn::own;  ///< what the look under way goes by
   std::uint64_t seen_ = 0;         ///< modes of the sample before, receiving thread only
 
