@@ -14,6 +14,8 @@ using trajectory::Limits;
 using trajectory::StreamClock;
 using trajectory::Trajectory;
 
+/// s: how fast the arm slows down when its target stands still, at least.
+constexpr double least_memory = 0.1;
 constexpr double following_reserve = 0.1;  // s, beyond lookahead_time
 constexpr double standing = 0.01;          // a rate below which there is nothing left to brake
 constexpr std::chrono::seconds package_limit{1};
@@ -38,6 +40,7 @@ ServoStream::ServoStream(Run & run, ServoSettings settings, Watch watch)
       settings_(std::move(settings)),
       watch_(std::move(watch)),
       cycle_(cycle_of(run.robot())),
+      memory_(std::max(settings_.lookahead_time, least_memory)),
       target_(trajectory::joint_count)
 {
   state_.sample = run.state();
@@ -48,7 +51,7 @@ Outcome ServoStream::drive(const Trajectory & plan, const Limits & limits)
   state_.sample = run_.state();
   const Joints end = plan.sample(plan.duration()).position;
   std::copy(end.begin(), end.end(), target_.begin());
-  StreamClock clock(cycle_, settings_.lookahead_time, wanted_rate(state_.sample));
+  StreamClock clock(cycle_, memory_, wanted_rate(state_.sample));
   while (clock.time() < plan.duration()) {
     const double before = state_.sample.controller_time;
     if (const auto why = run_.next(state_.sample)) {
@@ -74,8 +77,8 @@ Status ServoStream::send(const Trajectory & plan, double time)
   measure();
   if (state_.tracking_error > settings_.max_tracking_error) {
     return failure(ErrorCode::not_reached,
-                   fmt::format("the arm is {:.3f} rad behind the trajectory {:.2f} s after its beginning, "
-                               "max_tracking_error is {:.3f} rad: is something in the way, or the gain low?",
+                   fmt::format("the arm is {:.4f} rad behind the trajectory {:.2f} s after its beginning, "
+                               "max_tracking_error is {:.4f} rad: is something in the way, or the gain low?",
                                state_.tracking_error, state_.time, settings_.max_tracking_error));
   }
   return watch_(plan, state_);
@@ -149,7 +152,7 @@ void ServoStream::brake(const Trajectory & plan, const Limits & limits, StreamCl
     }
     const Trajectory stop = search.get();
     if (clock.time() <= from) {
-      StreamClock braking(cycle_, settings_.lookahead_time, 1.0, clock.time() / rate);
+      StreamClock braking(cycle_, memory_, 1.0, clock.time() / rate);
       keep_going(stop, limits, braking, settings_.stopped_by_another);
       return;
     }

@@ -64,6 +64,7 @@ class ServoStream {
   const ServoSettings settings_;
   const Watch watch_;
   const double cycle_;
+  const double memory_;  // s, of the StreamClock
   StreamState state_;
   double elapsed_ = 0.0;  // s between the last two packages
   std::vector<double> target_;

@@ -6,18 +6,18 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double slowest_change = 0.2;  // 1/s
-constexpr double quickest_change = 4.0;
-constexpr double bend = 40.0;  // 1/s^2, of the rate
+/// 1/s, as the controller's own ramp of the speed slider. Less would let a busy host stand still for ever.
+constexpr double slowest_change = 2.0;
+constexpr double quickest_change = 20.0;
+constexpr double softest_bend = 100.0;  // 1/s^2, of the rate
+constexpr double hardest_bend = 1000.0;
 /// Packages of one or two cycles are the network's jitter; what is more, the arm has waited for.
 constexpr double tolerated_cycles = 2.0;
 
-// How fast the rate r may change: |q'' r^2 + q' r'| <= A.
-double room(const Point & point, double rate, const Limits & limits)
+// How much more a joint can take beside `used`, by how fast it moves.
+double room(const Joints & limit, const Joints & used, const Joints & velocity, double least, double most)
 {
-  const Joints left = limits.acceleration - point.acceleration.abs() * (rate * rate);
-  const double most = (left / point.velocity.abs().max(1e-9)).minCoeff();
-  return std::clamp(most, slowest_change, quickest_change);
+  return std::clamp(((limit - used) / velocity.max(1e-9)).minCoeff(), least, most);
 }
 
 }  // namespace
@@ -27,7 +27,12 @@ void StreamClock::advance(double elapsed, double wanted, const Point & point, co
   const double duration = std::clamp(elapsed, 0.0, tolerated_cycles * cycle_);
   wait_out(elapsed - duration);
   const double before = rate_;
-  change_rate(duration, std::clamp(wanted, 0.0, 1.0), room(point, rate_, limits));
+  const Joints velocity = point.velocity.abs();
+  const double r = rate_;
+  const double change = room(limits.acceleration, point.acceleration.abs() * (r * r), velocity,
+                             slowest_change, quickest_change);
+  const double bend = room(limits.jerk, point.jerk.abs() * (r * r * r), velocity, softest_bend, hardest_bend);
+  change_rate(duration, std::clamp(wanted, 0.0, 1.0), change, bend);
   time_ += 0.5 * (before + rate_) * duration;
 }
 
@@ -36,11 +41,11 @@ void StreamClock::wait_out(double late)
 {
   if (late > 0.0) {
     rate_ *= std::max(0.0, 1.0 - late / memory_);
-    change_ = 0.0;
+    change_ = std::max(change_, 0.0);
   }
 }
 
-void StreamClock::change_rate(double duration, double wanted, double quickest)
+void StreamClock::change_rate(double duration, double wanted, double quickest, double bend)
 {
   const double missing = wanted - rate_;
   // Not faster than what can be taken back until the wanted rate is reached.

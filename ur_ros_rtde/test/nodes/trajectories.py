@@ -41,6 +41,15 @@ def distance_to_line(point_, start, end):
     return max(abs(p - a - part * d) for p, a, d in zip(point_, start, along))
 
 
+def unlocked(simulator):
+    """A controller does not unlock it in the first seconds."""
+    try:
+        simulator.control("unlock_protective_stop")
+        return True
+    except AssertionError:
+        return False
+
+
 class Watcher:
     """Follows the simulator's target in the background of a test: called in a wait_for."""
 

@@ -57,10 +57,26 @@ TEST(AStreamClock, of_a_late_host_skips_nothing_and_goes_on_slower_at_first)
   double before = clock.rate();
   for (int k = 0; k < 500; ++k) {
     clock.advance(cycle, 1.0, plan.sample(clock.time()), limits());
-    EXPECT_LE(std::abs(clock.rate() - before), 4.0 * cycle + 1e-9);
+    EXPECT_LE(std::abs(clock.rate() - before), 2.001 * cycle);  // 2 rad/s^2 at 1 rad/s
     before = clock.rate();
   }
   EXPECT_EQ(clock.rate(), 1.0);
+}
+
+// On a machine that does other things, too: every 40 ms nothing for 20 ms.
+TEST(AStreamClock, gets_on_though_the_host_is_late_again_and_again)
+{
+  const Trajectory plan = line();
+  StreamClock clock(cycle, memory, 1.0);
+  double elapsed = 0.0;
+  while (clock.time() < plan.duration() && elapsed < 10.0 * plan.duration()) {
+    for (int k = 0; k < 10; ++k, elapsed += cycle) {
+      clock.advance(cycle, 1.0, plan.sample(clock.time()), limits());
+    }
+    clock.advance(0.02, 1.0, plan.sample(clock.time()), limits());
+    elapsed += 0.02;
+  }
+  EXPECT_LT(elapsed, 8.0 * plan.duration());
 }
 
 TEST(AStreamClock, begins_anew_from_standstill_after_a_long_silence)
@@ -116,8 +132,8 @@ TEST(AStreamClock, changes_the_speed_smoothly)
     const auto plan = plan_path(path.waypoints, bounds, path.options);
     ASSERT_TRUE(plan) << plan.error().message;
     const Joints largest = largest_acceleration(*plan, bounds, 0.3);
-    // Where the plan uses all there is, changing the rate takes 0.2 /s of the velocity beside it.
-    const Joints allowed = bounds.acceleration * 1.25 + bounds.velocity * 0.6;
+    // Where the plan uses all there is, changing the rate takes 2 /s of the velocity beside it.
+    const Joints allowed = bounds.acceleration * 1.05 + bounds.velocity * 2.2;
     EXPECT_TRUE((largest <= allowed).all()) << "seed " << seed << ": " << (largest / allowed).maxCoeff();
   }
 }

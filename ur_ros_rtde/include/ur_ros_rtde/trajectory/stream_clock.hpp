@@ -10,7 +10,8 @@ namespace ur_ros_rtde::trajectory {
 /// first as much slower as the arm has become by waiting for it.
 ///
 /// Any constant rate keeps the limits that the plan keeps. A change of the rate r adds q' r' to the
-/// accelerations: it takes what room the limits leave, within 0.2 and 4 /s.
+/// accelerations and q' r'' to the jerks: it takes what room the limits leave, and 2 /s where they leave
+/// less.
 class StreamClock {
  public:
   /// `cycle`: of the controller, s. `memory`: how long the controller takes to follow a target, s. Begins at
@@ -30,7 +31,7 @@ class StreamClock {
 
  private:
   void wait_out(double late);
-  void change_rate(double duration, double wanted, double quickest);
+  void change_rate(double duration, double wanted, double quickest, double bend);
 
   double cycle_, memory_;
   double time_;
