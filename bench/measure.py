@@ -10,6 +10,7 @@ from pathlib import Path
 
 import rclpy
 from commands import Commands
+from servo_stream import servo_stream
 from stream_latency import latencies, percentile, receive_in_python
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
@@ -65,6 +66,7 @@ def main():
         commands = Commands(control)
         figures["goal to first RTDE command"] = summary(commands.goal_to_command(options.repeat))
         figures["cancel to deceleration"] = summary(commands.cancel_to_deceleration(options.repeat // 2))
+        figures["servo stream"] = servo_stream(control, commands.node)
         commands.close()
     rclpy.try_shutdown()
     options.output.write_text(json.dumps(figures))

@@ -22,6 +22,8 @@ AIMS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
     ("package to rclpy subscriber", "p99", 1.0, "ms"),
     ("goal to first RTDE command", "p50", 1.0, "ms"),
     ("cancel to deceleration", "p50", 5.0, "ms"),
+    ("servo stream", "p99.9 off", 0.2, "ms from its interval"),
+    ("servo stream", "tracking error", 0.02, "rad"),
     ("cpu", "simulator", 10.0, "% of a core"),
     ("cpu", "robot_state_receiver", 10.0, "% of a core"),
     ("cpu", "command_server", 10.0, "% of a core"),
