@@ -32,9 +32,12 @@ def examples():
 
 
 def pytest_generate_tests(metafunc):
+    """A module may say for which examples it is: `concerns(example)`."""
     if "plugin" in metafunc.fixturenames:
         chosen = metafunc.config.getoption("--plugin")
-        metafunc.parametrize("plugin", [name for name in sorted(examples()) if not chosen or name in chosen])
+        concerns = getattr(metafunc.module, "concerns", lambda example: True)
+        metafunc.parametrize("plugin", [name for name, example in sorted(examples().items())
+                                        if concerns(example) and (not chosen or name in chosen)])
 
 
 @pytest.fixture(scope="session")

@@ -33,6 +33,11 @@ def moves_arm(example):
     return "motion" in messages.load(example.type).Feedback.get_fields_and_field_types()
 
 
+def may_last(example):
+    """A command that tells how far it is."""
+    return bool(messages.load(example.type).Feedback.get_fields_and_field_types())
+
+
 def cancel_counts_as_success(example):
     text = " ".join(field.comment for field in action_files.fields(example.type).values())
     return "counts as success" in text + " " + action_files.description(example.type)

@@ -3,7 +3,9 @@
 import pytest
 from action_msgs.msg import GoalStatus
 from cell import described
-from scenarios import RESULT_LIMIT, begin, cancel_counts_as_success, moves_arm
+from scenarios import RESULT_LIMIT, begin, cancel_counts_as_success
+from scenarios import may_last as concerns  # noqa: F401
+from scenarios import moves_arm
 
 from ur_ros_rtde_msgs.msg import ErrorCode
 

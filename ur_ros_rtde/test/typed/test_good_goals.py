@@ -4,7 +4,7 @@ from cell import CODES, EXAMPLE_LIMIT, described
 from action_msgs.msg import GoalStatus
 
 # What these leave behind does not show in the simulator's state: the next example gets a fresh simulator.
-LASTING = ("set_", "enable_", "force_mode_set", "dashboard/shutdown")
+LASTING = ("set_", "enable_", "force_mode_start", "force_mode_set", "dashboard/shutdown")
 
 
 def scenario(cell, example):

@@ -4,7 +4,7 @@ import disturbances
 import pytest
 from conftest import examples
 from documentation import Setup
-from scenarios import RESULT_LIMIT, described, moves_arm
+from scenarios import RESULT_LIMIT, described, may_last
 from support import wait_for
 
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -13,8 +13,8 @@ ANSWER_LIMIT = 10.0  # s
 
 
 def momentary():
-    """What moves no arm, and of the dashboard what only asks: nothing whose order would matter."""
-    return [example for example in examples().values() if not moves_arm(example) and example.setup == Setup()
+    """Of the dashboard what only asks: nothing whose order would matter."""
+    return [example for example in examples().values() if not may_last(example) and example.setup == Setup()
             and ("/" not in example.action or example.type.endswith("DashboardQuery"))]
 
 

@@ -3,6 +3,7 @@
 import pytest
 from disturbances import PROTECTIVE_STOP
 from scenarios import disturb
+from scenarios import may_last as concerns  # noqa: F401
 
 
 def scenario(cell, example):
