@@ -8,7 +8,7 @@ import pytest
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
-from support import HOME, JOINTS, node, seconds, wait_for
+from support import HOME, JOINTS, Client, Simulator, node, seconds, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -197,6 +197,33 @@ def test_a_stream_is_refused_while_a_goal_moves_the_arm(robot, driver):
         time.sleep(0.5)
         assert speed_now(robot) < 0.01, "it must not begin in the middle of a stream"
     assert len(lines(driver, "/twist: the stream moves nothing")) == before + 1, "logged once"
+
+
+def test_a_stream_is_refused_while_another_one_lives(robot, driver):
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base")):
+        time.sleep(0.3)
+        before = len(lines(driver, "/servo_joint: the stream moves nothing"))
+        with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(turned(min(0.2, 0.2 * t)))):
+            wait_for(lambda: len(lines(driver, "/servo_joint: the stream moves nothing")) > before, 5.0, "the refusal")
+            time.sleep(0.5)
+        assert "/twist is running" in lines(driver, "/servo_joint: the stream moves nothing")[-1]
+    assert state(robot).position[0] == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_goal_ends_a_stream_where_goals_preempt(addresses, processes):
+    simulator = processes(Simulator(addresses[1]))
+    processes(node("command_server", simulator.address, "ur_type:=ur10e", "on_busy:=preempt", f"stream_timeout:={TIMEOUT}",
+                   namespace="other"))
+    client = Client("other")
+    try:
+        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 20.0, "the driver to be ready")
+        with Publisher(client, TwistStamped, "twist", lambda t: twist_message("base", -0.05)):
+            wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) > 0.03, 10.0, "the arm to move")
+            client.send(MoveJ, "move_j", joint_positions=turned(0.3), speed=1.0).succeeded()
+            time.sleep(0.5)
+            assert simulator.state()["actual"]["position"] == pytest.approx(turned(0.3), abs=0.01)
+    finally:
+        client.close()
 
 
 def test_stop_ends_a_stream_until_there_has_been_a_pause(robot):

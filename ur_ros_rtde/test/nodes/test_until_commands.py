@@ -13,6 +13,7 @@ from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
 
 TABLE = 0.6  # m; the TCP is at 0.677 at home
 DOWN = Twist(linear=Vector3(z=-0.05))
+SLOWLY_DOWN = Twist(linear=Vector3(z=-0.02))  # time enough for something to happen meanwhile
 
 
 def height_now(client):
@@ -47,8 +48,9 @@ def test_move_until_contact_stays_where_it_stopped_without_retract(robot, table)
 
 
 def test_move_until_contact_counts_only_its_direction(robot, simulator):
-    goal = robot.send(MoveUntilContact, "move_until_contact", twist=DOWN, direction=Vector3(x=1.0), distance=0.1, timeout=15.0)
-    wait_for(lambda: speed_now(robot) > 0.02, 10.0, "the arm to move")
+    goal = robot.send(MoveUntilContact, "move_until_contact", twist=SLOWLY_DOWN, direction=Vector3(x=1.0), distance=0.1,
+                      timeout=15.0)
+    wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
     simulator.control("push", force=[0, 0, 30], duration=0.3)
     status, result = goal.end()
     assert status == GoalStatus.STATUS_ABORTED and not result.contact
@@ -71,7 +73,7 @@ def test_without_a_contact_it_ends_with_a_stop_by_distance_or_time(robot, action
 
 def test_cancel_of_move_until_contact_leaves_the_arm_at_rest(robot):
     goal = robot.send(MoveUntilContact, "move_until_contact", twist=DOWN, distance=0.5, timeout=30.0)
-    wait_for(lambda: speed_now(robot) > 0.02, 10.0, "the arm to move")
+    wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
     goal.cancel()
     status, result = goal.end()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
@@ -89,15 +91,15 @@ def test_move_until_force_stops_within_a_few_cycles_of_the_touch(robot, simulato
 
 
 def test_move_until_force_looks_only_at_its_axes(robot, simulator):
-    goal = robot.send(MoveUntilForce, "move_until_force", twist=DOWN, axes=[True, False, False], frame=0, threshold=15.0,
+    goal = robot.send(MoveUntilForce, "move_until_force", twist=SLOWLY_DOWN, axes=[True, False, False], frame=0, threshold=15.0,
                       distance=0.1, timeout=15.0)
-    wait_for(lambda: speed_now(robot) > 0.02, 10.0, "the arm to move")
+    wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
     simulator.control("push", force=[0, 40, 0], duration=0.4)
     assert goal.end()[1].error_code == ErrorCode.NOT_REACHED
 
 
 def test_move_until_torque_is_stopped_by_a_torque_of_its_size(robot, simulator):
-    goal = robot.send(MoveUntilForce, "move_until_torque", twist=Twist(linear=Vector3(z=-0.02)), threshold=3.0,
+    goal = robot.send(MoveUntilForce, "move_until_torque", twist=SLOWLY_DOWN, threshold=3.0,
                       distance=0.3, timeout=15.0)
     wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
     simulator.control("push", wrench=[0, 0, 0, 6, 0, 0], duration=2.0)

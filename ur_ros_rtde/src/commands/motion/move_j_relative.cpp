@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
 #include <numbers>
 #include <ur_ros_rtde_msgs/action/move_j_relative.hpp>
 
@@ -5,16 +9,17 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr double two_turns = 4.0 * std::numbers::pi;  // from one end to the other
-constexpr Vector6 longest{two_turns, two_turns, two_turns, two_turns, two_turns, two_turns};
+constexpr double turn = 2.0 * std::numbers::pi;  // to each side of zero
+constexpr Vector6 longest{2.0 * turn, 2.0 * turn, 2.0 * turn, 2.0 * turn, 2.0 * turn, 2.0 * turn};
 
-std::vector<double> sum(const Vector6 & start, const std::vector<double> & offsets)
+/// Finite, and from `start` within the range of the joint.
+Check & check_offsets(Check & check, const std::vector<double> & offsets, const Vector6 & start)
 {
-  std::vector<double> target(start.begin(), start.end());
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    target[i] += offsets[i];
+  for (std::size_t i = 0; i < start.size() && check.ok(); ++i) {
+    check.in_range(fmt::format("joint_offsets[{}] ({})", i, joint_names()[i]), offsets[i], -turn - start[i],
+                   turn - start[i], "rad");
   }
-  return target;
+  return check;
 }
 }  // namespace
 
@@ -25,16 +30,18 @@ class MoveJRelative : public Command<ur_ros_rtde_msgs::action::MoveJRelative> {
         .above_zero("speed", goal.speed, 3.14, "rad/s")
         .above_zero("acceleration", goal.acceleration, 40.0, "rad/s^2");
     if (const auto start = check.start()) {
-      check.joints("with joint_offsets the target", sum(start->actual_q, goal.joint_offsets));
+      check_offsets(check, goal.joint_offsets, start->actual_q);
     }
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    const auto target = sum(run.state().actual_q, goal.joint_offsets);
-    if (Check again; !again.joints("with joint_offsets the target", target).ok()) {
+    const Vector6 start = run.state().actual_q;
+    if (Check again; !check_offsets(again, goal.joint_offsets, start).ok()) {
       return *again.error();
     }
+    std::vector<double> target(start.begin(), start.end());
+    std::transform(start.begin(), start.end(), goal.joint_offsets.begin(), target.begin(), std::plus<>());
     run.control()->moveJ(target, goal.speed, goal.acceleration, true);
     return run.until_joints_reached(target);
   }

@@ -21,16 +21,20 @@ std::vector<double> moved(const Vector6 & start, const ur_ros_rtde_msgs::action:
   }
   return {pose.begin(), pose.end()};
 }
+
+double angle(const geometry_msgs::msg::Vector3 & rotation)
+{
+  return std::hypot(rotation.x, rotation.y, rotation.z);
+}
 }  // namespace
 
 class MoveLRelative : public Command<ur_ros_rtde_msgs::action::MoveLRelative> {
   void check(const Goal & goal, Check & check) const override
   {
-    const double angle = std::hypot(goal.rotation.x, goal.rotation.y, goal.rotation.z);
     check.in_range("frame", goal.frame, Goal::BASE, Goal::TOOL)
         .vector("translation", goal.translation, 3.0, "m")
         .vector("rotation", goal.rotation, std::numbers::pi, "rad")  // std::hypot(0, 0, nan) may be 0
-        .in_range("the length of rotation", angle, 0.0, std::numbers::pi, "rad")
+        .in_range("the length of rotation", angle(goal.rotation), 0.0, std::numbers::pi, "rad")
         .above_zero("speed", goal.speed, 3.0, "m/s")
         .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2");
     if (const auto start = check.start()) {

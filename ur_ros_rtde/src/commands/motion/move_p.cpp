@@ -27,7 +27,7 @@ class MoveP : public Command<ur_ros_rtde_msgs::action::MoveP> {
     check.above_zero("speed", goal.speed, 3.0, "m/s")
         .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2")
         .in_range("blend_radius", goal.blend_radius, 0.0, 2.0, "m");
-    check_path(check, "poses", path(goal));
+    check_path(check, "poses", path(goal), "");
   }
 
   Outcome run(const Goal & goal, Run & run) override

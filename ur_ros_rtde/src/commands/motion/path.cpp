@@ -16,11 +16,11 @@ constexpr std::size_t asked_beforehand = 20;
 constexpr std::chrono::hours longest_path{24};
 constexpr std::string_view mark = "ur_ros_rtde: waypoint ";
 
-void check_waypoint(Check & check, const std::string & name, const Waypoint & waypoint)
+void check_waypoint(Check & check, const std::string & name, std::string_view pose, const Waypoint & waypoint)
 {
   const bool by_joints = !waypoint.joint_positions.empty();
   check.in_range(name + ".type", waypoint.type, Waypoint::MOVE_J, Waypoint::MOVE_C)
-      .pose(name + ".pose", waypoint.pose)
+      .pose(fmt::format("{}{}", name, pose), waypoint.pose)
       .pose(name + ".via", waypoint.via)
       .that(!by_joints || waypoint.type <= Waypoint::MOVE_L,
             name + " has joint_positions, which MOVE_P and MOVE_C do not take: give its pose");
@@ -72,12 +72,12 @@ std::string program(const Waypoints & waypoints, int arc_mode)
 }
 }  // namespace
 
-void check_path(Check & check, std::string_view name, const Waypoints & waypoints)
+void check_path(Check & check, std::string_view name, const Waypoints & waypoints, std::string_view pose)
 {
   check.that(!waypoints.empty() && waypoints.size() <= most,
              fmt::format("{} has {} entries, it may have 1 to {}", name, waypoints.size(), most));
   for (std::size_t i = 0; i < waypoints.size() && check.ok(); ++i) {
-    check_waypoint(check, fmt::format("{}[{}]", name, i), waypoints[i]);
+    check_waypoint(check, fmt::format("{}[{}]", name, i), pose, waypoints[i]);
   }
   if (check.ok()) {
     check.that(waypoints.back().blend_radius == 0.0,
@@ -86,7 +86,7 @@ void check_path(Check & check, std::string_view name, const Waypoints & waypoint
   }
   for (std::size_t i = 0; i < std::min(waypoints.size(), asked_beforehand) && check.ok(); ++i) {
     if (waypoints[i].joint_positions.empty()) {
-      check.reachable(fmt::format("{}[{}].pose", name, i), waypoints[i].pose);
+      check.reachable(fmt::format("{}[{}]{}", name, i, pose), waypoints[i].pose);
     }
   }
 }

@@ -12,8 +12,9 @@ namespace ur_ros_rtde {
 using Waypoints = std::vector<ur_ros_rtde_msgs::msg::PathWaypoint>;
 
 /// 1 to 1000 waypoints, each right in itself; then the first of them are asked of the robot (reachable).
-/// `name` is the field: "waypoints".
-void check_path(Check & check, std::string_view name, const Waypoints & waypoints);
+/// `name` is the field: "waypoints"; `pose` what leads from an entry of it to its pose.
+void check_path(Check & check, std::string_view name, const Waypoints & waypoints,
+                std::string_view pose = ".pose");
 
 /// Moves through the waypoints by a program in the place of the control program (hold Resource::script), with
 /// progress, and `heading_for` with each waypoint's index when the arm turns to it. `arc_mode` is movec's

@@ -21,21 +21,13 @@ Vector6 way(const Vector6 & from, const std::vector<double> & to)
 }
 }  // namespace
 
-Outcome end_servo(Run & run, Outcome outcome, double deceleration)
-{
-  if (outcome) {
-    run.control()->servoStop(deceleration);
-  }
-  return outcome;
-}
-
 double smooth_step(double u)
 {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-std::optional<Interruption> follow(Run & run, double duration,
-                                   const std::function<void(double share, double cycle)> & send)
+Outcome servo(Run & run, double duration, const std::function<void(double share, double cycle)> & send,
+              const std::function<Outcome()> & arrival, double deceleration)
 {
   const auto version = run.robot().version();
   const double cycle = 1.0 / (version ? version->frequency() : 500.0);
@@ -43,13 +35,21 @@ std::optional<Interruption> follow(Run & run, double duration,
   for (double time = 0.0; time < duration;) {
     const double before = sample.controller_time;
     if (auto why = run.next(sample)) {
-      return why;
+      return *why;
     }
     time += std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
     run.progress(smooth_step(std::min(time / duration, 1.0)));
     send(run.progress(), cycle);
   }
-  return std::nullopt;
+  return end_servo(run, arrival(), deceleration);
+}
+
+Outcome end_servo(Run & run, const Outcome & arrival, double deceleration)
+{
+  if (arrival) {
+    run.control()->servoStop(deceleration);
+  }
+  return arrival;
 }
 
 std::vector<double> joints_between(const Vector6 & from, const std::vector<double> & to, double s)
@@ -71,9 +71,13 @@ std::vector<double> pose_between(const Vector6 & from, const std::vector<double>
   return {pose.begin(), pose.end()};
 }
 
-void check_tcp_speed(Check & check, const Vector6 & from, const std::vector<double> & to, double time)
+void check_tcp_speed(Check & check, const std::vector<double> & to, double time)
 {
-  const Vector6 part = way(from, to);
+  const auto start = check.start();
+  if (!start) {
+    return;
+  }
+  const Vector6 part = way(start->actual_tcp_pose, to);
   const double linear = smooth_step_peak * std::hypot(part[0], part[1], part[2]);
   const double angular = smooth_step_peak * std::hypot(part[3], part[4], part[5]);
   const double shortest = std::max(linear / highest_linear_speed, angular / highest_angular_speed);

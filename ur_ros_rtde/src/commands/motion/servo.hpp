@@ -25,27 +25,29 @@ StopOptions servo_stop_options(const Goal & goal)
   return {.joint_deceleration = goal.deceleration, .linear_deceleration = goal.deceleration};
 }
 
-/// Ends servo control with a motion that has succeeded; of any other, the stop is the base class's.
-[[nodiscard]] Outcome end_servo(Run & run, Outcome outcome, double deceleration);
-
 /// How far along its way a motion is after the share `u` of its time, both 0 to 1: from rest to rest without
 /// a jump in the acceleration (the polynomial of minimum jerk, Flash and Hogan 1985).
 double smooth_step(double u);
 /// Its highest speed, as a multiple of the mean one.
 constexpr double smooth_step_peak = 15.0 / 8.0;
 
-/// Calls `send` once each control cycle with the share of the way (smooth_step) and the length of the cycle
-/// (s) until `duration` (s) has passed, paced by the controller's packages. A host that comes late goes on
-/// from where it was: the arm is slower then, never faster.
-[[nodiscard]] std::optional<Interruption> follow(
-    Run & run, double duration, const std::function<void(double share, double cycle)> & send);
+/// A servo motion of `duration` s: calls `send` once each control cycle with the share of the way
+/// (smooth_step) and the length of the cycle (s), paced by the controller's packages; then waits for
+/// `arrival`, and ends servo control. A host that comes late goes on from where it was: the arm is slower
+/// then, never faster.
+[[nodiscard]] Outcome servo(Run & run, double duration,
+                            const std::function<void(double share, double cycle)> & send,
+                            const std::function<Outcome()> & arrival, double deceleration);
+
+/// Ends servo control after an arrival; a failed one is stopped by the base class.
+[[nodiscard]] Outcome end_servo(Run & run, const Outcome & arrival, double deceleration);
 
 /// At the share `s` of the way: joint positions; a pose of UR on the straight line, turning about one axis.
 std::vector<double> joints_between(const Vector6 & from, const std::vector<double> & to, double s);
 std::vector<double> pose_between(const Vector6 & from, const std::vector<double> & to, double s);
 
-/// The TCP does not go faster than 3 m/s and 3.14 rad/s when it follows smooth_step from pose to pose of UR
-/// in `time` s.
-void check_tcp_speed(Check & check, const Vector6 & from, const std::vector<double> & to, double time);
+/// The TCP does not go faster than 3 m/s and 3.14 rad/s when it follows smooth_step to a pose of UR in `time`
+/// s.
+void check_tcp_speed(Check & check, const std::vector<double> & to, double time);
 
 }  // namespace ur_ros_rtde

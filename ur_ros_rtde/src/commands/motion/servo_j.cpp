@@ -22,10 +22,8 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
       const auto target = joints_between(start, goal.joint_positions, share);
       run.control()->servoJ(target, 0.0, 0.0, cycle, goal.lookahead_time, goal.gain);
     };
-    if (auto why = follow(run, goal.time, send)) {
-      return *why;
-    }
-    return end_servo(run, run.until_at_joints(goal.joint_positions), goal.deceleration);
+    const auto arrival = [&] { return run.until_at_joints(goal.joint_positions); };
+    return servo(run, goal.time, send, arrival, goal.deceleration);
   }
 };
 

@@ -10,8 +10,8 @@ class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
   {
     check.pose("pose", goal.pose);
     check_servo(goal, check).reachable("pose", goal.pose);
-    if (const auto start = check.start()) {
-      check_tcp_speed(check, start->actual_tcp_pose, to_ur(goal.pose), goal.time);
+    if (check.ok()) {
+      check_tcp_speed(check, to_ur(goal.pose), goal.time);
     }
   }
 
@@ -25,10 +25,7 @@ class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
       const auto target = pose_between(start, end, share);
       run.control()->servoL(target, 0.0, 0.0, cycle, goal.lookahead_time, goal.gain);
     };
-    if (auto why = follow(run, goal.time, send)) {
-      return *why;
-    }
-    return end_servo(run, run.until_at_pose(end), goal.deceleration);
+    return servo(run, goal.time, send, [&] { return run.until_at_pose(end); }, goal.deceleration);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 
 namespace ur_ros_rtde {
 namespace {
@@ -97,7 +98,7 @@ int contact_steps(Run & run, const std::vector<double> & direction)
 }
 
 Outcome move_until_contact(Run & run, const ContactMotion & motion,
-                           const std::function<void(const Contact &)> & found)
+                           const std::function<void(const ur_ros_rtde_msgs::msg::ArmState &)> & found)
 {
   std::optional<Vector6> joints, pose;
   bool timed_out = false;
@@ -112,7 +113,10 @@ Outcome move_until_contact(Run & run, const ContactMotion & motion,
   };
   const ScriptReport report = run.run_script(program(motion), options);
   if (joints && pose) {
-    found({*joints, *pose});
+    ur_ros_rtde_msgs::msg::ArmState state;
+    state.joint_positions = *joints;
+    state.tcp_pose = to_ros(*pose);
+    found(state);
   }
   if (!report) {
     return report.error;

@@ -5,7 +5,8 @@
 #include <geometry_msgs/msg/twist.hpp>
 #include <geometry_msgs/msg/vector3.hpp>
 #include <optional>
-#include <string_view>
+#include <ur_ros_rtde_msgs/msg/arm_state.hpp>
+#include <vector>
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/run.hpp"
@@ -34,16 +35,10 @@ struct ContactMotion {
   bool retract;
 };
 
-/// Where a contact began.
-struct Contact {
-  Vector6 joint_positions;
-  Vector6 tcp_pose;
-};
-
 /// Runs the motion in the controller, by a program in the place of the control program (hold
-/// Resource::script): it looks at the contact in each control cycle. Tells the contact, when there is one, as
-/// soon as it is found. not_reached when there is none on the way, timeout when the time is over.
+/// Resource::script): it looks at the contact in each control cycle. `found` is told where the contact began,
+/// if there is one. not_reached when there is none on the way, timeout when the time is over.
 Outcome move_until_contact(Run & run, const ContactMotion & motion,
-                           const std::function<void(const Contact &)> & found);
+                           const std::function<void(const ur_ros_rtde_msgs::msg::ArmState &)> & found);
 
 }  // namespace ur_ros_rtde

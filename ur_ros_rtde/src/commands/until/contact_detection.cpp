@@ -30,6 +30,24 @@ std::vector<double> direction_now(const std::vector<double> & given, const Sampl
   const Vector6 & motion = sample.target_tcp_speed;
   return is_zero(given) ? std::vector<double>(motion.begin(), motion.end()) : given;
 }
+
+double seconds(std::chrono::nanoseconds duration)
+{
+  return std::chrono::duration<double>(duration).count();
+}
+
+Outcome ask_until(const std::function<bool()> & touches, double timeout, Run & run)
+{
+  while (!touches()) {
+    if (seconds(run.elapsed()) > timeout) {
+      return Outcome::failure(ErrorCode::timeout, fmt::format("no contact within {} s", timeout));
+    }
+    if (auto why = run.sleep_for(question_interval)) {
+      return *why;
+    }
+  }
+  return Outcome::success();
+}
 }  // namespace
 
 class ContactDetection : public Command<ur_ros_rtde_msgs::action::ContactDetection> {
@@ -45,18 +63,14 @@ class ContactDetection : public Command<ur_ros_rtde_msgs::action::ContactDetecti
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    while (contact_steps(run, direction_now(to_ur(goal.direction), run.state())) <= 0) {
+    const auto touches = [&] {
       run.feedback().elapsed = to_ros(run.elapsed());
       run.publish();
-      if (std::chrono::duration<double>(run.elapsed()).count() > goal.timeout) {
-        return Outcome::failure(ErrorCode::timeout, fmt::format("no contact within {} s", goal.timeout));
-      }
-      if (auto why = run.sleep_for(question_interval)) {
-        return *why;
-      }
-    }
-    run.result().after = std::chrono::duration<double>(run.elapsed()).count();
-    return Outcome::success();
+      return contact_steps(run, direction_now(to_ur(goal.direction), run.state())) > 0;
+    };
+    const Outcome outcome = ask_until(touches, goal.timeout, run);
+    run.result().after = seconds(run.elapsed());
+    return outcome;
   }
 };
 

@@ -20,14 +20,12 @@ class MoveUntilContact : public Command<ur_ros_rtde_msgs::action::MoveUntilConta
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    const auto found = [&](const Contact & contact) {
+    const ContactMotion motion{goal.twist,   goal.direction, goal.acceleration,
+                               goal.timeout, goal.distance,  goal.retract};
+    return move_until_contact(run, motion, [&](const auto & where) {
       run.result().contact = true;
-      run.result().contact_state.joint_positions = contact.joint_positions;
-      run.result().contact_state.tcp_pose = to_ros(contact.tcp_pose);
-    };
-    return move_until_contact(
-        run, {goal.twist, goal.direction, goal.acceleration, goal.timeout, goal.distance, goal.retract},
-        found);
+      run.result().contact_state = where;
+    });
   }
 };
 

@@ -20,9 +20,15 @@ geometry_msgs::msg::Vector3 to_ros(const Vector3 & v)
   return message;
 }
 
+/// std::hypot of three may lose a NaN.
+double length(const Vector3 & v)
+{
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
 double distance(const Vector6 & from, const Vector6 & to)
 {
-  return std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+  return length({to[0] - from[0], to[1] - from[1], to[2] - from[2]});
 }
 }  // namespace
 
@@ -74,7 +80,7 @@ Outcome MoveUntilWrench::watch(const Goal & goal, Run & run, const Vector3 & zer
     Vector3 now = measure(goal, sample);
     std::transform(now.begin(), now.end(), zero.begin(), now.begin(), std::minus<>());
     run.feedback().measured = run.result().measured = to_ros(now);
-    const double size = std::hypot(now[0], now[1], now[2]);
+    const double size = length(now);
     if (!(size < goal.threshold)) {  // NaN stops, too
       return std::isfinite(size) ? Outcome::success(fmt::format("stopped by {:.1f} {}", size, part_.unit))
                                  : Outcome::failure(ErrorCode::not_supported,
