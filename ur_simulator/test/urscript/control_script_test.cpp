@@ -234,12 +234,15 @@ TEST_F(ControlScript, ends_on_command)
   EXPECT_EQ(rig.machine->status(), MachineStatus::finished);
 }
 
-TEST_F(ControlScript, a_command_that_is_not_modelled_ends_it_with_a_reason)
+TEST_F(ControlScript, a_command_that_the_robot_refuses_ends_it_with_a_reason)
 {
-  rig.state.inputs.integers[0] = 18;
-  rig.finish(0.1);
+  for (const std::int32_t command : {18, 0, 1}) {  // teach mode, done with it, movej
+    rig.state.inputs.integers[0] = command;
+    rig.cycles(10);
+  }
   EXPECT_EQ(rig.machine->status(), MachineStatus::failed);
-  EXPECT_EQ(rig.machine->error().message, "teach_mode: not modelled by the simulator yet");
+  EXPECT_NE(rig.machine->error().message.find("freedrive"), std::string::npos)
+      << rig.machine->error().message;
 }
 
 TEST_F(ControlScript, runs_with_injected_offsets_of_an_earlier_upload_too)
