@@ -54,13 +54,14 @@ std::optional<Error> check(const ScriptOptions & options)
 /// The control program's absence, whatever ends it.
 class GivenWay {
  public:
-  explicit GivenWay(Supervisor & supervisor) : supervisor_(supervisor) {}
-  ~GivenWay() { supervisor_.take_back(take_back_limit); }
+  GivenWay(Supervisor & supervisor, const ScriptWatch & watch) : supervisor_(supervisor), watch_(watch) {}
+  ~GivenWay() { supervisor_.take_back(take_back_limit, watch_.replaced()); }
   GivenWay(const GivenWay &) = delete;
   GivenWay & operator=(const GivenWay &) = delete;
 
  private:
   Supervisor & supervisor_;
+  const ScriptWatch & watch_;
 };
 
 }  // namespace
@@ -146,7 +147,7 @@ ScriptReport ScriptRunner::run_program(const script::Program & program, ScriptWa
   if (const auto given = supervisor_.give_way(give_way_limit); !given) {
     return refused(given.error());
   }
-  const GivenWay until_the_end(supervisor_);
+  const GivenWay until_the_end(supervisor_, watch);
   try {
     watch.follow(program);
   } catch (...) {

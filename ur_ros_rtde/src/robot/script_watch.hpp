@@ -26,6 +26,8 @@ class ScriptWatch {
   void follow(const script::Program & program);
   /// It may still run: it was begun, or may have been, and has not ended by itself.
   bool running() const { return running_; }
+  /// Another program took its place.
+  bool replaced() const { return !replaced_by_.empty(); }
   ScriptReport report() const;
 
  private:

@@ -143,7 +143,7 @@ void Supervisor::run(const std::stop_token & stop)
 
 RobotStatus Supervisor::look()
 {
-  turn_at_look_ = turn();
+  begin_look();
   const auto link = state_.link();
   const auto sample = state_.latest();
   if (!link.connected || !sample) {

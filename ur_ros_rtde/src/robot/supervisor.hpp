@@ -37,7 +37,8 @@ class Supervisor {
   /// does not run.
   Status give_way(std::chrono::milliseconds limit);
   /// The other program has ended: starts the control program again, and returns when it runs or cannot.
-  Status take_back(std::chrono::milliseconds limit);
+  /// `replaced`: by a third one, which is left alone.
+  Status take_back(std::chrono::milliseconds limit, bool replaced = false);
   bool gave_way() const;
 
  private:
@@ -51,6 +52,7 @@ class Supervisor {
   RobotStatus look_at_turn(const Sample & sample, const std::optional<Error> & condition);
   /// Who waits for the turn to come back, or to be given, is answered.
   void settle_turn(const RobotStatus & now);
+  void begin_look();
   Turn turn() const;
   bool end_own_program(const Sample & sample);
   Status stop_other_program(const Sample & sample);
@@ -76,6 +78,7 @@ class Supervisor {
   RobotStatus status_;
   bool look_requested_ = false;
   Turn turn_ = Turn::own;
+  bool replaced_ = false;  ///< while coming back
   std::jthread thread_;
 };
 

@@ -1,4 +1,6 @@
 // How the control program gives way to a script and comes back.
+#include <utility>
+
 #include "robot/motion_stopper.hpp"
 #include "robot/supervisor.hpp"
 
@@ -14,6 +16,13 @@ constexpr milliseconds program_end_limit(1000);
 bool Supervisor::gave_way() const
 {
   return turn() != Turn::own;
+}
+
+void Supervisor::begin_look()
+{
+  const std::lock_guard lock(mutex_);
+  turn_at_look_ = turn_;
+  program_ended_ = program_ended_ || std::exchange(replaced_, false);
 }
 
 Supervisor::Turn Supervisor::turn() const
@@ -45,10 +54,11 @@ Status Supervisor::give_way(milliseconds limit)
   return failure(ErrorCode::not_ready, "the control program does not give way to the script");
 }
 
-Status Supervisor::take_back(milliseconds limit)
+Status Supervisor::take_back(milliseconds limit, bool replaced)
 {
   std::unique_lock lock(mutex_);
   turn_ = Turn::coming_back;
+  replaced_ = replaced;
   look_requested_ = true;
   changed_.notify_all();
   const bool back = changed_.wait_for(lock, limit, [this] { return turn_ == Turn::own; });

@@ -1,3 +1,6 @@
+#include <cstdlib>
+#include <fstream>
+
 #include "robot_fixture.hpp"
 
 namespace ur_ros_rtde::test {
@@ -125,6 +128,22 @@ TEST_F(ARobot, leaves_a_program_alone_that_somebody_else_starts_later)
   EXPECT_TRUE(becomes_ready());
 }
 
+TEST_F(ARobot, notices_at_once_when_another_program_takes_over_in_the_middle_of_a_motion)
+{
+  make_both();
+  move_joints();
+  const double begin = robot->latest()->controller_time;
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
+  const double noticed = robot->latest()->controller_time - begin;
+  RecordProperty("replaced_program_noticed_after_ms", std::to_string(1000.0 * noticed));
+  EXPECT_LT(noticed, 0.2);
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  EXPECT_EQ(robot->motion_possible().error().code, ErrorCode::program_stopped);
+  EXPECT_NE(robot->status().message.find("another program"), std::string::npos) << robot->status().message;
+}
+
 TEST_F(ARobot, comes_back_after_a_reboot_once_the_arm_is_powered)
 {
   make_both();
@@ -177,7 +196,24 @@ TEST_F(ARobot, survives_a_controller_that_dies_for_good)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(ARobot, leaks_no_descriptors_and_no_threads_over_many_reconnections)
+/// kB of memory that is held.
+std::size_t resident_memory()
+{
+  std::ifstream file("/proc/self/statm");
+  std::size_t whole = 0;
+  std::size_t resident = 0;
+  file >> whole >> resident;
+  return resident * 4;
+}
+
+/// UR_RECONNECTIONS=1000 for the long run.
+unsigned reconnections()
+{
+  const char * wanted = std::getenv("UR_RECONNECTIONS");
+  return wanted != nullptr ? static_cast<unsigned>(std::stoul(wanted)) : 40U;
+}
+
+TEST_F(ARobot, leaks_nothing_over_many_reconnections)
 {
   controller.start();
   auto options = robot_options();
@@ -192,11 +228,16 @@ TEST_F(ARobot, leaks_no_descriptors_and_no_threads_over_many_reconnections)
   };
   std::size_t descriptors = 0;
   std::size_t threads = 0;
-  for (unsigned round = 0; round < 25; ++round) {
-    ASSERT_TRUE(eventually([&] { return all_is_well() && robot->latest()->link > round; })) << log.text();
+  std::size_t memory = 0;
+  for (unsigned round = 0; round < reconnections(); ++round) {
+    ASSERT_TRUE(eventually([&] { return all_is_well() && robot->latest()->link > round; }, 20s))
+        << log.text();
     if (round == 5) {
       descriptors = open_descriptors();
       threads = running_threads();
+    }
+    if (round == 20) {
+      memory = resident_memory();
     }
     if (round > 5) {
       EXPECT_TRUE(eventually([&] { return open_descriptors() <= descriptors + 3; }))
@@ -204,8 +245,13 @@ TEST_F(ARobot, leaks_no_descriptors_and_no_threads_over_many_reconnections)
       EXPECT_TRUE(eventually([&] { return running_threads() <= threads; }))
           << "round " << round << ": " << running_threads() << " of " << threads;
     }
-    controller.control({{"command", "drop_links"}});
+    // A lost dashboard link is noticed by its heartbeat, once a second.
+    controller.control({{"command", "drop_links"}, {"which", round % 10 == 0 ? "all" : "rtde"}});
   }
+  const auto grown = static_cast<double>(resident_memory()) - static_cast<double>(memory);
+  RecordProperty("grown_by_kB", std::to_string(grown));
+  // The log that the test keeps is in it.
+  EXPECT_LT(grown, 4000.0 + 2.0 * reconnections()) << "kB";
 }
 
 TEST_F(ARobot, ends_at_any_moment_of_its_start)

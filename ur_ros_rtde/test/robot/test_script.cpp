@@ -166,6 +166,28 @@ TEST_F(AScript, that_somebody_stops_does_not_count_as_finished)
   EXPECT_TRUE(is_back());
 }
 
+TEST_F(AScript, that_another_program_replaces_leaves_that_one_alone)
+{
+  make_both();
+  ScriptOptions options;
+  std::atomic<bool> told{false};
+  options.interrupted = [&]() -> std::optional<Error> {
+    if (turns() && !told.exchange(true)) {
+      controller.control(
+          {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+    }
+    return std::nullopt;
+  };
+  const auto report = robot->run_script(turning(), options);
+  EXPECT_EQ(report.end, ScriptEnd::stopped);
+  EXPECT_NE(report.error.message.find("another program, `other`"), std::string::npos) << report.error.message;
+  EXPECT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  EXPECT_EQ(controller.state().at("program").at("state"), "PLAYING");
+  controller.control({{"command", "stop_program"}});
+  EXPECT_TRUE(becomes_ready());
+  EXPECT_TRUE(is_back());
+}
+
 TEST_F(AScript, ends_with_a_protective_stop_and_does_not_go_on)
 {
   make_both();
