@@ -52,6 +52,15 @@ trajectory::Limits limits_for_stops(const trajectory::Trajectory & plan, traject
   return limits;
 }
 
+/// Feedback has an index since 2025.
+template <typename Feedback>
+void set_index(Feedback & feedback, std::size_t index)
+{
+  if constexpr (requires { feedback.index; }) {
+    feedback.index = static_cast<std::int32_t>(index);
+  }
+}
+
 trajectory_msgs::msg::JointTrajectoryPoint to_point(const std::array<std::size_t, 6> & order, double time,
                                                     const Joints & position, const Joints & velocity)
 {
@@ -241,9 +250,7 @@ void FollowJointTrajectory::feed_back(const Goal & goal, Run & run, std::size_t 
   feedback.actual = to_point(*order, state.time, position, velocity);
   feedback.error =
       to_point(*order, state.time, state.desired.position - position, state.desired.velocity - velocity);
-  if constexpr (requires { feedback.index; }) {
-    feedback.index = static_cast<std::int32_t>(index);
-  }
+  set_index(feedback, index);
   run.publish();
 }
 

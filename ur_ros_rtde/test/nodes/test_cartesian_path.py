@@ -1,0 +1,110 @@
+"""execute_cartesian_path, on the simulator."""
+
+import copy
+import math
+
+import pytest
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
+from support import wait_for
+
+from ur_ros_rtde_msgs.action import ExecuteCartesianPath
+from ur_ros_rtde_msgs.msg import ErrorCode
+from ur_ros_rtde_msgs.srv import GetTcpPose
+
+NAN = math.nan
+LAG = 0.03
+
+
+def pose_now(robot):
+    return robot.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose
+
+
+def moved(pose, x=0.0, y=0.0, z=0.0):
+    pose = copy.deepcopy(pose)
+    pose.position.x += x
+    pose.position.y += y
+    pose.position.z += z
+    return pose
+
+
+def send(robot, *poses, **fields):
+    return robot.send(ExecuteCartesianPath, "execute_cartesian_path", poses=list(poses), **fields)
+
+
+def point(pose):
+    return (pose.position.x, pose.position.y, pose.position.z)
+
+
+def test_the_tcp_goes_straight_from_pose_to_pose(robot):
+    start = pose_now(robot)
+    down, aside = moved(start, z=-0.15), moved(start, y=0.1, z=-0.15)
+    seen = robot.listen(PoseStamped, "tcp_pose")
+    result = send(robot, down, aside, lookahead_time=LAG).succeeded()
+    reached = result.final_state.tcp_pose
+    assert point(reached) == pytest.approx(point(aside), abs=0.001)
+    # Each place is on the one line or on the other.
+    off = [min(math.dist((x, y), point(start)[:2]), math.dist((x, z), (point(down)[0], point(down)[2])))
+           for x, y, z in (point(message.pose) for message in seen)]
+    assert len(off) > 100 and max(off) < 0.001
+
+
+def test_it_keeps_its_speed_and_goes_round_corners(robot):
+    start = pose_now(robot)
+    corner, end = moved(start, z=-0.1), moved(start, y=0.1, z=-0.1)
+    stops = send(robot, corner, end, speed=0.1, lookahead_time=LAG).succeeded()
+    send(robot, start).succeeded()
+    seen = robot.listen(PoseStamped, "tcp_pose")
+    rounds = send(robot, corner, end, speed=0.1, blend_radius=0.02, lookahead_time=LAG).succeeded()
+    assert 0.2 / 0.1 - 0.02 / 0.1 < rounds.duration < stops.duration
+    assert min(math.dist(point(message.pose), point(corner)) for message in seen) == pytest.approx(0.02, abs=0.005)
+
+
+def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, simulator):
+    start = pose_now(robot)
+    before = simulator.state()["target"]["position"]
+    # From one side of the base to the other: the line leads through its axis.
+    through = moved(start, x=-2.0 * start.position.x, y=-2.0 * start.position.y)
+    goal = send(robot, through)
+    if goal.accepted:
+        status, result = goal.end()
+        assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.UNREACHABLE, result.message
+        assert "poses[0]" in result.message
+    else:
+        assert robot.refusal(goal).error_code == ErrorCode.UNREACHABLE
+    assert simulator.state()["target"]["position"] == before
+
+
+def test_a_cancel_decelerates_on_the_line(robot, simulator):
+    start = pose_now(robot)
+    seen = robot.listen(PoseStamped, "tcp_pose")
+    goal = send(robot, moved(start, z=-0.3), speed=0.1, lookahead_time=LAG)
+    wait_for(lambda: any(f.motion.progress > 0.1 for f in goal.feedback), 20.0, "motion")
+    goal.cancel()
+    status, result = goal.end(10.0)
+    assert status == GoalStatus.STATUS_CANCELED
+    assert start.position.z - 0.29 < result.final_state.tcp_pose.position.z < start.position.z
+    assert max(math.dist(point(message.pose)[:2], point(start)[:2]) for message in seen) < 0.001
+    wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
+
+
+GOOD = Pose(position=Point(x=-0.69, y=-0.17, z=0.6), orientation=Quaternion(x=0.7071, y=0.7071))
+REFUSED = [
+    ({"poses": []}, ErrorCode.INVALID_GOAL, "poses has 0 entries"),
+    ({"poses": [GOOD] * 10001}, ErrorCode.INVALID_GOAL, "poses has 10001 entries"),
+    ({"poses": [GOOD, Pose(position=Point(x=NAN))]}, ErrorCode.INVALID_GOAL, "poses[1].position"),
+    ({"poses": [Pose(position=Point(x=0.5), orientation=Quaternion(w=0.0))]}, ErrorCode.INVALID_GOAL, "poses[0].orientation"),
+    ({"poses": [Pose(position=Point(x=5.0))]}, ErrorCode.UNREACHABLE, "poses[0]"),
+    ({"speed": 0.0}, ErrorCode.INVALID_GOAL, "speed is 0"),
+    ({"rotation_speed": 7.0}, ErrorCode.INVALID_GOAL, "rotation_speed is 7"),
+    ({"blend_radius": -0.1}, ErrorCode.INVALID_GOAL, "blend_radius is -0.1"),
+    ({"max_jerk": [0.0] * 6}, ErrorCode.INVALID_GOAL, "max_jerk[0] (shoulder_pan_joint) is 0"),
+]
+
+
+@pytest.mark.parametrize("fields, code, what", REFUSED, ids=[what for _, _, what in REFUSED])
+def test_a_bad_path_is_refused_with_the_reason(driver, client, fields, code, what):
+    goal = client.send(ExecuteCartesianPath, "execute_cartesian_path", **{"poses": [GOOD], **fields})
+    assert not goal.accepted
+    refusal = client.refusal(goal)
+    assert refusal.error_code == code and what in refusal.message, refusal.message
