@@ -55,9 +55,9 @@ def test_it_keeps_its_speed_and_goes_round_corners(robot):
     stops = send(robot, corner, end, speed=0.1, lookahead_time=LAG).succeeded()
     send(robot, start).succeeded()
     seen = robot.listen(PoseStamped, "tcp_pose")
-    rounds = send(robot, corner, end, speed=0.1, blend_radius=0.02, lookahead_time=LAG).succeeded()
-    assert 0.2 / 0.1 - 0.02 / 0.1 < rounds.duration < stops.duration
-    assert min(math.dist(point(message.pose), point(corner)) for message in seen) == pytest.approx(0.02, abs=0.005)
+    rounds = send(robot, corner, end, speed=0.1, blend_radius=0.01, lookahead_time=LAG).succeeded()
+    assert 0.2 / 0.1 - 0.1 < rounds.duration < stops.duration
+    assert min(math.dist(point(message.pose), point(corner)) for message in seen) == pytest.approx(0.01, abs=0.003)
 
 
 def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, simulator):
