@@ -35,7 +35,7 @@ class Chaos:
         self._options, self._journal, self._robot = options, journal, robot
         self._gate = Gate()
         self._watch = Watch(robot, self._gate, journal)
-        self._loads = Loads(robot.driver.pid)
+        self._loads = Loads(robot.driver.pid, journal)
         self._probe = WatchingClient(name="probe")
         self._clients = [Goals(f"client {number}", random.Random(f"{options.seed}/{number}"), self._gate, journal)
                          for number in range(options.clients)]

@@ -53,12 +53,14 @@ class Loads:
     EXTRA_THREADS = 3
     EXTRA_MEMORY = 12.0  # MB: what the allocator keeps varies
 
-    def __init__(self, pid):
-        self._pid = pid
+    def __init__(self, pid, journal=None):
+        self._pid, self._journal = pid, journal
         self.samples = []
 
     def sample(self):
         self.samples.append((time.monotonic(), *load_of(self._pid)))
+        if self._journal:
+            self._journal.write("driver", "{} descriptors, {} threads, {:.1f} MB".format(*self.samples[-1][1:]))
 
     def verdict(self):
         """What has grown from the second quarter, after the warm-up, to the last; empty if nothing."""
