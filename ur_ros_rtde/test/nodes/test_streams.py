@@ -212,7 +212,7 @@ def test_a_stream_is_refused_while_another_one_lives(robot, driver):
 
 def test_a_goal_ends_a_stream_where_goals_preempt(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    processes(node("command_server", simulator.address, "ur_type:=ur10e", "on_busy:=preempt", f"stream_timeout:={TIMEOUT}",
+    processes(node("driver", simulator.address, "ur_type:=ur10e", "on_busy:=preempt", f"stream_timeout:={TIMEOUT}",
                    namespace="other"))
     client = Client("other")
     try:
