@@ -103,7 +103,7 @@ def test_a_new_goal_replaces_the_running_one(robot, simulator):
     assert status == GoalStatus.STATUS_ABORTED and "took over" in result.error_string
     status, result = second.end(20.0)
     assert status == GoalStatus.STATUS_SUCCEEDED, result.error_string
-    assert simulator.state()["at_rest"]
+    wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
 def test_an_empty_trajectory_stops_the_running_one(robot, simulator):
@@ -112,7 +112,7 @@ def test_an_empty_trajectory_stops_the_running_one(robot, simulator):
     status, result = send(robot, names=[]).end(10.0)
     assert status == GoalStatus.STATUS_SUCCEEDED and result.error_code == Result.SUCCESSFUL
     assert first.end(10.0)[0] == GoalStatus.STATUS_ABORTED
-    assert simulator.state()["at_rest"]
+    wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
 def test_cancel_decelerates(robot, simulator):
@@ -120,7 +120,7 @@ def test_cancel_decelerates(robot, simulator):
     wait_for(lambda: len(goal.feedback) > 10, 10.0, "motion")
     goal.cancel()
     assert goal.end(10.0)[0] == GoalStatus.STATUS_CANCELED
-    assert simulator.state()["at_rest"]
+    wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
 def test_a_path_tolerance_that_is_left_ends_it(robot):
