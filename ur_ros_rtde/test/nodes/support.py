@@ -245,11 +245,19 @@ class Client:
         if name not in self._actions:
             self._actions[name] = self.in_executor(lambda: ActionClient(self.node, action, name))
         client = self._actions[name]
-        wait_for(client.server_is_ready, 20.0, f"the action {name}")
+        self._wait_for_server(client, name)
         goal = Goal(self, None)
         goal._future = self.in_executor(lambda: client.send_goal_async(
             message, feedback_callback=lambda message: goal.feedback.append(message.feedback)))
         return goal
+
+    def _wait_for_server(self, client, name):
+        try:
+            wait_for(client.server_is_ready, 20.0, f"the action {name}")
+        except AssertionError as error:
+            topics = {topic: self.node.count_publishers(f"{name}/_action/{topic}") for topic in ("feedback", "status")}
+            services = sorted(service for service, _ in self.node.get_service_names_and_types() if f"/{name}/_action/" in service)
+            raise AssertionError(f"{error}; of its parts there are: {topics}, {services}") from None
 
     def refusal(self, goal):
         return wait_for(lambda: next((r for r in list(self.refusals) if bytes(r.goal_id.uuid) == goal.id), None), 10.0,

@@ -66,8 +66,10 @@ def _bad(good, path, value, what=None):
 def _named(path):
     """The field with its index, of a vector the vector; of what lies in a list of messages which of them it is."""
     for index in path[:-1]:
-        if isinstance(index, int) and path[-1] != index:
+        if isinstance(index, int):
             return rf"[a-z](\[{index}\]| {index}\b)"  # "poses[3]", "waypoint 3"
+    if isinstance(path[-1], int):
+        return rf"{re.escape(messages.text(path[:-1]))}.*\[{path[-1]}\]"
     return re.escape(messages.text(path[:-1] if path[-1] in ("x", "y", "z", "w") else path))
 
 
