@@ -20,6 +20,15 @@ double fastest_joint(const Sample & sample)
   return fastest;
 }
 
+void must_be_slow(const Sample & sample, double limit)
+{
+  if (const double speed = fastest_joint(sample); speed > limit) {
+    throw RobotError({ErrorCode::safety_violation,
+                      fmt::format("a joint turned at {:.2f} rad/s, more than max_joint_speed ({:.2f} rad/s)",
+                                  speed, limit)});
+  }
+}
+
 void check_scale(Check & check, const char * field, const std::array<double, 6> & scale)
 {
   for (std::size_t i = 0; i < scale.size(); ++i) {
@@ -50,21 +59,12 @@ class DirectTorque : public Command<ur_ros_rtde_msgs::action::DirectTorque> {
     must_do(run.control()->directTorque(goal.joint_torques, to_vector(goal.viscous_scale),
                                         to_vector(goal.coulomb_scale)),
             "apply the torques");
-    if (auto why = until_over(run, goal.duration, [&](const Sample & now) { must_be_slow(goal, now); })) {
+    if (auto why = until_over(run, goal.duration,
+                              [&](const Sample & now) { must_be_slow(now, goal.max_joint_speed); })) {
       return *why;
     }
     const auto stopped = run.robot().stop_motion(stop_options(goal));
     return stopped ? Outcome::success() : Outcome(stopped.error());
-  }
-
-  static void must_be_slow(const Goal & goal, const Sample & now)
-  {
-    if (const double speed = fastest_joint(now); speed > goal.max_joint_speed) {
-      throw RobotError(
-          {ErrorCode::safety_violation,
-           fmt::format("a joint turned at {:.2f} rad/s, more than max_joint_speed ({:.2f} rad/s)", speed,
-                       goal.max_joint_speed)});
-    }
   }
 };
 
