@@ -56,7 +56,7 @@ def test_given_times_are_kept(tmp_path):
     ("waypoint: []", "there is no field waypoint"),
     ("model: ur10e", "give either waypoints"),
     (PATH + "max_velocity: [1, 1, 0, 1, 1, 1]", "velocity limit of elbow_joint is 0"),
-    (TIMED.replace("2.0", "0.1"), "velocity of shoulder_pan_joint"),
+    (TIMED.replace("2.0", "0.1"), " of shoulder_pan_joint is "),
     ("waypoints: [", "while parsing"),
 ])
 def test_what_cannot_be_planned_is_refused_with_the_reason(tmp_path, text, what):
