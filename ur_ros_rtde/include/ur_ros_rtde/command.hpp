@@ -71,6 +71,7 @@ class Command : public CommandPlugin, private GoalServer<A> {
   void give_up(Handle & handle, const Outcome & outcome) override;
   void conclude(Handle & handle, Run & run, const Outcome & outcome);
 
+  std::string name_;
   std::unique_ptr<CommandGoals> goals_;
 };
 
@@ -79,7 +80,9 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
 {
   goals_ = std::make_unique<CommandGoals>(
       host, host.node().resolve_service_name(name),
-      CommandTraits{resource(), takes_over(), replaces_its_own(), switches_mode(), any_state()});
+      CommandTraits{resource(), takes_over(), replaces_its_own(), switches_mode(), any_state(),
+                    script_extension() ? name : std::string()});
+  name_ = name;
   this->serve(host.node(), name, goals_->book());
 }
 
@@ -96,6 +99,7 @@ void Command<A>::carry_out(Handle & handle, GoalBook::Ticket & ticket)
                [&handle](const Feedback & feedback) { handle.publish_feedback(feedback); });
   const Outcome outcome = goals_->carry_out(handle.goal_id(), ticket, stop_options(handle.goal()), [&] {
     goal_run.set_displaced(ticket.displaced);
+    goal_run.set_plugin(name_);
     return run(handle.goal(), goal_run);
   });
   conclude(handle, goal_run, outcome);

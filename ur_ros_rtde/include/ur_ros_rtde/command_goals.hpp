@@ -23,6 +23,8 @@ struct CommandTraits {
   bool switches_mode = false;
   /// Is accepted, and goes on, whatever the robot's state: only its dashboard server has to be there.
   bool any_state = false;
+  /// Of the plugin, if it is an extension: what the control program has to have.
+  std::string extension;
 };
 
 /// The part of Command<A> that is compiled once: the goals of a command, their arbitration, and the

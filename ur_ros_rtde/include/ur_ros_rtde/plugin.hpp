@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <type_traits>
+
+#include "ur_ros_rtde/script_extension.hpp"
 
 namespace ur_ros_rtde {
 
@@ -10,7 +13,7 @@ class CommandHost;
 class DashboardHost;
 
 /// Changes whenever a plugin built against the headers of another version could not work.
-constexpr std::uint32_t plugin_abi_version = 1;
+constexpr std::uint32_t plugin_abi_version = 2;
 
 /// A command of command_server, at its lowest: anything that can start an action server. Command<A>
 /// (command.hpp) is what to derive from otherwise.
@@ -22,6 +25,9 @@ class CommandPlugin {
   virtual void start_action_server(CommandHost & host, const std::string & name) = 0;
   /// Nothing of the plugin runs once this has returned. Goals have ended before.
   virtual void stop_action_server() = 0;
+  /// What the control program gets in addition for this plugin, if anything; Extension<A> (extension.hpp)
+  /// gives it. Asked once, before any action server is started; the name is the plugin's.
+  virtual std::optional<ScriptExtension> script_extension() const { return std::nullopt; }
 };
 
 /// The same for dashboard_server; DashboardCommand<A> (dashboard_command.hpp) is what to derive from.

@@ -7,15 +7,18 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "ur_ros_rtde/arbiter.hpp"
 #include "ur_ros_rtde/error.hpp"
+#include "ur_ros_rtde/extension_options.hpp"
 #include "ur_ros_rtde/link.hpp"
 #include "ur_ros_rtde/locked.hpp"
 #include "ur_ros_rtde/log.hpp"
 #include "ur_ros_rtde/motion.hpp"
 #include "ur_ros_rtde/sample.hpp"
 #include "ur_ros_rtde/script.hpp"
+#include "ur_ros_rtde/script_extension.hpp"
 
 namespace ur_rtde {
 class DashboardClient;
@@ -132,6 +135,20 @@ class Robot {
   /// any more (RobotOptions::watchdog_frequency). On return the control program runs again, unless the robot
   /// is stopped or the link is lost.
   ScriptReport run_script(const std::string & script, const ScriptOptions & options = {});
+
+  /// What the control program gets in addition. Set before start(). The sentences tell of each that is left
+  /// out, and why; one that the controller does not take (a function that it does not have, …) is left out
+  /// later, with a message in the log.
+  std::vector<std::string> set_extensions(const std::vector<ScriptExtension> & extensions);
+  /// not_supported, with the reason, when it was left out.
+  Status has_extension(const std::string & name) const;
+  /// Runs an extension and waits for its end. One that has to end early is ended: a motion of its
+  /// decelerates. Hold Resource::motion. rejected_by_robot names the line of its snippet that failed.
+  Status run_extension(const std::string & name, const ExtensionOptions & options = {});
+  /// General purpose registers 19 to 22, without the offset of the upper range: an extension's parameters.
+  /// Its results: Sample::output_int_registers, output_double_registers.
+  Status set_input_register(int index, std::int32_t value);
+  Status set_input_register(int index, double value);
 
   Arbiter & arbiter();
 

@@ -12,6 +12,7 @@
 #include "ur_ros_rtde/interfaces.hpp"
 #include "ur_ros_rtde/interrupt.hpp"
 #include "ur_ros_rtde/outcome.hpp"
+#include "ur_ros_rtde/registers.hpp"
 
 namespace ur_ros_rtde {
 
@@ -81,6 +82,11 @@ class Run {
   /// Robot::run_script, ended early when the goal has to end, with feedback meanwhile. Hold Resource::script.
   ScriptReport run_script(const std::string & script, ScriptOptions options = {});
 
+  /// Of an Extension: the registers that its snippet reads and writes; runs the snippet and waits for its
+  /// end, `timeout` s at most.
+  Registers registers() const { return Registers(robot_); }
+  [[nodiscard]] Outcome trigger(double timeout);
+
   /// For the feedback; 0 to 1.
   void progress(double fraction) { progress_ = fraction; }
   double progress() const { return progress_; }
@@ -88,6 +94,7 @@ class Run {
   /// Of a command that takes over: which goal had to end, "/move_j, goal 3f0c12ab"; empty if there was none.
   const std::string & displaced() const { return displaced_; }
   void set_displaced(std::string goal) { displaced_ = std::move(goal); }
+  void set_plugin(std::string name) { plugin_ = std::move(name); }
 
   /// For the feedback; nothing while no package has come.
   std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> motion_feedback() const;
@@ -109,6 +116,7 @@ class Run {
   bool moves_;
   double progress_ = 0.0;
   std::string displaced_;
+  std::string plugin_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point next_feedback_ = begin_;
   std::chrono::steady_clock::time_point last_call_ = begin_;

@@ -50,7 +50,7 @@ class CommandGoals::RobotPreflight : public Preflight {
 };
 
 CommandGoals::CommandGoals(CommandHost & host, std::string action, CommandTraits traits)
-    : host_(host), traits_(traits), book_(host, std::move(action))
+    : host_(host), traits_(std::move(traits)), book_(host, std::move(action))
 {
 }
 
@@ -77,6 +77,11 @@ Status CommandGoals::readiness() const
   if (traits_.any_state) {
     [[maybe_unused]] const auto dashboard = robot.dashboard();  // throws why there is none
     return {};
+  }
+  if (!traits_.extension.empty()) {
+    if (Status has = robot.has_extension(traits_.extension); !has) {
+      return has;
+    }
   }
   if (moves() && !traits_.takes_over) {
     if (const Status ready = robot.ready_to_move(); !ready || traits_.switches_mode || !robot.guided()) {

@@ -317,4 +317,16 @@ void Run::feed_back()
   publish_feedback();
 }
 
+Outcome Run::trigger(double timeout)
+{
+  ExtensionOptions options;
+  options.limit =
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
+  options.interrupted = [this] {
+    feed_back();
+    return interruption();
+  };
+  return robot_.run_extension(plugin_, options);
+}
+
 }  // namespace ur_ros_rtde

@@ -32,16 +32,31 @@ CommandServer::~CommandServer()
 
 void CommandServer::start()
 {
-  robot_->start();
   const auto report = [this](const std::string & problem) {
     if (node_->context()->ok()) {  // in a shutdown everything fails
       RCL_CXX_ERROR(node_->logger(), "{}", problem);
     }
   };
-  plugins_.start(
-      select_plugins(find_plugins(report), command_base, choice_.plugins, choice_.blacklist, report), *host_,
-      report);
+  plugins_.load(
+      select_plugins(find_plugins(report), command_base, choice_.plugins, choice_.blacklist, report), report);
+  add_extensions(report);
+  robot_->start();
+  plugins_.start(*host_, report);
   RCL_CXX_INFO(node_->logger(), "commands: {}", fmt::join(plugins_.names(), ", "));
+}
+
+void CommandServer::add_extensions(const ReportProblem & report)
+{
+  std::vector<ScriptExtension> extensions;
+  plugins_.for_each([&](const PluginEntry & entry, const CommandPlugin & plugin) {
+    if (auto extension = plugin.script_extension()) {
+      extension->name = entry.name;
+      extensions.push_back(std::move(*extension));
+    }
+  });
+  for (const std::string & problem : robot_->set_extensions(extensions)) {
+    report(problem);
+  }
 }
 
 std::vector<std::string> CommandServer::close()

@@ -25,6 +25,8 @@ class CommandServer : public Server {
   std::vector<std::string> close() override;
 
  private:
+  void add_extensions(const ReportProblem & report);
+
   PluginSet<CommandPlugin, CommandHost> plugins_;  // its libraries go last
   rcl_cxx::Node::SharedPtr node_;
   std::unique_ptr<DriverStateTopic> driver_state_;  // outlives the robot, which calls it

@@ -32,9 +32,10 @@ void DashboardServer::start()
       RCL_CXX_ERROR(node_->logger(), "{}", problem);
     }
   };
-  plugins_.start(
+  plugins_.load(
       select_plugins(find_plugins(report), dashboard_base, choice_.plugins, choice_.blacklist, report),
-      *host_, report);
+      report);
+  plugins_.start(*host_, report);
   RCL_CXX_INFO(node_->logger(), "dashboard commands: {}", fmt::join(plugins_.names(), ", "));
 }
 

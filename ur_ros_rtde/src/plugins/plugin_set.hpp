@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,57 +21,82 @@ class PluginSet {
   PluginSet(const PluginSet &) = delete;
   PluginSet & operator=(const PluginSet &) = delete;
 
-  /// Starts what can be started; what cannot is reported with plugin, package and cause.
-  void start(const std::vector<PluginEntry> & entries, Host & host, const ReportProblem & report)
+  /// Makes what can be made; what cannot is reported with plugin, package and cause.
+  void load(const std::vector<PluginEntry> & entries, const ReportProblem & report)
   {
     for (const PluginEntry & entry : entries) {
-      if (Status status = start_one(entry, host); !status) {
-        report(fmt::format("plugin {} of package {} is left out: {}", entry.name, entry.package,
-                           status.error().message));
-      }
+      guarded(entry, "it threw when it was made", report, [&]() -> Status {
+        const auto descriptor = libraries_.describe(entry);
+        if (!descriptor) {
+          return tl::unexpected(descriptor.error());
+        }
+        plugins_.push_back({entry, create(**descriptor)});
+        return {};
+      });
+    }
+  }
+
+  /// Starts their action servers, in the same way.
+  void start(Host & host, const ReportProblem & report)
+  {
+    for (auto plugin = plugins_.begin(); plugin != plugins_.end();) {
+      const bool started = guarded(plugin->entry, "it threw when it was started", report, [&]() -> Status {
+        plugin->plugin->start_action_server(host, plugin->entry.name);
+        return {};
+      });
+      plugin = started ? plugin + 1 : plugins_.erase(plugin);
+    }
+  }
+
+  /// By name, as the packages describe them.
+  void for_each(const std::function<void(const PluginEntry &, Plugin &)> & look)
+  {
+    for (auto & loaded : plugins_) {
+      look(loaded.entry, *loaded.plugin);
     }
   }
 
   /// No plugin's code runs once this has returned, if their goals have ended.
   void stop()
   {
-    for (auto & started : started_) {
-      started.plugin->stop_action_server();
+    for (auto & loaded : plugins_) {
+      loaded.plugin->stop_action_server();
     }
-    started_.clear();
+    plugins_.clear();
   }
 
   std::vector<std::string> names() const
   {
     std::vector<std::string> names;
-    for (const auto & started : started_) {
-      names.push_back(started.name);
+    for (const auto & loaded : plugins_) {
+      names.push_back(loaded.entry.name);
     }
     return names;
   }
 
  private:
-  struct Started {
-    std::string name;
+  struct Loaded {
+    PluginEntry entry;
     std::unique_ptr<Plugin> plugin;
   };
 
-  Status start_one(const PluginEntry & entry, Host & host)
+  static bool guarded(const PluginEntry & entry, const char * thrown, const ReportProblem & report,
+                      const std::function<Status()> & step)
   {
-    const auto descriptor = libraries_.describe(entry);
-    if (!descriptor) {
-      return tl::unexpected(descriptor.error());
-    }
+    std::optional<std::string> why;
     try {
-      std::unique_ptr<Plugin> plugin = create(**descriptor);
-      plugin->start_action_server(host, entry.name);
-      started_.push_back({entry.name, std::move(plugin)});
-      return {};
+      if (const Status status = step(); !status) {
+        why = status.error().message;
+      }
     } catch (const std::exception & error) {
-      return failure(ErrorCode::exception, fmt::format("it threw when it was made: {}", error.what()));
+      why = fmt::format("{}: {}", thrown, error.what());
     } catch (...) {
-      return failure(ErrorCode::exception, "it threw something unknown when it was made");
+      why = fmt::format("{}: something unknown", thrown);
     }
+    if (why) {
+      report(fmt::format("plugin {} of package {} is left out: {}", entry.name, entry.package, *why));
+    }
+    return !why;
   }
 
   static std::unique_ptr<Plugin> create(const PluginDescriptor & descriptor)
@@ -83,7 +109,7 @@ class PluginSet {
   }
 
   PluginLibraries libraries_;
-  std::vector<Started> started_;
+  std::vector<Loaded> plugins_;
 };
 
 }  // namespace ur_ros_rtde

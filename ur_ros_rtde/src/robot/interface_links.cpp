@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "robot/ports.hpp"
+#include "robot/script_check.hpp"
 #include "robot/tcp_stream.hpp"
 
 namespace ur_ros_rtde {
@@ -66,7 +67,29 @@ Status InterfaceLinks::start_watchdog(RTDEControlInterface & control) const
   return {};
 }
 
-Status InterfaceLinks::start_control()
+Status InterfaceLinks::check_extensions(const ControllerVersion & version)
+{
+  while (!extensions_checked_ && scripts_.has_extensions()) {
+    const auto complaint =
+        check_definitions(options_.address, scripts_.text(version), options_.connect_timeout);
+    if (!complaint) {
+      return tl::unexpected(complaint.error());
+    }
+    if (!*complaint) {
+      break;
+    }
+    const auto left_out = scripts_.leave_out(version, (*complaint)->line, (*complaint)->text);
+    if (!left_out) {
+      return failure(ErrorCode::not_ready,
+                     fmt::format("the controller does not take the control program: {}", (*complaint)->text));
+    }
+    log_(LogLevel::error, *left_out);
+  }
+  extensions_checked_ = true;
+  return {};
+}
+
+Status InterfaceLinks::start_control(const ControllerVersion & version)
 {
   if (resume_parked()) {
     return {};
@@ -77,9 +100,13 @@ Status InterfaceLinks::start_control()
       return tl::unexpected(reachable.error());
     }
   }
+  if (const auto checked = check_extensions(version); !checked) {
+    return checked;
+  }
   try {
-    auto control = std::make_shared<RTDEControlInterface>(
-        options_.address, controllers_frequency, control_flags(options_), options_.urcap_port, keep_priority);
+    auto control = std::make_shared<RTDEControlInterface>(options_.address, controllers_frequency,
+                                                          control_flags(options_), options_.urcap_port,
+                                                          keep_priority, scripts_.text(version));
     {
       // From here on the watchdog is fed, which must have begun when the program starts to watch.
       const std::lock_guard lock(mutex_);
@@ -92,6 +119,7 @@ Status InterfaceLinks::start_control()
     return started;
   } catch (const std::exception & error) {
     drop_control();
+    extensions_checked_ = false;  // perhaps a URCap is gone
     return failure(ErrorCode::not_ready,
                    fmt::format("the control program cannot be started: {}", error.what()));
   }

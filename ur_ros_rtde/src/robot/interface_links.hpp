@@ -3,7 +3,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
+#include "robot/control_scripts.hpp"
+#include "ur_ros_rtde/log.hpp"
 #include "ur_ros_rtde/robot.hpp"
 
 namespace ur_ros_rtde {
@@ -12,7 +15,11 @@ namespace ur_ros_rtde {
 /// the ports it needs; whatever it throws becomes an Error. Thread-safe.
 class InterfaceLinks {
  public:
-  explicit InterfaceLinks(const RobotOptions & options) : options_(options) {}
+  /// `scripts` outlives it.
+  InterfaceLinks(const RobotOptions & options, ControlScripts & scripts, LogFunction log)
+      : options_(options), scripts_(scripts), log_(std::move(log))
+  {
+  }
   ~InterfaceLinks() { drop(); }
 
   /// Takes as long as the connect timeout; does nothing when there is one that works.
@@ -20,7 +27,7 @@ class InterfaceLinks {
   /// Uploads and starts the control program, then its watchdog. Up to some seconds if the robot does not
   /// start it. The program that ran before must have been stopped. Over the parked connection, if there is
   /// one that works.
-  Status start_control();
+  Status start_control(const ControllerVersion & version);
   /// Ends the control program and keeps its connection, over which the signs of life go on: another program
   /// is to run in its place. There is no control interface until start_control().
   void park_control();
@@ -42,11 +49,16 @@ class InterfaceLinks {
 
  private:
   Status start_watchdog(ur_rtde::RTDEControlInterface & control) const;
+  /// Leaves out the extensions that the controller does not take.
+  Status check_extensions(const ControllerVersion & version);
   /// The lock of the control interface, giving a command that holds it up; false when that does not help.
   bool take_control_lock(ur_rtde::RTDEControlInterface & control, int attempts);
   bool resume_parked();
 
   const RobotOptions options_;
+  ControlScripts & scripts_;
+  const LogFunction log_;
+  bool extensions_checked_ = false;  ///< used by the supervisor's thread only
   mutable std::mutex mutex_;
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_;
   std::shared_ptr<ur_rtde::RTDEControlInterface> parked_;

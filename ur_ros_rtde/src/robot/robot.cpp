@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "robot/condition.hpp"
+#include "robot/control_scripts.hpp"
+#include "robot/extension_runner.hpp"
 #include "robot/interface_links.hpp"
 #include "robot/motion_stopper.hpp"
 #include "robot/motion_tracker.hpp"
@@ -60,10 +62,12 @@ class Robot::Impl {
       : options(checked(robot_options)),
         state(receiver_options(options), log),
         dashboard(dashboard_options(options), log),
-        links(options),
+        control_scripts(options.upper_range_registers),
+        links(options, control_scripts, log),
         stopper(options.address, state, links, tracker),
         supervisor(options, state, dashboard, links, log),
         scripts(options, state, tracker, links, supervisor),
+        extensions(options, state, tracker, links, control_scripts),
         kicked_for_(options.watchdog_frequency)
   {
     state.on_link([this](const LinkStatus &) { supervisor.look_now(); });
@@ -83,10 +87,12 @@ class Robot::Impl {
   MotionTracker tracker;
   StateReceiver state;
   DashboardLink dashboard;
+  ControlScripts control_scripts;
   InterfaceLinks links;
   MotionStopper stopper;
   Supervisor supervisor;
   ScriptRunner scripts;
+  ExtensionRunner extensions;
 
  private:
   void end_program();
@@ -333,6 +339,32 @@ Expected<StopReport> Robot::stop_motion(const StopOptions & options)
 ScriptReport Robot::run_script(const std::string & script, const ScriptOptions & options)
 {
   return impl_->scripts.run(script, options);
+}
+
+std::vector<std::string> Robot::set_extensions(const std::vector<ScriptExtension> & extensions)
+{
+  return impl_->control_scripts.set(extensions);
+}
+
+Status Robot::has_extension(const std::string & name) const
+{
+  const auto id = impl_->control_scripts.id(name);
+  return id ? Status() : tl::unexpected(id.error());
+}
+
+Status Robot::run_extension(const std::string & name, const ExtensionOptions & options)
+{
+  return impl_->extensions.run(name, options);
+}
+
+Status Robot::set_input_register(int index, std::int32_t value)
+{
+  return impl_->extensions.set_input(index, value);
+}
+
+Status Robot::set_input_register(int index, double value)
+{
+  return impl_->extensions.set_input(index, value);
 }
 
 Arbiter & Robot::arbiter()

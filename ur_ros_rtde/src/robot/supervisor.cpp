@@ -240,7 +240,7 @@ RobotStatus Supervisor::start_program()
   if (!links_.control_parked()) {
     set({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
   }
-  if (const auto started = links_.start_control(); !started) {
+  if (const auto started = links_.start_control(state_.version().value_or(ControllerVersion{})); !started) {
     return {RobotState::connecting, started.error().code, started.error().message};
   }
   if (!wait_for_runtime(RuntimeState::playing, milliseconds(500))) {

@@ -1,0 +1,84 @@
+"""docs/writing_a_plugin.md, done as it says, in a folder of its own."""
+
+import os
+import pathlib
+import re
+import subprocess
+
+import pytest
+from ur_tools.environment import workspace_environment
+from ur_tools.layout import ROOT, Layout
+from ur_tools.new import KINDS
+
+PAGE = (ROOT / "docs" / "writing_a_plugin.md").read_text()
+BLOCKS = re.findall(r"```bash\n(.*?)```", PAGE, re.S)
+BUILD_LIMIT = 480.0  # s, on two busy cores
+READY = "until ur call get_robot_status --quiet > /dev/null 2>&1; do sleep 0.2; done\n"
+
+
+def environment():
+    layout = Layout(*os.environ.get("UR_LAYOUT", "kilted:").split(":"))
+    return {**workspace_environment(layout), "UR": str(ROOT / "ur"), "ROBOT_IP": os.environ.get("UR_TEST_ADDRESS", "127.0.1.200")}
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """The folder, and what the blocks printed."""
+    folder = tmp_path_factory.mktemp("reader")
+    # As in a terminal: job control, and each block begins when the one before has had its effect.
+    script = "set -em\ntrap 'kill %1 %2 2> /dev/null || true' EXIT\n"
+    for number, block in enumerate(BLOCKS):
+        script += f"echo '=== {number}'\n{block}" + (READY if "driver --ros-args" in block else "")
+    result = subprocess.run(["bash", "-c", script], cwd=folder, env=environment(), stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True, timeout=BUILD_LIMIT)
+    print(result.stdout)
+    assert result.returncode == 0, result.stdout[-4000:]
+    return folder / "my_workspace", re.split(r"^=== \d+\n", result.stdout, flags=re.M)[1:]
+
+
+def output(done, command):
+    """What the block with this command printed."""
+    return next(text for block, text in zip(BLOCKS, done[1]) if command in block)
+
+
+def test_the_command_moves_the_arm_and_a_bad_goal_is_refused(done):
+    assert "success: true" in output(done, '"{angle: 0.2}"')
+    assert "refused: angle is 7 rad" in output(done, '"{angle: 7}"')
+
+
+def test_the_dashboard_command_tells_and_asks(done):
+    assert "answer: RUNNING" in output(done, "dashboard/tell")
+
+
+def test_the_extension_runs_on_the_controller(done):
+    text = output(done, "ur call twist")
+    assert "success: true" in text and re.search(r"position: 0\.3\b", text), text
+
+
+def test_the_new_plugins_are_listed(done):
+    assert "my_commands" in output(done, "ur plugins wag")
+
+
+@pytest.mark.parametrize("file", re.findall(r"<!-- file: (\S+) -->", PAGE))
+def test_the_code_on_the_page_is_the_code_that_was_written(done, file):
+    code = re.search(rf"<!-- file: {re.escape(file)} -->\n```cpp\n(.*?)```", PAGE, re.S).group(1)
+    assert code in pathlib.Path(done[0].parent, "my_workspace", file).read_text()
+
+
+def test_every_kind_of_plugin_is_on_the_page():
+    for kind in KINDS:
+        assert f"$UR new {kind} " in PAGE
+
+
+@pytest.mark.parametrize("name, mentions", [("Bad", "lower case"), ("a__b", "single underscores"), ("part_2", "part2")])
+def test_a_name_that_ros_would_not_take_is_refused_with_the_reason(tmp_path, name, mentions):
+    result = subprocess.run([str(ROOT / "ur"), "new", "command", name], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert result.returncode == 1 and mentions in result.stderr and not list(tmp_path.iterdir())
+
+
+def test_a_package_that_is_there_is_left_alone(tmp_path):
+    for expected in (0, 1):
+        result = subprocess.run([str(ROOT / "ur"), "new", "command", "wag"], cwd=tmp_path, capture_output=True, text=True,
+                                timeout=60)
+        assert result.returncode == expected, result.stderr
+    assert "is there already" in result.stderr

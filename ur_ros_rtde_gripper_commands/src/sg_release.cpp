@@ -1,0 +1,37 @@
+#include <ur_ros_rtde/extension.hpp>
+#include <ur_ros_rtde_gripper_commands/action/sg_release.hpp>
+
+#include "gripper.hpp"
+
+namespace ur_ros_rtde_gripper_commands {
+
+class SgRelease : public ur_ros_rtde::Extension<action::SgRelease> {
+  ur_ros_rtde::ScriptExtension script() const override
+  {
+    return {.snippet = R"(
+      sg_release($in19f, $in19i, True, $in20i == 1)
+      $out19f(get_sg_Width($in19i))
+    )"};
+  }
+
+  void check(const Goal & goal, ur_ros_rtde::Check & check) const override
+  {
+    check_width(check, goal.target_width);
+    check_tool(check, goal.tool_index);
+    check.above_zero("timeout", goal.timeout, 60.0, "s");
+  }
+
+  ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
+  {
+    run.registers().set_double(19, 1000.0 * goal.target_width);
+    run.registers().set_int(19, goal.tool_index);
+    run.registers().set_int(20, goal.depth_compensation);
+    auto outcome = run.trigger(goal.timeout);
+    run.result().width = run.registers().get_double(19) / 1000.0;
+    return outcome;
+  }
+};
+
+UR_ROS_RTDE_EXPORT(SgRelease, "sg_release")
+
+}  // namespace ur_ros_rtde_gripper_commands

@@ -1,0 +1,122 @@
+"""The soft gripper, by the functions of its URCap, on the simulator's stand-in for it."""
+
+import os
+
+import pytest
+from support import HOME, Client, Simulator, node, wait_for
+
+from ur_ros_rtde_gripper_commands.action import SgGetWidth, SgGrip, SgRelease
+from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_msgs.msg import ErrorCode
+
+
+@pytest.fixture(scope="module")
+def simulator():
+    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
+    yield simulator
+    simulator.end()
+
+
+@pytest.fixture(scope="module")
+def driver(simulator):
+    driver = node("driver", simulator.address, "ur_type:=ur10e")
+    yield driver
+    driver.end()
+    print(driver.output())
+
+
+@pytest.fixture(scope="module")
+def client():
+    client = Client()
+    yield client
+    client.close()
+
+
+def move(client):
+    goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0)
+    return goal.accepted and goal.result().success
+
+
+@pytest.fixture
+def gripper(simulator, driver, client):
+    """Open, with nothing between its fingers."""
+    simulator.control("gripper", stuck=False, object=0.0)
+    wait_for(lambda: move(client), 30.0, "the driver to take a motion")
+    client.send(SgRelease, "sg_release", target_width=0.075).succeeded()
+    return client
+
+
+def width(simulator):
+    return simulator.control("gripper")["width"] / 1000.0
+
+
+def test_it_closes_to_the_width_it_is_told(gripper, simulator):
+    result = gripper.send(SgGrip, "sg_grip", target_width=0.03).succeeded()
+    assert result.width == pytest.approx(0.03, abs=0.0005) and width(simulator) == pytest.approx(0.03, abs=0.0005)
+
+
+def test_it_stops_at_what_it_holds(gripper, simulator):
+    simulator.control("gripper", object=42.0)
+    result = gripper.send(SgGrip, "sg_grip", target_width=0.02, gentle=True).succeeded()
+    assert result.width == pytest.approx(0.042, abs=0.0005)
+
+
+def test_it_opens_and_says_how_wide(gripper):
+    gripper.send(SgGrip, "sg_grip", target_width=0.02).succeeded()
+    assert gripper.send(SgRelease, "sg_release", target_width=0.05).succeeded().width == pytest.approx(0.05, abs=0.0005)
+    assert gripper.send(SgGetWidth, "sg_get_width").succeeded().width == pytest.approx(0.05, abs=0.0005)
+
+
+@pytest.mark.parametrize("fields, mentions", [
+    ({"target_width": 0.005}, ["target_width is 0.005 m", "0.011"]),
+    ({"target_width": 0.08}, ["target_width is 0.08 m", "0.075"]),
+    ({"target_width": float("nan")}, ["target_width is nan"]),
+    ({"target_width": 0.03, "tool_index": 4}, ["tool_index is 4", "3"]),
+    ({"target_width": 0.03, "timeout": 0.0}, ["timeout is 0"]),
+])
+def test_what_it_cannot_do_is_refused_with_the_limit(gripper, fields, mentions):
+    goal = gripper.send(SgGrip, "sg_grip", **fields)
+    assert not goal.accepted
+    refusal = gripper.refusal(goal)
+    assert refusal.error_code == ErrorCode.INVALID_GOAL and all(part in refusal.message for part in mentions), refusal.message
+
+
+def test_a_gripper_that_never_finishes_ends_the_goal_and_leaves_the_driver_working(gripper, simulator):
+    simulator.control("gripper", stuck=True)
+    result = gripper.send(SgGrip, "sg_grip", target_width=0.02, timeout=1.0).result()
+    assert not result.success and result.error_code == ErrorCode.TIMEOUT, result.message
+    simulator.control("gripper", stuck=False)
+    wait_for(lambda: move(gripper), 10.0, "the driver to take motions again")
+    gripper.send(SgRelease, "sg_release", target_width=0.06).succeeded()
+
+
+def test_cancel_ends_the_goal_and_leaves_the_driver_working(gripper, simulator):
+    simulator.control("gripper", stuck=True)
+    goal = gripper.send(SgGrip, "sg_grip", target_width=0.02, timeout=30.0)
+    wait_for(lambda: simulator.control("gripper")["busy"], 10.0, "the gripper to begin")
+    goal.cancel()
+    assert goal.result().error_code == ErrorCode.CANCELED
+    simulator.control("gripper", stuck=False)
+    wait_for(lambda: move(gripper), 10.0, "the driver to take motions again")
+
+
+def test_a_robot_without_the_urcap_says_so_and_goes_on_without_the_gripper(client, second_address):
+    bare = Simulator(second_address, urcap=None)
+    driver = node("driver", bare.address, "ur_type:=ur10e", namespace="bare")
+    other = Client("bare")
+    try:
+        wait_for(lambda: move(other), 30.0, "the driver to take a motion")
+        goal = other.send(SgGetWidth, "sg_get_width")
+        assert not goal.accepted
+        refusal = other.refusal(goal)
+        assert refusal.error_code == ErrorCode.NOT_SUPPORTED and "get_sg_Width" in refusal.message, refusal.message
+    finally:
+        other.close()
+        driver.end()
+        bare.end()
+
+
+@pytest.fixture
+def second_address():
+    given = os.environ.get("UR_TEST_ADDRESS", "127.0.1.200").split(".")
+    return ".".join([given[0], str(int(given[1]) + 1), given[2], given[3]])
