@@ -10,7 +10,7 @@ from ur_ros_rtde_msgs.msg import JointWaypoint
 
 SERVO_J = 11  # ur_rtde's command
 SECONDS = 10.0
-POLL = 0.2  # s; the trace holds the last 256 commands, half a second
+POLL = 0.5  # s; the trace holds the last 1024 repeated commands, two seconds
 
 
 def _path(start):
@@ -27,7 +27,7 @@ def _arrivals(control, node, outcome):
         end = time.monotonic() + POLL
         while time.monotonic() < end and not outcome.done():
             rclpy.spin_once(node, timeout_sec=0.02)
-        commands = control.request("trace", after=control.request("state")["state"]["cycle"] - 200)["commands"]
+        commands = control.request("trace", after=max(0, control.request("state")["state"]["cycle"] - 900))["repeats"]
         new = [when for _, when, code in commands if code == SERVO_J and when > last]
         arrivals += new
         last = new[-1] if new else last

@@ -116,12 +116,17 @@ json trace(Bench & bench, Fields & fields)
     }
   });
   json commands = json::array();
-  bench.trace.for_each_command([&](const CycleTrace::Command & command) {
-    if (command.cycle >= after) {
-      commands.push_back({command.cycle, command.arrived, command.code});
-    }
-  });
-  return {{"cycles", std::move(cycles)}, {"commands", std::move(commands)}};
+  json repeats = json::array();
+  const auto add_to = [after](json & list) {
+    return [&list, after](const CycleTrace::Command & command) {
+      if (command.cycle >= after) {
+        list.push_back({command.cycle, command.arrived, command.code});
+      }
+    };
+  };
+  bench.trace.for_each_command(add_to(commands));
+  bench.trace.for_each_repeat(add_to(repeats));
+  return {{"cycles", std::move(cycles)}, {"commands", std::move(commands)}, {"repeats", std::move(repeats)}};
 }
 
 constexpr std::array table{
@@ -129,11 +134,12 @@ constexpr std::array table{
     Command{"registers", "", "The general purpose registers.", get_registers},
     Command{"log", "after (0)",
             "What the robot's log shows: the last 1000 entries, those numbered above 'after'.", log},
-    Command{
-        "trace", "after (0)",
-        "By the host's clock, ns: the last 4096 cycles after 'after' as [cycle, sending began, fastest "
-        "target joint rad/s], the last 256 commands in input integer register 0 as [cycle, arrived, code].",
-        trace},
+    Command{"trace", "after (0)",
+            "By the host's clock, ns: the last 4096 cycles after 'after' as [cycle, sending began, fastest "
+            "target joint rad/s], the last 256 commands in input integer register 0 as [cycle, arrived, "
+            "code], and "
+            "apart from them the last 1024 that repeat the one before.",
+            trace},
 };
 
 }  // namespace

@@ -31,10 +31,14 @@ class CycleTrace {
     cycles_[cycle_count_++ % cycles_.size()] = {state.cycle, now(),
                                                 state.target.velocity.cwiseAbs().maxCoeff()};
   }
-  /// Input integer register 0 was written; repeats and 0 (no command) are not kept.
+  /// Input integer register 0 was written; 0 (no command) is not kept, repeats are kept apart: they are what
+  /// a stream of targets is made of.
   void command_arrived(const ControllerState & state)
   {
     const std::int32_t code = state.inputs.integers[0];
+    if (code != 0 && code == last_code_) {
+      repeats_[repeat_count_++ % repeats_.size()] = {state.cycle, now(), code};
+    }
     if (code != 0 && code != last_code_) {
       commands_[command_count_++ % commands_.size()] = {state.cycle, now(), code};
     }
@@ -50,6 +54,11 @@ class CycleTrace {
   void for_each_command(Visit && visit) const
   {
     for_each(commands_, command_count_, visit);
+  }
+  template <typename Visit>
+  void for_each_repeat(Visit && visit) const
+  {
+    for_each(repeats_, repeat_count_, visit);
   }
 
  private:
@@ -69,8 +78,10 @@ class CycleTrace {
 
   std::array<Cycle, 4096> cycles_;
   std::array<Command, 256> commands_;
+  std::array<Command, 1024> repeats_;
   std::uint64_t cycle_count_ = 0;
   std::uint64_t command_count_ = 0;
+  std::uint64_t repeat_count_ = 0;
   std::int32_t last_code_ = 0;
 };
 
