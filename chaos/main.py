@@ -75,6 +75,7 @@ class Chaos:
             self._show("no faults")
             self._wait(min(SOAK_PERIOD, 0.02 * 60.0 * self._options.minutes))
             self._gate.set(False)
+            self._robot.clear()  # a random motion may have led to a protective stop
             self._quiet()
             self._gate.set(True)
 
@@ -135,8 +136,10 @@ class Chaos:
 
     def _end_quietly(self):
         self._gate.set(False)
+        self._robot.clear()
         self._quiet()
         with self._gate.passed():
+            self._until_ready()
             self._probe.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
         grown = self._loads.verdict()
         if grown:
