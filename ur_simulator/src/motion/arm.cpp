@@ -172,6 +172,7 @@ void Arm::Impl::advance(const Tick & tick)
     running->advance(tick, setpoint);
   }
   if (running->done()) {
+    last_arrived = given_up ? last_arrived : last_id;
     slot = std::monostate();
   }
 }

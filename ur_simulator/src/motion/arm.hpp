@@ -98,6 +98,9 @@ class Arm {
   bool finished(MotionId motion) const;
   /// Has it come to its blend, and is it going on to its target?
   bool in_blend(MotionId motion) const;
+  /// Is it the last motion that went all its way, neither abandoned nor stopped by safety? The joints'
+  /// position does not tell: along the compliant axes force mode keeps them away from the target.
+  bool arrived(MotionId motion) const;
   /// Where the path begins and leads that the arm follows, TCP poses; nothing when it follows none.
   struct PathEnds {
     Vector6 start;

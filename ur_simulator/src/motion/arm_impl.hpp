@@ -66,9 +66,10 @@ struct Arm::Impl {
   Follower follower;
   ArmStateWriter writer;
   MotionSlot slot;
-  MotionId last_id = 0;   // of the motion in the slot, and the highest given away
-  bool given_up = false;  // the motion in the slot only brakes any more
-  bool is_stop = false;   // it is a stop: that it cannot go on straight is no fault
+  MotionId last_id = 0;                    // of the motion in the slot, and the highest given away
+  MotionId last_arrived = skipped_motion;  // of the last motion that went all its way
+  bool given_up = false;                   // the motion in the slot only brakes any more
+  bool is_stop = false;                    // it is a stop: that it cannot go on straight is no fault
   bool paused = false;
   const ControllerState * state =
       nullptr;  // of the last step: its modes and its TCP hold for what starts next

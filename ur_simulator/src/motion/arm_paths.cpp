@@ -143,6 +143,11 @@ bool Arm::in_blend(MotionId motion) const
   return motion == impl_->last_id && path != nullptr && !impl_->given_up && path->in_blend();
 }
 
+bool Arm::arrived(MotionId motion) const
+{
+  return motion == impl_->last_arrived;
+}
+
 std::optional<Arm::PathEnds> Arm::path_ends() const
 {
   const auto * path = std::get_if<PathMove>(&impl_->slot);

@@ -41,20 +41,21 @@ void MotionOperation::abandon()
   release();
 }
 
-MoveOperation::MoveOperation(RobotPtr robot, MotionId motion, Start start, Arrived arrived)
-    : MotionOperation(std::move(robot), motion), start_(std::move(start)), arrived_(std::move(arrived))
+MoveOperation::MoveOperation(RobotPtr robot, MotionId motion, Start start)
+    : MotionOperation(std::move(robot), motion), start_(std::move(start))
 {
 }
 
 tl::expected<std::optional<Value>, std::string> MoveOperation::poll(CallContext & context)
 {
   // In its blend it goes on to its target, whether the program has something to blend with it or not.
-  const bool in_blend = robot().access.arm.in_blend(motion());
+  Arm & arm = robot().access.arm;
+  const bool arrives = arm.in_blend(motion()) || arm.arrived(motion());
   auto result = MotionOperation::poll(context);
-  if (!result || !*result || in_blend || arrived_(robot().state())) {
+  if (!result || !*result || arrives) {
     return result;
   }
-  const MotionStart again = start_(robot().access.arm);
+  const MotionStart again = start_(arm);
   if (!again) {
     return tl::unexpected(again.error());
   }
@@ -78,7 +79,7 @@ Outcome begin_motion(const RobotPtr & robot, const std::function<MotionStart(Arm
   return std::make_unique<MotionOperation>(robot, *motion);
 }
 
-Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start, MoveOperation::Arrived arrived)
+Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start)
 {
   if (robot->moving != nullptr) {
     return occupied;
@@ -90,7 +91,7 @@ Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start, MoveOpera
   if (*motion == skipped_motion) {
     return Value();
   }
-  return std::make_unique<MoveOperation>(robot, *motion, std::move(start), std::move(arrived));
+  return std::make_unique<MoveOperation>(robot, *motion, std::move(start));
 }
 
 }  // namespace ur_simulator::script_api

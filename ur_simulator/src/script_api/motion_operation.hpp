@@ -36,19 +36,17 @@ class MotionOperation : public urscript::Operation {
 class MoveOperation final : public MotionOperation {
  public:
   using Start = std::function<MotionStart(Arm & arm)>;
-  using Arrived = std::function<bool(const ControllerState & state)>;
 
-  MoveOperation(RobotPtr robot, MotionId motion, Start start, Arrived arrived);
+  MoveOperation(RobotPtr robot, MotionId motion, Start start);
   tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override;
 
  private:
   Start start_;
-  Arrived arrived_;
 };
 
 /// Starts a motion that ends by itself (servoj, speedj, stopj, …), or tells why it cannot.
 Outcome begin_motion(const RobotPtr & robot, const std::function<MotionStart(Arm & arm)> & start);
 /// Starts a motion to a target; a value when the motion is skipped.
-Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start, MoveOperation::Arrived arrived);
+Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start);
 
 }  // namespace ur_simulator::script_api

@@ -21,9 +21,7 @@ Outcome movej(const RobotPtr & robot, CallContext & context, Arguments arguments
   if (!target) {
     return Failure{target.error()};
   }
-  return begin_path(
-      robot, context, [q = *target, options](Arm & arm) { return arm.move_joint(q, options); },
-      at_joints(*target));
+  return begin_path(robot, context, [q = *target, options](Arm & arm) { return arm.move_joint(q, options); });
 }
 
 Outcome movel(const RobotPtr & robot, CallContext & context, Arguments arguments)
@@ -35,9 +33,8 @@ Outcome movel(const RobotPtr & robot, CallContext & context, Arguments arguments
     return in.failure();
   }
   const Vector6 target = tcp_target(*robot, arguments[0], six);
-  return begin_path(
-      robot, context, [target, options](Arm & arm) { return arm.move_linear(target, options); },
-      at_pose(*robot, target));
+  return begin_path(robot, context,
+                    [target, options](Arm & arm) { return arm.move_linear(target, options); });
 }
 
 }  // namespace

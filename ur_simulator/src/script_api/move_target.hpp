@@ -13,13 +13,8 @@ Vector6 tcp_target(const Robot & robot, const Value & target, const Vector6 & si
 tl::expected<Vector6, std::string> joint_target(const Robot & robot, const Value & target,
                                                 const Vector6 & six);
 
-MoveOperation::Arrived at_joints(const Vector6 & target);
-/// Compared at the flange: the program may set another TCP while the arm moves.
-MoveOperation::Arrived at_pose(const Robot & robot, const Vector6 & tcp_pose);
-
 /// Starts a motion along a path; one that is skipped leaves a warning in the log.
-Outcome begin_path(const RobotPtr & robot, CallContext & context, MoveOperation::Start start,
-                   MoveOperation::Arrived arrived);
+Outcome begin_path(const RobotPtr & robot, CallContext & context, MoveOperation::Start start);
 
 void add_path_builtins(Library & library, const RobotPtr & robot);
 

@@ -25,8 +25,7 @@ Outcome to_pose_by(const RobotPtr & robot, CallContext & context, Arguments argu
     return in.failure();
   }
   const Vector6 target = tcp_target(*robot, arguments[0], six);
-  return begin_path(
-      robot, context, [=](Arm & arm) { return (arm.*how)(target, options); }, at_pose(*robot, target));
+  return begin_path(robot, context, [=](Arm & arm) { return (arm.*how)(target, options); });
 }
 
 Outcome optimovej(const RobotPtr & robot, CallContext & context, Arguments arguments)
@@ -41,9 +40,8 @@ Outcome optimovej(const RobotPtr & robot, CallContext & context, Arguments argum
   if (!target) {
     return Failure{target.error()};
   }
-  return begin_path(
-      robot, context, [q = *target, options](Arm & arm) { return arm.move_joint_optimally(q, options); },
-      at_joints(*target));
+  return begin_path(robot, context,
+                    [q = *target, options](Arm & arm) { return arm.move_joint_optimally(q, options); });
 }
 
 /// A movec: after a stop it goes on along what is left of the circle it began.
@@ -63,11 +61,9 @@ class CircularMove {
     if (const auto ends = arm.path_ends(); motion && *motion != skipped_motion && ends) {
       begun_ = ends->start;
       target_ = ends->target;  // in fixed mode its rotation follows from the circle
-      arrived_ = at_pose(robot, target_);
     }
     return motion;
   }
-  bool arrived(const ControllerState & state) const { return arrived_ && arrived_(state); }
 
  private:
   MotionStart go_on(Arm & arm, const Robot & robot)
@@ -89,7 +85,6 @@ class CircularMove {
   CircleMode mode_;
   MoveOptions options_;
   std::optional<Vector6> begun_;  ///< where, once it has
-  MoveOperation::Arrived arrived_;
 };
 
 Outcome movec(const RobotPtr & robot, CallContext & context, Arguments arguments)
@@ -108,9 +103,7 @@ Outcome movec(const RobotPtr & robot, CallContext & context, Arguments arguments
       tcp_target(*robot, arguments[0], via), tcp_target(*robot, arguments[1], to),
       mode == 1 ? CircleMode::fixed : CircleMode::unconstrained, options);
   // The robot outlives the operation, which holds it.
-  return begin_path(
-      robot, context, [move, &shared = *robot](Arm & arm) { return move->start(arm, shared); },
-      [move](const ControllerState & state) { return move->arrived(state); });
+  return begin_path(robot, context, [move, &shared = *robot](Arm & arm) { return move->start(arm, shared); });
 }
 
 Outcome servoc(const RobotPtr & robot, Arguments arguments)

@@ -104,6 +104,24 @@ TEST_F(UrRtdeForce, moves_while_it_presses)
   EXPECT_TRUE(control.forceModeStop());
 }
 
+TEST_F(UrRtdeForce, changes_the_force_under_a_motion_which_ends)
+{
+  const auto running = [this] { return control.getAsyncOperationProgressEx().isAsyncOperationRunning(); };
+  place_table(0.01);
+  ASSERT_TRUE(control.zeroFtSensor());
+  ASSERT_TRUE(press(15.0));
+  ASSERT_TRUE(wait_for_force(15.0, 1.5));
+  Numbers target = controller.state()["actual_tcp_pose"].get<Numbers>();
+  target[1] += 0.1;
+  ASSERT_TRUE(control.moveL(target, 0.05, 0.5, true));
+  ASSERT_TRUE(eventually(controller, running));
+  ASSERT_TRUE(press(60.0));
+  ASSERT_TRUE(eventually(controller, [&] { return !running(); }));
+  EXPECT_NEAR(number(controller, "actual_tcp_pose", 1), target[1], 2e-3);
+  EXPECT_TRUE(wait_for_force(60.0, 1.5));
+  EXPECT_TRUE(control.forceModeStop());
+}
+
 TEST_F(UrRtdeForce, sets_damping_and_gain)
 {
   EXPECT_TRUE(control.forceModeSetDamping(0.1));

@@ -50,6 +50,76 @@ TEST(ForceModeCall, lets_a_movel_in_it_come_to_its_end)
   EXPECT_NEAR(rig.state.actual_tcp_pose[1] - before, 0.1, 2e-3);
 }
 
+TEST(ForceModeCall, lets_motions_end_whose_target_lies_within_the_surface)
+{
+  RobotRig rig;
+  rig.world.place_surface(table_below(rig, 0.01));
+  rig.run(std::string("def test():\n") + press_down +
+          " sleep(2)\n below = pose_add(get_actual_tcp_pose(), p[0,0.1,-0.02,0,0,0])\n"
+          " movel(below, v=0.1)\n movej(get_inverse_kin(pose_add(below, p[0,-0.1,0,0,0,0])), v=0.3)\nend");
+  const double before = rig.state.actual_tcp_pose[1];
+  rig.until([&] { return rig.state.actual_tcp_pose[1] - before > 0.099; }, 5.0);
+  EXPECT_LT(rig.finish(), 2.0);
+  EXPECT_EQ(rig.machine->status(), MachineStatus::finished) << rig.machine->error().message;
+  EXPECT_NEAR(rig.state.actual_tcp_pose[1], before, 2e-3);
+  EXPECT_NEAR(rig.state.contact_wrench[2], 20.0, 3.0);
+}
+
+// As the control script of ur_rtde does it.
+TEST(ForceModeCall, may_change_the_force_under_a_motion_of_another_thread)
+{
+  RobotRig rig;
+  rig.world.place_surface(table_below(rig, 0.01));
+  rig.run(R"(def test():
+    global wrench = [0, 0, -15, 0, 0, 0]
+    global moved = False
+    thread pressing():
+      while True:
+        force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], wrench, 2, [0.1,0.1,0.05,0.2,0.2,0.2])
+        sync()
+      end
+    end
+    thread moving():
+      movel(pose_add(get_actual_tcp_pose(), p[0,0.1,0,0,0,0]), v=0.1)
+      moved = True
+    end
+    run pressing()
+    sleep(2)
+    run moving()
+    sleep(0.5)
+    wrench = [0, 0, -60, 0, 0, 0]
+    while not moved:
+      sync()
+    end
+  end)");
+  const double before = rig.state.actual_tcp_pose[1];
+  EXPECT_LT(rig.finish(), 5.0);
+  EXPECT_EQ(rig.machine->status(), MachineStatus::finished) << rig.machine->error().message;
+  EXPECT_NEAR(rig.state.actual_tcp_pose[1] - before, 0.1, 2e-3);
+  EXPECT_NEAR(rig.state.contact_wrench[2], 60.0, 5.0);
+}
+
+TEST(ForceModeCall, may_end_under_a_motion_which_goes_on_to_its_target)
+{
+  RobotRig rig;
+  rig.run(R"(def test():
+    thread moving():
+      movel(target, v=0.1)
+    end
+    force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,-20,0,0,0], 2, [0.1,0.1,0.05,0.2,0.2,0.2])
+    global target = pose_add(get_actual_tcp_pose(), p[0,0.1,0.01,0,0,0])
+    move = run moving()
+    sleep(0.5)
+    end_force_mode()
+    join move
+  end)");
+  const Vector6 before = rig.state.actual_tcp_pose;
+  EXPECT_LT(rig.finish(), 5.0);
+  EXPECT_EQ(rig.machine->status(), MachineStatus::finished) << rig.machine->error().message;
+  EXPECT_NEAR(rig.state.target_tcp_pose[1] - before[1], 0.1, 1e-4);
+  EXPECT_NEAR(rig.state.target_tcp_pose[2] - before[2], 0.01, 1e-4);
+}
+
 TEST(ForceModeCall, checks_its_arguments)
 {
   RobotRig rig;
