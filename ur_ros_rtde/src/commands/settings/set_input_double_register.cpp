@@ -9,7 +9,7 @@ class SetInputDoubleRegister : public Command<ur_ros_rtde_msgs::action::SetRegis
 
   void check(const Goal & goal, Check & check) const override
   {
-    check.in_range("index", goal.index, 18, 22).that(std::isfinite(goal.value), "value is not finite");
+    check.in_range("index", goal.index, 19, 22).that(std::isfinite(goal.value), "value is not finite");
   }
 
   Outcome run(const Goal & goal, Run & run) override
