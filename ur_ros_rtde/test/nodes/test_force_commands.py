@@ -8,7 +8,7 @@ from geometry_msgs.msg import Pose, Vector3, Wrench
 from support import wait_for
 from test_commands import is_at_rest, joints_now, pose_now, turned, wait_until_moving
 
-from ur_ros_rtde_msgs.action import (DirectTorque, EnableExternalFtSensor, ForceMode, Freedrive, MoveJ, SetExternalForceTorque,
+from ur_ros_rtde_msgs.action import (DirectTorque, EnableExternalFtSensor, ForceMode, Freedrive, MoveJ, MoveL, SetExternalForceTorque,
                                      SetForceModeParameter, TeachMode, Trigger, ZeroFtSensor)
 from ur_ros_rtde_msgs.msg import ErrorCode
 
@@ -74,7 +74,7 @@ def unlocked(simulator):
         return False
 
 
-def test_force_mode_that_was_started_lasts_and_is_changed_until_it_is_stopped(robot, simulator):
+def test_a_motion_goes_along_a_surface_in_force_mode_that_was_started_and_is_changed_meanwhile(robot, simulator):
     robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
     simulator.control("place_surface", z=pose_now(robot).position.z - 0.005, stiffness=20000.0)
     fields = dict(compliant=ALONG_Z, limits=[0.1, 0.1, 0.03, 0.5, 0.5, 0.5])
@@ -84,9 +84,16 @@ def test_force_mode_that_was_started_lasts_and_is_changed_until_it_is_stopped(ro
 
     robot.send(ForceMode, "force_mode_start", wrench=down(15.0), **fields).succeeded()
     wait_for(lambda: pressing(15.0) and is_at_rest(robot), 10.0, "15 N")
+    target = pose_now(robot)
+    target.position.y += 0.1
+    motion = robot.send(MoveL, "move_l", pose=target, speed=0.03)
+    wait_until_moving(robot, 0.02)
+    refused = robot.send(Trigger, "force_mode_stop")
+    assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
     robot.send(ForceMode, "force_mode_start", wrench=down(30.0), **fields).succeeded()
-    wait_for(lambda: pressing(30.0) and is_at_rest(robot), 10.0, "30 N, changed")
-    assert simulator.state()["force_mode"]
+    motion.succeeded()
+    assert pose_now(robot).position.y == pytest.approx(target.position.y, abs=0.002)
+    assert simulator.state()["force_mode"] and pressing(30.0), "a motion that succeeds leaves it on"
     robot.send(Trigger, "force_mode_stop").succeeded()
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
 
