@@ -20,6 +20,7 @@ constexpr int first_input = 19;
 constexpr int last_input = 22;
 constexpr milliseconds acknowledgement_limit(1000);
 constexpr milliseconds stop_limit(3000);
+constexpr milliseconds unseen_limit(30);
 constexpr milliseconds message_limit(300);  // for the reason, after the program was seen to end
 constexpr int lines_before = 1;             // of the text: `def rtde_control():`
 
@@ -148,12 +149,20 @@ std::optional<Status> ExtensionRunner::look(Run & run, const ExtensionOptions & 
   return std::nullopt;
 }
 
-/// The trigger has been taken back: the control program ends the extension, and the arm's motion with it.
+/// The trigger has been taken back: the control program ends the extension, and the arm's motion with it, and
+/// says so, if it still runs.
 void ExtensionRunner::end_early(Error & why)
 {
-  const auto deadline = Clock::now() + stop_limit;
+  const auto begin = Clock::now();
+  const auto deadline = begin + stop_limit;
   Sample sample = state_.latest().value_or(Sample{});
-  while (!tracker_.view().at_rest) {
+  const auto ended = [&] {
+    const bool seen = Clock::now() - begin > unseen_limit;  // what comes before may be older than the trigger
+    const bool program = tracker_.view().program_running;
+    return seen && tracker_.view().at_rest &&
+           (!program || sample.output_double_registers[acknowledgement] == 0.0);
+  };
+  while (!ended()) {
     if (!state_.link().connected || Clock::now() > deadline) {
       why.message += "; whether the arm stands still is not known";
       return;

@@ -15,9 +15,10 @@ constexpr int first_id = 256;
 constexpr std::string_view before_commands = "    def process_cmd(cmd):\n";
 constexpr std::string_view before_loop = "            cmd = rtde_cmd()\n";
 
-/// Runs an extension in a thread when float register 18 is its number, says so in output float register 18
-/// when it is done, and ends it, with the arm, when the number is taken back before. A number that stands in
-/// the register when the script begins is from before: nothing is run until it is gone.
+/// Runs an extension in a thread when float register 18 is its number. Output float register 18 is minus the
+/// number while it runs, the number when it is done, and 0 when the script is ready for the next: at the end
+/// of the arm's motion, too, if the number was taken back before it was done. A number that stands in the
+/// register when the script begins is from before: nothing is run until it is gone.
 constexpr std::string_view dispatcher = R"(
     global extension_id = 0
     global extension_state = 5 # 0 none, 1 under way, 2 done, 3 being stopped, 4 stopped, 5 before the first
@@ -35,6 +36,7 @@ constexpr std::string_view dispatcher = R"(
             if wanted != 0:
                 extension_id = wanted
                 extension_state = 1
+                write_output_float_reg(18, 0 - extension_id)
                 extension_thrd = run extension_thread()
             end
         elif extension_state == 1:
