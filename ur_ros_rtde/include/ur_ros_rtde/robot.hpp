@@ -31,7 +31,7 @@ namespace ur_ros_rtde {
 
 enum class ControlMode {
   upload,         ///< ur_rtde's control script is sent to the controller; needs remote control (e-Series)
-  control_urcap,  ///< the External Control URCap on the robot fetches it
+  control_urcap,  ///< the External Control URCap fetches it when its program is played on the robot
 };
 
 struct RobotOptions {
@@ -49,8 +49,8 @@ struct RobotOptions {
   /// The robot program stops the arm when it has had no sign of life from here for 1/watchdog_frequency s.
   /// Hz; 0: no watchdog.
   double watchdog_frequency = 10.0;
-  /// Start the control program again when it was stopped and the robot is ready for it (never what it was
-  /// doing).
+  /// Start the control program again when it was stopped (with control_urcap: by a lost link) and the robot
+  /// is ready for it; never what it was doing.
   bool restart_program = true;
 };
 
@@ -130,10 +130,10 @@ class Robot {
   /// (`def … end`, or `sec … end` for a secondary one) or the body of one, which is put into a function of
   /// its own. A script that must end early, or late, is stopped: the arm decelerates.
   ///
-  /// A program replaces the control program: hold Resource::script. Meanwhile status() stays ready, control()
-  /// throws RobotError (busy), and the controller ends the program when this process gives no sign of life
-  /// any more (RobotOptions::watchdog_frequency). On return the control program runs again, unless the robot
-  /// is stopped or the link is lost.
+  /// A program replaces the control program (with control_urcap: not_supported): hold Resource::script.
+  /// Meanwhile status() stays ready, control() throws RobotError (busy), and the controller ends the program
+  /// when this process gives no sign of life (RobotOptions::watchdog_frequency). On return the control
+  /// program runs again, unless the robot is stopped or the link is lost.
   ScriptReport run_script(const std::string & script, const ScriptOptions & options = {});
 
   /// What the control program gets in addition. Set before start(). The sentences tell of each that is left

@@ -4,6 +4,7 @@
 #include <ur_rtde/script_client.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace ur_ros_rtde {
@@ -54,6 +55,17 @@ std::string ControlScripts::text(const ControllerVersion & version) const
   }
   const auto script = resolved(version);
   return script ? script->text.text() : std::string();
+}
+
+std::string ControlScripts::program(const ControllerVersion & version) const
+{
+  const std::lock_guard lock(mutex_);
+  const auto base = script::compose(ur_rtde::ScriptClient::controlScript(), extensions_);
+  const auto script = base ? script::for_controller(*base, version.major, version.minor, upper_range_) : base;
+  if (!script) {
+    throw std::runtime_error(fmt::format("line {}: {}", script.error().line, script.error().message));
+  }
+  return script->text.text();
 }
 
 Expected<int> ControlScripts::id(const std::string & name) const

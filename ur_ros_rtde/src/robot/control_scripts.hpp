@@ -25,6 +25,8 @@ class ControlScripts {
   /// For this controller; without a `def` around it, markers and register offset resolved. Empty when there
   /// is nothing to add to ur_rtde's own.
   std::string text(const ControllerVersion & version) const;
+  /// The same, also when there is nothing to add. Throws std::runtime_error.
+  std::string program(const ControllerVersion & version) const;
   /// The number that triggers the extension; not_supported with the reason when it was left out.
   Expected<int> id(const std::string & name) const;
   /// "extension `x`, line 3", for a line of text(); empty for a line that is of no extension.

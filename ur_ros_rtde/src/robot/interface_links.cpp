@@ -24,7 +24,7 @@ std::uint16_t control_flags(const RobotOptions & options)
 {
   unsigned flags = options.control_mode == ControlMode::upload
                        ? RTDEControlInterface::FLAG_UPLOAD_SCRIPT
-                       : RTDEControlInterface::FLAG_USE_EXT_UR_CAP | RTDEControlInterface::FLAG_NO_WAIT;
+                       : RTDEControlInterface::FLAG_NO_WAIT;  // the program comes from a ScriptServer
   // Looked at before by the supervisor, whose message says more.
   flags |= RTDEControlInterface::FLAG_DISABLE_REMOTE_CONTROL_CHECK;
   if (options.upper_range_registers) {
@@ -89,24 +89,37 @@ Status InterfaceLinks::check_extensions(const ControllerVersion & version)
   return {};
 }
 
-Status InterfaceLinks::start_control(const ControllerVersion & version)
+Status InterfaceLinks::reach_control_ports() const
 {
-  if (resume_parked()) {
-    return {};
-  }
   for (const auto port : {rtde_port, script_port}) {
     if (const auto reachable = TcpStream::connect(options_.address, port, options_.connect_timeout);
         !reachable) {
       return tl::unexpected(reachable.error());
     }
   }
+  return {};
+}
+
+std::shared_ptr<RTDEControlInterface> InterfaceLinks::connect_control(const std::string & script) const
+{
+  return std::make_shared<RTDEControlInterface>(options_.address, controllers_frequency,
+                                                control_flags(options_), options_.urcap_port, keep_priority,
+                                                script);
+}
+
+Status InterfaceLinks::start_control(const ControllerVersion & version)
+{
+  if (resume_parked()) {
+    return {};
+  }
+  if (const auto reachable = reach_control_ports(); !reachable) {
+    return reachable;
+  }
   if (const auto checked = check_extensions(version); !checked) {
     return checked;
   }
   try {
-    auto control = std::make_shared<RTDEControlInterface>(options_.address, controllers_frequency,
-                                                          control_flags(options_), options_.urcap_port,
-                                                          keep_priority, scripts_.text(version));
+    auto control = connect_control(scripts_.text(version));
     {
       // From here on the watchdog is fed, which must have begun when the program starts to watch.
       const std::lock_guard lock(mutex_);

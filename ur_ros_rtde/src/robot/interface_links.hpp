@@ -1,8 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "robot/control_scripts.hpp"
@@ -28,6 +30,14 @@ class InterfaceLinks {
   /// start it. The program that ran before must have been stopped. Over the parked connection, if there is
   /// one that works.
   Status start_control(const ControllerVersion & version);
+  /// For a program that somebody else starts: connects, and gives it signs of life, before it runs. Does
+  /// nothing when that has been done.
+  Status prepare_control();
+  /// Whether the program that runs is the control program, by its signs of life; waits for them up to
+  /// `limit`.
+  bool prepared_program_lives(std::chrono::milliseconds limit) const;
+  /// Starts the watchdog of that program; from then on there is a control interface.
+  Status take_prepared();
   /// Ends the control program and keeps its connection, over which the signs of life go on: another program
   /// is to run in its place. There is no control interface until start_control().
   void park_control();
@@ -48,6 +58,8 @@ class InterfaceLinks {
   void kick_watchdog();
 
  private:
+  Status reach_control_ports() const;
+  std::shared_ptr<ur_rtde::RTDEControlInterface> connect_control(const std::string & script) const;
   Status start_watchdog(ur_rtde::RTDEControlInterface & control) const;
   /// Leaves out the extensions that the controller does not take.
   Status check_extensions(const ControllerVersion & version);

@@ -15,6 +15,7 @@
 #include "robot/motion_stopper.hpp"
 #include "robot/motion_tracker.hpp"
 #include "robot/script_runner.hpp"
+#include "robot/script_server.hpp"
 #include "robot/supervisor.hpp"
 #include "ur_ros_rtde/dashboard_link.hpp"
 #include "ur_ros_rtde/state_receiver.hpp"
@@ -65,7 +66,11 @@ class Robot::Impl {
         control_scripts(options.upper_range_registers),
         links(options, control_scripts, log),
         stopper(options.address, state, links, tracker),
-        supervisor(options, state, dashboard, links, log),
+        server(options.urcap_port, options.retry_interval,
+               {[this] { return state.version(); },
+                [this](const ControllerVersion & version) { return control_scripts.program(version); }},
+               log),
+        supervisor(options, state, dashboard, links, log, &server),
         scripts(options, state, tracker, links, supervisor),
         extensions(options, state, tracker, links, control_scripts),
         kicked_for_(options.watchdog_frequency)
@@ -73,6 +78,7 @@ class Robot::Impl {
     state.on_link([this](const LinkStatus &) { supervisor.look_now(); });
     state.on_sample([this](const Sample & sample) { add(sample); });
     dashboard.on_link([this](const LinkStatus &) { supervisor.look_now(); });
+    server.status_function = [this] { supervisor.look_now(); };
   }
   ~Impl();
 
@@ -90,6 +96,7 @@ class Robot::Impl {
   ControlScripts control_scripts;
   InterfaceLinks links;
   MotionStopper stopper;
+  ScriptServer server;  ///< for ControlMode::control_urcap
   Supervisor supervisor;
   ScriptRunner scripts;
   ExtensionRunner extensions;
@@ -158,6 +165,13 @@ void Robot::Impl::end_program()
   if (!control) {
     return;
   }
+  if (options.control_mode == ControlMode::control_urcap) {
+    // What comes behind its External Control node might move the arm.
+    const auto ended = stop_program(options.address, std::chrono::milliseconds(500));
+    if (ended || options.watchdog_frequency > 0.0) {
+      return;
+    }
+  }
   try {
     const auto held = control->hold();
     held->setCommandTimeout(std::chrono::milliseconds(500));
@@ -175,6 +189,7 @@ Robot::Impl::~Impl()
     end_program();
   }
   // Their threads call into the members that are destroyed before them.
+  server.stop();
   state.stop();
   dashboard.stop();
   links.drop();
@@ -200,6 +215,9 @@ void Robot::start()
 {
   impl_->state.start();
   impl_->dashboard.start();
+  if (impl_->options.control_mode == ControlMode::control_urcap) {
+    impl_->server.start();
+  }
   impl_->supervisor.start();
 }
 
@@ -277,12 +295,13 @@ Status Robot::motion_possible() const
     return {};
   }
   if (!sample->program_running()) {
-    return failure(
-        ErrorCode::program_stopped,
-        fmt::format(
-            "the control program was stopped (runtime state {}); it is started again, without what it was "
-            "doing, as soon as the robot is ready for it",
-            to_string(sample->runtime_state)));
+    const char * then =
+        impl_->options.control_mode == ControlMode::upload
+            ? "it is started again, without what it was doing, as soon as the robot is ready for it"
+            : "start the program with the External Control node again";
+    return failure(ErrorCode::program_stopped,
+                   fmt::format("the control program was stopped (runtime state {}); {}",
+                               to_string(sample->runtime_state), then));
   }
   const auto control = impl_->links.control_pointer();
   if (!control) {

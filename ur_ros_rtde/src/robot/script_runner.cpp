@@ -119,6 +119,12 @@ ScriptReport ScriptRunner::run(const std::string & script, const ScriptOptions &
     return refused(std::move(*error));
   }
   const bool secondary = options.kind == ScriptKind::secondary;
+  if (!secondary && options_.control_mode == ControlMode::control_urcap) {
+    return refused(Error{ErrorCode::not_supported,
+                         "not with control_mode control_urcap: the script would end the program of the "
+                         "robot, and nobody but the operator starts that again. Use control_mode upload, or "
+                         "a script of kind `sec`"});
+  }
   const auto id = next_id_++;
   const ScriptWatch::Marks marks{fmt::format("ur_ros_rtde: script {:08x} begins", id),
                                  fmt::format("ur_ros_rtde: script {:08x} ends", id)};

@@ -44,8 +44,13 @@ const char * to_string(RobotState state)
 }
 
 Supervisor::Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard,
-                       InterfaceLinks & links, LogFunction log)
-    : options_(options), state_(state), dashboard_(dashboard), links_(links), report_(std::move(log))
+                       InterfaceLinks & links, LogFunction log, const ScriptServer * server)
+    : options_(options),
+      state_(state),
+      dashboard_(dashboard),
+      links_(links),
+      report_(std::move(log)),
+      server_(server)
 {
   status_ = {RobotState::disconnected, ErrorCode::link_lost,
              fmt::format("connecting to {}", options_.address)};
@@ -86,6 +91,9 @@ void Supervisor::add(const Sample & sample)
     program_ours_ = false;
     look_now();
   }
+  if (sample.runtime_state == RuntimeState::stopped) {
+    begins_afresh_ = true;
+  }
   if (const auto now = modes(sample); now != seen_) {
     seen_ = now;
     look_now();
@@ -123,6 +131,7 @@ void Supervisor::set(const RobotStatus & status)
 
 void Supervisor::run(const std::stop_token & stop)
 {
+  stop_ = stop;
   while (!stop.stop_requested()) {
     RobotStatus now;
     try {
@@ -147,18 +156,18 @@ RobotStatus Supervisor::look()
   const auto link = state_.link();
   const auto sample = state_.latest();
   if (!link.connected || !sample) {
-    program_ours_ = false;
+    forget_program();
     links_.drop();
     return {RobotState::disconnected, ErrorCode::link_lost, link.error.message};
   }
   if (std::exchange(link_, sample->link) != sample->link) {
-    program_ours_ = false;
+    forget_program();
     program_ended_ = false;
     links_.drop();
   }
   if (const auto control = links_.control_pointer(); program_ours_ && control && !control->isConnected()) {
     // Only this link is lost; the program behind it, still ours, is replaced.
-    program_ours_ = false;
+    forget_program();
     links_.drop_control();
   }
   const auto condition = robot_condition(*sample);
@@ -169,6 +178,7 @@ RobotStatus Supervisor::look()
     // Whatever ended it, it must not go on from where it was: not after a protective stop is unlocked, not on
     // the pendant's play.
     program_ended_ = true;
+    fetched_ran_ = false;
     links_.drop_control();
   }
   if (!program_ours_ && program_ended_ && sample->runtime_state != RuntimeState::stopped &&
@@ -181,6 +191,7 @@ RobotStatus Supervisor::look()
     return {RobotState::connecting, io.error().code, io.error().message};
   }
   if (condition) {
+    play_again_ = false;
     return stopped(*condition);
   }
   return look_at_program(*sample);
@@ -194,7 +205,10 @@ RobotStatus Supervisor::look_at_program(const Sample & sample)
   if (const auto dashboard = dashboard_.link(); !dashboard.connected) {
     return {RobotState::connecting, dashboard.error.code, dashboard.error.message};
   }
-  if (options_.control_mode == ControlMode::upload && dashboard_.in_remote_control() == false) {
+  if (options_.control_mode == ControlMode::control_urcap) {
+    return look_at_fetched_program(sample);
+  }
+  if (dashboard_.in_remote_control() == false) {
     return stopped(
         {ErrorCode::not_ready,
          "the robot is in local control and takes no program from here: choose remote control on the pendant "

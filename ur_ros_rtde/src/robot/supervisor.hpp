@@ -5,10 +5,12 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "robot/interface_links.hpp"
 #include "robot/reporter.hpp"
+#include "robot/script_server.hpp"
 #include "ur_ros_rtde/dashboard_link.hpp"
 #include "ur_ros_rtde/robot.hpp"
 #include "ur_ros_rtde/state_receiver.hpp"
@@ -19,8 +21,9 @@ namespace ur_ros_rtde {
 /// something changes, and every retry interval.
 class Supervisor {
  public:
+  /// `server`: for ControlMode::control_urcap, outlives it.
   Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard,
-             InterfaceLinks & links, LogFunction log);
+             InterfaceLinks & links, LogFunction log, const ScriptServer * server = nullptr);
   ~Supervisor() { stop(); }
 
   std::function<void(const RobotStatus &)> status_function;  ///< set before start()
@@ -49,6 +52,14 @@ class Supervisor {
   RobotStatus look();
   RobotStatus look_at_program(const Sample & sample);
   RobotStatus start_program();
+  RobotStatus look_at_fetched_program(const Sample & sample);
+  RobotStatus wait_for_play();
+  RobotStatus take_over_fetched_program();
+  Status play_again();
+  /// The link was lost, and with it the program.
+  void forget_program();
+  /// It is the same link as this sample's.
+  bool still_linked(const Sample & sample) const;
   RobotStatus look_at_turn(const Sample & sample, const std::optional<Error> & condition);
   /// Who waits for the turn to come back, or to be given, is answered.
   void settle_turn(const RobotStatus & now);
@@ -70,8 +81,16 @@ class Supervisor {
   /// It has ended since the link was made: a program that plays now is somebody else's.
   bool program_ended_ = false;
   std::uint32_t link_ = 0;
-  Turn turn_at_look_ = Turn::own;  ///< what the look under way goes by
-  std::uint64_t seen_ = 0;         ///< modes of the sample before, receiving thread only
+  const ScriptServer * server_;
+  /// A program was seen not to run since the last one that was ours: the next one begins at its beginning.
+  std::atomic<bool> begins_afresh_{false};
+  bool fetched_ran_ = false;  ///< a fetched program was ours, and what ended it has not been looked at
+  bool play_again_ = false;   ///< it ended with the link, and nothing else has happened since
+  std::chrono::steady_clock::time_point lost_at_{};  ///< when that was
+  std::string fetched_program_;                      ///< what the dashboard server calls it
+  std::stop_token stop_;                             ///< of the thread
+  Turn turn_at_look_ = Turn::own;                    ///< what the look under way goes by
+  std::uint64_t seen_ = 0;                           ///< modes of the sample before, receiving thread only
 
   mutable std::mutex mutex_;
   mutable std::condition_variable_any changed_;
