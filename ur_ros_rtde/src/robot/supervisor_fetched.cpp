@@ -47,6 +47,9 @@ RobotStatus Supervisor::look_at_fetched_program(const Sample & sample)
   if (const auto serves = server_->status(); !serves) {
     return {RobotState::stopped, serves.error().code, serves.error().message};
   }
+  if (sample.runtime_state == RuntimeState::stopped) {
+    begins_afresh_ = true;  // also if add() had seen it before forget_program()
+  }
   if (sample.program_running() && !begins_afresh_) {
     // It may be in the middle of a motion. If it was ours it ends here, or by its watchdog.
     // A link that is lost meanwhile says nothing about the stop: it is looked at again with the next one.
