@@ -4,7 +4,8 @@
 
 namespace ur_ros_rtde_gripper_commands {
 
-// "OnRobot Soft Gripper, user guide": what the largest fingers can do. The URCap's functions take millimetres.
+// "OnRobot Soft Gripper, user guide": what the largest fingers can do. The URCap's functions take
+// millimetres.
 constexpr double narrowest = 0.011;  // m
 constexpr double widest = 0.075;     // m
 constexpr int last_tool = 3;

@@ -6,8 +6,8 @@
 namespace ur_ros_rtde_tutorials {
 
 class SpiralSearch : public ur_ros_rtde::Extension<action::SpiralSearch> {
-  // Runs on the controller. Where it is on the spiral grows by the way of one cycle; the speed is that along the spiral,
-  // reached in the first second.
+  // Runs on the controller. Where it is on the spiral grows by the way of one cycle; the speed is that along
+  // the spiral, reached in the first second.
   ur_ros_rtde::ScriptExtension script() const override
   {
     return {.snippet = R"(
@@ -61,8 +61,9 @@ class SpiralSearch : public ur_ros_rtde::Extension<action::SpiralSearch> {
     run.result().distance = run.registers().get_double(19);
     return run.registers().get_int(19) != 0
                ? ur_ros_rtde::Outcome::success()
-               : ur_ros_rtde::Outcome::failure(ur_ros_rtde::ErrorCode::not_reached,
-                                               "nothing was met: search in another place, or further (radius)");
+               : ur_ros_rtde::Outcome::failure(
+                     ur_ros_rtde::ErrorCode::not_reached,
+                     "nothing was met: search in another place, or further (radius)");
   }
 };
 

@@ -305,7 +305,11 @@ Status Robot::motion_possible() const
   }
   const auto control = impl_->links.control_pointer();
   if (!control) {
-    return tl::unexpected(impl_->why_not());
+    auto why = impl_->why_not();
+    if (why.code == ErrorCode::not_ready) {  // it was there, and is being made anew already
+      why = {ErrorCode::link_lost, "the connection to the control program was lost; it is made anew"};
+    }
+    return tl::unexpected(std::move(why));
   }
   if (!control->isConnected()) {
     return failure(ErrorCode::link_lost,

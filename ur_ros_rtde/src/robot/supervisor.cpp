@@ -131,7 +131,6 @@ void Supervisor::set(const RobotStatus & status)
 
 void Supervisor::run(const std::stop_token & stop)
 {
-  stop_ = stop;
   while (!stop.stop_requested()) {
     RobotStatus now;
     try {
@@ -191,7 +190,6 @@ RobotStatus Supervisor::look()
     return {RobotState::connecting, io.error().code, io.error().message};
   }
   if (condition) {
-    play_again_ = false;
     return stopped(*condition);
   }
   return look_at_program(*sample);

@@ -55,7 +55,6 @@ class Supervisor {
   RobotStatus look_at_fetched_program(const Sample & sample);
   RobotStatus wait_for_play();
   RobotStatus take_over_fetched_program();
-  Status play_again();
   /// The link was lost, and with it the program.
   void forget_program();
   /// It is the same link as this sample's.
@@ -84,13 +83,10 @@ class Supervisor {
   const ScriptServer * server_;
   /// A program was seen not to run since the last one that was ours: the next one begins at its beginning.
   std::atomic<bool> begins_afresh_{false};
-  bool fetched_ran_ = false;  ///< a fetched program was ours, and what ended it has not been looked at
-  bool play_again_ = false;   ///< it ended with the link, and nothing else has happened since
-  std::chrono::steady_clock::time_point lost_at_{};  ///< when that was
-  std::string fetched_program_;                      ///< what the dashboard server calls it
-  std::stop_token stop_;                             ///< of the thread
-  Turn turn_at_look_ = Turn::own;                    ///< what the look under way goes by
-  std::uint64_t seen_ = 0;                           ///< modes of the sample before, receiving thread only
+  bool fetched_ran_ = false;       ///< a fetched program was ours, and what ended it has not been looked at
+  bool left_running_ = false;      ///< a lost link has left it to its watchdog
+  Turn turn_at_look_ = Turn::own;  ///< what the look under way goes by
+  std::uint64_t seen_ = 0;         ///< modes of the sample before, receiving thread only
 
   mutable std::mutex mutex_;
   mutable std::condition_variable_any changed_;

@@ -98,6 +98,7 @@ def test_what_only_people_may_do_is_left_to_them(robot, simulator, trouble, way_
 
 def test_cancel_and_timeout_end_the_wait(robot, simulator):
     simulator.control("power", to="off")
+    wait_for(lambda: not robot.send(MoveJ, "move_j", joint_positions=HOME).accepted, 10.0, "the driver to see the arm off")
     goal = robot.send(MakeReady, "make_ready")
     wait_for(lambda: goal.feedback, 10.0, "the first step")
     goal.cancel()

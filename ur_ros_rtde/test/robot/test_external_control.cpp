@@ -147,7 +147,7 @@ TEST_F(AnExternalControlProgram, that_is_paused_in_local_control_is_ended_by_its
   EXPECT_TRUE(keeps_still());
 }
 
-TEST_F(AnExternalControlProgram, comes_back_by_itself_after_lost_links_but_not_its_motion)
+TEST_F(AnExternalControlProgram, is_waited_for_after_lost_links_and_does_not_go_on_with_its_motion)
 {
   start(options());
   play();
@@ -156,70 +156,26 @@ TEST_F(AnExternalControlProgram, comes_back_by_itself_after_lost_links_but_not_i
   for (const bool reset : {false, true}) {
     move_joints();
     controller.control({{"command", "drop_links"}, {"reset", reset}});
+    ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+    ASSERT_TRUE(waits_for_play());
+    EXPECT_FALSE(robot->latest()->program_running());
+    play();
     ASSERT_TRUE(becomes_ready_again(++times));
     EXPECT_TRUE(keeps_still());
     EXPECT_TRUE(works());
   }
 }
 
-TEST_F(AnExternalControlProgram, comes_back_after_only_the_control_link_was_lost)
+TEST_F(AnExternalControlProgram, is_waited_for_after_only_the_control_link_was_lost)
 {
   start(options());
   play();
   ASSERT_TRUE(becomes_ready());
   controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "control"}});
+  ASSERT_TRUE(waits_for_play());
+  play();
   ASSERT_TRUE(becomes_ready_again());
   EXPECT_TRUE(works());
-}
-
-TEST_F(AnExternalControlProgram, waits_for_play_after_a_lost_link_where_restarting_is_off)
-{
-  auto robot_side = options();
-  robot_side.restart_program = false;
-  robot_side.watchdog_frequency = 10.0;
-  start(robot_side);
-  play();
-  ASSERT_TRUE(becomes_ready());
-  controller.control({{"command", "drop_links"}});
-  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
-  ASSERT_TRUE(waits_for_play());
-  EXPECT_FALSE(eventually([&] { return robot->latest()->program_running(); }, 700ms));
-  play();
-  EXPECT_TRUE(becomes_ready());
-}
-
-TEST_F(AnExternalControlProgram, is_not_started_in_the_place_of_another_one_that_was_loaded)
-{
-  auto robot_side = options();
-  robot_side.watchdog_frequency = 10.0;
-  start(robot_side);
-  play();
-  ASSERT_TRUE(becomes_ready());
-  controller.control({{"command", "refuse_connections"}});
-  controller.control({{"command", "drop_links"}});
-  ASSERT_TRUE(comes_to(RobotState::disconnected, ErrorCode::link_lost));
-  controller.control(
-      {{"command", "store_program"}, {"name", "other.urp"}, {"script", "sleep(9)"}, {"load", true}});
-  controller.control({{"command", "accept_connections"}});
-  ASSERT_TRUE(waits_for_play());
-  EXPECT_EQ(log.count("another one is loaded"), 1U) << log.text();
-  EXPECT_FALSE(robot->latest()->program_running());
-}
-
-TEST_F(AnExternalControlProgram, is_not_started_again_when_the_link_was_away_for_long)
-{
-  auto robot_side = options();
-  robot_side.watchdog_frequency = 10.0;
-  start(robot_side);
-  play();
-  ASSERT_TRUE(becomes_ready());
-  controller.control({{"command", "refuse_connections"}});
-  controller.control({{"command", "drop_links"}});
-  const auto lost = Clock::now();
-  ASSERT_TRUE(eventually([&] { return Clock::now() - lost > 10500ms; }, 20s));
-  controller.control({{"command", "accept_connections"}});
-  ASSERT_TRUE(waits_for_play());
-  EXPECT_FALSE(eventually([&] { return robot->latest()->program_running(); }, 700ms)) << log.text();
 }
 
 TEST_F(AnExternalControlProgram, does_not_go_on_after_a_protective_stop)

@@ -2,7 +2,8 @@
 
 namespace my_package {
 
-// DashboardText has a line of text as its goal. DashboardCommand and DashboardQuery need none; an action of your own does, too.
+// DashboardText has a line of text as its goal. DashboardCommand and DashboardQuery need none; an action of
+// your own does, too.
 class MyCommand : public ur_ros_rtde::DashboardCommand<ur_ros_rtde_msgs::action::DashboardText> {
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
