@@ -13,6 +13,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr milliseconds first_package_limit(100);
+
 RobotStatus stopped(const Error & error)
 {
   return {RobotState::stopped, error.code, error.message};
@@ -153,8 +155,14 @@ RobotStatus Supervisor::look()
 {
   begin_look();
   const auto link = state_.link();
-  const auto sample = state_.latest();
+  auto sample = state_.latest();
+  // The link is made anew, but its first package may not have come: what the last one before tells is over.
+  if (link.connected && sample && sample->link == lost_link_ &&
+      !state_.wait_for_next(*sample, first_package_limit)) {
+    return {RobotState::connecting, ErrorCode::link_lost, "nothing has come over the new connection yet"};
+  }
   if (!link.connected || !sample) {
+    lost_link_ = sample ? sample->link : lost_link_;
     forget_program();
     links_.drop();
     return {RobotState::disconnected, ErrorCode::link_lost, link.error.message};

@@ -80,6 +80,7 @@ class Supervisor {
   /// It has ended since the link was made: a program that plays now is somebody else's.
   bool program_ended_ = false;
   std::uint32_t link_ = 0;
+  std::optional<std::uint32_t> lost_link_;  ///< Sample::link of the link that was lost last
   const ScriptServer * server_;
   /// A program was seen not to run since the last one that was ours: the next one begins at its beginning.
   std::atomic<bool> begins_afresh_{false};

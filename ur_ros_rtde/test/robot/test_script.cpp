@@ -235,8 +235,7 @@ TEST_F(AScript, ends_with_the_link_and_is_not_left_running)
   EXPECT_EQ(report.error.code, ErrorCode::link_lost);
   ASSERT_TRUE(becomes_ready());
   EXPECT_TRUE(eventually([&] { return at_rest(); }));
-  // The control program may be started twice: what the lost link left is noticed with the first one running.
-  EXPECT_TRUE(eventually([&] { return is_back(); }));
+  EXPECT_TRUE(is_back());
 }
 
 TEST_F(AScript, is_stopped_by_its_watchdog_when_the_driver_gives_no_sign_of_life)
