@@ -32,17 +32,7 @@ std::array<double, 36> by_rows(const std::vector<double> & columns)
 
 geometry_msgs::msg::Pose to_pose(const std::vector<double> & pose)
 {
-  const Vector6 values = six(pose);
-  const Quaternion rotation_of = quaternion(rotation(values));
-  geometry_msgs::msg::Pose message;
-  message.position.x = values[0];
-  message.position.y = values[1];
-  message.position.z = values[2];
-  message.orientation.x = rotation_of.x;
-  message.orientation.y = rotation_of.y;
-  message.orientation.z = rotation_of.z;
-  message.orientation.w = rotation_of.w;
-  return message;
+  return to_ros(six(pose));
 }
 
 std::vector<double> or_present(const std::vector<double> & values, const Vector6 & present)
