@@ -1,3 +1,5 @@
+import pathlib
+
 import pytest
 from ur_tools import main, testing
 
@@ -23,6 +25,24 @@ def test_a_crash_after_passed_cases_is_a_failure(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text("<testsuite><testcase name='good'/></testsuite>")
     assert testing._cases(report, False) == (1, ["ended badly after its last case"])
+
+
+def result(command, failures):
+    return testing.Result(testing.Test("a test", command, pathlib.Path(), 1.0), 3, failures, 1.0, "")
+
+
+def test_of_a_file_only_what_failed_is_run_again():
+    part = testing._failed_part(result(["python", "-m", "pytest", "-q", "a/test_x.py"], ["test_x.test_y[a.b]", "test_x.test_z"]))
+    assert part.command == ["python", "-m", "pytest", "-q", "a/test_x.py::test_y[a.b]", "a/test_x.py::test_z"]
+
+
+@pytest.mark.parametrize("command, failures", [
+    (["python", "-m", "pytest", "a/test_x.py"], ["ended badly after its last case"]),
+    (["a/program"], ["Suite.bad"]),
+])
+def test_what_cannot_be_taken_apart_is_run_again_whole(command, failures):
+    whole = result(command, failures)
+    assert testing._failed_part(whole) is whole.test
 
 
 @pytest.mark.parametrize("arguments, ros, debug, forwarded", [

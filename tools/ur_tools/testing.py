@@ -9,7 +9,7 @@ import threading
 import time
 import xml.etree.ElementTree as xml
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional
 
 from . import build as building
@@ -40,7 +40,6 @@ class Test:
     folder: pathlib.Path
     limit: float
     env: Dict[str, str] = field(default_factory=dict)
-    select: str = ""  # pytest -k
 
 
 @dataclass
@@ -241,15 +240,30 @@ def _run_all(options: Options, tests: List[Test], folder: pathlib.Path) -> List[
     return results
 
 
+def _failed_part(result: Result) -> Test:
+    """Of a pytest file the cases that failed, so that each has one more chance and not one together; else all of it."""
+    file = pathlib.Path(result.test.command[-1])
+    if "pytest" not in result.test.command or not all(case.startswith(f"{file.stem}.") for case in result.failures):
+        return result.test
+    cases = [f"{file}::{case[len(file.stem) + 1:]}" for case in result.failures]
+    return replace(result.test, command=[*result.test.command[:-1], *cases])
+
+
 def _once_more(runner: Runner, status: say.Status, result: Result) -> Result:
     """A test that failed beside others gets one more run with the machine to itself, and the summary says so."""
     if not result.failures:
         return result
     status.show(f"once more, alone: {result.test.name}")
-    alone = runner.run(result.test)
-    if alone is None or alone.failures:
+    part = _failed_part(result)
+    alone = runner.run(part)
+    if alone is None:
         return result
-    alone.failed_at_first = result.failures
+    if alone.failures:
+        status.keep(f"FAILED AGAIN  {result.test.name}")
+        status.keep("\n".join("        " + text for text in say.tail(alone.output, 60).splitlines()))
+    if part is not result.test:
+        alone.passed += result.passed
+    alone.failed_at_first = [case for case in result.failures if case not in alone.failures]
     return alone
 
 

@@ -61,7 +61,7 @@ def test_a_goal_that_cannot_be_meant_names_its_field(running, text, mentions):
 
 
 def test_an_action_nobody_serves_is_named_with_those_there_are(running):
-    code, output = ur("call", "move_x", "--wait", "1")
+    code, output = ur("call", "move_x", "--wait", "10")
     assert code == 2 and "/move_x" in output and "/move_l" in output, output
 
 

@@ -10,6 +10,8 @@ namespace {
 constexpr std::chrono::milliseconds takeover_limit{6000};
 /// A shutdown has less patience with a stop that does not work than a goal has.
 constexpr std::chrono::milliseconds shutdown_stop_limit{1500};
+/// Before a goal is accepted.
+constexpr std::chrono::milliseconds dashboard_answer_limit{500};
 
 bool gives_way(ErrorCode code)
 {
@@ -75,8 +77,8 @@ Status CommandGoals::readiness() const
 {
   Robot & robot = host_.robot();
   if (traits_.any_state) {
-    [[maybe_unused]] const auto dashboard = robot.dashboard();  // throws why there is none
-    return {};
+    const auto mode = robot.ask_dashboard("robotmode", dashboard_answer_limit);
+    return mode ? Status() : tl::unexpected(mode.error());
   }
   if (!traits_.extension.empty()) {
     if (Status has = robot.has_extension(traits_.extension); !has) {

@@ -1,5 +1,6 @@
 """Streams: the topics servo_joint, servo_pose and twist."""
 
+import csv
 import math
 import threading
 import time
@@ -12,9 +13,9 @@ from support import HOME, JOINTS, Client, Simulator, node, seconds, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
-from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
+from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose, StartRecording, StopRecording
 
-TIMEOUT = 0.2  # s; other tests beside this one make its publisher late
+TIMEOUT = 0.5  # s; other tests beside this one make its publisher late
 
 
 @pytest.fixture(scope="module")
@@ -30,19 +31,21 @@ class Publisher(threading.Thread):
 
     def __init__(self, client, kind, topic, message, rate=50.0, duration=60.0):
         super().__init__(daemon=True)
-        self._message, self._period, self._duration = message, 1.0 / rate, duration
+        self._message, self._duration = message, duration
+        self.period, self.longest_gap = 1.0 / rate, 0.0
         self._publisher = client.node.create_publisher(kind, topic, QoSProfile(depth=1))
         self._over = threading.Event()
         wait_for(lambda: self._publisher.get_subscription_count() > 0, 10.0, f"somebody who listens to {topic}")
         self.start()
 
     def run(self):
-        begin = time.monotonic()
+        begin = before = time.monotonic()
         number = 0
-        while not self._over.is_set() and time.monotonic() - begin < self._duration:
-            self._publisher.publish(self._message(time.monotonic() - begin))
+        while not self._over.is_set() and (now := time.monotonic()) - begin < self._duration:
+            self._publisher.publish(self._message(now - begin))
+            self.longest_gap, before = max(self.longest_gap, now - before), now
             number += 1
-            self._over.wait(max(0.0, begin + number * self._period - time.monotonic()))
+            self._over.wait(max(0.0, begin + number * self.period - time.monotonic()))
 
     def end(self):
         self._over.set()
@@ -85,7 +88,9 @@ def pause():
 
 
 @pytest.fixture(autouse=True)
-def no_stream_before():
+def no_stream_before(robot):
+    """Messages of an earlier test may be on their way yet: what they begin is stopped, and then there is silence."""
+    robot.send(Stop, "stop").succeeded()
     pause()
 
 
@@ -101,26 +106,31 @@ def swing(t):
     return 0.15 * (1.0 - math.cos(2.0 * math.pi * min(t, 4.0) / 4.0))
 
 
-def test_servo_joint_at_50_hz_moves_smoothly(robot):
-    states = robot.listen(JointState, "joint_states")
+def recorded_swing(robot, file):
+    """Times, positions and velocities of the base joint, by the robot's clock; None if the host held the publisher up."""
+    assert robot.call(StartRecording, "start_recording", filename=str(file), fields=["timestamp", "actual_q", "actual_qd"]).success
     with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(turned(swing(t)))) as publisher:
         publisher.join(4.5)
-    recorded = list(states)
-    positions = [s.position[0] for s in recorded]
+    assert robot.call(StopRecording, "stop_recording").success
+    if publisher.longest_gap > 2.0 * publisher.period:
+        return None
+    with file.open(newline="") as text:
+        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(text)]
+    return [[row[name] for row in rows] for name in ("timestamp", "actual_q_0", "actual_qd_0")]
+
+
+def test_servo_joint_at_50_hz_moves_smoothly(robot, tmp_path):
+    swings = (recorded_swing(robot, tmp_path / f"{attempt}.csv") or pause() for attempt in range(8))
+    regular = next(filter(None, swings), None)
+    assert regular, "this host never let the publisher keep its rate"
+    times, positions, velocities = regular
     assert max(positions) == pytest.approx(0.3, abs=0.01)
     assert positions[-1] == pytest.approx(0.0, abs=0.02)
     # Accelerations over 50 ms, of which a target that is held between messages would make ten times as much.
-    window = 0.05
-    accelerations, later = [], 0
-    for i, s in enumerate(recorded):
-        while later < len(recorded) and seconds(recorded[later].header.stamp) < seconds(s.header.stamp) + window:
-            later += 1
-        if later == len(recorded):
-            break
-        gap = seconds(recorded[later].header.stamp) - seconds(s.header.stamp)
-        if gap < 1.5 * window:
-            accelerations.append((recorded[later].velocity[0] - s.velocity[0]) / gap)
-    assert len(accelerations) > 200
+    window = 25
+    accelerations = [(velocities[i + window] - velocities[i]) / (times[i + window] - times[i])
+                     for i in range(len(times) - window)]
+    assert len(accelerations) > 1500
     assert max(map(abs, accelerations)) < 3.0 * 0.37
 
 

@@ -28,11 +28,9 @@ def test_two_robots_move_at_once_and_apart(addresses, processes):
         for goal in goals.values():
             goal.succeeded()
         for side, angle in (("left", 0.5), ("right", -0.5)):
-            wait_for(lambda s=side: states[s], 10.0, "joint states")
-            number = len(states[side])
-            wait_for(lambda s=side, n=number: len(states[s]) > n, 10.0, "the next joint state")
+            wait_for(lambda s=side, a=angle: states[s] and states[s][-1].position[0] == pytest.approx(a, abs=0.01), LIMIT,
+                     f"the {side} arm's state at {angle} rad")
             assert list(states[side][-1].name) == [f"{side}_{name}" for name in JOINTS]
-            assert states[side][-1].position[0] == pytest.approx(angle, abs=0.01)
     finally:
         for client in clients.values():
             client.close()

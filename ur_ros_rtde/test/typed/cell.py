@@ -12,7 +12,7 @@ from documentation import Setup
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from support import HOME, Client, Simulator, node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, MoveJ, Stop
+from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, EnableExternalFtSensor, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 LAST_DOMAIN = 101  # above it, ports may lie in the range the system gives out itself
@@ -22,6 +22,7 @@ STATUS = QoSProfile(depth=50, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 AT_REST = 0.01  # rad/s
 RETRY = 0.05  # s
+RESTART_OFF = "restart_program:=false"
 PREPARING = 3.0  # s to get home from wherever an example has led to
 CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper() and isinstance(value, int)}
 
@@ -146,7 +147,13 @@ class Cell:
     def restore(self, limit=30.0):
         if not self.simulator.process.running():
             self.restart_simulator()
+        if RESTART_OFF in self.setup.parameters:  # as its refusals say
+            self.driver.end()
+            self.start_driver()
+            limit = 30.0
         self.home(limit)
+        if self.simulator.state()["external_sensor"]:  # to which nobody sends readings
+            self.client.send(EnableExternalFtSensor, "ft_rtde_input_enable", enable=False).succeeded()
         # That link looks for its server now and then only.
         wait_for(self._dashboard_answers, 20.0, "the dashboard server")
 

@@ -1,25 +1,20 @@
 #include "commands/operation/dashboard_talk.hpp"
 
 #include <fmt/format.h>
-#include <ur_rtde/dashboard_client.h>
 
 namespace ur_ros_rtde {
+namespace {
+constexpr std::chrono::milliseconds answer_limit{2000};
+}  // namespace
 
 std::string ask_dashboard(const Robot & robot, const std::string & line)
 {
-  std::string answer;
-  try {
-    const auto client = robot.dashboard().hold();
-    client->send(line + "\n");
-    answer = client->receive();
-  } catch (const RobotError &) {
-    throw;
-  } catch (const std::exception & error) {
-    throw RobotError({ErrorCode::link_lost,
-                      fmt::format("the dashboard server did not answer \"{}\": {}", line, error.what())});
+  const auto answer = robot.ask_dashboard(line, answer_limit);
+  if (!answer) {
+    throw RobotError({answer.error().code, fmt::format("the dashboard server did not answer \"{}\": {}", line,
+                                                       answer.error().message)});
   }
-  answer.erase(answer.find_last_not_of(" \t\r\n") + 1);
-  return answer;
+  return *answer;
 }
 
 std::string dashboard_value(const Robot & robot, const std::string & question)

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+
+#include "robot/control_scripts.hpp"
+#include "robot/extension_runner.hpp"
+#include "robot/interface_links.hpp"
+#include "robot/motion_stopper.hpp"
+#include "robot/motion_tracker.hpp"
+#include "robot/script_runner.hpp"
+#include "robot/script_server.hpp"
+#include "robot/supervisor.hpp"
+#include "ur_ros_rtde/dashboard_link.hpp"
+#include "ur_ros_rtde/robot.hpp"
+#include "ur_ros_rtde/state_receiver.hpp"
+
+namespace ur_ros_rtde {
+
+/// The parts of the robot side, and the threads that carry samples from one to the other.
+class Robot::Impl {
+ public:
+  Impl(RobotOptions robot_options, const LogFunction & log);
+  ~Impl();
+
+  void add(const Sample & sample);
+  void feed_watchdog(const Sample & sample);
+  Status set_watchdog(double frequency);
+  Error why_not() const;
+
+  const RobotOptions options;
+  Arbiter arbiter;
+  std::function<void(const Sample &)> sample_function;
+  MotionTracker tracker;
+  StateReceiver state;
+  DashboardLink dashboard;
+  ControlScripts control_scripts;
+  InterfaceLinks links;
+  MotionStopper stopper;
+  ScriptServer server;  ///< for ControlMode::control_urcap
+  Supervisor supervisor;
+  ScriptRunner scripts;
+  ExtensionRunner extensions;
+
+ private:
+  void end_program();
+  std::chrono::steady_clock::time_point last_kick_{};  ///< receiving thread only
+  std::atomic<double> kicked_for_;                     ///< Hz, of the fastest watchdog that may be running
+};
+
+}  // namespace ur_ros_rtde
