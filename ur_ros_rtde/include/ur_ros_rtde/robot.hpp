@@ -101,8 +101,8 @@ class Robot {
   Locked<ur_rtde::RTDEIOInterface> io() const;
   Locked<ur_rtde::DashboardClient> dashboard() const;
 
-  /// The answer of the dashboard server to one line, without its end. Over a connection of its own: one that is
-  /// kept may have been closed by the robot meanwhile.
+  /// The answer of the dashboard server to one line, without its end. Over a connection of its own: one that
+  /// is kept may have been closed by the robot meanwhile.
   Expected<std::string> ask_dashboard(const std::string & line, std::chrono::milliseconds limit,
                                       const std::stop_token & stop = {}) const;
 
