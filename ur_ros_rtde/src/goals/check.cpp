@@ -204,17 +204,26 @@ Check & Check::reachable(std::string_view field, const std::vector<double> & tar
   if (!ready().ok() || preflight_ == nullptr || preflight_->robot().moving()) {
     return *this;  // while another motion is being preempted, only the move itself can tell
   }
-  auto control = preflight_->robot().control();
-  if (control->isPoseWithinSafetyLimits(target)) {
-    return *this;
-  }
   const std::string where =
       fmt::format("{} ({:.3f}, {:.3f}, {:.3f}) m", field, target[0], target[1], target[2]);
-  if (control->getInverseKinematicsHasSolution(target)) {
-    fail(ErrorCode::safety_violation, fmt::format("{} is outside the robot's safety limits", where));
-  } else {
-    fail(ErrorCode::unreachable,
-         fmt::format("{} cannot be reached in that orientation: no joint positions lead there", where));
+  try {
+    auto control = preflight_->robot().control();
+    if (control->isPoseWithinSafetyLimits(target)) {
+      return *this;
+    }
+    if (control->getInverseKinematicsHasSolution(target)) {
+      fail(ErrorCode::safety_violation, fmt::format("{} is outside the robot's safety limits", where));
+    } else {
+      fail(ErrorCode::unreachable,
+           fmt::format("{} cannot be reached in that orientation: no joint positions lead there", where));
+    }
+  } catch (const RobotError &) {
+    throw;
+  } catch (const std::runtime_error & error) {
+    const Status possible = preflight_->robot().motion_possible();
+    const std::string unanswered =
+        fmt::format("the control program did not answer whether {} can be reached: {}", where, error.what());
+    error_ = possible ? Error{ErrorCode::rejected_by_robot, unanswered} : possible.error();
   }
   return *this;
 }

@@ -19,6 +19,8 @@ constexpr milliseconds longest_nap{10};
 /// Within which the control program begins a move after it has acknowledged it: two cycles, with reserve.
 constexpr std::chrono::seconds begin_limit{1};
 constexpr std::chrono::seconds package_limit{1};
+/// Without packages for so long, the link does not do what it should.
+constexpr milliseconds silence_limit{200};
 constexpr double joint_tolerance = 0.005;     // rad
 constexpr double position_tolerance = 0.002;  // m
 constexpr double rotation_share = 0.2;        // m/rad: what a rotation counts as, so that 0.01 rad is 2 mm
@@ -167,7 +169,17 @@ Outcome Run::expect(const std::function<bool()> & condition, std::chrono::nanose
   if (!why) {
     return Outcome::success();
   }
-  return why->code == ErrorCode::timeout ? Outcome::failure(code, otherwise) : Outcome(*why);
+  if (why->code != ErrorCode::timeout) {
+    return *why;
+  }
+  // Commands that move nothing do not end with the link; what did not come then says nothing about the robot.
+  const auto silence = Clock::now() - state().received;
+  if (silence < silence_limit) {
+    return Outcome::failure(code, otherwise);
+  }
+  return Outcome::failure(ErrorCode::link_lost,
+                          fmt::format("no package has come from the controller for {:.1f} s",
+                                      std::chrono::duration<double>(silence).count()));
 }
 
 std::optional<Interruption> Run::next(Sample & sample)
