@@ -86,6 +86,9 @@ std::size_t SignalWatcher::add(Callback callback)
 {
   const std::lock_guard lock(mutex_);
   callbacks_.emplace(++next_id_, std::move(callback));
+  if (unheard_ != 0 && ::write(write_end_, &unheard_, 1) == 1) {
+    unheard_ = 0;
+  }
   return next_id_;
 }
 
@@ -107,6 +110,9 @@ void SignalWatcher::run()
       return;
     }
     const std::lock_guard lock(mutex_);
+    if (callbacks_.empty()) {
+      unheard_ = byte;
+    }
     for (const auto & [id, callback] : callbacks_) {
       callback(byte);
     }

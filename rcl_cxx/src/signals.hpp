@@ -19,7 +19,8 @@ class SignalWatcher {
   SignalWatcher(const SignalWatcher &) = delete;
   SignalWatcher & operator=(const SignalWatcher &) = delete;
 
-  /// `callback` is told of every signal, in the watcher's thread, and returns soon.
+  /// `callback` is told of every signal, in the watcher's thread, and returns soon; also of one that came
+  /// before there was any callback.
   std::size_t add(Callback callback);
   /// After it `callback` does not run any more.
   void remove(std::size_t id);
@@ -33,6 +34,7 @@ class SignalWatcher {
   std::mutex mutex_;
   std::map<std::size_t, Callback> callbacks_;
   std::size_t next_id_ = 0;
+  unsigned char unheard_ = 0;  ///< the last signal that came while there was no callback; 0: none
   std::thread thread_;
 };
 

@@ -4,7 +4,10 @@
 
 #include <cerrno>
 #include <csignal>
+#include <future>
+#include <thread>
 
+#include "../src/signals.hpp"
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "ros_fixture.hpp"
 
@@ -75,6 +78,31 @@ TEST_P(ContextSignals, shut_down_and_spin_returns)
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, ContextSignals, testing::Values(SIGINT, SIGTERM));
+
+TEST(EarlySignals, that_come_before_the_context_listens_are_not_lost)
+{
+  int unused = -1;
+  const pid_t pid = start(
+      [](int /*ready_fd*/) {
+        for (int round = 0; round < 100; ++round) {
+          std::promise<int> told;
+          auto signal = told.get_future();
+          const auto watcher = rcl_cxx::detail::SignalWatcher::instance();
+          ::raise(SIGINT);
+          std::this_thread::sleep_for(std::chrono::microseconds(10 * round));  // the moment is the variation
+          watcher->add([&told](int number) { told.set_value(number); });
+          if (signal.wait_for(kLimit) != std::future_status::ready || signal.get() != SIGINT) {
+            return 1;
+          }
+        }
+        return kStopped;
+      },
+      unused);
+  const int status = wait_for_end(pid);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), kStopped);
+  ::close(unused);
+}
 
 namespace {
 /// A shutdown that takes until its end is asked for by SIGUSR1, and reports its beginning.

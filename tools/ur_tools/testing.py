@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import threading
 import time
@@ -300,6 +301,8 @@ def _summary(results: List[Result], checks: List[lint.Check], seconds: float) ->
 
 
 def run(options: Options) -> int:
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # begun with "&": programs under test would inherit it
     packages = building.build(building.Options(options.layout, options.packages, True, options.jobs))
     start = time.monotonic()
     tests = _collect(options, packages)

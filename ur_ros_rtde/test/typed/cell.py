@@ -22,7 +22,7 @@ STATUS = QoSProfile(depth=50, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 AT_REST = 0.01  # rad/s
 RETRY = 0.05  # s
-RESTART_OFF = "restart_program:=false"
+GAVE_UP = "restart_program is off: start the driver again"
 PREPARING = 3.0  # s to get home from wherever an example has led to
 CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper() and isinstance(value, int)}
 
@@ -147,10 +147,6 @@ class Cell:
     def restore(self, limit=30.0):
         if not self.simulator.process.running():
             self.restart_simulator()
-        if RESTART_OFF in self.setup.parameters:  # as its refusals say
-            self.driver.end()
-            self.start_driver()
-            limit = 30.0
         self.home(limit)
         if self.simulator.state()["external_sensor"]:  # to which nobody sends readings
             self.client.send(EnableExternalFtSensor, "ft_rtde_input_enable", enable=False).succeeded()
@@ -176,6 +172,9 @@ class Cell:
         reasons = ["none"]
 
         def there():
+            if any(GAVE_UP in line for line in list(self.driver.lines)):
+                self.driver.end()
+                self.start_driver()
             self._undo()
             goal = self.client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
             if goal.accepted and goal.result().success:

@@ -39,7 +39,8 @@ void Readiness::close_popups()
 
 std::string Readiness::step()
 {
-  if (robot_.ready_to_move()) {
+  // The newest package may be older than what somebody has just switched off: the dashboard knows.
+  if (robot_.ready_to_move() && dashboard_value(robot_, "robotmode") == "RUNNING" && robot_.ready_to_move()) {
     return {};
   }
   if (ask_dashboard(robot_, "is in remote control") == "false") {
