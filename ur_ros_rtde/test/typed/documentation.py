@@ -1,5 +1,6 @@
 """The documentation of the commands: docs/commands/*.md has a section with an example for each action."""
 
+import importlib.util
 import json
 import pathlib
 import re
@@ -50,6 +51,11 @@ class Section:
         found = re.search(rf"<!--\s*{name}:\s*(.*?)\s*-->", self.text, re.S)
         return found.group(1) if found else None
 
+    def is_for_this_machine(self):
+        """`<!-- needs: control_msgs -->`: its plugin is built where that package is."""
+        needed = self._comment("needs")
+        return needed is None or importlib.util.find_spec(needed) is not None
+
     def scene(self):
         return json.loads(self._comment("scene") or "[]")
 
@@ -79,7 +85,7 @@ def sections():
         for title, text in zip(parts[1::2], parts[2::2]):
             # A heading of a higher level ends the section.
             found.append(Section(title.strip().strip("`"), file, re.split(r"^##? ", text, flags=re.M)[0]))
-    return found
+    return [section for section in found if section.is_for_this_machine()]
 
 
 def section(name):

@@ -18,6 +18,11 @@ def load(name):
     return getattr(importlib.import_module(f"{package}.{kind[0] if kind else 'msg'}"), message)
 
 
+def is_ours(action):
+    """Whether the action of that type ends with {success, error_code, message}."""
+    return {"success", "error_code", "message"} <= set(load(action).Result.get_fields_and_field_types())
+
+
 def element_type(kind):
     """Of an array or sequence; None for what is neither. "sequence<double, 3>" and "double[6]" give "double"."""
     found = re.fullmatch(r"sequence<([^,>]+).*>|(.+)\[\d+\]", kind)
