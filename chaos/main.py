@@ -124,6 +124,7 @@ class Chaos:
                 return goal, time.monotonic()
             refusal = self._probe.refusal(goal)
             reasons.append(refusal.message)
+            self._robot.power_up()  # a stand_down of before has come through meanwhile
             return (None, time.monotonic()) if refusal.error_code == ErrorCode.BUSY else None
 
         try:

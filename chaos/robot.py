@@ -58,10 +58,15 @@ class Robot:
         if way_out:
             self._try(lambda: control(way_out[0], **way_out[1]))
             return False
-        if state["robot_mode"] != "RUNNING":
-            self._try(lambda: control("power", to="running"))
-            return False
-        return True
+        return self.power_up()
+
+    def power_up(self):
+        """True when nothing had to be done."""
+        state = self._try(self.simulator.state)
+        if state and state["robot_mode"] == "RUNNING":
+            return True
+        self._try(lambda: self.simulator.control("power", to="running"))
+        return False
 
     def joint_speed(self):
         return max(map(abs, self.simulator.state()["actual"]["velocity"]))
