@@ -81,9 +81,10 @@ class ActionServerCore : public Entity {
   std::shared_ptr<GoalCore> find(const GoalId & id) const;
 
   using Send = rcl_ret_t (*)(const rcl_action_server_t *, rmw_request_id_t *, void *);
-  /// `done` is told whether it was delivered; that may be seconds later.
+  /// `done` is told whether it was delivered; that may be seconds later. `instead` is sent when the
+  /// middleware throws at `response`.
   void answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
-              std::function<void(bool)> done = {});
+              std::function<void(bool)> done = {}, std::shared_ptr<void> instead = {});
   void send_result(const rmw_request_id_t & request, GoalCore & goal);
 
   void await_requests(const std::vector<std::shared_ptr<GoalCore>> & goals, bool serve);

@@ -95,13 +95,20 @@ tl::expected<std::shared_ptr<GoalHandleBase>, std::string> ActionServerCore::acc
 }
 
 void ActionServerCore::answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
-                              std::function<void(bool)> done)
+                              std::function<void(bool)> done, std::shared_ptr<void> instead)
 {
   const auto self = std::static_pointer_cast<ActionServerCore>(shared_from_this());
   answers_->send(
-      [self, send, request, response] {
+      [self, send, request, response, instead]() -> rcl_ret_t {
         rmw_request_id_t to = request;
-        return send(&self->server_, &to, response.get());
+        try {
+          return send(&self->server_, &to, response.get());
+        } catch (...) {
+          RCL_CXX_ERROR(self->node()->logger(),
+                        "{}: the middleware cannot send an answer{}: has a text a zero byte?", self->name_,
+                        instead ? ", its client gets an empty one" : "");
+          return instead ? send(&self->server_, &to, instead.get()) : RCL_RET_ERROR;
+        }
       },
       [self, done = std::move(done)](rcl_ret_t code) {
         if (code != RCL_RET_OK) {
@@ -116,7 +123,8 @@ void ActionServerCore::answer(Send send, const rmw_request_id_t & request, std::
 
 void ActionServerCore::send_result(const rmw_request_id_t & request, GoalCore & goal)
 {
-  answer(&rcl_action_send_result_response, request, goal.result_response);
+  answer(&rcl_action_send_result_response, request, goal.result_response, {},
+         ops_.make_result_response(goal.status()));
   goal.result_sent = true;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <ur_rtde/dashboard_client.h>
 
 #include <algorithm>
 #include <condition_variable>
@@ -19,6 +18,7 @@ constexpr std::string_view not_understood = "could not understand";
 
 /// The dashboard server tells nothing unasked, so states are asked for.
 constexpr std::chrono::milliseconds question_interval{50};
+constexpr std::chrono::milliseconds answer_limit{5000};
 
 bool begins_with(std::string_view text, std::string_view beginning)
 {
@@ -79,18 +79,11 @@ DashboardRun::DashboardRun(DashboardLink & link, std::shared_ptr<Interrupt> inte
 
 std::string DashboardRun::ask(const std::string & line)
 {
-  std::string answer;
-  const Status asked = link_.call([&](ur_rtde::DashboardClient & client) {
-    client.send(line + "\n");
-    answer = client.receive();
-  });
-  if (!asked) {
-    throw RobotError(asked.error());
+  auto answer = link_.request(line, answer_limit, interrupt_->token());
+  if (!answer) {
+    throw RobotError(answer.error());
   }
-  while (!answer.empty() && (answer.back() == '\n' || answer.back() == '\r')) {
-    answer.pop_back();
-  }
-  return answer;
+  return *std::move(answer);
 }
 
 std::string DashboardRun::ask_value(const std::string & question)

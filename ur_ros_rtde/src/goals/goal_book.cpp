@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "robot/text.hpp"
+
 namespace ur_ros_rtde {
 
 tl::expected<void, std::string> GoalBook::admit(const rcl_cxx::GoalId & id,
@@ -96,7 +98,8 @@ Outcome GoalBook::guarded(const Interrupt & interrupt, const std::function<Outco
     } catch (const RobotError & error) {
       return error.error();
     } catch (const std::exception & error) {
-      return Outcome::failure(ErrorCode::exception, fmt::format("an exception ended it: {}", error.what()));
+      return Outcome::failure(ErrorCode::exception,
+                              fmt::format("an exception ended it: {}", printable(error.what())));
     } catch (...) {
       return Outcome::failure(ErrorCode::exception, "an exception of an unknown type ended it");
     }

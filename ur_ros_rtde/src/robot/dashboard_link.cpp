@@ -15,6 +15,7 @@
 #include "robot/ports.hpp"
 #include "robot/reporter.hpp"
 #include "robot/rtde_probe.hpp"
+#include "robot/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -63,6 +64,7 @@ class DashboardLink::Impl {
  private:
   Status connect();
   Status heartbeat();
+  [[noreturn]] static void out_of_step(const std::string & question, const std::string & answer);
   void set_link(LinkStatus status);
   void broken(const std::shared_ptr<DashboardClient> & client, const std::string & why);
   void wait(const std::stop_token & stop, std::chrono::milliseconds duration);
@@ -98,7 +100,7 @@ Status DashboardLink::Impl::connect()
   } catch (const std::exception & error) {
     return failure(ErrorCode::link_lost,
                    fmt::format("the dashboard server at {}:{} does not do what it should: {}",
-                               options_.address, dashboard_port, error.what()));
+                               options_.address, dashboard_port, printable(error.what())));
   }
 }
 
@@ -149,18 +151,31 @@ Status DashboardLink::Impl::call(const std::function<void(DashboardClient &)> & 
     if (!client->isConnected()) {
       broken(client, error.what());
     }
-    return failure(ErrorCode::rejected_by_robot, fmt::format("the robot answered: {}", error.what()));
+    return failure(ErrorCode::rejected_by_robot,
+                   fmt::format("the robot answered: {}", printable(error.what())));
   }
+}
+
+/// An answer that does not fit its question: those that follow would not, either.
+[[noreturn]] void DashboardLink::Impl::out_of_step(const std::string & question, const std::string & answer)
+{
+  throw boost::system::system_error(make_error_code(boost::system::errc::protocol_error),
+                                    fmt::format("\"{}\" was answered \"{}\"", question, printable(answer)));
 }
 
 Status DashboardLink::Impl::heartbeat()
 {
   std::optional<bool> remote;
   const auto status = call([&](DashboardClient & client) {
+    const std::string question = knows_remote_ ? "is in remote control" : "running";
+    client.send(question + "\n");
+    const std::string answer = client.receive();
+    const bool yes = answer.find("true") != std::string::npos;
+    if (!yes && answer.find("false") == std::string::npos) {
+      out_of_step(question, answer);
+    }
     if (knows_remote_) {
-      remote = client.isInRemoteControl();
-    } else {
-      client.running();
+      remote = yes;
     }
   });
   if (status) {

@@ -8,6 +8,7 @@
 
 #include "robot/ports.hpp"
 #include "robot/tcp_stream.hpp"
+#include "robot/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -31,7 +32,7 @@ Expected<std::string> next_line(TcpStream & stream, std::string & received, cons
       std::string line = received.substr(0, end);
       received.erase(0, end + 1);
       line.erase(line.find_last_not_of(" \t\r") + 1);
-      return line;
+      return printable(line);
     }
     if (patience.stop.stop_requested()) {
       return failure(ErrorCode::canceled, "nobody waits for the answer of the dashboard server any more");

@@ -9,6 +9,7 @@
 #include "robot/ports.hpp"
 #include "robot/script_check.hpp"
 #include "robot/tcp_stream.hpp"
+#include "robot/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -54,7 +55,8 @@ Status InterfaceLinks::ensure_io()
     io_ = std::move(io);
     return {};
   } catch (const std::exception & error) {
-    return failure(ErrorCode::not_ready, fmt::format("the robot refuses the IO interface: {}", error.what()));
+    return failure(ErrorCode::not_ready,
+                   fmt::format("the robot refuses the IO interface: {}", printable(error.what())));
   }
 }
 
@@ -134,7 +136,7 @@ Status InterfaceLinks::start_control(const ControllerVersion & version)
     drop_control();
     extensions_checked_ = false;  // perhaps a URCap is gone
     return failure(ErrorCode::not_ready,
-                   fmt::format("the control program cannot be started: {}", error.what()));
+                   fmt::format("the control program cannot be started: {}", printable(error.what())));
   }
 }
 

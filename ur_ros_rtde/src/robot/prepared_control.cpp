@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "robot/interface_links.hpp"
+#include "robot/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -35,7 +36,7 @@ Status InterfaceLinks::prepare_control()
     return {};
   } catch (const std::exception & error) {
     return failure(ErrorCode::not_ready,
-                   fmt::format("the robot refuses the control interface: {}", error.what()));
+                   fmt::format("the robot refuses the control interface: {}", printable(error.what())));
   }
 }
 
@@ -80,7 +81,7 @@ Status InterfaceLinks::take_prepared()
     }
   } catch (const std::exception & error) {
     taken = failure(ErrorCode::not_ready,
-                    fmt::format("the control program cannot be taken over: {}", error.what()));
+                    fmt::format("the control program cannot be taken over: {}", printable(error.what())));
   }
   if (!taken) {
     drop_control();

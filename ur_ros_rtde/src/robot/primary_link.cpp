@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robot/ports.hpp"
+#include "robot/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -36,7 +37,7 @@ std::string text_of(std::span<const std::byte> data)
   while (!text.empty() && (text.back() == '\0' || text.back() == '\n')) {
     text.pop_back();
   }
-  return text;
+  return printable(text);
 }
 
 /// "syntax_error_on_line:4:…", "… failed in line 4: …"

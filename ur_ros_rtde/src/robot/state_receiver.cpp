@@ -14,6 +14,7 @@
 #include "robot/reporter.hpp"
 #include "robot/rtde_probe.hpp"
 #include "robot/sample_reader.hpp"
+#include "robot/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -113,7 +114,7 @@ Status StateReceiver::Impl::connect()
   } catch (const std::exception & error) {
     return failure(ErrorCode::link_lost,
                    fmt::format("the RTDE server at {}:{} does not do what it should: {}", options_.address,
-                               rtde_port, error.what()));
+                               rtde_port, printable(error.what())));
   }
 }
 

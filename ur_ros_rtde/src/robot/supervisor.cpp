@@ -7,6 +7,7 @@
 
 #include "robot/condition.hpp"
 #include "robot/motion_stopper.hpp"
+#include "robot/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -138,7 +139,7 @@ void Supervisor::run(const std::stop_token & stop)
     try {
       now = look();
     } catch (const std::exception & error) {
-      now = {RobotState::connecting, ErrorCode::exception, error.what()};
+      now = {RobotState::connecting, ErrorCode::exception, printable(error.what())};
     }
     if (stop.stop_requested()) {
       return;

@@ -283,3 +283,10 @@ def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
 def _not_connected(client):
     goal = client.send(DashboardQuery, "dashboard/robot_mode")
     return not goal.accepted or not goal.result().success
+
+
+def test_answers_that_are_no_text_do_not_reach_a_goal(dashboard, simulator):
+    """Bytes between the answers, a zero and line ends among them: a question goes over a connection of its own."""
+    for size in (3, 40, 600):
+        simulator.control("send_garbage", which="dashboard", bytes=size)
+        assert query(dashboard, "safety_mode") == "NORMAL"

@@ -82,6 +82,17 @@ TEST_F(ADashboardLink, knows_whether_the_robot_is_in_remote_control)
   EXPECT_TRUE(eventually([&] { return link->in_remote_control() == false; }));
 }
 
+TEST_F(ADashboardLink, is_made_anew_when_answers_do_not_fit_their_questions)
+{
+  controller.start();
+  connect();
+  ASSERT_TRUE(connected());
+  controller.control({{"command", "send_garbage"}, {"which", "dashboard"}, {"bytes", 600}});
+  ASSERT_TRUE(eventually([&] { return log.count("was answered") == 1; })) << log.text();
+  ASSERT_TRUE(connected()) << log.text();
+  EXPECT_EQ(link->in_remote_control(), true);
+}
+
 TEST_F(ADashboardLink, recognises_a_service_of_another_kind)
 {
   const OtherService other(29999, "220 mail.example.org ESMTP\r\n");
