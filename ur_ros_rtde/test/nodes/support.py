@@ -16,6 +16,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from ur_ros_rtde_msgs.msg import GoalRefused
+from ur_ros_rtde_msgs.srv import GetJointState
 
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
@@ -277,6 +278,12 @@ class Client:
         qos = LATCHED if latched else QoSProfile(depth=2000, reliability=ReliabilityPolicy.RELIABLE)
         self._topics.setdefault(topic, []).append(self.node.create_subscription(message, topic, messages.append, qos))
         return messages
+
+    def up_to_now(self, states):
+        """What listen() has collected of a state topic, once the present state has come there, too: topics lag behind results."""
+        now = seconds(self.call(GetJointState, "get_joint_state").joint_state.header.stamp)
+        wait_for(lambda: states and seconds(states[-1].header.stamp) >= now, 20.0, "the state of now")
+        return list(states)
 
 
 def seconds(stamp):

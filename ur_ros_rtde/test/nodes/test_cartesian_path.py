@@ -45,7 +45,7 @@ def test_the_tcp_goes_straight_from_pose_to_pose(robot):
     assert point(reached) == pytest.approx(point(aside), abs=0.001)
     # Each place is on the one line or on the other.
     off = [min(math.dist((x, y), point(start)[:2]), math.dist((x, z), (point(down)[0], point(down)[2])))
-           for x, y, z in (point(message.pose) for message in seen)]
+           for x, y, z in (point(message.pose) for message in robot.up_to_now(seen))]
     assert len(off) > 100 and max(off) < 0.001
 
 
@@ -57,7 +57,7 @@ def test_it_keeps_its_speed_and_goes_round_corners(robot):
     seen = robot.listen(PoseStamped, "tcp_pose")
     rounds = send(robot, corner, end, speed=0.1, blend_radius=0.01, lookahead_time=LAG).succeeded()
     assert 0.2 / 0.1 - 0.1 < rounds.duration < stops.duration
-    assert min(math.dist(point(message.pose), point(corner)) for message in seen) == pytest.approx(0.01, abs=0.003)
+    assert min(math.dist(point(message.pose), point(corner)) for message in robot.up_to_now(seen)) == pytest.approx(0.01, abs=0.003)
 
 
 def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, simulator):
@@ -84,7 +84,7 @@ def test_a_cancel_decelerates_on_the_line(robot, simulator):
     status, result = goal.end(10.0)
     assert status == GoalStatus.STATUS_CANCELED
     assert start.position.z - 0.29 < result.final_state.tcp_pose.position.z < start.position.z
-    assert max(math.dist(point(message.pose)[:2], point(start)[:2]) for message in seen) < 0.001
+    assert max(math.dist(point(message.pose)[:2], point(start)[:2]) for message in robot.up_to_now(seen)) < 0.001
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 

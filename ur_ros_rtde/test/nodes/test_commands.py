@@ -4,7 +4,7 @@ import math
 
 import pytest
 from action_msgs.msg import GoalStatus
-from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Twist, Vector3
 from sensor_msgs.msg import JointState
 from support import HOME, seconds, wait_for
 
@@ -54,12 +54,16 @@ def test_move_l_goes_straight(robot):
     start = pose_now(robot)
     target = pose_now(robot)
     target.position.z -= 0.1
-    poses = robot.listen(JointState, "joint_states")
+    poses = robot.listen(PoseStamped, "tcp_pose")
+    wait_for(lambda: poses, 10.0, "tcp_pose")
     result = robot.send(MoveL, "move_l", pose=target, speed=0.2, acceleration=1.0).succeeded()
     reached = result.final_state.tcp_pose.position
     assert (reached.x, reached.y, reached.z) == pytest.approx((start.position.x, start.position.y, target.position.z),
                                                               abs=0.002)
-    assert poses
+    wait_for(lambda: poses[-1].pose.position.z == pytest.approx(target.position.z, abs=0.002), 10.0, "the last pose")
+    way = [pose.pose.position for pose in list(poses)]
+    assert sum(0.02 < start.position.z - at.z < 0.08 for at in way) > 20, "poses on the way"
+    assert all((at.x, at.y) == pytest.approx((start.position.x, start.position.y), abs=0.001) for at in way)
 
 
 def test_a_quaternion_need_not_be_normalised(robot):
@@ -162,7 +166,7 @@ def test_cancel_decelerates_and_tells_where_the_arm_stands(robot, action, name, 
     assert not result.success and result.error_code == ErrorCode.CANCELED
     assert is_at_rest(robot)
     assert result.final_state.joint_positions == pytest.approx(list(joints_now(robot).position), abs=0.003)
-    recorded = list(states)
+    recorded = robot.up_to_now(states)
     speed = [max(map(abs, state.velocity)) for state in recorded]
     times = [seconds(state.header.stamp) for state in recorded]
     begin = next(i for i, value in enumerate(speed) if value < 0.9 * speed[0])
