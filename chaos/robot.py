@@ -58,15 +58,16 @@ class Robot:
         if way_out:
             self._try(lambda: control(way_out[0], **way_out[1]))
             return False
-        return self.power_up()
+        if state["robot_mode"] != "RUNNING":
+            self.power_up()
+            return False
+        return True
 
     def power_up(self):
-        """True when nothing had to be done."""
+        """For an arm that somebody has switched off; one that runs is left alone."""
         state = self._try(self.simulator.state)
-        if state and state["robot_mode"] == "RUNNING":
-            return True
-        self._try(lambda: self.simulator.control("power", to="running"))
-        return False
+        if state and state["robot_mode"] != "RUNNING":
+            self._try(lambda: self.simulator.control("power", to="running"))
 
     def joint_speed(self):
         return max(map(abs, self.simulator.state()["actual"]["velocity"]))
