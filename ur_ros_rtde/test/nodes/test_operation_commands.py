@@ -22,11 +22,6 @@ def not_made_ready(robot, code, **fields):
     return result.message
 
 
-def seen_off(robot):
-    """A driver that has not had the package yet takes the arm for ready."""
-    wait_for(lambda: not robot.send(MoveJ, "move_j", joint_positions=HOME).accepted, 10.0, "the driver to see the arm off")
-
-
 def protectively_stopped(simulator):
     wait_for(lambda: simulator.state()["safety_mode"] == "PROTECTIVE_STOP", 5.0, "the protective stop")
 
@@ -46,7 +41,6 @@ def test_from_off_to_ready_with_progress(robot, simulator):
 
 def test_from_idle(robot, simulator):
     simulator.control("power", to="off")
-    seen_off(robot)
     simulator.control("power", to="on")
     _, states = make_ready(robot)
     assert any("brakes" in state for state in states)
@@ -104,7 +98,6 @@ def test_what_only_people_may_do_is_left_to_them(robot, simulator, trouble, way_
 
 def test_cancel_and_timeout_end_the_wait(robot, simulator):
     simulator.control("power", to="off")
-    seen_off(robot)
     goal = robot.send(MakeReady, "make_ready")
     wait_for(lambda: goal.feedback, 10.0, "the first step")
     goal.cancel()
