@@ -87,6 +87,7 @@ def test_pushes_from_the_side_are_ignored(robot, simulator, axis):
     simulator.control("push", wrench=push, duration=0.3, frame="tool")
     wait_for(lambda: any(abs(getattr(w.wrench.force, axis)) > 25.0 for w in list(wrenches)), 10.0, "the push to be felt")
     status, result = goal.end()
+    robot.stop_listening()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED, result.message
     assert result.distance == pytest.approx(0.1, abs=0.003)
 

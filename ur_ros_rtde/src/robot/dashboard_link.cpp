@@ -64,6 +64,8 @@ class DashboardLink::Impl {
  private:
   Status connect();
   Status heartbeat();
+  /// Until the connection is lost, the reason for which it returns, or stop is requested.
+  Status watch(const std::stop_token & stop);
   [[noreturn]] static void out_of_step(const std::string & question, const std::string & answer);
   void set_link(LinkStatus status);
   void broken(const std::shared_ptr<DashboardClient> & client, const std::string & why);
@@ -210,29 +212,35 @@ void DashboardLink::Impl::wait(const std::stop_token & stop, std::chrono::millis
   wake_.wait_for(lock, stop, duration, [this] { return broken_; });
 }
 
+Status DashboardLink::Impl::watch(const std::stop_token & stop)
+{
+  Status alive;
+  while (alive && !stop.stop_requested()) {
+    wait(stop, options_.heartbeat);
+    if (!stop.stop_requested()) {
+      alive = heartbeat();
+    }
+  }
+  return alive;
+}
+
 void DashboardLink::Impl::run(const std::stop_token & stop)
 {
   while (!stop.stop_requested()) {
-    if (const auto connected = connect(); !connected) {
-      report_.once(LogLevel::error,
-                   fmt::format("{}. Trying again every {} s", connected.error().message,
-                               std::chrono::duration<double>(options_.retry_interval).count()));
-      set_link({false, connected.error()});
-    } else {
+    const auto connected = connect();
+    if (connected) {
       report_.forget();
       set_link({true, {}});
-      Status alive;
-      while (alive && !stop.stop_requested()) {
-        wait(stop, options_.heartbeat);
-        if (!stop.stop_requested()) {
-          alive = heartbeat();
-        }
-      }
-      if (!alive) {
+      // A robot that only closed the connection takes a new one at once, and nobody else need know.
+      if (const auto alive = watch(stop); !alive) {
         report_.once(LogLevel::warn, fmt::format("{}; trying to connect again", alive.error().message));
-        set_link({false, alive.error()});
       }
+      continue;
     }
+    report_.once(LogLevel::error,
+                 fmt::format("{}. Trying again every {} s", connected.error().message,
+                             std::chrono::duration<double>(options_.retry_interval).count()));
+    set_link({false, connected.error()});
     {
       const std::lock_guard lock(mutex_);
       broken_ = false;

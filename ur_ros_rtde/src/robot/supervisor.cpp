@@ -189,7 +189,7 @@ RobotStatus Supervisor::look()
     fetched_ran_ = false;
     links_.drop_control();
   }
-  if (!program_ours_ && program_ended_ && sample->runtime_state != RuntimeState::stopped &&
+  if (!program_ours_ && program_ended_ && !begins_afresh_ && sample->runtime_state != RuntimeState::stopped &&
       !sample->program_running()) {
     if (const auto ended = stop_other_program(*sample); !ended && !condition) {
       return stopped(ended.error());
@@ -221,10 +221,8 @@ RobotStatus Supervisor::look_at_program(const Sample & sample)
          "the robot is in local control and takes no program from here: choose remote control on the pendant "
          "(enabled under Settings, System, Remote Control)"});
   }
-  if (program_ended_ && sample.program_running()) {
-    return stopped(
-        {ErrorCode::program_stopped,
-         "another program runs on the robot and has replaced the control program: stop it (dashboard/stop)"});
+  if (const auto other = other_program(sample)) {
+    return stopped(*other);
   }
   if (program_ended_ && !options_.restart_program) {
     return stopped({ErrorCode::program_stopped,
@@ -234,6 +232,23 @@ RobotStatus Supervisor::look_at_program(const Sample & sample)
     return stopped(ended.error());
   }
   return start_program();
+}
+
+std::optional<Error> Supervisor::other_program(const Sample & sample)
+{
+  if (program_ended_ && sample.program_running()) {
+    begins_afresh_ = true;
+    return Error{
+        ErrorCode::program_stopped,
+        "another program runs on the robot and has replaced the control program: stop it (dashboard/stop)"};
+  }
+  // Ours, paused, is stopped by look(): this one began after it.
+  if (program_ended_ && begins_afresh_ && sample.runtime_state != RuntimeState::stopped) {
+    return Error{ErrorCode::program_stopped,
+                 "another program is paused on the robot and has replaced the control program: stop it "
+                 "(dashboard/stop)"};
+  }
+  return std::nullopt;
 }
 
 Status Supervisor::stop_other_program(const Sample & sample)
@@ -269,6 +284,7 @@ RobotStatus Supervisor::start_program()
     return {RobotState::connecting, ErrorCode::not_ready,
             "the control program ended at once: look at the pendant's log"};
   }
+  begins_afresh_ = false;
   program_ours_ = true;
   program_ended_ = false;
   return {RobotState::ready, ErrorCode::none, {}};

@@ -65,6 +65,8 @@ class Supervisor {
   void begin_look();
   Turn turn() const;
   bool end_own_program(const Sample & sample);
+  /// Somebody else's, running or paused, that came after ours: it is left alone.
+  std::optional<Error> other_program(const Sample & sample);
   Status stop_other_program(const Sample & sample);
   bool wait_for_runtime(RuntimeState runtime, std::chrono::milliseconds limit) const;
   void set(const RobotStatus & status);

@@ -32,6 +32,13 @@ def client():
     client.close()
 
 
+@pytest.fixture(autouse=True)
+def listening_ends_with_the_test(request):
+    yield
+    if "client" in request.fixturenames:
+        request.getfixturevalue("client").stop_listening()
+
+
 @pytest.fixture(scope="module")
 def driver(simulator):
     driver = node("driver", simulator.address, "ur_type:=ur10e")

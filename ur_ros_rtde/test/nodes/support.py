@@ -221,7 +221,7 @@ class Client:
         self.node = rclpy.create_node(name, namespace=namespace or None, context=self.context)
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
-        self._actions, self._services, self._topics = {}, {}, {}
+        self._actions, self._services, self._subscriptions = {}, {}, []
         self.refusals = []
         self.node.create_subscription(GoalRefused, "goal_refusals", self.refusals.append, LATCHED)
         self._thread = threading.Thread(target=self._executor.spin, daemon=True)
@@ -276,8 +276,14 @@ class Client:
         """All messages from now on; the last one before, too, if they are latched."""
         messages = []
         qos = LATCHED if latched else QoSProfile(depth=2000, reliability=ReliabilityPolicy.RELIABLE)
-        self._topics.setdefault(topic, []).append(self.node.create_subscription(message, topic, messages.append, qos))
+        self._subscriptions.append(self.node.create_subscription(message, topic, messages.append, qos))
         return messages
+
+    def stop_listening(self):
+        """Some subscriptions at 500 Hz and Python has time for nothing else: answers to goals come late, or not at all."""
+        subscriptions, self._subscriptions = self._subscriptions, []
+        for subscription in subscriptions:
+            self.in_executor(lambda gone=subscription: self.node.destroy_subscription(gone))
 
     def up_to_now(self, states):
         """What listen() has collected of a state topic, once the present state has come there, too: topics lag behind results."""

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <ur_rtde/dashboard_client.h>
 
+#include <atomic>
+
 #include "support.hpp"
 #include "ur_ros_rtde/dashboard_link.hpp"
 
@@ -10,6 +12,7 @@ namespace {
 struct ADashboardLink : testing::Test {
   Log log;
   Controller controller;
+  std::atomic<int> lost = 0;
   std::unique_ptr<DashboardLink> link;
 
   void connect()
@@ -19,6 +22,7 @@ struct ADashboardLink : testing::Test {
     options.retry_interval = 50ms;
     options.heartbeat = 50ms;
     link = std::make_unique<DashboardLink>(options, log.function());
+    link->on_link([this](const LinkStatus & status) { lost += status.connected ? 0 : 1; });
     link->start();
   }
   bool connected() const
@@ -49,15 +53,29 @@ TEST_F(ADashboardLink, gives_the_robots_refusal_as_an_error)
   EXPECT_TRUE(link->call([](ur_rtde::DashboardClient & client) { client.robotmode(); }));
 }
 
-TEST_F(ADashboardLink, comes_back_after_its_connection_was_dropped)
+TEST_F(ADashboardLink, is_made_anew_at_once_when_the_robot_closes_it)
 {
   controller.start();
   connect();
   ASSERT_TRUE(connected());
   controller.control({{"command", "drop_links"}, {"which", "dashboard"}});
-  ASSERT_TRUE(eventually([&] { return !link->link().connected; })) << "the heartbeat did not notice";
+  ASSERT_TRUE(eventually([&] { return log.count("trying to connect again") == 1; })) << log.text();
+  EXPECT_TRUE(eventually([&] {
+    return !!link->call([](ur_rtde::DashboardClient & client) { client.robotmode(); });
+  })) << log.text();
+  EXPECT_EQ(lost, 0);
+}
+
+TEST_F(ADashboardLink, tells_that_it_is_lost_when_the_robot_takes_no_new_one)
+{
+  controller.start();
+  connect();
+  ASSERT_TRUE(connected());
+  controller.control({{"command", "refuse_connections"}, {"which", "dashboard"}});
+  controller.control({{"command", "drop_links"}, {"which", "dashboard"}});
+  ASSERT_TRUE(eventually([&] { return !link->link().connected; })) << log.text();
+  controller.control({{"command", "accept_connections"}});
   EXPECT_TRUE(connected()) << log.text();
-  EXPECT_TRUE(link->call([](ur_rtde::DashboardClient & client) { client.robotmode(); }));
 }
 
 TEST_F(ADashboardLink, fails_a_call_that_finds_the_connection_dropped_and_makes_it_anew)

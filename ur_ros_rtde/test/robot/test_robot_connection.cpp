@@ -128,6 +128,22 @@ TEST_F(ARobot, leaves_a_program_alone_that_somebody_else_starts_later)
   EXPECT_TRUE(becomes_ready());
 }
 
+TEST_F(ARobot, leaves_a_program_alone_that_somebody_else_starts_and_pauses)
+{
+  make_both();
+  const auto says = [&](const char * text) {
+    return eventually([&] { return robot->status().message.find(text) != std::string::npos; });
+  };
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  ASSERT_TRUE(says("another program runs")) << robot->status().message;
+  controller.control({{"command", "pause_program"}});
+  EXPECT_TRUE(says("another program is paused")) << robot->status().message;
+  EXPECT_FALSE(eventually([&] { return controller.state().at("program").at("state") != "PAUSED"; }, 700ms));
+  controller.control({{"command", "stop_program"}});
+  EXPECT_TRUE(becomes_ready());
+}
+
 TEST_F(ARobot, notices_at_once_when_another_program_takes_over_in_the_middle_of_a_motion)
 {
   make_both();
