@@ -127,7 +127,7 @@ class Experiment:
                                if max(abs(later[joint]) for joint in JOINTS) < STANDSTILL), math.nan)
             print(f"stop:       {row['force_z']:.1f} N along Z at t = {row['time']:.3f} s; "
                   f"standstill {1000 * (standstill - row['time']):.0f} ms later")
-        print(f"distance:   {self.start_height - self.recorder.height:.3f} m")
+        print(f"distance:   {result.distance:.3f} m")
         print(f"result:     {'success' if result.success else 'failure'} ({result.error_code}): {result.message}")
 
 

@@ -8,7 +8,7 @@ from sensor_msgs.msg import JointState
 
 from force_figure import FORCES, JOINTS
 
-QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
+QOS = QoSProfile(depth=50, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 def _nanoseconds(stamp):

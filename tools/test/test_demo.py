@@ -1,19 +1,54 @@
 """The demo as its user runs it, but for the build: pushes ignored, contact stops, both files written."""
 
 import csv
+import json
 import os
 import pathlib
+import re
+import select
+import signal
+import socket
 import subprocess
 import sys
+import time
+
+from ur_tools.environment import workspace_environment
+from ur_tools.layout import Layout
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PNG = b"\x89PNG\r\n\x1a\n"
+COMMAND = [sys.executable, "-u", "-m", "ur_tools.demo"]
+
+
+def environment():
+    return {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT / "tools"), os.environ.get("PYTHONPATH", "")])}
 
 
 def demo(*arguments):
-    env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT / "tools"), os.environ.get("PYTHONPATH", "")])}
-    return subprocess.run([sys.executable, "-m", "ur_tools.demo", *arguments], env=env, capture_output=True, text=True,
-                          timeout=120)
+    return subprocess.run([*COMMAND, *arguments], env=environment(), capture_output=True, text=True, timeout=120)
+
+
+def read_until(process, text, limit):
+    """What the process has written up to the line with `text`."""
+    written, end = "", time.monotonic() + limit
+    while text not in written:
+        ready, _, _ = select.select([process.stdout], [], [], max(0.0, end - time.monotonic()))
+        piece = os.read(process.stdout.fileno(), 65536).decode(errors="replace") if ready else ""
+        assert piece, f"'{text}' is not in the output:\n{written}"
+        written += piece
+    return written
+
+
+def log_of_the_robot(address):
+    with socket.create_connection((address, 30099), 5.0) as connection:
+        connection.sendall(b'{"command": "log"}\n')
+        entries = json.loads(connection.makefile().readline())["entries"]
+    return "\n".join(f"{entry['timestamp']:.3f} {entry['source']}: {entry['text']}" for entry in entries[-40:])
+
+
+def first_motions():
+    section = (ROOT / "README.md").read_text().split("## First motions")[1]
+    return [line.split("  #")[0].strip() for line in re.search(r"```bash\n(.*?)```", section, re.S)[1].splitlines()]
 
 
 def test_two_pushes_are_ignored_and_the_contact_stops_the_arm(tmp_path):
@@ -27,6 +62,25 @@ def test_two_pushes_are_ignored_and_the_contact_stops_the_arm(tmp_path):
         rows = list(csv.DictReader(file))
     assert [row["event"] for row in rows if row["event"]] == ["ignored x", "ignored y", "stop z"]
     assert max(abs(float(rows[-1][joint])) for joint in ("shoulder_lift", "elbow", "wrist_1")) < 0.01
+
+
+def test_the_first_motions_of_the_readme_work_on_what_the_demo_leaves(tmp_path):
+    address = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
+    ros, _, variant = os.environ.get("UR_LAYOUT", "kilted:").partition(":")
+    shell = {**os.environ, **workspace_environment(Layout(ros, variant))}
+    process = subprocess.Popen([*COMMAND, "--address", address, "--keep-running", "--output", str(tmp_path)],
+                               env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    try:
+        read_until(process, "go on until Ctrl-C", 120.0)
+        lines = first_motions()
+        assert len(lines) == 4
+        for line in lines:
+            done = subprocess.run(["bash", "-c", line], cwd=ROOT, env=shell, capture_output=True, text=True, timeout=60)
+            assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}\n{log_of_the_robot(address)}"
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+    assert process.returncode == 130
 
 
 def test_options_out_of_range_are_named_with_their_limits():

@@ -31,8 +31,9 @@ def start_simulator(programs: Programs, layout: Layout, env: Dict[str, str], add
     return simulator
 
 
-def start_node(programs: Programs, layout: Layout, env: Dict[str, str], node: str, address: str) -> Program:
-    return programs.start(node, [program(layout, "ur_ros_rtde", node), "--ros-args", "-p", f"robot_ip:={address}"], env)
+def start_node(programs: Programs, layout: Layout, env: Dict[str, str], node: str, address: str, *parameters: str) -> Program:
+    arguments = [argument for parameter in (f"robot_ip:={address}", *parameters) for argument in ("-p", parameter)]
+    return programs.start(node, [program(layout, "ur_ros_rtde", node), "--ros-args", *arguments], env)
 
 
 def main(parse: Callable[[List[str]], argparse.Namespace], run: Callable[[argparse.Namespace, Layout], int]) -> int:

@@ -18,6 +18,8 @@ from .processes import Programs
 # m between the tool and the table: what each size of arm can go down from its start pose.
 DROP = {"ur3": 0.15, "ur3e": 0.15}
 DEFAULT_DROP = 0.3
+# The figure needs no more, and three topics at 500 Hz are more than Python can follow on a busy machine.
+PARAMETERS = {"robot_state_receiver": ("rtde_frequency:=125.0",)}
 
 
 def parse(arguments: List[str]) -> argparse.Namespace:
@@ -53,7 +55,7 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> N
     cell.start_simulator(programs, layout, env, options.address, options.model)
     say.step("Starting the nodes " + ", ".join(cell.NODES))
     for node in cell.NODES:
-        cell.start_node(programs, layout, env, node, options.address)
+        cell.start_node(programs, layout, env, node, options.address, *PARAMETERS.get(node, ()))
 
 
 def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace) -> int:
