@@ -60,6 +60,9 @@ def run_environment(layout: Layout) -> Dict[str, str]:
     env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     # Everything runs on this machine; nothing is announced to the network unless the user asks for it.
     env.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    profiles = layout.install / "share" / "ur_ros_rtde" / "config" / "fastdds.xml"
+    if layout.ros == "kilted" and profiles.is_file():  # Fast DDS of earlier distributions has other names for its settings
+        env.setdefault("FASTDDS_DEFAULT_PROFILES_FILE", str(profiles))
     return env
 
 

@@ -22,6 +22,8 @@ from .processes import end_group
 
 DEFAULT_LIMIT = 120.0
 PYTEST_LIMIT = 600.0
+SANITIZERS = ("address", "undefined", "thread")
+SANITIZED_PATIENCE = 4.0  # their programs are slower by about that
 
 
 @dataclass
@@ -146,6 +148,11 @@ class Runner:
         self._folder = folder
         self._env = run_environment(options.layout)
         self._env.update(_sanitizer_environment())
+        self._patience = 1.0
+        if options.layout.variant in SANITIZERS:
+            self._patience = SANITIZED_PATIENCE
+            self._env["UR_TEST_CELLS"] = "1"
+        self._env["UR_TEST_PATIENCE"] = str(self._patience)
         self._env["ROS_LOG_DIR"] = str(folder / "ros")
         self._env["PYTHONDONTWRITEBYTECODE"] = "1"
         self._env["UR_LAYOUT"] = f"{options.layout.ros}:{options.layout.variant}"
@@ -170,7 +177,7 @@ class Runner:
             report.unlink()  # an earlier run's
         env = {**self._env, **domain.environment(), **test.env, "GTEST_OUTPUT": f"xml:{report}", "GTEST_COLOR": "no"}
         command = test.command + ([f"--junitxml={report}"] if "pytest" in test.command else [])
-        limit = self._options.timeout or test.limit
+        limit = self._options.timeout or self._patience * test.limit
         start = time.monotonic()
         with log.open("wb") as output:
             process = subprocess.Popen(command, cwd=test.folder, env=env, stdin=subprocess.DEVNULL, stdout=output,

@@ -19,13 +19,14 @@ from ur_ros_rtde_msgs.msg import GoalRefused
 from ur_ros_rtde_msgs.srv import GetJointState
 
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+PATIENCE = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # with a sanitizer everything takes longer
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 
 
 def wait_for(condition, limit, what):
     """The first value of `condition` that is true; fails when there is none within `limit` s."""
-    end = time.monotonic() + limit
+    end = time.monotonic() + PATIENCE * limit
     while True:
         value = condition()
         if value:
@@ -72,7 +73,7 @@ class Process:
 
     def wait(self, limit):
         try:
-            code = self._process.wait(limit)
+            code = self._process.wait(PATIENCE * limit)
         except subprocess.TimeoutExpired:
             raise AssertionError(f"it still runs after {limit} s:\n{self.output()}") from None
         self._reader.join(5.0)
