@@ -35,7 +35,7 @@ class Chaos:
         self._options, self._journal, self._robot = options, journal, robot
         self._gate = Gate()
         self._watch = Watch(robot, self._gate, journal)
-        self._loads = Loads(robot.driver.pid, journal)
+        self._loads = Loads(robot.driver.pid, journal, options.sanitizer)
         self._probe = WatchingClient(name="probe")
         self._clients = [Goals(f"client {number}", random.Random(f"{options.seed}/{number}"), self._gate, journal)
                          for number in range(options.clients)]
@@ -192,6 +192,7 @@ def main():
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--clients", type=int, required=True)
     parser.add_argument("--log", type=pathlib.Path, required=True)
+    parser.add_argument("--sanitizer", action="store_true", help="the driver was built with one")
     options = parser.parse_args()
     options.log.mkdir(parents=True, exist_ok=True)
     journal = Journal(options.log / "journal.log")

@@ -1,5 +1,6 @@
 """Watches the arm and the driver while all the rest goes on."""
 
+import math
 import threading
 import time
 
@@ -53,8 +54,10 @@ class Loads:
     EXTRA_THREADS = 3
     EXTRA_MEMORY = 12.0  # MB: what the allocator keeps varies
 
-    def __init__(self, pid, journal=None):
+    def __init__(self, pid, journal=None, keeps_freed_memory=False):
+        """`keeps_freed_memory`: as a sanitizer does, so that its growth tells nothing."""
         self._pid, self._journal = pid, journal
+        self._limits = (self.EXTRA_DESCRIPTORS, self.EXTRA_THREADS, math.inf if keeps_freed_memory else self.EXTRA_MEMORY)
         self.samples = []
 
     def sample(self):
@@ -68,9 +71,8 @@ class Loads:
             return []
         quarter = len(self.samples) // 4
         before, after = self._least(quarter, 2 * quarter), self._least(len(self.samples) - quarter, len(self.samples))
-        limits = (self.EXTRA_DESCRIPTORS, self.EXTRA_THREADS, self.EXTRA_MEMORY)
         return [f"{name} grew from {b:g} to {a:g}" for name, b, a, limit in
-                zip(("descriptors", "threads", "memory (MB)"), before, after, limits) if a > b + limit]
+                zip(("descriptors", "threads", "memory (MB)"), before, after, self._limits) if a > b + limit]
 
     def _least(self, begin, end):
         """The least of each: what is in use for a moment does not count."""

@@ -96,6 +96,14 @@ def test_what_grows_after_the_warm_up_is_named():
     assert loads.verdict() == []
 
 
+def test_memory_tells_nothing_with_a_sanitizer():
+    samples = [(0.0, 50, 20, 60.0 + 5.0 * number) for number in range(40)]
+    for sanitizer, grown in ((False, ["memory (MB) grew from 110 to 210"]), (True, [])):
+        loads = watch.Loads(os.getpid(), keeps_freed_memory=sanitizer)
+        loads.samples = samples
+        assert loads.verdict() == grown
+
+
 @pytest.mark.parametrize("speed, live, violated", [(0.5, 0, True), (0.5, 1, False), (0.0, 0, False)])
 def test_a_motion_without_a_goal_is_a_violation(tmp_path, monkeypatch, speed, live, violated):
     gate, log = clients.Gate(), journal.Journal(tmp_path / "journal.log")

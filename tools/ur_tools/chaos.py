@@ -13,7 +13,7 @@ from typing import List
 
 from . import cell, say
 from .environment import run_environment
-from .layout import ROOT, Layout
+from .layout import ROOT, SANITIZERS, Layout
 from .processes import Programs
 
 SOAK_MINUTES = 30.0
@@ -48,6 +48,8 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     command = [str(layout.python), str(ROOT / "chaos" / "main.py"), "--log", str(log)]
     for name in ("address", "faults", "minutes", "seed", "clients"):
         command += [f"--{name}", str(getattr(options, name))]
+    if layout.variant in SANITIZERS:
+        command.append("--sanitizer")
     limit = 120.0 + max(FAULT_SECONDS * options.faults, 120.0 * options.minutes)
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
     with Programs(log) as programs:

@@ -16,13 +16,12 @@ from typing import Dict, List, Optional
 from . import build as building
 from . import boilerplate, isolation, lint, say
 from .environment import run_environment
-from .layout import ROOT, Layout
+from .layout import ROOT, SANITIZERS, Layout
 from .packages import Package
 from .processes import end_group
 
 DEFAULT_LIMIT = 120.0
 PYTEST_LIMIT = 600.0
-SANITIZERS = ("address", "undefined", "thread")
 SANITIZED_PATIENCE = 4.0  # their programs are slower by about that
 
 
