@@ -8,7 +8,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 
 CODES = (ErrorCode.INVALID_GOAL, ErrorCode.UNREACHABLE, ErrorCode.SAFETY_VIOLATION)
 SHOWN = 20
-AT_ONCE = 20  # goal_refusals keeps the last 100
+AT_ONCE = 8  # ROS services keep the last 10 requests, and the last 10 answers
 
 
 def scenario(cell, example):
