@@ -23,6 +23,7 @@ from control_port import ControlPort
 DISCOVERY_LIMIT = 20.0  # s
 READY_LIMIT = 15.0  # s from the first refusal until the robot is ready
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+NOT_YET = (ErrorCode.NOT_READY, ErrorCode.LINK_LOST)  # the driver may still be connecting
 STANDSTILL = 0.002  # rad/s
 NEW_LINE = "\n" if sys.stdout.isatty() else ""  # after the progress line, which only a terminal gets
 AFTERWARDS = 0.8  # s recorded after the standstill
@@ -63,7 +64,7 @@ class Experiment:
         deadline = time.monotonic() + READY_LIMIT
         while not self.accepted(goal):
             refusal = self.refusals.get(bytes(self.goal_handle.goal_id.uuid))
-            if refusal is None or refusal.error_code != ErrorCode.NOT_READY or time.monotonic() > deadline:
+            if refusal is None or refusal.error_code not in NOT_YET or time.monotonic() > deadline:
                 raise SystemExit(f"goal refused: {refusal.message if refusal else 'see the log of command_server'}")
         self.recorder.start()
         print("goal accepted")
