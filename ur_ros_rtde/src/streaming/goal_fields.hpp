@@ -32,7 +32,7 @@ void check_common(Check & check, const Goal & goal, const ArmLimits & arm)
       .above_zero("max_tracking_error", goal.max_tracking_error, 3.14, "rad");
 }
 
-/// The goal's limits, and the arm's where it gives none.
+/// The goal's limits, which check_common() has passed, and the arm's where it gives none.
 template <typename Goal>
 trajectory::Limits limits_of(const Goal & goal, const ArmLimits & arm)
 {
