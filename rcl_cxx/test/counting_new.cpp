@@ -21,6 +21,13 @@ void * operator new(std::size_t size)
   throw std::bad_alloc();
 }
 
+// Sanitizers do not define this one by means of the other, as the library does.
+void * operator new(std::size_t size, const std::nothrow_t &) noexcept
+{
+  ++allocations;
+  return std::malloc(size);
+}
+
 void operator delete(void * memory) noexcept
 {
   std::free(memory);

@@ -161,7 +161,8 @@ TEST_F(AStop, comes_with_the_end_of_the_driver)
   make_both();
   move_joints();
   robot.reset();
-  for (const auto & velocity : controller.state().at("actual").at("velocity")) {
+  const auto state = controller.state();
+  for (const auto & velocity : state.at("actual").at("velocity")) {
     EXPECT_LT(std::abs(velocity.get<double>()), 0.01);
   }
   EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));

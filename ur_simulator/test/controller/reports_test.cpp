@@ -111,6 +111,7 @@ TEST_F(OperationalMode, manual_lets_nothing_start_from_afar)
   EXPECT_EQ(client.ask("play"), "Failed to execute: play");
   RawSocket script(controller.address(), 30002);
   script.send("def mine():\n while True:\n  sync()\n end\nend\n");
+  EXPECT_TRUE(wait_for_log(controller, "script was not started: the operational mode"));
   EXPECT_EQ(client.ask("running"), "Program running: false");
   EXPECT_EQ(client.ask("clear operational mode").substr(0, 2), "No");
   EXPECT_EQ(client.ask("play"), "Starting program");

@@ -16,20 +16,6 @@ bool wait_for_output(SimulatedController & controller, std::size_t number, bool 
       seconds(5));
 }
 
-bool wait_for_log(SimulatedController & controller, const std::string & text)
-{
-  // The log is no part of the state: look at it once a cycle at most.
-  for (int i = 0; i < 500; ++i) {
-    if (logged(controller, text)) {
-      return true;
-    }
-    controller.wait_until([cycle = controller.state()["cycle"].get<int>()](
-                              const json & state) { return state["cycle"].get<int>() > cycle; },
-                          seconds(1));
-  }
-  return false;
-}
-
 /// The next robot message (type 20); the robot's state comes in between ten times a second.
 std::string next_robot_message(RawSocket & client)
 {

@@ -23,10 +23,9 @@ class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::Exe
     check.in_range("speed_fraction", goal.speed_fraction, 0.01, 1.0)
         .in_range("blend_tolerance", goal.blend_tolerance, 0.0, 1.0, "rad")
         .above_zero("start_tolerance", goal.start_tolerance, 3.2, "rad");
-    if (!check.ok()) {
-      return;
+    if (check.ok()) {
+      require(check, trajectory::check_path(positions_of(goal.waypoints), limits_of(goal, arm())));
     }
-    require(check, trajectory::check_path(positions_of(goal.waypoints), limits_of(goal, arm())));
     if (const auto sample = check.start(); sample && !goal.approach) {
       require(check, begins_here(to_joints(goal.waypoints[0].positions), commanded_joints(*sample),
                                  goal.start_tolerance));

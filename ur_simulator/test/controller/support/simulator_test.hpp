@@ -32,6 +32,20 @@ inline bool logged(SimulatedController & controller, const std::string & text)
   return false;
 }
 
+inline bool wait_for_log(SimulatedController & controller, const std::string & text)
+{
+  // The log is no part of the state: look at it once a cycle at most.
+  for (int i = 0; i < 5000; ++i) {
+    if (logged(controller, text)) {
+      return true;
+    }
+    controller.wait_until([cycle = controller.state()["cycle"].get<int>()](
+                              const json & state) { return state["cycle"].get<int>() > cycle; },
+                          seconds(1));
+  }
+  return false;
+}
+
 inline bool wait_for_program(SimulatedController & controller, const std::string & state)
 {
   return controller.wait_until([&](const json & now) { return now["program"]["state"] == state; },
