@@ -1,21 +1,20 @@
 """The demo as its user runs it, but for the build: pushes ignored, contact stops, both files written."""
 
 import csv
-import json
 import os
-import pathlib
 import re
-import select
-import signal
-import socket
 import subprocess
 import sys
-import time
 
 from ur_tools.environment import workspace_environment
-from ur_tools.layout import Layout
+from ur_tools.layout import ROOT, Layout
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+for folder in ("demo", "ur_ros_rtde/test/nodes"):
+    sys.path.insert(0, str(ROOT / folder))
+
+from control_port import ControlPort  # noqa: E402
+from support import Process  # noqa: E402
+
 PNG = b"\x89PNG\r\n\x1a\n"
 COMMAND = [sys.executable, "-u", "-m", "ur_tools.demo"]
 
@@ -28,21 +27,9 @@ def demo(*arguments):
     return subprocess.run([*COMMAND, *arguments], env=environment(), capture_output=True, text=True, timeout=120)
 
 
-def read_until(process, text, limit):
-    """What the process has written up to the line with `text`."""
-    written, end = "", time.monotonic() + limit
-    while text not in written:
-        ready, _, _ = select.select([process.stdout], [], [], max(0.0, end - time.monotonic()))
-        piece = os.read(process.stdout.fileno(), 65536).decode(errors="replace") if ready else ""
-        assert piece, f"'{text}' is not in the output:\n{written}"
-        written += piece
-    return written
-
-
 def log_of_the_robot(address):
-    with socket.create_connection((address, 30099), 5.0) as connection:
-        connection.sendall(b'{"command": "log"}\n')
-        entries = json.loads(connection.makefile().readline())["entries"]
+    with ControlPort(address) as control:
+        entries = control.request("log")["entries"]
     return "\n".join(f"{entry['timestamp']:.3f} {entry['source']}: {entry['text']}" for entry in entries[-40:])
 
 
@@ -66,21 +53,19 @@ def test_two_pushes_are_ignored_and_the_contact_stops_the_arm(tmp_path):
 
 def test_the_first_motions_of_the_readme_work_on_what_the_demo_leaves(tmp_path):
     address = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
-    ros, _, variant = os.environ.get("UR_LAYOUT", "kilted:").partition(":")
-    shell = {**os.environ, **workspace_environment(Layout(ros, variant))}
-    process = subprocess.Popen([*COMMAND, "--address", address, "--keep-running", "--output", str(tmp_path)],
-                               env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    shell = {**os.environ, **workspace_environment(Layout.of_environment())}
+    running = Process([*COMMAND, "--address", address, "--keep-running", "--output", tmp_path], environment())
     try:
-        read_until(process, "go on until Ctrl-C", 120.0)
+        running.wait_for_output("go on until Ctrl-C", 120.0)
         lines = first_motions()
         assert len(lines) == 4
         for line in lines:
             done = subprocess.run(["bash", "-c", line], cwd=ROOT, env=shell, capture_output=True, text=True, timeout=60)
             assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}\n{log_of_the_robot(address)}"
     finally:
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=30)
-    assert process.returncode == 130
+        running.interrupt()
+        code = running.wait(30.0)
+    assert code == 130
 
 
 def test_options_out_of_range_are_named_with_their_limits():

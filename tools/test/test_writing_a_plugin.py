@@ -17,8 +17,7 @@ READY = "until ur call get_robot_status --quiet > /dev/null 2>&1; do sleep 0.2; 
 
 
 def environment():
-    layout = Layout(*os.environ.get("UR_LAYOUT", "kilted:").split(":"))
-    return {**workspace_environment(layout), "UR": str(ROOT / "ur"), "ROBOT_IP": os.environ.get("UR_TEST_ADDRESS", "127.0.1.200")}
+    return {**workspace_environment(Layout.of_environment()), "UR": str(ROOT / "ur"), "ROBOT_IP": os.environ.get("UR_TEST_ADDRESS", "127.0.1.200")}
 
 
 @pytest.fixture(scope="module")

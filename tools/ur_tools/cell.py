@@ -37,10 +37,9 @@ def start_node(programs: Programs, layout: Layout, env: Dict[str, str], node: st
 
 
 def main(parse: Callable[[List[str]], argparse.Namespace], run: Callable[[argparse.Namespace, Layout], int]) -> int:
-    ros, _, variant = os.environ.get("UR_LAYOUT", "kilted:").partition(":")
     options = parse(sys.argv[1:])
     try:
-        return run(options, Layout(ros, variant))
+        return run(options, Layout.of_environment())
     except say.Failure as failure:
         say.line(f"\n{failure}")
         return 1

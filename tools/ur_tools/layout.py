@@ -1,5 +1,6 @@
 """Where things lie: sources in the checkout, everything that is made in .ur/."""
 
+import os
 import pathlib
 from dataclasses import dataclass
 from typing import Tuple
@@ -17,6 +18,12 @@ class Layout:
 
     ros: str = "kilted"
     variant: str = ""
+
+    @staticmethod
+    def of_environment() -> "Layout":
+        """The one that UR_LAYOUT names, as our commands tell those they start: kilted:address."""
+        ros, _, variant = os.environ.get("UR_LAYOUT", "kilted:").partition(":")
+        return Layout(ros, variant)
 
     @property
     def base(self) -> pathlib.Path:

@@ -5,7 +5,7 @@ import os
 import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import WrenchStamped
-from support import HOME, PATIENCE, Client, Simulator, node, wait_for
+from support import HOME, Client, Simulator, node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -66,7 +66,7 @@ def test_a_surface_stops_it(robot, simulator):
     result = goal.succeeded(20.0)
     assert at_rest(simulator)
     assert 20.0 < abs(result.force) < 40.0
-    assert result.distance == pytest.approx(0.1, abs=0.005 * PATIENCE)
+    assert result.distance == pytest.approx(0.1, abs=0.005)
     assert start - height(simulator) == pytest.approx(result.distance, abs=0.002)
     assert 0.0 < result.stopping_time < 0.5
     assert "flange" in result.message

@@ -9,6 +9,7 @@ import pytest
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
+from conftest import make_ready
 from support import HOME, JOINTS, Client, Simulator, node, seconds, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, Stop
@@ -226,13 +227,8 @@ def test_a_goal_ends_a_stream_where_goals_preempt(addresses, processes):
     processes(node("driver", simulator.address, "ur_type:=ur10e", "on_busy:=preempt", f"stream_timeout:={TIMEOUT}",
                    namespace="other"))
     client = Client("other")
-
-    def home():
-        goal = client.send(MoveJ, "move_j", joint_positions=HOME)
-        return goal.accepted and goal
-
     try:
-        wait_for(home, 20.0, "the driver to be ready").succeeded()
+        make_ready(client)
         with Publisher(client, TwistStamped, "twist", lambda t: twist_message("base", -0.05)):
             wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) > 0.03, 10.0, "the arm to move")
             client.send(MoveJ, "move_j", joint_positions=turned(0.3), speed=1.0).succeeded()
