@@ -272,22 +272,26 @@ TEST_F(WhileSpinning, callbacks_never_overlap)
 {
   std::atomic<int> inside{0};
   std::atomic<bool> overlapped{false};
-  std::atomic<int> calls{0};
-  const auto callback = [&] {
-    overlapped = overlapped || ++inside != 1;
-    std::this_thread::yield();
-    --inside;
-    ++calls;
+  const auto callback = [&](std::atomic<int> & calls) {
+    return [&] {
+      overlapped = overlapped || ++inside != 1;
+      std::this_thread::yield();
+      --inside;
+      ++calls;
+    };
   };
-  const auto one = node->create_timer(std::chrono::milliseconds(1), callback);
-  const auto two = node->create_timer(std::chrono::milliseconds(1), callback);
+  std::atomic<int> timed{0};
+  std::atomic<int> posted{0};
+  const auto one = node->create_timer(std::chrono::milliseconds(1), callback(timed));
+  const auto two = node->create_timer(std::chrono::milliseconds(1), callback(timed));
   std::thread poster([&] {
     for (int i = 0; i < 200; ++i) {
-      executor->post(callback);
+      executor->post(callback(posted));
     }
   });
   poster.join();
-  EXPECT_TRUE(eventually([&] { return calls > 250; }));
+  // All of the posted ones, which refer to this function: nothing takes them back.
+  ASSERT_TRUE(eventually([&] { return posted == 200 && timed > 50; }));
   EXPECT_FALSE(overlapped);
 }
 

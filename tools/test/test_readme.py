@@ -38,6 +38,17 @@ def test_the_launch_arguments_are_declared():
         assert re.search(rf"['\"]{argument}['\"]", LAUNCH), argument
 
 
+def test_the_launch_file_knows_the_models_of_the_driver():
+    table = (ROOT / "ur_ros_rtde" / "src" / "robot" / "arm_limits.cpp").read_text()
+    models = re.search(r"^MODELS = \[(.*)\]", LAUNCH, re.M).group(1)
+    assert re.findall(r'"(\w+)"', models) == re.findall(r'Model\{"(\w+)"', table)
+
+
+def test_the_launch_file_starts_the_simulator_without_arguments_of_ros():
+    assert not re.search(r'Node\(package="ur_simulator"', LAUNCH)
+    assert 'ExecutableInPackage(package="ur_simulator", executable="ur_simulator")' in LAUNCH
+
+
 def test_the_goal_sent_by_ros2_fits_its_action():
     line = next(line for block in blocks() for line in block.splitlines() if "send_goal" in line)
     name, fields = re.search(r"ur_ros_rtde_msgs/action/(\w+) \"\{(.*)\}\"", line).groups()

@@ -23,6 +23,7 @@ from .processes import end_group
 DEFAULT_LIMIT = 120.0
 PYTEST_LIMIT = 600.0
 SANITIZED_PATIENCE = 4.0  # their programs are slower by about that
+SANITIZED_REAL_TIME_FACTOR = 0.5  # and the simulated robot's time passes slower, or all of them are late for each cycle
 
 
 @dataclass
@@ -138,7 +139,7 @@ def _sanitizer_environment() -> Dict[str, str]:
     suppressions = ROOT / "tools" / "sanitizers" / "thread.txt"
     return {"ASAN_OPTIONS": "detect_leaks=0:strict_string_checks=1:detect_stack_use_after_return=1",
             "UBSAN_OPTIONS": "print_stacktrace=1",
-            "TSAN_OPTIONS": f"halt_on_error=1:second_deadlock_stack=1:suppressions={suppressions}"}
+            "TSAN_OPTIONS": f"halt_on_error=1:die_after_fork=0:second_deadlock_stack=1:suppressions={suppressions}"}
 
 
 class Runner:
@@ -151,6 +152,7 @@ class Runner:
         if options.layout.variant in SANITIZERS:
             self._patience = SANITIZED_PATIENCE
             self._env["UR_TEST_CELLS"] = "1"
+            self._env["UR_TEST_REAL_TIME_FACTOR"] = str(SANITIZED_REAL_TIME_FACTOR)
         self._env["UR_TEST_PATIENCE"] = str(self._patience)
         self._env["ROS_LOG_DIR"] = str(folder / "ros")
         self._env["PYTHONDONTWRITEBYTECODE"] = "1"

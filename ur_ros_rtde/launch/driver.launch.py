@@ -1,14 +1,17 @@
 """Starts the driver: robot_state_receiver, command_server and dashboard_server, in one process or in three."""
 
+import os
+
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, SetEnvironmentVariable
 from launch.conditions import IfCondition, UnlessCondition
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, PythonExpression
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
-from launch_ros.substitutions import FindPackageShare
+from launch_ros.substitutions import ExecutableInPackage, FindPackageShare
 
-MODELS = ["ur3", "ur5", "ur10", "ur3e", "ur5e", "ur7e", "ur10e", "ur12e", "ur16e", "ur20", "ur30"]
+MODELS = ["ur3", "ur5", "ur10", "ur3e", "ur5e", "ur7e", "ur10e", "ur12e", "ur16e", "ur8long", "ur15", "ur18", "ur20", "ur30"]
+PROFILE = "FASTDDS_DEFAULT_PROFILES_FILE"
 
 
 def arguments():
@@ -52,13 +55,22 @@ def nodes():
     common = {"package": "ur_ros_rtde", "namespace": LaunchConfiguration("namespace"), "parameters": parameters,
               "output": "screen"}
     one_process = LaunchConfiguration("one_process")
-    simulator = Node(package="ur_simulator", executable="ur_simulator", output="screen", condition=IfCondition(sim),
-                     arguments=["--address", LaunchConfiguration("sim_ip"), "--model", LaunchConfiguration("ur_type")])
+    # No Node, which adds --ros-args: it knows nothing of ROS.
+    simulator = ExecuteProcess(cmd=[ExecutableInPackage(package="ur_simulator", executable="ur_simulator"), "--address",
+                                    LaunchConfiguration("sim_ip"), "--model", LaunchConfiguration("ur_type")],
+                               output="screen", condition=IfCondition(sim))
     separate = [Node(executable=name, name=name, condition=UnlessCondition(one_process), **common)
                 for name in ("robot_state_receiver", "command_server", "dashboard_server")]
     # Without a name: it would be given to all three nodes of the process.
     return [simulator, Node(executable="driver", condition=IfCondition(one_process), **common), *separate]
 
 
+def profile():
+    """For Fast DDS, as docs/interfaces.md says; its options are there from Kilted on. The user's own is left alone."""
+    if PROFILE in os.environ or os.environ.get("ROS_DISTRO", "") < "kilted":
+        return []
+    return [SetEnvironmentVariable(PROFILE, PathJoinSubstitution([FindPackageShare("ur_ros_rtde"), "config", "fastdds.xml"]))]
+
+
 def generate_launch_description():
-    return LaunchDescription([*arguments(), *nodes()])
+    return LaunchDescription([*arguments(), *profile(), *nodes()])

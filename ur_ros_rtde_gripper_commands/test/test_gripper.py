@@ -1,49 +1,19 @@
 """The soft gripper, by the functions of its URCap, on the simulator's stand-in for it."""
 
-import os
-
 import pytest
-from support import HOME, Client, Simulator, node, wait_for
+from robot_fixtures import make_ready
+from support import Client, Simulator, node, wait_for
 
 from ur_ros_rtde_gripper_commands.action import SgGetWidth, SgGrip, SgRelease
-from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 
-@pytest.fixture(scope="module")
-def simulator():
-    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
-    yield simulator
-    simulator.end()
-
-
-@pytest.fixture(scope="module")
-def driver(simulator):
-    driver = node("driver", simulator.address, "ur_type:=ur10e")
-    yield driver
-    driver.end()
-    print(driver.output())
-
-
-@pytest.fixture(scope="module")
-def client():
-    client = Client()
-    yield client
-    client.close()
-
-
-def move(client):
-    goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0)
-    return goal.accepted and goal.result().success
-
-
 @pytest.fixture
-def gripper(simulator, driver, client):
+def gripper(simulator, robot):
     """Open, with nothing between its fingers."""
     simulator.control("gripper", stuck=False, object=0.0)
-    wait_for(lambda: move(client), 30.0, "the driver to take a motion")
-    client.send(SgRelease, "sg_release", target_width=0.075).succeeded()
-    return client
+    robot.send(SgRelease, "sg_release", target_width=0.075).succeeded()
+    return robot
 
 
 def width(simulator):
@@ -86,7 +56,7 @@ def test_a_gripper_that_never_finishes_ends_the_goal_and_leaves_the_driver_worki
     result = gripper.send(SgGrip, "sg_grip", target_width=0.02, timeout=1.0).result()
     assert not result.success and result.error_code == ErrorCode.TIMEOUT, result.message
     simulator.control("gripper", stuck=False)
-    wait_for(lambda: move(gripper), 10.0, "the driver to take motions again")
+    make_ready(gripper, 10.0)
     gripper.send(SgRelease, "sg_release", target_width=0.06).succeeded()
 
 
@@ -97,15 +67,15 @@ def test_cancel_ends_the_goal_and_leaves_the_driver_working(gripper, simulator):
     goal.cancel()
     assert goal.result().error_code == ErrorCode.CANCELED
     simulator.control("gripper", stuck=False)
-    wait_for(lambda: move(gripper), 10.0, "the driver to take motions again")
+    make_ready(gripper, 10.0)
 
 
-def test_a_robot_without_the_urcap_says_so_and_goes_on_without_the_gripper(client, second_address):
-    bare = Simulator(second_address, urcap=None)
+def test_a_robot_without_the_urcap_says_so_and_goes_on_without_the_gripper(client, addresses):
+    bare = Simulator(addresses[1], urcap=None)
     driver = node("driver", bare.address, "ur_type:=ur10e", namespace="bare")
     other = Client("bare")
     try:
-        wait_for(lambda: move(other), 30.0, "the driver to take a motion")
+        make_ready(other)
         goal = other.send(SgGetWidth, "sg_get_width")
         assert not goal.accepted
         refusal = other.refusal(goal)
@@ -114,9 +84,3 @@ def test_a_robot_without_the_urcap_says_so_and_goes_on_without_the_gripper(clien
         other.close()
         driver.end()
         bare.end()
-
-
-@pytest.fixture
-def second_address():
-    given = os.environ.get("UR_TEST_ADDRESS", "127.0.1.200").split(".")
-    return ".".join([given[0], str(int(given[1]) + 1), given[2], given[3]])

@@ -1,50 +1,12 @@
 """The plugin of this package, loaded by the driver from its own package, on the simulator."""
 
-import os
-
 import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import WrenchStamped
-from support import HOME, Client, Simulator, node, wait_for
+from support import wait_for
 
-from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 from ur_ros_rtde_tutorials.action import MoveDownUntilForce
-
-
-@pytest.fixture(scope="module")
-def simulator():
-    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
-    yield simulator
-    simulator.end()
-
-
-@pytest.fixture(scope="module")
-def driver(simulator):
-    driver = node("driver", simulator.address, "ur_type:=ur10e")
-    yield driver
-    driver.end()
-    print(driver.output())
-
-
-@pytest.fixture(scope="module")
-def client():
-    client = Client()
-    yield client
-    client.close()
-
-
-@pytest.fixture
-def robot(simulator, driver, client):
-    simulator.control("clear_surfaces")
-    simulator.control("clear_pushes")
-
-    def home():
-        goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0)
-        return goal.accepted and goal.result().success
-
-    wait_for(home, 30.0, "the driver to take a motion")
-    return client
 
 
 def height(simulator):
@@ -87,7 +49,6 @@ def test_pushes_from_the_side_are_ignored(robot, simulator, axis):
     simulator.control("push", wrench=push, duration=0.3, frame="tool")
     wait_for(lambda: any(abs(getattr(w.wrench.force, axis)) > 25.0 for w in list(wrenches)), 10.0, "the push to be felt")
     status, result = goal.end()
-    robot.stop_listening()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED, result.message
     assert result.distance == pytest.approx(0.1, abs=0.003)
 

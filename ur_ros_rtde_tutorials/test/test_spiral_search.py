@@ -1,44 +1,14 @@
 """The extension of this package: a loop on the controller, on the simulator."""
 
 import math
-import os
 
 import pytest
 from action_msgs.msg import GoalStatus
-from support import HOME, Client, Simulator, node, wait_for
+from support import HOME, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 from ur_ros_rtde_tutorials.action import SpiralSearch
-
-
-@pytest.fixture(scope="module")
-def simulator():
-    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
-    yield simulator
-    simulator.end()
-
-
-@pytest.fixture(scope="module")
-def client(simulator):
-    driver = node("driver", simulator.address, "ur_type:=ur10e")
-    client = Client()
-    yield client
-    client.close()
-    driver.end()
-    print(driver.output())
-
-
-@pytest.fixture
-def robot(simulator, client):
-    simulator.control("clear_surfaces")
-
-    def home():
-        goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0)
-        return goal.accepted and goal.result().success
-
-    wait_for(home, 30.0, "the driver to take a motion")
-    return client
 
 
 def search(client, **fields):

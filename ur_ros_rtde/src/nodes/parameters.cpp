@@ -85,9 +85,10 @@ ArmLimits declare_arm_limits(rcl_cxx::Node & node)
     return *limits;
   }
   throw rcl_cxx::ParameterError(
-      "ur_type", fmt::format("parameter ur_type is \"{}\", and there is no such model: ur3, ur5, ur10, ur3e, "
-                             "ur5e, ur10e, …, or empty for any",
-                             model));
+      "ur_type",
+      fmt::format("parameter ur_type is \"{}\", and there is no such model: ur3, ur5, ur10, ur3e, "
+                  "ur5e, ur7e, ur10e, ur12e, ur16e, ur8long, ur15, ur18, ur20, ur30, or empty for any",
+                  model));
 }
 
 TeleoperationOptions declare_teleoperation(rcl_cxx::Node & node, const ArmLimits & limits)

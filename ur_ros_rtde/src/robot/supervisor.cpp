@@ -188,12 +188,14 @@ RobotStatus Supervisor::look()
     program_ended_ = true;
     fetched_ran_ = false;
     links_.drop_control();
+    sample = state_.latest().value_or(*sample);  // that took time, in which the program may have ended
   }
   if (!program_ours_ && program_ended_ && !begins_afresh_ && sample->runtime_state != RuntimeState::stopped &&
       !sample->program_running()) {
     if (const auto ended = stop_other_program(*sample); !ended && !condition) {
       return stopped(ended.error());
     }
+    sample = state_.latest().value_or(*sample);
   }
   if (const auto io = links_.ensure_io(); !io) {
     return {RobotState::connecting, io.error().code, io.error().message};
@@ -236,19 +238,20 @@ RobotStatus Supervisor::look_at_program(const Sample & sample)
 
 std::optional<Error> Supervisor::other_program(const Sample & sample)
 {
-  if (program_ended_ && sample.program_running()) {
+  if (!program_ended_) {
+    return std::nullopt;
+  }
+  if (sample.program_running()) {
     begins_afresh_ = true;
-    return Error{
-        ErrorCode::program_stopped,
-        "another program runs on the robot and has replaced the control program: stop it (dashboard/stop)"};
   }
-  // Ours, paused, is stopped by look(): this one began after it.
-  if (program_ended_ && begins_afresh_ && sample.runtime_state != RuntimeState::stopped) {
-    return Error{ErrorCode::program_stopped,
-                 "another program is paused on the robot and has replaced the control program: stop it "
-                 "(dashboard/stop)"};
+  // Ours, paused, is stopped by look(): one that is not stopped here began after it.
+  if (!begins_afresh_ || sample.runtime_state == RuntimeState::stopped) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  return Error{ErrorCode::program_stopped,
+               fmt::format("another program {} on the robot and has replaced the control program: stop it "
+                           "(dashboard/stop)",
+                           sample.program_running() ? "runs" : "is paused")};
 }
 
 Status Supervisor::stop_other_program(const Sample & sample)

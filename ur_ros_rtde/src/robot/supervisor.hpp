@@ -84,7 +84,8 @@ class Supervisor {
   std::uint32_t link_ = 0;
   std::optional<std::uint32_t> lost_link_;  ///< Sample::link of the link that was lost last
   const ScriptServer * server_;
-  /// A program was seen not to run since the last one that was ours: the next one begins at its beginning.
+  /// Since the last program that was ours, none was seen, or somebody else's: what is on the robot began
+  /// after ours.
   std::atomic<bool> begins_afresh_{false};
   bool fetched_ran_ = false;       ///< a fetched program was ours, and what ended it has not been looked at
   bool left_running_ = false;      ///< a lost link has left it to its watchdog

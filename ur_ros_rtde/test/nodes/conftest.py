@@ -1,88 +1,9 @@
-import os
 import shutil
 
 import pytest
-from support import HOME, Client, Simulator, node, wait_for
+from robot_fixtures import addresses, client, driver, listening_ends_with_the_test, processes, robot, simulator
 
-from ur_ros_rtde_msgs.action import MoveJ
-
-
-def _address(number):
-    """Loopback addresses of this run's own: ./ur test gives each test file one."""
-    given = os.environ.get("UR_TEST_ADDRESS", "127.0.1.200").split(".")
-    return ".".join([given[0], str(int(given[1]) + number), given[2], given[3]])
-
-
-@pytest.fixture(scope="session")
-def addresses():
-    return [_address(number) for number in range(4)]
-
-
-@pytest.fixture(scope="module")
-def simulator(addresses):
-    simulator = Simulator(addresses[0])
-    yield simulator
-    simulator.end()
-
-
-@pytest.fixture(scope="module")
-def client():
-    client = Client()
-    yield client
-    client.close()
-
-
-@pytest.fixture(autouse=True)
-def listening_ends_with_the_test(request):
-    yield
-    if "client" in request.fixturenames:
-        request.getfixturevalue("client").stop_listening()
-
-
-@pytest.fixture(scope="module")
-def driver(simulator):
-    driver = node("driver", simulator.address, "ur_type:=ur10e")
-    yield driver
-    driver.end()
-    print(driver.output())
-
-
-@pytest.fixture
-def processes():
-    """Keeps a test's processes; ends them in the opposite order."""
-    kept = []
-    yield lambda process: kept.append(process) or process
-    for process in reversed(kept):
-        process.end()
-        print(getattr(process, "process", process).output())
-
-
-def make_ready(client, limit=30.0):
-    """Home, by the driver's own means: true when it takes motions."""
-
-    def home():
-        goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0)
-        if goal.accepted and goal.result().success:
-            return True
-        reasons.append(client.refusal(goal).message if not goal.accepted else goal.result().message)
-        return False
-
-    reasons = []
-    try:
-        wait_for(home, limit, "the driver to take a motion")
-    except AssertionError as error:
-        raise AssertionError(f"{error}; the last reason: {reasons[-1:]}") from None
-
-
-@pytest.fixture
-def robot(simulator, driver, client):
-    """A driver that is ready, the arm at home, nothing in its way."""
-    assert driver.running(), driver.output()
-    simulator.control("clear_surfaces")
-    simulator.control("clear_pushes")
-    simulator.control("speed_slider", fraction=1.0)
-    make_ready(client)
-    return client
+__all__ = ["addresses", "client", "driver", "listening_ends_with_the_test", "processes", "robot", "simulator"]
 
 
 @pytest.fixture

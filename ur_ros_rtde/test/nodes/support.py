@@ -20,6 +20,7 @@ from ur_ros_rtde_msgs.srv import GetJointState
 
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 PATIENCE = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # with a sanitizer everything takes longer
+REAL_TIME_FACTOR = float(os.environ.get("UR_TEST_REAL_TIME_FACTOR", "1"))  # and the robot is slower, as the driver is
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 
@@ -111,7 +112,8 @@ class Simulator:
 
     def start(self):
         self.process = Process([program("ur_simulator", "ur_simulator"), "--address", self.address,
-                                "--joints", ",".join(map(str, HOME)), *self._arguments])
+                                "--joints", ",".join(map(str, HOME)), "--real-time-factor", str(REAL_TIME_FACTOR),
+                                *self._arguments])
         wait_for(self._connect, 20.0, "the simulator's control port")
         return self
 
@@ -295,3 +297,8 @@ class Client:
 
 def seconds(stamp):
     return stamp.sec + 1e-9 * stamp.nanosec
+
+
+def robot_seconds(stamp):
+    """Of the robot's time, where the stamp, or duration, is one of the host's."""
+    return REAL_TIME_FACTOR * seconds(stamp)

@@ -6,9 +6,9 @@ import time
 
 import pytest
 from action_msgs.msg import GoalStatus
+from robot_fixtures import make_ready
 from support import HOME, Client, Simulator, node, wait_for
 
-from conftest import make_ready
 from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 

@@ -6,7 +6,7 @@ import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from sensor_msgs.msg import JointState
-from support import HOME, wait_for
+from support import HOME, REAL_TIME_FACTOR, wait_for
 
 from ur_ros_rtde_msgs.action import (Decelerate, Jog, MoveC, MoveJ, MoveJIK, MoveJRelative, MoveLFK, MoveLRelative, MoveP,
                                      MovePath, ServoC, ServoL, SpeedJ, SpeedL)
@@ -271,5 +271,6 @@ def test_stop_j_decelerates_as_it_was_told(robot):
         robot.send(SpeedJ, "speed_j", joint_velocities=[0.6, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=4.0, time=10.0)
         states = robot.listen(JointState, "joint_states")
         wait_for(lambda: states and states[-1].velocity[0] > 0.59, 10.0, "the speed")
-        times[deceleration] = robot.send(Decelerate, "stop_j", deceleration=deceleration).succeeded().time_to_standstill
+        stopped = robot.send(Decelerate, "stop_j", deceleration=deceleration).succeeded()
+        times[deceleration] = REAL_TIME_FACTOR * stopped.time_to_standstill
     assert times[0.5] == pytest.approx(1.2, abs=0.3) and times[4.0] == pytest.approx(0.15, abs=0.15)

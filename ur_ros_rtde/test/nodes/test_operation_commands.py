@@ -42,6 +42,7 @@ def test_from_off_to_ready_with_progress(robot, simulator):
 def test_from_idle(robot, simulator):
     simulator.control("power", to="off")
     simulator.control("power", to="on")
+    wait_for(lambda: not robot.send(MoveJ, "move_j", joint_positions=HOME).accepted, 5.0, "the driver to notice")
     _, states = make_ready(robot)
     assert any("brakes" in state for state in states)
 

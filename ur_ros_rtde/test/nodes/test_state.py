@@ -6,7 +6,7 @@ import pytest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
-from support import HOME, JOINTS, Client, Simulator, node, seconds, wait_for
+from support import HOME, JOINTS, Client, Simulator, node, robot_seconds, seconds, wait_for
 
 from ur_ros_rtde_msgs.msg import ErrorCode, IOState
 from ur_ros_rtde_msgs.srv import GetIOState, GetJointState, GetTcpPose, GetWrench
@@ -79,10 +79,10 @@ def test_all_messages_of_a_cycle_have_one_stamp(receiver, client):
 
 
 def rate(client, topic, number):
-    """Messages for each second by their stamps, the first of which may be late by the discovery."""
+    """Messages for each of the robot's seconds by their stamps, the first of which may be late by the discovery."""
     states = client.listen(JointState, topic)
     wait_for(lambda: len(states) > number, 60.0, f"{number} messages of {topic}")
-    stamps = [seconds(state.header.stamp) for state in list(states)][1:]
+    stamps = [robot_seconds(state.header.stamp) for state in list(states)][1:]
     assert stamps == sorted(stamps)
     return (len(stamps) - 1) / (stamps[-1] - stamps[0])
 

@@ -8,9 +8,9 @@ import time
 import pytest
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.qos import QoSProfile
+from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
-from conftest import make_ready
-from support import HOME, JOINTS, Client, Simulator, node, seconds, wait_for
+from support import HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, node, seconds, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -110,8 +110,8 @@ def swing(t):
 def recorded_swing(robot, file):
     """Times, positions and velocities of the base joint, by the robot's clock; None if the host held the publisher up."""
     assert robot.call(StartRecording, "start_recording", filename=str(file), fields=["timestamp", "actual_q", "actual_qd"]).success
-    with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(turned(swing(t)))) as publisher:
-        publisher.join(4.5)
+    with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(turned(swing(REAL_TIME_FACTOR * t)))) as publisher:
+        publisher.join(4.5 / REAL_TIME_FACTOR)
     assert robot.call(StopRecording, "stop_recording").success
     if publisher.longest_gap > 2.0 * publisher.period:
         return None

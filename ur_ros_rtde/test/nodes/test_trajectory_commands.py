@@ -4,9 +4,9 @@ import math
 
 import pytest
 from action_msgs.msg import GoalStatus
+from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
-from conftest import make_ready
-from support import HOME, JOINTS, seconds, wait_for
+from support import HOME, JOINTS, robot_seconds, wait_for
 from trajectories import Watcher, distance_to_line, point, timed, turned, unlocked, wave, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
@@ -117,7 +117,7 @@ def test_a_cancel_decelerates_along_the_path(robot, simulator, slider):
     simulator.control("speed_slider", fraction=slider)
     end = turned(1.0, -0.4, 0.5)
     states = robot.listen(JointState, "joint_states")
-    goal = send(robot, [HOME, end], lookahead_time=LAG)
+    goal = send(robot, [HOME, end], max_velocity=[0.5] * 6, lookahead_time=LAG)
     wait_for_progress(goal, 0.2)
     goal.cancel()
     status, result = goal.end(10.0)
@@ -220,7 +220,8 @@ def test_given_times_are_kept(robot):
     # From when the arm has left home to each position as planned: differences of the controller's stamps.
     crossed = {}
     for part, wanted in ((0.25, 2.0 / 3.0), (0.5, 1.0), (0.75, 4.0 / 3.0)):
-        crossed[wanted] = seconds(next(s for s in moving if s.position[0] - HOME[0] >= 0.3 * part).header.stamp)
+        crossing = next(s for s in moving if s.position[0] - HOME[0] >= 0.3 * part)
+        crossed[wanted] = robot_seconds(crossing.header.stamp)
     assert crossed[1.0] - crossed[2.0 / 3.0] == pytest.approx(1.0 / 3.0, abs=0.05)
     assert crossed[4.0 / 3.0] - crossed[1.0] == pytest.approx(1.0 / 3.0, abs=0.05)
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iterator>
@@ -38,6 +39,9 @@ ur_simulator::SimulatorOptions Controller::options()
 {
   ur_simulator::SimulatorOptions result;
   result.address = own_address();
+  if (const char * factor = std::getenv("UR_TEST_REAL_TIME_FACTOR")) {
+    result.real_time_factor = std::strtod(factor, nullptr);
+  }
   return result;
 }
 

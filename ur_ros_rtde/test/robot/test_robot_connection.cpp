@@ -94,6 +94,20 @@ TEST_F(ARobot, starts_the_control_program_again_after_it_was_stopped_on_the_pend
   EXPECT_TRUE(robot->control()->isSteady());
 }
 
+TEST_F(ARobot, never_takes_its_own_program_that_ends_for_somebody_elses)
+{
+  auto options = Controller::options();
+  options.real_time_factor = 0.05;  // the robot's states between running and stopped last for 40 ms
+  controller.start(options);
+  make_robot();
+  ASSERT_TRUE(becomes_ready());
+  for (int i = 0; i < 5; ++i) {
+    controller.control({{"command", "stop_program"}});
+    ASSERT_TRUE(becomes_ready_again());
+  }
+  EXPECT_EQ(log.count("another program"), 0U) << log.text();
+}
+
 TEST_F(ARobot, leaves_the_program_stopped_where_restarting_is_off)
 {
   controller.start();

@@ -209,19 +209,20 @@ class Cell:
 
     def unlock(self):
         """Of a protective stop, over the dashboard, which takes it 5 s after the stop at the earliest."""
-
-        def unlocked():
-            goal = self.client.send(DashboardCommand, "dashboard/unlock_protective_stop", timeout=10.0)
-            return goal.accepted and goal.result().success or time.sleep(RETRY)
-
         if self.simulator.state()["safety_mode"] == "PROTECTIVE_STOP":  # without power there was none
-            wait_for(unlocked, 20.0, "the protective stop to be unlocked")
+            self._until_it_succeeds("dashboard/unlock_protective_stop", timeout=10.0)
 
     def power_up(self):
+        """Over the dashboard, which refuses while the safety system restarts."""
         for name in ("dashboard/power_on", "dashboard/brake_release"):
-            goal = self.client.send(DashboardCommand, name, timeout=20.0)
-            assert goal.accepted, self.refusal(goal)
-            goal.succeeded()
+            self._until_it_succeeds(name, timeout=20.0)
+
+    def _until_it_succeeds(self, name, **fields):
+        def succeeded():
+            goal = self.client.send(DashboardCommand, name, **fields)
+            return goal.accepted and goal.result().success or time.sleep(RETRY)
+
+        wait_for(succeeded, 20.0, f"{name} to succeed")
 
 
 def described(status, result):

@@ -37,6 +37,9 @@ struct SimulatorOptions {
   bool start_running = true;  ///< powered on, brakes released; false: power off, as after boot
   bool remote_control = true;
   std::uint64_t seed = 1;  ///< of the sensor noise
+  /// Seconds of the robot for each of the host's, 0.01 to 10. Below 1 for a host that is too slow for the
+  /// controller's rate, such as one that runs programs with a sanitizer.
+  double real_time_factor = 1.0;
   bool realtime_priority =
       false;  ///< try SCHED_FIFO for the controller's thread; goes on without when not permitted
 };
@@ -45,7 +48,7 @@ struct SimulatorOptions {
 /// thread-safe and must not be called from a condition of wait_until().
 ///
 /// The constructor throws std::runtime_error: address and port when a port cannot be bound, the known ones
-/// when model or version are unknown, value and limit when joints are out of range.
+/// when model or version are unknown, value and limit when joints or the real-time factor are out of range.
 class SimulatedController {
  public:
   explicit SimulatedController(const SimulatorOptions & options = {});

@@ -71,6 +71,20 @@ Vector6 joints_of(const SimulatorOptions & options, const RobotModel & model)
   return joints;
 }
 
+/// Of the host's time, for one control cycle.
+Clock::duration period_of(const SimulatorOptions & options, const PolyscopeVersion & version)
+{
+  constexpr double slowest = 0.01;
+  constexpr double fastest = 10.0;
+  const double factor = options.real_time_factor;
+  if (!(factor >= slowest && factor <= fastest)) {
+    throw std::runtime_error(fmt::format(
+        "real-time factor {} (--real-time-factor) is out of range: give {} to {}", factor, slowest, fastest));
+  }
+  return std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(version.cycle_time() / factor));
+}
+
 PendantOptions pendant_options(const SimulatorOptions & options, const PolyscopeVersion & version)
 {
   PendantOptions result;
@@ -112,8 +126,7 @@ Controller::Controller(const SimulatorOptions & options)
     : model_(model_of(options)),
       version_(version_of(options, model_)),
       options_(options),
-      period_(
-          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(version_.cycle_time()))),
+      period_(period_of(options, version_)),
       initial_joints_(joints_of(options, model_)),
       arm_(std::in_place, model_, version_.cycle_time(), initial_joints_),
       world_(world_of(options, version_.cycle_time())),

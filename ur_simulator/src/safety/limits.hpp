@@ -20,7 +20,7 @@ struct SafetyTimes {
   double unlock_delay = 5.0;   ///< a protective stop cannot be unlocked earlier
   double stop_limit =
       0.5;               ///< after an emergency stop power is cut when the arm has not come to rest by then
-  double restart = 1.0;  ///< restart safety: POWER_OFF after this
+  double restart = 2.5;  ///< restart safety: POWER_OFF after this
 };
 
 }  // namespace ur_simulator

@@ -146,8 +146,8 @@ SafetyAnswer Safety::unlock_protective_stop()
 
 void Safety::press_emergency_stop(bool system)
 {
-  button_pressed_ = true;
   const SafetyMode mode = system ? SafetyMode::system_emergency_stop : SafetyMode::robot_emergency_stop;
+  button_pressed_ = mode;
   if (safety_mode_ != mode && !is_failure(safety_mode_)) {
     stop_and_cut_power(mode, "emergency stop");
   }
@@ -158,7 +158,7 @@ SafetyAnswer Safety::release_emergency_stop()
   if (!button_pressed_) {
     return refuse("no emergency stop is pressed");
   }
-  button_pressed_ = false;
+  button_pressed_.reset();
   if (is_emergency(safety_mode_)) {
     enter(reduced_ ? SafetyMode::reduced : SafetyMode::normal);
     log(Level::information, "emergency stop released");
@@ -308,7 +308,7 @@ void Safety::advance_power()
       return;
     }
     restart_until_ = -1.0;
-    enter(reduced_ ? SafetyMode::reduced : SafetyMode::normal);
+    enter(button_pressed_.value_or(reduced_ ? SafetyMode::reduced : SafetyMode::normal));
   }
   if (cutting_power_) {
     return;

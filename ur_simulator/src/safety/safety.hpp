@@ -109,7 +109,7 @@ class Safety {
   bool releasing_ = false;
   bool cutting_power_ = false;
   bool reduced_ = false;
-  bool button_pressed_ = false;
+  std::optional<SafetyMode> button_pressed_;
   SafetyOrders orders_;
   std::deque<SafetyEvent> events_;
   std::uint64_t dropped_ = 0;

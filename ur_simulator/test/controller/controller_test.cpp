@@ -37,11 +37,27 @@ TEST(Controller, explains_options_that_make_no_sense)
   options = on_own_address();
   options.initial_joints = std::array<double, 6>{0.0, 0.0, 0.0, 0.0, 0.0, 1000.0};
   EXPECT_NE(message_of(options).find("initial joint 5 is 1000"), std::string::npos);
+  for (const double factor : {0.0, -1.0, 11.0, std::nan("")}) {
+    options = on_own_address();
+    options.real_time_factor = factor;
+    EXPECT_NE(message_of(options).find("give 0.01 to 10"), std::string::npos) << factor;
+  }
   options = {};
   options.address = "not an address";
   EXPECT_NE(message_of(options).find("'not an address'"), std::string::npos);
   options.address = "192.0.2.1";
   EXPECT_NE(message_of(options).find("no network interface"), std::string::npos) << message_of(options);
+}
+
+TEST(Controller, has_time_pass_slower_than_the_hosts_when_asked)
+{
+  SimulatorOptions options = on_own_address();
+  options.real_time_factor = 0.25;
+  const auto begin = std::chrono::steady_clock::now();
+  SimulatedController controller(options);
+  ASSERT_TRUE(controller.wait_until(
+      [](const json & state) { return state["timestamp"].get<double>() >= 0.1; }, seconds(5)));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(400));
 }
 
 TEST(Controller, takes_free_ports_when_asked)

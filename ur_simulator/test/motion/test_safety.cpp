@@ -218,7 +218,7 @@ TEST(Violation, is_left_by_restarting_the_safety_system_only)
     EXPECT_EQ(rig.state.robot_mode, RobotMode::power_off);
     EXPECT_FALSE(rig.safety.power_on());
     ASSERT_TRUE(rig.safety.restart_safety());
-    rig.run(1.1);
+    rig.run(2.6);
     EXPECT_EQ(rig.state.safety_mode, SafetyMode::normal);
     EXPECT_EQ(rig.state.robot_mode, RobotMode::power_off);
     ASSERT_TRUE(rig.safety.brake_release());
@@ -236,8 +236,23 @@ TEST(RestartSafety, in_the_middle_of_a_motion_brakes_before_it_cuts_the_power)
   EXPECT_EQ(rig.state.robot_mode, RobotMode::running);
   rig.until([&] { return rig.state.robot_mode == RobotMode::power_off; }, 0.3);
   EXPECT_FALSE(rig.safety.power_on());
-  rig.run(1.0);
+  rig.run(2.5);
   EXPECT_TRUE(rig.safety.power_on());
+}
+
+TEST(RestartSafety, with_the_button_pressed_meanwhile_ends_in_the_emergency_stop)
+{
+  WholeRig rig;
+  rig.step();
+  rig.safety.violate("joint speed");
+  rig.run(1.0);
+  ASSERT_TRUE(rig.safety.restart_safety());
+  rig.safety.press_emergency_stop(false);
+  rig.run(2.6);
+  EXPECT_EQ(rig.state.safety_mode, SafetyMode::robot_emergency_stop);
+  ASSERT_TRUE(rig.safety.release_emergency_stop());
+  rig.step();
+  EXPECT_EQ(rig.state.safety_mode, SafetyMode::normal);
 }
 
 TEST(Steady, is_true_only_after_half_a_second_of_standing_still)

@@ -8,6 +8,8 @@ namespace ur_ros_rtde {
 namespace {
 /// A command that has not shown yet, or was refused for the moment, is given again after this.
 constexpr std::chrono::milliseconds command_interval{1000};
+/// The safety system takes seconds to restart, and shows nothing meanwhile: told again, it would begin anew.
+constexpr std::chrono::milliseconds restart_interval{15000};
 
 [[noreturn]] void for_people(ErrorCode code, std::string what)
 {
@@ -15,10 +17,11 @@ constexpr std::chrono::milliseconds command_interval{1000};
 }
 }  // namespace
 
-void Readiness::command(const std::string & line, const std::string & reply)
+void Readiness::command(const std::string & line, const std::string & reply, std::chrono::milliseconds takes)
 {
   const auto now = Clock::now();
-  if (line == last_command_ && now - last_command_time_ < command_interval) {
+  const auto interval = last_refusal_.empty() ? takes : command_interval;
+  if (line == last_command_ && now - last_command_time_ < interval) {
     return;
   }
   last_command_ = line;
@@ -99,7 +102,7 @@ std::string Readiness::unlock()
   if (goal_.close_popups) {
     ask_dashboard(robot_, "close safety popup");
   }
-  command("unlock protective stop", "Protective stop releasing");
+  command("unlock protective stop", "Protective stop releasing", command_interval);
   return "unlocking the protective stop" + last_refusal_;
 }
 
@@ -115,7 +118,7 @@ std::string Readiness::restart_safety(const std::string & mode)
   if (goal_.close_popups) {
     ask_dashboard(robot_, "close safety popup");
   }
-  command("restart safety", "Restarting safety");
+  command("restart safety", "Restarting safety", restart_interval);
   return "restarting the safety system" + last_refusal_;
 }
 
@@ -126,11 +129,11 @@ std::string Readiness::start_arm(const std::string & mode)
                "the safety configuration has to be confirmed on the teach pendant, then try again");
   }
   if (mode == "POWER_OFF") {
-    command("power on", "Powering on");
+    command("power on", "Powering on", command_interval);
     return "powering on" + last_refusal_;
   }
   if (mode == "IDLE") {
-    command("brake release", "Brake releasing");
+    command("brake release", "Brake releasing", command_interval);
     return "releasing the brakes" + last_refusal_;
   }
   return fmt::format("waiting for the robot (mode {})", mode);

@@ -31,8 +31,8 @@ class Readiness {
   std::string start_arm(const std::string & mode);
   std::string start_program();
   void close_popups();
-  /// Gives a command at most every few hundred milliseconds, until it shows.
-  void command(const std::string & line, const std::string & reply);
+  /// Gives a command until it shows: again after the time it takes, or after a second when it was refused.
+  void command(const std::string & line, const std::string & reply, std::chrono::milliseconds takes);
 
   const Robot & robot_;
   const Goal & goal_;
