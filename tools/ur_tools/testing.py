@@ -139,7 +139,7 @@ def _sanitizer_environment() -> Dict[str, str]:
     suppressions = ROOT / "tools" / "sanitizers" / "thread.txt"
     return {"ASAN_OPTIONS": "detect_leaks=0:strict_string_checks=1:detect_stack_use_after_return=1",
             "UBSAN_OPTIONS": "print_stacktrace=1",
-            "TSAN_OPTIONS": f"halt_on_error=1:die_after_fork=0:second_deadlock_stack=1:suppressions={suppressions}"}
+            "TSAN_OPTIONS": f"halt_on_error=1:second_deadlock_stack=1:suppressions={suppressions}"}
 
 
 class Runner:
