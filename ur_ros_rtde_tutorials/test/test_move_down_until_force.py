@@ -13,10 +13,6 @@ def height(simulator):
     return simulator.state()["actual_tcp_pose"][2]
 
 
-def at_rest(simulator):
-    return max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01
-
-
 def down(client, **fields):
     return client.send(MoveDownUntilForce, "move_down_until_force", **fields)
 
@@ -26,7 +22,7 @@ def test_a_surface_stops_it(robot, simulator):
     simulator.control("place_surface", z=start - 0.1, stiffness=15000.0, damping=80.0)
     goal = down(robot)
     result = goal.succeeded(20.0)
-    assert at_rest(simulator)
+    assert simulator.stands_still()
     assert 20.0 < abs(result.force) < 40.0
     assert result.distance == pytest.approx(0.1, abs=0.005)
     assert start - height(simulator) == pytest.approx(result.distance, abs=0.002)
@@ -65,7 +61,7 @@ def test_without_contact_it_ends_as_not_reached(robot, simulator):
     status, result = down(robot, distance=0.05).end()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED
     assert "20 N" in result.message and "0.05 m" in result.message
-    assert at_rest(simulator)
+    assert simulator.stands_still()
 
 
 def test_a_force_that_is_there_at_the_start_is_zeroed(robot, simulator):
@@ -83,7 +79,7 @@ def test_cancel_decelerates(robot, simulator):
     goal.cancel()
     status, result = goal.end()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
-    assert at_rest(simulator) and result.distance > 0.02
+    assert simulator.stands_still() and result.distance > 0.02
 
 
 @pytest.mark.parametrize("field, value", [("force", 0.0), ("distance", 0.0), ("speed", 2.0), ("acceleration", float("nan")),

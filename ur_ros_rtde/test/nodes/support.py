@@ -135,6 +135,10 @@ class Simulator:
     def state(self):
         return self.control("state")["state"]
 
+    def stands_still(self):
+        """No joint turns faster than 0.01 rad/s."""
+        return max(map(abs, self.state()["actual"]["velocity"])) < 0.01
+
     def kill(self):
         self._socket.close()
         self.process.kill()
