@@ -10,6 +10,7 @@ from ur_ros_rtde_msgs.msg import JointWaypoint
 
 SERVO_J = 11  # ur_rtde's command
 SECONDS = 10.0
+INTERVAL = 2.0  # ms
 POLL = 0.5  # s; the trace holds the last 1024 repeated commands, two seconds
 
 
@@ -20,18 +21,28 @@ def _path(start):
     return [JointWaypoint(positions=list(positions)) for positions in (start, there, start, there, start)]
 
 
-def _arrivals(control, node, outcome):
-    """ns by the host's clock, of each target until the goal has ended."""
-    arrivals, last = [], 0
+def _trace(control, node, outcome):
+    """ns by the host's clock, until the goal has ended: of each target's arrival, and of each cycle by its number."""
+    arrivals, cycles, last = [], {}, 0
     while not outcome.done():
         end = time.monotonic() + POLL
         while time.monotonic() < end and not outcome.done():
             rclpy.spin_once(node, timeout_sec=0.02)
-        commands = control.request("trace", after=max(0, control.request("state")["state"]["cycle"] - 900))["repeats"]
-        new = [when for _, when, code in commands if code == SERVO_J and when > last]
+        trace = control.request("trace", after=max(0, control.request("state")["state"]["cycle"] - 900))
+        cycles.update((number, published) for number, published, *_ in trace["cycles"])
+        new = [when for _, when, code in trace["repeats"] if code == SERVO_J and when > last]
         arrivals += new
         last = new[-1] if new else last
-    return arrivals
+    return arrivals, cycles
+
+
+def _off(begin, end):
+    """ms."""
+    return abs((end - begin) * 1e-6 - INTERVAL)
+
+
+def _outside(off):
+    return 100.0 * sum(value > 0.2 for value in off) / len(off)
 
 
 def servo_stream(control, node):
@@ -46,11 +57,12 @@ def servo_stream(control, node):
     if not sending.done() or not sending.result().accepted:
         raise SystemExit("bench: the trajectory was refused; see the topic goal_refusals")
     outcome = sending.result().get_result_async()
-    arrivals = _arrivals(control, node, outcome)
+    arrivals, cycles = _trace(control, node, outcome)
     result = outcome.result().result
-    off = [abs((b - a) * 1e-6 - 2.0) for a, b in zip(arrivals, arrivals[1:])]
-    if not result.success or not off:
+    off = [_off(a, b) for a, b in zip(arrivals, arrivals[1:])]
+    own = [_off(cycles[number], cycles[number + 1]) for number in cycles if number + 1 in cycles]
+    if not result.success or not off or not own:
         return None
     return {"p50 off": percentile(off, 0.5), "p99.9 off": percentile(off, 0.999),
-            "within 0.2 ms": 100.0 * sum(value <= 0.2 for value in off) / len(off), "count": len(off),
+            "outside 0.2 ms": _outside(off), "count": len(off), "cycles outside": _outside(own),
             "tracking error": result.max_tracking_error}

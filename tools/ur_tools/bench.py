@@ -23,6 +23,8 @@ AIMS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
     ("goal to first RTDE command", "p50", 1.0, "ms"),
     ("cancel to deceleration", "p50", 5.0, "ms"),
     ("servo stream", "p99.9 off", 0.2, "ms from its interval"),
+    ("servo stream", "outside 0.2 ms", 0.1, "% of its intervals"),
+    ("servo stream", "cycles outside", 0.1, "% of the simulated controller's own intervals meanwhile"),
     ("servo stream", "tracking error", 0.02, "rad"),
     ("cpu", "simulator", 10.0, "% of a core"),
     ("cpu", "robot_state_receiver", 10.0, "% of a core"),
