@@ -1,7 +1,6 @@
 """What demo and bench share: a simulated controller, the three nodes, and how such a command starts and ends."""
 
 import argparse
-import os
 import socket
 import sys
 from typing import Callable, Dict, List

@@ -82,7 +82,7 @@ def test_ctrl_c_cancels_the_goal_and_shows_where_the_arm_stands(running):
     process.interrupt()
     assert process.wait(20.0) == 1, process.output()
     assert "error_code: 4" in process.output()
-    assert running.stands_still()
+    assert running.state()["at_rest"]
 
 
 def test_the_state_is_shown(running):

@@ -41,7 +41,7 @@ def test_cancel_ends_the_loop_on_the_controller_and_the_arm_stands_still(robot, 
     goal.cancel()
     status, result = goal.end()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
-    assert simulator.stands_still()
+    assert simulator.state()["at_rest"]
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0).succeeded()
 
 
@@ -50,4 +50,4 @@ def test_a_protective_stop_ends_it_with_its_own_code(robot, simulator):
     wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the search to begin")
     simulator.control("protective_stop", reason="of the test")
     assert goal.result().error_code == ErrorCode.PROTECTIVE_STOP
-    assert simulator.stands_still()
+    assert simulator.state()["at_rest"]

@@ -214,8 +214,10 @@ class Cell:
 
     def power_up(self):
         """Over the dashboard, which refuses while the safety system restarts."""
-        for name in ("dashboard/power_on", "dashboard/brake_release"):
-            self._until_it_succeeds(name, timeout=20.0)
+        self._until_it_succeeds("dashboard/power_on", timeout=20.0)
+        goal = self.client.send(DashboardCommand, "dashboard/brake_release", timeout=20.0)
+        assert goal.accepted, self.refusal(goal)
+        goal.succeeded()
 
     def _until_it_succeeds(self, name, **fields):
         def succeeded():

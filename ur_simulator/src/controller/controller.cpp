@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <boost/asio/post.hpp>
-#include <cmath>
 #include <exception>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "control_port/commands.hpp"
+#include "controller/configuration.hpp"
 #include "controller/network_socket.hpp"
 #include "net/fetch.hpp"
 #include "primary/messages.hpp"
@@ -26,86 +25,6 @@ using Clock = std::chrono::steady_clock;
 // instead of the sockets starving.
 constexpr int most_cycles_to_catch_up = 10;
 constexpr double robot_state_period = 0.1;  // s
-
-const RobotModel & model_of(const SimulatorOptions & options)
-{
-  const auto model = find_robot_model(options.model);
-  if (!model) {
-    throw std::runtime_error(model.error());
-  }
-  return model->get();
-}
-
-PolyscopeVersion version_of(const SimulatorOptions & options, const RobotModel & model)
-{
-  const bool cb3 = model.series == Series::cb3;
-  const std::string text =
-      options.polyscope_version.empty() ? (cb3 ? "3.15.8" : "5.25.1") : options.polyscope_version;
-  const auto version = PolyscopeVersion::parse(text);
-  if (!version || (version->major != 3 && version->major != 5)) {
-    throw std::runtime_error(fmt::format(
-        "PolyScope version '{}' (--polyscope) is not known: give 3.x or 5.x, such as 5.25.1", text));
-  }
-  if (version->is_e_series() == cb3) {
-    throw std::runtime_error(
-        fmt::format("model {} does not run PolyScope {}: CB3 models (ur3, ur5, ur10) run 3.x, all "
-                    "others 5.x (--model, --polyscope)",
-                    model.name, text));
-  }
-  return *version;
-}
-
-Vector6 joints_of(const SimulatorOptions & options, const RobotModel & model)
-{
-  if (!options.initial_joints) {
-    return default_position(model);
-  }
-  const Vector6 joints(options.initial_joints->data());
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    if (!(joints[i] >= model.position_min[i] && joints[i] <= model.position_max[i])) {
-      throw std::runtime_error(fmt::format("initial joint {} is {} rad: model {} allows {} to {}", i,
-                                           joints[i], model.name, model.position_min[i],
-                                           model.position_max[i]));
-    }
-  }
-  return joints;
-}
-
-/// Of the host's time, for one control cycle.
-Clock::duration period_of(const SimulatorOptions & options, const PolyscopeVersion & version)
-{
-  constexpr double slowest = 0.01;
-  constexpr double fastest = 10.0;
-  const double factor = options.real_time_factor;
-  if (!(factor >= slowest && factor <= fastest)) {
-    throw std::runtime_error(fmt::format(
-        "real-time factor {} (--real-time-factor) is out of range: give {} to {}", factor, slowest, fastest));
-  }
-  return std::chrono::duration_cast<Clock::duration>(
-      std::chrono::duration<double>(version.cycle_time() / factor));
-}
-
-PendantOptions pendant_options(const SimulatorOptions & options, const PolyscopeVersion & version)
-{
-  PendantOptions result;
-  result.version = version;
-  result.remote_control = options.remote_control;
-  result.reports_folder = options.reports_folder;
-  return result;
-}
-
-World world_of(const SimulatorOptions & options, double cycle_time)
-{
-  World world(cycle_time, options.seed);
-  for (const std::string & urcap : options.urcaps) {
-    if (urcap != "onrobot_soft_gripper") {
-      throw std::runtime_error(
-          fmt::format("URCap '{}' (--urcap) is not known: there is onrobot_soft_gripper", urcap));
-    }
-    world.mount_gripper();
-  }
-  return world;
-}
 
 LogLevel level_of(SafetyEvent::Level level)
 {
