@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "log/event_log.hpp"
 #include "net/listener.hpp"
@@ -29,6 +30,8 @@ struct Shared {
   std::unordered_map<const InputField *, std::uint64_t> owners;
   /// Called for each field of each data package (the program's watchdog counts them).
   std::function<void(const InputField &)> fed;
+  /// Called for each data package, when its fields have been read.
+  std::function<void(const std::vector<const InputField *> &)> package_read;
 };
 
 /// The Real-Time Data Exchange server, protocol versions 1 and 2.
@@ -39,6 +42,11 @@ class Server {
   ~Server();
 
   void on_input(std::function<void(const InputField &)> fed) { shared_.fed = std::move(fed); }
+  /// `read` gets the fields of the package's recipe.
+  void on_package(std::function<void(const std::vector<const InputField *> &)> read)
+  {
+    shared_.package_read = std::move(read);
+  }
   /// Sends the state of this cycle to every started client whose turn it is. Allocates nothing.
   void publish();
   Listener & listener() { return listener_; }

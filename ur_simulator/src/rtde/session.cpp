@@ -257,6 +257,9 @@ void Session::read_fields(InputRecipe & recipe, std::string_view values, unsigne
     }
   }
   apply(masked_, shared_.state);
+  if (shared_.package_read) {
+    shared_.package_read(recipe.fields);
+  }
   if (expected != values.size() && !recipe.wrong_size_reported) {
     recipe.wrong_size_reported = true;
     shared_.log.warning("rtde",

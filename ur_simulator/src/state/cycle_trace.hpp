@@ -32,11 +32,11 @@ class CycleTrace {
                                                 state.target.velocity.cwiseAbs().maxCoeff()};
   }
   /// Input integer register 0 was written; 0 (no command) is not kept, repeats are kept apart: they are what
-  /// a stream of targets is made of.
-  void command_arrived(const ControllerState & state)
+  /// a stream of targets is made of. A repeat without arguments is none of them: it feeds the watchdog.
+  void command_arrived(const ControllerState & state, bool with_arguments)
   {
     const std::int32_t code = state.inputs.integers[0];
-    if (code != 0 && code == last_code_) {
+    if (code != 0 && code == last_code_ && with_arguments) {
       repeats_[repeat_count_++ % repeats_.size()] = {state.cycle, now(), code};
     }
     if (code != 0 && code != last_code_) {

@@ -116,6 +116,31 @@ TEST_F(ControlPort, reboots_the_controller)
   EXPECT_TRUE(RtdeClient(controller.address()).negotiate(2));
 }
 
+TEST_F(ControlPort, traces_commands_and_repeats_but_no_kick_of_a_watchdog)
+{
+  RtdeClient link(controller.address());
+  ASSERT_TRUE(link.negotiate(2));
+  link.inputs("input_int_register_0,input_double_register_0");
+  link.inputs("input_int_register_0");
+  const auto servo = [&](double target) { link.send('U', package_for(1) + int32(11) + float64(target)); };
+  servo(0.1);
+  servo(0.2);
+  link.send('U', package_for(2) + int32(11));
+  servo(0.3);
+  link.send('U', package_for(2) + int32(0));
+  link.send('U', package_for(2) + int32(66));
+  json trace;
+  for (bool all = false; !all;) {
+    trace = ask(R"({"command": "trace"})");
+    all = !trace["commands"].empty() && trace["commands"].back()[2] == 66;
+  }
+  ASSERT_EQ(trace["commands"].size(), 2U) << trace["commands"];
+  EXPECT_EQ(trace["commands"][0][2], 11);
+  ASSERT_EQ(trace["repeats"].size(), 2U) << trace["repeats"];
+  EXPECT_EQ(trace["repeats"][0][2], 11);
+  EXPECT_LE(trace["repeats"][0][1], trace["repeats"][1][1]);
+}
+
 TEST_F(ControlPort, puts_the_arm_elsewhere)
 {
   ASSERT_TRUE(ask(R"({"command": "set_joints", "joints": [0.1, -1.2, 1.3, -1.4, -1.5, 0.6]})")["ok"]);
