@@ -7,7 +7,7 @@ from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
 from support import HOME, JOINTS, robot_seconds, wait_for
-from trajectories import Watcher, distance_to_line, point, timed, turned, unlocked, wave, waypoints
+from trajectories import Watcher, cycles_without_target, distance_to_line, point, timed, turned, unlocked, wave, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -209,14 +209,20 @@ def arc(times, size=0.3):
                   [0.5 * size * w * w * math.cos(w * t)] + [0.0] * 5) for t in times]
 
 
-def test_given_times_are_kept(robot):
+def test_given_times_are_kept(robot, simulator):
     times = [0.0, 0.4, 0.5, 1.3, 2.0]
     points = arc(times)
     points[-1].velocities = [0.0] * 6
-    states = robot.listen(JointState, "joint_states")
-    goal = send_timed(robot, timed(*points), lookahead_time=LAG, gain=2000.0, max_jerk=[1e5] * 6)
-    assert goal.succeeded().duration == pytest.approx(2.0)
-    moving = [s for s in robot.up_to_now(states) if abs(s.position[0] - HOME[0]) > 0.002]
+    for _ in range(3):
+        make_ready(robot)
+        states = robot.listen(JointState, "joint_states")
+        before = simulator.state()["cycle"]
+        goal = send_timed(robot, timed(*points), lookahead_time=LAG, gain=2000.0, max_jerk=[1e5] * 6)
+        assert goal.succeeded().duration == pytest.approx(2.0)
+        moving = [s for s in robot.up_to_now(states) if abs(s.position[0] - HOME[0]) > 0.002]
+        robot.stop_listening()
+        if cycles_without_target(simulator, before) < 5:  # a late host makes a trajectory longer
+            break
     # From when the arm has left home to each position as planned: differences of the controller's stamps.
     crossed = {}
     for part, wanted in ((0.25, 2.0 / 3.0), (0.5, 1.0), (0.75, 4.0 / 3.0)):

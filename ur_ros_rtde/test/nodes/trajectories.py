@@ -50,6 +50,12 @@ def unlocked(simulator):
         return False
 
 
+def cycles_without_target(simulator, after):
+    """Of the controller, from its cycle `after` on, between the first target of a stream and the last: it remembers two seconds."""
+    targets = {cycle for cycle, _, _ in simulator.control("trace", after=after)["repeats"]}
+    return max(targets) - min(targets) + 1 - len(targets)
+
+
 class Watcher:
     """Follows the simulator's target in the background of a test: called in a wait_for."""
 
