@@ -52,6 +52,9 @@ struct RobotOptions {
   /// Start the control program again when it was stopped (with control_urcap: by a lost link) and the robot
   /// is ready for it; never what it was doing.
   bool restart_program = true;
+  /// SCHED_FIFO, 1 to 99, of what answers each package with a target: the thread that follows the packages,
+  /// and those that send streams of targets; 0: none. Said in the log when not allowed.
+  int realtime_priority = 0;
 };
 
 enum class RobotState {
@@ -93,6 +96,7 @@ class Robot {
   Status ready_to_move() const;
   Status wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop = {}) const;
   std::optional<ControllerVersion> version() const;
+  int realtime_priority() const;
 
   /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) when the interface is
   /// not there.

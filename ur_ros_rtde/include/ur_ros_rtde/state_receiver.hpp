@@ -32,6 +32,8 @@ struct StateReceiverOptions {
   /// periods instead.
   std::chrono::milliseconds silence_limit{100};
   bool upper_range_registers = false;
+  /// SCHED_FIFO, 1 to 99, of the thread that follows the packages; 0: none. Said in the log when not allowed.
+  int realtime_priority = 0;
 };
 
 /// Follows a controller's RTDE packages, connecting in the background whenever there is a controller at the
@@ -50,9 +52,10 @@ class StateReceiver {
   StateReceiver(const StateReceiver &) = delete;
   StateReceiver & operator=(const StateReceiver &) = delete;
 
-  /// Called with every package on the receiver's thread, in order: be brief. Set before start().
+  /// Called with every package on the thread that has received it, in order, and never at the same time as
+  /// on_link's function: be brief. What it throws ends the link, which is then made anew. Set before start().
   void on_sample(SampleFunction function);
-  /// Called on the receiver's thread when the link comes or goes. Set before start().
+  /// Called on a thread of the receiver when the link comes or goes. Set before start().
   void on_link(LinkFunction function);
   void start();
   /// Ends the thread and with it all callbacks; takes as long as a step of connecting at most. The destructor

@@ -139,6 +139,16 @@ std::chrono::milliseconds declare_silence_limit(rcl_cxx::Node & node)
   return std::chrono::milliseconds(std::lround(1000.0 * seconds));
 }
 
+int declare_realtime_priority(rcl_cxx::Node & node)
+{
+  auto options = described(
+      "SCHED_FIFO priority of the threads that take the robot's packages and answer them with targets; 0: "
+      "the "
+      "priority of all other threads");
+  options.integer_range = rcl_cxx::IntegerRange{0, 99};
+  return static_cast<int>(node.declare_parameter<int>("realtime_priority", 0, options));
+}
+
 PluginChoice declare_plugin_choice(rcl_cxx::Node & node)
 {
   const std::vector<std::string> none;
@@ -175,6 +185,7 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
   port.integer_range = rcl_cxx::IntegerRange{1, 65535};
   robot.urcap_port = static_cast<std::uint16_t>(node.declare_parameter<int>("urcap_port", 50002, port));
   robot.silence_limit = declare_silence_limit(node);
+  robot.realtime_priority = declare_realtime_priority(node);
   robot.watchdog_frequency = declare_number(
       node, "watchdog_frequency", robot.watchdog_frequency, 0.0, 100.0,
       "Hz: the robot stops the arm after 1/watchdog_frequency s without a sign of life of this "

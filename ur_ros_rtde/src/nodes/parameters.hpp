@@ -20,6 +20,9 @@ std::string declare_robot_ip(rcl_cxx::Node & node);
 /// After which silence of the controller the link counts as lost.
 std::chrono::milliseconds declare_silence_limit(rcl_cxx::Node & node);
 
+/// SCHED_FIFO of the threads on which a control cycle waits; 0: none.
+int declare_realtime_priority(rcl_cxx::Node & node);
+
 struct PluginChoice {
   std::vector<std::string> plugins;
   std::vector<std::string> blacklist;

@@ -15,6 +15,7 @@ StateServer::StateServer(const rcl_cxx::Context::SharedPtr & context)
   StateReceiverOptions source;
   source.address = declare_robot_ip(*node_);
   source.silence_limit = declare_silence_limit(*node_);
+  source.realtime_priority = declare_realtime_priority(*node_);
   RobotStateReceiver::Options options = declare_state_options(*node_);
   options.address = source.address;
   source.frequency = options.frequency;

@@ -60,6 +60,11 @@ std::optional<ControllerVersion> Robot::version() const
   return impl_->state.version();
 }
 
+int Robot::realtime_priority() const
+{
+  return impl_->options.realtime_priority;
+}
+
 Locked<ur_rtde::RTDEControlInterface> Robot::control() const
 {
   if (auto control = impl_->links.control()) {

@@ -19,6 +19,7 @@ StateReceiverOptions receiver_options(const RobotOptions & options)
   result.retry_interval = options.retry_interval;
   result.silence_limit = options.silence_limit;
   result.upper_range_registers = options.upper_range_registers;
+  result.realtime_priority = options.realtime_priority;
   return result;
 }
 

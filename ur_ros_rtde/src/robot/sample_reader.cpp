@@ -173,7 +173,7 @@ SampleReader::SampleReader(std::shared_ptr<RobotState> state, int register_offse
 
 SampleReader::~SampleReader() = default;
 
-SampleReader::Package SampleReader::read(Sample & sample) const
+std::chrono::steady_clock::time_point SampleReader::read(Sample & sample) const
 {
   const auto sequence = sample.sequence;
   const auto link = sample.link;
@@ -187,7 +187,7 @@ SampleReader::Package SampleReader::read(Sample & sample) const
   for (const auto & copy : copies_) {
     copy(sample);
   }
-  return {state_->getPackageCount(), state_->getPackageTime()};
+  return state_->getPackageTime();
 }
 
 }  // namespace ur_ros_rtde

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -23,11 +22,8 @@ class SampleReader {
   SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset);
   ~SampleReader();
 
-  struct Package {
-    std::uint64_t count;  ///< of all that came on this connection
-    std::chrono::steady_clock::time_point arrival;
-  };
-  Package read(Sample & sample) const;
+  /// When the package arrived.
+  std::chrono::steady_clock::time_point read(Sample & sample) const;
 
  private:
   std::shared_ptr<ur_rtde::RobotState> state_;

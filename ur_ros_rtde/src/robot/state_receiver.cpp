@@ -4,6 +4,7 @@
 #include <ur_rtde/rtde_receive_interface.h>
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "robot/ports.hpp"
+#include "robot/realtime_priority.hpp"
 #include "robot/reporter.hpp"
 #include "robot/rtde_probe.hpp"
 #include "robot/sample_reader.hpp"
@@ -28,6 +30,10 @@ constexpr int keep_priority = -1;
 
 void check(const StateReceiverOptions & options)
 {
+  if (options.realtime_priority < 0 || options.realtime_priority > 99) {
+    throw std::invalid_argument(fmt::format("realtime_priority is {}: it must be from 1 to 99, or 0 for none",
+                                            options.realtime_priority));
+  }
   if (options.address.empty()) {
     throw std::invalid_argument("the robot's address is empty: give its IP address or host name");
   }
@@ -57,6 +63,7 @@ class StateReceiver::Impl {
 
   mutable std::mutex mutex_;
   mutable std::condition_variable_any changed_;
+  std::condition_variable_any pause_;  ///< nobody notifies it, packages least of all
   LinkStatus link_;
   std::optional<ControllerVersion> version_;
   double frequency_ = 0.0;
@@ -68,11 +75,19 @@ class StateReceiver::Impl {
  private:
   Status connect();
   Error follow(const std::stop_token & stop);
-  std::uint64_t publish(Sample & sample, const SampleReader & reader);
+  Error watch(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface);
+  Clock::time_point silent_since(ur_rtde::RobotState & state) const;
+  void take(Sample & sample, const SampleReader & reader);
+  void publish(Sample & sample, const SampleReader & reader);
+  void pause(const std::stop_token & stop, Clock::duration limit);
+  std::optional<std::string> take_failure();
   void set_link(LinkStatus status);
   double choose_frequency(const ControllerVersion & version);
 
   const StateReceiverOptions options_;
+  std::optional<std::string> failure_;  ///< of on_sample's function
+  std::atomic<bool> taking_ = false;
+  std::atomic<Clock::time_point> taken_{};
   Reporter report_;
   bool frequency_reported_ = false;
   std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
@@ -118,15 +133,13 @@ Status StateReceiver::Impl::connect()
   }
 }
 
-/// The number of the package that was read.
-std::uint64_t StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader)
+void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader)
 {
-  const auto package = reader.read(sample);
+  const auto arrival = reader.read(sample);
   ++sample.sequence;
-  sample.received = package.arrival;
-  sample.stamp =
-      std::chrono::system_clock::now() -
-      std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - package.arrival);
+  sample.received = arrival;
+  sample.stamp = std::chrono::system_clock::now() -
+                 std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - arrival);
   {
     const std::lock_guard lock(mutex_);
     latest_ = sample;
@@ -135,7 +148,69 @@ std::uint64_t StateReceiver::Impl::publish(Sample & sample, const SampleReader &
   if (sample_function_) {
     sample_function_(sample);
   }
-  return package.count;
+}
+
+/// On ur_rtde's thread, which an exception must not reach.
+void StateReceiver::Impl::take(Sample & sample, const SampleReader & reader)
+{
+  taking_ = true;
+  try {
+    publish(sample, reader);
+  } catch (const std::exception & error) {
+    const std::lock_guard lock(mutex_);
+    failure_ = error.what();
+  }
+  taken_ = Clock::now();
+  taking_ = false;
+}
+
+/// While a package is being taken no other can be read: that is this host's silence, not the controller's.
+Clock::time_point StateReceiver::Impl::silent_since(ur_rtde::RobotState & state) const
+{
+  return taking_ ? Clock::now() : std::max(state.getPackageTime(), taken_.load());
+}
+
+/// Until the link ends, or it shall.
+Error StateReceiver::Impl::watch(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface)
+{
+  const auto state = interface.robotState();
+  const auto silence_limit =
+      std::max(options_.silence_limit,
+               std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
+  // This host may have been busy, not the controller: the last of the time is for ur_rtde's thread to read
+  // what may lie there.
+  const auto last_wait = std::min(longest_wait, silence_limit / 2);
+  const auto left = [&] { return silent_since(*state) + silence_limit - last_wait - Clock::now(); };
+  while (!stop.stop_requested()) {
+    pause(stop, std::clamp<Clock::duration>(left(), std::chrono::milliseconds(1), longest_wait));
+    if (const auto failed = take_failure()) {
+      return {ErrorCode::exception, fmt::format("a package could not be handed on: {}", *failed)};
+    }
+    if (!interface.isConnected()) {
+      return {ErrorCode::link_lost, fmt::format("{} closed the RTDE connection", options_.address)};
+    }
+    if (left() <= Clock::duration::zero()) {
+      pause(stop, last_wait);
+      if (left() <= Clock::duration::zero()) {
+        return {ErrorCode::link_lost,
+                fmt::format("no RTDE package from {} for {} ms: the link or the controller hangs",
+                            options_.address, silence_limit.count())};
+      }
+    }
+  }
+  return {ErrorCode::shutdown, "shutting down"};
+}
+
+void StateReceiver::Impl::pause(const std::stop_token & stop, Clock::duration limit)
+{
+  std::unique_lock lock(mutex_);
+  pause_.wait_for(lock, stop, limit, [] { return false; });
+}
+
+std::optional<std::string> StateReceiver::Impl::take_failure()
+{
+  const std::lock_guard lock(mutex_);
+  return std::exchange(failure_, std::nullopt);
 }
 
 Error StateReceiver::Impl::follow(const std::stop_token & stop)
@@ -143,30 +218,13 @@ Error StateReceiver::Impl::follow(const std::stop_token & stop)
   const auto interface = interface_;
   const auto state = interface->robotState();
   const SampleReader reader(state, options_.upper_range_registers ? 24 : 0);
-  const auto silence_limit =
-      std::max(options_.silence_limit,
-               std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
   Sample sample = latest_;
   ++sample.link;
-  // This host may have been busy, not the controller: the last of the time is for ur_rtde's thread to read
-  // what may lie there.
-  const auto last_wait = std::min(longest_wait, silence_limit / 2);
-  std::uint64_t packages = 0;
-  while (!stop.stop_requested()) {
-    const auto left = state->getPackageTime() + silence_limit - last_wait - Clock::now();
-    const auto wait = std::clamp<Clock::duration>(left, std::chrono::milliseconds(1), longest_wait);
-    if (state->waitForPackage(packages, std::chrono::ceil<std::chrono::microseconds>(wait))) {
-      packages = publish(sample, reader);
-    } else if (!interface->isConnected()) {
-      return {ErrorCode::link_lost, fmt::format("{} closed the RTDE connection", options_.address)};
-    } else if (auto count = packages; Clock::now() - state->getPackageTime() >= silence_limit - last_wait &&
-                                      !state->waitForPackage(count, last_wait)) {
-      return {ErrorCode::link_lost,
-              fmt::format("no RTDE package from {} for {} ms: the link or the controller hangs",
-                          options_.address, silence_limit.count())};
-    }
-  }
-  return {ErrorCode::shutdown, "shutting down"};
+  take(sample, reader);
+  state->onPackage([&] { take(sample, reader); });
+  const Error end = watch(stop, *interface);
+  state->onPackage({});
+  return end;
 }
 
 void StateReceiver::Impl::set_link(LinkStatus status)
@@ -188,6 +246,10 @@ void StateReceiver::Impl::set_link(LinkStatus status)
 
 void StateReceiver::Impl::run(const std::stop_token & stop)
 {
+  // ur_rtde's threads inherit it.
+  if (const Status allowed = set_realtime_priority(options_.realtime_priority); !allowed) {
+    report_.say(LogLevel::warn, allowed.error().message);
+  }
   while (!stop.stop_requested()) {
     if (const auto connected = connect(); connected) {
       report_.forget();
@@ -205,8 +267,7 @@ void StateReceiver::Impl::run(const std::stop_token & stop)
                    fmt::format("{}. Trying again every {} s", connected.error().message, again));
       set_link({false, connected.error()});
     }
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, stop, options_.retry_interval, [] { return false; });
+    pause(stop, options_.retry_interval);
   }
 }
 

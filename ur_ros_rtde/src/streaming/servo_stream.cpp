@@ -6,6 +6,8 @@
 #include <future>
 #include <limits>
 
+#include "robot/realtime_priority.hpp"
+
 namespace ur_ros_rtde {
 namespace {
 
@@ -48,6 +50,7 @@ ServoStream::ServoStream(Run & run, ServoSettings settings, Watch watch)
 
 Outcome ServoStream::drive(const Trajectory & plan, const Limits & limits)
 {
+  const RealtimePriority priority(run_.robot().realtime_priority());
   state_.sample = run_.state();
   const Joints end = plan.sample(plan.duration()).position;
   std::copy(end.begin(), end.end(), target_.begin());

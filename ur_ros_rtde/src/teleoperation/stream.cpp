@@ -6,6 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include "robot/realtime_priority.hpp"
+
 namespace ur_ros_rtde {
 namespace {
 /// Weight of the newest interval between messages.
@@ -153,6 +155,7 @@ Outcome Stream::stop(const Error & why) const
 Error Stream::follow(Run & run, std::uint64_t burst, Latency & latency)
 {
   try {
+    const RealtimePriority priority(run.robot().realtime_priority());
     const auto version = run.robot().version();
     const double cycle = 1.0 / (version ? version->frequency() : 500.0);
     Sample sample = run.state();

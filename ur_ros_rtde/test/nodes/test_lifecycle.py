@@ -1,5 +1,6 @@
 """Starting, ending, and addresses at which there is no robot."""
 
+import os
 import socket
 import threading
 import time
@@ -35,11 +36,30 @@ def test_without_an_address_it_says_what_to_give(name):
     ("command_server", "ur_type:=ur99", "ur99"),
     ("command_server", "urcap_port:=70000", "urcap_port"),
     ("command_server", "watchdog_frequency:=true", "watchdog_frequency"),
+    ("command_server", "realtime_priority:=100", "99"),
+    ("robot_state_receiver", "realtime_priority:=-1", "realtime_priority"),
 ])
 def test_a_wrong_parameter_is_named_with_what_it_may_be(name, parameter, what):
     process = node(name, "127.0.0.1", parameter)
     assert process.wait(15.0) == 2
     assert what in process.output()
+
+
+def threads_with_priority(pid, priority):
+    threads = [int(thread) for thread in os.listdir(f"/proc/{pid}/task")]
+    return [thread for thread in threads if os.sched_getparam(thread).sched_priority == priority
+            and os.sched_getscheduler(thread) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO]
+
+
+@pytest.mark.parametrize("name", ["robot_state_receiver", "command_server"])
+def test_a_realtime_priority_is_of_the_threads_that_follow_the_packages_or_its_refusal_is_said(name, simulator, processes):
+    process = processes(node(name, simulator.address, "realtime_priority:=20"))
+    process.wait_for_output("connected to")
+    if "realtime_priority 20 is not allowed" in process.output():
+        assert not threads_with_priority(process.pid, 20)
+    else:
+        # The receiver's own and ur_rtde's, which it starts.
+        wait_for(lambda: len(threads_with_priority(process.pid, 20)) == 2, 5.0, "two threads of that priority")
 
 
 @pytest.mark.parametrize("name", NODES)

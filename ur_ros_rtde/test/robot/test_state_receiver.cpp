@@ -5,6 +5,9 @@
 #include <atomic>
 #include <cmath>
 #include <deque>
+#include <future>
+#include <stdexcept>
+#include <utility>
 
 #include "support.hpp"
 #include "ur_ros_rtde/state_receiver.hpp"
@@ -136,8 +139,13 @@ TEST_F(AStateReceiver, reduces_a_frequency_that_a_CB3_cannot_have_and_says_so_on
   EXPECT_TRUE(std::isnan(receiver->latest()->ft_raw_wrench[0])) << "a CB3 has no force/torque sensor";
 }
 
-TEST_F(AStateReceiver, refuses_an_impossible_frequency_and_an_empty_address)
+TEST_F(AStateReceiver, refuses_an_impossible_frequency_priority_and_an_empty_address)
 {
+  for (const int priority : {-1, 100}) {
+    auto options = receiver_options();
+    options.realtime_priority = priority;
+    EXPECT_THROW(StateReceiver{options}, std::invalid_argument);
+  }
   for (const double frequency : {-1.0, 0.5, 501.0, std::nan("")}) {
     auto options = receiver_options();
     options.frequency = frequency;
@@ -235,6 +243,43 @@ TEST_F(AStateReceiver, notices_a_half_open_link_by_missing_packages)
   EXPECT_EQ(log.count("no RTDE package from " + own_address()), 1U) << log.text();
   controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", false}});
   EXPECT_TRUE(connected(*receiver)) << log.text();
+}
+
+TEST_F(AStateReceiver, takes_no_silence_of_this_host_for_the_controllers)
+{
+  controller.start();
+  auto options = receiver_options();
+  options.silence_limit = StateReceiverOptions().silence_limit;
+  StateReceiver receiver(options, log.function());
+  std::promise<void> go_on;
+  receiver.on_sample([&, held = false, wait = go_on.get_future().share()](const Sample &) mutable {
+    if (!std::exchange(held, true)) {
+      wait.wait();
+    }
+  });
+  receiver.start();
+  ASSERT_TRUE(eventually([&] { return receiver.latest().has_value(); })) << log.text();
+  Sample sample = *receiver.latest();
+  EXPECT_FALSE(receiver.wait_for_next(sample, 3 * options.silence_limit)) << "nobody takes the packages";
+  EXPECT_TRUE(receiver.link().connected) << log.text();
+  go_on.set_value();
+  EXPECT_TRUE(receiver.wait_for_next(sample, 1s)) << log.text();
+  EXPECT_EQ(sample.link, 1U) << log.text();
+}
+
+TEST_F(AStateReceiver, makes_the_link_anew_after_a_package_that_could_not_be_handed_on)
+{
+  controller.start();
+  StateReceiver receiver(receiver_options(), log.function());
+  receiver.on_sample([thrown = false](const Sample & sample) mutable {
+    if (sample.sequence > 20 && !std::exchange(thrown, true)) {
+      throw std::runtime_error("the disk is full");
+    }
+  });
+  receiver.start();
+  ASSERT_TRUE(eventually([&] { return receiver.latest() && receiver.latest()->link == 2; })) << log.text();
+  EXPECT_EQ(log.count("a package could not be handed on: the disk is full"), 1U) << log.text();
+  EXPECT_TRUE(connected(receiver)) << log.text();
 }
 
 TEST_F(AStateReceiver, survives_garbage)
