@@ -46,6 +46,25 @@ def cpu_percent(pids, seconds):
     return {name: 100.0 * (cpu_seconds(pid) - before[name]) / elapsed for name, pid in pids.items()}
 
 
+def state_figures(options, control):
+    figures = {}
+    for name, receive in (("C++", lambda s: receive_in_cpp(options.subscriber, s)), ("rclpy", receive_in_python)):
+        received = receive(TRACE_SECONDS)
+        figures[f"package to {name} subscriber"] = summary(latencies(received, control.request("trace")))
+    pids = {name: int(pid) for name, pid in (pair.split("=") for pair in options.pid)}
+    figures["cpu"] = cpu_percent(pids, 5.0)
+    figures["memory"] = {name: resident_megabytes(pid) for name, pid in pids.items()}
+    return figures
+
+
+def goal_figures(options, control):
+    commands = Commands(control)
+    figures = {"goal to first RTDE command": summary(commands.goal_to_command(options.repeat)),
+               "cancel to deceleration": summary(commands.cancel_to_deceleration(options.repeat // 2))}
+    commands.close()
+    return figures
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--address", required=True)
@@ -53,21 +72,15 @@ def main():
     parser.add_argument("--pid", action="append", default=[], metavar="NAME=PID", help="a process whose load is measured")
     parser.add_argument("--output", required=True, type=Path, metavar="FILE", help="where the JSON goes")
     parser.add_argument("--repeat", type=int, default=40, help="goals and cancels")
+    parser.add_argument("--stream", action="store_true", help="the servo stream instead of everything else")
+    parser.add_argument("--real-time-factor", type=float, default=1.0, help="the simulator's")
     options = parser.parse_args()
     rclpy.init()
     with ControlPort(options.address) as control:
-        figures = {}
-        for name, receive in (("C++", lambda s: receive_in_cpp(options.subscriber, s)), ("rclpy", receive_in_python)):
-            received = receive(TRACE_SECONDS)
-            figures[f"package to {name} subscriber"] = summary(latencies(received, control.request("trace")))
-        pids = {name: int(pid) for name, pid in (pair.split("=") for pair in options.pid)}
-        figures["cpu"] = cpu_percent(pids, 5.0)
-        figures["memory"] = {name: resident_megabytes(pid) for name, pid in pids.items()}
-        commands = Commands(control)
-        figures["goal to first RTDE command"] = summary(commands.goal_to_command(options.repeat))
-        figures["cancel to deceleration"] = summary(commands.cancel_to_deceleration(options.repeat // 2))
-        figures["servo stream"] = servo_stream(control, commands.node)
-        commands.close()
+        if options.stream:
+            figures = {"servo stream": servo_stream(control, options.real_time_factor)}
+        else:
+            figures = {**state_figures(options, control), **goal_figures(options, control)}
     rclpy.try_shutdown()
     options.output.write_text(json.dumps(figures))
 

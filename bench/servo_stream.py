@@ -1,17 +1,24 @@
-"""A trajectory on the simulator: when its targets arrive, by the simulator's trace, and how far the arm is behind them."""
+"""A trajectory on the simulator: when its targets arrive, by the simulator's trace, and how far the arm is behind them.
 
+Intervals are in the robot's time: the host's, times the simulator's real-time factor.
+"""
+
+import sys
 import time
+from collections import Counter
 
 import rclpy
 from rclpy.action import ActionClient
+from rclpy.node import Node
 from stream_latency import percentile
 from ur_ros_rtde_msgs.action import ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import JointWaypoint
 
 SERVO_J = 11  # ur_rtde's command
 SECONDS = 10.0
-INTERVAL = 2.0  # ms
-POLL = 0.5  # s; the trace holds the last 1024 repeated commands, two seconds
+INTERVAL = 2.0  # ms, of the robot
+TOLERANCE = 0.2  # ms, of the robot
+POLL = 0.5  # s; the trace holds the last 1024 repeated commands, two seconds of the robot
 
 
 def _path(start):
@@ -22,7 +29,7 @@ def _path(start):
 
 
 def _trace(control, node, outcome):
-    """ns by the host's clock, until the goal has ended: of each target's arrival, and of each cycle by its number."""
+    """Until the goal has ended: (cycle, ns by the host's clock) of each target's arrival, and ns of each cycle by its number."""
     arrivals, cycles, last = [], {}, 0
     while not outcome.done():
         end = time.monotonic() + POLL
@@ -30,23 +37,38 @@ def _trace(control, node, outcome):
             rclpy.spin_once(node, timeout_sec=0.02)
         trace = control.request("trace", after=max(0, control.request("state")["state"]["cycle"] - 900))
         cycles.update((number, published) for number, published, *_ in trace["cycles"])
-        new = [when for _, when, code in trace["repeats"] if code == SERVO_J and when > last]
+        new = [(cycle, when) for cycle, when, code in trace["repeats"] if code == SERVO_J and when > last]
         arrivals += new
-        last = new[-1] if new else last
+        last = new[-1][1] if new else last
     return arrivals, cycles
 
 
-def _off(begin, end):
-    """ms."""
-    return abs((end - begin) * 1e-6 - INTERVAL)
+def _beyond(off):
+    """% of these ms."""
+    return 100.0 * sum(abs(value) > TOLERANCE for value in off) / len(off)
 
 
-def _outside(off):
-    return 100.0 * sum(value > 0.2 for value in off) / len(off)
+def _intervals(moments, factor):
+    """ms of the robot, from each of these ns of the host to the next."""
+    return [(end - begin) * 1e-6 * factor for begin, end in zip(moments, moments[1:])]
 
 
-def servo_stream(control, node):
+def _off_package(arrivals, cycles, factor):
+    """ms: how much longer the intervals of targets are than those of the packages that they answer."""
+    known = [(when, cycles[cycle]) for cycle, when in arrivals if cycle in cycles]
+    return [a - b for a, b in zip(*(_intervals(moments, factor) for moments in zip(*known)))]
+
+
+def _not_once(arrivals):
+    """% of the cycles that got no target, or more than one."""
+    count = Counter(cycle for cycle, _ in arrivals)
+    cycles = range(min(count), max(count) + 1)
+    return 100.0 * sum(count[cycle] != 1 for cycle in cycles) / len(cycles)
+
+
+def servo_stream(control, factor):
     """Figures of one trajectory; None when it could not be driven."""
+    node = Node("bench_stream")
     client = ActionClient(node, ExecuteTrajectory, "execute_trajectory")
     if not client.wait_for_server(timeout_sec=15.0):
         raise SystemExit("bench: the action execute_trajectory does not appear")
@@ -59,10 +81,13 @@ def servo_stream(control, node):
     outcome = sending.result().get_result_async()
     arrivals, cycles = _trace(control, node, outcome)
     result = outcome.result().result
-    off = [_off(a, b) for a, b in zip(arrivals, arrivals[1:])]
-    own = [_off(cycles[number], cycles[number + 1]) for number in cycles if number + 1 in cycles]
-    if not result.success or not off or not own:
+    node.destroy_node()
+    answers = [(when - cycles[number]) * 1e-6 for number, when in arrivals if number in cycles]
+    if not result.success or not answers:
+        print(f"bench: the trajectory says: {result.message}", file=sys.stderr)
         return None
-    return {"p50 off": percentile(off, 0.5), "p99.9 off": percentile(off, 0.999),
-            "outside 0.2 ms": _outside(off), "count": len(off), "cycles outside": _outside(own),
-            "tracking error": result.max_tracking_error}
+    return {"answer p50": percentile(answers, 0.5), "answer p99.9": percentile(answers, 0.999), "count": len(answers),
+            "off package": _beyond(_off_package(arrivals, cycles, factor)),
+            "off 2 ms": _beyond([ms - INTERVAL for ms in _intervals([when for _, when in arrivals], factor)]),
+            "cycles off 2 ms": _beyond([ms - INTERVAL for ms in _intervals([cycles[n] for n in sorted(cycles)], factor)]),
+            "not once a cycle": _not_once(arrivals), "tracking error": result.max_tracking_error}

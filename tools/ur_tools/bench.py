@@ -9,11 +9,21 @@ import sys
 import time
 from typing import Dict, List, Optional, Tuple
 
-from . import bench_trajectory, boilerplate, cell, say
+from . import bench_trajectory, boilerplate, cell, say, scheduling
 from .environment import program, run_environment
 from .layout import ROOT, Layout
 from .processes import Programs
 
+# Of the servo stream: the part, the aim, the unit.
+STREAM: Tuple[Tuple[str, float, str], ...] = (
+    ("answer p50", 0.3, "ms from a package to its target"),
+    ("answer p99.9", 0.5, "ms from a package to its target"),
+    ("off package", 0.1, "% of its intervals more than 0.2 ms off those of the packages that they answer"),
+    ("off 2 ms", 0.1, "% of its intervals more than 0.2 ms off 2 ms by the host's clock"),
+    ("cycles off 2 ms", 0.1, "% of the simulated controller's own intervals meanwhile"),
+    ("not once a cycle", 0.1, "% of the cycles that got no target, or two"),
+    ("tracking error", 0.02, "rad"),
+)
 # Name of a figure, its part, the aim, the unit.
 AIMS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
     ("package to C++ subscriber", "p50", 0.3, "ms"),
@@ -22,10 +32,7 @@ AIMS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
     ("package to rclpy subscriber", "p99", 1.0, "ms"),
     ("goal to first RTDE command", "p50", 1.0, "ms"),
     ("cancel to deceleration", "p50", 5.0, "ms"),
-    ("servo stream", "p99.9 off", 0.2, "ms from its interval"),
-    ("servo stream", "outside 0.2 ms", 0.1, "% of its intervals"),
-    ("servo stream", "cycles outside", 0.1, "% of the simulated controller's own intervals meanwhile"),
-    ("servo stream", "tracking error", 0.02, "rad"),
+    *((stream, *figure) for stream in ("servo stream", "servo stream, real-time") for figure in STREAM),
     ("cpu", "simulator", 10.0, "% of a core"),
     ("cpu", "robot_state_receiver", 10.0, "% of a core"),
     ("cpu", "command_server", 10.0, "% of a core"),
@@ -41,18 +48,44 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
     parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")
     parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals and cancels to measure (default: 40)")
+    parser.add_argument("--stream", action="store_true", help="measure the servo stream alone")
+    parser.add_argument("--real-time-factor", type=float, default=1.0, metavar="F",
+                        help="with --stream: the robot's time passes F times as fast, so that F below 1 takes out of the figures "
+                             "what the host is late by; those of the stream are in the robot's time (default: 1)")
+    parser.add_argument("--let-sleep", action="store_true",
+                        help="do not keep the cores awake while the servo stream is measured: on a machine whose processor time is "
+                             "rationed that costs more than it brings")
+    parser.add_argument("--realtime-priority", type=int, default=40, metavar="P",
+                        help="the servo stream is measured once more with the node's parameter realtime_priority, and the simulator "
+                             "under SCHED_FIFO, too; the host has to allow it (default: 40)")
     bench_trajectory.add_options(parser)
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.real_time_factor != 1.0 and not options.stream:
+        parser.error("--real-time-factor needs --stream: everything else is in the host's time")
+    return options
 
 
-def _start(programs: Programs, layout: Layout, options: argparse.Namespace, env: Dict[str, str]) -> "tuple[Dict[str, int], float]":
+def _nodes(options: argparse.Namespace, priority: int) -> Dict[str, Tuple[str, ...]]:
+    """Those to start, with their parameters."""
+    silence = min(10.0, max(0.1, 0.1 / options.real_time_factor))  # s; packages come as slowly as the robot's time passes
+    follows = (f"realtime_priority:={priority}", f"silence_limit:={silence}")
+    parameters: Dict[str, Tuple[str, ...]] = {"robot_state_receiver": follows, "command_server": follows, "dashboard_server": ()}
+    names = ("command_server",) if options.stream else cell.NODES
+    return {name: parameters[name] for name in names}
+
+
+def _start(programs: Programs, layout: Layout, options: argparse.Namespace, env: Dict[str, str],
+           priority: int) -> "tuple[Dict[str, int], float]":
     """The process ids by name, and how long the command server took to be ready."""
-    simulator = cell.start_simulator(programs, layout, env, options.address, options.model)
+    simulator = cell.start_simulator(programs, layout, env, options.address, options.model, "--real-time-factor",
+                                     str(options.real_time_factor))
+    if priority:  # a robot's controller takes no time from its driver's host
+        scheduling.make_realtime(simulator.process.pid, max(1, priority - 1))
     pids = {"simulator": simulator.process.pid}
     ready = 0.0
-    for node in cell.NODES:
+    for node, parameters in _nodes(options, priority).items():
         begin = time.monotonic()
-        started = cell.start_node(programs, layout, env, node, options.address)
+        started = cell.start_node(programs, layout, env, node, options.address, *parameters)
         pids[node] = started.process.pid
         if node == "command_server":
             programs.wait_until(lambda: "the robot is ready" in started.output and "commands: " in started.output, 20.0,
@@ -67,11 +100,25 @@ def _measure(programs: Programs, layout: Layout, options: argparse.Namespace, pi
     output.unlink(missing_ok=True)
     command = [str(layout.python), str(ROOT / "bench" / "measure.py"), "--address", options.address, "--subscriber",
                str(program(layout, "ur_ros_rtde", "joint_state_latency")), "--repeat", str(options.repeat), "--output", str(output)]
+    if options.stream:
+        command += ["--stream", "--real-time-factor", str(options.real_time_factor)]
     for name, pid in pids.items():
         command += ["--pid", f"{name}={pid}"]
-    if programs.run(command, env, 300.0) != 0:
+    if programs.run(command, env, 300.0 + 20.0 / options.real_time_factor) != 0:
         raise say.Failure("the measurement ended early, see above")
     return json.loads(output.read_text())
+
+
+def _session(layout: Layout, options: argparse.Namespace, priority: int = 0) -> dict:
+    """The figures of programs that are started for it: of the stream, or of all else."""
+    env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
+    with Programs(layout.log / "bench") as programs:
+        if options.stream and not options.let_sleep:
+            scheduling.keep_awake(programs)
+        pids, ready = _start(programs, layout, options, env, priority)
+        figures = _measure(programs, layout, options, pids, env)
+        programs.check()
+    return {**figures, "start to ready": ready}
 
 
 def _print(figures: dict) -> None:
@@ -80,23 +127,28 @@ def _print(figures: dict) -> None:
         value = figures.get(name)
         if part is not None and value is not None:
             value = value.get(part)
-        if value is None:
+        if value is not None:
+            say.line(f"{name:30} {part or '':16} {value:10.3f} {aim:8g}  {value / aim:5.2f}  {unit}")
+        elif name in figures:
             say.line(f"{name:30} {part or '':16} nothing measured")
-            continue
-        say.line(f"{name:30} {part or '':16} {value:10.3f} {aim:8g}  {value / aim:5.2f}  {unit}")
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
     if options.trajectory:
         return bench_trajectory.run(options, layout)
-    env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
-    with Programs(layout.log / "bench") as programs:
-        say.step("Starting simulator and nodes, measuring for about a minute")
-        pids, ready = _start(programs, layout, options, env)
-        figures = _measure(programs, layout, options, pids, env)
-        figures["start to ready"] = ready
-        programs.check()
-        _print(figures)
+    figures: dict = {}
+    if not options.stream:
+        say.step("Measuring state and goals, for about 45 s")
+        figures = _session(layout, options)
+    stream = argparse.Namespace(**{**vars(options), "stream": True})
+    say.step(f"Measuring the servo stream, for about {2 * (12.0 + 12.0 / options.real_time_factor):.0f} s")
+    figures["servo stream"] = _session(layout, stream)["servo stream"]
+    if scheduling.may_be_realtime(options.realtime_priority):
+        figures["servo stream, real-time"] = _session(layout, stream, options.realtime_priority)["servo stream"]
+    else:
+        say.line(f"Nothing is measured with real-time priority {options.realtime_priority}: this user may not have it")
+    _print(figures)
+    if not options.stream:
         say.line("\n" + boilerplate.table())
     return 0
 

@@ -22,10 +22,11 @@ def _answers(address: str, port: int) -> bool:
         return False
 
 
-def start_simulator(programs: Programs, layout: Layout, env: Dict[str, str], address: str, model: str) -> Program:
+def start_simulator(programs: Programs, layout: Layout, env: Dict[str, str], address: str, model: str,
+                    *arguments: str) -> Program:
     """Returns when its ports listen."""
     simulator = programs.start("simulator", [program(layout, "ur_simulator", "ur_simulator"), "--address", address,
-                                             "--model", model], env)
+                                             "--model", model, *arguments], env)
     programs.wait_until(lambda: _answers(address, DASHBOARD_PORT), 10.0, "the simulator's ports")
     return simulator
 
