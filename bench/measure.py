@@ -73,12 +73,13 @@ def main():
     parser.add_argument("--output", required=True, type=Path, metavar="FILE", help="where the JSON goes")
     parser.add_argument("--repeat", type=int, default=40, help="goals and cancels")
     parser.add_argument("--stream", action="store_true", help="the servo stream instead of everything else")
+    parser.add_argument("--seconds", type=float, default=10.0, help="that the stream takes, of the robot")
     parser.add_argument("--real-time-factor", type=float, default=1.0, help="the simulator's")
     options = parser.parse_args()
     rclpy.init()
     with ControlPort(options.address) as control:
         if options.stream:
-            figures = {"servo stream": servo_stream(control, options.real_time_factor)}
+            figures = {"servo stream": servo_stream(control, options.seconds, options.real_time_factor)}
         else:
             figures = {**state_figures(options, control), **goal_figures(options, control)}
     rclpy.try_shutdown()

@@ -15,16 +15,15 @@ from ur_ros_rtde_msgs.action import ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import JointWaypoint
 
 SERVO_J = 11  # ur_rtde's command
-SECONDS = 10.0
 INTERVAL = 2.0  # ms, of the robot
 TOLERANCE = 0.2  # ms, of the robot
 POLL = 0.5  # s; the trace holds the last 1024 repeated commands, two seconds of the robot
 
 
-def _path(start):
-    """There and back, long enough for SECONDS at 0.4 rad/s."""
+def _path(start, seconds):
+    """There and back twice, that long at 0.4 rad/s."""
     there = list(start)
-    there[0] += 0.4 * SECONDS / 4.0
+    there[0] += 0.4 * seconds / 4.0
     return [JointWaypoint(positions=list(positions)) for positions in (start, there, start, there, start)]
 
 
@@ -66,14 +65,24 @@ def _not_once(arrivals):
     return 100.0 * sum(count[cycle] != 1 for cycle in cycles) / len(cycles)
 
 
-def servo_stream(control, factor):
+def figures(arrivals, cycles, factor):
+    """Of a stream's [(cycle, ns of arrival)] and {cycle: ns of its package}; percentages, and ms."""
+    answers = [(when - cycles[number]) * 1e-6 for number, when in arrivals if number in cycles]
+    off = [ms - INTERVAL for ms in _intervals([when for _, when in arrivals], factor)]
+    cycles_off = [ms - INTERVAL for ms in _intervals([cycles[number] for number in sorted(cycles)], factor)]
+    return {"answer p50": percentile(answers, 0.5), "answer p99.9": percentile(answers, 0.999), "count": len(answers),
+            "off package": _beyond(_off_package(arrivals, cycles, factor)), "off 2 ms": _beyond(off),
+            "cycles off 2 ms": _beyond(cycles_off), "not once a cycle": _not_once(arrivals)}
+
+
+def servo_stream(control, seconds, factor):
     """Figures of one trajectory; None when it could not be driven."""
     node = Node("bench_stream")
     client = ActionClient(node, ExecuteTrajectory, "execute_trajectory")
     if not client.wait_for_server(timeout_sec=15.0):
         raise SystemExit("bench: the action execute_trajectory does not appear")
     start = list(control.request("state")["state"]["target"]["position"])
-    goal = ExecuteTrajectory.Goal(waypoints=_path(start), max_velocity=[0.4] * 6, lookahead_time=0.03, gain=2000.0)
+    goal = ExecuteTrajectory.Goal(waypoints=_path(start, seconds), max_velocity=[0.4] * 6, lookahead_time=0.03, gain=2000.0)
     sending = client.send_goal_async(goal)
     rclpy.spin_until_future_complete(node, sending, timeout_sec=10.0)
     if not sending.done() or not sending.result().accepted:
@@ -82,12 +91,7 @@ def servo_stream(control, factor):
     arrivals, cycles = _trace(control, node, outcome)
     result = outcome.result().result
     node.destroy_node()
-    answers = [(when - cycles[number]) * 1e-6 for number, when in arrivals if number in cycles]
-    if not result.success or not answers:
+    if not result.success or len(arrivals) < 10:
         print(f"bench: the trajectory says: {result.message}", file=sys.stderr)
         return None
-    return {"answer p50": percentile(answers, 0.5), "answer p99.9": percentile(answers, 0.999), "count": len(answers),
-            "off package": _beyond(_off_package(arrivals, cycles, factor)),
-            "off 2 ms": _beyond([ms - INTERVAL for ms in _intervals([when for _, when in arrivals], factor)]),
-            "cycles off 2 ms": _beyond([ms - INTERVAL for ms in _intervals([cycles[n] for n in sorted(cycles)], factor)]),
-            "not once a cycle": _not_once(arrivals), "tracking error": result.max_tracking_error}
+    return {**figures(arrivals, cycles, factor), "tracking error": result.max_tracking_error}

@@ -52,6 +52,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--real-time-factor", type=float, default=1.0, metavar="F",
                         help="with --stream: the robot's time passes F times as fast, so that F below 1 takes out of the figures "
                              "what the host is late by; those of the stream are in the robot's time (default: 1)")
+    parser.add_argument("--seconds", type=float, default=10.0, metavar="S", help="of the servo stream (default: 10)")
     parser.add_argument("--let-sleep", action="store_true",
                         help="do not keep the cores awake while the servo stream is measured: on a machine whose processor time is "
                              "rationed that costs more than it brings")
@@ -101,10 +102,10 @@ def _measure(programs: Programs, layout: Layout, options: argparse.Namespace, pi
     command = [str(layout.python), str(ROOT / "bench" / "measure.py"), "--address", options.address, "--subscriber",
                str(program(layout, "ur_ros_rtde", "joint_state_latency")), "--repeat", str(options.repeat), "--output", str(output)]
     if options.stream:
-        command += ["--stream", "--real-time-factor", str(options.real_time_factor)]
+        command += ["--stream", "--real-time-factor", str(options.real_time_factor), "--seconds", str(options.seconds)]
     for name, pid in pids.items():
         command += ["--pid", f"{name}={pid}"]
-    if programs.run(command, env, 300.0 + 20.0 / options.real_time_factor) != 0:
+    if programs.run(command, env, 300.0 + 2.0 * options.seconds / options.real_time_factor) != 0:
         raise say.Failure("the measurement ended early, see above")
     return json.loads(output.read_text())
 
@@ -141,7 +142,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         say.step("Measuring state and goals, for about 45 s")
         figures = _session(layout, options)
     stream = argparse.Namespace(**{**vars(options), "stream": True})
-    say.step(f"Measuring the servo stream, for about {2 * (12.0 + 12.0 / options.real_time_factor):.0f} s")
+    say.step(f"Measuring the servo stream, for about {2 * (12.0 + options.seconds / options.real_time_factor):.0f} s")
     figures["servo stream"] = _session(layout, stream)["servo stream"]
     if scheduling.may_be_realtime(options.realtime_priority):
         figures["servo stream, real-time"] = _session(layout, stream, options.realtime_priority)["servo stream"]
