@@ -54,8 +54,8 @@ def parse(arguments: List[str]) -> argparse.Namespace:
                              "what the host is late by; those of the stream are in the robot's time (default: 1)")
     parser.add_argument("--seconds", type=float, default=10.0, metavar="S", help="of the servo stream (default: 10)")
     parser.add_argument("--let-sleep", action="store_true",
-                        help="do not keep the cores awake while the servo stream is measured: on a machine whose processor time is "
-                             "rationed that costs more than it brings")
+                        help="do not keep the cores awake while the servo stream is measured with real-time priority: on a machine "
+                             "whose processor time is rationed that costs more than it brings")
     parser.add_argument("--realtime-priority", type=int, default=40, metavar="P",
                         help="the servo stream is measured once more with the node's parameter realtime_priority, and the simulator "
                              "under SCHED_FIFO, too; the host has to allow it (default: 40)")
@@ -68,9 +68,11 @@ def parse(arguments: List[str]) -> argparse.Namespace:
 
 def _nodes(options: argparse.Namespace, priority: int) -> Dict[str, Tuple[str, ...]]:
     """Those to start, with their parameters."""
-    silence = min(10.0, max(0.1, 0.1 / options.real_time_factor))  # s; packages come as slowly as the robot's time passes
+    # A host that stops for some 100 ms shall show in the figures, not end the stream; a slowed robot's packages come seldom.
+    silence = min(10.0, max(1.0, 0.1 / options.real_time_factor))
     follows = (f"realtime_priority:={priority}", f"silence_limit:={silence}")
-    parameters: Dict[str, Tuple[str, ...]] = {"robot_state_receiver": follows, "command_server": follows, "dashboard_server": ()}
+    parameters: Dict[str, Tuple[str, ...]] = {"robot_state_receiver": follows, "dashboard_server": (),
+                                              "command_server": (*follows, "watchdog_frequency:=2.0")}
     names = ("command_server",) if options.stream else cell.NODES
     return {name: parameters[name] for name in names}
 
@@ -114,7 +116,7 @@ def _session(layout: Layout, options: argparse.Namespace, priority: int = 0) -> 
     """The figures of programs that are started for it: of the stream, or of all else."""
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
     with Programs(layout.log / "bench") as programs:
-        if options.stream and not options.let_sleep:
+        if priority and not options.let_sleep:
             scheduling.keep_awake(programs)
         pids, ready = _start(programs, layout, options, env, priority)
         figures = _measure(programs, layout, options, pids, env)

@@ -21,7 +21,8 @@ while True:
 
 def keep_awake(programs: Programs) -> None:
     """One loop a core, until `programs` end: waking an idle core takes longer than what is measured, and on a virtual machine
-    up to tens of milliseconds. Controllers' hosts are set up so that they do not sleep."""
+    up to tens of milliseconds. Controllers' hosts are set up so that they do not sleep. For programs with real-time priority:
+    a kernel with lazy preemption lets others wait for the loop until the next tick."""
     for core in sorted(os.sched_getaffinity(0)):
         programs.start(f"awake_{core}", [sys.executable, "-c", _SPIN])
 
