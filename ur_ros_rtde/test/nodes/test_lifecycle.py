@@ -36,6 +36,7 @@ def test_without_an_address_it_says_what_to_give(name):
     ("command_server", "ur_type:=ur99", "ur99"),
     ("command_server", "urcap_port:=70000", "urcap_port"),
     ("command_server", "watchdog_frequency:=true", "watchdog_frequency"),
+    ("command_server", "watchdog_frequency:=60.0", "50"),
     ("command_server", "realtime_priority:=100", "99"),
     ("robot_state_receiver", "realtime_priority:=-1", "realtime_priority"),
 ])
