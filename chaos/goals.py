@@ -54,6 +54,8 @@ MOTIONS = {
     "jog": ("Jog", lambda r: {"twist": {"linear": _vector(r, 0.1)}, "frame": r.randrange(2), "time": r.uniform(0.2, 1.0)}),
     "stop": ("Stop", lambda r: {"joint_deceleration": r.uniform(1.0, 10.0)}),
 }
+# The arm is powered up again at once after a fault: a stand_down that does not see it off in between waits for its timeout.
+SHORTER = {"stand_down": {"timeout": 20.0}}
 HOMEWARD = ("move_j", "servo_j")  # more often, so that the relative ones do not lead the arm away
 WRONG = {"joint_positions": [math.nan] * 6}
 
@@ -79,5 +81,5 @@ class Mix:
         if kind < 0.05:
             return Plan("move_j", "ur_ros_rtde_msgs/action/MoveJ", WRONG, None)
         if kind < 0.3 and example:
-            return Plan(example.action, example.type, example.goal, cancel_after)
+            return Plan(example.action, example.type, {**example.goal, **SHORTER.get(example.action, {})}, cancel_after)
         return Plan(name, f"ur_ros_rtde_msgs/action/{MOTIONS[name][0]}", fields, cancel_after)
