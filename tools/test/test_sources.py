@@ -2,7 +2,7 @@ import pytest
 from ur_tools import lint, system_packages
 
 
-@pytest.mark.parametrize("text", ["see " + "/work/" + "main", "cd " + "/root/" + "x", "/home/" + "anna/ws"])
+@pytest.mark.parametrize("text", ["see /" + "work/main", "cd /" + "root/x", "/" + "home/anna/ws"])
 def test_a_path_of_one_machine_is_found(text):
     assert lint._TRACES.search(text)
 

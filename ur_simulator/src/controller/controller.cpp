@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "control_port/commands.hpp"
@@ -78,13 +78,12 @@ Controller::Controller(const SimulatorOptions & options)
       control_(io_, options.address, options.ports.control,
                [this](const nlohmann::json & request) { return control(request); })
 {
-  rtde_.on_input([this](const rtde::InputField & field) { watchdog_.fed(field.name, state_.timestamp); });
-  rtde_.on_package([this](const std::vector<const rtde::InputField *> & fields) {
-    constexpr auto is_command = [](const rtde::InputField * field) {
-      return field->name == "input_int_register_0";
-    };
-    if (std::any_of(fields.begin(), fields.end(), is_command)) {
-      trace_.command_arrived(state_, fields.size() > 1);
+  rtde_.on_package([this](std::span<const rtde::InputField * const> fields) {
+    for (const rtde::InputField * field : fields) {
+      watchdog_.fed(field->name, state_.timestamp);
+      if (field->name == "input_int_register_0") {
+        trace_.command_arrived(state_, fields.size() > 1);
+      }
     }
   });
   pendant_->fetch_programs_by([this](const ProgramHost & host, auto done) {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <unordered_map>
-#include <vector>
 
 #include "log/event_log.hpp"
 #include "net/listener.hpp"
@@ -21,6 +21,9 @@ class Session;
 /// `io` (inputs only) and `control` (both).
 enum class ClientRole : std::uint8_t { undecided, receive, io, control };
 
+/// Called for each data package when its fields have been read, with those that were in it.
+using PackageFunction = std::function<void(std::span<const InputField * const>)>;
+
 /// What the sessions share. An input field belongs to the client that first asked for it, until that client
 /// leaves.
 struct Shared {
@@ -28,10 +31,7 @@ struct Shared {
   PolyscopeVersion version;
   EventLog & log;
   std::unordered_map<const InputField *, std::uint64_t> owners;
-  /// Called for each field of each data package (the program's watchdog counts them).
-  std::function<void(const InputField &)> fed;
-  /// Called for each data package, when its fields have been read.
-  std::function<void(const std::vector<const InputField *> &)> package_read;
+  PackageFunction package_read;
 };
 
 /// The Real-Time Data Exchange server, protocol versions 1 and 2.
@@ -41,12 +41,7 @@ class Server {
          ControllerState & state, const PolyscopeVersion & version, EventLog & log);
   ~Server();
 
-  void on_input(std::function<void(const InputField &)> fed) { shared_.fed = std::move(fed); }
-  /// `read` gets the fields of the package's recipe.
-  void on_package(std::function<void(const std::vector<const InputField *> &)> read)
-  {
-    shared_.package_read = std::move(read);
-  }
+  void on_package(PackageFunction read) { shared_.package_read = std::move(read); }
   /// Sends the state of this cycle to every started client whose turn it is. Allocates nothing.
   void publish();
   Listener & listener() { return listener_; }

@@ -245,6 +245,7 @@ void Session::read_fields(InputRecipe & recipe, std::string_view values, unsigne
   // the fields that are there, in order, and keeps the last value of the others.
   Reader reader(values);
   std::size_t expected = 0;
+  std::size_t there = 0;
   for (const InputField * field : recipe.fields) {
     expected += size(field->type);
     if (reader.left() < size(field->type)) {
@@ -252,13 +253,11 @@ void Session::read_fields(InputRecipe & recipe, std::string_view values, unsigne
       continue;
     }
     field->read(reader, field->index, shared_.state, masked_);
-    if (shared_.fed) {
-      shared_.fed(*field);
-    }
+    ++there;
   }
   apply(masked_, shared_.state);
   if (shared_.package_read) {
-    shared_.package_read(recipe.fields);
+    shared_.package_read(std::span(recipe.fields).first(there));
   }
   if (expected != values.size() && !recipe.wrong_size_reported) {
     recipe.wrong_size_reported = true;
