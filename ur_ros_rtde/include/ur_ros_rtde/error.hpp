@@ -29,6 +29,9 @@ enum class ErrorCode : std::uint16_t {
   shutdown = 16,
   not_supported = 17,
   safety_violation = 18,
+  client_lost = 19,
+  model_mismatch = 20,
+  robot_in_use = 21,
 };
 
 /// The enumerator's name, "unknown" for a number outside the enumeration.

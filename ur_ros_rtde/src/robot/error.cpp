@@ -43,6 +43,12 @@ const char * to_string(ErrorCode code)
       return "not_supported";
     case ErrorCode::safety_violation:
       return "safety_violation";
+    case ErrorCode::client_lost:
+      return "client_lost";
+    case ErrorCode::model_mismatch:
+      return "model_mismatch";
+    case ErrorCode::robot_in_use:
+      return "robot_in_use";
   }
   return "unknown";
 }
