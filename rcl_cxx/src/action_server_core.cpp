@@ -26,6 +26,9 @@ constexpr std::chrono::milliseconds kGraceForRequests{250};
 constexpr std::chrono::milliseconds kExpirySlack{5};
 constexpr std::chrono::milliseconds kExpiryRetry{20};
 
+// A look at the graph takes some ten microseconds.
+constexpr std::chrono::milliseconds kClientCheckPeriod{50};
+
 rcl_action_server_options_t to_rcl(const ActionServerOptions & options)
 {
   rcl_action_server_options_t result = rcl_action_server_get_default_options();
@@ -95,12 +98,19 @@ ActionServerCore::~ActionServerCore()
 void ActionServerCore::start()
 {
   const std::weak_ptr<ActionServerCore> weak = std::static_pointer_cast<ActionServerCore>(shared_from_this());
-  expiry_ = TimerCore::create(node(), std::chrono::hours(1), [weak] {
-    if (const auto self = weak.lock()) {
-      self->expire();
-    }
-  });
-  expiry_->cancel();
+  const auto create_timer = [&](std::chrono::nanoseconds period, void (ActionServerCore::*callback)()) {
+    auto timer = TimerCore::create(node(), period, [weak, callback] {
+      if (const auto self = weak.lock()) {
+        ((*self).*callback)();
+      }
+    });
+    timer->cancel();
+    return timer;
+  };
+  expiry_ = create_timer(std::chrono::hours(1), &ActionServerCore::expire);
+  if (erased_.client_lost) {
+    client_check_ = create_timer(kClientCheckPeriod, &ActionServerCore::check_clients);
+  }
   shutdown_callback_ = node()->context().add_callback(ContextCore::Phase::library_before, [weak] {
     if (const auto self = weak.lock()) {
       self->abort_all("shutdown", self->node()->in_own_callback());
@@ -119,8 +129,10 @@ void ActionServerCore::stop() noexcept
   ignore_rcl(rcl_action_server_set_goal_service_callback(&server_, nullptr, nullptr));
   ignore_rcl(rcl_action_server_set_cancel_service_callback(&server_, nullptr, nullptr));
   ignore_rcl(rcl_action_server_set_result_service_callback(&server_, nullptr, nullptr));
-  if (expiry_) {
-    expiry_->close();
+  for (const auto & timer : {expiry_, client_check_}) {
+    if (timer) {
+      timer->close();
+    }
   }
 }
 

@@ -67,17 +67,21 @@ class ActionServerCore : public Entity {
   void take_cancel();
   bool take_result();
   void expire();
+  void watch_client(GoalCore & goal, const rmw_request_id_t & request);
+  void check_clients();
 
   tl::expected<void, std::string> decide_goal(const GoalId & id, const void * request) noexcept;
   tl::expected<std::shared_ptr<GoalHandleBase>, std::string> accept(const GoalId & id,
                                                                     const std::shared_ptr<void> & request);
   void run_accepted(std::shared_ptr<GoalHandleBase> handle) noexcept;
   void announce(const rmw_request_id_t & request, std::shared_ptr<GoalHandleBase> accepted);
+  void discard(const GoalId & id) noexcept;
   void process_cancel(const action_msgs::srv::CancelGoal::Request & request,
                       action_msgs::srv::CancelGoal::Response & response);
   bool decide_cancel(GoalCore & goal);
   bool ask_cancel(GoalHandleBase & handle) noexcept;
-  void tell_canceling(GoalHandleBase & handle) noexcept;
+  /// Calls one of the user's handlers; what it throws is logged.
+  void call(const char * name, const GoalId & id, const std::function<void()> & handler) const noexcept;
   std::shared_ptr<GoalCore> find(const GoalId & id) const;
 
   using Send = rcl_ret_t (*)(const rcl_action_server_t *, rmw_request_id_t *, void *);
@@ -94,6 +98,7 @@ class ActionServerCore : public Entity {
   bool transition_locked(GoalCore & goal, GoalStatus status);
   void publish_status_locked();
   void schedule_expiry_locked();
+  std::vector<std::shared_ptr<GoalHandleBase>> lost_clients_locked(const ServiceClients & known);
 
   const ErasedActionServer erased_;
   const ActionServerOps & ops_;
@@ -107,6 +112,7 @@ class ActionServerCore : public Entity {
   rcl_action_server_t server_;
   std::map<GoalId, std::shared_ptr<GoalCore>> goals_;
   std::shared_ptr<TimerCore> expiry_;
+  std::shared_ptr<TimerCore> client_check_;  // runs while clients are watched
   bool retired_ = false;
   std::size_t shutdown_callback_ = 0;
 };

@@ -30,13 +30,31 @@ void ActionServerCore::take_goal()
   }
   check_rcl(code, name_, "cannot take a goal");
   const GoalId id = ops_.goal_id_of_goal_request(request.get());
-  auto accepted = decide_goal(id, request.get()).and_then([&] { return accept(id, request); });
-  if (accepted) {
+  const auto refuse = [&](const std::string & reason) {
+    RCL_CXX_WARN(node()->logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
+    answer(&rcl_action_send_goal_response, request_id, ops_.make_goal_response(false, 0, 0));
+  };
+  if (find(id)) {
+    return refuse("there is a goal of this id already");
+  }
+  if (const auto decision = decide_goal(id, request.get()); !decision) {
+    return refuse(decision.error());
+  }
+  if (auto accepted = accept(id, request)) {
     announce(request_id, std::move(*accepted));
   } else {
-    RCL_CXX_WARN(node()->logger(), "{}: goal {} refused: {}", name_, id.short_string(), accepted.error());
-    answer(&rcl_action_send_goal_response, request_id, ops_.make_goal_response(false, 0, 0));
+    discard(id);
+    refuse(accepted.error());
   }
+}
+
+void ActionServerCore::discard(const GoalId & id) noexcept
+{
+  call("discarded", id, [&] {
+    if (erased_.discarded) {
+      erased_.discarded(id);
+    }
+  });
 }
 
 void ActionServerCore::announce(const rmw_request_id_t & request, std::shared_ptr<GoalHandleBase> accepted)
@@ -44,17 +62,23 @@ void ActionServerCore::announce(const rmw_request_id_t & request, std::shared_pt
   const std::int64_t stamp = accepted->accepted_ns();
   auto response = ops_.make_goal_response(true, static_cast<std::int32_t>(stamp / kNsPerSecond),
                                           static_cast<std::uint32_t>(stamp % kNsPerSecond));
-  answer(&rcl_action_send_goal_response, request, std::move(response), [this, accepted](bool delivered) {
-    if (!delivered || !accepted->is_active()) {
-      return;  // nobody knows of the goal, dropping its handle aborts it; or it has ended while its client
-               // was looked for
-    }
-    {
-      const std::lock_guard lock(mutex_);
-      publish_status_locked();
-    }
-    run_accepted(accepted);
-  });
+  answer(&rcl_action_send_goal_response, request, std::move(response),
+         [this, request, accepted](bool delivered) {
+           const auto goal = find(accepted->goal_id());
+           if (!delivered || !goal || !accepted->is_active()) {
+             // The client does not know of the goal, and dropping the handle aborts it; or the goal has ended
+             // while its client was looked for.
+             discard(accepted->goal_id());
+             return;
+           }
+           watch_client(*goal, request);
+           {
+             const std::lock_guard lock(mutex_);
+             publish_status_locked();
+           }
+           run_accepted(accepted);
+           check_clients();  // the sooner a client is discovered, the sooner its end is noticed
+         });
 }
 
 tl::expected<void, std::string> ActionServerCore::decide_goal(const GoalId & id,
@@ -75,9 +99,6 @@ tl::expected<std::shared_ptr<GoalHandleBase>, std::string> ActionServerCore::acc
   const std::lock_guard lock(mutex_);
   if (!node()->context().ok()) {
     return tl::make_unexpected(std::string("shutting down"));
-  }
-  if (goals_.contains(id)) {
-    return tl::make_unexpected(std::string("there is a goal of this id already"));
   }
   rcl_action_goal_info_t info = rcl_action_get_zero_initialized_goal_info();
   std::copy(id.bytes.begin(), id.bytes.end(), std::begin(info.goal_id.uuid));
@@ -219,37 +240,32 @@ bool ActionServerCore::decide_cancel(GoalCore & goal)
       return false;
     }
   }
-  tell_canceling(*handle);
+  if (erased_.canceling) {
+    call("canceling", handle->goal_id(), [&] { erased_.canceling(*handle); });
+  }
   return true;
 }
 
 bool ActionServerCore::ask_cancel(GoalHandleBase & handle) noexcept
 {
-  const std::string id = handle.goal_id().short_string();
-  try {
-    return erased_.cancel && erased_.cancel(handle);
-  } catch (const std::exception & error) {
-    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: cancel handler: {}", name_, id, error.what());
-  } catch (...) {
-    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: cancel handler threw something that is no std::exception",
-                  name_, id);
+  bool granted = false;
+  if (erased_.cancel) {
+    call("cancel", handle.goal_id(), [&] { granted = erased_.cancel(handle); });
   }
-  return false;
+  return granted;
 }
 
-void ActionServerCore::tell_canceling(GoalHandleBase & handle) noexcept
+void ActionServerCore::call(const char * name, const GoalId & id,
+                            const std::function<void()> & handler) const noexcept
 {
-  if (!erased_.canceling) {
-    return;
-  }
-  const std::string id = handle.goal_id().short_string();
   try {
-    erased_.canceling(handle);
+    handler();
   } catch (const std::exception & error) {
-    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: canceling handler: {}", name_, id, error.what());
+    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: {} handler: {}", name_, id.short_string(), name,
+                  error.what());
   } catch (...) {
-    RCL_CXX_ERROR(node()->logger(),
-                  "{}: goal {}: canceling handler threw something that is no std::exception", name_, id);
+    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: {} handler threw something that is no std::exception",
+                  name_, id.short_string(), name);
   }
 }
 

@@ -7,8 +7,10 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "client_watch.hpp"
 #include "rcl_cxx/goal_handle.hpp"
 #include "rcl_cxx/goal_id.hpp"
 
@@ -46,6 +48,7 @@ class GoalCore {
   std::shared_ptr<void> result_response;          // set with a terminal state
   std::vector<rmw_request_id_t> result_requests;  // to be answered with it
   std::chrono::steady_clock::time_point ended{};
+  std::optional<ClientWatch> client;  // while it is watched
 
  private:
   const std::weak_ptr<ActionServerCore> server_;

@@ -3,6 +3,7 @@
 /// Everything in which the versions of rcl differ (Humble 5.3, Jazzy 9.2, Kilted 10.1, Rolling). The only
 /// place that looks at a version.
 
+#include <rcl/graph.h>
 #include <rcl/logging_rosout.h>
 #include <rcl/node.h>
 #include <rcl/timer.h>
@@ -53,6 +54,17 @@ inline rcl_ret_t action_server_init(rcl_action_server_t * server, rcl_node_t * n
 #else
   static_cast<void>(expire_timer);
   return rcl_action_server_init(server, node, clock, type_support, name, options);
+#endif
+}
+
+/// Before Jazzy nobody counts clients: one is there for all that is known.
+inline rcl_ret_t count_clients(const rcl_node_t * node, const char * service, std::size_t * count)
+{
+#if RCL_VERSION_MAJOR >= 9
+  return rcl_count_clients(node, service, count);
+#else
+  *count = 1;
+  return rcl_node_is_valid(node) && service != nullptr ? RCL_RET_OK : RCL_RET_NODE_INVALID;
 #endif
 }
 

@@ -50,6 +50,14 @@ class Actions : public Spinning {
       handles.push_back(std::move(handle));
     };
     handlers.cancel = [this](Handle & handle) { return !on_cancel || on_cancel(handle); };
+    handlers.client_lost = [this](Handle & handle) {
+      const std::lock_guard lock(mutex);
+      without_client.push_back(handle.goal_id());
+    };
+    handlers.discarded = [this](const rcl_cxx::GoalId & id) {
+      const std::lock_guard lock(mutex);
+      discarded.push_back(id);
+    };
     server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers), options);
     client = node->create_action_client<Fibonacci>("fibonacci");
     ASSERT_TRUE(client->wait_for_server(kLimit));
@@ -90,6 +98,8 @@ class Actions : public Spinning {
 
   std::mutex mutex;
   std::vector<std::shared_ptr<Handle>> handles;
+  std::vector<rcl_cxx::GoalId> without_client;
+  std::vector<rcl_cxx::GoalId> discarded;
   std::function<tl::expected<void, std::string>(const rcl_cxx::GoalId &, const Fibonacci::Goal &)> on_goal;
   std::function<void(std::shared_ptr<Handle>)> on_accepted;
   std::function<bool(Handle &)> on_cancel;

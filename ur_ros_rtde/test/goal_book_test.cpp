@@ -81,37 +81,92 @@ TEST_F(Goals, get_their_cancel)
     const auto why = ticket->interrupt->requested();
     ended.set_value(why ? why->code : ErrorCode::none);
   }));
-  book_.cancel(id);
+  book_.end(id, Error{ErrorCode::canceled, "canceled by a client"});
   EXPECT_EQ(ended.get_future().get(), ErrorCode::canceled);
   host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 
-TEST_F(Goals, that_were_admitted_but_never_accepted_give_back_what_they_hold)
+/// Goals that hold a resource from their admission on, as motions do.
+class HoldingGoals : public Goals {
+ protected:
+  tl::expected<void, std::string> admit(const GoalId & id)
+  {
+    return book_.admit(id, [this](GoalBook::Ticket & ticket) -> Status {
+      auto lease = arbiter_.acquire({Resource::motion, "/test", "1", {}});
+      if (!lease) {
+        return tl::unexpected(lease.error());
+      }
+      ticket.hold(std::move(*lease));
+      return {};
+    });
+  }
+
+  Arbiter arbiter_;
+};
+
+TEST_F(HoldingGoals, FreeWhatTheyHoldWhenTheyAreDiscarded)
 {
-  Arbiter arbiter;
-  const auto hold = [&arbiter](GoalBook::Ticket & ticket) -> Status {
-    auto lease = arbiter.acquire({Resource::motion, "/test", "1", {}});
-    if (!lease) {
-      return tl::unexpected(lease.error());
-    }
-    ticket.lease = std::move(*lease);
-    return {};
-  };
-  ASSERT_TRUE(book_.admit(GoalId::random(), hold));
-  EXPECT_TRUE(book_.admit(GoalId::random(), hold)) << "the first one still holds the robot";
+  const GoalId id = GoalId::random();
+  ASSERT_TRUE(admit(id));
+  EXPECT_TRUE(arbiter_.holder(Resource::motion));
+  book_.discard(id);
+  EXPECT_FALSE(arbiter_.holder(Resource::motion));
+  EXPECT_FALSE(book_.start(id, [](const std::shared_ptr<GoalBook::Ticket> &) {}));
 }
 
-TEST_F(Goals, that_end_free_what_they_hold_before_the_result_is_sent)
+TEST_F(HoldingGoals, WaitForTheirAcceptanceWhileOthersAreAdmitted)
 {
-  Arbiter arbiter;
   const GoalId id = GoalId::random();
-  ASSERT_TRUE(book_.admit(id, [&arbiter](GoalBook::Ticket & ticket) {
-    ticket.lease = std::move(*arbiter.acquire({Resource::motion, "/test", "1", {}}));
-    return Status();
-  }));
-  EXPECT_TRUE(arbiter.holder(Resource::motion));
+  ASSERT_TRUE(admit(id));
+  EXPECT_FALSE(admit(GoalId::random())) << "the first one still holds the arm";
+  EXPECT_TRUE(book_.start(id, [](const std::shared_ptr<GoalBook::Ticket> &) {}));
+  host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
+}
+
+TEST_F(HoldingGoals, FreeWhatTheyHoldWhenTheyHaveToEndBeforeTheyStart)
+{
+  const GoalId id = GoalId::random();
+  ASSERT_TRUE(admit(id));
+  book_.end(id, Error{ErrorCode::preempted, "stop took over"});
+  EXPECT_FALSE(arbiter_.holder(Resource::motion));
+}
+
+TEST_F(HoldingGoals, KeepWhatTheyHoldWhileTheyComeToTheirEnd)
+{
+  const GoalId id = GoalId::random();
+  ASSERT_TRUE(admit(id));
+  ASSERT_TRUE(book_.start(id, [](const std::shared_ptr<GoalBook::Ticket> &) {}));
+  book_.end(id, client_lost());
+  EXPECT_TRUE(arbiter_.holder(Resource::motion));
+  book_.finish(id, client_lost());
+  EXPECT_FALSE(arbiter_.holder(Resource::motion));
+  host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
+}
+
+TEST_F(HoldingGoals, AreNotReplacedByAnotherGoalOfTheSameId)
+{
+  const GoalId id = GoalId::random();
+  ASSERT_TRUE(admit(id));
+  std::promise<std::shared_ptr<GoalBook::Ticket>> started;
+  ASSERT_TRUE(book_.start(id, [&](const std::shared_ptr<GoalBook::Ticket> & ticket) { started.set_value(ticket); }));
+  const auto ticket = started.get_future().get();
+
+  const auto again = book_.admit(id, [](GoalBook::Ticket &) { return Status(); });
+  ASSERT_FALSE(again);
+  EXPECT_NE(again.error().find(id.to_string()), std::string::npos) << again.error();
+
+  book_.end(id, Error{ErrorCode::canceled, "canceled by a client"});
+  ASSERT_TRUE(ticket->interrupt->requested()) << "the cancel has to reach the goal that runs";
+  host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
+}
+
+TEST_F(HoldingGoals, FreeWhatTheyHoldBeforeTheResultIsSent)
+{
+  const GoalId id = GoalId::random();
+  ASSERT_TRUE(admit(id));
+  EXPECT_TRUE(arbiter_.holder(Resource::motion));
   book_.finish(id, Outcome::success());
-  EXPECT_FALSE(arbiter.holder(Resource::motion));
+  EXPECT_FALSE(arbiter_.holder(Resource::motion));
 }
 
 }  // namespace

@@ -2,11 +2,15 @@
 
 import csv
 import os
+import signal
+import subprocess
 import time
 
 import pytest
 import yaml
-from support import HOME, Client, Process, Simulator, node, program, wait_for
+from rclpy.action import ActionServer
+from rclpy.task import Future
+from support import HOME, PATIENCE, Client, Process, Simulator, node, program, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -75,14 +79,89 @@ def test_the_fields_of_a_goal_are_shown_without_sending_it(running):
     assert code == 0 and yaml.safe_load(output)["speed"] == 0.5, output
 
 
-def test_ctrl_c_cancels_the_goal_and_shows_where_the_arm_stands(running):
+def slow_motion():
     away = [HOME[0] - 2.0, *HOME[1:]]
-    process = Process([program("ur_ros_rtde_cli", "ur"), "call", "move_j", goal(joint_positions=away, speed=0.3)])
-    wait_for(lambda: not running.state()["at_rest"], 20.0, "the arm to move")
-    process.interrupt()
-    assert process.wait(20.0) == 1, process.output()
-    assert "error_code: 4" in process.output()
-    assert running.state()["at_rest"]
+    return [program("ur_ros_rtde_cli", "ur"), "call", "move_j", goal(joint_positions=away, speed=0.2)]
+
+
+@pytest.fixture
+def at_home(running):
+    code, output = ur("call", "move_j", goal(joint_positions=HOME, speed=2.0, acceleration=5.0))
+    assert code == 0, output
+    return running
+
+
+def wait_until_moving(simulator):
+    wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the arm to move")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_cancels_the_goal_and_shows_where_the_arm_stands(at_home, number):
+    process = Process(slow_motion())
+    wait_until_moving(at_home)
+    process.signal(number)
+    assert process.wait(20.0) == 128 + number, process.output()
+    assert at_home.state()["at_rest"]
+    assert "error_code: 4" in process.output() and "Traceback" not in process.output()
+
+
+def test_timeout_cancels_the_goal(at_home):
+    process = Process(["timeout", "6", *slow_motion()])
+    wait_until_moving(at_home)
+    assert process.wait(30.0) == 124, process.output()
+    assert at_home.state()["at_rest"]
+    assert "error_code: 4" in process.output(), process.output()
+
+
+def test_the_arm_stops_when_nobody_reads_the_output_any_more(at_home, tmp_path):
+    errors = tmp_path / "errors"
+    with errors.open("w") as file:
+        process = subprocess.Popen(slow_motion(), stdout=subprocess.PIPE, stderr=file)
+    wait_until_moving(at_home)
+    process.stdout.close()
+    assert process.wait(PATIENCE * 20.0) == 128 + signal.SIGPIPE, errors.read_text()
+    assert at_home.state()["at_rest"]
+    assert errors.read_text().splitlines() == ["canceling (SIGPIPE), again to go without the result"]
+
+
+def test_the_result_can_be_piped_into_head(at_home):
+    turned = goal(joint_positions=[HOME[0] + 0.1, *HOME[1:]], speed=1)
+    process = Process(["bash", "-c", 'set -o pipefail; "$@" | head -1', "bash", *slow_motion()[:-1], turned])
+    assert process.wait(30.0) == 0, process.output()
+    assert process.lines == ["success: true"]
+    assert at_home.state()["at_rest"]
+
+
+@pytest.fixture
+def stubborn():
+    """The goals of a server of move_j that neither cancels nor ends them, in the namespace of that name."""
+    client = Client("stubborn", name="stubborn_server")
+    goals = []
+    end = Future()
+
+    async def execute(handle):
+        goals.append(handle)
+        await end
+        handle.abort()
+        return MoveJ.Result()
+
+    server = client.in_executor(lambda: ActionServer(client.node, MoveJ, "move_j", execute))
+    yield goals
+    client.in_executor(lambda: end.set_result(True) or True)
+    server.destroy()
+    client.close()
+
+
+def test_a_second_signal_ends_the_wait_for_the_result(stubborn):
+    process = Process([*slow_motion()[:2], "--namespace", "stubborn", *slow_motion()[2:]])
+    wait_for(lambda: stubborn, 20.0, "the goal")
+    process.signal(signal.SIGTERM)
+    begin = time.monotonic()
+    process.wait_for_output("canceling (SIGTERM)")
+    time.sleep(1.1)  # what comes earlier belongs to the first one
+    process.signal(signal.SIGTERM)
+    assert process.wait(10.0) == 128 + signal.SIGTERM, process.output()
+    assert time.monotonic() - begin < 8.0, "it has waited for its limit of 10 s"
 
 
 def test_the_state_is_shown(running):

@@ -1,6 +1,7 @@
 """Sends a goal, shows its progress and prints its result.
 
-The goal is YAML; fields that are not named have their defaults. Ctrl-C cancels: the arm decelerates, then the result comes.
+The goal is YAML; fields that are not named have their defaults. Ctrl-C, SIGTERM, SIGHUP and a closed output cancel the goal: the
+arm decelerates, then the result comes, and the exit code is 128 plus the number of the signal.
 
     ur call move_j "{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0], speed: 0.5}"
     ur call dashboard/robot_mode
@@ -8,10 +9,11 @@ The goal is YAML; fields that are not named have their defaults. Ctrl-C cancels:
 """
 
 import argparse
+import contextlib
 import importlib
 import sys
 import time
-from typing import Any, Dict
+from typing import Any, Dict, Optional
 
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
@@ -21,7 +23,10 @@ from ur_ros_rtde_msgs.msg import GoalRefused
 
 from . import fields
 from .problem import Problem
-from .session import Session, session
+from .session import Interrupted, Session, session
+
+
+CANCEL_LIMIT = 10.0  # s, for the result after the goal was canceled
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,6 +57,13 @@ def _resolve(use: Session, name: str, limit: float) -> "tuple[str, Any]":
         raise Problem(f"{full} has the type {kind}, which is not installed here; source the workspace that has it")
 
 
+def _say(text: str) -> None:
+    """To stderr, which may be closed."""
+    with contextlib.suppress(OSError):
+        sys.stderr.write(text)
+        sys.stderr.flush()
+
+
 class _Progress:
     """One line that follows the feedback; nothing where nobody looks."""
 
@@ -68,12 +80,11 @@ class _Progress:
         if motion is not None:
             filled = round(30 * min(max(motion.progress, 0.0), 1.0))
             text = f"[{'#' * filled}{'.' * (30 - filled)}] {100 * motion.progress:3.0f} % {text}"
-        sys.stderr.write(f"\r\x1b[K{time.monotonic() - self._begin:6.1f} s  {text[:90]}")
-        sys.stderr.flush()
+        _say(f"\r\x1b[K{time.monotonic() - self._begin:6.1f} s  {text[:90]}")
 
     def end(self) -> None:
         if self._on:
-            sys.stderr.write("\r\x1b[K")
+            _say("\r\x1b[K")
 
 
 def _refusal(use: Session, refusals: list, goal_id: bytes) -> str:
@@ -82,29 +93,33 @@ def _refusal(use: Session, refusals: list, goal_id: bytes) -> str:
 
 
 class _Canceling:
-    """Ctrl-C, at any moment after the goal was sent, cancels it, and the result is still waited for; a second one ends that."""
+    """The first interruption after the goal was sent cancels it, and its result is still waited for. A second one, or a result
+    that does not come in time, ends the program: the driver stops the arm when it finds the client gone."""
 
     def __init__(self, use: Session, progress: _Progress):
         self._use, self._progress = use, progress
         self._handle: Any = None
-        self.asked = False
+        self.reason: Optional[Interrupted] = None
 
     def wait(self, future: Any) -> Any:
-        try:
-            self._use.wait(future.done)
-        except KeyboardInterrupt:
-            if self.asked:
-                raise
-            self.asked = True
-            self._progress.end()
-            print("canceling, Ctrl-C again to go without the result", file=sys.stderr)
-            self._cancel()
-            self._use.wait(future.done)
-        return future.result()
+        while True:
+            try:
+                if self._use.wait(future.done, CANCEL_LIMIT if self.reason else None):
+                    return future.result()
+            except Interrupted as interrupted:
+                if self.reason:
+                    raise
+                self.reason = interrupted
+                self._progress.end()
+                _say(f"canceling ({interrupted}), again to go without the result\n")
+                self._cancel()
+            else:
+                _say(f"no result within {CANCEL_LIMIT:g} s after the goal was canceled\n")
+                raise self.reason
 
     def accepted(self, handle: Any) -> None:
         self._handle = handle
-        if self.asked:
+        if self.reason:
             self._cancel()
 
     def _cancel(self) -> None:
@@ -134,4 +149,6 @@ def run(options: argparse.Namespace) -> int:
         answer = canceling.wait(handle.get_result_async())
         progress.end()
         print(fields.show(answer.result))
+        if canceling.reason:
+            return canceling.reason.exit_code
         return 0 if answer.status == GoalStatus.STATUS_SUCCEEDED else 1

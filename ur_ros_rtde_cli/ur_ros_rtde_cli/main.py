@@ -1,15 +1,18 @@
 """Arguments of `ur`."""
 
 import argparse
+import os
+import signal
 import sys
 from typing import List, Optional
 
 from . import call, plugins, record, state
 from .problem import Problem
+from .session import Interrupted
 
 DESCRIPTION = """\
 Calls the actions of ur_ros_rtde, shows the robot's state, lists the plugins, records. Ends with 0 when what was asked for has
-been done, 1 when it failed, 2 when it was refused or cannot be meant.
+been done, 1 when it failed, 2 when it was refused or cannot be meant, 128 plus its number when a signal ended it.
 """
 
 
@@ -34,9 +37,20 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except Problem as problem:
         print(problem, file=sys.stderr)
         return 2
+    except Interrupted as interrupted:
+        return interrupted.exit_code
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return 130
+        return Interrupted(signal.SIGINT).exit_code
     except BrokenPipeError:
-        sys.stderr.close()
-        return 0
+        return Interrupted(signal.SIGPIPE).exit_code
+    finally:
+        _drop_what_cannot_be_written()
+
+
+def _drop_what_cannot_be_written() -> None:
+    """Otherwise Python tries again when it ends, and reports that."""
+    for stream in filter(None, (sys.stdout, sys.stderr)):
+        try:
+            stream.flush()
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -10,7 +10,7 @@ import sys
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 from .problem import Problem
-from .session import Session, session
+from .session import Interrupted, Session, session
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
         print("recording" + ("" if options.time is not None else ", Ctrl-C ends it"), file=sys.stderr)
         try:
             use.wait(lambda: None, options.time)
-        except KeyboardInterrupt:
+        except Interrupted:
             pass
         done = _call(use, StopRecording, "stop_recording")
         print(f"{done.filename}: {done.rows} rows" + (f", {done.lost} lost" if done.lost else ""))

@@ -13,7 +13,7 @@ from std_msgs.msg import Float64
 from ur_ros_rtde_msgs.msg import DriverState, RobotMode, SafetyMode
 
 from .problem import Problem
-from .session import Session, session
+from .session import Interrupted, Session, session
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -71,6 +71,6 @@ def run(options: argparse.Namespace) -> int:
                 sys.stdout.write(f"\x1b[{len(shown)}A\x1b[J" if sys.stdout.isatty() else "\n")
                 shown = list(_lines(latest))
                 print("\n".join(shown), flush=True)
-        except KeyboardInterrupt:
+        except Interrupted:
             pass
         return 0

@@ -1,9 +1,11 @@
 """The examples do what they say."""
 
 import os
+import signal
+import subprocess
 
 import pytest
-from support import HOME, Client, Process, Simulator, node, program, wait_for
+from support import HOME, PATIENCE, Client, Process, Simulator, node, program, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -31,3 +33,25 @@ def test_the_example_does_what_it_says(running, name, limit, text):
     example = Process([program("ur_ros_rtde_tutorials", name)])
     assert example.wait(limit) == 0, example.output()
     assert text in example.output()
+
+
+@pytest.mark.parametrize("name", ["t01_send_a_goal.py", "t03_cancel_a_goal.py"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_cancels_the_goal_of_the_example(running, name, number):
+    example = Process([program("ur_ros_rtde_tutorials", name)])
+    wait_for(lambda: not running.stands_still(), 20.0, "the arm to move")
+    example.signal(number)
+    assert example.wait(20.0) == 128 + number, example.output()
+    assert running.stands_still()
+    assert "Traceback" not in example.output()
+
+
+def test_the_example_cancels_its_goal_when_nobody_reads_its_output(running, tmp_path):
+    errors = tmp_path / "errors"
+    with errors.open("w") as file:
+        example = subprocess.Popen([program("ur_ros_rtde_tutorials", "t01_send_a_goal.py")], stdout=subprocess.PIPE, stderr=file)
+    wait_for(lambda: not running.stands_still(), 20.0, "the arm to move")
+    example.stdout.close()
+    assert example.wait(PATIENCE * 20.0) == 128 + signal.SIGPIPE, errors.read_text()
+    assert running.stands_still()
+    assert errors.read_text() == ""

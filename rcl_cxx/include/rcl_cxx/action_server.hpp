@@ -41,6 +41,12 @@ struct ActionHandlers {
   /// Runs when the goal has become CANCELING (is_canceling() is true): the place to wake its worker.
   /// Optional.
   std::function<void(GoalHandle<A> &)> canceling{};
+  /// Runs once when the client that sent an active goal has disappeared: its process has ended, or it has
+  /// destroyed its action client. The goal goes on unless this ends it. Optional: without it clients are not
+  /// watched. A process that was killed disappears when its participant's lease ends.
+  std::function<void(GoalHandle<A> &)> client_lost{};
+  /// Runs when a goal that `goal` took will not be accepted after all: its client could not be told. Optional.
+  std::function<void(const GoalId &)> discarded{};
 };
 
 namespace detail {
@@ -61,10 +67,12 @@ struct ActionServerOps {
 
 struct ErasedActionServer {
   const ActionServerOps * ops;
-  std::function<tl::expected<void, std::string>(const GoalId &, const void * goal_request)> goal;
-  std::function<void(std::shared_ptr<GoalHandleBase>)> accepted;
-  std::function<bool(GoalHandleBase &)> cancel;
-  std::function<void(GoalHandleBase &)> canceling;
+  std::function<tl::expected<void, std::string>(const GoalId &, const void * goal_request)> goal{};
+  std::function<void(std::shared_ptr<GoalHandleBase>)> accepted{};
+  std::function<bool(GoalHandleBase &)> cancel{};
+  std::function<void(GoalHandleBase &)> canceling{};
+  std::function<void(GoalHandleBase &)> client_lost{};
+  std::function<void(const GoalId &)> discarded{};
 };
 
 template <typename A>
@@ -138,7 +146,7 @@ class ActionServer : public ActionServerBase {
   {
     using GoalRequest = typename A::Impl::SendGoalService::Request;
     using Handle = GoalHandle<A>;
-    detail::ErasedActionServer erased{&detail::ActionServerOpsOf<A>::ops, {}, {}, {}, {}};
+    detail::ErasedActionServer erased{.ops = &detail::ActionServerOpsOf<A>::ops};
     if (handlers.goal) {
       erased.goal = [f = std::move(handlers.goal)](const GoalId & id, const void * request) {
         return f(id, static_cast<const GoalRequest *>(request)->goal);
@@ -154,12 +162,19 @@ class ActionServer : public ActionServerBase {
         return f(static_cast<Handle &>(handle));
       };
     }
-    if (handlers.canceling) {
-      erased.canceling = [f = std::move(handlers.canceling)](GoalHandleBase & handle) {
-        f(static_cast<Handle &>(handle));
-      };
-    }
+    erased.canceling = erase_handle(std::move(handlers.canceling));
+    erased.client_lost = erase_handle(std::move(handlers.client_lost));
+    erased.discarded = std::move(handlers.discarded);
     return erased;
+  }
+
+ private:
+  static std::function<void(GoalHandleBase &)> erase_handle(std::function<void(GoalHandle<A> &)> handler)
+  {
+    if (!handler) {
+      return {};
+    }
+    return [f = std::move(handler)](GoalHandleBase & handle) { f(static_cast<GoalHandle<A> &>(handle)); };
   }
 };
 

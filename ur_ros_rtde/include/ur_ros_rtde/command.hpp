@@ -83,7 +83,7 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
       CommandTraits{resource(), takes_over(), replaces_its_own(), switches_mode(), any_state(),
                     script_extension() ? name : std::string()});
   name_ = name;
-  this->serve(host.node(), name, goals_->book());
+  this->serve(host.node(), name, goals_->book(), goals_->needs_client());
 }
 
 template <typename A>

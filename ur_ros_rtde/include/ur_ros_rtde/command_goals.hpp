@@ -37,6 +37,8 @@ class CommandGoals {
   GoalBook & book() { return book_; }
   /// The goal ends when the robot cannot move any more.
   bool needs_motion() const { return moves() && !traits_.any_state; }
+  /// The goal ends when its client disappears. A stop does not.
+  bool needs_client() const { return host_.options().stop_when_client_lost && !traits_.takes_over; }
   bool moves() const { return traits_.resource == Resource::motion || traits_.resource == Resource::script; }
 
   tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id,
@@ -48,7 +50,7 @@ class CommandGoals {
  private:
   class RobotPreflight;
 
-  Claim claim(const rcl_cxx::GoalId & id, const GoalBook::Ticket & ticket) const;
+  Claim claim(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket) const;
   Status readiness() const;
   /// Whoever is in the way will be asked to end when the goal begins.
   bool preempts() const;

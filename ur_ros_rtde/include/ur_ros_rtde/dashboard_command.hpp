@@ -92,7 +92,7 @@ void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::s
 {
   link_ = &host.link();
   book_ = std::make_unique<GoalBook>(host, host.node().resolve_service_name(name));
-  this->serve(host.node(), name, *book_);
+  this->serve(host.node(), name, *book_, false);
 }
 
 template <typename A>

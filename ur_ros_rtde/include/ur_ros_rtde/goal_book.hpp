@@ -14,14 +14,27 @@
 
 namespace ur_ros_rtde {
 
-/// The goals of one action, whatever its type: admission, threads, cancel, end. Thread-safe.
+/// Why a goal ends whose client has disappeared.
+Interruption client_lost();
+
+/// The goals of one action, independent of its type: admission, threads, requests to end, end. Thread-safe.
 class GoalBook {
  public:
-  struct Ticket {
+  struct Ticket : std::enable_shared_from_this<Ticket> {
     std::shared_ptr<Interrupt> interrupt = std::make_shared<Interrupt>();
-    Lease lease;
     std::string displaced;  ///< the goal that had to end for this one
-    bool started = false;
+
+    /// Keeps the lease until finish(), or until the goal is asked to end before it has started.
+    void hold(Lease lease);
+    bool holds() const;
+    /// Asks the goal to end. One that has not started frees what it holds at once.
+    void end(Interruption why);
+
+   private:
+    friend class GoalBook;
+    mutable std::mutex mutex_;
+    Lease lease_;
+    bool started_ = false;
   };
 
   /// `action` is the resolved name.
@@ -36,14 +49,17 @@ class GoalBook {
                                         const std::function<Status(Ticket &)> & examine);
   /// Runs `work`, which must not throw, for an admitted goal in a thread of its own.
   Status start(const rcl_cxx::GoalId & id, std::function<void(std::shared_ptr<Ticket>)> work);
-  void cancel(const rcl_cxx::GoalId & id);
+  /// Asks a goal to end, if there is one of this id.
+  void end(const rcl_cxx::GoalId & id, const Interruption & why);
+  /// Forgets an admitted goal that will not be accepted, and frees what it holds.
+  void discard(const rcl_cxx::GoalId & id);
   /// Before the result is sent: what was held is free, the goal is forgotten, and its end logged.
   void finish(const rcl_cxx::GoalId & id, const Outcome & outcome);
   /// `body`'s outcome, or what it threw as one; if the goal was to end, that is the outcome of a failure.
   Outcome guarded(const Interrupt & interrupt, const std::function<Outcome()> & body) const;
 
  private:
-  void forget_unaccepted();
+  std::shared_ptr<Ticket> find(const rcl_cxx::GoalId & id) const;
 
   PluginHost & host_;
   const std::string action_;

@@ -36,8 +36,8 @@ class GoalServer {
     }
   }
 
-  /// `book` outlives the server.
-  void serve(rcl_cxx::Node & node, const std::string & name, GoalBook & book);
+  /// `book` outlives the server. With `needs_client` a goal ends when the client that sent it disappears.
+  void serve(rcl_cxx::Node & node, const std::string & name, GoalBook & book, bool needs_client);
   void end_service() { server_.reset(); }
   /// The goal's one result: tells in it how the goal ended, and sends it.
   void finish(Handle & handle, typename A::Result & result, const Outcome & outcome);
@@ -48,7 +48,8 @@ class GoalServer {
 };
 
 template <typename A>
-void GoalServer<A>::serve(rcl_cxx::Node & node, const std::string & name, GoalBook & book)
+void GoalServer<A>::serve(rcl_cxx::Node & node, const std::string & name, GoalBook & book,
+                          bool needs_client)
 {
   book_ = &book;
   rcl_cxx::ActionHandlers<A> handlers;
@@ -64,7 +65,13 @@ void GoalServer<A>::serve(rcl_cxx::Node & node, const std::string & name, GoalBo
     }
   };
   handlers.cancel = [](Handle &) { return true; };
-  handlers.canceling = [this](Handle & handle) { book_->cancel(handle.goal_id()); };
+  handlers.canceling = [this](Handle & handle) {
+    book_->end(handle.goal_id(), Error{ErrorCode::canceled, "canceled by a client"});
+  };
+  handlers.discarded = [this](const rcl_cxx::GoalId & id) { book_->discard(id); };
+  if (needs_client) {
+    handlers.client_lost = [this](Handle & handle) { book_->end(handle.goal_id(), client_lost()); };
+  }
   server_ = node.template create_action_server<A>(name, std::move(handlers));
 }
 

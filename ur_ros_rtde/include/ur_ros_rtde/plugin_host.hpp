@@ -37,6 +37,7 @@ class CommandHost : public PluginHost {
  public:
   struct Options {
     bool preempt_when_busy = false;
+    bool stop_when_client_lost = true;
     ArmLimits limits = widest_arm_limits();
   };
 
@@ -46,8 +47,7 @@ class CommandHost : public PluginHost {
   }
 
   Robot & robot() { return robot_; }
-  bool preempts_when_busy() const { return options_.preempt_when_busy; }
-  const ArmLimits & limits() const { return options_.limits; }
+  const Options & options() const { return options_; }
 
   /// How a goal that gives way is to decelerate, when the one that takes over says so.
   void set_takeover_stop(std::optional<StopOptions> options);

@@ -32,17 +32,17 @@ class CommandGoals::RobotPreflight : public Preflight {
     if (Status ready = goals_.readiness(); !ready) {
       return ready;
     }
-    if (ticket_.lease || goals_.traits_.resource == Resource::none || goals_.preempts()) {
+    if (ticket_.holds() || goals_.traits_.resource == Resource::none || goals_.preempts()) {
       return {};
     }
     auto lease = robot().arbiter().acquire(goals_.claim(id_, ticket_));
     if (!lease) {
       return tl::unexpected(lease.error());
     }
-    ticket_.lease = std::move(*lease);
+    ticket_.hold(std::move(*lease));
     return {};
   }
-  const ArmLimits & limits() const override { return goals_.host_.limits(); }
+  const ArmLimits & limits() const override { return goals_.host_.options().limits; }
   Robot & robot() override { return goals_.host_.robot(); }
 
  private:
@@ -56,17 +56,19 @@ CommandGoals::CommandGoals(CommandHost & host, std::string action, CommandTraits
 {
 }
 
-Claim CommandGoals::claim(const rcl_cxx::GoalId & id, const GoalBook::Ticket & ticket) const
+Claim CommandGoals::claim(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket) const
 {
   return {traits_.resource, book_.action(), id.short_string(),
-          [interrupt = ticket.interrupt](const std::string & by) {
-            interrupt->request(Error{ErrorCode::preempted, fmt::format("{} took over", by)});
+          [weak = ticket.weak_from_this()](const std::string & by) {
+            if (const auto holder = weak.lock()) {
+              holder->end(Error{ErrorCode::preempted, fmt::format("{} took over", by)});
+            }
           }};
 }
 
 bool CommandGoals::preempts() const
 {
-  if (traits_.takes_over || host_.preempts_when_busy()) {
+  if (traits_.takes_over || host_.options().preempt_when_busy) {
     return true;
   }
   const auto holder = host_.robot().arbiter().holder(traits_.resource);
@@ -114,7 +116,10 @@ tl::expected<void, std::string> CommandGoals::admit(const rcl_cxx::GoalId & id,
 
 Status CommandGoals::take(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket, const StopOptions & stop)
 {
-  if (ticket.lease || traits_.resource == Resource::none) {
+  if (auto why = ticket.interrupt->requested()) {
+    return tl::unexpected(*why);
+  }
+  if (ticket.holds() || traits_.resource == Resource::none) {
     return {};
   }
   if (traits_.takes_over) {
@@ -128,7 +133,7 @@ Status CommandGoals::take(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket,
     host_.set_takeover_stop(std::nullopt);
   }
   if (lease) {
-    ticket.lease = std::move(*lease);
+    ticket.hold(std::move(*lease));
   } else if (!traits_.takes_over) {  // who does not give way must not keep the arm from being stopped
     return tl::unexpected(lease.error());
   }
@@ -148,7 +153,7 @@ Outcome CommandGoals::carry_out(const rcl_cxx::GoalId & id, GoalBook::Ticket & t
     return body();
   };
   Outcome outcome = book_.guarded(*ticket.interrupt, whole);
-  if (!moves() || !ticket.lease) {
+  if (!moves() || !ticket.holds()) {
     return outcome;
   }
   return book_.guarded(Interrupt(), [&] { return settle(outcome, ticket, stop); });

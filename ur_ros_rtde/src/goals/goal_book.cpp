@@ -6,12 +6,45 @@
 
 namespace ur_ros_rtde {
 
+Interruption client_lost()
+{
+  return Error{ErrorCode::client_lost,
+               "the client that sent this goal has disappeared: keep its action client until the result has come, or "
+               "start command_server with on_client_lost:=continue"};
+}
+
+void GoalBook::Ticket::hold(Lease lease)
+{
+  const std::lock_guard lock(mutex_);
+  if (started_ || !interrupt->requested()) {
+    lease_ = std::move(lease);
+  }
+}
+
+bool GoalBook::Ticket::holds() const
+{
+  const std::lock_guard lock(mutex_);
+  return static_cast<bool>(lease_);
+}
+
+void GoalBook::Ticket::end(Interruption why)
+{
+  interrupt->request(std::move(why));
+  const std::lock_guard lock(mutex_);
+  if (!started_) {
+    lease_.release();
+  }
+}
+
 tl::expected<void, std::string> GoalBook::admit(const rcl_cxx::GoalId & id,
                                                 const std::function<Status(Ticket &)> & examine)
 {
-  forget_unaccepted();
-  auto ticket = std::make_shared<Ticket>();
+  const auto ticket = std::make_shared<Ticket>();
   Status status = host_.goals().can_start();
+  if (status && find(id)) {
+    status = failure(ErrorCode::invalid_goal, fmt::format("a goal with the id {} runs: give each goal an id of its own",
+                                                          id.to_string()));
+  }
   if (status) {
     try {
       status = examine(*ticket);
@@ -27,44 +60,44 @@ tl::expected<void, std::string> GoalBook::admit(const rcl_cxx::GoalId & id,
                                       static_cast<int>(status.error().code)));
   }
   const std::lock_guard lock(mutex_);
-  tickets_[id] = std::move(ticket);
+  tickets_[id] = ticket;
   return {};
 }
 
-void GoalBook::forget_unaccepted()
+std::shared_ptr<GoalBook::Ticket> GoalBook::find(const rcl_cxx::GoalId & id) const
 {
-  // A goal that was admitted but then not accepted (its answer could not be sent) would hold the robot.
   const std::lock_guard lock(mutex_);
-  std::erase_if(tickets_, [](const auto & entry) { return !entry.second->started; });
+  const auto found = tickets_.find(id);
+  return found == tickets_.end() ? nullptr : found->second;
 }
 
 Status GoalBook::start(const rcl_cxx::GoalId & id, std::function<void(std::shared_ptr<Ticket>)> work)
 {
-  std::shared_ptr<Ticket> ticket;
+  const auto ticket = find(id);
+  if (!ticket) {
+    return failure(ErrorCode::exception, "this goal was never looked at");
+  }
   {
-    const std::lock_guard lock(mutex_);
-    const auto found = tickets_.find(id);
-    if (found == tickets_.end()) {
-      return failure(ErrorCode::exception, "this goal was never looked at");
-    }
-    ticket = found->second;
-    ticket->started = true;
+    const std::lock_guard lock(ticket->mutex_);
+    ticket->started_ = true;
   }
   return host_.goals().start(fmt::format("{} {}", action_, id.short_string()), ticket->interrupt,
                              [work = std::move(work), ticket] { work(ticket); });
 }
 
-void GoalBook::cancel(const rcl_cxx::GoalId & id)
+void GoalBook::end(const rcl_cxx::GoalId & id, const Interruption & why)
 {
-  std::shared_ptr<Ticket> ticket;
-  {
-    const std::lock_guard lock(mutex_);
-    if (const auto found = tickets_.find(id); found != tickets_.end()) {
-      ticket = found->second;
-    }
+  if (const auto ticket = find(id)) {
+    ticket->end(why);
   }
-  if (ticket) {
-    ticket->interrupt->request(Error{ErrorCode::canceled, "canceled by a client"});
+}
+
+void GoalBook::discard(const rcl_cxx::GoalId & id)
+{
+  std::shared_ptr<Ticket> ticket;  // its lease is released after the lock
+  const std::lock_guard lock(mutex_);
+  if (auto node = tickets_.extract(id)) {
+    ticket = std::move(node.mapped());
   }
 }
 
@@ -78,7 +111,8 @@ void GoalBook::finish(const rcl_cxx::GoalId & id, const Outcome & outcome)
     }
   }
   if (ticket) {
-    ticket->lease.release();
+    const std::lock_guard lock(ticket->mutex_);
+    ticket->lease_.release();
   }
   const auto & logger = host_.node().logger();
   if (outcome) {

@@ -19,7 +19,7 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
   diagnostics_ = std::make_unique<Diagnostics>(*node_, parameters.robot.address,
                                                [this] { return diagnose_driver(*robot_); });
   host_ = std::make_unique<CommandHost>(
-      *node_, *robot_, CommandHost::Options{parameters.preempt_when_busy, parameters.limits});
+      *node_, *robot_, parameters.goals);
   teleoperation_ =
       std::make_unique<Teleoperation>(*host_, parameters.teleoperation, log_into(node_->logger()));
 }

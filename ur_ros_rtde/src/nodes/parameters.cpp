@@ -194,12 +194,16 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
       "restart_program", true,
       described("Start the control program again after it was stopped, never what it was "
                 "doing"));
-  parameters.preempt_when_busy =
+  parameters.goals.preempt_when_busy =
       declare_choice(node, "on_busy", "refuse", {"refuse", "preempt"},
                      "What happens to a motion that comes while another runs: it is refused, or the other is "
                      "stopped for it") == "preempt";
-  parameters.limits = declare_arm_limits(node);
-  parameters.teleoperation = declare_teleoperation(node, parameters.limits);
+  parameters.goals.stop_when_client_lost =
+      declare_choice(node, "on_client_lost", "stop", {"stop", "continue"},
+                     "What happens to a goal whose client has disappeared: the arm decelerates to a "
+                     "standstill and the goal ends with CLIENT_LOST, or the goal goes on") == "stop";
+  parameters.goals.limits = declare_arm_limits(node);
+  parameters.teleoperation = declare_teleoperation(node, parameters.goals.limits);
   return parameters;
 }
 

@@ -7,7 +7,7 @@
 
 #include "nodes/robot_state_receiver.hpp"
 #include "teleoperation/options.hpp"
-#include "ur_ros_rtde/arm_limits.hpp"
+#include "ur_ros_rtde/plugin_host.hpp"
 #include "ur_ros_rtde/robot.hpp"
 
 namespace ur_ros_rtde {
@@ -34,8 +34,7 @@ RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node);
 
 struct CommandServerParameters {
   RobotOptions robot;
-  bool preempt_when_busy = false;
-  ArmLimits limits;
+  CommandHost::Options goals;
   TeleoperationOptions teleoperation;
 };
 CommandServerParameters declare_command_server(rcl_cxx::Node & node);

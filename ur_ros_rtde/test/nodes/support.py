@@ -47,9 +47,10 @@ def program(package, name):
 class Process:
     """A program with its output."""
 
-    def __init__(self, command, env=None):
+    def __init__(self, command, env=None, stdin=False):
         self.lines = []
         self._process = subprocess.Popen([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                         stdin=subprocess.PIPE if stdin else None,
                                          env={**os.environ, **(env or {})}, text=True, errors="replace")
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -64,6 +65,11 @@ class Process:
     def wait_for_output(self, text, limit=15.0):
         return wait_for(lambda: next((line for line in list(self.lines) if text in line), None), limit,
                         f"'{text}' in the output:\n{self.output()}")
+
+    def write(self, text):
+        """To the program's stdin."""
+        self._process.stdin.write(text)
+        self._process.stdin.flush()
 
     @property
     def pid(self):
@@ -81,7 +87,10 @@ class Process:
         return code
 
     def interrupt(self):
-        self._process.send_signal(signal.SIGINT)
+        self.signal(signal.SIGINT)
+
+    def signal(self, number):
+        self._process.send_signal(number)
 
     def pause(self):
         self._process.send_signal(signal.SIGSTOP)
@@ -271,13 +280,13 @@ class Client:
         return wait_for(lambda: next((r for r in list(self.refusals) if bytes(r.goal_id.uuid) == goal.id), None), 10.0,
                         "the reason on goal_refusals")
 
-    def call(self, service, name, **fields):
+    def call(self, service, name, limit=10.0, **fields):
         if name not in self._services:
             self._services[name] = self.node.create_client(service, name)
         client = self._services[name]
         wait_for(client.service_is_ready, 20.0, f"the service {name}")
         future = self.in_executor(lambda: client.call_async(service.Request(**fields)))
-        return wait_for(lambda: future.done() and future.result(), 10.0, f"the answer of {name}")
+        return wait_for(lambda: future.done() and future.result(), limit, f"the answer of {name}")
 
     def listen(self, message, topic, latched=False):
         """All messages from now on; the last one before, too, if they are latched."""

@@ -1,0 +1,268 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <future>
+#include <mutex>
+
+#include "../src/client_watch.hpp"
+#include "action_fixture.hpp"
+
+using rcl_cxx::detail::ClientWatch;
+using rcl_cxx::detail::Gid;
+using rcl_cxx::detail::ServiceClients;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Not;
+using testing::UnorderedElementsAre;
+
+namespace {
+constexpr Gid kClient{1};
+constexpr Gid kOther{2};
+constexpr Gid kThird{3};
+const ServiceClients kNobody{};
+
+/// Watches from time zero.
+class ClientWatchTest : public testing::Test {
+ protected:
+  static ClientWatch::Clock::time_point at(double fraction_of_limit)
+  {
+    return ClientWatch::Clock::time_point() + std::chrono::duration_cast<ClientWatch::Clock::duration>(
+                                                  fraction_of_limit * ClientWatch::kDiscoveryLimit);
+  }
+
+  ClientWatch exact{kClient, true, at(0.0)};
+  ClientWatch opaque{kClient, false, at(0.0)};
+};
+
+TEST_F(ClientWatchTest, LosesDiscoveredClientAtOnce)
+{
+  EXPECT_FALSE(exact.is_lost({{kOther, kClient}}, at(0.1)));
+  EXPECT_TRUE(exact.is_lost({{kOther}}, at(0.2)));
+}
+
+TEST_F(ClientWatchTest, KeepsDiscoveredClientForever)
+{
+  EXPECT_FALSE(exact.is_lost({{kClient}}, at(0.5)));
+  EXPECT_FALSE(exact.is_lost({{kClient}}, at(1000.0)));
+}
+
+TEST_F(ClientWatchTest, WaitsForDiscoveryAndNoLonger)
+{
+  EXPECT_FALSE(exact.is_lost(kNobody, at(0.0)));
+  EXPECT_FALSE(exact.is_lost({{kOther}}, at(0.9)));
+  EXPECT_TRUE(exact.is_lost({{kOther}}, at(1.1))) << "another client is not the one that sent the goal";
+}
+
+TEST_F(ClientWatchTest, KeepsClientThatIsDiscoveredLate)
+{
+  EXPECT_FALSE(exact.is_lost({{kOther}}, at(0.9)));
+  EXPECT_FALSE(exact.is_lost({{kClient}}, at(1.1)));
+}
+
+TEST_F(ClientWatchTest, LosesUnidentifiedClientWithTheLastCandidate)
+{
+  EXPECT_FALSE(opaque.is_lost({{kOther}}, at(0.1)));
+  EXPECT_FALSE(opaque.is_lost({{kOther, kThird}}, at(0.2)));
+  EXPECT_FALSE(opaque.is_lost({{kThird}}, at(1.1)));
+  EXPECT_TRUE(opaque.is_lost(kNobody, at(1.2)));
+}
+
+TEST_F(ClientWatchTest, DoesNotTakeLaterClientForUnidentifiedOne)
+{
+  EXPECT_FALSE(opaque.is_lost({{kOther}}, at(0.1)));
+  EXPECT_FALSE(opaque.is_lost({{kOther, kThird}}, at(1.1)));
+  EXPECT_TRUE(opaque.is_lost({{kThird}}, at(1.2)));
+}
+
+TEST_F(ClientWatchTest, CountsClientsWhereNoEndpointsAreListed)
+{
+  EXPECT_FALSE(opaque.is_lost({{}, 1}, at(0.1)));
+  EXPECT_FALSE(opaque.is_lost({{}, 1}, at(1.1)));
+  EXPECT_TRUE(opaque.is_lost(kNobody, at(1.2)));
+}
+
+/// A client with a participant of its own, as another process has it.
+class OtherProcess {
+ public:
+  OtherProcess()
+  {
+    executor_.add_node(node_);
+    thread_ = std::thread([this] { executor_.spin(); });
+    client = node_->create_action_client<Fibonacci>("fibonacci");
+    EXPECT_TRUE(client->wait_for_server(kLimit));
+  }
+  ~OtherProcess()
+  {
+    context_->shutdown("end of the process");
+    thread_.join();
+  }
+
+  rcl_cxx::GoalId send_accepted_goal()
+  {
+    auto response = client->send_goal(goal_of(1));
+    if (response.wait_for(kLimit) != std::future_status::ready) {
+      ADD_FAILURE() << "no answer to the goal";
+      return {};
+    }
+    handles_.push_back(response.get());
+    return handles_.back()->goal_id();
+  }
+
+ private:
+  std::shared_ptr<rcl_cxx::Context> context_ = make_context();
+  std::shared_ptr<rcl_cxx::Node> node_ = std::make_shared<rcl_cxx::Node>(context_, "client", "/test");
+  rcl_cxx::Executor executor_{context_};
+  std::thread thread_;
+
+ public:
+  std::shared_ptr<rcl_cxx::ActionClient<Fibonacci>> client;
+
+ private:
+  std::vector<std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>>> handles_;
+};
+
+class ClientLostTest : public Actions {
+ protected:
+  std::vector<rcl_cxx::GoalId> lost()
+  {
+    const std::lock_guard lock(mutex);
+    return without_client;
+  }
+  bool is_lost(const rcl_cxx::GoalId & id)
+  {
+    const auto ids = lost();
+    return std::find(ids.begin(), ids.end(), id) != ids.end();
+  }
+};
+
+TEST_F(ClientLostTest, IsReportedWhenItsContextEnds)
+{
+  serve();
+  auto other = std::make_unique<OtherProcess>();
+  const auto goal = other->send_accepted_goal();
+  const auto handle = accepted(0);
+  std::promise<void> served;  // the acceptance, and with it the first look for the client
+  executor->post([&] { served.set_value(); });
+  get(served.get_future());
+  other.reset();
+  EXPECT_TRUE(eventually([&] { return is_lost(goal); }, std::chrono::milliseconds(ClientWatch::kDiscoveryLimit) / 2)) << "it was discovered";
+  EXPECT_TRUE(handle->is_active()) << "ending the goal is left to the handler";
+  EXPECT_TRUE(handle->abort());
+}
+
+TEST_F(ClientLostTest, IsReportedWhenActionClientIsDestroyedAndItsNodeLives)
+{
+  serve();
+  OtherProcess other;
+  const auto goal = other.send_accepted_goal();
+  const auto handle = accepted(0);
+  other.client.reset();
+  EXPECT_TRUE(eventually([&] { return is_lost(goal); }));
+}
+
+TEST_F(ClientLostTest, IsReportedOnceForEachOfItsGoalsAndNotForThoseOfOthers)
+{
+  serve();
+  OtherProcess living;
+  auto other = std::make_unique<OtherProcess>();
+  const auto kept = living.send_accepted_goal();
+  const auto first = other->send_accepted_goal();
+  const auto second = other->send_accepted_goal();
+  other->send_accepted_goal();  // ends before its client does
+  ASSERT_TRUE(accepted(3)->succeed());
+  // Long enough for a client to be taken for one that was never discovered.
+  std::this_thread::sleep_for(1.2 * ClientWatch::kDiscoveryLimit);
+  EXPECT_THAT(lost(), IsEmpty());
+  other.reset();
+  EXPECT_TRUE(eventually([&] { return is_lost(first) && is_lost(second); }));
+  const auto last = std::make_unique<OtherProcess>()->send_accepted_goal();
+  EXPECT_TRUE(eventually([&] { return is_lost(last); })) << "the server still watches";
+  EXPECT_THAT(lost(), UnorderedElementsAre(first, second, last));
+  EXPECT_THAT(lost(), Not(Contains(kept)));
+}
+
+TEST_F(ClientLostTest, DoesNotLeaveGoalRunningThatItSentAsItEnded)
+{
+  serve();
+  auto other = std::make_unique<OtherProcess>();
+  std::promise<void> client_ended;
+  std::promise<rcl_cxx::GoalId> asked;
+  on_goal = [&](const rcl_cxx::GoalId & id, const Fibonacci::Goal &) -> tl::expected<void, std::string> {
+    asked.set_value(id);
+    client_ended.get_future().wait_for(kLimit);
+    return {};
+  };
+  auto response = other->client->send_goal(goal_of(1));
+  const auto goal = get(asked.get_future());
+  other.reset();
+  client_ended.set_value();
+  EXPECT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return without_client == std::vector{goal} || discarded == std::vector{goal};
+  }));
+}
+
+TEST_F(ClientLostTest, MayDestroyItsServerInTheHandler)
+{
+  serve();
+  auto other = std::make_unique<OtherProcess>();
+  rcl_cxx::ActionHandlers<Fibonacci> handlers;
+  std::promise<void> called;
+  handlers.accepted = [this](std::shared_ptr<Handle> handle) { handles.push_back(std::move(handle)); };
+  handlers.client_lost = [&](Handle &) {
+    server.reset();
+    called.set_value();
+  };
+  server.reset();
+  server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers));
+  ASSERT_TRUE(other->client->wait_for_server(kLimit));
+  other->send_accepted_goal();
+  other.reset();
+  EXPECT_EQ(called.get_future().wait_for(kLimit), std::future_status::ready);
+}
+
+TEST_F(ClientLostTest, LeavesOtherGoalsToBeWatchedWhenTheHandlerThrows)
+{
+  rcl_cxx::ActionHandlers<Fibonacci> handlers;
+  std::atomic<int> calls{0};
+  handlers.accepted = [this](std::shared_ptr<Handle> handle) { handles.push_back(std::move(handle)); };
+  handlers.client_lost = [&](Handle &) {
+    ++calls;
+    throw std::runtime_error("is logged");
+  };
+  server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers));
+  auto other = std::make_unique<OtherProcess>();
+  other->send_accepted_goal();
+  other->send_accepted_goal();
+  other.reset();
+  EXPECT_TRUE(eventually([&] { return calls == 2; }));
+}
+
+using GoalIdTest = Actions;
+
+TEST_F(GoalIdTest, OfRunningGoalIsRefusedWithoutAskingTheHandler)
+{
+  serve();
+  std::atomic<int> asked{0};
+  on_goal = [&](const rcl_cxx::GoalId &, const Fibonacci::Goal &) -> tl::expected<void, std::string> {
+    ++asked;
+    return {};
+  };
+  const auto goal = send(5);
+  ASSERT_TRUE(goal);
+  const auto handle = accepted(0);
+  using SendGoal = Fibonacci::Impl::SendGoalService;
+  const auto sender = node->create_client<SendGoal>("fibonacci/_action/send_goal");
+  ASSERT_TRUE(sender->wait_for_service(kLimit));
+  SendGoal::Request again;
+  again.goal_id.uuid = goal->goal_id().bytes;
+  const auto response = sender->call(again, kLimit);
+  ASSERT_TRUE(response) << response.error();
+  EXPECT_FALSE(response->accepted);
+  EXPECT_EQ(asked, 1);
+  EXPECT_THAT(discarded, IsEmpty());
+  EXPECT_TRUE(handle->succeed());
+  EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
+}
+}  // namespace

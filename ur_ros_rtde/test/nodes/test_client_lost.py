@@ -1,0 +1,131 @@
+"""The client of a running goal disappears."""
+
+import pathlib
+import signal
+import sys
+
+import pytest
+from action_msgs.msg import GoalStatus
+from robot_fixtures import make_ready
+from support import HOME, REAL_TIME_FACTOR, Client, Process, Simulator, node, wait_for
+from unique_identifier_msgs.msg import UUID
+
+from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_msgs.msg import ErrorCode
+
+AWAY = HOME[0] + 2.0  # 10 s away with the speed of careless_client.py
+
+# A process that is killed is noticed when its participant's lease ends, after 20 s by default.
+SHORT_LEASE = """<?xml version="1.0" encoding="UTF-8" ?>
+<dds xmlns="http://www.eprosima.com"><profiles>
+  <participant profile_name="short_lease" is_default_profile="true"><rtps><builtin><discovery_config>
+    <leaseDuration><sec>2</sec></leaseDuration>
+    <leaseAnnouncement><sec>0</sec><nanosec>500000000</nanosec></leaseAnnouncement>
+  </discovery_config></builtin></rtps></participant>
+</profiles></dds>
+"""
+
+
+class CarelessClient(Process):
+    def __init__(self, *arguments, namespace="", env=None):
+        program = pathlib.Path(__file__).with_name("careless_client.py")
+        super().__init__([sys.executable, program, AWAY, namespace, *arguments], env, stdin=True)
+        self.goal_id = bytes.fromhex(self.wait_for_output("goal ", 30.0).split()[1])
+
+
+@pytest.fixture
+def short_lease(tmp_path):
+    file = tmp_path / "short_lease.xml"
+    file.write_text(SHORT_LEASE)
+    return {"FASTDDS_DEFAULT_PROFILES_FILE": str(file), "FASTRTPS_DEFAULT_PROFILES_FILE": str(file)}
+
+
+def wait_until_moving(simulator):
+    wait_for(lambda: not simulator.stands_still(), 10.0, "the arm to move")
+
+
+def result(client, goal_id, limit=30.0):
+    """Of a goal that another client has sent."""
+    service = MoveJ.Impl.GetResultService
+    answer = client.call(service, "move_j/_action/get_result", limit=limit, goal_id=UUID(uuid=list(goal_id)))
+    return answer.status, answer.result
+
+
+def assert_arm_was_stopped(simulator, robot, goal_id):
+    status, end = result(robot, goal_id)
+    assert simulator.stands_still()
+    assert status == GoalStatus.STATUS_ABORTED and not end.success
+    assert end.error_code == ErrorCode.CLIENT_LOST and "on_client_lost" in end.message
+    assert abs(simulator.state()["actual"]["position"][0] - AWAY) > 0.2, "it has reached its target"
+    assert simulator.state()["safety_mode"] == "NORMAL"
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_the_arm_stops_at_once_when_its_client_ends(number, robot, simulator, driver, processes):
+    client = processes(CarelessClient())
+    wait_until_moving(simulator)
+    client.signal(number)
+    client.wait(10.0)
+    wait_for(simulator.stands_still, 2.0 + 1.0 / REAL_TIME_FACTOR, "the arm to stand still")
+    assert_arm_was_stopped(simulator, robot, client.goal_id)
+    driver.wait_for_output("client_lost 19")
+    make_ready(robot)
+
+
+def test_the_arm_stops_when_the_lease_of_a_killed_client_ends(robot, simulator, short_lease, processes):
+    client = processes(CarelessClient(env=short_lease))
+    wait_until_moving(simulator)
+    client.kill()
+    wait_for(simulator.stands_still, 5.0 + 1.0 / REAL_TIME_FACTOR, "the arm to stand still")
+    assert_arm_was_stopped(simulator, robot, client.goal_id)
+    make_ready(robot)
+
+
+def test_the_arm_stops_when_a_client_destroys_its_action_client_and_lives(robot, simulator, processes):
+    client = processes(CarelessClient("destroy"))
+    wait_until_moving(simulator)
+    client.write("now\n")
+    client.wait_for_output("destroyed")
+    assert_arm_was_stopped(simulator, robot, client.goal_id)
+    assert client.running()
+    make_ready(robot)
+
+
+def test_the_goal_of_a_living_client_goes_on_when_others_end(robot, simulator, processes):
+    idle = processes(Process([sys.executable, "-c", IDLE]))
+    idle.wait_for_output("ready")
+    goal = robot.send(MoveJ, "move_j", joint_positions=[HOME[0] + 0.5, *HOME[1:]], speed=0.2, acceleration=0.5)
+    wait_until_moving(simulator)
+    idle.signal(signal.SIGTERM)
+    idle.wait(10.0)
+    goal.succeeded()
+
+
+IDLE = """
+import rclpy
+from rclpy.action import ActionClient
+from ur_ros_rtde_msgs.action import MoveJ
+rclpy.init()
+node = rclpy.create_node("idle_client")
+client = ActionClient(node, MoveJ, "move_j")
+assert client.wait_for_server(timeout_sec=20.0)
+print("ready", flush=True)
+rclpy.spin(node)
+"""
+
+
+def test_the_goal_goes_on_without_its_client_when_that_is_asked_for(addresses, processes):
+    simulator = processes(Simulator(addresses[1]))
+    processes(node("driver", addresses[1], "ur_type:=ur10e", "on_client_lost:=continue", namespace="continuing"))
+    robot = Client("continuing", name="other_client")
+    try:
+        make_ready(robot)
+        client = processes(CarelessClient(namespace="continuing"))
+        wait_until_moving(simulator)
+        client.signal(signal.SIGTERM)
+        client.wait(10.0)
+        status, end = result(robot, client.goal_id, 40.0)
+        assert status == GoalStatus.STATUS_SUCCEEDED and end.success, end.message
+        assert simulator.state()["actual"]["position"][0] == pytest.approx(AWAY, abs=0.01)
+    finally:
+        robot.close()
