@@ -47,6 +47,7 @@ class Counting {
     handlers.accepted = [this](std::shared_ptr<Handle> handle) { start(std::move(handle)); };
     handlers.cancel = [](Handle & handle) { return grant_cancel(handle); };
     handlers.canceling = [this](Handle &) { wake_.notify_all(); };
+    handlers.client_lost = [](Handle & handle) { handle.abort(); };
     server_ = node.create_action_server<Fibonacci>(name, std::move(handlers), options);
   }
 

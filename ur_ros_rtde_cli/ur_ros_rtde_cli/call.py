@@ -148,7 +148,7 @@ def run(options: argparse.Namespace) -> int:
         canceling.accepted(handle)
         answer = canceling.wait(handle.get_result_async())
         progress.end()
-        print(fields.show(answer.result))
+        sys.stdout.write(f"{fields.show(answer.result)}\n")  # at once: its reader may want the first line only
         if canceling.reason:
             return canceling.reason.exit_code
         return 0 if answer.status == GoalStatus.STATUS_SUCCEEDED else 1
