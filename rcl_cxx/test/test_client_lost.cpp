@@ -146,7 +146,9 @@ TEST_F(ClientLostTest, IsReportedWhenItsContextEnds)
   executor->post([&] { served.set_value(); });
   get(served.get_future());
   other.reset();
-  EXPECT_TRUE(eventually([&] { return is_lost(goal); }, std::chrono::milliseconds(ClientWatch::kDiscoveryLimit) / 2)) << "it was discovered";
+  EXPECT_TRUE(
+      eventually([&] { return is_lost(goal); }, std::chrono::milliseconds(ClientWatch::kDiscoveryLimit) / 2))
+      << "it was discovered";
   EXPECT_TRUE(handle->is_active()) << "ending the goal is left to the handler";
   EXPECT_TRUE(handle->abort());
 }

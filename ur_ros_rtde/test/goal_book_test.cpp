@@ -148,7 +148,8 @@ TEST_F(HoldingGoals, AreNotReplacedByAnotherGoalOfTheSameId)
   const GoalId id = GoalId::random();
   ASSERT_TRUE(admit(id));
   std::promise<std::shared_ptr<GoalBook::Ticket>> started;
-  ASSERT_TRUE(book_.start(id, [&](const std::shared_ptr<GoalBook::Ticket> & ticket) { started.set_value(ticket); }));
+  ASSERT_TRUE(
+      book_.start(id, [&](const std::shared_ptr<GoalBook::Ticket> & ticket) { started.set_value(ticket); }));
   const auto ticket = started.get_future().get();
 
   const auto again = book_.admit(id, [](GoalBook::Ticket &) { return Status(); });

@@ -45,7 +45,8 @@ struct ActionHandlers {
   /// destroyed its action client. The goal goes on unless this ends it. Optional: without it clients are not
   /// watched. A process that was killed disappears when its participant's lease ends.
   std::function<void(GoalHandle<A> &)> client_lost{};
-  /// Runs when a goal that `goal` took will not be accepted after all: its client could not be told. Optional.
+  /// Runs when a goal that `goal` took will not be accepted after all: its client could not be told.
+  /// Optional.
   std::function<void(const GoalId &)> discarded{};
 };
 

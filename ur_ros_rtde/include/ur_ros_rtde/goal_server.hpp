@@ -48,8 +48,7 @@ class GoalServer {
 };
 
 template <typename A>
-void GoalServer<A>::serve(rcl_cxx::Node & node, const std::string & name, GoalBook & book,
-                          bool needs_client)
+void GoalServer<A>::serve(rcl_cxx::Node & node, const std::string & name, GoalBook & book, bool needs_client)
 {
   book_ = &book;
   rcl_cxx::ActionHandlers<A> handlers;

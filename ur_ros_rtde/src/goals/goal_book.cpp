@@ -8,9 +8,10 @@ namespace ur_ros_rtde {
 
 Interruption client_lost()
 {
-  return Error{ErrorCode::client_lost,
-               "the client that sent this goal has disappeared: keep its action client until the result has come, or "
-               "start command_server with on_client_lost:=continue"};
+  return Error{
+      ErrorCode::client_lost,
+      "the client that sent this goal has disappeared: keep its action client until the result has come, or "
+      "start command_server with on_client_lost:=continue"};
 }
 
 void GoalBook::Ticket::hold(Lease lease)
@@ -42,8 +43,9 @@ tl::expected<void, std::string> GoalBook::admit(const rcl_cxx::GoalId & id,
   const auto ticket = std::make_shared<Ticket>();
   Status status = host_.goals().can_start();
   if (status && find(id)) {
-    status = failure(ErrorCode::invalid_goal, fmt::format("a goal with the id {} runs: give each goal an id of its own",
-                                                          id.to_string()));
+    status =
+        failure(ErrorCode::invalid_goal,
+                fmt::format("a goal with the id {} runs: give each goal an id of its own", id.to_string()));
   }
   if (status) {
     try {

@@ -18,8 +18,7 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
   robot_->on_status([this](const RobotStatus & status) { driver_state_->publish(status); });
   diagnostics_ = std::make_unique<Diagnostics>(*node_, parameters.robot.address,
                                                [this] { return diagnose_driver(*robot_); });
-  host_ = std::make_unique<CommandHost>(
-      *node_, *robot_, parameters.goals);
+  host_ = std::make_unique<CommandHost>(*node_, *robot_, parameters.goals);
   teleoperation_ =
       std::make_unique<Teleoperation>(*host_, parameters.teleoperation, log_into(node_->logger()));
 }
