@@ -1,10 +1,15 @@
 #include "ur_ros_rtde/goal_threads.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <condition_variable>
+#include <fstream>
+#include <functional>
 #include <future>
+#include <string>
+#include <thread>
 
 namespace ur_ros_rtde {
 namespace {
@@ -12,6 +17,21 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 const Interruption shutdown{ErrorCode::shutdown, "the end"};
+
+/// What a thread does when its function has returned.
+struct AtThreadExit {
+  ~AtThreadExit() { action(); }
+  std::function<void()> action;
+};
+
+/// Waits until a thread of this process waits for something.
+void wait_until_asleep(pid_t thread)
+{
+  const std::string file = "/proc/self/task/" + std::to_string(thread) + "/stat";
+  std::string id, name, state;
+  while (state != "S" && std::ifstream(file) >> id >> name >> state) {
+  }
+}
 
 /// Waits until it is asked to end.
 void wait_for(const Interrupt & interrupt)
@@ -59,6 +79,33 @@ TEST(GoalThreads, take_nothing_after_they_were_closed)
   GoalThreads threads;
   threads.close(shutdown, milliseconds(0));
   const auto status = threads.start("late", std::make_shared<Interrupt>(), [] { FAIL(); });
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::shutdown);
+}
+
+TEST(GoalThreads, take_nothing_when_they_are_closed_while_a_finished_thread_is_joined)
+{
+  GoalThreads threads;
+  std::promise<void> release;
+  std::promise<void> leaving;
+  ASSERT_TRUE(threads.start("finished", std::make_shared<Interrupt>(), [&] {
+    static thread_local AtThreadExit at_exit;
+    at_exit.action = [&] {
+      leaving.set_value();
+      release.get_future().wait();
+    };
+  }));
+  leaving.get_future().wait();
+  std::promise<pid_t> id;
+  Status status;
+  std::thread starter([&] {
+    id.set_value(::gettid());
+    status = threads.start("late", std::make_shared<Interrupt>(), [] { FAIL(); });
+  });
+  wait_until_asleep(id.get_future().get());
+  threads.close(shutdown, milliseconds(0));
+  release.set_value();
+  starter.join();
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::shutdown);
 }

@@ -41,10 +41,10 @@ Status GoalThreads::can_start_locked() const
 Status GoalThreads::start(std::string name, std::shared_ptr<Interrupt> interrupt, std::function<void()> work)
 {
   std::unique_lock lock(mutex_);
+  join_finished(lock);  // before the check: close() may be called while it joins
   if (Status status = can_start_locked(); !status) {
     return status;
   }
-  join_finished(lock);
   Entry & entry = entries_.emplace_back();
   entry.name = std::move(name);
   entry.interrupt = std::move(interrupt);
