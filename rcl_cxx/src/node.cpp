@@ -52,11 +52,7 @@ detail::Parameters::Observer parameter_event_publisher(
     event.stamp.sec = static_cast<std::int32_t>(now / kNsPerSecond);
     event.stamp.nanosec = static_cast<std::uint32_t>(now % kNsPerSecond);
     event.node = core->fully_qualified_name();
-    try {
-      publisher->publish(event);
-    } catch (const Error & error) {
-      RCL_CXX_ERROR(core->logger(), "{}", error.what());
-    }
+    publisher->publish(event);
   };
 }
 }  // namespace

@@ -9,6 +9,10 @@
 
 namespace rcl_cxx {
 namespace detail {
+namespace {
+constexpr std::chrono::seconds kFailureLogPeriod{1};
+}
+
 std::shared_ptr<PublisherCore> PublisherCore::create(std::shared_ptr<NodeCore> node,
                                                      const rosidl_message_type_support_t * type_support,
                                                      const std::string & topic, const QoS & qos)
@@ -40,17 +44,21 @@ PublisherCore::~PublisherCore()
   ignore_rcl(rcl_publisher_fini(&publisher_, node()->handle()));
 }
 
-void PublisherCore::publish(const void * message)
+bool PublisherCore::publish(const void * message) noexcept
 {
   const rcl_ret_t code = rcl_publish(&publisher_, message, nullptr);
   if (code == RCL_RET_OK) {
-    return;
+    return true;
   }
-  if (!rcl_publisher_is_valid(&publisher_) && rcl_publisher_is_valid_except_context(&publisher_)) {
-    rcl_reset_error();  // after the shutdown nobody listens
-    return;
+  const bool shut_down =
+      !rcl_publisher_is_valid(&publisher_) && rcl_publisher_is_valid_except_context(&publisher_);
+  if (!shut_down && throttle_passes(last_failure_ns_, kFailureLogPeriod)) {
+    const rcl_error_string_t reason = rcl_get_error_string();
+    RCL_CXX_ERROR(node()->logger(), "{}: message not published (rcl error {}: {})", label(), code,
+                  reason.str);
   }
-  throw_rcl_error(code, label(), "cannot publish");
+  rcl_reset_error();
+  return false;
 }
 
 std::size_t PublisherCore::subscription_count() const
@@ -92,9 +100,9 @@ std::size_t PublisherBase::subscription_count() const
 {
   return core_->subscription_count();
 }
-void PublisherBase::publish_message(const void * message)
+bool PublisherBase::publish_message(const void * message) noexcept
 {
-  core_->publish(message);
+  return core_->publish(message);
 }
 
 }  // namespace rcl_cxx

@@ -2,6 +2,8 @@
 
 #include <rcl/publisher.h>
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -19,7 +21,8 @@ class PublisherCore : public Entity {
                 const std::string & topic, const QoS & qos);
   ~PublisherCore() override;
 
-  void publish(const void * message);
+  /// As Publisher::publish.
+  bool publish(const void * message) noexcept;
   std::size_t subscription_count() const;
   const std::string & topic_name() const noexcept { return topic_; }
 
@@ -31,6 +34,7 @@ class PublisherCore : public Entity {
   rcl_publisher_t publisher_;
   std::string topic_;
   std::unique_ptr<QosWarning> warning_;
+  std::atomic<std::int64_t> last_failure_ns_{INT64_MIN};
 };
 
 }  // namespace rcl_cxx::detail

@@ -8,6 +8,7 @@
 #include <test_msgs/msg/basic_types.hpp>
 
 #include "counting_new.hpp"
+#include "failing_publish.hpp"
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "ros_fixture.hpp"
 
@@ -115,6 +116,29 @@ TEST_F(Topics, take_messages_without_allocation_in_this_layer)
   EXPECT_EQ(allocations_of_this_thread(), before);
 }
 
+TEST_F(Topics, report_a_failure_and_go_on)
+{
+  std::promise<std::string> heard;
+  const auto subscription = node->create_subscription<String>(
+      "topic", rcl_cxx::QoS::reliable(10), [&](const String & message) { heard.set_value(message.data); });
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
+  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  testing::internal::CaptureStderr();
+  {
+    const FailingPublish failing;
+    EXPECT_FALSE(publisher->publish(text("lost")));
+    EXPECT_FALSE(publisher->publish(text("lost, too")));
+  }
+  const std::string log = testing::internal::GetCapturedStderr();
+  const std::string report = "publisher topic: message not published (rcl error 1: the network is down";
+  EXPECT_THAT(log, HasSubstr(report));
+  EXPECT_EQ(log.find(report), log.rfind(report)) << log;
+  EXPECT_TRUE(publisher->publish(text("arrives")));
+  auto future = heard.get_future();
+  ASSERT_EQ(future.wait_for(kLimit), std::future_status::ready);
+  EXPECT_EQ(future.get(), "arrives");
+}
+
 TEST_F(Topics, take_messages_from_many_threads)
 {
   std::atomic<int> heard{0};
@@ -151,7 +175,7 @@ TEST_F(Topics, are_silent_after_the_shutdown)
 {
   const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
   context->shutdown("test");
-  EXPECT_NO_THROW(publisher->publish(text("nobody")));
+  EXPECT_FALSE(publisher->publish(text("nobody")));
   EXPECT_EQ(publisher->subscription_count(), 0U);
 }
 

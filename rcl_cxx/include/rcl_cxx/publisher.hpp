@@ -23,7 +23,7 @@ class PublisherBase {
 
  protected:
   explicit PublisherBase(std::shared_ptr<detail::PublisherCore> core);
-  void publish_message(const void * message);
+  bool publish_message(const void * message) noexcept;
 
  private:
   std::shared_ptr<detail::PublisherCore> core_;
@@ -38,8 +38,10 @@ class Publisher : public PublisherBase {
 
   explicit Publisher(std::shared_ptr<detail::PublisherCore> core) : PublisherBase(std::move(core)) {}
 
-  /// Serialises and sends in the caller's thread; this layer allocates nothing. @throws Error
-  void publish(const M & message) { publish_message(&message); }
+  /// Serialises and sends in the caller's thread; this layer allocates nothing. Returns false if the message
+  /// was not published. A failure is logged, at most once a second for each publisher; it is no reason to end
+  /// what publishes.
+  bool publish(const M & message) noexcept { return publish_message(&message); }
 };
 
 }  // namespace rcl_cxx
