@@ -1,5 +1,6 @@
 #include "robot/tcp_stream.hpp"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <netdb.h>
@@ -11,7 +12,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <system_error>
 #include <utility>
 
@@ -23,24 +26,47 @@ std::string system_text(int error)
   return std::generic_category().message(error);
 }
 
-/// IPv4 only, as ur_rtde.
-Expected<sockaddr_in> resolve(const std::string & address, std::uint16_t port)
+/// IPv4 only, as ur_rtde. Takes as long as the name servers do.
+Expected<in_addr> look_up(const std::string & name)
 {
   addrinfo hints{};
   hints.ai_family = AF_INET;
   hints.ai_socktype = SOCK_STREAM;
   addrinfo * found = nullptr;
-  if (const int error = getaddrinfo(address.c_str(), nullptr, &hints, &found); error != 0) {
+  if (const int error = getaddrinfo(name.c_str(), nullptr, &hints, &found); error != 0) {
     return failure(ErrorCode::link_lost,
-                   fmt::format("the address `{}` cannot be resolved ({}): check the robot's address", address,
+                   fmt::format("the address `{}` cannot be resolved ({}): check the robot's address", name,
                                gai_strerror(error)));
   }
   const std::unique_ptr<addrinfo, void (*)(addrinfo *)> keep(found, freeaddrinfo);
   sockaddr_in result{};
   std::copy_n(reinterpret_cast<const char *>(found->ai_addr), sizeof(result),
               reinterpret_cast<char *>(&result));
-  result.sin_port = htons(port);
-  return result;
+  return result.sin_addr;
+}
+
+/// A name is resolved once in the life of the process: a later connection, such as that of the last-resort
+/// stop, never waits for a name server.
+Expected<in_addr> resolve(const std::string & address)
+{
+  in_addr number{};
+  if (inet_pton(AF_INET, address.c_str(), &number) == 1) {
+    return number;
+  }
+  static std::mutex mutex;
+  static std::map<std::string, in_addr> known;  // guarded by mutex
+  {
+    const std::lock_guard lock(mutex);
+    if (const auto found = known.find(address); found != known.end()) {
+      return found->second;
+    }
+  }
+  auto found = look_up(address);
+  if (found) {
+    const std::lock_guard lock(mutex);
+    known.emplace(address, *found);
+  }
+  return found;
 }
 
 int milliseconds_to(TcpStream::Clock::time_point deadline)
@@ -75,11 +101,15 @@ TcpStream::~TcpStream()
 Expected<TcpStream> TcpStream::connect(const std::string & address, std::uint16_t port,
                                        std::chrono::milliseconds limit)
 {
-  const auto deadline = Clock::now() + limit;
-  const auto target = resolve(address, port);
-  if (!target) {
-    return tl::unexpected(target.error());
+  const auto ip = resolve(address);
+  if (!ip) {
+    return tl::unexpected(ip.error());
   }
+  sockaddr_in target{};
+  target.sin_family = AF_INET;
+  target.sin_addr = *ip;
+  target.sin_port = htons(port);
+  const auto deadline = Clock::now() + limit;
   TcpStream stream(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
                    fmt::format("{}:{}", address, port));
   const auto refused = [&](int error) {
@@ -91,7 +121,7 @@ Expected<TcpStream> TcpStream::connect(const std::string & address, std::uint16_
   }
   const int on = 1;
   ::setsockopt(stream.descriptor_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
-  if (::connect(stream.descriptor_, reinterpret_cast<const sockaddr *>(&*target), sizeof(*target)) != 0) {
+  if (::connect(stream.descriptor_, reinterpret_cast<const sockaddr *>(&target), sizeof(target)) != 0) {
     if (errno != EINPROGRESS) {
       return refused(errno);
     }

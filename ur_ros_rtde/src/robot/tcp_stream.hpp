@@ -11,9 +11,9 @@
 
 namespace ur_ros_rtde {
 
-/// A TCP connection every step of which has a limit: for looking at an address before ur_rtde, whose
-/// constructors can block, is let near it, and for the dashboard command of last resort. Errors are link_lost
-/// and name address and port.
+/// A TCP connection every step of which has a limit, except the first look-up of a host name: for looking at
+/// an address before ur_rtde, whose constructors can block, is let near it, and for the dashboard command of
+/// last resort. Errors are link_lost and name address and port.
 class TcpStream {
  public:
   using Clock = std::chrono::steady_clock;
