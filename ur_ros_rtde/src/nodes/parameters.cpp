@@ -167,6 +167,9 @@ RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node)
   options.frequency = declare_number(node, "rtde_frequency", 500.0, 1.0, 500.0,
                                      "Hz, of the published state; a CB3 controller gives at most 125");
   options.fields = declare_robot_state_fields(node);
+  options.publish_tf = node.declare_parameter(
+      "publish_tf", true,
+      described("Broadcast the transform base -> tool0_controller, the TCP pose, on /tf"));
   return options;
 }
 

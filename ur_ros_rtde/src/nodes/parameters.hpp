@@ -29,7 +29,7 @@ struct PluginChoice {
 };
 PluginChoice declare_plugin_choice(rcl_cxx::Node & node);
 
-/// tf_prefix, qos, rtde_frequency, robot_state_fields
+/// tf_prefix, qos, rtde_frequency, robot_state_fields, publish_tf
 RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node);
 
 struct CommandServerParameters {

@@ -39,11 +39,15 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
 {
   const rcl_cxx::QoS qos = rcl_cxx::QoS::from_name(options_.qos);
   joint_states_ = node_.create_publisher<sensor_msgs::msg::JointState>("joint_states", qos);
+  actual_joint_states_ = node_.create_publisher<sensor_msgs::msg::JointState>("actual_joint_states", qos);
   tcp_pose_ = node_.create_publisher<geometry_msgs::msg::PoseStamped>("tcp_pose", qos);
   wrench_ = node_.create_publisher<geometry_msgs::msg::WrenchStamped>("wrench", qos);
   io_state_ = node_.create_publisher<ur_ros_rtde_msgs::msg::IOState>("io_state", qos);
   tcp_speed_ = node_.create_publisher<geometry_msgs::msg::TwistStamped>("tcp_speed", qos);
   target_joint_states_ = node_.create_publisher<sensor_msgs::msg::JointState>("target_joint_states", qos);
+  if (options_.publish_tf) {
+    tool_transform_ = make_tool_transform(node_, options_.tf_prefix);
+  }
 
   get_joint_state_ = serve<srv::GetJointState>("get_joint_state", &StateMessages::joint_state,
                                                &srv::GetJointState::Response::joint_state);
@@ -135,6 +139,10 @@ void RobotStateReceiver::publish(const Sample & sample)
   io_state_->publish(newest_.io_state);
   publish_if_heard(*tcp_speed_, newest_.tcp_speed);
   publish_if_heard(*target_joint_states_, newest_.target_joint_state);
+  publish_if_heard(*actual_joint_states_, newest_.joint_state);
+  if (tool_transform_) {
+    tool_transform_->publish(newest_.tcp_pose);
+  }
 }
 
 std::vector<Diagnosis> RobotStateReceiver::diagnose()

@@ -20,6 +20,7 @@
 #include "nodes/recording_services.hpp"
 #include "nodes/state_diagnostics.hpp"
 #include "nodes/state_messages.hpp"
+#include "nodes/tool_transform.hpp"
 #include "ur_ros_rtde/error.hpp"
 #include "ur_ros_rtde/sample.hpp"
 
@@ -33,6 +34,8 @@ class RobotStateReceiver {
   struct Options {
     std::string tf_prefix;
     std::string qos = "reliable";
+    /// Broadcast base -> tool0_controller.
+    bool publish_tf = true;
     /// Hz
     double frequency = 500.0;
     /// RTDE outputs for robot_state.
@@ -72,11 +75,13 @@ class RobotStateReceiver {
   double agreed_frequency_ = 0.0;  ///< of link_
 
   rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr joint_states_;
+  rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr actual_joint_states_;
   rcl_cxx::Publisher<geometry_msgs::msg::PoseStamped>::SharedPtr tcp_pose_;
   rcl_cxx::Publisher<geometry_msgs::msg::WrenchStamped>::SharedPtr wrench_;
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::IOState>::SharedPtr io_state_;
   rcl_cxx::Publisher<geometry_msgs::msg::TwistStamped>::SharedPtr tcp_speed_;
   rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr target_joint_states_;
+  std::unique_ptr<ToolTransform> tool_transform_;  ///< null: publish_tf is false, or not available
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetJointState>::SharedPtr get_joint_state_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetTcpPose>::SharedPtr get_tcp_pose_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetWrench>::SharedPtr get_wrench_;

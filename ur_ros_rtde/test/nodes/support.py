@@ -157,10 +157,10 @@ class Simulator:
         self.process.end()
 
 
-def node(name, address, *parameters, namespace="", env=None, arguments=()):
+def node(name, address, *parameters, namespace="", env=None, arguments=(), executable=None):
     # Patient: with other tests beside it, a simulator on a small machine may be late by more than a robot ever is.
     patience = ["silence_limit:=2.0", "watchdog_frequency:=2.0"]
-    command = [program("ur_ros_rtde", name), "--ros-args", "-p", f"robot_ip:={address}"]
+    command = [executable or program("ur_ros_rtde", name), "--ros-args", "-p", f"robot_ip:={address}"]
     parameters = [*(p for p in patience if not any(q.split(":=")[0] == p.split(":=")[0] for q in parameters)), *parameters]
     for parameter in parameters:
         command += ["-p", parameter]

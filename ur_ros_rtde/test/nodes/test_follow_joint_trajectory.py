@@ -1,6 +1,5 @@
 """follow_joint_trajectory, as MoveIt uses it."""
 
-import json
 import os
 import pathlib
 import shutil
@@ -12,6 +11,7 @@ from action_msgs.msg import GoalStatus
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from control_msgs.msg import JointComponentTolerance, JointTolerance
+from interfaces_or_ours import type_hashes
 from support import HOME, JOINTS, node, wait_for
 from trajectories import point, timed, turned, unlocked
 
@@ -64,9 +64,7 @@ def reason(robot, goal):
 
 @pytest.mark.skipif(control_msgs_or_ours.PLUGIN is None, reason="control_msgs is installed")
 def test_the_interface_is_the_published_one():
-    description = control_msgs_or_ours.BUILD / "rosidl_generator_type_description" / "control_msgs"
-    hashes = {entry["type_name"]: entry["hash_string"]
-              for file in description.rglob("*.json") for entry in json.loads(file.read_text())["type_hashes"]}
+    hashes = type_hashes("control_msgs")
     assert hashes["control_msgs/action/FollowJointTrajectory"] in HASHES
     assert (hashes["control_msgs/msg/JointTolerance"]
             == "RIHS01_c254f9cece0f3b733017b6990fd46d1326e25242d6b8844398c97d9a88e7d648")

@@ -147,6 +147,27 @@ def test_faked_joint_states_are_shown_and_the_real_state_goes_on(receiver, clien
     wait_for(lambda: shown[-1].position[2] == pytest.approx(HOME[2], abs=0.01), 10.0, "the real elbow")
 
 
+def test_the_actual_joint_states_are_published_while_fake_ones_are_shown(receiver, client):
+    shown, actual = client.listen(JointState, "joint_states"), client.listen(JointState, "actual_joint_states")
+    wait_for(lambda: len(shown) > 50 and len(actual) > 50, 20.0, "joint states of both topics")
+    by_stamp = {seconds(state.header.stamp): state for state in list(shown)}
+    assert sum(by_stamp.get(seconds(state.header.stamp)) == state for state in list(actual)) > 25  # not fake: the same
+
+    assert client.call(SetBool, "publish_fake_joint_states", data=True).success
+    try:
+        publisher = client.node.create_publisher(JointState, "fake_joint_states", 10)
+        wait_for(lambda: publisher.get_subscription_count(), 10.0, "the subscription of fake_joint_states")
+        publisher.publish(JointState(name=["left_elbow_joint"], position=[0.25]))
+        wait_for(lambda: shown[-1].position[2] == 0.25, 10.0, "the fake elbow")
+        stamp = seconds(shown[-1].header.stamp)
+        wait_for(lambda: seconds(actual[-1].header.stamp) > stamp, 10.0, "the actual state after that")
+        assert list(actual[-1].name) == [f"left_{name}" for name in JOINTS]
+        assert list(actual[-1].position) == pytest.approx(HOME, abs=0.01)
+        assert any(actual[-1].effort)  # those that are shown with fake positions are zero
+    finally:
+        assert client.call(SetBool, "publish_fake_joint_states", data=False).success
+
+
 def test_any_number_of_receivers_follow_one_robot(simulator, client, processes):
     names = [f"watcher_{i}" for i in range(4)]
     for name in names:

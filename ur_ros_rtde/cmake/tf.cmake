@@ -1,0 +1,18 @@
+# The transform base -> tool0_controller, where tf2_msgs is installed. Where it is not, the tests define the same
+# interface and build a second robot_state_receiver with it, for them alone.
+find_package(tf2_msgs QUIET)
+
+if(tf2_msgs_FOUND)
+  target_link_libraries(ur_ros_rtde_nodes PUBLIC ${tf2_msgs_TARGETS})
+elseif(BUILD_TESTING)
+  add_subdirectory(test/tf2_msgs)
+  rosidl_get_typesupport_target(tf2_msgs_interfaces tf2_msgs rosidl_typesupport_cpp)
+  # The program's own tool_transform.cpp is linked instead of the one in the static library.
+  add_executable(robot_state_receiver_with_tf
+    src/nodes/main_robot_state_receiver.cpp src/nodes/tool_transform.cpp)
+  ur_ros_rtde_settings(robot_state_receiver_with_tf)
+  target_link_libraries(robot_state_receiver_with_tf PRIVATE ur_ros_rtde_nodes ${tf2_msgs_interfaces})
+  set_target_properties(robot_state_receiver_with_tf PROPERTIES
+    OUTPUT_NAME robot_state_receiver
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test/tf2_msgs)
+endif()

@@ -1,0 +1,122 @@
+"""The transform base -> tool0_controller on /tf."""
+
+import os
+
+import interfaces_or_ours
+import pytest
+from geometry_msgs.msg import PoseStamped
+from rclpy.node import NodeNameNonExistentError
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool
+from support import node, seconds, wait_for
+
+LIBRARIES = interfaces_or_ours.provide("tf2_msgs")
+
+from tf2_msgs.msg import TFMessage  # noqa: E402
+
+# Of the published definition.
+HASH = "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"
+
+
+def receiver(address, *parameters, **options):
+    """robot_state_receiver as it is where tf2_msgs is installed."""
+    if LIBRARIES is None:
+        return node("robot_state_receiver", address, *parameters, **options)
+    path = os.pathsep.join([str(LIBRARIES), os.environ.get("LD_LIBRARY_PATH", "")])
+    return node("robot_state_receiver", address, *parameters, env={"LD_LIBRARY_PATH": path},
+                executable=LIBRARIES / "robot_state_receiver", **options)
+
+
+def transforms(messages, child):
+    return [t for message in list(messages) for t in message.transforms if t.child_frame_id == child]
+
+
+def of_the_tcp(simulator, transform):
+    tcp = simulator.state()["actual_tcp_pose"]
+    t = transform.transform.translation
+    return (t.x, t.y, t.z) == pytest.approx(tcp[:3], abs=1e-3)
+
+
+def published(client, namespace):
+    """The topics of the receiver there, once all of it is known: the subscription is what it makes last."""
+    receiver = ("robot_state_receiver", namespace)
+
+    def complete():
+        try:
+            subscribed = client.node.get_subscriber_names_and_types_by_node(*receiver)
+        except NodeNameNonExistentError:
+            return False
+        return f"{namespace}/fake_joint_states" in dict(subscribed)
+
+    wait_for(complete, 15.0, f"{namespace}/robot_state_receiver")
+    return dict(client.node.get_publisher_names_and_types_by_node(*receiver))
+
+
+@pytest.mark.skipif(LIBRARIES is None, reason="tf2_msgs is installed")
+def test_the_interface_is_the_published_one():
+    assert interfaces_or_ours.type_hashes("tf2_msgs")["tf2_msgs/msg/TFMessage"] == HASH
+
+
+def test_the_tcp_pose_is_broadcast_with_the_stamp_of_tcp_pose(simulator, client, processes):
+    processes(receiver(simulator.address, "tf_prefix:=left_", namespace="with_tf"))
+    poses = client.listen(PoseStamped, "/with_tf/tcp_pose")
+    tf = client.listen(TFMessage, "/tf")
+    child = "left_tool0_controller"
+    wait_for(lambda: len(tf) > 100 and len(poses) > 100, 20.0, "100 transforms and poses")
+    assert all(len(message.transforms) == 1 for message in list(tf))
+    by_stamp = {seconds(pose.header.stamp): pose for pose in list(poses)}
+    matching = [(t, by_stamp[seconds(t.header.stamp)]) for t in transforms(tf, child) if seconds(t.header.stamp) in by_stamp]
+    assert len(matching) > 50
+    for transform, pose in matching:
+        assert transform.header.frame_id == pose.header.frame_id == "left_base"
+        t, p = transform.transform.translation, pose.pose.position
+        assert (t.x, t.y, t.z) == (p.x, p.y, p.z)
+        assert transform.transform.rotation == pose.pose.orientation
+    assert of_the_tcp(simulator, matching[-1][0])
+
+
+def test_listeners_of_tf2_match(simulator, client, processes):
+    processes(receiver(simulator.address, "qos:=best_effort", namespace="best_effort"))
+    assert "/tf" in published(client, "/best_effort")
+    publishers = client.node.get_publishers_info_by_topic("/tf")
+    assert [publisher.node_namespace for publisher in publishers] == ["/best_effort"]
+    # tf2_ros::TransformListener asks for reliable messages.
+    assert publishers[0].qos_profile.reliability == ReliabilityPolicy.RELIABLE
+    assert publishers[0].qos_profile.durability == DurabilityPolicy.VOLATILE
+
+
+def test_the_broadcast_follows_the_robot_while_fake_joint_states_are_shown(simulator, client, processes):
+    processes(receiver(simulator.address, "tf_prefix:=faked_", namespace="faked"))
+    shown = client.listen(JointState, "/faked/joint_states")
+    tf = client.listen(TFMessage, "/tf")
+    publisher = client.node.create_publisher(JointState, "/faked/fake_joint_states", 10)
+    wait_for(lambda: publisher.get_subscription_count() and shown, 15.0, "the receiver")
+    assert client.call(SetBool, "/faked/publish_fake_joint_states", data=True).success
+    publisher.publish(JointState(name=["faked_elbow_joint"], position=[0.25]))
+    wait_for(lambda: shown[-1].position[2] == 0.25, 10.0, "the fake elbow")
+    number = len(tf)
+    wait_for(lambda: len(tf) > number + 20, 10.0, "transforms after that")
+    assert of_the_tcp(simulator, transforms(tf, "faked_tool0_controller")[-1])
+
+
+def test_the_topic_can_be_remapped_into_the_namespace(simulator, client, processes):
+    processes(receiver(simulator.address, namespace="own", arguments=["-r", "/tf:=tf"]))
+    tf = client.listen(TFMessage, "/own/tf")
+    assert wait_for(lambda: transforms(tf, "tool0_controller"), 15.0, "a transform")
+
+
+def test_the_broadcast_can_be_switched_off(simulator, client, processes):
+    processes(receiver(simulator.address, "publish_tf:=false", namespace="quiet"))
+    assert "/tf" not in published(client, "/quiet")
+
+
+@pytest.mark.skipif(LIBRARIES is None, reason="tf2_msgs is installed")
+def test_a_build_without_tf2_msgs_says_so(simulator, client, processes):
+    without = processes(node("robot_state_receiver", simulator.address, "tf_prefix:=plain_", namespace="plain"))
+    line = without.wait_for_output("tf2_msgs was not found")
+    assert "[INFO]" in line and "plain_tool0_controller" in line and "publish_tf" in line
+    assert "/tf" not in published(client, "/plain")
+    silent = processes(node("robot_state_receiver", simulator.address, "publish_tf:=false", namespace="silent"))
+    assert "/tf" not in published(client, "/silent")
+    assert "tf2_msgs" not in silent.output()
