@@ -1,0 +1,211 @@
+#!/usr/bin/env python3
+"""Compiles our sources with another compiler, or against the headers of another ROS distribution.
+
+Without SOURCES the ROS headers are those of the build. With SOURCES, a folder of ROS packages of one distribution as
+they come from their repositories (docs/testing.md lists them), the interface headers are generated with that
+distribution's own rosidl first. Files are compiled with -fsyntax-only -Werror and the options of the build.
+"""
+
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+INTERFACES = ("msg", "srv", "action")
+
+
+class Package:
+    def __init__(self, folder):
+        self.folder = folder
+        document = xml.etree.ElementTree.parse(folder / "package.xml").getroot()
+        self.name, self.version = document.findtext("name"), document.findtext("version")
+        self.has_interfaces = "rosidl_interface_packages" in [group.text for group in document.findall("member_of_group")]
+        self.depends = {element.text for element in document if element.tag.endswith("depend")}
+
+    def interfaces(self):
+        """msg/Pose.msg, srv/SetBool.srv, …"""
+        return sorted(str(file.relative_to(self.folder)) for kind in INTERFACES for file in (self.folder / kind).glob(f"*.{kind}"))
+
+
+def find_packages(folder):
+    """{name: package}, those with interfaces after the packages that they use."""
+    found = {package.name: package for package in map(Package, sorted(path.parent for path in folder.glob("*/package.xml")))}
+    ordered = {}
+
+    def add(package):
+        for name in sorted(package.depends & found.keys() - ordered.keys()):
+            if package.has_interfaces and found[name].has_interfaces:
+                add(found[name])
+        ordered.setdefault(package.name, package)
+
+    for package in found.values():
+        add(package)
+    return ordered
+
+
+class Headers:
+    """The headers of a distribution: those in the repositories, and those that its build generates."""
+
+    def __init__(self, sources, output):
+        self.ros = find_packages(sources)
+        self.output = output
+        self._ours = {name: package for name, package in find_packages(ROOT).items() if package.has_interfaces}
+        self._in_c = self._used_by("rcl") | self._used_by("rcl_action")
+        modules = [str(package.folder) for package in self.ros.values()]
+        self._environment = {**os.environ, "PYTHONPATH": os.pathsep.join([*modules, os.environ.get("PYTHONPATH", "")])}
+
+    def generate(self):
+        for package in self.ros.values():
+            self._write_version(package)
+        self._write_logging_macros()
+        for package in [*self.ros.values(), *self._ours.values()]:
+            done = self.output / f"{package.name}.done"
+            if package.has_interfaces and package.interfaces() and not done.exists():
+                self._generate_interfaces(package)
+                done.touch()
+
+    def _used_by(self, name):
+        direct = self.ros[name].depends & self.ros.keys()
+        return direct.union(*(self._used_by(other) for other in direct))
+
+    def include_folders(self):
+        own = [package.folder / "include" for package in self.ros.values() if (package.folder / "include").is_dir()]
+        return [*own, self.output / "include"]
+
+    def replaces(self, folder):
+        """Whether `folder` of the build has interfaces that are generated here."""
+        return pathlib.Path(folder).name in self._ours
+
+    def _run(self, *command):
+        subprocess.run([sys.executable, *map(str, command)], env=self._environment, stdout=subprocess.DEVNULL, check=True)
+
+    def _write(self, name, text):
+        file = self.output / "include" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+
+    def _write_version(self, package):
+        """As ament_generate_version_header() does."""
+        cmake = package.folder / "CMakeLists.txt"
+        if cmake.exists() and "ament_generate_version_header" in cmake.read_text():
+            parts = zip(("MAJOR", "MINOR", "PATCH"), package.version.split("."))
+            self._write(f"{package.name}/version.h", "#pragma once\n" + "".join(
+                f"#define {package.name.upper()}_VERSION_{part} ({number})\n" for part, number in parts))
+
+    def _write_logging_macros(self):
+        """rcutils/logging_macros.h is a template up to Kilted, an ordinary header later."""
+        folder = self.ros["rcutils"].folder
+        template = folder / "resource" / "logging_macros.h.em"
+        if template.exists():
+            self._write("rcutils/logging_macros.h", "")
+            self._run("-m", "em", "-o", self.output / "include" / "rcutils" / "logging_macros.h",
+                      "-D", f"rcutils_module_path={str(folder)!r}", template)
+
+    def _generate_interfaces(self, package):
+        print(f"    generating the interfaces of {package.name}", flush=True)
+        idl, types = self.output / "idl" / package.name, self.output / "types" / package.name
+        names = [str(pathlib.Path(name).with_suffix(".idl")) for name in package.interfaces()]
+        self._call("rosidl_adapter", package, idl, non_idl_tuples=[f"{package.folder}:{name}" for name in package.interfaces()])
+        common = {"idl_tuples": [f"{idl}:{name}" for name in names], "ros_interface_dependencies": [], "target_dependencies": []}
+        if "rosidl_generator_type_description" in self.ros:  # since Iron
+            self._call("rosidl_generator_type_description", package, types, **common,
+                       include_paths=[f"{name}:{self.output / 'types' / name}" for name in (*self.ros, *self._ours)])
+        described = [f"{name}:{types / pathlib.Path(name).with_suffix('.json')}" for name in names]
+        languages = [("rosidl_generator_c", "h"), ("rosidl_generator_cpp", "hpp")]
+        for generator, suffix in languages if package.name in self._in_c else languages[1:]:
+            folder = self.ros[generator].folder / "resource"
+            self._call(generator, package, self.output / "include" / package.name, **common, template_dir=str(folder),
+                       type_description_tuples=described)
+            name = f"{generator}__visibility_control.{suffix}"
+            text = (folder / f"{name}.in").read_text().replace("@PROJECT_NAME@", package.name)
+            self._write(f"{package.name}/msg/{name}", text.replace("@PROJECT_NAME_UPPER@", package.name.upper()))
+
+    def _call(self, generator, package, output, **arguments):
+        """A generator takes its arguments from a file, as CMake writes it."""
+        output.mkdir(parents=True, exist_ok=True)
+        file = self.output / f"{generator}.json"
+        file.write_text(json.dumps({"package_name": package.name, "output_dir": str(output), **arguments}))
+        if generator == "rosidl_adapter":
+            self._run("-m", generator, "--package-name", package.name, "--arguments-file", file, "--output-dir", output,
+                      "--output-file", self.output / "idl.txt")
+        else:
+            self._run(self.ros[generator].folder / "bin" / generator, "--generator-arguments-file", file)
+
+
+def rewrite(command, compiler, prefix, headers):
+    """The build's command with another compiler, and with `headers` in place of those of the ROS `prefix`."""
+    words = iter(shlex.split(command)[1:])
+    result = [compiler, "-fsyntax-only", "-Werror"]
+    for word in words:
+        if word in ("-o", "-include", "-MF", "-MT", "-Xclang"):  # outputs and precompiled headers
+            next(words)
+        elif word == "-isystem":
+            folder = next(words)
+            if not headers or not (folder.startswith(f"{prefix}/") or headers.replaces(folder)):
+                result += [word, folder]
+        elif word not in ("-c", "-MD", "-Winvalid-pch", "-fpch-preprocess"):
+            result.append(word)
+    for folder in headers.include_folders() if headers else ():
+        result += ["-isystem", str(folder)]
+    return result
+
+
+def commands(build, pattern):
+    """(file, folder, command) of each of our files that the build compiles, once each."""
+    found = {}
+    for database in sorted(build.glob("*/compile_commands.json")):
+        for entry in json.loads(database.read_text()):
+            file = pathlib.Path(entry["directory"], entry["file"])
+            if ROOT in file.parents and build not in file.parents and re.search(pattern, str(file.relative_to(ROOT))):
+                found[file] = (file, entry["directory"], entry["command"])
+    return list(found.values())
+
+
+def check(compiler, options, headers):
+    """How many files do not compile."""
+
+    def compile_file(job):
+        file, folder, command = job
+        result = subprocess.run(rewrite(command, compiler, options.prefix, headers), cwd=folder, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, text=True)
+        if result.returncode:
+            print(f"{compiler}: {file.relative_to(ROOT)}\n{result.stdout}", flush=True)
+        return result.returncode != 0
+
+    jobs = commands(options.build, options.files)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        failed = sum(pool.map(compile_file, jobs))
+    against = f"rcl {headers.ros['rcl'].version}" if headers else "the ROS headers of the build"
+    print(f"{compiler}, {against}: {len(jobs)} files, {failed} failed", flush=True)
+    return failed if jobs else 1
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sources", nargs="?", type=pathlib.Path, help="folder with the ROS packages of a distribution")
+    parser.add_argument("--compiler", action="append", help="may be given several times; default: g++")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / ".ur" / "kilted" / "build",
+                        help="build folder of colcon with compile_commands.json files (default: %(default)s)")
+    parser.add_argument("--prefix", type=pathlib.Path, default=ROOT / ".ur" / "kilted" / "venv",
+                        help="prefix of the ROS headers of that build (default: %(default)s)")
+    parser.add_argument("--files", default="", help="regular expression: compile only these")
+    parser.add_argument("--output", type=pathlib.Path, help="folder for generated headers, kept (default: SOURCES-generated)")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
+    options = parser.parse_args()
+    headers = None
+    if options.sources:
+        sources = options.sources.resolve()
+        headers = Headers(sources, (options.output or sources.with_name(sources.name + "-generated")).resolve())
+        headers.generate()
+    return 1 if sum(check(compiler, options, headers) for compiler in options.compiler or ["g++"]) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
