@@ -1,0 +1,54 @@
+"""What colcon and rosdep find when this checkout lies in a workspace: the packages, and nothing else."""
+
+import argparse
+import pathlib
+import subprocess
+
+import pytest
+from catkin_pkg.packages import find_packages
+from colcon_core import package_discovery, package_identification
+from ur_tools import new, packages
+from ur_tools.layout import ROOT
+
+
+def checkout(folder: pathlib.Path) -> pathlib.Path:
+    """What `git clone` would write: tracked and new files, without what is built here."""
+    files = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True,
+                           text=True, check=True).stdout.split("\n")
+    for name in filter(None, files):
+        if (ROOT / name).is_file():
+            target = folder / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes((ROOT / name).read_bytes())
+    return folder
+
+
+@pytest.fixture(scope="module")
+def workspace(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("workspace")
+    checkout(folder / "src" / "ur_ros_rtde")
+    return folder
+
+
+def colcon_list(folder):
+    """The names of the packages that `colcon build` finds from there."""
+    parser = argparse.ArgumentParser()
+    package_discovery.add_package_discovery_arguments(parser)
+    found = package_discovery.discover_packages(parser.parse_args(["--base-paths", str(folder)]),
+                                                package_identification.get_package_identification_extensions())
+    return sorted(package.name for package in found)
+
+
+def test_colcon_finds_exactly_the_packages(workspace):
+    assert colcon_list(workspace) == sorted(packages.discover(ROOT))
+
+
+def test_rosdep_finds_exactly_the_packages(workspace):
+    found = find_packages(str(workspace / "src"))  # what `rosdep --from-paths src` calls
+    assert sorted(package.name for package in found.values()) == sorted(packages.discover(ROOT))
+
+
+@pytest.mark.parametrize("kind", new.KINDS)
+def test_colcon_finds_a_package_made_by_ur_new(tmp_path, kind):
+    new.create(kind, "pick_part", "", tmp_path)
+    assert colcon_list(tmp_path) == [f"pick_part_{kind}"]
