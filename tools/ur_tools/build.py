@@ -9,7 +9,7 @@ import time
 from dataclasses import dataclass
 from typing import Dict, List, Optional, Set
 
-from . import say, system_packages, venv
+from . import downloads, say, system_packages, venv
 from .environment import build_environment
 from .layout import ROOT, Layout
 from .packages import Package, discover, state, with_dependencies
@@ -191,9 +191,10 @@ def _run_colcon(options: Options, packages: Dict[str, Package], outdated: List[s
 
 
 def setup(layout: Layout) -> None:
-    """System packages and the virtual environment."""
+    """System packages, the virtual environment and the sources of ur_rtde."""
     system_packages.ensure()
     venv.ensure(layout)
+    downloads.ensure(layout)
 
 
 def build(options: Options) -> Dict[str, Package]:

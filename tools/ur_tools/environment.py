@@ -6,7 +6,8 @@ import pathlib
 import shutil
 from typing import Dict, Iterable
 
-from .layout import DOWNLOADS, Layout
+from .downloads import ur_rtde_archive
+from .layout import Layout
 
 # What another ROS installation may have left in the user's environment. rcl of the wheels ends with 102 if
 # RMW_IMPLEMENTATION names anything else than the middleware it is linked with.
@@ -32,7 +33,7 @@ def build_environment(layout: Layout, jobs: int) -> Dict[str, str]:
     """For colcon and CMake: the wheels as the underlay."""
     env = _base(layout)
     env["ROS_DISTRO"] = layout.ros
-    env["UR_RTDE_DOWNLOAD_DIR"] = str(DOWNLOADS)
+    env["UR_RTDE_ARCHIVE"] = str(ur_rtde_archive())
     env["CMAKE_BUILD_PARALLEL_LEVEL"] = str(jobs)
     env["MAKEFLAGS"] = f"-j{jobs}"  # keeps colcon from giving ninja a -j and a load limit of its own
     if shutil.which("ccache"):

@@ -1,5 +1,52 @@
-# patched_source(<archive> <patch folder> <out>): folder of the unpacked archive with every *.patch applied, in the
-# order of their names. It is made anew when the archive or a patch changes, and left alone otherwise.
+# patched_source(<archive> <manifest> <patch folder> <out>): folder with the files that the manifest names, taken from the
+# archive, verified, and with every *.patch applied in the order of their names. It is made anew when the archive, the manifest
+# or a patch changes, and left alone otherwise.
+#
+# The manifest has the format of sha256sum. It names each file instead of the archive because a hosting service may pack the
+# same files in another way, and because the project publishes more than one archive of a release. Files that it does not name
+# are not used.
+
+function(_extract archive folder out)
+  file(MAKE_DIRECTORY "${folder}")
+  execute_process(COMMAND "${CMAKE_COMMAND}" -E tar xf "${archive}" WORKING_DIRECTORY "${folder}"
+    RESULT_VARIABLE result ERROR_VARIABLE error)
+  file(GLOB roots "${folder}/*")
+  list(LENGTH roots count)
+  if(NOT result EQUAL 0 OR NOT count EQUAL 1)
+    file(REMOVE_RECURSE "${folder}")
+    message(FATAL_ERROR "${archive} is not an archive with ur_rtde's sources in one folder. Remove it, or name another one: "
+      "UR_RTDE_ARCHIVE.\n${error}")
+  endif()
+  set(${out} "${roots}" PARENT_SCOPE)
+endfunction()
+
+function(_refuse archive what)
+  message(FATAL_ERROR "${archive}\nis not ur_rtde 1.6.5, or it is damaged: ${what}\n"
+    "Remove it to download it again. If that does not help, use ur_rtde's source archive from the Python registry: "
+    "`pip download --no-deps --no-binary ur-rtde ur-rtde==1.6.5`, then build with -DUR_RTDE_ARCHIVE=<path>, or with "
+    "UR_RTDE_ARCHIVE=<path> in the environment. `sha256sum --check` with ur_rtde_vendor/sources.sha256 in its unpacked "
+    "folder shows what differs.")
+endfunction()
+
+function(_copy_verified archive root manifest folder)
+  file(STRINGS "${manifest}" lines REGEX "^[0-9a-f]")
+  foreach(line IN LISTS lines)
+    if(NOT line MATCHES "^([0-9a-f]+)  (.+)$")
+      message(FATAL_ERROR "${manifest}: `${line}` is not a line of sha256sum")
+    endif()
+    set(expected "${CMAKE_MATCH_1}")
+    set(name "${CMAKE_MATCH_2}")
+    if(NOT EXISTS "${root}/${name}")
+      _refuse("${archive}" "it has no ${name}.")
+    endif()
+    file(SHA256 "${root}/${name}" found)
+    if(NOT found STREQUAL expected)
+      _refuse("${archive}" "the SHA-256 of ${name} is ${found}, expected ${expected}.")
+    endif()
+    get_filename_component(parent "${folder}/${name}" DIRECTORY)
+    file(COPY "${root}/${name}" DESTINATION "${parent}")
+  endforeach()
+endfunction()
 
 function(_apply_patch patch folder)
   find_package(Git REQUIRED)
@@ -16,19 +63,17 @@ function(_apply_patch patch folder)
   endif()
 endfunction()
 
-function(patched_source archive patch_folder out)
+function(patched_source archive manifest patch_folder out)
   file(GLOB patches CONFIGURE_DEPENDS "${patch_folder}/*.patch")
   list(SORT patches)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${patches})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${manifest}" ${patches})
 
-  file(SHA256 "${archive}" state)
-  foreach(patch IN LISTS patches)
-    file(SHA256 "${patch}" hash)
-    string(APPEND state "\n${hash}")
+  set(state "")
+  foreach(file IN ITEMS "${archive}" "${manifest}" ${patches})
+    file(SHA256 "${file}" hash)
+    string(APPEND state "${hash}\n")
   endforeach()
 
-  get_filename_component(name "${archive}" NAME)
-  string(REGEX REPLACE "\\.tar\\.gz$" "" name "${name}")
   set(base "${CMAKE_CURRENT_BINARY_DIR}/source")
   set(stamp "${base}/state.txt")
   set(done "")
@@ -37,11 +82,13 @@ function(patched_source archive patch_folder out)
   endif()
   if(NOT done STREQUAL state)
     file(REMOVE_RECURSE "${base}")
-    file(ARCHIVE_EXTRACT INPUT "${archive}" DESTINATION "${base}")
+    _extract("${archive}" "${base}/archive" root)
+    _copy_verified("${archive}" "${root}" "${manifest}" "${base}/ur_rtde")
+    file(REMOVE_RECURSE "${base}/archive")
     foreach(patch IN LISTS patches)
-      _apply_patch("${patch}" "${base}/${name}")
+      _apply_patch("${patch}" "${base}/ur_rtde")
     endforeach()
     file(WRITE "${stamp}" "${state}")
   endif()
-  set(${out} "${base}/${name}" PARENT_SCOPE)
+  set(${out} "${base}/ur_rtde" PARENT_SCOPE)
 endfunction()
