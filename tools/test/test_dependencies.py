@@ -1,0 +1,90 @@
+"""package.xml declares what the build files look for and what the Python files import."""
+
+import ast
+import pathlib
+import re
+import sys
+import xml.etree.ElementTree as xml
+
+import pytest
+from ur_tools import packages
+from ur_tools.layout import ROOT
+
+PACKAGES = packages.discover(ROOT)
+BUILD = {"depend", "build_depend", "buildtool_depend"}
+RUN = {"depend", "exec_depend"}
+ANY = packages.DEPENDENCIES
+
+# Where a CMake package, target or Python module and the rosdep key have different names.
+KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "gtest", "GTest::gmock": "libgmock-dev",
+        "Git": "git", "nlohmann_json": "nlohmann-json-dev", "tl-expected": "libexpected-dev", "numpy": "python3-numpy",
+        "pytest": "python3-pytest", "yaml": "python3-yaml"}
+NOT_DECLARED = {"Threads",  # part of CMake
+                "copp_py", "toppra"}  # solvers that oracle.py compares with, from the Python registry
+
+
+def declared(name, kinds):
+    tree = xml.parse(PACKAGES[name].folder / "package.xml").getroot()
+    return {name, *(node.text.strip() for node in tree if node.tag in kinds)}
+
+
+def files(name, *patterns):
+    folder = PACKAGES[name].folder
+    ignored = [path.parent for path in folder.rglob("COLCON_IGNORE")]
+    found = [path for pattern in patterns for path in folder.rglob(pattern)]
+    return [path for path in found if path.is_file() and not any(parent in ignored for parent in path.parents)]
+
+
+def is_test(path):
+    return "test" in path.parts or "bench" in path.parts
+
+
+def looked_for(text):
+    """What find_package() looks for, also in a loop over a list, and gmock, which comes with GTest's package file."""
+    names = set(re.findall(r"find_package\(([\w-]+)", text))
+    for variable in re.findall(r"foreach\(dependency IN LISTS (\w+)\)", text):
+        names.update(re.search(rf"set\({variable}\s([^)]*)\)", text).group(1).split())
+    return names | set(re.findall(r"GTest::gmock\b", text))
+
+
+def imported(path):
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.split(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            yield node.module.split(".")[0]
+
+
+def undeclared(names, known):
+    return sorted({KEYS.get(name, name) for name in set(names) - NOT_DECLARED} - known)
+
+
+@pytest.mark.parametrize("name", PACKAGES)
+def test_cmake_packages_are_declared(name):
+    for path in files(name, "CMakeLists.txt", "*.cmake"):
+        known = declared(name, ANY if is_test(path) else BUILD)
+        assert not undeclared(looked_for(path.read_text()), known), path
+
+
+@pytest.mark.parametrize("name", PACKAGES)
+def test_imported_python_modules_are_declared(name):
+    local = {path.stem for path in files(name, "*.py")} | {path.parent.name for path in files(name, "__init__.py")}
+    local |= {"support", "robot_fixtures"}  # the tests of ur_ros_rtde lend them
+    for path in files(name, "*.py"):
+        known = declared(name, ANY if is_test(path) else RUN)
+        assert not undeclared(set(imported(path)) - local - set(sys.stdlib_module_names), known), path
+
+
+@pytest.mark.parametrize("name", PACKAGES)
+def test_executables_that_launch_files_start_are_declared(name):
+    for path in files(name, "*.launch.py"):
+        text = path.read_text()
+        asked_for = re.search(r"^PACKAGES = \((.*?)\)", text, re.M | re.S)  # whether they are installed
+        known = declared(name, RUN) | set(re.findall(r'"(\w+)"', asked_for.group(1) if asked_for else ""))
+        assert set(re.findall(r'package="(\w+)"', text)) <= known, path
+
+
+def test_the_build_tool_of_each_package_is_declared():
+    for name, package in PACKAGES.items():
+        build_type = xml.parse(package.folder / "package.xml").getroot().findtext("export/build_type")
+        assert build_type in declared(name, {"buildtool_depend"}), name
