@@ -5,9 +5,11 @@ import re
 import subprocess
 import sys
 
+from ur_ros_rtde.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text()
-LAUNCH = (ROOT / "ur_ros_rtde" / "launch" / "driver.launch.py").read_text()
+LAUNCH_FILES = {"driver": DRIVER, "two_robots": (*TWO_ROBOTS, *DRIVER), "moveit": (*MOVEIT, *DRIVER)}
 
 
 def blocks():
@@ -33,20 +35,32 @@ def test_every_command_of_ur_is_known():
 
 
 def test_the_launch_arguments_are_declared():
-    line = next(line for block in blocks() for line in block.splitlines() if "ros2 launch" in line)
-    for argument in re.findall(r"(\w+):=", line):
-        assert re.search(rf"['\"]{argument}['\"]", LAUNCH), argument
+    for document in (README, *(file.read_text() for file in sorted((ROOT / "docs").rglob("*.md")))):
+        for launch_file, arguments in re.findall(r"ros2 launch ur_ros_rtde (\w+)\.launch\.py(.*)", document):
+            assert (ROOT / "ur_ros_rtde" / "launch" / f"{launch_file}.launch.py").is_file(), launch_file
+            for name, text in re.findall(r"(\w+):=(\S+)", arguments):
+                if "<" not in text:
+                    to_values(LAUNCH_FILES[launch_file], {name: text.strip("`,.;)")})
+                check_name(name, [argument.name for argument in LAUNCH_FILES[launch_file]], f"{launch_file}.launch.py")
 
 
 def test_the_launch_file_knows_the_models_of_the_driver():
     table = (ROOT / "ur_ros_rtde" / "src" / "robot" / "arm_limits.cpp").read_text()
-    models = re.search(r"^MODELS = \[(.*)\]", LAUNCH, re.M).group(1)
-    assert re.findall(r'"(\w+)"', models) == re.findall(r'Model\{"(\w+)"', table)
+    assert list(MODELS) == re.findall(r'Model\{"(\w+)"', table)
 
 
-def test_the_launch_file_starts_the_simulator_without_arguments_of_ros():
-    assert not re.search(r'Node\(package="ur_simulator"', LAUNCH)
-    assert 'ExecutableInPackage(package="ur_simulator", executable="ur_simulator")' in LAUNCH
+def test_the_installation_with_ros_is_complete():
+    """In this order: each step needs those before it."""
+    block = next(block for block in blocks() if "colcon build" in block)
+    steps = ["source /opt/ros/", "mkdir -p ~/ros2_ws/src && cd ~/ros2_ws", "git clone <this repository> src/",
+             "rosdep install --from-paths src --ignore-src -y", "colcon build", "source install/setup.bash", "ros2 launch"]
+    assert [step for step in steps if step in block] == steps
+    assert sorted(steps, key=block.index) == steps
+
+
+def test_every_program_that_ros2_run_starts_is_installed():
+    for package, program in re.findall(r"ros2 run (\w+) (\S+)", README):
+        assert program in (ROOT / package / "CMakeLists.txt").read_text(), program
 
 
 def test_the_goal_sent_by_ros2_fits_its_action():

@@ -1,0 +1,74 @@
+"""Starts the driver and MoveIt for one robot, on top of the launch file of ur_moveit_config.
+
+ur_moveit_config sends trajectories to a controller of ros2_control. Its action is remapped to follow_joint_trajectory of the driver,
+so that its files serve every model unchanged.
+"""
+
+import pathlib
+
+from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import Command, PathJoinSubstitution
+from launch_ros.actions import Node, SetRemap
+from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+from ur_ros_rtde.launch_arguments import MOVEIT, NOT_WITH_MOVEIT, ArgumentError
+from ur_ros_rtde.launch_support import describe
+
+# What the launch files of ur_moveit_config start, besides RViz; xacro makes the robot_description.
+PACKAGES = ("moveit_ros_move_group", "moveit_simple_controller_manager", "robot_state_publisher", "ur_description",
+            "ur_moveit_config", "ur_robot_driver", "xacro")
+CONTROLLERS = ("joint_trajectory_controller", "scaled_joint_trajectory_controller")  # the latter in Humble
+OF_AN_ACTION = ("cancel_goal", "feedback", "get_result", "send_goal", "status")
+
+
+def generate_launch_description():
+    return describe("moveit.launch.py", MOVEIT, start, [included("ur_ros_rtde", "driver.launch.py")], NOT_WITH_MOVEIT)
+
+
+def start(_context, given):
+    missing = [package for package in PACKAGES if not installed(package)]
+    if missing:
+        raise ArgumentError(f"moveit.launch.py needs packages that are not installed: {', '.join(missing)}. "
+                            "Install them with `sudo apt install ros-$ROS_DISTRO-ur`, and source the workspace again")
+    check_model(given["ur_type"])
+    arguments = {"ur_type": given["ur_type"], "launch_rviz": str(given.get("launch_rviz", True)).lower()}
+    return [robot_state_publisher(given["ur_type"], given.get("kinematics_params_file")),
+            *remappings(), included("ur_moveit_config", "ur_moveit.launch.py", arguments)]
+
+
+def check_model(model):
+    config = pathlib.Path(get_package_share_directory("ur_description"), "config")
+    if not (config / model).is_dir():
+        models = ", ".join(sorted(path.name for path in config.iterdir() if path.is_dir()))
+        raise ArgumentError(f"the installed ur_description has no {model}; it has {models}. A newer version may have it")
+
+
+def installed(package):
+    try:
+        get_package_share_directory(package)
+    except PackageNotFoundError:
+        return False
+    return True
+
+
+def robot_state_publisher(model, kinematics_params_file):
+    xacro = PathJoinSubstitution([FindPackageShare("ur_description"), "urdf", "ur.urdf.xacro"])
+    calibration = [" kinematics_params:=", kinematics_params_file] if kinematics_params_file else []
+    description = Command(["xacro ", xacro, " name:=", model, " ur_type:=", model, *calibration])
+    return Node(package="robot_state_publisher", executable="robot_state_publisher", output="screen",
+                parameters=[{"robot_description": ParameterValue(description, value_type=str)}])
+
+
+def remappings():
+    """Not in a group: ur_moveit.launch.py starts move_group later, when a group would have ended."""
+    for controller in CONTROLLERS:
+        for part in OF_AN_ACTION:
+            name = f"follow_joint_trajectory/_action/{part}"
+            yield SetRemap(f"/{controller}/{name}", f"/{name}")
+
+
+def included(package, launch_file, arguments=None):
+    path = PathJoinSubstitution([FindPackageShare(package), "launch", launch_file])
+    return IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=(arguments or {}).items())
