@@ -1,0 +1,163 @@
+"""Arguments of the launch files: all are there, wrong ones are refused with one message, given ones reach the nodes."""
+
+import pytest
+from ros2 import ROOT, parameter, ready, ros2
+from ur_ros_rtde.launch_arguments import DRIVER, MOVEIT, OF_EACH_ROBOT, TWO_ROBOTS
+
+DRIVER_FILE = ("launch", "ur_ros_rtde", "driver.launch.py")
+FOREIGN = '''
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+def generate_launch_description():
+    driver = PathJoinSubstitution([FindPackageShare("ur_ros_rtde"), "launch", "driver.launch.py"])
+    return LaunchDescription([
+        DeclareLaunchArgument("cell", default_value="one"),
+        DeclareLaunchArgument("robot_description", default_value="mine"),
+        IncludeLaunchDescription(PythonLaunchDescriptionSource(driver), launch_arguments=ARGUMENTS.items()),
+    ])
+'''
+
+
+def errors(said):
+    return [line for line in said.splitlines() if "ERROR" in line]
+
+
+@pytest.mark.parametrize("launch_file, arguments", [("driver", DRIVER), ("two_robots", (*TWO_ROBOTS, *DRIVER)),
+                                                    ("moveit", (*MOVEIT, *DRIVER))])
+def test_show_args_lists_all_with_description_and_default(launch_file, arguments):
+    code, said = ros2("launch", "ur_ros_rtde", f"{launch_file}.launch.py", "--show-args")
+    assert code == 0, said
+    for argument in arguments:
+        assert f"'{argument.name}':" in said
+    for argument in (argument for argument in arguments if argument.name != "ur_type"):
+        assert argument.help in said and f"(default: '{argument.default_text}')" in said
+
+
+@pytest.mark.parametrize("given, said_to_be", [
+    ("tf_prefx:=left_", "driver.launch.py has no launch argument tf_prefx; did you mean tf_prefix?"),
+    ("realtime_prio:=40", "did you mean realtime_priority?"),
+    ("ur_type:=ur11", 'launch argument ur_type is "ur11", it must be one of: '),
+    ("on_busy:=maybe", 'launch argument on_busy is "maybe", it must be one of: refuse, preempt'),
+    ("rtde_frequency:=1000", 'launch argument rtde_frequency is "1000", it must be a number from 1 to 500'),
+    ("plugins:=move_j", 'launch argument plugins is "move_j", it must be a list of names'),
+    ("params_file:=/nowhere.yaml", 'params_file is "/nowhere.yaml", and there is no such file'),
+    ("on_busy:=refuse", "the robot's address is missing: give robot_ip:=<address>, or sim:=true"),
+])
+def test_a_wrong_argument_is_refused_with_one_message_and_nothing_is_started(given, said_to_be):
+    code, said = ros2(*DRIVER_FILE, given)
+    assert code != 0
+    assert len(errors(said)) == 1 and said_to_be in errors(said)[0], said
+    assert "process started" not in said
+
+
+@pytest.mark.parametrize("given, said_to_be", [
+    ("robot_ip:=192.168.0.10", "two_robots.launch.py has no launch argument robot_ip; did you mean "),
+    ("right_urcap_port:=50002", 'left_urcap_port and right_urcap_port are both "50002", they must differ'),
+    ("left_robot_ip:=192.168.0.10", "the right robot's address is missing: give right_robot_ip:=<address>"),
+    ("on_bussy:=preempt", "did you mean on_busy?"),
+])
+def test_a_wrong_argument_of_two_robots_is_refused_with_one_message(given, said_to_be):
+    code, said = ros2("launch", "ur_ros_rtde", "two_robots.launch.py", given)
+    assert code != 0
+    assert len(errors(said)) == 1 and said_to_be in errors(said)[0], said
+
+
+def test_moveit_says_what_is_not_installed():
+    code, said = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "sim:=true")
+    if "needs packages that are not installed" not in said:
+        pytest.skip("MoveIt is installed")
+    assert code != 0
+    assert len(errors(said)) == 1 and "ur_moveit_config" in said and "sudo apt install ros-$ROS_DISTRO-ur" in said
+    assert "process started" not in said
+
+
+def test_moveit_refuses_what_its_configuration_does_not_have():
+    code, said = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "tf_prefix:=left_")
+    assert code != 0 and "moveit.launch.py has no launch argument tf_prefix" in said
+
+
+def test_arguments_of_a_launch_file_around_it_are_not_refused(launch, tmp_path):
+    file = tmp_path / "cell.launch.py"
+    file.write_text(FOREIGN.replace("ARGUMENTS", "{'sim': 'true', 'sim_ip': '127.0.0.41', 'on_busy': 'preempt'}"))
+    started = launch(file, "cell:=two", "rviz:=true", "tf_prefix:=cell_")
+    ready(started)
+    assert parameter("/command_server", "on_busy") == "preempt"
+    assert parameter("/robot_state_receiver", "tf_prefix") == "cell_"
+
+
+def test_a_wrong_argument_passed_by_a_launch_file_around_it_is_refused(tmp_path):
+    file = tmp_path / "cell.launch.py"
+    file.write_text(FOREIGN.replace("ARGUMENTS", "{'sim': 'true', 'on_bussy': 'preempt'}"))
+    code, said = ros2("launch", file, "cell:=two")
+    assert code != 0 and "driver.launch.py has no launch argument on_bussy; did you mean on_busy?" in said
+
+
+@pytest.mark.parametrize("one_process", ["true", "false"])
+def test_arguments_reach_the_nodes_and_have_priority_over_a_file(launch, tmp_path, one_process):
+    file = tmp_path / "mine.yaml"
+    file.write_text("/**/command_server:\n  ros__parameters: {on_busy: refuse, stream_gain: 500.0}\n"
+                    "/**/robot_state_receiver:\n  ros__parameters: {rtde_frequency: 250.0, tf_prefix: mine_}\n")
+    started = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.42", f"one_process:={one_process}", f"params_file:={file}",
+                     "tf_prefix:=left_", "on_busy:=preempt", "rtde_frequency:=100.0", "namespace:=left", "realtime_priority:=0")
+    ready(started, "/left")
+    assert parameter("/left/command_server", "on_busy") == "preempt"
+    assert parameter("/left/robot_state_receiver", "rtde_frequency") == "100.0"
+    assert parameter("/left/robot_state_receiver", "tf_prefix") == "left_"
+    assert parameter("/left/command_server", "stream_gain") == "500.0"  # only in the file
+    assert parameter("/left/command_server", "watchdog_frequency") == "10.0"  # in neither
+    code, said = ros2("topic", "echo", "--once", "--field", "name", "/left/joint_states")
+    assert code == 0 and "left_shoulder_pan_joint" in said
+
+
+def test_two_robots_have_names_and_ports_of_their_own_and_share_the_rest(launch):
+    started = launch("ur_ros_rtde", "two_robots.launch.py", "sim:=true", "left_sim_ip:=127.0.0.43", "right_sim_ip:=127.0.0.44",
+                     "on_busy:=preempt", "right_ur_type:=ur5e")
+    for side, port, address in (("left", "50002", "127.0.0.43"), ("right", "50003", "127.0.0.44")):
+        ready(started, f"/{side}")
+        assert parameter(f"/{side}/command_server", "urcap_port") == port
+        assert parameter(f"/{side}/command_server", "robot_ip") == address
+        assert parameter(f"/{side}/command_server", "on_busy") == "preempt"
+        assert parameter(f"/{side}/robot_state_receiver", "tf_prefix") == f"{side}_"
+        code, said = ros2("action", "send_goal", f"/{side}/move_j", "ur_ros_rtde_msgs/action/MoveJ",
+                          "{joint_positions: [0.1, -1.57, 1.57, -1.57, -1.57, 0.0]}")
+        assert code == 0 and "success: true" in said, said
+    assert parameter("/right/command_server", "ur_type") == "ur5e"
+    assert set(OF_EACH_ROBOT) >= {"namespace", "tf_prefix", "urcap_port"}
+
+
+def test_a_driver_that_cannot_start_ends_the_launch_with_its_reason(launch):
+    started = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.45", "robot_state_fields:=[no_such_field]")
+    started.wait(60.0)
+    assert sum("no_such_field" in line for line in started.lines) == 1, started.output()
+
+
+def test_an_occupied_port_for_the_urcap_is_said_with_a_remedy(launch):
+    first = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.46", "control_mode:=control_urcap", "urcap_port:=50046")
+    first.wait_for("dashboard commands:")
+    second = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.47", "control_mode:=control_urcap", "urcap_port:=50046",
+                    "namespace:=second")
+    second.wait_for("50046")
+    said = [line for line in second.lines if "50046" in line]
+    assert len(said) == 1 and "choose another urcap_port" in said[0], second.output()
+
+
+def test_ctrl_c_ends_driver_and_simulator(launch):
+    started = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.48")
+    ready(started)
+    started.end()
+    assert not started.running()
+    assert "process has died" not in started.output()
+
+
+def test_the_parameter_file_to_copy_is_installed_and_understood(launch, tmp_path):
+    text = (ROOT / "ur_ros_rtde" / "config" / "driver.yaml").read_text()
+    file = tmp_path / "copy.yaml"
+    file.write_text(text.replace('robot_ip: ""', 'robot_ip: "127.0.0.49"').replace("stream_gain: 300.0", "stream_gain: 400.0"))
+    started = launch(*DRIVER_FILE[1:], f"params_file:={file}")
+    started.wait_for("dashboard commands:")
+    assert parameter("/command_server", "stream_gain") == "400.0"
+    assert parameter("/command_server", "robot_ip") == "127.0.0.49"

@@ -1,0 +1,81 @@
+"""Every line of the README and of the documentation that begins with `ros2` is understood by the ros2cli that is installed."""
+
+import re
+import shlex
+import subprocess
+
+import pytest
+from ros2 import ROOT, ros2
+from ur_ros_rtde.launch_arguments import NODES
+
+README = ROOT / "README.md"
+# Dashboard commands switch the robot off: they come last.
+DOCUMENTS = [README, *sorted((ROOT / "docs").glob("*.md")),
+             *sorted((ROOT / "docs" / "commands").glob("*.md"), key=lambda file: file.name == "dashboard.md")]
+
+
+def lines(document, verb):
+    """`ros2 <verb> …` of its code, in one line each, without comments."""
+    text = document.read_text().replace("\\\n", " ")
+    found = re.findall(rf"^(ros2 {verb} .*)$", text, re.M) + re.findall(rf"`(ros2 {verb} [^`]*)`", text)
+    return [re.sub(r"\s{2,}#.*", "", line).strip() for line in found]
+
+
+def cases(verb):
+    return [pytest.param(line, id=f"{document.name}-{line[:60]}") for document in DOCUMENTS for line in lines(document, verb)]
+
+
+def arguments(line, tmp_path):
+    return shlex.split(line.replace("$PWD", str(tmp_path)).replace("--feedback ", ""))[1:]
+
+
+def test_the_readme_moves_the_simulated_robot(driver):
+    line, = lines(README, "action send_goal")
+    code, said = ros2(*shlex.split(line)[1:])
+    assert code == 0 and "Feedback:" in said and "success: true" in said and "SUCCEEDED" in said, said
+    code, said = ros2("topic", "echo", "--once", "/joint_states")
+    assert code == 0 and "position:\n- 0.2\n" in re.sub(r"- 0\.(19999|2000)\d*", "- 0.2", said), said
+    run, = lines(README, "run")
+    code, said = ros2(*shlex.split(run)[1:])
+    assert code == 0, said
+
+
+def test_nodes_and_parameters_are_listed(driver):
+    code, said = ros2("node", "list")
+    assert code == 0 and {f"/{node}" for node in NODES} <= set(said.split())
+    code, said = ros2("param", "list", "/command_server")
+    assert code == 0 and {"on_busy", "urcap_port", "watchdog_frequency"} <= set(said.split())
+    code, said = ros2("param", "describe", "/command_server", "on_busy")
+    assert code == 0 and "Type: string" in said and "Read only: true" in said, said
+    code, said = ros2("action", "list", "-t")
+    assert "/move_j [ur_ros_rtde_msgs/action/MoveJ]" in said, said
+    code, said = ros2("service", "call", "/get_joint_state", "ur_ros_rtde_msgs/srv/GetJointState", "{}")
+    assert code == 0 and "success=True" in said, said
+
+
+def test_follow_joint_trajectory_is_there_where_control_msgs_is(driver):
+    if "control_msgs" not in ros2("pkg", "list")[1].split():
+        pytest.skip("control_msgs is not installed")
+    assert "/follow_joint_trajectory [control_msgs/action/FollowJointTrajectory]" in ros2("action", "list", "-t")[1]
+
+
+@pytest.mark.parametrize("line", cases("interface show"))
+def test_interfaces_exist(line):
+    code, said = ros2(*shlex.split(line)[1:])
+    assert code == 0 and said, said
+
+
+@pytest.mark.parametrize("line", cases("service call"))
+def test_services_answer(driver, line, tmp_path):
+    code, said = ros2(*arguments(line, tmp_path))
+    assert code == 0 and "response:" in said, said
+
+
+@pytest.mark.parametrize("line", cases("action send_goal"))
+def test_goals_are_understood(driver, line, tmp_path):
+    """Whether they succeed is shown by ur_ros_rtde/test/typed; here that types and fields are those of the line."""
+    try:
+        said = ros2(*arguments(line, tmp_path), limit=20.0)[1]
+    except subprocess.TimeoutExpired as expired:  # a long motion: its client is gone, and the arm stops
+        said = (expired.stdout or b"").decode()
+    assert "Goal accepted" in said or "Goal was rejected" in said or "control_msgs" in line, said

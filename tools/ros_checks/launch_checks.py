@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+"""Runs the checks of the launch files and of the `ros2` lines of the documentation, with the launch and ros2cli of a ROS 2
+installation. The packages of this repository have to be built and sourced; docs/testing.md says how.
+
+    tools/ros_checks/launch_checks.py                        # launch and ros2cli are those of the sourced ROS 2
+    tools/ros_checks/launch_checks.py --prefix <folder>      # they are installed in another prefix, as with the wheels
+    tools/ros_checks/launch_checks.py -k two_robots          # further arguments are pytest's
+"""
+
+import argparse
+import os
+import pathlib
+import shutil
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+LAYOUT = {"PATH": "bin", "LD_LIBRARY_PATH": "lib", "AMENT_PREFIX_PATH": "",
+          "PYTHONPATH": f"lib/python3.{sys.version_info.minor}/site-packages"}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[], help="an installation that is not sourced")
+    options, for_pytest = parser.parse_known_args()
+    for prefix in options.prefix:
+        if not prefix.is_dir():
+            parser.error(f"--prefix {prefix}: there is no such folder")
+        for variable, folder in LAYOUT.items():
+            os.environ[variable] = os.pathsep.join(filter(None, [str(prefix.resolve() / folder).rstrip("/"),
+                                                                 os.environ.get(variable, "")]))
+    if not shutil.which("ros2"):
+        parser.error("there is no ros2 in PATH: source a ROS 2 installation, or name one with --prefix")
+    os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+    os.execvp(sys.executable, [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-v", str(HERE / "launch"), *for_pytest])
+
+
+if __name__ == "__main__":
+    main()
