@@ -24,7 +24,7 @@ class TrajectoryCommand : public Command<A> {
 
  protected:
   CommandHost & host() const { return *host_; }
-  const ArmLimits & arm() const { return host_->limits(); }
+  const ArmLimits & arm() const { return host_->options().limits; }
 
   /// All but plan, start_tolerance and approach.
   Execution execution(const Goal & goal, Run & run) const;
