@@ -67,7 +67,8 @@ class Headers:
         self._write_logging_macros()
         for package in [*self.ros.values(), *self._ours.values()]:
             done = self.output / f"{package.name}.done"
-            if package.has_interfaces and package.interfaces() and not done.exists():
+            newest = max(((package.folder / name).stat().st_mtime for name in package.interfaces()), default=0.0)
+            if package.has_interfaces and newest and not (done.exists() and done.stat().st_mtime > newest):
                 self._generate_interfaces(package)
                 done.touch()
 
@@ -80,8 +81,8 @@ class Headers:
         return [*own, self.output / "include"]
 
     def replaces(self, folder):
-        """Whether `folder` of the build has interfaces that are generated here."""
-        return pathlib.Path(folder).name in self._ours
+        """Whether `folder` of the build has interfaces that are generated here: installed, or in the build of their package."""
+        return pathlib.Path(folder).name in (*self._ours, "rosidl_generator_cpp")
 
     def _run(self, *command):
         subprocess.run([sys.executable, *map(str, command)], env=self._environment, stdout=subprocess.DEVNULL, check=True)
@@ -150,6 +151,8 @@ def rewrite(command, compiler, prefix, headers):
             folder = next(words)
             if not headers or not (folder.startswith(f"{prefix}/") or headers.replaces(folder)):
                 result += [word, folder]
+        elif word.startswith("-I") and headers and headers.replaces(word[2:]):
+            continue
         elif word not in ("-c", "-MD", "-Winvalid-pch", "-fpch-preprocess"):
             result.append(word)
     for folder in headers.include_folders() if headers else ():

@@ -83,7 +83,7 @@ TEST(ParameterValues, refuse_integers_that_do_not_fit)
   EXPECT_THROW(ParameterValue(256).get<std::uint8_t>(), rcl_cxx::Error);
   EXPECT_THROW(ParameterValue(-1).get<unsigned>(), rcl_cxx::Error);
   EXPECT_THROW(ParameterValue(std::vector<std::int64_t>{1LL << 40}).get<std::vector<int>>(), rcl_cxx::Error);
-  EXPECT_THROW(ParameterValue(std::numeric_limits<std::uint64_t>::max()), rcl_cxx::Error);
+  EXPECT_THROW(ParameterValue{std::numeric_limits<std::uint64_t>::max()}, rcl_cxx::Error);
 }
 
 TEST(ParameterValues, are_written_for_people)

@@ -112,7 +112,7 @@ tl::expected<void, std::string> DashboardCommand<A>::admit(const rcl_cxx::GoalId
 template <typename A>
 void DashboardCommand<A>::carry_out(Handle & handle, GoalBook::Ticket & ticket)
 {
-  Run goal_run(*link_, ticket.interrupt, [&handle]([[maybe_unused]] const std::string & state) {
+  Run goal_run(*link_, ticket.interrupt, [&]([[maybe_unused]] const std::string & state) {
     if constexpr (requires(Feedback & feedback) { feedback.state; }) {
       Feedback feedback;
       feedback.state = state;
