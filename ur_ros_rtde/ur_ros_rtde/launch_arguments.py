@@ -1,5 +1,6 @@
 """The arguments of the launch files, and what is wrong with a value or a name. Needs no launch."""
 
+import copy
 import difflib
 import tempfile
 from dataclasses import dataclass
@@ -175,5 +176,6 @@ def write_parameters(parameters: Dict[str, Any]) -> str:
     name used here matches in every namespace and appears nowhere else, so it is always the last one.
     """
     with tempfile.NamedTemporaryFile("w", prefix="ur_ros_rtde_", suffix=".yaml", delete=False) as file:
-        yaml.safe_dump({f"/**/**/{node}": {"ros__parameters": parameters} for node in NODES}, file)
+        # A copy for each: the parser of rcl does not take references, which YAML has for what occurs several times.
+        yaml.safe_dump({f"/**/**/{node}": {"ros__parameters": copy.deepcopy(parameters)} for node in NODES}, file)
     return file.name
