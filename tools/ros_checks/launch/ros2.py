@@ -70,7 +70,11 @@ def ready(launch, namespace=""):
 
     def state():
         assert launch.running(), launch.output()
-        return "READY" in ros2("topic", "echo", "--once", "--field", "name", f"{namespace}/driver_state", limit=60.0)[1]
+        try:
+            return "READY" in ros2("topic", "echo", "--once", "--field", "name", "--qos-durability", "transient_local",
+                                   "--qos-reliability", "reliable", f"{namespace}/driver_state", limit=15.0)[1]
+        except subprocess.TimeoutExpired:
+            return False
 
     launch.wait_for("dashboard commands:")
     wait_for(state, 60.0, f"{namespace}/driver_state READY:\n{launch.output()}")
