@@ -147,6 +147,7 @@ bool ContextCore::shutdown(const std::string & reason)
   set_state(State::shutting_down);
   run_callbacks(Phase::user_before);
   run_callbacks(Phase::library_before);
+  run_callbacks(Phase::rosout);
   const rcl_ret_t code = rcl_shutdown(&context_);
   if (code != RCL_RET_OK) {
     RCL_CXX_ERROR(context_logger(), "shutdown: {}", take_rcl_error());

@@ -22,8 +22,8 @@ namespace rcl_cxx::detail {
 class ContextCore : public std::enable_shared_from_this<ContextCore> {
  public:
   /// In this order, and in order of registration within one: what the user does while communication works,
-  /// what action servers do after that, what is done when rcl has been shut down.
-  enum class Phase { user_before, library_before, after };
+  /// what action servers do after that, the end of /rosout, what is done when rcl has been shut down.
+  enum class Phase { user_before, library_before, rosout, after };
 
   ContextCore(int argc, const char * const * argv, const ContextOptions & options);
   ~ContextCore();

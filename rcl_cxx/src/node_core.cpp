@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "logging_core.hpp"
 #include "rcl_compat.hpp"
@@ -27,7 +28,7 @@ NodeCore::NodeCore(std::shared_ptr<ContextCore> context, const std::string & nam
   node_options.use_global_arguments = options.use_global_arguments;
   node_options.enable_rosout = options.enable_rosout;
   node_options.arguments = arguments;  // copied by rcl
-  const std::lock_guard lock(logging_mutex());
+  std::unique_lock lock(logging_mutex());
   check_rcl(
       rcl_node_init(&node_, name.c_str(), node_namespace.c_str(), context_core_->handle(), &node_options),
       fmt::format("node '{}' in namespace '{}'", name, node_namespace), "cannot be created");
@@ -36,22 +37,37 @@ NodeCore::NodeCore(std::shared_ptr<ContextCore> context, const std::string & nam
   fully_qualified_name_ = rcl_node_get_fully_qualified_name(&node_);
   logger_ = Logger(rcl_node_get_logger_name(&node_));
   if (options.enable_rosout && rcl_logging_rosout_enabled()) {
-    const rcl_ret_t code = compat::rosout_start(&node_);
-    has_rosout_ = code == RCL_RET_OK;
-    if (!has_rosout_) {
-      const std::string details = take_rcl_error();
-      ignore_rcl(rcl_node_fini(&node_));
-      throw Error(fmt::format("node {}: no /rosout: {}", fully_qualified_name_, details), code);
-    }
+    start_rosout();
+    lock.unlock();
+    // Later messages go to the console and the log file: rcl would report that it cannot publish them.
+    rosout_end_ = context_core_->add_callback(ContextCore::Phase::rosout, [this] { end_rosout(); });
+  }
+}
+
+void NodeCore::start_rosout()
+{
+  const rcl_ret_t code = compat::rosout_start(&node_);
+  has_rosout_ = code == RCL_RET_OK;
+  if (!has_rosout_) {
+    const std::string details = take_rcl_error();
+    ignore_rcl(rcl_node_fini(&node_));
+    throw Error(fmt::format("node {}: no /rosout: {}", fully_qualified_name_, details), code);
+  }
+}
+
+void NodeCore::end_rosout()
+{
+  const std::lock_guard lock(logging_mutex());
+  if (std::exchange(has_rosout_, false)) {
+    ignore_rcl(compat::rosout_stop(&node_));
   }
 }
 
 NodeCore::~NodeCore()
 {
+  context_core_->remove_callback(rosout_end_);
+  end_rosout();
   const std::lock_guard lock(logging_mutex());
-  if (has_rosout_) {
-    ignore_rcl(compat::rosout_stop(&node_));
-  }
   ignore_rcl(rcl_node_fini(&node_));
 }
 

@@ -49,10 +49,14 @@ class NodeCore {
   std::string executor_hint() const;
 
  private:
+  void start_rosout();
+  void end_rosout();
+
   const std::shared_ptr<ContextCore> context_core_;
   mutable std::mutex mutex_;
   rcl_node_t node_;
-  bool has_rosout_ = false;
+  bool has_rosout_ = false;  ///< guarded by logging_mutex
+  std::size_t rosout_end_ = 0;
   Logger logger_;
   std::string name_;
   std::string namespace_;

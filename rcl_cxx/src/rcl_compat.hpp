@@ -78,13 +78,10 @@ inline rcl_ret_t rosout_start(rcl_node_t * node)
 #endif
 }
 
+/// Where rcl itself made it, rcl finds later that there is nothing left to end.
 inline rcl_ret_t rosout_stop(rcl_node_t * node)
 {
-#if RCL_VERSION_MAJOR >= 9
   return rcl_logging_rosout_fini_publisher_for_node(node);
-#else
-  return rcl_node_is_valid_except_context(node) ? RCL_RET_OK : RCL_RET_NODE_INVALID;
-#endif
 }
 
 /// Lets messages of logger "<logger>.<child>" appear in the /rosout of `logger`'s node. Since Jazzy.

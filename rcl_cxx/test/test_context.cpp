@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <future>
 
@@ -97,6 +98,18 @@ TEST(ContextShutdown, leaves_other_contexts_alone)
   one->shutdown("test");
   EXPECT_TRUE(other->ok());
   EXPECT_NO_THROW(rcl_cxx::Node(other, "node"));
+}
+
+TEST(ContextShutdown, LaterLogMessagesGoToTheConsoleOnly)
+{
+  const auto context = make_context();
+  const rcl_cxx::Node node(context, "node");
+  context->shutdown("test");
+  testing::internal::CaptureStderr();
+  RCL_CXX_INFO(node.logger(), "a late message");
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(said, HasSubstr("a late message"));
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
 }
 
 TEST(ContextShutdown, makes_new_nodes_impossible_and_says_so)

@@ -120,9 +120,15 @@ void GoalBook::finish(const rcl_cxx::GoalId & id, const Outcome & outcome)
   if (outcome) {
     RCL_CXX_INFO(logger, "{}: goal {} succeeded{}{}", action_, id.short_string(),
                  outcome.message().empty() ? "" : ": ", outcome.message());
+    return;
+  }
+  const std::string end =
+      fmt::format("{}: goal {} ended: {} ({} {})", action_, id.short_string(), outcome.message(),
+                  to_string(outcome.code()), static_cast<int>(outcome.code()));
+  if (outcome.code() == ErrorCode::shutdown) {
+    RCL_CXX_INFO(logger, "{}", end);
   } else {
-    RCL_CXX_WARN(logger, "{}: goal {} ended: {} ({} {})", action_, id.short_string(), outcome.message(),
-                 to_string(outcome.code()), static_cast<int>(outcome.code()));
+    RCL_CXX_WARN(logger, "{}", end);
   }
 }
 

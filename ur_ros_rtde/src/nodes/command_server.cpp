@@ -14,7 +14,7 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
   const CommandServerParameters parameters = declare_command_server(*node_);
   choice_ = declare_plugin_choice(*node_);
   driver_state_ = std::make_unique<DriverStateTopic>(*node_);
-  robot_ = std::make_unique<Robot>(parameters.robot, log_into(node_->logger()));
+  robot_ = std::make_unique<Robot>(parameters.robot, log_connection(*node_));
   robot_->on_status([this](const RobotStatus & status) { driver_state_->publish(status); });
   diagnostics_ = std::make_unique<Diagnostics>(*node_, parameters.robot.address,
                                                [this] { return diagnose_driver(*robot_); });

@@ -14,7 +14,7 @@ DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context)
   DashboardLinkOptions options;
   options.address = declare_robot_ip(*node_);
   choice_ = declare_plugin_choice(*node_);
-  link_ = std::make_unique<DashboardLink>(options, log_into(node_->logger()));
+  link_ = std::make_unique<DashboardLink>(options, log_connection(*node_));
   host_ = std::make_unique<DashboardHost>(*node_, *link_);
 }
 

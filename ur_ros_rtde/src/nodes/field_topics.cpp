@@ -86,10 +86,12 @@ void FieldTopics::run(const std::stop_token & stop)
       report_.forget();
       ended = follow(*stream, with_tool, stop);
     }
+    if (!ended) {
+      wait(stop, retry_interval);
+    }
     if (!ended && !stop.stop_requested()) {
       report_.once(LogLevel::error,
                    fmt::format("tool_data and robot_state: {}; trying again", ended.error().message));
-      wait(stop, retry_interval);
     }
   }
 }

@@ -54,14 +54,14 @@ void RecordingSession::receive(const std::stop_token & stop)
 {
   while (!stop.stop_requested()) {
     const Status ended = follow(stop);
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any().wait_for(lock, stop, retry_interval, [] { return false; });
     if (stop.stop_requested()) {
       return;
     }
     report_.once(LogLevel::warn, fmt::format("recording {}: {}; trying to connect again", file_.path(),
                                              ended.error().message));
-    std::mutex mutex;
-    std::unique_lock lock(mutex);
-    std::condition_variable_any().wait_for(lock, stop, retry_interval, [] { return false; });
     if (auto stream = RtdeStream::open(plan_.address, plan_.fields, plan_.frequency, connect_limit)) {
       stream_ = std::move(*stream);
       report_.forget();

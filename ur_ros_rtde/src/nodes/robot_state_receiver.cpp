@@ -33,7 +33,7 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
       latched_(node),
       field_topics_(node,
                     {options_.address, options_.tf_prefix, options_.qos, options_.frequency, options_.fields},
-                    log_into(node.logger())),
+                    log_connection(node)),
       recording_(node, options_.address),
       diagnostics_(node, options_.address, [this] { return diagnose(); })
 {

@@ -19,7 +19,7 @@ StateServer::StateServer(const rcl_cxx::Context::SharedPtr & context)
   RobotStateReceiver::Options options = declare_state_options(*node_);
   options.address = source.address;
   source.frequency = options.frequency;
-  source_ = std::make_unique<StateReceiver>(source, log_into(node_->logger()));
+  source_ = std::make_unique<StateReceiver>(source, log_connection(*node_));
   receiver_ = std::make_unique<RobotStateReceiver>(*node_, options, [this] {
     return StateSource{source_->link(), source_->version(), source_->frequency()};
   });

@@ -226,26 +226,31 @@ Status DashboardLink::Impl::watch(const std::stop_token & stop)
 
 void DashboardLink::Impl::run(const std::stop_token & stop)
 {
+  Status lost;
   while (!stop.stop_requested()) {
     const auto connected = connect();
     if (connected) {
+      if (!lost) {
+        report_.say(LogLevel::warn, fmt::format("{}; connected again", lost.error().message));
+      }
       report_.forget();
       set_link({true, {}});
-      // A robot that only closed the connection takes a new one at once, and nobody else need know.
-      if (const auto alive = watch(stop); !alive) {
-        report_.once(LogLevel::warn, fmt::format("{}; trying to connect again", alive.error().message));
-      }
+      // A robot that only closed the connection accepts a new one at once.
+      lost = watch(stop);
       continue;
     }
-    report_.once(LogLevel::error,
-                 fmt::format("{}. Trying again every {} s", connected.error().message,
-                             std::chrono::duration<double>(options_.retry_interval).count()));
+    lost = {};
     set_link({false, connected.error()});
     {
       const std::lock_guard lock(mutex_);
       broken_ = false;
     }
     wait(stop, options_.retry_interval);
+    if (!stop.stop_requested()) {  // a driver that is shut down together with the controller reports nothing
+      report_.once(LogLevel::error,
+                   fmt::format("{}. Trying again every {} s", connected.error().message,
+                               std::chrono::duration<double>(options_.retry_interval).count()));
+    }
   }
 }
 

@@ -74,6 +74,7 @@ class StateReceiver::Impl {
 
  private:
   Status connect();
+  Error connect_and_follow(const std::stop_token & stop);
   Error follow(const std::stop_token & stop);
   Error watch(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface);
   Clock::time_point silent_since(ur_rtde::RobotState & state) const;
@@ -250,25 +251,27 @@ void StateReceiver::Impl::run(const std::stop_token & stop)
   if (const Status allowed = set_realtime_priority(options_.realtime_priority); !allowed) {
     report_.say(LogLevel::warn, allowed.error().message);
   }
+  const auto retry_seconds = std::chrono::duration<double>(options_.retry_interval).count();
   while (!stop.stop_requested()) {
-    if (const auto connected = connect(); connected) {
-      report_.forget();
-      report_.say(LogLevel::info, fmt::format("connected to {}: PolyScope {}, {} Hz", options_.address,
-                                              to_string(*version_), frequency_));
-      set_link({true, {}});
-      const Error end = follow(stop);
-      if (!stop.stop_requested()) {
-        report_.once(LogLevel::error, fmt::format("{}; trying to connect again", end.message));
-      }
-      set_link({false, end});
-    } else {
-      const auto again = std::chrono::duration<double>(options_.retry_interval).count();
-      report_.once(LogLevel::error,
-                   fmt::format("{}. Trying again every {} s", connected.error().message, again));
-      set_link({false, connected.error()});
-    }
+    const Error end = connect_and_follow(stop);
+    set_link({false, end});
     pause(stop, options_.retry_interval);
+    if (!stop.stop_requested()) {  // a driver that is shut down together with the controller reports nothing
+      report_.once(LogLevel::error, fmt::format("{}. Trying again every {} s", end.message, retry_seconds));
+    }
   }
+}
+
+Error StateReceiver::Impl::connect_and_follow(const std::stop_token & stop)
+{
+  if (const auto connected = connect(); !connected) {
+    return connected.error();
+  }
+  report_.forget();
+  report_.say(LogLevel::info, fmt::format("connected to {}: PolyScope {}, {} Hz", options_.address,
+                                          to_string(*version_), frequency_));
+  set_link({true, {}});
+  return follow(stop);
 }
 
 Locked<ur_rtde::RTDEReceiveInterface> StateReceiver::Impl::receive() const

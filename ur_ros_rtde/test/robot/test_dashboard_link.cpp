@@ -59,7 +59,7 @@ TEST_F(ADashboardLink, is_made_anew_at_once_when_the_robot_closes_it)
   connect();
   ASSERT_TRUE(connected());
   controller.control({{"command", "drop_links"}, {"which", "dashboard"}});
-  ASSERT_TRUE(eventually([&] { return log.count("trying to connect again") == 1; })) << log.text();
+  ASSERT_TRUE(eventually([&] { return log.count("connected again") == 1; })) << log.text();
   EXPECT_TRUE(eventually([&] {
     return !!link->call([](ur_rtde::DashboardClient & client) { client.robotmode(); });
   })) << log.text();

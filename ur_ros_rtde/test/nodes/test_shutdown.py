@@ -1,0 +1,68 @@
+"""Ctrl-C on a launch file reaches the driver and the simulator at the same moment; on the driver alone, the robot stays."""
+
+import re
+
+import pytest
+from action_msgs.msg import GoalStatus
+from robot_fixtures import make_ready
+from support import HOME, Client, Simulator, node, wait_for
+
+from ur_ros_rtde_msgs.action import MoveJ
+
+LOG_LINE = re.compile(r"\[(?P<level>[A-Z]+)\] \[\d+\.\d+\] \[[\w.]+\]: ")
+ONE_PROCESS = ("driver",)
+THREE_PROCESSES = ("robot_state_receiver", "command_server", "dashboard_server")
+
+
+class Cell:
+    """A simulator, the nodes on it, and a client, in a namespace of their own."""
+
+    def __init__(self, address, names):
+        self.simulator = Simulator(address)
+        self.nodes = [node(name, address, namespace="quiet") for name in names]
+        self.client = Client("quiet")
+
+    def interrupt(self, with_simulator):
+        """Returns what the nodes said from then on, after their end."""
+        said = [len(process.lines) for process in self.nodes]
+        for process in [self.simulator.process] * with_simulator + self.nodes:
+            process.interrupt()
+        for process in self.nodes:
+            assert process.wait(15.0) == 0, process.output()
+        return [line for process, count in zip(self.nodes, said) for line in process.lines[count:]]
+
+    def end(self):
+        self.client.close()
+        for process in self.nodes:
+            process.end()
+        self.simulator.end()
+
+
+@pytest.fixture(params=[ONE_PROCESS, THREE_PROCESSES], ids=["one process", "three processes"])
+def cell(request, addresses):
+    cell = Cell(addresses[1], request.param)
+    yield cell
+    cell.end()
+    print("\n".join(line for process in cell.nodes for line in process.lines))
+
+
+def looks_like_failures(lines):
+    matches = [(LOG_LINE.match(line), line) for line in lines]
+    return [line for match, line in matches if match is None or match["level"] not in ("DEBUG", "INFO")]
+
+
+@pytest.mark.parametrize("with_simulator", [True, False], ids=["with the simulator", "alone"])
+def test_ctrl_c_after_a_motion_prints_nothing_that_looks_like_a_failure(cell, with_simulator):
+    make_ready(cell.client)
+    cell.client.send(MoveJ, "move_j", joint_positions=[0.2, *HOME[1:]], speed=1.0).succeeded()
+    assert not looks_like_failures(cell.interrupt(with_simulator))
+
+
+def test_ctrl_c_in_a_motion_prints_nothing_that_looks_like_a_failure(cell):
+    make_ready(cell.client)
+    goal = cell.client.send(MoveJ, "move_j", joint_positions=[2.5, *HOME[1:]], speed=0.5)
+    wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
+    assert not goal.ended()  # the result is asked for while there is somebody to send it
+    assert not looks_like_failures(cell.interrupt(with_simulator=False))
+    assert goal.end()[0] == GoalStatus.STATUS_ABORTED
+    assert cell.simulator.stands_still()
