@@ -1,5 +1,6 @@
 """The environment in which programs run."""
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -9,24 +10,36 @@ from ur_tools.environment import run_environment
 from ur_tools.layout import Layout
 
 PARTICIPANT = "import rclpy; rclpy.init(); rclpy.create_node('reader_of_profiles'); rclpy.shutdown()"
+VARIABLES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
+HEARTBEAT = {"FASTDDS_DEFAULT_PROFILES_FILE": "heartbeat_period", "FASTRTPS_DEFAULT_PROFILES_FILE": "heartbeatPeriod"}
 
 
-def said_with(profiles):
-    env = {**run_environment(Layout.of_environment()), "FASTDDS_DEFAULT_PROFILES_FILE": str(profiles)}
-    result = subprocess.run([sys.executable, "-c", PARTICIPANT], env=env, capture_output=True, text=True, timeout=60)
+@pytest.fixture
+def layout(monkeypatch):
+    for variable in VARIABLES:
+        monkeypatch.delenv(variable, raising=False)
+    return Layout.of_environment()
+
+
+def said_with(variable, profiles):
+    env = {name: value for name, value in os.environ.items() if name not in VARIABLES}
+    result = subprocess.run([sys.executable, "-c", PARTICIPANT], env={**env, variable: str(profiles)}, capture_output=True,
+                            text=True, timeout=60)
     return result.stdout + result.stderr
 
 
-def test_the_profiles_for_fast_dds_are_set_and_understood(tmp_path):
-    if Layout.of_environment().ros != "kilted":
-        pytest.skip("they are written for Fast DDS 3")
-    profiles = pathlib.Path(run_environment(Layout.of_environment())["FASTDDS_DEFAULT_PROFILES_FILE"])
-    assert "XML" not in said_with(profiles)
+def test_the_fast_dds_profile_is_set_and_understood(layout, tmp_path):
+    env = run_environment(layout)
+    variable, = (name for name in VARIABLES if name in env)
+    profiles = pathlib.Path(env[variable])
+    assert said_with(variable, profiles) == ""
     wrong = tmp_path / "wrong.xml"
-    wrong.write_text(profiles.read_text().replace("heartbeat_period", "heart_period"))
-    assert "XML" in said_with(wrong)
+    wrong.write_text(profiles.read_text().replace(HEARTBEAT[variable], "heart_period"))
+    assert "XML" in said_with(variable, wrong)
 
 
-def test_profiles_of_the_users_own_are_kept(monkeypatch):
-    monkeypatch.setenv("FASTDDS_DEFAULT_PROFILES_FILE", "mine.xml")
-    assert run_environment(Layout.of_environment())["FASTDDS_DEFAULT_PROFILES_FILE"] == "mine.xml"
+@pytest.mark.parametrize("variable", VARIABLES)
+def test_a_profile_of_the_user_is_kept(layout, monkeypatch, variable):
+    monkeypatch.setenv(variable, "mine.xml")
+    env = run_environment(layout)
+    assert {name: env.get(name) for name in VARIABLES} == {**dict.fromkeys(VARIABLES), variable: "mine.xml"}

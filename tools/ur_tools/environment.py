@@ -61,10 +61,18 @@ def run_environment(layout: Layout) -> Dict[str, str]:
     env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     # Everything runs on this machine; nothing is announced to the network unless the user asks for it.
     env.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    profiles = layout.install / "share" / "ur_ros_rtde" / "config" / "fastdds.xml"
-    if layout.ros == "kilted" and profiles.is_file():  # Fast DDS of earlier distributions has other names for its settings
-        env.setdefault("FASTDDS_DEFAULT_PROFILES_FILE", str(profiles))
+    _set_fastdds_profile(env, layout)
     return env
+
+
+def _set_fastdds_profile(env: Dict[str, str], layout: Layout) -> None:
+    """For the user's programs: our own set it themselves. Only the profile for the installed version of Fast DDS is there."""
+    profiles = {"FASTDDS_DEFAULT_PROFILES_FILE": "fastdds.xml", "FASTRTPS_DEFAULT_PROFILES_FILE": "fastrtps.xml"}
+    if not any(variable in env for variable in profiles):
+        for variable, name in profiles.items():
+            file = layout.install / "share" / "ur_ros_rtde" / "config" / name
+            if file.is_file():
+                env[variable] = str(file)
 
 
 def workspace_environment(layout: Layout) -> Dict[str, str]:

@@ -6,7 +6,7 @@ import signal
 import sys
 from typing import List, Optional
 
-from . import call, plugins, record, state
+from . import call, fastdds_profile, plugins, record, state
 from .problem import Problem
 from .session import Interrupted
 
@@ -32,6 +32,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def main(arguments: Optional[List[str]] = None) -> int:
     options = _parser().parse_args(arguments)
+    fastdds_profile.use()
     try:
         return options.run(options)
     except Problem as problem:

@@ -9,6 +9,8 @@
 #include <string>
 #include <thread>
 
+#include "nodes/fastdds_profile.hpp"
+
 namespace ur_ros_rtde {
 namespace {
 void end_goals(const Servers & servers)
@@ -60,8 +62,10 @@ int run_process(int argc, char ** argv, const MakeServers & make)
 {
   rcl_cxx::Context::SharedPtr context;
   try {
+    use_fastdds_profile();
     context = std::make_shared<rcl_cxx::Context>(argc, argv);
     Servers servers = make(context);
+    report_fastdds_profile(servers.front()->node().logger());
     serve(context, servers);
     while (!servers.empty()) {
       servers.pop_back();
