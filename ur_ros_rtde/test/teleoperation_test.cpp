@@ -95,7 +95,7 @@ TEST(AFollower, takes_no_target_that_is_too_far_from_where_the_arm_is)
   Sample sample{};
   sample.actual_q = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
   const auto follower = follow_joints(options);
-  follower->begin(sample, 0.002);
+  follower->begin(sample, 0.002, widest_arm_limits());
   EXPECT_TRUE(follower->aim({{0.15, 0.1, 0.2, 0.3, 0.4, 0.5}}, 0.02));
   const auto refused = follower->aim({{0.0, 0.1, 0.45, 0.3, 0.4, 0.5}}, 0.02);
   ASSERT_FALSE(refused);
@@ -109,7 +109,7 @@ TEST(AFollower, of_poses_looks_at_both_way_and_turn)
   Sample sample{};
   sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
   const auto follower = follow_poses(options);
-  follower->begin(sample, 0.002);
+  follower->begin(sample, 0.002, widest_arm_limits());
   EXPECT_TRUE(follower->aim({{0.45, 0.1, 0.3, 0.0, 3.1, 0.0}}, 0.02));
   EXPECT_FALSE(follower->aim({{0.55, 0.1, 0.3, 0.0, 3.1, 0.0}}, 0.02));
   EXPECT_FALSE(follower->aim({{0.4, 0.1, 0.3, 0.0, 2.8, 0.0}}, 0.02));

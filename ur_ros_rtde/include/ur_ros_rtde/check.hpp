@@ -23,7 +23,7 @@ class Preflight {
   virtual ~Preflight() = default;
   /// The robot takes this command now, and nothing else is in its way.
   virtual Status prepare() = 0;
-  virtual const ArmLimits & limits() const = 0;
+  virtual ArmLimits limits() const = 0;
   virtual Robot & robot() = 0;
 };
 

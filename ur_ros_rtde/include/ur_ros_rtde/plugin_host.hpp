@@ -38,7 +38,6 @@ class CommandHost : public PluginHost {
   struct Options {
     bool preempt_when_busy = false;
     bool stop_when_client_lost = true;
-    ArmLimits limits = widest_arm_limits();
   };
 
   CommandHost(rcl_cxx::Node & node, Robot & robot, const Options & options)
@@ -48,6 +47,8 @@ class CommandHost : public PluginHost {
 
   Robot & robot() { return robot_; }
   const Options & options() const { return options_; }
+  /// Of the robot's model: Robot::limits().
+  ArmLimits limits() const;
 
   /// How a goal that gives way is to decelerate, when the one that takes over says so.
   void set_takeover_stop(std::optional<StopOptions> options);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ur_ros_rtde/arbiter.hpp"
+#include "ur_ros_rtde/arm_limits.hpp"
 #include "ur_ros_rtde/error.hpp"
 #include "ur_ros_rtde/extension_options.hpp"
 #include "ur_ros_rtde/link.hpp"
@@ -40,9 +41,12 @@ struct RobotOptions {
   double frequency = 0.0;
   ControlMode control_mode = ControlMode::upload;
   std::uint16_t urcap_port = 50002;
-  /// Registers 24-47 instead of 0-23, beside another RTDE client that uses the lower ones. Not yet on
-  /// PolyScope 5.23 and later.
+  /// General purpose registers 24-47 instead of 0-23: beside a fieldbus, which has the lower ones. From
+  /// PolyScope 5.23 on without the mass matrix and the Jacobians, which need registers of both ranges.
   bool upper_range_registers = false;
+  /// Of the arm, see arm_limits(); empty: as the controller says. One that contradicts the controller keeps
+  /// the arm from being moved.
+  std::string model;
   std::chrono::milliseconds connect_timeout{500};
   std::chrono::milliseconds retry_interval{250};
   std::chrono::milliseconds silence_limit{100};
@@ -96,6 +100,9 @@ class Robot {
   Status ready_to_move() const;
   Status wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop = {}) const;
   std::optional<ControllerVersion> version() const;
+  /// Of the arm's model. Before the controller has told which that is, and when it does not: what every model
+  /// can do.
+  ArmLimits limits() const;
   int realtime_priority() const;
 
   /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) when the interface is
@@ -158,6 +165,8 @@ class Robot {
   /// Its results: Sample::output_int_registers, output_double_registers.
   Status set_input_register(int index, std::int32_t value);
   Status set_input_register(int index, double value);
+  /// What the numbers of registers begin at: 24 in the upper range, else 0.
+  int register_offset() const;
 
   Arbiter & arbiter();
 

@@ -42,7 +42,7 @@ class CommandGoals::RobotPreflight : public Preflight {
     ticket_.hold(std::move(*lease));
     return {};
   }
-  const ArmLimits & limits() const override { return goals_.host_.options().limits; }
+  ArmLimits limits() const override { return goals_.host_.limits(); }
   Robot & robot() override { return goals_.host_.robot(); }
 
  private:

@@ -1,5 +1,7 @@
 #include "ur_ros_rtde/plugin_host.hpp"
 
+#include "ur_ros_rtde/robot.hpp"
+
 namespace ur_ros_rtde {
 
 PluginHost::PluginHost(rcl_cxx::Node & node)
@@ -19,6 +21,11 @@ void PluginHost::publish_refusal(const std::string & action, const rcl_cxx::Goal
   refusal.error_code = static_cast<std::uint16_t>(why.code);
   refusal.message = why.message;
   refusals_->publish(refusal);
+}
+
+ArmLimits CommandHost::limits() const
+{
+  return robot_.limits();
 }
 
 void CommandHost::set_takeover_stop(std::optional<StopOptions> options)

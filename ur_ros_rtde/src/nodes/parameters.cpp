@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "ur_ros_rtde/arm_limits.hpp"
 #include "ur_ros_rtde/rtde_outputs.hpp"
 
 namespace ur_ros_rtde {
@@ -72,29 +73,26 @@ std::vector<std::string> declare_robot_state_fields(rcl_cxx::Node & node)
   return fields;
 }
 
-ArmLimits declare_arm_limits(rcl_cxx::Node & node)
+std::string declare_model(rcl_cxx::Node & node)
 {
   auto options = described(
-      "Model of the arm, for the speed limits of its joints and its reach: ur3, ur5, ur10, "
-      "ur3e, ur5e, ur10e, …; empty: what holds for every model");
+      "Model of the arm, for the speed limits of its joints and its reach. A wrong one keeps the arm from "
+      "being moved. Empty: as the controller says");
+  options.additional_constraints = fmt::format("empty, or one of: {}", arm_models());
   const auto model = node.declare_parameter("ur_type", "", options);
-  if (model.empty()) {
-    return widest_arm_limits();
-  }
-  if (const auto limits = arm_limits(model)) {
-    return *limits;
+  if (model.empty() || arm_limits(model)) {
+    return model;
   }
   throw rcl_cxx::ParameterError(
       "ur_type",
-      fmt::format("parameter ur_type is \"{}\", and there is no such model: ur3, ur5, ur10, ur3e, "
-                  "ur5e, ur7e, ur10e, ur12e, ur16e, ur8long, ur15, ur18, ur20, ur30, or empty for any",
-                  model));
+      fmt::format("parameter ur_type is \"{}\", and there is no such model: {}, or empty for the one "
+                  "that the controller tells",
+                  model, arm_models()));
 }
 
-TeleoperationOptions declare_teleoperation(rcl_cxx::Node & node, const ArmLimits & limits)
+TeleoperationOptions declare_teleoperation(rcl_cxx::Node & node)
 {
   TeleoperationOptions options;
-  options.limits = limits;
   options.timeout =
       declare_number(node, "stream_timeout", options.timeout, 0.02, 1.0,
                      "s: a stream of servo_joint, servo_pose or twist ends, and the arm decelerates, when no "
@@ -205,8 +203,13 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
       declare_choice(node, "on_client_lost", "stop", {"stop", "continue"},
                      "What happens to a goal whose client has disappeared: the arm decelerates to a "
                      "standstill and the goal ends with CLIENT_LOST, or the goal goes on") == "stop";
-  parameters.goals.limits = declare_arm_limits(node);
-  parameters.teleoperation = declare_teleoperation(node, parameters.goals.limits);
+  robot.model = declare_model(node);
+  robot.upper_range_registers =
+      declare_choice(node, "register_range", "lower", {"lower", "upper"},
+                     "Which general purpose registers of the robot the driver uses: 0 to 23, or 24 to 47, "
+                     "beside a fieldbus (EtherNet/IP, PROFINET, MODBUS), which has the lower ones") ==
+      "upper";
+  parameters.teleoperation = declare_teleoperation(node);
   return parameters;
 }
 

@@ -45,14 +45,43 @@ constexpr std::array models{
 
 }  // namespace
 
+std::string model_key(const std::string & name)
+{
+  std::string key;
+  for (const char c : name) {
+    if (c != ' ' && c != '-' && c != '_') {
+      key.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+    }
+  }
+  return key;
+}
+
 std::optional<ArmLimits> arm_limits(const std::string & model)
 {
-  std::string name = model;
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const std::string name = model_key(model);
   const auto found =
       std::find_if(models.begin(), models.end(), [&](const Model & m) { return m.name == name; });
   return found == models.end() ? std::nullopt : std::optional(found->limits);
+}
+
+std::string arm_models()
+{
+  std::string names;
+  for (const Model & model : models) {
+    names += (names.empty() ? "" : ", ") + std::string(model.name);
+  }
+  return names;
+}
+
+ArmLimits common_arm_limits()
+{
+  ArmLimits common = widest_arm_limits();
+  for (const Model & model : models) {
+    for (std::size_t joint = 0; joint < common.velocity.size(); ++joint) {
+      common.velocity[joint] = std::min(common.velocity[joint], model.limits.velocity[joint]);
+    }
+  }
+  return common;
 }
 
 ArmLimits widest_arm_limits()

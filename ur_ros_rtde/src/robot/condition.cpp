@@ -12,20 +12,21 @@ std::optional<Error> safety_condition(const Sample & sample)
     return Error{
         ErrorCode::emergency_stop,
         fmt::format(
-            "the robot is in an emergency stop ({}): release the emergency stop, then power on and release "
-            "the brakes (dashboard/power_on, dashboard/brake_release)",
+            "the robot is in an emergency stop ({}): find out why, release the button, then make_ready "
+            "(or dashboard/power_on and dashboard/brake_release)",
             to_string(sample.safety_mode))};
   }
   if (safety.fault || safety.violation) {
-    return Error{ErrorCode::safety_violation,
-                 fmt::format("the safety system reports a {}: find the cause on the pendant, then restart it "
-                             "(dashboard/restart_safety), power on and release the brakes",
-                             safety.fault ? "fault" : "violation")};
+    return Error{
+        ErrorCode::safety_violation,
+        fmt::format("the safety system reports a {}: find the cause on the pendant, then make_ready with "
+                    "restart_safety: true (or dashboard/restart_safety, power_on, brake_release)",
+                    safety.fault ? "fault" : "violation")};
   }
   if (safety.protective_stopped) {
     return Error{ErrorCode::protective_stop,
-                 "the robot is in a protective stop: remove what it ran into, then unlock it "
-                 "(dashboard/unlock_protective_stop)"};
+                 "the robot is in a protective stop: remove what it ran into, then make_ready "
+                 "(or dashboard/unlock_protective_stop)"};
   }
   if (safety.safeguard_stopped) {
     return Error{ErrorCode::safeguard_stop,
@@ -51,13 +52,13 @@ std::optional<Error> robot_condition(const Sample & sample)
       return std::nullopt;
     case RobotMode::power_off:
       return Error{ErrorCode::not_ready,
-                   "the arm is powered off: power on (dashboard/power_on) and release the brakes "
-                   "(dashboard/brake_release)"};
+                   "the arm is powered off: make_ready (or dashboard/power_on and "
+                   "dashboard/brake_release)"};
     case RobotMode::power_on:
     case RobotMode::idle:
       return Error{ErrorCode::not_ready,
-                   fmt::format("the arm's brakes are closed (robot mode {}): release them "
-                               "(dashboard/brake_release)",
+                   fmt::format("the arm's brakes are closed (robot mode {}): make_ready (or "
+                               "dashboard/brake_release)",
                                to_string(sample.robot_mode))};
     case RobotMode::backdrive:
       return Error{ErrorCode::not_ready, "the arm is in backdrive mode: leave it on the pendant"};

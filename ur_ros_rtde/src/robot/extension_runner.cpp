@@ -15,7 +15,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int trigger_register = 18;
 constexpr std::size_t acknowledgement = 18 - 12;  // in Sample::output_double_registers
-constexpr int upper_range_offset = 24;
 constexpr int first_input = 19;
 constexpr int last_input = 22;
 constexpr milliseconds acknowledgement_limit(1000);
@@ -56,8 +55,7 @@ Status ExtensionRunner::set_input(int index, std::int32_t value)
     return ok;
   }
   const auto io = links_.io();
-  if (!io ||
-      !(*io)->setInputIntRegister(index + (options_.upper_range_registers ? upper_range_offset : 0), value)) {
+  if (!io || !(*io)->setInputIntRegister(index + register_offset(options_), value)) {
     return failure(ErrorCode::link_lost, fmt::format("input integer register {} was not sent", index));
   }
   return {};
@@ -69,8 +67,7 @@ Status ExtensionRunner::set_input(int index, double value)
     return ok;
   }
   const auto io = links_.io();
-  if (!io || !(*io)->setInputDoubleRegister(index + (options_.upper_range_registers ? upper_range_offset : 0),
-                                            value)) {
+  if (!io || !(*io)->setInputDoubleRegister(index + register_offset(options_), value)) {
     return failure(ErrorCode::link_lost, fmt::format("input float register {} was not sent", index));
   }
   return {};
@@ -79,8 +76,7 @@ Status ExtensionRunner::set_input(int index, double value)
 Status ExtensionRunner::set_trigger(int id)
 {
   const auto io = links_.io();
-  const int index = trigger_register + (options_.upper_range_registers ? upper_range_offset : 0);
-  if (!io || !(*io)->setInputDoubleRegister(index, id)) {
+  if (!io || !(*io)->setInputDoubleRegister(trigger_register + register_offset(options_), id)) {
     return failure(ErrorCode::link_lost, "the trigger of the extension was not sent");
   }
   return {};

@@ -1,10 +1,14 @@
 #include "robot/interface_links.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <ur_rtde/rtde.h>
 #include <ur_rtde/rtde_control_interface.h>
 #include <ur_rtde/rtde_io_interface.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "robot/ports.hpp"
 #include "robot/script_check.hpp"
@@ -34,7 +38,38 @@ std::uint16_t control_flags(const RobotOptions & options)
   return static_cast<std::uint16_t>(flags);
 }
 
+constexpr std::string_view register_names = "input_";
+
+/// Of inputs that somebody else has; what to do depends on which they are.
+std::string in_use(const RobotOptions & options, const std::vector<std::string> & names)
+{
+  const bool registers_only = std::all_of(
+      names.begin(), names.end(), [](const std::string & name) { return name.starts_with(register_names); });
+  std::string who = "another driver or another RTDE client is connected to it: stop that one";
+  if (registers_only) {
+    who += fmt::format(
+        "; or its installation has a fieldbus (EtherNet/IP, PROFINET, MODBUS): switch that off, or start "
+        "this "
+        "driver with register_range:={} (now {})",
+        options.upper_range_registers ? "lower" : "upper", options.upper_range_registers ? "upper" : "lower");
+  }
+  constexpr std::size_t enough = 4;
+  const std::vector<std::string> first(
+      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), enough)));
+  const std::string more = names.size() > enough ? fmt::format(" and {} more", names.size() - enough) : "";
+  return fmt::format("inputs of the robot at {} are in use ({}{}): {}", options.address,
+                     fmt::join(first, ", "), more, who);
+}
+
 }  // namespace
+
+Error InterfaceLinks::refused(std::string_view what, const std::exception & error) const
+{
+  if (const auto * used = dynamic_cast<const ur_rtde::InputsInUse *>(&error)) {
+    return {ErrorCode::robot_in_use, in_use(options_, used->names())};
+  }
+  return {ErrorCode::not_ready, fmt::format("{}: {}", what, printable(error.what()))};
+}
 
 Status InterfaceLinks::ensure_io()
 {
@@ -55,8 +90,7 @@ Status InterfaceLinks::ensure_io()
     io_ = std::move(io);
     return {};
   } catch (const std::exception & error) {
-    return failure(ErrorCode::not_ready,
-                   fmt::format("the robot refuses the IO interface: {}", printable(error.what())));
+    return tl::unexpected(refused("the robot refuses the IO interface", error));
   }
 }
 
@@ -135,8 +169,7 @@ Status InterfaceLinks::start_control(const ControllerVersion & version)
   } catch (const std::exception & error) {
     drop_control();
     extensions_checked_ = false;  // perhaps a URCap is gone
-    return failure(ErrorCode::not_ready,
-                   fmt::format("the control program cannot be started: {}", printable(error.what())));
+    return tl::unexpected(refused("the control program cannot be started", error));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "robot/control_scripts.hpp"
@@ -12,6 +13,12 @@
 #include "ur_ros_rtde/robot.hpp"
 
 namespace ur_ros_rtde {
+
+/// What the numbers of the registers begin at.
+constexpr int register_offset(const RobotOptions & options)
+{
+  return options.upper_range_registers ? 24 : 0;
+}
 
 /// Makes and drops ur_rtde's control and IO interfaces. Each is constructed outside of locks, after a look at
 /// the ports it needs; whatever it throws becomes an Error. Thread-safe.
@@ -59,6 +66,8 @@ class InterfaceLinks {
 
  private:
   Status reach_control_ports() const;
+  /// What an interface's constructor has thrown, which `what` begins to tell.
+  Error refused(std::string_view what, const std::exception & error) const;
   std::shared_ptr<ur_rtde::RTDEControlInterface> connect_control(const std::string & script) const;
   Status start_watchdog(ur_rtde::RTDEControlInterface & control) const;
   /// Leaves out the extensions that the controller does not take.

@@ -35,8 +35,7 @@ Status InterfaceLinks::prepare_control()
     parked_ = std::move(control);
     return {};
   } catch (const std::exception & error) {
-    return failure(ErrorCode::not_ready,
-                   fmt::format("the robot refuses the control interface: {}", printable(error.what())));
+    return tl::unexpected(refused("the robot refuses the control interface", error));
   }
 }
 

@@ -1,5 +1,7 @@
 #include "robot/primary_link.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cctype>
 #include <cstdint>
@@ -15,6 +17,7 @@ namespace {
 constexpr std::size_t shortest_package = 5;
 constexpr std::size_t longest_package = 1U << 20U;
 constexpr std::size_t message_header = 15;
+constexpr std::uint8_t robot_state = 16;
 constexpr std::uint8_t robot_message = 20;
 
 enum class MessageKind : std::uint8_t { text = 0, key = 7, runtime_exception = 10 };
@@ -106,6 +109,29 @@ std::optional<PrimaryMessage> message_of(std::span<const std::byte> package)
   return std::nullopt;
 }
 
+/// The robot state is made of packages with a size of the whole and a type each.
+std::optional<std::int32_t> robot_type_of(std::span<const std::byte> package)
+{
+  constexpr std::size_t header = 5;
+  constexpr std::uint8_t configuration = 6;
+  // Limits and motion limits of six joints, five defaults, DH parameters of six joints, two type numbers.
+  constexpr std::size_t type_begin = header + 8 * (12 + 12 + 5 + 24) + 4 * 2;
+  if (package.size() < header || std::to_integer<std::uint8_t>(package[4]) != robot_state) {
+    return std::nullopt;
+  }
+  for (auto rest = package.subspan(header); rest.size() >= header;) {
+    const std::size_t size = big_endian(rest);
+    if (size < header || size > rest.size()) {
+      break;
+    }
+    if (std::to_integer<std::uint8_t>(rest[4]) == configuration && size >= type_begin + 4) {
+      return static_cast<std::int32_t>(big_endian(rest.subspan(type_begin)));
+    }
+    rest = rest.subspan(size);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool PrimaryReader::feed(std::span<const std::byte> bytes)
@@ -122,6 +148,9 @@ bool PrimaryReader::feed(std::span<const std::byte> bytes)
     }
     if (auto message = message_of(rest.first(size))) {
       messages_.push_back(std::move(*message));
+    }
+    if (const auto type = robot_type_of(rest.first(size))) {
+      robot_type_ = type;
     }
     rest = rest.subspan(size);
   }
@@ -169,6 +198,22 @@ Expected<std::size_t> PrimaryLink::read(std::chrono::milliseconds wait)
     return failure(ErrorCode::link_lost, "what comes from port 30001 is not the primary interface");
   }
   return got;
+}
+
+Expected<std::int32_t> PrimaryLink::robot_type(std::chrono::milliseconds limit)
+{
+  const auto deadline = TcpStream::Clock::now() + limit;
+  while (!reader_.robot_type()) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - TcpStream::Clock::now());
+    if (left <= std::chrono::milliseconds(0)) {
+      return failure(ErrorCode::timeout,
+                     fmt::format("port {} sends no configuration of the robot", primary_port));
+    }
+    if (const auto got = read(left); !got) {
+      return tl::unexpected(got.error());
+    }
+  }
+  return *reader_.robot_type();
 }
 
 Expected<std::optional<PrimaryMessage>> PrimaryLink::next(std::chrono::milliseconds wait)

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <optional>
 #include <span>
@@ -34,9 +35,12 @@ class PrimaryReader {
   /// False when this is no stream of packages.
   bool feed(std::span<const std::byte> bytes);
   std::optional<PrimaryMessage> next();
+  /// The arm's type number, from the configuration data of the robot state; none before it has come.
+  std::optional<std::int32_t> robot_type() const { return robot_type_; }
 
  private:
   std::vector<std::byte> buffer_;
+  std::optional<std::int32_t> robot_type_;
   std::deque<PrimaryMessage> messages_;
 };
 
@@ -49,6 +53,8 @@ class PrimaryLink {
   Status send(std::string_view script, std::chrono::milliseconds limit);
   /// The next message; none, if none came within `wait`.
   Expected<std::optional<PrimaryMessage>> next(std::chrono::milliseconds wait);
+  /// Waits for PrimaryReader::robot_type().
+  Expected<std::int32_t> robot_type(std::chrono::milliseconds limit);
 
  private:
   explicit PrimaryLink(TcpStream stream) : stream_(std::move(stream)) {}

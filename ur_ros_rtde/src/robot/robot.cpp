@@ -60,6 +60,11 @@ std::optional<ControllerVersion> Robot::version() const
   return impl_->state.version();
 }
 
+ArmLimits Robot::limits() const
+{
+  return impl_->model.limits();
+}
+
 int Robot::realtime_priority() const
 {
   return impl_->options.realtime_priority;
@@ -214,6 +219,11 @@ Status Robot::set_input_register(int index, std::int32_t value)
 Status Robot::set_input_register(int index, double value)
 {
   return impl_->extensions.set_input(index, value);
+}
+
+int Robot::register_offset() const
+{
+  return ur_ros_rtde::register_offset(impl_->options);
 }
 
 Arbiter & Robot::arbiter()

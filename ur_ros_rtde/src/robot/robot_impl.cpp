@@ -49,6 +49,7 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
     : options(checked(robot_options)),
       state(receiver_options(options), log),
       dashboard(dashboard_options(options), log),
+      model(options.address, options.model, log),
       control_scripts(options.upper_range_registers),
       links(options, control_scripts, log),
       stopper(options.address, state, links, tracker),
@@ -56,7 +57,7 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
              {[this] { return state.version(); },
               [this](const ControllerVersion & version) { return control_scripts.program(version); }},
              log),
-      supervisor(options, state, dashboard, links, log, &server),
+      supervisor(options, state, dashboard, model, links, log, &server),
       scripts(options, state, tracker, links, supervisor),
       extensions(options, state, tracker, links, control_scripts),
       kicked_for_(options.watchdog_frequency)

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 
+#include "robot/arm_model.hpp"
 #include "robot/control_scripts.hpp"
 #include "robot/extension_runner.hpp"
 #include "robot/interface_links.hpp"
@@ -35,6 +36,7 @@ class Robot::Impl {
   MotionTracker tracker;
   StateReceiver state;
   DashboardLink dashboard;
+  ArmModel model;
   ControlScripts control_scripts;
   InterfaceLinks links;
   MotionStopper stopper;

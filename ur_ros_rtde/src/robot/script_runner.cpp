@@ -84,7 +84,7 @@ std::string ScriptRunner::preamble() const
     return {};
   }
   return fmt::format("  rtde_set_watchdog(\"input_int_register_{}\", {}, \"stop\")",
-                     options_.upper_range_registers ? 24 : 0, options_.watchdog_frequency);
+                     register_offset(options_), options_.watchdog_frequency);
 }
 
 bool ScriptRunner::wait_for_standstill(bool of_program) const

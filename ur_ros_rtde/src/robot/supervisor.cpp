@@ -47,10 +47,11 @@ const char * to_string(RobotState state)
 }
 
 Supervisor::Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard,
-                       InterfaceLinks & links, LogFunction log, const ScriptServer * server)
+                       ArmModel & model, InterfaceLinks & links, LogFunction log, const ScriptServer * server)
     : options_(options),
       state_(state),
       dashboard_(dashboard),
+      model_(model),
       links_(links),
       report_(std::move(log)),
       server_(server)
@@ -172,6 +173,7 @@ RobotStatus Supervisor::look()
     forget_program();
     program_ended_ = false;
     links_.drop();
+    model_.detect(state_.version().value_or(ControllerVersion{}), options_.connect_timeout);
   }
   if (const auto control = links_.control_pointer(); program_ours_ && control && !control->isConnected()) {
     // Only this link is lost; the program behind it, still ours, is replaced.
@@ -198,12 +200,36 @@ RobotStatus Supervisor::look()
     sample = state_.latest().value_or(*sample);
   }
   if (const auto io = links_.ensure_io(); !io) {
-    return {RobotState::connecting, io.error().code, io.error().message};
+    return not_made(io.error());
+  }
+  if (const auto mismatch = model_.mismatch()) {
+    return stopped(*mismatch);
   }
   if (condition) {
     return stopped(*condition);
   }
   return look_at_program(*sample);
+}
+
+RobotStatus Supervisor::not_made(const Error & error)
+{
+  if (error.code != ErrorCode::robot_in_use) {
+    return {RobotState::connecting, error.code, error.message};
+  }
+  was_in_use_ = true;
+  return stopped(error);
+}
+
+std::optional<Error> Supervisor::program_of_another_driver(const Sample & sample)
+{
+  was_in_use_ = was_in_use_ && sample.runtime_state != RuntimeState::stopped;
+  if (!was_in_use_) {
+    return std::nullopt;
+  }
+  links_.drop();  // if the other one has only lost a connection, it gets the robot back
+  return Error{ErrorCode::robot_in_use,
+               "another driver has left the robot, but not its program: if that does not end by itself, stop "
+               "it (dashboard/stop, or on the pendant)"};
 }
 
 RobotStatus Supervisor::look_at_program(const Sample & sample)
@@ -216,6 +242,9 @@ RobotStatus Supervisor::look_at_program(const Sample & sample)
   }
   if (options_.control_mode == ControlMode::control_urcap) {
     return look_at_fetched_program(sample);
+  }
+  if (const auto other = program_of_another_driver(sample)) {
+    return stopped(*other);
   }
   if (dashboard_.in_remote_control() == false) {
     return stopped(
@@ -280,7 +309,10 @@ RobotStatus Supervisor::start_program()
     set({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
   }
   if (const auto started = links_.start_control(state_.version().value_or(ControllerVersion{})); !started) {
-    return {RobotState::connecting, started.error().code, started.error().message};
+    if (started.error().code == ErrorCode::robot_in_use) {
+      links_.drop();  // also the IO interface: whoever has the control program gets all of the robot
+    }
+    return not_made(started.error());
   }
   if (!wait_for_runtime(RuntimeState::playing, milliseconds(500))) {
     links_.drop_control();

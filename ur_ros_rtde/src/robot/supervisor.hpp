@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "robot/arm_model.hpp"
 #include "robot/interface_links.hpp"
 #include "robot/reporter.hpp"
 #include "robot/script_server.hpp"
@@ -22,7 +23,7 @@ namespace ur_ros_rtde {
 class Supervisor {
  public:
   /// `server`: for ControlMode::control_urcap, outlives it.
-  Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard,
+  Supervisor(const RobotOptions & options, StateReceiver & state, DashboardLink & dashboard, ArmModel & model,
              InterfaceLinks & links, LogFunction log, const ScriptServer * server = nullptr);
   ~Supervisor() { stop(); }
 
@@ -51,6 +52,10 @@ class Supervisor {
   void run(const std::stop_token & stop);
   RobotStatus look();
   RobotStatus look_at_program(const Sample & sample);
+  /// An interface could not be made.
+  RobotStatus not_made(const Error & error);
+  /// Another driver, to which the robot belonged when this one tried last, has left a program that runs on.
+  std::optional<Error> program_of_another_driver(const Sample & sample);
   RobotStatus start_program();
   RobotStatus look_at_fetched_program(const Sample & sample);
   RobotStatus wait_for_play();
@@ -74,6 +79,7 @@ class Supervisor {
   const RobotOptions options_;
   StateReceiver & state_;
   DashboardLink & dashboard_;
+  ArmModel & model_;
   InterfaceLinks & links_;
   Reporter report_;
 
@@ -81,6 +87,8 @@ class Supervisor {
   std::atomic<bool> program_ours_{false};
   /// It has ended since the link was made: a program that plays now is somebody else's.
   bool program_ended_ = false;
+  /// Inputs were in use, and no program has been seen to end since.
+  bool was_in_use_ = false;
   std::uint32_t link_ = 0;
   std::optional<std::uint32_t> lost_link_;  ///< Sample::link of the link that was lost last
   const ScriptServer * server_;

@@ -57,7 +57,7 @@ RobotStatus Supervisor::look_at_fetched_program(const Sample & sample)
         to_string(sample.runtime_state)));
   }
   if (const auto prepared = links_.prepare_control(); !prepared) {
-    return {RobotState::connecting, prepared.error().code, prepared.error().message};
+    return not_made(prepared.error());
   }
   return sample.program_running() ? take_over_fetched_program() : wait_for_play();
 }

@@ -83,7 +83,7 @@ RobotStatus Supervisor::look_at_turn(const Sample & sample, const std::optional<
     turn_ = turn_ == Turn::asked_for ? Turn::others : turn_;
   }
   if (const auto io = links_.ensure_io(); !io) {
-    return {RobotState::connecting, io.error().code, io.error().message};
+    return not_made(io.error());
   }
   if (condition) {
     return {RobotState::stopped, condition->code, condition->message};

@@ -113,8 +113,13 @@ Expected<TcpStream> TcpStream::connect(const std::string & address, std::uint16_
   TcpStream stream(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
                    fmt::format("{}:{}", address, port));
   const auto refused = [&](int error) {
+    const char * remedy =
+        error == ECONNREFUSED
+            ? ": check the address, that the robot has started, and that this interface is enabled (on the "
+              "pendant: Settings, Security, Services)"
+            : "";
     return failure(ErrorCode::link_lost,
-                   fmt::format("no connection to {}: {}", stream.name_, system_text(error)));
+                   fmt::format("no connection to {}: {}{}", stream.name_, system_text(error), remedy));
   };
   if (stream.descriptor_ < 0) {
     return refused(errno);
@@ -126,8 +131,10 @@ Expected<TcpStream> TcpStream::connect(const std::string & address, std::uint16_
       return refused(errno);
     }
     if (!stream.wait_for(POLLOUT, deadline)) {
-      return failure(ErrorCode::link_lost, fmt::format("no connection to {}: nobody answered within {} ms",
-                                                       stream.name_, limit.count()));
+      return failure(ErrorCode::link_lost,
+                     fmt::format("no connection to {}: nobody answered within {} ms: check "
+                                 "the address, and that the robot is on",
+                                 stream.name_, limit.count()));
     }
     int error = 0;
     socklen_t size = sizeof(error);

@@ -24,7 +24,7 @@ class TrajectoryCommand : public Command<A> {
 
  protected:
   CommandHost & host() const { return *host_; }
-  const ArmLimits & arm() const { return host_->options().limits; }
+  ArmLimits arm() const { return host_->limits(); }
 
   /// All but plan, start_tolerance and approach.
   Execution execution(const Goal & goal, Run & run) const;

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "teleoperation/options.hpp"
+#include "ur_ros_rtde/arm_limits.hpp"
 #include "ur_ros_rtde/run.hpp"
 
 namespace ur_ros_rtde {
@@ -18,8 +19,8 @@ struct StreamTarget {
 class Follower {
  public:
   virtual ~Follower() = default;
-  /// A stream begins; `cycle` of the controller, s.
-  virtual void begin(const Sample & sample, double cycle) = 0;
+  /// A stream begins; `cycle` of the controller, s; `limits` of the arm.
+  virtual void begin(const Sample & sample, double cycle, const ArmLimits & limits) = 0;
   /// The next target; the messages come `period` s apart. What is refused ends the stream.
   virtual Status aim(const StreamTarget & target, double period) = 0;
   /// Sends what belongs `elapsed` s of the controller's clock after the command before. What is refused ends

@@ -57,9 +57,10 @@ class JointFollower : public Follower {
  public:
   explicit JointFollower(const TeleoperationOptions & options) : options_(options) {}
 
-  void begin(const Sample & sample, double cycle) override
+  void begin(const Sample & sample, double cycle, const ArmLimits & limits) override
   {
     cycle_ = cycle;
+    limits_ = limits;
     from_ = to_ = at_ = sample.actual_q;
     line_.begin(0.0);
   }
@@ -76,7 +77,7 @@ class JointFollower : public Follower {
                         "begin where the arm is, and move on more slowly",
                         joint_names()[i], jump, options_.max_joint_jump));
       }
-      duration = std::max(duration, jump / options_.limits.velocity[i]);
+      duration = std::max(duration, jump / limits_.velocity[i]);
     }
     from_ = at_;
     to_ = target.values;
@@ -96,6 +97,7 @@ class JointFollower : public Follower {
 
  private:
   const TeleoperationOptions options_;
+  ArmLimits limits_{};
   double cycle_ = 0.0;
   Vector6 from_{}, to_{}, at_{};
   Line line_;
@@ -105,9 +107,10 @@ class PoseFollower : public Follower {
  public:
   explicit PoseFollower(const TeleoperationOptions & options) : options_(options) {}
 
-  void begin(const Sample & sample, double cycle) override
+  void begin(const Sample & sample, double cycle, const ArmLimits & limits) override
   {
     cycle_ = cycle;
+    limits_ = limits;
     from_ = at_ = sample.actual_tcp_pose;
     way_ = {};
     line_.begin(0.0);
@@ -134,7 +137,7 @@ class PoseFollower : public Follower {
 
   Status advance(Run & run, const Sample & sample, double elapsed) override
   {
-    if (Status slow = joints_slow_enough(sample, options_.limits); !slow) {
+    if (Status slow = joints_slow_enough(sample, limits_); !slow) {
       return slow;
     }
     Vector6 part = way_;
@@ -149,6 +152,7 @@ class PoseFollower : public Follower {
 
  private:
   const TeleoperationOptions options_;
+  ArmLimits limits_{};
   double cycle_ = 0.0;
   Vector6 from_{}, at_{};
   Vector6 way_{};  ///< in the frame of from_
@@ -159,7 +163,11 @@ class TwistFollower : public Follower {
  public:
   explicit TwistFollower(const TeleoperationOptions & options) : options_(options) {}
 
-  void begin(const Sample &, double) override { target_ = {}; }
+  void begin(const Sample &, double, const ArmLimits & limits) override
+  {
+    limits_ = limits;
+    target_ = {};
+  }
 
   Status aim(const StreamTarget & target, double) override
   {
@@ -169,7 +177,7 @@ class TwistFollower : public Follower {
 
   Status advance(Run & run, const Sample & sample, double) override
   {
-    if (Status slow = joints_slow_enough(sample, options_.limits); !slow) {
+    if (Status slow = joints_slow_enough(sample, limits_); !slow) {
       return slow;
     }
     Vector6 twist = target_.values;
@@ -185,6 +193,7 @@ class TwistFollower : public Follower {
 
  private:
   const TeleoperationOptions options_;
+  ArmLimits limits_{};
   StreamTarget target_{};
 };
 }  // namespace

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "ur_ros_rtde/arm_limits.hpp"
-
 namespace ur_ros_rtde {
 
 struct TeleoperationOptions {
@@ -12,7 +10,6 @@ struct TeleoperationOptions {
   double deceleration = 2.0;     ///< rad/s^2, m/s^2, of the stop at the end
   double lookahead_time = 0.1;   ///< s, of servo control
   double gain = 300.0;           ///< of servo control
-  ArmLimits limits = widest_arm_limits();
 };
 
 }  // namespace ur_ros_rtde

@@ -159,7 +159,7 @@ Error Stream::follow(Run & run, std::uint64_t burst, Latency & latency)
     const auto version = run.robot().version();
     const double cycle = 1.0 / (version ? version->frequency() : 500.0);
     Sample sample = run.state();
-    follower_->begin(sample, cycle);
+    follower_->begin(sample, cycle, host_.limits());
     for (std::uint64_t taken = 0; true;) {
       const double before = sample.controller_time;
       if (auto why = run.next(sample)) {

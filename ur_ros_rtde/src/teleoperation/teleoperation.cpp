@@ -13,9 +13,8 @@ Teleoperation::Teleoperation(CommandHost & host, const TeleoperationOptions & op
   // One that was lost is not worth waiting for.
   const auto newest_only = rcl_cxx::QoS::best_effort(1);
   joint_messages_ = host.node().create_subscription<sensor_msgs::msg::JointState>(
-      "servo_joint", newest_only, [this, limits = options.limits](const sensor_msgs::msg::JointState & m) {
-        joints_.put(joint_target(m, limits));
-      });
+      "servo_joint", newest_only,
+      [this, &host](const sensor_msgs::msg::JointState & m) { joints_.put(joint_target(m, host.limits())); });
   pose_messages_ = host.node().create_subscription<geometry_msgs::msg::PoseStamped>(
       "servo_pose", newest_only,
       [this](const geometry_msgs::msg::PoseStamped & m) { poses_.put(pose_target(m)); });

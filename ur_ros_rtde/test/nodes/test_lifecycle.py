@@ -34,6 +34,7 @@ def test_without_an_address_it_says_what_to_give(name):
     ("robot_state_receiver", "tf_prefix:='left arm'", "tf_prefix"),
     ("command_server", "on_busy:=wait", "preempt"),
     ("command_server", "ur_type:=ur99", "ur99"),
+    ("command_server", "register_range:=middle", "upper"),
     ("command_server", "urcap_port:=70000", "urcap_port"),
     ("command_server", "watchdog_frequency:=true", "watchdog_frequency"),
     ("command_server", "watchdog_frequency:=60.0", "50"),

@@ -87,14 +87,14 @@ TEST(RobotCondition, finds_nothing_wrong_with_a_running_robot)
 TEST(RobotCondition, names_every_safety_stop_and_what_to_do)
 {
   const std::vector<std::tuple<unsigned, ErrorCode, const char *>> table{
-      {2, ErrorCode::protective_stop, "dashboard/unlock_protective_stop"},
+      {2, ErrorCode::protective_stop, "make_ready (or dashboard/unlock_protective_stop)"},
       {3, ErrorCode::safety_violation, "recovery mode"},
       {4, ErrorCode::safeguard_stop, "guard"},
-      {5, ErrorCode::emergency_stop, "release the emergency stop"},
-      {6, ErrorCode::emergency_stop, "release the emergency stop"},
-      {7, ErrorCode::emergency_stop, "release the emergency stop"},
-      {8, ErrorCode::safety_violation, "dashboard/restart_safety"},
-      {9, ErrorCode::safety_violation, "dashboard/restart_safety"}};
+      {5, ErrorCode::emergency_stop, "release the button, then make_ready"},
+      {6, ErrorCode::emergency_stop, "release the button, then make_ready"},
+      {7, ErrorCode::emergency_stop, "release the button, then make_ready"},
+      {8, ErrorCode::safety_violation, "make_ready with restart_safety: true (or dashboard/restart_safety"},
+      {9, ErrorCode::safety_violation, "make_ready with restart_safety: true (or dashboard/restart_safety"}};
   for (const auto & [bit, code, advice] : table) {
     auto sample = running_robot();
     sample.safety_status_bits = 1U << bit;
@@ -109,9 +109,10 @@ TEST(RobotCondition, tells_how_to_power_the_arm)
 {
   auto sample = running_robot();
   sample.robot_mode = RobotMode::power_off;
-  EXPECT_NE(robot_condition(sample)->message.find("dashboard/power_on"), std::string::npos);
+  EXPECT_NE(robot_condition(sample)->message.find("make_ready (or dashboard/power_on"), std::string::npos);
   sample.robot_mode = RobotMode::idle;
-  EXPECT_NE(robot_condition(sample)->message.find("dashboard/brake_release"), std::string::npos);
+  EXPECT_NE(robot_condition(sample)->message.find("make_ready (or dashboard/brake_release"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -146,30 +146,5 @@ TEST_F(AQuery, takes_no_stream_away)
   EXPECT_TRUE(robot->stop_motion());
 }
 
-struct TheUpperRange : AQuery, testing::WithParamInterface<const char *> {};
-
-TEST_P(TheUpperRange, of_registers_carries_the_control_interface)
-{
-  auto simulator = Controller::options();
-  simulator.polyscope_version = GetParam();
-  controller.start(simulator);
-  auto options = robot_options();
-  options.upper_range_registers = true;
-  make_robot(options);
-  ASSERT_TRUE(becomes_ready());
-  EXPECT_NEAR(control()->getStepTime(), 0.002, 1e-9);
-  const auto mark = robot->mark_motion();
-  auto q = now();
-  q[5] += 0.05;
-  ASSERT_TRUE(control()->moveJ(q, 1.0, 3.0, true));
-  EXPECT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); }));
-  EXPECT_NEAR(robot->latest()->actual_q[5], q[5], 1e-3);
-  EXPECT_THROW(control()->getMassMatrix(), std::logic_error);
-  EXPECT_TRUE(robot->run_script("textmsg(\"here\")")) << "its watchdog is another register, too";
-  EXPECT_EQ(control()->getTCPOffset().size(), 6U);
-}
-
-INSTANTIATE_TEST_SUITE_P(OfVersions, TheUpperRange, testing::Values("5.21.0", "5.25.1"));
-
 }  // namespace
 }  // namespace ur_ros_rtde::test

@@ -36,8 +36,10 @@ struct AStateReceiver : testing::Test {
 TEST_F(AStateReceiver, starts_before_the_controller_does)
 {
   const auto receiver = this->receiver();
-  ASSERT_TRUE(eventually([&] { return log.count("no connection to " + own_address() + ":30004") == 1; }))
-      << log.text();
+  ASSERT_TRUE(eventually([&] {
+    return log.count("no connection to " + own_address() + ":30004") == 1 &&
+           log.count("check the address") == 1;
+  })) << log.text();
   EXPECT_FALSE(receiver->latest());
   controller.start();
   EXPECT_TRUE(connected(*receiver)) << log.text();

@@ -108,6 +108,13 @@ json accept_connections(Bench & bench, Fields & fields)
   return json::object();
 }
 
+json fieldbus(Bench & bench, Fields & fields)
+{
+  const bool on = fields.boolean("on", true);
+  fields.finish();
+  return {{"taken_by_others", bench.rtde.set_fieldbus(on)}};
+}
+
 json reboot(Bench & bench, Fields & fields)
 {
   const double duration = fields.number("duration", {0.0, 600.0}, 1.0);
@@ -135,6 +142,10 @@ constexpr std::array table{
             "Sends bytes that mean nothing.", send_garbage},
     Command{"refuse_connections", "which (all)", "Closes ports; open connections stay.", refuse_connections},
     Command{"accept_connections", "which (all)", "Opens them again.", accept_connections},
+    Command{"fieldbus", "on true|false (true)",
+            "A fieldbus of the installation has the input registers of the lower range that are free: IN_USE "
+            "for RTDE clients. Answers how many a client had already.",
+            fieldbus},
     Command{"reboot", "duration s (1)",
             "Resets all connections, is away for so long and comes back powered off, its clock at 0.",
             reboot},

@@ -70,6 +70,26 @@ void Server::for_each(ClientRole role, const std::function<void(Connection &)> &
   }
 }
 
+std::size_t Server::set_fieldbus(bool on)
+{
+  constexpr std::uint64_t fieldbus = 0;  // connections count from 1
+  constexpr unsigned lower_range = 24;
+  constexpr unsigned lower_bits = 64;
+  std::size_t taken_by_others = 0;
+  for (const InputField & field : input_fields()) {
+    const bool bit = field.name.starts_with("input_bit_register_");
+    if (!field.name.starts_with("input_") || field.index >= (bit ? lower_bits : lower_range)) {
+      continue;
+    }
+    const auto [owner, added] = shared_.owners.try_emplace(&field, fieldbus);
+    taken_by_others += owner->second == fieldbus ? 0 : 1;
+    if (!on && owner->second == fieldbus) {
+      shared_.owners.erase(owner);
+    }
+  }
+  return taken_by_others;
+}
+
 std::uint64_t Server::dropped_packages() const
 {
   std::uint64_t dropped = dropped_before_;

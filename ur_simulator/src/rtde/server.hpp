@@ -49,6 +49,9 @@ class Server {
   std::size_t clients() const { return sessions_.size(); }
   std::size_t clients(ClientRole role) const;
   void for_each(ClientRole role, const std::function<void(Connection &)> & action);
+  /// A fieldbus of the installation has the input registers of the lower range, or gives them back. How many
+  /// it has not got because an RTDE client has them.
+  std::size_t set_fieldbus(bool on);
   /// Data packages that were dropped because a client did not read.
   std::uint64_t dropped_packages() const;
 

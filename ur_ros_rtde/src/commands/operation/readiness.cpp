@@ -145,7 +145,10 @@ std::string Readiness::start_program()
 {
   constexpr std::chrono::seconds patience{3};
   const RobotStatus status = robot_.status();
-  const bool kept = status.state == RobotState::stopped && status.cause == ErrorCode::program_stopped;
+  const bool for_somebody = status.cause == ErrorCode::program_stopped ||
+                            status.cause == ErrorCode::model_mismatch ||
+                            status.cause == ErrorCode::robot_in_use;
+  const bool kept = status.state == RobotState::stopped && for_somebody;
   if (!kept) {
     kept_since_.reset();
     return "starting the control program";

@@ -44,6 +44,12 @@ auto answer(Run & run, Ask && ask)
   const AnswerLimit limit(*control);
   try {
     return std::forward<Ask>(ask)(*control);
+  } catch (const std::logic_error & error) {
+    if (run.robot().register_offset() == 0) {
+      throw;
+    }
+    throw RobotError({ErrorCode::not_supported,
+                      fmt::format("with register_range: upper this cannot be asked: {}", error.what())});
   } catch (const std::runtime_error & error) {
     if (const Status possible = run.robot().motion_possible(); !possible) {
       throw RobotError(possible.error());

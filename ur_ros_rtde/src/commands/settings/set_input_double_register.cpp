@@ -14,7 +14,7 @@ class SetInputDoubleRegister : public Command<ur_ros_rtde_msgs::action::SetRegis
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    if (!run.io()->setInputDoubleRegister(goal.index, goal.value)) {
+    if (!run.io()->setInputDoubleRegister(goal.index + run.robot().register_offset(), goal.value)) {
       return Outcome::failure(ErrorCode::link_lost, "the value could not be sent to the robot: try again");
     }
     return Outcome::success();

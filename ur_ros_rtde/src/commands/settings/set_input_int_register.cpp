@@ -20,7 +20,8 @@ class SetInputIntRegister : public Command<ur_ros_rtde_msgs::action::SetRegister
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    if (!run.io()->setInputIntRegister(goal.index, static_cast<int>(goal.value))) {
+    if (!run.io()->setInputIntRegister(goal.index + run.robot().register_offset(),
+                                       static_cast<int>(goal.value))) {
       return Outcome::failure(ErrorCode::link_lost, "the value could not be sent to the robot: try again");
     }
     return Outcome::success();

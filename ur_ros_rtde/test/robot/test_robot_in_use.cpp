@@ -1,0 +1,117 @@
+#include "robot_fixture.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+/// A driver that has the robot, and another one that comes later.
+struct ASecondDriver : RobotFixture {
+  Log log_of_second;
+  std::unique_ptr<Robot> second;
+
+  void make_second(bool upper_range = false)
+  {
+    auto options = robot_options();
+    options.upper_range_registers = upper_range;
+    second = std::make_unique<Robot>(options, log_of_second.function());
+    second->start();
+  }
+  bool second_is(RobotState state, ErrorCode cause = ErrorCode::none)
+  {
+    return eventually([&] { return second->status().state == state && second->status().cause == cause; },
+                      10s);
+  }
+  std::string told() const { return second->status().message + "\n" + log_of_second.text(); }
+};
+
+TEST_F(ASecondDriver, is_refused_with_what_is_in_use_and_takes_over_when_the_first_ends)
+{
+  make_both();
+  move_joints();
+  make_second();
+  ASSERT_TRUE(second_is(RobotState::stopped, ErrorCode::robot_in_use)) << told();
+  const auto message = second->status().message;
+  for (const char * part : {own_address().c_str(), "input_int_register_23", "another driver"}) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+  EXPECT_EQ(second->ready_to_move().error().code, ErrorCode::robot_in_use);
+  EXPECT_THROW(second->control(), RobotError);
+  EXPECT_GT(std::abs(robot->latest()->actual_qd[0]), 0.7) << "the first one's motion goes on";
+  EXPECT_EQ(log_of_second.count("are in use"), 1U) << told();
+  ASSERT_TRUE(robot->stop_motion());
+  robot.reset();
+  EXPECT_TRUE(second_is(RobotState::ready)) << told();
+}
+
+TEST_F(ASecondDriver, is_refused_in_the_other_register_range_too)
+{
+  make_both();
+  make_second(true);
+  ASSERT_TRUE(second_is(RobotState::stopped, ErrorCode::robot_in_use)) << told();
+  EXPECT_NE(told().find("standard_digital_output"), std::string::npos) << told();
+  EXPECT_EQ(told().find("register_range"), std::string::npos) << "that would not help: " << told();
+}
+
+TEST_F(ASecondDriver, does_not_stop_the_first_one_when_that_loses_a_connection)
+{
+  make_both();
+  make_second();
+  ASSERT_TRUE(second_is(RobotState::stopped, ErrorCode::robot_in_use)) << told();
+  move_joints();
+  for (int i = 0; i < 5; ++i) {
+    controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "io"}});
+    ASSERT_TRUE(becomes_ready());
+  }
+  EXPECT_GT(std::abs(robot->latest()->actual_qd[0]), 0.7) << log.text();
+  EXPECT_NE(second->status().state, RobotState::ready);
+  EXPECT_EQ(controller.state().at("program").at("state"), "PLAYING");
+}
+
+TEST_F(ASecondDriver, leaves_a_program_alone_that_the_first_has_left)
+{
+  controller.start();
+  controller.control({{"command", "fieldbus"}});
+  make_robot();
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::robot_in_use));
+  controller.control(
+      {{"command", "run_script"}, {"script", "def others():\n  while True:\n    sync()\n  end\nend\n"}});
+  ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "PLAYING"; }));
+  controller.control({{"command", "fieldbus"}, {"on", false}});
+  ASSERT_TRUE(eventually([&] {
+    return robot->status().message.find("but not its program") != std::string::npos;
+  })) << log.text();
+  EXPECT_EQ(controller.state().at("program").at("state"), "PLAYING");
+  controller.control({{"command", "stop_program"}});
+  EXPECT_TRUE(becomes_ready());
+}
+
+using AFieldbus = RobotFixture;
+
+TEST_F(AFieldbus, that_has_the_lower_registers_is_named_with_the_way_out)
+{
+  controller.start();
+  controller.control({{"command", "fieldbus"}});
+  make_robot();
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::robot_in_use));
+  const auto message = robot->status().message;
+  for (const char * part : {"input_int_register_18", "EtherNet/IP", "register_range:=upper (now lower)"}) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+  EXPECT_EQ(log.count("are in use"), 1U) << log.text();
+  controller.control({{"command", "fieldbus"}, {"on", false}});
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(AFieldbus, leaves_the_upper_registers)
+{
+  controller.start();
+  controller.control({{"command", "fieldbus"}});
+  auto options = robot_options();
+  options.upper_range_registers = true;
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
+  move_joints();
+  EXPECT_TRUE(robot->stop_motion());
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test
