@@ -1,5 +1,6 @@
 #include "nodes/process.hpp"
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -8,7 +9,9 @@
 #include <rcl_cxx/executor.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include "nodes/duplicate_check.hpp"
 #include "nodes/fastdds_profile.hpp"
 
 namespace ur_ros_rtde {
@@ -33,8 +36,27 @@ void end_goals(const Servers & servers)
   std::_Exit(1);
 }
 
-void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers)
+/// Sets `refused` and shuts down when a node of one of these names runs in another process.
+std::vector<std::unique_ptr<DuplicateCheck>> look_for_duplicates(const rcl_cxx::Context::SharedPtr & context,
+                                                                 const Servers & servers,
+                                                                 std::atomic<bool> & refused)
 {
+  std::vector<std::unique_ptr<DuplicateCheck>> checks;
+  for (const auto & server : servers) {
+    rcl_cxx::Node & node = server->node();
+    checks.push_back(std::make_unique<DuplicateCheck>(node, [&node, &context, &refused](const auto & why) {
+      if (!refused.exchange(true)) {
+        RCL_CXX_FATAL(node.logger(), "{}", why);
+        context->shutdown(why);
+      }
+    }));
+  }
+  return checks;
+}
+
+void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & refused)
+{
+  const auto checks = look_for_duplicates(context, servers, refused);
   const auto callback = context->on_pre_shutdown([&servers] { end_goals(servers); });
   {
     std::vector<std::unique_ptr<rcl_cxx::Executor>> executors;
@@ -60,23 +82,26 @@ void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers)
 
 int run_process(int argc, char ** argv, const MakeServers & make)
 {
+  constexpr int wrong_arguments = 2;
   rcl_cxx::Context::SharedPtr context;
+  std::atomic<bool> refused{false};
   try {
     use_fastdds_profile();
     context = std::make_shared<rcl_cxx::Context>(argc, argv);
     Servers servers = make(context);
     report_fastdds_profile(servers.front()->node().logger());
-    serve(context, servers);
+    serve(context, servers, refused);
     while (!servers.empty()) {
       servers.pop_back();
     }
-    return 0;
+    return refused ? wrong_arguments : 0;
   } catch (const std::exception & error) {
     if (context && !context->ok()) {
-      return 0;  // a signal came while it was starting, and what was being made then could not be
+      // It was to end while it was starting, and what was being made then could not be.
+      return refused ? wrong_arguments : 0;
     }
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
-    return dynamic_cast<const rcl_cxx::Error *>(&error) != nullptr ? 2 : 1;
+    return dynamic_cast<const rcl_cxx::Error *>(&error) != nullptr ? wrong_arguments : 1;
   }
 }
 

@@ -170,7 +170,7 @@ void FollowJointTrajectory::check(const Goal & goal, Check & check) const
   const Joints first = to_joints(waypoints->positions.front());
   const bool begins_there = waypoints->times.front() == 0.0;
   trajectory::begin_at(*waypoints, first);
-  require(check, trajectory::check_timed(*waypoints, widest_limits(host_->options().limits)));
+  require(check, trajectory::check_timed(*waypoints, widest_limits(host_->limits())));
   if (const auto sample = check.start(); sample && begins_there) {
     require(check, begins_here(first, commanded_joints(*sample), start_tolerance));
   }
@@ -178,7 +178,7 @@ void FollowJointTrajectory::check(const Goal & goal, Check & check) const
 
 Expected<Planned> FollowJointTrajectory::plan(const Goal & goal, const Joints & start) const
 {
-  const trajectory::Limits limits = widest_limits(host_->options().limits);
+  const trajectory::Limits limits = widest_limits(host_->limits());
   return timed_waypoints(goal.trajectory)
       .and_then([&](trajectory::TimedWaypoints waypoints) {
         trajectory::begin_at(waypoints, start);

@@ -1,0 +1,60 @@
+#include "nodes/duplicate_check.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <tuple>
+#include <utility>
+
+namespace ur_ros_rtde {
+namespace {
+/// As long as discovery may take; after that, ending this process would be worse than what it prevents.
+constexpr std::chrono::seconds start_phase{10};
+
+std_msgs::msg::Header this_process()
+{
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto whole = std::chrono::floor<std::chrono::seconds>(now);
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  std_msgs::msg::Header header;
+  header.stamp.sec = static_cast<std::int32_t>(whole.count());
+  header.stamp.nanosec = static_cast<std::uint32_t>(std::chrono::nanoseconds(now - whole).count());
+  header.frame_id = fmt::format("process {} on {}", ::getpid(), host.data());
+  return header;
+}
+
+auto age(const std_msgs::msg::Header & header)
+{
+  return std::tie(header.stamp.sec, header.stamp.nanosec, header.frame_id);
+}
+}  // namespace
+
+DuplicateCheck::DuplicateCheck(rcl_cxx::Node & node, std::function<void(const std::string & why)> refuse)
+    : node_(node),
+      refuse_(std::move(refuse)),
+      own_(this_process()),
+      publisher_(node.create_publisher<Instance>("~/_instance", rcl_cxx::QoS::latched())),
+      subscription_(node.create_subscription<Instance>("~/_instance", rcl_cxx::QoS::latched(8),
+                                                       [this](const Instance & other) { hear(other); }))
+{
+  publisher_->publish(own_);
+}
+
+void DuplicateCheck::hear(const Instance & other)
+{
+  if (age(other) == age(own_)) {
+    return;
+  }
+  const std::string what = fmt::format("another node with the name {} runs already ({})",
+                                       node_.fully_qualified_name(), other.frame_id);
+  const std::string remedy = "end one of them, or give one a namespace of its own (--ros-args -r __ns:=/…)";
+  if (std::chrono::steady_clock::now() - begin_ > start_phase) {
+    RCL_CXX_ERROR(node_.logger(), "{}: both answer the same clients: {}", what, remedy);
+  } else if (age(other) < age(own_)) {
+    refuse_(fmt::format("{}, so this process ends: {}", what, remedy));
+  }
+}
+
+}  // namespace ur_ros_rtde
