@@ -165,6 +165,15 @@ std::shared_ptr<GoalCore> ActionServerCore::find(const GoalId & id) const
   return found == goals_.end() ? nullptr : found->second;
 }
 
+std::shared_ptr<void> ActionServerCore::missing_result(GoalStatus status) const
+{
+  std::shared_ptr<void> response = ops_.make_result_response(status);
+  if (erased_.missing_result) {
+    erased_.missing_result(status, response.get());
+  }
+  return response;
+}
+
 void ActionServerCore::abort_all(const char * why, bool serve) noexcept
 {
   std::vector<std::shared_ptr<GoalCore>> aborted;
@@ -172,7 +181,7 @@ void ActionServerCore::abort_all(const char * why, bool serve) noexcept
     const std::lock_guard lock(mutex_);
     for (const auto & [id, goal] : goals_) {
       if (!is_terminal(goal->status()) &&
-          finish_locked(*goal, GoalStatus::aborted, ops_.make_result_response(GoalStatus::aborted))) {
+          finish_locked(*goal, GoalStatus::aborted, missing_result(GoalStatus::aborted))) {
         aborted.push_back(goal);
       }
     }
@@ -239,7 +248,7 @@ void ActionServerCore::on_handle_dropped(GoalCore & goal) noexcept
   if (!retired_ && !is_terminal(goal.status())) {
     RCL_CXX_ERROR(node()->logger(), "{}: goal {} was given up without a result, it is aborted", name_,
                   goal.id().short_string());
-    finish_locked(goal, GoalStatus::aborted, ops_.make_result_response(GoalStatus::aborted));
+    finish_locked(goal, GoalStatus::aborted, missing_result(GoalStatus::aborted));
   }
 }
 

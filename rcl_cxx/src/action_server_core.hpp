@@ -90,6 +90,8 @@ class ActionServerCore : public Entity {
   void answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
               std::function<void(bool)> done = {}, std::shared_ptr<void> instead = {});
   void send_result(const rmw_request_id_t & request, GoalCore & goal);
+  /// Of a goal that has none, or none that can be sent.
+  std::shared_ptr<void> missing_result(GoalStatus status) const;
 
   void await_requests(const std::vector<std::shared_ptr<GoalCore>> & goals, bool serve);
 

@@ -127,7 +127,7 @@ void ActionServerCore::answer(Send send, const rmw_request_id_t & request, std::
         } catch (...) {
           RCL_CXX_ERROR(self->node()->logger(),
                         "{}: the middleware cannot send an answer{}: has a text a zero byte?", self->name_,
-                        instead ? ", its client gets an empty one" : "");
+                        instead ? ", its client gets another one" : "");
           return instead ? send(&self->server_, &to, instead.get()) : RCL_RET_ERROR;
         }
       },
@@ -144,8 +144,7 @@ void ActionServerCore::answer(Send send, const rmw_request_id_t & request, std::
 
 void ActionServerCore::send_result(const rmw_request_id_t & request, GoalCore & goal)
 {
-  answer(&rcl_action_send_result_response, request, goal.result_response, {},
-         ops_.make_result_response(goal.status()));
+  answer(&rcl_action_send_result_response, request, goal.result_response, {}, missing_result(goal.status()));
   goal.result_sent = true;
 }
 
@@ -163,7 +162,7 @@ void ActionServerCore::run_accepted(std::shared_ptr<GoalHandleBase> handle) noex
   }
   if (handle->is_active()) {
     if (const auto goal = find(handle->goal_id())) {
-      finish(*goal, GoalStatus::aborted, ops_.make_result_response(GoalStatus::aborted));
+      finish(*goal, GoalStatus::aborted, missing_result(GoalStatus::aborted));
     }
   }
 }
@@ -282,7 +281,7 @@ bool ActionServerCore::take_result()
   const std::lock_guard lock(mutex_);
   const auto found = goals_.find(id);
   if (found == goals_.end()) {
-    answer(&rcl_action_send_result_response, request_id, ops_.make_result_response(GoalStatus::unknown));
+    answer(&rcl_action_send_result_response, request_id, missing_result(GoalStatus::unknown));
   } else if (found->second->result_response) {
     send_result(request_id, *found->second);
   } else {

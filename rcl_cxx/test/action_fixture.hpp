@@ -58,6 +58,7 @@ class Actions : public Spinning {
       const std::lock_guard lock(mutex);
       discarded.push_back(id);
     };
+    handlers.missing_result = on_missing_result;
     server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers), options);
     client = node->create_action_client<Fibonacci>("fibonacci");
     ASSERT_TRUE(client->wait_for_server(kLimit));
@@ -103,6 +104,7 @@ class Actions : public Spinning {
   std::function<tl::expected<void, std::string>(const rcl_cxx::GoalId &, const Fibonacci::Goal &)> on_goal;
   std::function<void(std::shared_ptr<Handle>)> on_accepted;
   std::function<bool(Handle &)> on_cancel;
+  std::function<void(GoalStatus, Fibonacci::Result &)> on_missing_result;
   std::shared_ptr<rcl_cxx::ActionServer<Fibonacci>> server;
   std::shared_ptr<rcl_cxx::ActionClient<Fibonacci>> client;
 };

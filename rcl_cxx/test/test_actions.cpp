@@ -154,6 +154,18 @@ TEST_F(ActionEnd, of_the_server_aborts_its_goals)
   EXPECT_EQ(result(goal).status, GoalStatus::aborted);
 }
 
+TEST_F(ActionEnd, without_a_result_brings_the_one_that_the_server_has_for_that)
+{
+  on_missing_result = [](GoalStatus status, Fibonacci::Result & result) {
+    result.sequence = {static_cast<int>(status), 7};
+  };
+  on_accepted = [](const std::shared_ptr<Handle> &) {};  // nobody keeps it
+  serve();
+  const auto end = result(send(5));
+  EXPECT_EQ(end.status, GoalStatus::aborted);
+  EXPECT_EQ(end.result.sequence, result_of({static_cast<int>(GoalStatus::aborted), 7}).sequence);
+}
+
 TEST_F(ActionEnd, of_the_server_answers_who_has_just_been_accepted)
 {
   for (std::size_t round = 0; round < 10; ++round) {

@@ -48,6 +48,10 @@ struct ActionHandlers {
   /// Runs when a goal that `goal` took will not be accepted after all: its client could not be told.
   /// Optional.
   std::function<void(const GoalId &)> discarded{};
+  /// Fills in a result that the server gives by itself: for a goal that it does not know
+  /// (GoalStatus::unknown) or that ended without a result that can be sent. Any thread; must not throw.
+  /// Optional: it is empty then.
+  std::function<void(GoalStatus, typename A::Result &)> missing_result{};
 };
 
 namespace detail {
@@ -74,6 +78,7 @@ struct ErasedActionServer {
   std::function<void(GoalHandleBase &)> canceling{};
   std::function<void(GoalHandleBase &)> client_lost{};
   std::function<void(const GoalId &)> discarded{};
+  std::function<void(GoalStatus, void * result_response)> missing_result{};
 };
 
 template <typename A>
@@ -166,6 +171,12 @@ class ActionServer : public ActionServerBase {
     erased.canceling = erase_handle(std::move(handlers.canceling));
     erased.client_lost = erase_handle(std::move(handlers.client_lost));
     erased.discarded = std::move(handlers.discarded);
+    if (handlers.missing_result) {
+      using ResultResponse = typename A::Impl::GetResultService::Response;
+      erased.missing_result = [f = std::move(handlers.missing_result)](GoalStatus status, void * response) {
+        f(status, static_cast<ResultResponse *>(response)->result);
+      };
+    }
     return erased;
   }
 

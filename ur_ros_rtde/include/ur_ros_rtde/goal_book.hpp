@@ -17,6 +17,9 @@ namespace ur_ros_rtde {
 /// Why a goal ends whose client has disappeared.
 Interruption client_lost();
 
+/// How a goal ended that has no result, or none that can be sent: never without an error code.
+Outcome missing_result(rcl_cxx::GoalStatus status);
+
 /// The goals of one action, independent of its type: admission, threads, requests to end, end. Thread-safe.
 class GoalBook {
  public:

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ur_ros_rtde/goal_book.hpp"
+#include "ur_ros_rtde/outcome.hpp"
 
 namespace ur_ros_rtde {
 
@@ -71,6 +72,9 @@ void GoalServer<A>::serve(rcl_cxx::Node & node, const std::string & name, GoalBo
   if (needs_client) {
     handlers.client_lost = [this](Handle & handle) { book_->end(handle.goal_id(), client_lost()); };
   }
+  handlers.missing_result = [this](rcl_cxx::GoalStatus status, typename A::Result & result) {
+    tell(missing_result(status), result);
+  };
   server_ = node.template create_action_server<A>(name, std::move(handlers));
 }
 

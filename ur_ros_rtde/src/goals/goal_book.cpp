@@ -37,6 +37,17 @@ void GoalBook::Ticket::end(Interruption why)
   }
 }
 
+Outcome missing_result(rcl_cxx::GoalStatus status)
+{
+  if (status == rcl_cxx::GoalStatus::unknown) {
+    return Outcome::failure(ErrorCode::exception,
+                            "this driver has no such goal: it has expired, or another driver with the same "
+                            "names has accepted it");
+  }
+  return Outcome::failure(ErrorCode::exception,
+                          "the goal ended without a result that can be sent: the driver's log says why");
+}
+
 tl::expected<void, std::string> GoalBook::admit(const rcl_cxx::GoalId & id,
                                                 const std::function<Status(Ticket &)> & examine)
 {
