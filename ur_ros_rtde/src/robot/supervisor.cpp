@@ -235,6 +235,7 @@ std::optional<Error> Supervisor::program_of_another_driver(const Sample & sample
 RobotStatus Supervisor::look_at_program(const Sample & sample)
 {
   if (program_ours_) {
+    was_in_use_ = false;
     return {RobotState::ready, ErrorCode::none, {}};
   }
   if (const auto dashboard = dashboard_.link(); !dashboard.connected) {

@@ -58,13 +58,13 @@ TEST_P(AnArm, is_recognised_by_what_its_controller_tells)
 INSTANTIATE_TEST_SUITE_P(
     OfModels, AnArm,
     testing::Values(ModelCase{"ur3", "3.5.0", "ur3"}, ModelCase{"ur5", "3.12.0", "ur5"},
-                    ModelCase{"ur10", "3.15.8", "ur10"}, ModelCase{"ur3e", "5.3.0", "ur3e"},
+                    ModelCase{"ur10", "3.15.8", "ur10"}, ModelCase{"ur3e", "5.6.0", "ur3e"},
                     ModelCase{"ur5e", "5.13.0", "ur5e"}, ModelCase{"ur7e", "5.25.1", "ur5e (or ur7e)"},
                     ModelCase{"ur12e", "5.25.1", "ur10e (or ur12e)"}, ModelCase{"ur16e", "5.13.0", "ur16e"},
                     ModelCase{"ur8long", "5.25.1", "ur8long"}, ModelCase{"ur15", "5.25.1", "ur15"},
                     ModelCase{"ur18", "5.25.1", "ur18"}, ModelCase{"ur20", "5.25.1", "ur20"},
                     ModelCase{"ur30", "5.25.1", "ur30"}),
-    [](const auto & info) { return std::string(info.param.simulated); });
+    [](const auto & one) { return std::string(one.param.simulated); });
 
 struct AStatedModel : RobotFixture {
   void make_robot_with(const std::string & model)

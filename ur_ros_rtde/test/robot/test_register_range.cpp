@@ -102,7 +102,7 @@ TEST_P(TheUpperRange, leaves_the_lower_registers_alone)
   ASSERT_TRUE(robot->run_extension("adds"));
   const auto all = controller.control({{"command", "registers"}});
   for (const char * direction : {"inputs", "outputs"}) {
-    for (const char * kind : {"int", "double"}) {
+    for (const char * kind : {"integers", "doubles"}) {
       const auto & values = all.at(direction).at(kind);
       for (std::size_t number = 0; number < 24; ++number) {
         EXPECT_EQ(values.at(number), 0) << direction << " " << kind << " " << number;
@@ -114,8 +114,8 @@ TEST_P(TheUpperRange, leaves_the_lower_registers_alone)
 INSTANTIATE_TEST_SUITE_P(OfVersions, TheUpperRange,
                          testing::Values(RangeCase{"ur10", "3.15.8"}, RangeCase{"ur10e", "5.13.0"},
                                          RangeCase{"ur10e", "5.21.0"}, RangeCase{"ur10e", "5.25.1"}),
-                         [](const auto & info) {
-                           std::string name = info.param.polyscope;
+                         [](const auto & one) {
+                           std::string name = one.param.polyscope;
                            std::replace(name.begin(), name.end(), '.', '_');
                            return name;
                          });
