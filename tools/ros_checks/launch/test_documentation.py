@@ -17,9 +17,9 @@ DOCUMENTS = [README, *sorted((ROOT / "docs").glob("*.md")),
 
 
 def lines(document, verb):
-    """`ros2 <verb> …` of its code, in one line each, without comments."""
+    """`ros2 <verb> …` of its code without comments; what is quoted may have several lines."""
     text = document.read_text().replace("\\\n", " ")
-    found = re.findall(rf"^(ros2 {verb} .*)$", text, re.M) + re.findall(rf"`(ros2 {verb} [^`]*)`", text)
+    found = re.findall(rf'^(ros2 {verb} (?:"[^"]*"|[^"\n])*)$', text, re.M) + re.findall(rf"`(ros2 {verb} [^`]*)`", text)
     return [re.sub(r"\s{2,}#.*", "", line).strip() for line in found]
 
 
