@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "script/extension_registers.hpp"
 #include "ur_ros_rtde/robot.hpp"
 
 namespace ur_ros_rtde {
 namespace {
-
-constexpr int first_output = 12;
-constexpr int last_output = 19;
-constexpr int acknowledgement = 18;
 
 void expect(const Status & status)
 {
@@ -18,14 +15,14 @@ void expect(const Status & status)
   }
 }
 
-std::size_t checked(int index, bool also_allowed)
+/// Its place in a Sample.
+std::size_t checked(int index, const script::RegisterRange & free)
 {
-  if (index < first_output || index > last_output || !also_allowed) {
-    throw RobotError(Error{ErrorCode::invalid_goal,
-                           fmt::format("output register {}: extensions may use {} to {} (float: not {})",
-                                       index, first_output, last_output, acknowledgement)});
+  if (!free.contains(index)) {
+    throw RobotError(Error{ErrorCode::invalid_goal, fmt::format("output register {}: extensions may use {}",
+                                                                index, script::to_string(free))});
   }
-  return static_cast<std::size_t>(index - first_output);
+  return static_cast<std::size_t>(index - free.first);
 }
 
 Sample newest(const Robot & robot)
@@ -50,12 +47,14 @@ void Registers::set_double(int index, double value)
 
 std::int32_t Registers::get_int(int index) const
 {
-  return newest(robot_).output_int_registers[checked(index, true)];
+  const std::size_t place = checked(index, script::free_int_outputs);
+  return newest(robot_).output_int_registers[place];
 }
 
 double Registers::get_double(int index) const
 {
-  return newest(robot_).output_double_registers[checked(index, index != acknowledgement)];
+  const std::size_t place = checked(index, script::free_float_outputs);
+  return newest(robot_).output_double_registers[place];
 }
 
 }  // namespace ur_ros_rtde

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robot/condition.hpp"
+#include "script/extension_registers.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -15,8 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int trigger_register = 18;
 constexpr std::size_t acknowledgement = 18 - 12;  // in Sample::output_double_registers
-constexpr int first_input = 19;
-constexpr int last_input = 22;
 constexpr milliseconds acknowledgement_limit(1000);
 constexpr milliseconds stop_limit(3000);
 constexpr milliseconds unseen_limit(30);
@@ -42,11 +41,11 @@ ExtensionRunner::ExtensionRunner(const RobotOptions & options, const StateReceiv
 
 Status ExtensionRunner::check_input(int index) const
 {
-  if (index >= first_input && index <= last_input) {
+  if (script::free_inputs.contains(index)) {
     return {};
   }
-  return failure(ErrorCode::invalid_goal, fmt::format("input register {}: extensions may use {} to {}", index,
-                                                      first_input, last_input));
+  return failure(ErrorCode::invalid_goal, fmt::format("input register {}: extensions may use {}", index,
+                                                      script::to_string(script::free_inputs)));
 }
 
 Status ExtensionRunner::set_input(int index, std::int32_t value)

@@ -7,6 +7,8 @@
 #include <cctype>
 #include <string_view>
 
+#include "script/extension_registers.hpp"
+
 namespace ur_ros_rtde::script {
 namespace {
 
@@ -16,40 +18,28 @@ struct Kind {
   const char * name;
   const char * function;
   std::vector<int> ScriptRegisters::* list;
-  std::vector<int> free;
+  RegisterRange free;
 };
 
-/// Float register 18 is the trigger and its acknowledgement; ur_rtde's IO interface writes the inputs 18 to
-/// 22, its receive interface reads the outputs 12 to 19.
 const std::array<Kind, 4> & kinds()
 {
   static const std::array<Kind, 4> all{{
-      {"in",
-       'i',
-       "input integer register",
-       "read_input_integer_reg({})",
-       &ScriptRegisters::input_int,
-       {19, 20, 21, 22}},
-      {"in",
-       'f',
-       "input float register",
-       "read_input_float_reg({})",
-       &ScriptRegisters::input_double,
-       {19, 20, 21, 22}},
-      {"out",
-       'i',
-       "output integer register",
-       "write_output_integer_reg({}, ",
-       &ScriptRegisters::output_int,
-       {12, 13, 14, 15, 16, 17, 18, 19}},
-      {"out",
-       'f',
-       "output float register",
-       "write_output_float_reg({}, ",
-       &ScriptRegisters::output_double,
-       {12, 13, 14, 15, 16, 17, 19}},
+      {"in", 'i', "input integer register", "read_input_integer_reg({})", &ScriptRegisters::input_int,
+       free_inputs},
+      {"in", 'f', "input float register", "read_input_float_reg({})", &ScriptRegisters::input_double,
+       free_inputs},
+      {"out", 'i', "output integer register", "write_output_integer_reg({}, ", &ScriptRegisters::output_int,
+       free_int_outputs},
+      {"out", 'f', "output float register", "write_output_float_reg({}, ", &ScriptRegisters::output_double,
+       free_float_outputs},
   }};
   return all;
+}
+
+std::string not_free(const Kind & kind, int number)
+{
+  return fmt::format("{} {} is not free for extensions: they have {}", kind.name, number,
+                     to_string(kind.free));
 }
 
 bool is_digit(char c)
@@ -114,11 +104,8 @@ Result<std::string> expand_registers(const std::string & text, ScriptRegisters &
       return fault(line, fmt::format("`{}` is no register: write $in19i, $in19f, $out19i(x) or $out19f(x)",
                                      text.substr(i, std::min<std::size_t>(8, text.find('\n', i) - i))));
     }
-    const auto & free = form.kind->free;
-    if (std::find(free.begin(), free.end(), form.number) == free.end()) {
-      return fault(line, fmt::format("{} {} is not free for extensions: they have {} to {}{}",
-                                     form.kind->name, form.number, free.front(), free.back(),
-                                     form.kind->list == &ScriptRegisters::output_double ? " except 18" : ""));
+    if (!form.kind->free.contains(form.number)) {
+      return fault(line, not_free(*form.kind, form.number));
     }
     (used.*form.kind->list).push_back(form.number);
     result += fmt::format(fmt::runtime(form.kind->function), form.number);
@@ -131,10 +118,8 @@ Result<void> check_registers(const ScriptRegisters & used)
 {
   for (const Kind & kind : kinds()) {
     for (const int number : used.*kind.list) {
-      if (std::find(kind.free.begin(), kind.free.end(), number) == kind.free.end()) {
-        return fault(0, fmt::format("{} {} is not free for extensions: they have {} to {}{}", kind.name,
-                                    number, kind.free.front(), kind.free.back(),
-                                    kind.list == &ScriptRegisters::output_double ? " except 18" : ""));
+      if (!kind.free.contains(number)) {
+        return fault(0, not_free(kind, number));
       }
     }
   }

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+namespace ur_ros_rtde::script {
+
+/// Numbers of general purpose registers, without the offset of the upper range.
+struct RegisterRange {
+  int first;
+  int last;
+  int without = -1;  ///< one between them
+
+  constexpr bool contains(int number) const { return number >= first && number <= last && number != without; }
+};
+
+/// What extensions may use; docs/writing_a_plugin.md says who uses the others. The float registers 18 are the
+/// trigger and its acknowledgement; ur_rtde's IO interface writes the inputs 18 to 22, its receive interface
+/// reads the outputs 12 to 19.
+inline constexpr RegisterRange free_inputs{19, 22};  ///< integer and float
+inline constexpr RegisterRange free_int_outputs{12, 19};
+inline constexpr RegisterRange free_float_outputs{12, 19, 18};
+
+/// "12 to 19 except 18"
+inline std::string to_string(const RegisterRange & range)
+{
+  return std::to_string(range.first) + " to " + std::to_string(range.last) +
+         (range.without < 0 ? std::string() : " except " + std::to_string(range.without));
+}
+
+}  // namespace ur_ros_rtde::script
