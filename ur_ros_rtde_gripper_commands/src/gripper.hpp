@@ -1,6 +1,9 @@
 #pragma once
 
+#include <string>
 #include <ur_ros_rtde/check.hpp>
+#include <ur_ros_rtde/script_extension.hpp>
+#include <utility>
 
 namespace ur_ros_rtde_gripper_commands {
 
@@ -9,6 +12,13 @@ namespace ur_ros_rtde_gripper_commands {
 constexpr double narrowest = 0.011;  // m
 constexpr double widest = 0.075;     // m
 constexpr int last_tool = 3;
+
+inline ur_ros_rtde::ScriptExtension gripper_script(std::string snippet)
+{
+  return {.snippet = std::move(snippet),
+          .urcap = "the OnRobot URCap",
+          .urcap_functions = {"get_sg_Width", "sg_grip", "sg_release"}};
+}
 
 inline void check_width(ur_ros_rtde::Check & check, double width)
 {

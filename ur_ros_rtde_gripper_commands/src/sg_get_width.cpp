@@ -8,7 +8,7 @@ namespace ur_ros_rtde_gripper_commands {
 class SgGetWidth : public ur_ros_rtde::Extension<action::SgGetWidth> {
   ur_ros_rtde::ScriptExtension script() const override
   {
-    return {.snippet = "$out19f(get_sg_Width($in19i))"};
+    return gripper_script("$out19f(get_sg_Width($in19i))");
   }
 
   void check(const Goal & goal, ur_ros_rtde::Check & check) const override

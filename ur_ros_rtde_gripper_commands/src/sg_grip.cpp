@@ -8,10 +8,10 @@ namespace ur_ros_rtde_gripper_commands {
 class SgGrip : public ur_ros_rtde::Extension<action::SgGrip> {
   ur_ros_rtde::ScriptExtension script() const override
   {
-    return {.snippet = R"(
+    return gripper_script(R"(
       sg_grip($in19f, $in19i == 1, $in20i, True, $in21i == 1)
       $out19f(get_sg_Width($in20i))
-    )"};
+    )");
   }
 
   void check(const Goal & goal, ur_ros_rtde::Check & check) const override

@@ -8,10 +8,10 @@ namespace ur_ros_rtde_gripper_commands {
 class SgRelease : public ur_ros_rtde::Extension<action::SgRelease> {
   ur_ros_rtde::ScriptExtension script() const override
   {
-    return {.snippet = R"(
+    return gripper_script(R"(
       sg_release($in19f, $in19i, True, $in20i == 1)
       $out19f(get_sg_Width($in19i))
-    )"};
+    )");
   }
 
   void check(const Goal & goal, ur_ros_rtde::Check & check) const override

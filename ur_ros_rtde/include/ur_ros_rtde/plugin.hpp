@@ -13,7 +13,7 @@ class CommandHost;
 class DashboardHost;
 
 /// Changes whenever a plugin built against the headers of another version could not work.
-constexpr std::uint32_t plugin_abi_version = 2;
+constexpr std::uint32_t plugin_abi_version = 3;
 
 /// A command of command_server, at its lowest: anything that can start an action server. Command<A>
 /// (command.hpp) is what to derive from otherwise.

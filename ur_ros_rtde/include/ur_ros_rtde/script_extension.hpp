@@ -27,6 +27,11 @@ struct ScriptExtension {
   std::string preamble;       ///< definitions (def, thread, global), once per preamble_name
   /// Used besides those that the short forms in snippet and preamble name.
   ScriptRegisters registers;
+  /// What has to be installed on the robot for the snippet ("the URCap of …"), and functions that it brings.
+  /// A controller that does not know one of these lacks it: that is no fault, and goals are refused with what
+  /// to install.
+  std::string urcap;
+  std::vector<std::string> urcap_functions;
   /// Its registers hold values between its runs: no other extension may use them. Otherwise registers are
   /// shared, since extensions run one at a time.
   bool exclusive = false;

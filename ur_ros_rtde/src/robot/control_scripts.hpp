@@ -31,19 +31,27 @@ class ControlScripts {
   Expected<int> id(const std::string & name) const;
   /// "extension `x`, line 3", for a line of text(); empty for a line that is of no extension.
   std::string place(const ControllerVersion & version, int line) const;
-  /// The controller does not take this line of text(): its extension is left out from now on. The sentence
-  /// that says so; none if the line is of no extension.
-  std::optional<std::string> leave_out(const ControllerVersion & version, int line,
-                                       const std::string & complaint);
+  /// Why an extension is left out.
+  struct LeftOut {
+    std::string name;
+    std::string why;
+    std::string urcap = {};  ///< that the robot lacks; empty: the extension is at fault
+  };
+  /// The controller does not take this line of text(): its extension is left out from now on. None if the
+  /// line is of no extension.
+  std::optional<LeftOut> leave_out(const ControllerVersion & version, int line,
+                                   const std::string & complaint);
+  /// A sentence about all extensions that are left out because the robot lacks their URCap; empty if there
+  /// are none.
+  std::string without_urcap() const;
 
  private:
   script::Result<script::ControlScript> resolved(const ControllerVersion & version) const;
-  std::string leave_out(const std::string & name, const std::string & why);
 
   const bool upper_range_;
   mutable std::mutex mutex_;
   std::vector<ScriptExtension> extensions_;
-  std::map<std::string, std::string> left_out_;  ///< why, by name
+  std::map<std::string, LeftOut> left_out_;  ///< by name
   script::ControlScript script_;
 };
 

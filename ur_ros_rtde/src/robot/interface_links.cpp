@@ -119,9 +119,12 @@ Status InterfaceLinks::check_extensions(const ControllerVersion & version)
       return failure(ErrorCode::not_ready,
                      fmt::format("the controller does not take the control program: {}", (*complaint)->text));
     }
-    log_(LogLevel::error, *left_out);
+    if (left_out->urcap.empty()) {
+      log_(LogLevel::error, fmt::format("the extension {} is left out: {}", left_out->name, left_out->why));
+    }
   }
   extensions_checked_ = true;
+  extensions_reporter_.once(LogLevel::info, scripts_.without_urcap());
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "robot/control_scripts.hpp"
+#include "robot/reporter.hpp"
 #include "ur_ros_rtde/log.hpp"
 #include "ur_ros_rtde/robot.hpp"
 
@@ -79,7 +80,9 @@ class InterfaceLinks {
   const RobotOptions options_;
   ControlScripts & scripts_;
   const LogFunction log_;
-  bool extensions_checked_ = false;  ///< used by the supervisor's thread only
+  // Used by the supervisor's thread only.
+  bool extensions_checked_ = false;
+  Reporter extensions_reporter_{log_};
   mutable std::mutex mutex_;
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_;
   std::shared_ptr<ur_rtde::RTDEControlInterface> parked_;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -59,9 +60,10 @@ nlohmann::json Controller::control(const nlohmann::json & request)
 
 LogFunction Log::function()
 {
-  return [this](LogLevel, const std::string & line) {
+  return [this](LogLevel level, const std::string & line) {
+    static constexpr std::array<const char *, 4> levels{"[debug] ", "[info] ", "[warn] ", "[error] "};
     const std::lock_guard lock(mutex_);
-    lines_.push_back(line);
+    lines_.push_back(levels.at(static_cast<std::size_t>(level)) + line);
   };
 }
 
