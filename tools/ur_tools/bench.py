@@ -9,7 +9,7 @@ import sys
 import time
 from typing import Dict, List, Optional, Tuple
 
-from . import bench_trajectory, boilerplate, cell, say, scheduling
+from . import bench_discovery, bench_trajectory, boilerplate, cell, say, scheduling
 from .environment import program, run_environment
 from .layout import ROOT, Layout
 from .processes import Programs
@@ -39,7 +39,11 @@ AIMS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
     ("cpu", "dashboard_server", 10.0, "% of a core"),
     ("memory", "command_server", 100.0, "MB"),
     ("start to ready", None, 2.0, "s"),
+    ("new client finds all actions", "p50", 0.5, "s, after clients were killed"),
+    ("new client finds all actions", "max", 1.0, "s, after clients were killed"),
 )
+# How many clients are killed, and how many then look for the actions.
+KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 
 
 def parse(arguments: List[str]) -> argparse.Namespace:
@@ -143,6 +147,8 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     if not options.stream:
         say.step("Measuring state and goals, for about 45 s")
         figures = _session(layout, options)
+        say.step("Measuring discovery, for about a minute")
+        figures["new client finds all actions"] = bench_discovery.measure(layout, options.address, KILLED_CLIENTS, NEW_CLIENTS)
     stream = argparse.Namespace(**{**vars(options), "stream": True})
     say.step(f"Measuring the servo stream, for about {2 * (12.0 + options.seconds / options.real_time_factor):.0f} s")
     figures["servo stream"] = _session(layout, stream)["servo stream"]

@@ -1,0 +1,39 @@
+"""How soon new clients find all actions of the driver, after other clients were killed (docs/discovery.md)."""
+
+import json
+import subprocess
+from typing import Dict
+
+from . import cell, say
+from .environment import run_environment
+from .layout import ROOT, Layout
+from .processes import Program, Programs
+
+CLIENTS = ROOT / "ur_ros_rtde" / "test" / "nodes" / "discovery_clients.py"
+LISTS = ("]: commands: ", "]: dashboard commands: ")
+TIME_LIMIT = 600.0  # s
+
+
+def actions(driver: Program) -> str:
+    """All that the driver serves, by its log, with commas between."""
+    return ",".join(line.partition(text)[2] for text in LISTS for line in driver.output.splitlines() if text in line).replace(" ", "")
+
+
+def measure(layout: Layout, address: str, killed: int, clients: int) -> Dict[str, float]:
+    """Needs no robot. The clients have no Fast DDS profile, as those of most users."""
+    env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
+    for variable in ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE"):
+        env.pop(variable, None)
+    with Programs(layout.log / "bench") as programs:
+        driver = cell.start_node(programs, layout, env, "driver", address)
+        programs.wait_until(lambda: all(text in driver.output for text in LISTS), 20.0, "the driver's actions")
+        command = [str(layout.python), str(CLIENTS), actions(driver), "--killed", str(killed), "--clients", str(clients)]
+        result = subprocess.run(command, env=env, stdout=subprocess.PIPE, text=True, timeout=TIME_LIMIT)
+    if result.returncode != 0:
+        raise say.Failure("the clients did not find the driver, see above")
+    found = json.loads(result.stdout)
+    incomplete = [client for client in found if client["missing"]]
+    if incomplete:
+        raise say.Failure(f"{len(incomplete)} of {len(found)} new clients did not find all actions")
+    seconds = sorted(client["seconds"] for client in found)
+    return {"p50": seconds[len(seconds) // 2], "max": seconds[-1]}
