@@ -5,6 +5,14 @@
 #include "robot/text.hpp"
 
 namespace ur_ros_rtde {
+namespace {
+/// By nothing else: whatever goes wrong meanwhile adds to the message.
+bool ended_by_shutdown(const Outcome & outcome, const Interrupt & interrupt)
+{
+  const auto why = interrupt.requested();
+  return why && why->code == ErrorCode::shutdown && outcome.message() == why->message;
+}
+}  // namespace
 
 Interruption client_lost()
 {
@@ -136,7 +144,7 @@ void GoalBook::finish(const rcl_cxx::GoalId & id, const Outcome & outcome)
   const std::string end =
       fmt::format("{}: goal {} ended: {} ({} {})", action_, id.short_string(), outcome.message(),
                   to_string(outcome.code()), static_cast<int>(outcome.code()));
-  if (outcome.code() == ErrorCode::shutdown) {
+  if (ticket && ended_by_shutdown(outcome, *ticket->interrupt)) {
     RCL_CXX_INFO(logger, "{}", end);
   } else {
     RCL_CXX_WARN(logger, "{}", end);
