@@ -1,6 +1,7 @@
 #include "nodes/process.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -16,6 +17,9 @@
 
 namespace ur_ros_rtde {
 namespace {
+/// In which an older process with a node of the same name is found, unless the machine is busy.
+constexpr std::chrono::milliseconds discovery_time{300};
+
 void end_goals(const Servers & servers)
 {
   std::vector<std::string> left;
@@ -68,8 +72,11 @@ void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers,
       threads.emplace_back([&executor] { executor.spin(); });
     }
     try {
-      for (const auto & server : servers) {
-        server->start();
+      // Before clients see the actions of a node that is not to start.
+      if (!context->wait_for_shutdown_begin(discovery_time)) {
+        for (const auto & server : servers) {
+          server->start();
+        }
       }
     } catch (...) {
       context->shutdown("a node could not start");
