@@ -151,12 +151,29 @@ TEST_F(Selection, takes_the_chosen_ones_without_the_blacklisted_ones)
   EXPECT_EQ(select({"a", "b"}, {"b"}), (Names{"a"}));
 }
 
-TEST_F(Selection, names_unknown_plugins_and_the_known_ones)
+TEST_F(Selection, names_unknown_plugins_and_the_nearest_one)
 {
-  EXPECT_EQ(select({"a", "d"}, {"e"}), (Names{"a"}));
+  all_.push_back(entry("move_joint", "MoveJoint"));
+  EXPECT_EQ(select({"a", "mov_joints"}, {"cd"}), (Names{"a"}));
   ASSERT_EQ(problems_.size(), 2U);
-  EXPECT_TRUE(mentions(problems_[0], {"plugins ", "\"d\"", "a, b, c"})) << problems_[0];
-  EXPECT_TRUE(mentions(problems_[1], {"plugins_blacklist", "\"e\"", "a, b, c"})) << problems_[1];
+  EXPECT_TRUE(mentions(problems_[0], {"plugins ", "\"mov_joints\"", "nearest is \"move_joint\""}))
+      << problems_[0];
+  EXPECT_TRUE(mentions(problems_[1], {"plugins_blacklist", "\"cd\"", "nearest is \"c\""})) << problems_[1];
+}
+
+TEST_F(Selection, says_nothing_of_names_that_plugins_of_the_other_server_have)
+{
+  all_[1].base = dashboard_base;
+  EXPECT_EQ(select({"a", "b"}, {"b"}), (Names{"a"}));
+  EXPECT_EQ(select({"b"}, {}), (Names{}));
+  EXPECT_TRUE(problems_.empty()) << problems_[0];
+}
+
+TEST_F(Selection, of_nothing_at_all_names_what_is_unknown)
+{
+  all_.clear();
+  EXPECT_EQ(select({"a"}, {}), (Names{}));
+  ASSERT_EQ(problems_.size(), 1U);
 }
 
 TEST_F(Selection, keeps_the_first_of_two_with_the_same_name)
@@ -229,6 +246,18 @@ TEST(PluginLibrary, that_lacks_a_symbol_is_refused_with_the_symbol)
 {
   EXPECT_TRUE(mentions(refusal("undefined_symbol", "UndefinedSymbol"), {"data_defined_nowhere"}))
       << refusal("undefined_symbol", "UndefinedSymbol");
+}
+
+TEST(PluginLibrary, whose_plugin_throws_later_is_left_out_too)
+{
+  PluginSet<CommandPlugin, CommandHost> set;
+  Problems problems;
+  set.load({entry("good", "Good")}, into(problems));
+  set.with_each("it threw when it was asked", into(problems),
+                [](const PluginEntry &, CommandPlugin &) { throw std::runtime_error("no answer"); });
+  EXPECT_EQ(set.names(), Names{});
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_TRUE(mentions(problems[0], {"plugin good", "it threw when it was asked: no answer"})) << problems[0];
 }
 
 TEST(PluginLibrary, whose_constructor_throws_is_left_out_with_the_text_and_the_rest_goes_on)

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "nodes/node_log.hpp"
+#include "nodes/plugin_problems.hpp"
 #include "plugins/plugin_selection.hpp"
 
 namespace ur_ros_rtde {
@@ -31,11 +32,7 @@ CommandServer::~CommandServer()
 
 void CommandServer::start()
 {
-  const auto report = [this](const std::string & problem) {
-    if (node_->context()->ok()) {  // in a shutdown everything fails
-      RCL_CXX_ERROR(node_->logger(), "{}", problem);
-    }
-  };
+  const ReportProblem report = log_plugin_problems(node_);
   plugins_.load(
       select_plugins(find_plugins(report), command_base, choice_.plugins, choice_.blacklist, report), report);
   add_extensions(report);
@@ -47,12 +44,13 @@ void CommandServer::start()
 void CommandServer::add_extensions(const ReportProblem & report)
 {
   std::vector<ScriptExtension> extensions;
-  plugins_.for_each([&](const PluginEntry & entry, const CommandPlugin & plugin) {
+  const auto add = [&extensions](const PluginEntry & entry, const CommandPlugin & plugin) {
     if (auto extension = plugin.script_extension()) {
       extension->name = entry.name;
       extensions.push_back(std::move(*extension));
     }
-  });
+  };
+  plugins_.with_each("it threw when it was asked for its script", report, add);
   for (const std::string & problem : robot_->set_extensions(extensions)) {
     report(problem);
   }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "nodes/node_log.hpp"
+#include "nodes/plugin_problems.hpp"
 #include "plugins/plugin_selection.hpp"
 
 namespace ur_ros_rtde {
@@ -27,11 +28,7 @@ DashboardServer::~DashboardServer()
 void DashboardServer::start()
 {
   link_->start();
-  const auto report = [this](const std::string & problem) {
-    if (node_->context()->ok()) {  // in a shutdown everything fails
-      RCL_CXX_ERROR(node_->logger(), "{}", problem);
-    }
-  };
+  const ReportProblem report = log_plugin_problems(node_);
   plugins_.load(
       select_plugins(find_plugins(report), dashboard_base, choice_.plugins, choice_.blacklist, report),
       report);

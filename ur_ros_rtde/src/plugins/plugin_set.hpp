@@ -39,21 +39,21 @@ class PluginSet {
   /// Starts their action servers, in the same way.
   void start(Host & host, const ReportProblem & report)
   {
-    for (auto plugin = plugins_.begin(); plugin != plugins_.end();) {
-      const bool started = guarded(plugin->entry, "it threw when it was started", report, [&]() -> Status {
-        plugin->plugin->start_action_server(host, plugin->entry.name);
-        return {};
-      });
-      plugin = started ? plugin + 1 : plugins_.erase(plugin);
-    }
+    with_each("it threw when it was started", report, [&host](const PluginEntry & entry, Plugin & plugin) {
+      plugin.start_action_server(host, entry.name);
+    });
   }
 
-  /// By name, as the packages describe them.
-  void for_each(const std::function<void(const PluginEntry &, Plugin &)> & look)
+  /// Asks all for something, by name; one that throws is reported with `thrown` and left out.
+  void with_each(const char * thrown, const ReportProblem & report,
+                 const std::function<void(const PluginEntry &, Plugin &)> & step)
   {
-    for (auto & loaded : plugins_) {
-      look(loaded.entry, *loaded.plugin);
-    }
+    std::erase_if(plugins_, [&](Loaded & loaded) {
+      return !guarded(loaded.entry, thrown, report, [&]() -> Status {
+        step(loaded.entry, *loaded.plugin);
+        return {};
+      });
+    });
   }
 
   /// No plugin's code runs once this has returned, if their goals have ended.

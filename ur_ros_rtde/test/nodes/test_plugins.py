@@ -12,12 +12,20 @@ def with_prefix(prefix):
     return {"AMENT_PREFIX_PATH": os.pathsep.join([str(prefix), os.environ["AMENT_PREFIX_PATH"]])}
 
 
-def test_unknown_names_are_errors_that_list_the_known_ones(addresses, processes):
-    server = processes(node("command_server", addresses[3], "plugins:=[move_j,fly]", "plugins_blacklist:=[dance]"))
-    line = server.wait_for_output('"fly"')
-    assert "parameter plugins " in line and "move_j" in line and "set_digital_output" in line
-    assert "move_l" in server.wait_for_output('"dance"')
+def test_unknown_names_are_errors_that_name_the_nearest_one(addresses, processes):
+    server = processes(node("command_server", addresses[3], "plugins:=[move_j,move_jik]", "plugins_blacklist:=[speed_k]"))
+    line = server.wait_for_output('"move_jik"')
+    assert "parameter plugins " in line and "ERROR" in line and '"move_j_ik"' in line
+    assert '"speed_j"' in server.wait_for_output('"speed_k"')
     assert server.wait_for_output("commands:").endswith("commands: move_j")
+
+
+def test_a_list_for_the_whole_process_may_have_names_of_each_server(addresses, processes):
+    server = processes(node("driver", addresses[3], "plugins:=[move_j,dashboard/power_on,dashboard/powr_off]"))
+    assert server.wait_for_output(" commands:").endswith(" commands: move_j")
+    assert server.wait_for_output("dashboard commands:").endswith("dashboard commands: dashboard/power_on")
+    errors = [line for line in list(server.lines) if "ERROR" in line and "plugin" in line]
+    assert len(errors) == 1 and '"dashboard/powr_off"' in errors[0] and '"dashboard/power_off"' in errors[0], server.output()
 
 
 def test_a_blacklisted_plugin_is_not_loaded(addresses, processes):
