@@ -97,12 +97,14 @@ void Command<A>::carry_out(Handle & handle, GoalBook::Ticket & ticket)
 {
   Run goal_run(goals_->host().robot(), ticket.interrupt, goals_->needs_motion(),
                [&handle](const Feedback & feedback) { handle.publish_feedback(feedback); });
-  const Outcome outcome = goals_->carry_out(handle.goal_id(), ticket, stop_options(handle.goal()), [&] {
+  goal_run.on_warning([&](const std::string & text) { goals_->book().warn(handle.goal_id(), text); });
+  const auto stop = [&] { return stop_options(handle.goal()); };
+  const Outcome outcome = goals_->carry_out(handle.goal_id(), ticket, stop, [&] {
     goal_run.set_displaced(ticket.displaced);
     goal_run.set_plugin(name_);
     return run(handle.goal(), goal_run);
   });
-  conclude(handle, goal_run, outcome);
+  conclude(handle, goal_run, goal_run.with_warnings(outcome));
 }
 
 template <typename A>

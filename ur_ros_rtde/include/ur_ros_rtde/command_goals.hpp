@@ -43,9 +43,10 @@ class CommandGoals {
 
   tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id,
                                         const std::function<void(Check &)> & check);
-  /// Gets what the command needs, runs `body`, and brings the arm to a standstill if `body` has not.
-  Outcome carry_out(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket, const StopOptions & stop,
-                    const std::function<Outcome()> & body);
+  /// Gets what the command needs, runs `body`, and brings the arm to a standstill if `body` has not. `body`
+  /// and `stop_options` may throw; without stop options nothing is run, and the default ones count.
+  Outcome carry_out(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket,
+                    const std::function<StopOptions()> & stop_options, const std::function<Outcome()> & body);
 
  private:
   class RobotPreflight;

@@ -58,6 +58,7 @@ class GoalBook {
   void discard(const rcl_cxx::GoalId & id);
   /// Before the result is sent: what was held is free, the goal is forgotten, and its end logged.
   void finish(const rcl_cxx::GoalId & id, const Outcome & outcome);
+  void warn(const rcl_cxx::GoalId & id, const std::string & text) const;
   /// `body`'s outcome, or what it threw as one; if the goal was to end, that is the outcome of a failure.
   Outcome guarded(const Interrupt & interrupt, const std::function<Outcome()> & body) const;
 

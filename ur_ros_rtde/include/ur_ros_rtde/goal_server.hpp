@@ -81,11 +81,19 @@ void GoalServer<A>::serve(rcl_cxx::Node & node, const std::string & name, GoalBo
 template <typename A>
 void GoalServer<A>::finish(Handle & handle, typename A::Result & result, const Outcome & outcome)
 {
-  tell(outcome, result);
-  book_->finish(handle.goal_id(), outcome);
-  if (outcome) {
+  bool told = false;
+  const Outcome end = book_->guarded(Interrupt(), [&] {
+    tell(outcome, result);
+    told = true;
+    return outcome;
+  });
+  if (!told) {
+    GoalServer<A>::tell(end, result);
+  }
+  book_->finish(handle.goal_id(), end);
+  if (end) {
     handle.succeed(result);
-  } else if (outcome.code() == ErrorCode::canceled && handle.is_canceling()) {
+  } else if (end.code() == ErrorCode::canceled && handle.is_canceling()) {
     handle.canceled(result);
   } else {
     handle.abort(result);

@@ -87,6 +87,12 @@ class Run {
   Registers registers() const { return Registers(robot_); }
   [[nodiscard]] Outcome trigger(double timeout);
 
+  /// Logs `text` as a warning of this goal; the message of the result says it, too.
+  void warn(const std::string & text);
+  void on_warning(std::function<void(const std::string &)> log) { log_warning_ = std::move(log); }
+  /// `outcome`, with the warnings in its message.
+  Outcome with_warnings(const Outcome & outcome) const;
+
   /// For the feedback; 0 to 1.
   void progress(double fraction) { progress_ = fraction; }
   double progress() const { return progress_; }
@@ -117,6 +123,8 @@ class Run {
   double progress_ = 0.0;
   std::string displaced_;
   std::string plugin_;
+  std::string warnings_;
+  std::function<void(const std::string &)> log_warning_ = [](const std::string &) {};
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point next_feedback_ = begin_;
   std::chrono::steady_clock::time_point last_call_ = begin_;

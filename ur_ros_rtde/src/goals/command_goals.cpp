@@ -141,9 +141,12 @@ Status CommandGoals::take(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket,
 }
 
 Outcome CommandGoals::carry_out(const rcl_cxx::GoalId & id, GoalBook::Ticket & ticket,
-                                const StopOptions & stop, const std::function<Outcome()> & body)
+                                const std::function<StopOptions()> & stop_options,
+                                const std::function<Outcome()> & body)
 {
+  StopOptions stop;
   const auto whole = [&]() -> Outcome {
+    stop = stop_options();
     if (Status taken = take(id, ticket, stop); !taken) {
       return taken;
     }

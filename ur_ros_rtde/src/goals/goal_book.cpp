@@ -151,6 +151,11 @@ void GoalBook::finish(const rcl_cxx::GoalId & id, const Outcome & outcome)
   }
 }
 
+void GoalBook::warn(const rcl_cxx::GoalId & id, const std::string & text) const
+{
+  RCL_CXX_WARN(host_.node().logger(), "{}: goal {}: {}", action_, id.short_string(), text);
+}
+
 Outcome GoalBook::guarded(const Interrupt & interrupt, const std::function<Outcome()> & body) const
 {
   const auto attempt = [&]() -> Outcome {

@@ -329,6 +329,20 @@ void Run::feed_back()
   publish_feedback();
 }
 
+void Run::warn(const std::string & text)
+{
+  log_warning_(text);
+  warnings_ += warnings_.empty() ? text : "; " + text;
+}
+
+Outcome Run::with_warnings(const Outcome & outcome) const
+{
+  if (warnings_.empty()) {
+    return outcome;
+  }
+  return Error{outcome.code(), outcome.message().empty() ? warnings_ : outcome.message() + "; " + warnings_};
+}
+
 Outcome Run::trigger(double timeout)
 {
   ExtensionOptions options;

@@ -1,0 +1,91 @@
+// What a plugin throws outside of run() ends its goal, not the process.
+#include "ur_ros_rtde/goal_server.hpp"
+
+#include <gtest/gtest.h>
+
+#include <rcl_cxx/executor.hpp>
+#include <thread>
+#include <ur_ros_rtde_msgs/action/trigger.hpp>
+
+#include "ur_ros_rtde/command_goals.hpp"
+#include "ur_ros_rtde/robot.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+using rcl_cxx::GoalId;
+using ur_ros_rtde_msgs::action::Trigger;
+
+class GoalServerTest : public testing::Test {
+ protected:
+  rcl_cxx::Context::SharedPtr context_ = std::make_shared<rcl_cxx::Context>(
+      std::vector<std::string>{"goal_server_test"}, rcl_cxx::ContextOptions{.handle_signals = false});
+  rcl_cxx::Node node_{context_, "goal_server_test"};
+};
+
+/// An action whose result cannot be filled in.
+class FaultyServer : public GoalServer<Trigger> {
+ public:
+  FaultyServer(rcl_cxx::Node & node, PluginHost & host) : book_(host, "/faulty")
+  {
+    serve(node, "faulty", book_);
+  }
+  ~FaultyServer() override { end_service(); }
+
+ private:
+  tl::expected<void, std::string> admit(const GoalId & id, const Trigger::Goal &) override
+  {
+    return book_.admit(id, [](GoalBook::Ticket &) { return Status(); });
+  }
+  void carry_out(Handle & handle, GoalBook::Ticket &) override { give_up(handle, Outcome::success("done")); }
+  void give_up(Handle & handle, const Outcome & outcome) override
+  {
+    Trigger::Result result;
+    finish(handle, result, outcome);
+  }
+  void tell(const Outcome &, Trigger::Result &) const override
+  {
+    throw std::runtime_error("a fault in tell");
+  }
+
+  GoalBook book_;
+};
+
+TEST_F(GoalServerTest, AGoalWhoseResultCannotBeFilledInIsAbortedWithTheReason)
+{
+  PluginHost host(node_);
+  FaultyServer server(node_, host);
+  const auto client = node_.create_action_client<Trigger>("faulty");
+  rcl_cxx::Executor executor(context_);
+  executor.add_node(node_);
+  std::jthread spinning([&executor] { executor.spin(); });
+  const auto end = client->call({}, std::chrono::seconds(20));
+  executor.stop();
+  ASSERT_TRUE(end) << end.error();
+  EXPECT_EQ(end->status, rcl_cxx::GoalStatus::aborted);
+  EXPECT_FALSE(end->result.success);
+  EXPECT_EQ(end->result.error_code, static_cast<std::uint16_t>(ErrorCode::exception));
+  EXPECT_NE(end->result.message.find("a fault in tell"), std::string::npos) << end->result.message;
+}
+
+TEST_F(GoalServerTest, ACommandWhoseStopOptionsThrowDoesNothingAndEndsWithTheReason)
+{
+  RobotOptions options;
+  options.address = "127.0.0.1";
+  Robot robot(options, [](LogLevel, const std::string &) {});
+  CommandHost host(node_, robot, {});
+  CommandGoals goals(host, "/faulty", CommandTraits{.resource = Resource::none, .extension = {}});
+  GoalBook::Ticket ticket;
+  bool ran = false;
+  const Outcome outcome = goals.carry_out(
+      GoalId::random(), ticket, []() -> StopOptions { throw std::runtime_error("a fault in stop_options"); },
+      [&ran] {
+        ran = true;
+        return Outcome::success();
+      });
+  EXPECT_FALSE(ran);
+  EXPECT_EQ(outcome.code(), ErrorCode::exception);
+  EXPECT_NE(outcome.message().find("a fault in stop_options"), std::string::npos) << outcome.message();
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde
