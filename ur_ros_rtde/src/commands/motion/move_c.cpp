@@ -32,6 +32,7 @@ class MoveC : public Command<ur_ros_rtde_msgs::action::MoveC> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
+    warn_of_turn_to_identity(run, {{"pose", goal.pose}});
     return run_path(run, path(goal), [](std::uint32_t) {}, goal.mode);
   }
 };

@@ -1,6 +1,7 @@
 #include <ur_ros_rtde_msgs/action/move_jik.hpp>
 
 #include "ur_ros_rtde/command.hpp"
+#include "ur_ros_rtde/tcp_target.hpp"
 
 namespace ur_ros_rtde {
 
@@ -9,14 +10,15 @@ class MoveJIK : public Command<ur_ros_rtde_msgs::action::MoveJIK> {
   {
     check.pose("pose", goal.pose)
         .above_zero("speed", goal.speed, 3.14, "rad/s")
-        .above_zero("acceleration", goal.acceleration, 40.0, "rad/s^2")
-        .reachable("pose", goal.pose);
+        .above_zero("acceleration", goal.acceleration, 40.0, "rad/s^2");
+    check_tcp_target(check, goal);
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    run.control()->moveJ_IK(to_ur(goal.pose), goal.speed, goal.acceleration, true);
-    return run.until_pose_reached(to_ur(goal.pose));
+    const auto target = tcp_target(goal, run.state());
+    run.control()->moveJ_IK(target, goal.speed, goal.acceleration, true);
+    return run.until_pose_reached(target);
   }
 };
 

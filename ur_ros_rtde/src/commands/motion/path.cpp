@@ -91,6 +91,17 @@ void check_path(Check & check, std::string_view name, const Waypoints & waypoint
   }
 }
 
+std::vector<PathPose> path_poses(const Waypoints & waypoints)
+{
+  std::vector<PathPose> poses;
+  for (const Waypoint & waypoint : waypoints) {
+    const bool by_joints = !waypoint.joint_positions.empty();
+    poses.push_back({fmt::format("waypoints[{}].pose", poses.size()),
+                     by_joints ? std::nullopt : std::optional(waypoint.pose)});
+  }
+  return poses;
+}
+
 Outcome run_path(Run & run, const Waypoints & waypoints,
                  const std::function<void(std::uint32_t)> & heading_for, int arc_mode)
 {

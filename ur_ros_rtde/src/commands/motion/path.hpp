@@ -6,6 +6,7 @@
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/run.hpp"
+#include "ur_ros_rtde/tcp_target.hpp"
 
 namespace ur_ros_rtde {
 
@@ -15,6 +16,9 @@ using Waypoints = std::vector<ur_ros_rtde_msgs::msg::PathWaypoint>;
 /// `name` is the field: "waypoints"; `pose` what leads from an entry of it to its pose.
 void check_path(Check & check, std::string_view name, const Waypoints & waypoints,
                 std::string_view pose = ".pose");
+
+/// Their poses, for warn_of_turn_to_identity().
+std::vector<PathPose> path_poses(const Waypoints & waypoints);
 
 /// Moves through the waypoints by a program in the place of the control program (hold Resource::script), with
 /// progress, and `heading_for` with each waypoint's index when the arm turns to it. `arc_mode` is movec's

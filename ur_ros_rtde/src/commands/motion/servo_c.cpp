@@ -2,6 +2,7 @@
 
 #include "servo.hpp"
 #include "ur_ros_rtde/command.hpp"
+#include "ur_ros_rtde/tcp_target.hpp"
 
 namespace ur_ros_rtde {
 
@@ -12,16 +13,17 @@ class ServoC : public Command<ur_ros_rtde_msgs::action::ServoC> {
         .above_zero("speed", goal.speed, 3.0, "m/s")
         .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2")
         .in_range("blend_radius", goal.blend_radius, 0.0, 2.0, "m")
-        .in_range("deceleration", goal.deceleration, 0.1, 40.0, "rad/s^2")
-        .reachable("pose", goal.pose);
+        .in_range("deceleration", goal.deceleration, 0.1, 40.0, "rad/s^2");
+    check_tcp_target(check, goal);
   }
 
   StopOptions stop_options(const Goal & goal) const override { return servo_stop_options(goal); }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    run.control()->servoC(to_ur(goal.pose), goal.speed, goal.acceleration, goal.blend_radius);
-    return end_servo(run, run.until_at_pose(to_ur(goal.pose)), goal.deceleration);
+    const auto target = tcp_target(goal, run.state());
+    run.control()->servoC(target, goal.speed, goal.acceleration, goal.blend_radius);
+    return end_servo(run, run.until_at_pose(target), goal.deceleration);
   }
 };
 

@@ -1,0 +1,81 @@
+#include "ur_ros_rtde/tcp_target.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ur_ros_rtde/conversions.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+constexpr double suspicious_turn = std::numbers::pi / 2.0;  // rad
+
+double turn(const Vector6 & from, const Vector6 & to)
+{
+  const Vector6 way = pose_trans(pose_inverse(from), to);
+  return std::hypot(way[3], way[4], way[5]);
+}
+
+Vector6 to_pose(const std::vector<double> & values)
+{
+  Vector6 pose;
+  std::copy_n(values.begin(), pose.size(), pose.begin());
+  return pose;
+}
+}  // namespace
+
+bool has_identity_orientation(const geometry_msgs::msg::Pose & pose)
+{
+  const auto & q = pose.orientation;
+  return q.x == 0.0 && q.y == 0.0 && q.z == 0.0 && q.w == 1.0;
+}
+
+std::vector<double> tcp_target(const geometry_msgs::msg::Pose & pose, bool identity_orientation,
+                               const Sample & start)
+{
+  std::vector<double> target = to_ur(pose);
+  if (has_identity_orientation(pose) && !identity_orientation) {
+    std::copy_n(start.target_tcp_pose.begin() + 3, 3, target.begin() + 3);
+  }
+  return target;
+}
+
+std::vector<PathPose> path_poses(const std::string & field,
+                                 const std::vector<geometry_msgs::msg::Pose> & poses)
+{
+  std::vector<PathPose> path;
+  path.reserve(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    path.push_back({fmt::format("{}[{}]", field, i), poses[i]});
+  }
+  return path;
+}
+
+std::string turn_to_identity(const Vector6 & start, const std::vector<PathPose> & path)
+{
+  std::optional<Vector6> before = start;
+  for (const PathPose & next : path) {
+    const std::optional<Vector6> pose = next.pose ? std::optional(to_pose(to_ur(*next.pose))) : std::nullopt;
+    const double angle = before && pose ? turn(*before, *pose) : 0.0;
+    if (angle > suspicious_turn && has_identity_orientation(*next.pose)) {
+      return fmt::format(
+          "{} turns the tool by {:.0f} degrees, to the orientation (0, 0, 0, 1), which a pose has if only "
+          "its "
+          "position is given: give each pose of a path the orientation that the tool is to have there",
+          next.name, angle * 180.0 / std::numbers::pi);
+    }
+    before = pose;
+  }
+  return {};
+}
+
+void warn_of_turn_to_identity(Run & run, const std::vector<PathPose> & path)
+{
+  if (const std::string warning = turn_to_identity(run.state().target_tcp_pose, path); !warning.empty()) {
+    run.warn(warning);
+  }
+}
+
+}  // namespace ur_ros_rtde

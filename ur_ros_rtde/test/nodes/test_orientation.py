@@ -1,0 +1,99 @@
+"""What a pose without an orientation means: (0, 0, 0, 1) keeps the tool's, and turns it only if that is said."""
+
+import math
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from ur10e import flange, matrix
+
+from ur_ros_rtde_msgs.action import ExecuteCartesianPath, MoveC, MoveJ, MoveJIK, MoveL, MoveLRelative, MoveP, MovePath, ServoC, ServoL
+from ur_ros_rtde_msgs.msg import PathWaypoint
+from ur_ros_rtde_msgs.srv import GetTcpPose
+
+TO_A_POSE = [(MoveL, "move_l"), (MoveJIK, "move_j_ik"), (ServoL, "servo_l"), (ServoC, "servo_c")]
+QUARTER = math.pi / 2.0
+IDENTITY = [0.0, -QUARTER, QUARTER, -QUARTER, QUARTER, QUARTER]  # joints with which the tool's axes are the base's
+
+
+def arm(simulator):
+    """Position and rotation matrix of the flange, from where the simulated joints are."""
+    frame = flange(simulator.state()["actual"]["position"])
+    return frame[:3, 3], frame[:3, :3]
+
+
+def angle(a, b):
+    return math.acos(np.clip((np.trace(a.T @ b) - 1.0) / 2.0, -1.0, 1.0))
+
+
+def position_only(robot, x=0.0, y=0.0, z=0.0):
+    """A pose beside where the TCP is, as a user writes it who means the position."""
+    p = robot.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose.position
+    return Pose(position=Point(x=p.x + x, y=p.y + y, z=p.z + z))
+
+
+def turn_tool(robot, angle):
+    """To where the tool is turned by `angle` about the base's z."""
+    joints = [*IDENTITY[:5], IDENTITY[5] + angle]
+    robot.send(MoveJ, "move_j", joint_positions=joints, speed=2.0, acceleration=5.0).succeeded()
+
+
+@pytest.mark.parametrize("action, name", TO_A_POSE, ids=[name for _, name in TO_A_POSE])
+def test_a_position_only_keeps_the_orientation(robot, simulator, action, name):
+    robot.send(MoveLRelative, "move_l_relative", rotation=Vector3(z=0.4, x=0.2), speed=0.4, acceleration=1.0).succeeded()
+    target = position_only(robot, y=0.1, z=-0.05)
+    _, before = arm(simulator)
+    result = robot.send(action, name, pose=target).succeeded()
+    position, after = arm(simulator)
+    assert angle(before, after) < 0.01
+    assert position == pytest.approx([target.position.x, target.position.y, target.position.z], abs=0.005)
+    assert not result.message or "orientation" not in result.message
+
+
+@pytest.mark.parametrize("meant", [True, False])
+@pytest.mark.parametrize("action, name", TO_A_POSE, ids=[name for _, name in TO_A_POSE])
+def test_an_identity_orientation_is_taken_if_it_is_meant(robot, simulator, action, name, meant):
+    turn_tool(robot, 0.3)
+    target, fields = position_only(robot, y=0.05), {}
+    if hasattr(action.Goal, "identity_orientation"):
+        fields["identity_orientation"] = meant
+    elif meant:
+        target.orientation.w = -1.0  # the same rotation, but not what a message has that gives none
+    robot.send(action, name, pose=target, **fields).succeeded()
+    assert angle(arm(simulator)[1], np.eye(3)) == pytest.approx(0.0 if meant else 0.3, abs=0.01)
+
+
+@pytest.mark.parametrize("action, name", TO_A_POSE, ids=[name for _, name in TO_A_POSE])
+def test_any_other_orientation_is_taken_as_before(robot, simulator, action, name):
+    target = position_only(robot, z=-0.05)
+    target.orientation = Quaternion(x=math.sin(math.radians(50)), y=math.cos(math.radians(50)), z=0.0, w=0.0)
+    robot.send(action, name, pose=target).succeeded()
+    assert angle(arm(simulator)[1], matrix(target)[:3, :3]) < 0.01
+
+
+PATHS = [
+    ("move_p", MoveP, "poses[0]", lambda pose, via: {"poses": [pose]}),
+    ("move_c", MoveC, "pose", lambda pose, via: {"via": via, "pose": pose}),
+    ("move_path", MovePath, "waypoints[0].pose",
+     lambda pose, via: {"waypoints": [PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, speed=0.1)]}),
+    ("execute_cartesian_path", ExecuteCartesianPath, "poses[0]", lambda pose, via: {"poses": [pose]}),
+]
+
+
+@pytest.mark.parametrize("name, action, field, goal", PATHS, ids=[path[0] for path in PATHS])
+def test_a_path_that_turns_the_tool_to_the_identity_is_warned_of(robot, driver, name, action, field, goal):
+    turn_tool(robot, 2.0)
+    fields = goal(position_only(robot, y=0.05), position_only(robot, y=0.025, x=0.025))
+    message = robot.send(action, name, **fields).succeeded().message
+    assert f"{field} turns the tool by 115 degrees" in message and "only its position is given" in message, message
+    warnings = [line for line in list(driver.lines) if "WARN" in line and f"/{name}: goal" in line and message in line]
+    assert len(warnings) == 1, driver.output()
+
+
+@pytest.mark.parametrize("name, action, field, goal", PATHS, ids=[path[0] for path in PATHS])
+def test_a_path_with_orientations_is_not(robot, name, action, field, goal):
+    turn_tool(robot, 0.3)
+    poses = [position_only(robot, y=0.05), position_only(robot, y=0.025, x=0.025)]
+    for pose in poses:
+        pose.orientation = robot.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose.orientation
+    assert "turns the tool" not in robot.send(action, name, **goal(*poses)).succeeded().message
