@@ -82,7 +82,8 @@ def servo_stream(control, seconds, factor):
     if not client.wait_for_server(timeout_sec=15.0):
         raise SystemExit("bench: the action execute_trajectory does not appear")
     start = list(control.request("state")["state"]["target"]["position"])
-    goal = ExecuteTrajectory.Goal(waypoints=_path(start, seconds), max_velocity=[0.4] * 6, lookahead_time=0.03, gain=2000.0)
+    goal = ExecuteTrajectory.Goal(waypoints=_path(start, seconds), max_velocity=[0.4] * 6, max_acceleration=[5.0] * 6,
+                                  lookahead_time=0.03, gain=2000.0)
     sending = client.send_goal_async(goal)
     rclpy.spin_until_future_complete(node, sending, timeout_sec=10.0)
     if not sending.done() or not sending.result().accepted:

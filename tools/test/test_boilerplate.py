@@ -8,7 +8,7 @@ from ur_tools import boilerplate
 LONG = {
     "execute_cartesian_path": 45,  # plans in two steps: path, then its timing
     "execute_parametrized_trajectory": 40,  # looks at a message of another package
-    "execute_trajectory": 30,
+    "execute_trajectory": 28,
     "follow_joint_trajectory": 245,  # MoveIt's action has other results and tolerances: it does without the base class
 }
 SLACK = 10  # lines, within which an entry of LONG need not follow

@@ -50,6 +50,20 @@ def test_given_times_are_kept(tmp_path):
     assert result.returncode == 0 and "2 waypoints, 2.000 s" in result.stdout, result.stdout
 
 
+def velocities(tmp_path, text):
+    result = plan(tmp_path, text, "--json", tmp_path / "plan.json")
+    assert result.returncode == 0, result.stdout
+    return [abs(value) for row in json.loads((tmp_path / "plan.json").read_text())["samples"]["velocity"] for value in row]
+
+
+def test_a_path_without_limits_is_slow_and_given_times_are_a_choice(tmp_path):
+    far = f"model: ur10e\nwaypoints:\n  - {HOME}\n  - [1.2, -1.57, 1.57, -1.57, -1.57, 0.0]\n"
+    assert 1.0 < max(velocities(tmp_path, far)) <= 1.05
+    assert 1.7 < max(velocities(tmp_path, far + "max_velocity: [1.8, 1.8, 1.8, 1.8, 1.8, 1.8]\n"
+                                "max_acceleration: [5, 5, 5, 5, 5, 5]\n")) <= 1.8
+    assert 1.3 < max(velocities(tmp_path, TIMED.replace("2.0", "1.2").replace("0.6", "0.9")))
+
+
 @pytest.mark.parametrize("text, what", [
     ("waypoints: [[0, 0, 0]]", "waypoint 0 has 3 values"),
     ("model: ur99\nwaypoints: [[0, 0, 0, 0, 0, 0]]", "ur99"),

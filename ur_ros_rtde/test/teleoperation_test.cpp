@@ -116,5 +116,20 @@ TEST(AFollower, of_poses_looks_at_both_way_and_turn)
   // The same orientation, written with the opposite axis, is no turn.
   EXPECT_TRUE(follower->aim({{0.4, 0.1, 0.3, 0.0, 3.1 - 2.0 * 3.14159265358979, 0.0}}, 0.02));
 }
+
+TEST(AFollower, of_poses_says_that_an_orientation_is_missing)
+{
+  Sample sample{};
+  sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
+  const auto follower = follow_poses({});
+  follower->begin(sample, 0.002);
+  const auto refused = follower->aim({{0.4, 0.1, 0.31, 0.0, 0.0, 0.0}}, 0.02);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("if only its position is given"), std::string::npos)
+      << refused.error().message;
+  const auto turned = follower->aim({{0.4, 0.1, 0.31, 0.0, 1.0, 0.0}}, 0.02);
+  ASSERT_FALSE(turned);
+  EXPECT_EQ(turned.error().message.find("only its position"), std::string::npos) << turned.error().message;
+}
 }  // namespace
 }  // namespace ur_ros_rtde

@@ -32,6 +32,9 @@ Expected<Limits> read_limits(const json & goal)
     return failure(ErrorCode::invalid_goal, fmt::format("model is \"{}\", there is no such arm", model));
   }
   Limits limits = trajectory::make_limits(*arm);
+  if (goal.contains("waypoints")) {
+    limits = trajectory::slow_limits(limits);  // as execute_trajectory; given times are a choice of speed
+  }
   for (const auto & [field, limit] :
        {std::pair{"max_velocity", &limits.velocity}, std::pair{"max_acceleration", &limits.acceleration},
         std::pair{"max_jerk", &limits.jerk}}) {

@@ -42,9 +42,10 @@ Expected<std::optional<Trajectory>> plan_approach(const Joints & start, const Pl
   if (Status near = begins_here(first, start, execution.start_tolerance); !near && !execution.approach) {
     return tl::unexpected(near.error());
   }
-  return trajectory::plan_path(std::vector<Joints>{start, first}, plan.limits).map([](Trajectory approach) {
-    return std::optional(std::move(approach));
-  });
+  const trajectory::PathOptions options{.speed_fraction = execution.speed_fraction};
+  return trajectory::plan_path(std::vector<Joints>{start, first}, trajectory::slow_limits(plan.limits),
+                               options)
+      .map([](Trajectory approach) { return std::optional(std::move(approach)); });
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct Execution {
   ServoSettings servo;
   double start_tolerance = 0.01;  ///< rad, of the plan's beginning from where the arm is
   bool approach = false;          ///< go to the beginning first, however far it is
+  double speed_fraction = 1.0;    ///< of the approach, as of the plan
   /// Once, when the plan stands and before anything moves.
   std::function<void(const trajectory::Trajectory &)> planned = [](const trajectory::Trajectory &) {};
   /// After each target of the plan; what it refuses ends the goal.
@@ -34,7 +35,7 @@ struct Executed {
 };
 
 /// Plans, looks whether the arm is where the plan begins, goes the last bit (or the approach) by a plan of
-/// its own within the same limits, and sends both.
+/// its own within the same limits, but never faster than slow_limits(), and sends both.
 Executed execute(Run & run, const Execution & execution);
 
 /// Where the controller has the arm: its target, without the noise of measurement.

@@ -32,11 +32,10 @@ void check_common(Check & check, const Goal & goal, const ArmLimits & arm)
       .above_zero("max_tracking_error", goal.max_tracking_error, 3.14, "rad");
 }
 
-/// The goal's limits, which check_common() has passed, and the arm's where it gives none.
+/// The goal's limits, which check_common() has passed; `limits` where it gives none.
 template <typename Goal>
-trajectory::Limits limits_of(const Goal & goal, const ArmLimits & arm)
+trajectory::Limits limits_of(const Goal & goal, trajectory::Limits limits)
 {
-  trajectory::Limits limits = trajectory::make_limits(arm);
   const auto take = [](trajectory::Joints & limit, const std::vector<double> & given) {
     if (!given.empty()) {
       limit = Eigen::Map<const trajectory::Joints>(given.data());

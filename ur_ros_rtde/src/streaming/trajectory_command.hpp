@@ -25,8 +25,10 @@ class TrajectoryCommand : public Command<A> {
  protected:
   CommandHost & host() const { return *host_; }
   ArmLimits arm() const { return host_->limits(); }
+  /// Of goals whose times are not given, where they name no limits.
+  trajectory::Limits slow_limits() const { return trajectory::slow_limits(trajectory::make_limits(arm())); }
 
-  /// All but plan, start_tolerance and approach.
+  /// All but plan.
   Execution execution(const Goal & goal, Run & run) const;
   /// With the result's own fields.
   static Outcome finish(const Executed & executed, Run & run)
@@ -43,6 +45,13 @@ template <typename A>
 Execution TrajectoryCommand<A>::execution(const Goal & goal, Run & run) const
 {
   Execution execution;
+  if constexpr (requires { goal.start_tolerance; }) {
+    execution.start_tolerance = goal.start_tolerance;
+  }
+  if constexpr (requires { goal.approach; }) {
+    execution.approach = goal.approach;
+    execution.speed_fraction = goal.speed_fraction;
+  }
   execution.servo = {goal.lookahead_time, goal.gain, goal.max_tracking_error,
                      [this] { return host_->takeover_stop().has_value(); }};
   execution.planned = [&run](const trajectory::Trajectory & plan) {

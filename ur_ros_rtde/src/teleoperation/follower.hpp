@@ -30,7 +30,8 @@ class Follower {
 
 /// servo_joint, servo_pose: from target to target along straight lines, so as to arrive one and a half
 /// periods after the message: slow messages make a steady motion, and one that is late no halt. Never faster
-/// than the joints, or 3 m/s and 3.14 rad/s, allow.
+/// than the joints, or 3 m/s and 3.14 rad/s, allow; at the default speeds (default_speeds.hpp) until the arm
+/// has caught up with the stream for the first time.
 std::unique_ptr<Follower> follow_joints(const TeleoperationOptions & options);
 std::unique_ptr<Follower> follow_poses(const TeleoperationOptions & options);
 /// twist: the velocity of the newest message, in the tool's frame as the tool turns.

@@ -6,6 +6,7 @@
 #include "teleoperation/follower.hpp"
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/conversions.hpp"
+#include "ur_ros_rtde/default_speeds.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -38,6 +39,23 @@ class Line {
   double passed_ = 0.0;
 };
 
+/// How long the line to a new target takes. The messages' times say how fast the arm is to be, but not on the
+/// way to where the stream begins: until the arm has caught up with the stream, the default speeds are kept.
+class LineTime {
+ public:
+  void begin() { caught_up_ = false; }
+  /// s: the messages' `period`, and the times that the line takes at the default speeds and at the highest.
+  double duration(double period, double at_default_speed, double at_highest_speed)
+  {
+    const double given = periods_ahead * period;
+    caught_up_ = caught_up_ || at_default_speed <= given;
+    return std::max({given, at_highest_speed, caught_up_ ? 0.0 : at_default_speed});
+  }
+
+ private:
+  bool caught_up_ = false;
+};
+
 /// The controller finds the joints for a pose or a twist by itself, and close to a singularity they may have
 /// to be quick.
 Status joints_slow_enough(const Sample & sample, const ArmLimits & limits)
@@ -63,11 +81,13 @@ class JointFollower : public Follower {
     limits_ = limits;
     from_ = to_ = at_ = sample.actual_q;
     line_.begin(0.0);
+    time_.begin();
   }
 
   Status aim(const StreamTarget & target, double period) override
   {
-    double duration = periods_ahead * period;
+    double at_default_speed = 0.0;
+    double at_highest_speed = 0.0;
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const double jump = std::abs(target.values[i] - at_[i]);
       if (!(jump <= options_.max_joint_jump)) {
@@ -77,11 +97,12 @@ class JointFollower : public Follower {
                         "begin where the arm is, and move on more slowly",
                         joint_names()[i], jump, options_.max_joint_jump));
       }
-      duration = std::max(duration, jump / limits_.velocity[i]);
+      at_default_speed = std::max(at_default_speed, jump / default_joint_speed);
+      at_highest_speed = std::max(at_highest_speed, jump / limits_.velocity[i]);
     }
     from_ = at_;
     to_ = target.values;
-    line_.begin(duration);
+    line_.begin(time_.duration(period, at_default_speed, at_highest_speed));
     return {};
   }
 
@@ -101,7 +122,14 @@ class JointFollower : public Follower {
   double cycle_ = 0.0;
   Vector6 from_{}, to_{}, at_{};
   Line line_;
+  LineTime time_;
 };
+
+/// The identity orientation, of a pose of UR.
+bool position_only(const StreamTarget & target)
+{
+  return target.values[3] == 0.0 && target.values[4] == 0.0 && target.values[5] == 0.0;
+}
 
 class PoseFollower : public Follower {
  public:
@@ -114,6 +142,7 @@ class PoseFollower : public Follower {
     from_ = at_ = sample.actual_tcp_pose;
     way_ = {};
     line_.begin(0.0);
+    time_.begin();
   }
 
   Status aim(const StreamTarget & target, double period) override
@@ -125,13 +154,18 @@ class PoseFollower : public Follower {
       return failure(
           ErrorCode::invalid_goal,
           fmt::format("the target is {:.3f} m and {:.3f} rad from where the TCP is sent, it may be "
-                      "{:.3f} m and {:.3f} rad: begin where the arm is, and move on more slowly",
-                      distance, angle, options_.max_linear_jump, options_.max_joint_jump));
+                      "{:.3f} m and {:.3f} rad: begin where the arm is, and move on more slowly{}",
+                      distance, angle, options_.max_linear_jump, options_.max_joint_jump,
+                      position_only(target) && angle > options_.max_joint_jump
+                          ? "; its orientation is (0, 0, 0, 1), which a pose has if only its position is "
+                            "given: a stream has to give the orientation, too"
+                          : ""));
     }
     from_ = at_;
     way_ = way;
-    line_.begin(
-        std::max({periods_ahead * period, distance / highest_linear_speed, angle / highest_angular_speed}));
+    line_.begin(time_.duration(period,
+                               std::max(distance / default_linear_speed, angle / default_angular_speed),
+                               std::max(distance / highest_linear_speed, angle / highest_angular_speed)));
     return {};
   }
 
@@ -157,6 +191,7 @@ class PoseFollower : public Follower {
   Vector6 from_{}, at_{};
   Vector6 way_{};  ///< in the frame of from_
   Line line_;
+  LineTime time_;
 };
 
 class TwistFollower : public Follower {

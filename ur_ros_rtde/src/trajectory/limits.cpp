@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "ur_ros_rtde/default_speeds.hpp"
+
 namespace ur_ros_rtde::trajectory {
 namespace {
 
@@ -37,6 +39,13 @@ Limits make_limits(const ArmLimits & arm, double acceleration, double jerk)
   limits.velocity = Eigen::Map<const Joints>(arm.velocity.data());
   limits.acceleration.setConstant(acceleration);
   limits.jerk.setConstant(jerk);
+  return limits;
+}
+
+Limits slow_limits(Limits limits)
+{
+  limits.velocity = limits.velocity.min(default_joint_speed);
+  limits.acceleration = limits.acceleration.min(default_joint_acceleration);
   return limits;
 }
 

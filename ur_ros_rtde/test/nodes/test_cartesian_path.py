@@ -7,6 +7,7 @@ import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
 from support import wait_for
+from trajectories import Watcher
 
 from ur_ros_rtde_msgs.action import ExecuteCartesianPath
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -58,6 +59,16 @@ def test_it_keeps_its_speed_and_goes_round_corners(robot):
     rounds = send(robot, corner, end, speed=0.1, blend_radius=0.01, lookahead_time=LAG).succeeded()
     assert 0.2 / 0.1 - 0.1 < rounds.duration < stops.duration
     assert min(math.dist(point(message.pose), point(corner)) for message in robot.up_to_now(seen)) == pytest.approx(0.01, abs=0.003)
+
+
+def test_without_limits_the_joints_are_slow(robot, simulator):
+    watcher = Watcher(simulator)
+    watcher.look()
+    watcher.speeds.clear()
+    goal = send(robot, moved(pose_now(robot), y=0.6, z=-0.2), speed=3.0, rotation_speed=6.0)
+    wait_for(lambda: watcher.look() and goal.ended(), 60.0, "the end")
+    goal.succeeded()
+    assert 0.9 < max(watcher.look()) < 1.05 * 1.03
 
 
 def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, simulator):

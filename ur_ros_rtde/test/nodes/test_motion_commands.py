@@ -7,9 +7,10 @@ from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from sensor_msgs.msg import JointState
 from support import HOME, REAL_TIME_FACTOR, wait_for
+from trajectories import Watcher
 
 from ur_ros_rtde_msgs.action import (Decelerate, Jog, MoveC, MoveJ, MoveJIK, MoveJRelative, MoveLFK, MoveLRelative, MoveP,
-                                     MovePath, ServoC, ServoL, SpeedJ, SpeedL)
+                                     MovePath, MoveL, ServoC, ServoJ, ServoL, SpeedJ, SpeedL)
 from ur_ros_rtde_msgs.msg import ErrorCode, PathWaypoint
 from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
 
@@ -238,6 +239,20 @@ def test_servo_l_keeps_to_a_straight_line(robot, simulator):
 def test_servo_l_refuses_what_the_tcp_cannot_do_in_the_time(robot):
     goal = robot.send(ServoL, "servo_l", pose=moved(pose_now(robot), z=-0.2), time=0.05)
     assert not goal.accepted and "use a time of at least" in robot.refusal(goal).message
+
+
+def test_servo_without_a_time_is_slow(robot, simulator):
+    watcher = Watcher(simulator)
+    watcher.look()
+    watcher.speeds.clear()
+    goal = robot.send(ServoJ, "servo_j", joint_positions=[1.5, *HOME[1:]], time=0.0)
+    wait_for(lambda: watcher.look() and goal.ended(), 30.0, "the end")
+    goal.succeeded()
+    assert 0.9 < max(watcher.look()) < 1.05 * 1.03
+    start = pose_now(robot)
+    begin = simulator.state()["timestamp"]
+    robot.send(ServoL, "servo_l", pose=moved(start, y=0.3), time=0.0).succeeded()
+    assert simulator.state()["timestamp"] - begin > 15.0 / 8.0 * 0.3 / 0.25  # as 0.25 m/s at most takes
 
 
 def test_servo_c_gets_there(robot):

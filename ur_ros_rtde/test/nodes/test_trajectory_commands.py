@@ -65,6 +65,34 @@ def test_a_speed_fraction_slows_it_down(robot):
     assert slow.duration == pytest.approx(2.0 * fast.duration, rel=1e-6)
 
 
+def fastest(simulator, goal):
+    """rad/s: of any joint's target until the goal has ended."""
+    watcher = Watcher(simulator)
+    watcher.look()
+    watcher.speeds.clear()
+    wait_for(lambda: watcher.look() and goal.ended(), 60.0, "the end")
+    goal.succeeded()
+    return max(watcher.look())
+
+
+def test_without_limits_it_is_slow(robot, simulator):
+    goal = send(robot, [HOME, turned(1.2)])
+    assert fastest(simulator, goal) < 1.05 * 1.03
+    assert goal.succeeded().duration == pytest.approx(1.2 / 1.05 + 1.05 / 1.4 + 1.4 / 100.0, abs=0.01)
+
+
+def test_limits_that_are_given_may_be_faster(robot, simulator):
+    goal = send(robot, [HOME, turned(1.2)], max_velocity=[1.8] * 6, max_acceleration=[5.0] * 6)
+    assert goal.succeeded().duration == pytest.approx(1.2 / 1.8 + 1.8 / 5.0 + 5.0 / 100.0, abs=0.01)
+
+
+@pytest.mark.parametrize("speed_fraction", [1.0, 0.3])
+def test_an_approach_is_slow_whatever_the_limits_are(robot, simulator, speed_fraction):
+    goal = send(robot, [turned(0.8), turned(0.83)], approach=True, speed_fraction=speed_fraction, max_velocity=[2.0] * 6,
+                max_acceleration=[10.0] * 6)
+    assert fastest(simulator, goal) < 1.05 * speed_fraction * 1.05
+
+
 def test_limits_of_a_joint_count(robot, simulator):
     watcher = Watcher(simulator)
     watcher.look()

@@ -74,6 +74,12 @@ def _file(name):
     raise FileNotFoundError(f"{name} is in no prefix of AMENT_PREFIX_PATH")
 
 
+def paths(packages):
+    """The .action files of these packages."""
+    return sorted(file for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep) for package in packages
+                  for file in pathlib.Path(prefix, "share", package, "action").glob("*.action"))
+
+
 def parse(file):
     """The sections of an interface file, each a list of Fields. Comments that go on in lines of their own are joined."""
     parts = [[]]

@@ -1,7 +1,5 @@
 """Every command has its section with an example that fits; every field of every action says what it is."""
 
-import os
-import pathlib
 import re
 from collections import Counter
 
@@ -22,8 +20,7 @@ UNIT = re.compile(r"\d|[A-Z]{3,} or |\b(rad|m|s|N|Nm|Hz|kg|V|A)\b|see |index|who
 def action_file_paths():
     """Of the packages that have plugins, and ours."""
     packages = {"ur_ros_rtde_msgs", *(plugin.package for plugin in PLUGINS.values())}
-    return sorted(file for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep) for package in packages
-                  for file in pathlib.Path(prefix, "share", package, "action").glob("*.action"))
+    return action_files.paths(packages)
 
 
 @pytest.fixture(scope="module")

@@ -38,6 +38,10 @@ struct Limits {
 Limits make_limits(const ArmLimits & arm, double acceleration = default_acceleration,
                    double jerk = default_jerk);
 
+/// `limits`, with velocities and accelerations of at most default_joint_speed and default_joint_acceleration
+/// (default_speeds.hpp).
+Limits slow_limits(Limits limits);
+
 /// Refuses limits that are zero, negative, NaN or beyond 1e-4 to 1e7, an empty position range, and what
 /// time-optimal timing cannot do without: finite velocity and acceleration limits.
 Status check(const Limits & limits);

@@ -6,11 +6,23 @@
 #include <cmath>
 
 #include "ur_ros_rtde/conversions.hpp"
+#include "ur_ros_rtde/default_speeds.hpp"
 
 namespace ur_ros_rtde {
 namespace {
 constexpr double highest_linear_speed = 3.0;    // m/s
 constexpr double highest_angular_speed = 3.14;  // rad/s
+
+constexpr double shortest_time = 0.01;  // s
+/// The largest acceleration of smooth_step, for a way of 1 in 1 s.
+const double smooth_step_acceleration = 10.0 / std::sqrt(3.0);
+
+/// Of smooth_step along `way`.
+double slow_time(double way, double speed, double acceleration)
+{
+  return std::max({shortest_time, smooth_step_peak * way / speed,
+                   std::sqrt(smooth_step_acceleration * way / acceleration)});
+}
 
 /// From one pose to the other, in the first one's frame.
 Vector6 way(const Vector6 & from, const std::vector<double> & to)
@@ -24,6 +36,24 @@ Vector6 way(const Vector6 & from, const std::vector<double> & to)
 double smooth_step(double u)
 {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+}
+
+double slow_joint_time(const Vector6 & from, const std::vector<double> & to)
+{
+  double longest = 0.0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    longest = std::max(longest, std::abs(to[i] - from[i]));
+  }
+  return slow_time(longest, default_joint_speed, default_joint_acceleration);
+}
+
+double slow_tcp_time(const Vector6 & from, const std::vector<double> & to)
+{
+  const Vector6 part = way(from, to);
+  const double distance = std::hypot(part[0], part[1], part[2]);
+  const double angle = std::hypot(part[3], part[4], part[5]);
+  return std::max(slow_time(distance, default_linear_speed, default_linear_acceleration),
+                  slow_time(angle, default_angular_speed, default_angular_acceleration));
 }
 
 Outcome servo(Run & run, double duration, const std::function<void(double share, double cycle)> & send,
@@ -71,13 +101,9 @@ std::vector<double> pose_between(const Vector6 & from, const std::vector<double>
   return {pose.begin(), pose.end()};
 }
 
-void check_tcp_speed(Check & check, const std::vector<double> & to, double time)
+void check_tcp_speed(Check & check, const Vector6 & from, const std::vector<double> & to, double time)
 {
-  const auto start = check.start();
-  if (!start) {
-    return;
-  }
-  const Vector6 part = way(start->actual_tcp_pose, to);
+  const Vector6 part = way(from, to);
   const double linear = smooth_step_peak * std::hypot(part[0], part[1], part[2]);
   const double angular = smooth_step_peak * std::hypot(part[3], part[4], part[5]);
   const double shortest = std::max(linear / highest_linear_speed, angular / highest_angular_speed);

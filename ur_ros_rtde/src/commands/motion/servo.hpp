@@ -12,8 +12,10 @@ namespace ur_ros_rtde {
 template <typename Goal>
 Check & check_servo(const Goal & goal, Check & check)
 {
-  return check.in_range("time", goal.time, 0.01, 600.0, "s")
-      .in_range("lookahead_time", goal.lookahead_time, 0.03, 0.2, "s")
+  if (goal.time != 0.0) {
+    check.in_range("time", goal.time, 0.01, 600.0, "s");
+  }
+  return check.in_range("lookahead_time", goal.lookahead_time, 0.03, 0.2, "s")
       .in_range("gain", goal.gain, 100.0, 2000.0)
       .in_range("deceleration", goal.deceleration, 0.1, 40.0, "rad/s^2");
 }
@@ -31,6 +33,11 @@ double smooth_step(double u);
 /// Its highest speed, as a multiple of the mean one.
 constexpr double smooth_step_peak = 15.0 / 8.0;
 
+/// s, that a goal without a time takes: as long as the joints, or the TCP, need with the default speeds and
+/// accelerations (default_speeds.hpp).
+double slow_joint_time(const Vector6 & from, const std::vector<double> & to);
+double slow_tcp_time(const Vector6 & from, const std::vector<double> & to);
+
 /// A servo motion of `duration` s: calls `send` once each control cycle with the share of the way
 /// (smooth_step) and the length of the cycle (s), paced by the controller's packages; then waits for
 /// `arrival`, and ends servo control. A host that comes late goes on from where it was: the arm is slower
@@ -46,8 +53,8 @@ constexpr double smooth_step_peak = 15.0 / 8.0;
 std::vector<double> joints_between(const Vector6 & from, const std::vector<double> & to, double s);
 std::vector<double> pose_between(const Vector6 & from, const std::vector<double> & to, double s);
 
-/// The TCP does not go faster than 3 m/s and 3.14 rad/s when it follows smooth_step to a pose of UR in `time`
-/// s.
-void check_tcp_speed(Check & check, const std::vector<double> & to, double time);
+/// The TCP does not go faster than 3 m/s and 3.14 rad/s when it follows smooth_step from one pose of UR to
+/// another in `time` s.
+void check_tcp_speed(Check & check, const Vector6 & from, const std::vector<double> & to, double time);
 
 }  // namespace ur_ros_rtde

@@ -2,6 +2,7 @@
 
 #include "servo.hpp"
 #include "ur_ros_rtde/command.hpp"
+#include "ur_ros_rtde/tcp_target.hpp"
 
 namespace ur_ros_rtde {
 
@@ -9,9 +10,9 @@ class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
   void check(const Goal & goal, Check & check) const override
   {
     check.pose("pose", goal.pose);
-    check_servo(goal, check).reachable("pose", goal.pose);
-    if (check.ok()) {
-      check_tcp_speed(check, to_ur(goal.pose), goal.time);
+    check_tcp_target(check_servo(goal, check), goal);
+    if (const auto start = check.start(); start && goal.time > 0.0) {
+      check_tcp_speed(check, start->actual_tcp_pose, tcp_target(goal, *start), goal.time);
     }
   }
 
@@ -19,13 +20,15 @@ class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    const Vector6 start = run.state().actual_tcp_pose;
-    const auto end = to_ur(goal.pose);
+    const Sample sample = run.state();
+    const Vector6 & start = sample.actual_tcp_pose;
+    const auto end = tcp_target(goal, sample);
+    const double time = goal.time > 0.0 ? goal.time : slow_tcp_time(start, end);
     const auto send = [&](double share, double cycle) {
       const auto target = pose_between(start, end, share);
       run.control()->servoL(target, 0.0, 0.0, cycle, goal.lookahead_time, goal.gain);
     };
-    return servo(run, goal.time, send, [&] { return run.until_at_pose(end); }, goal.deceleration);
+    return servo(run, time, send, [&] { return run.until_at_pose(end); }, goal.deceleration);
   }
 };
 

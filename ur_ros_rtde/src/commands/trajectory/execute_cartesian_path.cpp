@@ -6,6 +6,7 @@
 
 #include "streaming/trajectory_command.hpp"
 #include "ur_ros_rtde/kinematics/cartesian.hpp"
+#include "ur_ros_rtde/tcp_target.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -63,9 +64,10 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
     for (const auto & pose : goal.poses) {
       poses.push_back(kinematics::to_pose(to_array(to_ur(pose))));
     }
+    warn_of_turn_to_identity(run, path_poses("poses", goal.poses));
     Execution execution = this->execution(goal, run);
     execution.plan = [&](const Joints & start, const std::stop_token & stop) {
-      const trajectory::Limits limits = limits_of(goal, arm());
+      const trajectory::Limits limits = limits_of(goal, slow_limits());
       const auto reference = [&run](const Pose & pose, const Joints & guess) {
         return ask_controller(run.robot(), pose, guess);
       };

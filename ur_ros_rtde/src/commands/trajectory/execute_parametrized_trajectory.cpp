@@ -23,7 +23,7 @@ class ExecuteParametrizedTrajectory
     const trajectory::Joints first = to_joints(waypoints->positions.front());
     const bool begins_there = waypoints->times.front() == 0.0;
     trajectory::begin_at(*waypoints, first);
-    require(check, trajectory::check_timed(*waypoints, limits_of(goal, arm())));
+    require(check, trajectory::check_timed(*waypoints, limits_of(goal, trajectory::make_limits(arm()))));
     if (const auto sample = check.start(); sample && begins_there) {
       require(check, begins_here(first, commanded_joints(*sample), goal.start_tolerance));
     }
@@ -32,9 +32,8 @@ class ExecuteParametrizedTrajectory
   Outcome run(const Goal & goal, Run & run) override
   {
     Execution execution = this->execution(goal, run);
-    execution.start_tolerance = goal.start_tolerance;
     execution.plan = [&](const trajectory::Joints & start, const std::stop_token &) {
-      const trajectory::Limits limits = limits_of(goal, arm());
+      const trajectory::Limits limits = limits_of(goal, trajectory::make_limits(arm()));
       return timed_waypoints(goal.trajectory)
           .and_then([&](trajectory::TimedWaypoints waypoints) {
             trajectory::begin_at(waypoints, start);

@@ -24,7 +24,7 @@ class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::Exe
         .in_range("blend_tolerance", goal.blend_tolerance, 0.0, 1.0, "rad")
         .above_zero("start_tolerance", goal.start_tolerance, 3.2, "rad");
     if (check.ok()) {
-      require(check, trajectory::check_path(positions_of(goal.waypoints), limits_of(goal, arm())));
+      require(check, trajectory::check_path(positions_of(goal.waypoints), limits_of(goal, slow_limits())));
     }
     if (const auto sample = check.start(); sample && !goal.approach) {
       require(check, begins_here(to_joints(goal.waypoints[0].positions), commanded_joints(*sample),
@@ -35,10 +35,8 @@ class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::Exe
   Outcome run(const Goal & goal, Run & run) override
   {
     Execution execution = this->execution(goal, run);
-    execution.start_tolerance = goal.start_tolerance;
-    execution.approach = goal.approach;
     execution.plan = [&](const trajectory::Joints &, std::stop_token stop) {
-      const trajectory::Limits limits = limits_of(goal, arm());
+      const trajectory::Limits limits = limits_of(goal, slow_limits());
       return trajectory::plan_path(positions_of(goal.waypoints), limits,
                                    {goal.blend_tolerance, 0.35, goal.speed_fraction, std::move(stop)})
           .map([&](trajectory::Trajectory plan) { return Planned{std::move(plan), limits}; });

@@ -1,0 +1,50 @@
+"""The way to where a stream begins is slow: no message has said yet how fast the arm is to be."""
+
+import pytest
+from geometry_msgs.msg import PoseStamped
+from sensor_msgs.msg import JointState
+from support import node, wait_for
+from test_streams import Publisher, joint_message, pose_now, state, turned
+from trajectories import Watcher
+
+
+@pytest.fixture(scope="module")
+def driver(simulator):
+    # Short enough for the first messages to ask for a haste that the arm is capable of.
+    driver = node("driver", simulator.address, "ur_type:=ur10e", "stream_timeout:=0.2", "stream_max_joint_jump:=0.5",
+                  "stream_max_linear_jump:=0.5")
+    yield driver
+    driver.end()
+    print(driver.output())
+
+
+def watch(simulator):
+    watcher = Watcher(simulator)
+    watcher.look()
+    watcher.speeds.clear()
+    return watcher
+
+
+def test_of_joint_positions(robot, simulator):
+    watcher = watch(simulator)
+    with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(turned(0.4))):
+        wait_for(lambda: watcher.look() and state(robot).position[0] > 0.39, 20.0, "the arm to be there")
+    assert 0.5 < max(watcher.look()) < 1.05 * 1.05
+
+
+def test_of_poses(robot, simulator):
+    start = pose_now(robot)
+    message = PoseStamped()
+    message.header.frame_id = "base"
+    message.pose = pose_now(robot)
+    message.pose.position.z -= 0.2
+    with Publisher(robot, PoseStamped, "servo_pose", lambda t: message):
+        speeds = []
+
+        def there():
+            state_ = simulator.state()
+            speeds.append(abs(state_["target_tcp_speed"][2]))
+            return state_["actual_tcp_pose"][2] < start.position.z - 0.195
+
+        wait_for(there, 20.0, "the TCP to be there")
+    assert 0.1 < max(speeds) < 0.25 * 1.1

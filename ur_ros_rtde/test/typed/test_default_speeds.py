@@ -1,0 +1,68 @@
+"""A goal that does not choose a speed makes a slow motion: at most Universal Robots' own defaults of movej and movel."""
+
+import re
+
+import action_files
+import messages
+import plugins
+import pytest
+
+HIGHEST = {"rad/s": 1.05, "rad/s^2": 1.4, "m/s": 0.25, "m/s^2": 1.2}
+UNIT = re.compile(r"\b(?:rad|m)/s(?:\^2)?(?![\w^])")
+# What an empty list of limits means where the goal chooses the speed by its times.
+BY_TIMES = {("ExecuteParametrizedTrajectory", "max_velocity"): "none: the model's",
+            ("ExecuteParametrizedTrajectory", "max_acceleration"): "none: 5 each"}
+
+ACTIONS = sorted({f"{file.parents[1].name}/action/{file.stem}" for file in action_files.paths(
+    {"ur_ros_rtde_msgs", *(plugin.package for plugin in plugins.find().values())})})
+
+
+def limit_of(field):
+    """The smallest that the units in the field's comment allow; None for what is no speed. A stop may be as hard as it likes."""
+    if not field.numeric or "deceleration" in field.name:
+        return None
+    return min((HIGHEST[unit] for unit in UNIT.findall(field.comment)), default=None)
+
+
+def speeds(message, kind):
+    """(field, its default) of all speeds and accelerations of a goal, or of a message in one."""
+    for name, type_name in message.get_fields_and_field_types().items():
+        element = messages.element_type(type_name)
+        if messages.is_message(element or type_name):
+            inner = element or type_name
+            if inner.startswith("ur_ros_rtde"):
+                yield from speeds(messages.load(inner)(), inner)
+            continue
+        field = action_files.field(name, kind)
+        if field is not None and limit_of(field) is not None:
+            yield field, getattr(message, name)
+
+
+@pytest.mark.parametrize("kind", ACTIONS)
+def test_no_default_is_faster_than_universal_robots_own(kind):
+    for field, default in speeds(messages.load(kind).Goal(), kind):
+        for value in default if hasattr(default, "__len__") else [default]:
+            assert abs(value) <= limit_of(field), f"{field.name} is {value} by default, at most {limit_of(field)}: {field.comment}"
+
+
+@pytest.mark.parametrize("kind", ACTIONS)
+def test_no_limits_mean_slow_ones(kind):
+    for field, default in speeds(messages.load(kind).Goal(), kind):
+        if field.name.startswith("max_") and field.type.endswith("[]"):
+            expected = BY_TIMES.get((kind.split("/")[-1], field.name), f"none: {limit_of(field)} each")
+            assert len(default) == 0 and expected in field.comment, f"{field.name}: {field.comment}"
+
+
+def test_speeds_are_found():
+    found = {(kind.split("/")[-1], field.name) for kind in ACTIONS for field, _ in speeds(messages.load(kind).Goal(), kind)}
+    assert {("MoveJ", "speed"), ("MoveL", "acceleration"), ("MovePath", "speed"), ("ForceMode", "limits"), ("Jog", "acceleration"),
+            ("ExecuteTrajectory", "max_velocity"), ("ExecuteCartesianPath", "rotation_speed"), ("DirectTorque", "max_joint_speed"),
+            ("MoveDownUntilForce", "speed")} <= found
+    assert not [name for _, name in found if "deceleration" in name]
+
+
+@pytest.mark.parametrize("comment, limit", [("m/s of the TCP, above 0, at most 3", 0.25), ("rad/s^2 of the leading joint", 1.4),
+                                            ("MOVE_J: rad/s, at most 3.14; else m/s, at most 3", 0.25), ("m, 0 to 2", None),
+                                            ("rad/s^3, exactly 6", None)])
+def test_units_are_read(comment, limit):
+    assert limit_of(action_files.Field("float64", "speed", comment)) == limit
