@@ -18,15 +18,11 @@ bool has_identity_orientation(const geometry_msgs::msg::Pose & pose);
 std::vector<double> tcp_target(const geometry_msgs::msg::Pose & pose, bool identity_orientation,
                                const Sample & start);
 
-/// The same for a goal with these two fields, or with `pose` only.
+/// The same for a goal with these two fields.
 template <typename Goal>
 std::vector<double> tcp_target(const Goal & goal, const Sample & start)
 {
-  if constexpr (requires { goal.identity_orientation; }) {
-    return tcp_target(goal.pose, goal.identity_orientation, start);
-  } else {
-    return tcp_target(goal.pose, false, start);
-  }
+  return tcp_target(goal.pose, goal.identity_orientation, start);
 }
 
 /// Check::reachable for the goal's tcp_target() from where the arm is.

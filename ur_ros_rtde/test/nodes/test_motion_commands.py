@@ -245,13 +245,13 @@ def test_servo_without_a_time_is_slow(robot, simulator):
     watcher = Watcher(simulator)
     watcher.look()
     watcher.speeds.clear()
-    goal = robot.send(ServoJ, "servo_j", joint_positions=[1.5, *HOME[1:]], time=0.0)
+    goal = robot.send(ServoJ, "servo_j", joint_positions=[1.5, *HOME[1:]])
     wait_for(lambda: watcher.look() and goal.ended(), 30.0, "the end")
     goal.succeeded()
     assert 0.9 < max(watcher.look()) < 1.05 * 1.03
     start = pose_now(robot)
     begin = simulator.state()["timestamp"]
-    robot.send(ServoL, "servo_l", pose=moved(start, y=0.3), time=0.0).succeeded()
+    robot.send(ServoL, "servo_l", pose=moved(start, y=0.3)).succeeded()
     assert simulator.state()["timestamp"] - begin > 15.0 / 8.0 * 0.3 / 0.25  # as 0.25 m/s at most takes
 
 

@@ -54,12 +54,8 @@ def test_a_position_only_keeps_the_orientation(robot, simulator, action, name):
 @pytest.mark.parametrize("action, name", TO_A_POSE, ids=[name for _, name in TO_A_POSE])
 def test_an_identity_orientation_is_taken_if_it_is_meant(robot, simulator, action, name, meant):
     turn_tool(robot, 0.3)
-    target, fields = position_only(robot, y=0.05), {}
-    if hasattr(action.Goal, "identity_orientation"):
-        fields["identity_orientation"] = meant
-    elif meant:
-        target.orientation.w = -1.0  # the same rotation, but not what a message has that gives none
-    robot.send(action, name, pose=target, **fields).succeeded()
+    target = position_only(robot, y=0.05)
+    robot.send(action, name, pose=target, identity_orientation=meant).succeeded()
     assert angle(arm(simulator)[1], np.eye(3)) == pytest.approx(0.0 if meant else 0.3, abs=0.01)
 
 

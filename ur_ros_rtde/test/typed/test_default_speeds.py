@@ -19,9 +19,17 @@ ACTIONS = sorted({f"{file.parents[1].name}/action/{file.stem}" for file in actio
 
 def limit_of(field):
     """The smallest that the units in the field's comment allow; None for what is no speed. A stop may be as hard as it likes."""
-    if not field.numeric or "deceleration" in field.name:
+    if not field.numeric or "deceleration" in field.name or field.name == "time":
         return None
     return min((HIGHEST[unit] for unit in UNIT.findall(field.comment)), default=None)
+
+
+def limits_of(field, count):
+    """Of each of its values: six with two units are three of the TCP's position and three of its orientation."""
+    units = UNIT.findall(field.comment)
+    if count == 6 and units == ["m/s", "rad/s"]:
+        return [HIGHEST["m/s"]] * 3 + [HIGHEST["rad/s"]] * 3
+    return [limit_of(field)] * count
 
 
 def speeds(message, kind):
@@ -41,8 +49,9 @@ def speeds(message, kind):
 @pytest.mark.parametrize("kind", ACTIONS)
 def test_no_default_is_faster_than_universal_robots_own(kind):
     for field, default in speeds(messages.load(kind).Goal(), kind):
-        for value in default if hasattr(default, "__len__") else [default]:
-            assert abs(value) <= limit_of(field), f"{field.name} is {value} by default, at most {limit_of(field)}: {field.comment}"
+        values = list(default) if hasattr(default, "__len__") else [default]
+        for value, limit in zip(values, limits_of(field, len(values))):
+            assert abs(value) <= limit, f"{field.name} is {value} by default, {limit} is the highest: {field.comment}"
 
 
 @pytest.mark.parametrize("kind", ACTIONS)
@@ -51,6 +60,11 @@ def test_no_limits_mean_slow_ones(kind):
         if field.name.startswith("max_") and field.type.endswith("[]"):
             expected = BY_TIMES.get((kind.split("/")[-1], field.name), f"none: {limit_of(field)} each")
             assert len(default) == 0 and expected in field.comment, f"{field.name}: {field.comment}"
+
+
+@pytest.mark.parametrize("action", ["ServoJ", "ServoL"])
+def test_a_servo_motion_without_a_time_takes_as_long_as_the_default_speeds_need(action):
+    assert messages.load(f"ur_ros_rtde_msgs/action/{action}").Goal().time == 0.0
 
 
 def test_speeds_are_found():
