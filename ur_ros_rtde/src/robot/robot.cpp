@@ -117,7 +117,8 @@ Status Robot::motion_possible() const
   const auto link = impl_->state.link();
   const auto sample = latest();
   if (!link.connected || !sample) {
-    return failure(ErrorCode::link_lost, link.error.message);
+    return failure(ErrorCode::link_lost,
+                   link.connected ? "nothing has come from the controller yet" : link.error.message);
   }
   if (const auto condition = robot_condition(*sample)) {
     return tl::unexpected(*condition);

@@ -167,7 +167,8 @@ RobotStatus Supervisor::look()
     lost_link_ = sample ? sample->link : lost_link_;
     forget_program();
     links_.drop();
-    return {RobotState::disconnected, ErrorCode::link_lost, link.error.message};
+    return {RobotState::disconnected, ErrorCode::link_lost,
+            link.connected ? "nothing has come from the controller yet" : link.error.message};
   }
   if (std::exchange(link_, sample->link) != sample->link) {
     forget_program();

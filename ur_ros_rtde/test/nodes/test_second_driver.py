@@ -22,7 +22,7 @@ def a_client(namespace):
 
 
 @pytest.fixture
-def client():
+def first_client():
     yield from a_client("first")
 
 
@@ -32,9 +32,9 @@ def other_client():
 
 
 @pytest.fixture
-def first(simulator, processes, client):
+def first(simulator, processes, first_client):
     driver = processes(node("driver", simulator.address, namespace="first"))
-    make_ready(client)
+    make_ready(first_client)
     return driver
 
 
@@ -49,8 +49,8 @@ def other(simulator, processes):
     return lambda *parameters: processes(node("driver", simulator.address, *parameters, namespace="other"))
 
 
-def test_a_second_driver_with_the_same_names_refuses_to_start_and_the_first_moves_on(first, client, simulator):
-    goal = client.send(MoveJ, "move_j", joint_positions=AWAY, speed=0.3)
+def test_a_second_driver_with_the_same_names_refuses_to_start_and_the_first_moves_on(first, first_client, simulator):
+    goal = first_client.send(MoveJ, "move_j", joint_positions=AWAY, speed=0.3)
     assert goal.accepted
     second = node("driver", simulator.address, namespace="first")
     assert second.wait(30.0) == 2
@@ -67,21 +67,21 @@ def test_each_node_whose_name_another_process_has_refuses_to_start(name, first, 
     assert f"/first/{name} runs already" in second.output()
 
 
-def test_a_driver_starts_again_at_once_after_it_was_killed(first, client, simulator, processes):
+def test_a_driver_starts_again_at_once_after_it_was_killed(first, simulator, processes):
     first.kill()
     second = processes(node("driver", simulator.address, namespace="first"))
-    make_ready(client)
+    second.wait_for_output("the robot is ready")
     assert second.running() and "runs already" not in second.output()
 
 
-def test_a_driver_in_another_namespace_says_who_has_the_robot_and_gets_it_when_it_is_free(first, client, other, other_client,
-                                                                                          states, simulator):
+def test_a_driver_in_another_namespace_says_who_has_the_robot_and_gets_it_when_it_is_free(
+        first, first_client, other, other_client, states, simulator):
     second = other()
     state = comes_to(states, DriverState.STOPPED, ErrorCode.ROBOT_IN_USE)
     for part in ("in use", "input_int_register_23", "another driver", simulator.address):
         assert part in state.message, state.message
     assert sum("are in use" in line for line in second.lines) == 1, second.output()
-    goal = client.send(MoveJ, "move_j", joint_positions=AWAY, speed=0.5)
+    goal = first_client.send(MoveJ, "move_j", joint_positions=AWAY, speed=0.5)
     refused = other_client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.5)
     assert not refused.accepted
     assert other_client.refusal(refused).error_code == ErrorCode.ROBOT_IN_USE
@@ -119,7 +119,7 @@ def test_without_a_ur_type_the_limits_are_those_of_the_arm(other, other_client):
     assert "2.0944" in other_client.refusal(refused).message
 
 
-def test_the_result_of_a_goal_that_a_driver_does_not_know_is_no_empty_one(first, client):
-    answer = client.call(MoveJ.Impl.GetResultService, "/first/move_j/_action/get_result")
+def test_the_result_of_a_goal_that_a_driver_does_not_know_is_no_empty_one(first, first_client):
+    answer = first_client.call(MoveJ.Impl.GetResultService, "/first/move_j/_action/get_result")
     assert not answer.result.success and answer.result.error_code == ErrorCode.EXCEPTION
     assert "no such goal" in answer.result.message
