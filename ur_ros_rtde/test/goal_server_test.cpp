@@ -27,7 +27,7 @@ class FaultyServer : public GoalServer<Trigger> {
  public:
   FaultyServer(rcl_cxx::Node & node, PluginHost & host) : book_(host, "/faulty")
   {
-    serve(node, "faulty", book_);
+    serve(node, "faulty", book_, false);
   }
   ~FaultyServer() override { end_service(); }
 
@@ -58,7 +58,7 @@ TEST_F(GoalServerTest, AGoalWhoseResultCannotBeFilledInIsAbortedWithTheReason)
   rcl_cxx::Executor executor(context_);
   executor.add_node(node_);
   std::jthread spinning([&executor] { executor.spin(); });
-  const auto end = client->call({}, std::chrono::seconds(20));
+  const auto end = client->call(Trigger::Goal(), std::chrono::seconds(20));
   executor.stop();
   ASSERT_TRUE(end) << end.error();
   EXPECT_EQ(end->status, rcl_cxx::GoalStatus::aborted);

@@ -122,7 +122,7 @@ TEST(AFollower, of_poses_says_that_an_orientation_is_missing)
   Sample sample{};
   sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
   const auto follower = follow_poses({});
-  follower->begin(sample, 0.002);
+  follower->begin(sample, 0.002, widest_arm_limits());
   const auto refused = follower->aim({{0.4, 0.1, 0.31, 0.0, 0.0, 0.0}}, 0.02);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("if only its position is given"), std::string::npos)

@@ -44,6 +44,9 @@ class GoalServer {
   void finish(Handle & handle, typename A::Result & result, const Outcome & outcome);
 
  private:
+  /// tell(); what it throws is the outcome then.
+  Outcome fill(const Outcome & outcome, typename A::Result & result) const;
+
   GoalBook * book_ = nullptr;
   typename rcl_cxx::ActionServer<A>::SharedPtr server_;
 };
@@ -73,13 +76,13 @@ void GoalServer<A>::serve(rcl_cxx::Node & node, const std::string & name, GoalBo
     handlers.client_lost = [this](Handle & handle) { book_->end(handle.goal_id(), client_lost()); };
   }
   handlers.missing_result = [this](rcl_cxx::GoalStatus status, typename A::Result & result) {
-    tell(missing_result(status), result);
+    fill(missing_result(status), result);
   };
   server_ = node.template create_action_server<A>(name, std::move(handlers));
 }
 
 template <typename A>
-void GoalServer<A>::finish(Handle & handle, typename A::Result & result, const Outcome & outcome)
+Outcome GoalServer<A>::fill(const Outcome & outcome, typename A::Result & result) const
 {
   bool told = false;
   const Outcome end = book_->guarded(Interrupt(), [&] {
@@ -90,6 +93,13 @@ void GoalServer<A>::finish(Handle & handle, typename A::Result & result, const O
   if (!told) {
     GoalServer<A>::tell(end, result);
   }
+  return end;
+}
+
+template <typename A>
+void GoalServer<A>::finish(Handle & handle, typename A::Result & result, const Outcome & outcome)
+{
+  const Outcome end = fill(outcome, result);
   book_->finish(handle.goal_id(), end);
   if (end) {
     handle.succeed(result);
