@@ -21,17 +21,18 @@ struct ScriptRegisters {
 /// Free for extensions are the inputs 19 to 22, the integer outputs 12 to 19, and the float outputs 12 to 17
 /// and 19; the float registers 18 are the trigger and its acknowledgement, all others ur_rtde's own.
 struct ScriptExtension {
-  std::string name;           ///< of the plugin: lower case letters, digits, underscores
-  std::string snippet;        ///< statements
-  std::string preamble_name;  ///< extensions that share definitions give them the same name and text
-  std::string preamble;       ///< definitions (def, thread, global), once per preamble_name
+  // Initialized, so that g++ 11 does not warn when designated initializers leave members out.
+  std::string name{};           ///< of the plugin: lower case letters, digits, underscores
+  std::string snippet{};        ///< statements
+  std::string preamble_name{};  ///< extensions that share definitions give them the same name and text
+  std::string preamble{};       ///< definitions (def, thread, global), once per preamble_name
   /// Used besides those that the short forms in snippet and preamble name.
-  ScriptRegisters registers;
+  ScriptRegisters registers{};
   /// What has to be installed on the robot for the snippet ("the URCap of …"), and functions that it brings.
   /// A controller that does not know one of these lacks it: that is no fault, and goals are refused with what
   /// to install.
-  std::string urcap;
-  std::vector<std::string> urcap_functions;
+  std::string urcap{};
+  std::vector<std::string> urcap_functions{};
   /// Its registers hold values between its runs: no other extension may use them. Otherwise registers are
   /// shared, since extensions run one at a time.
   bool exclusive = false;

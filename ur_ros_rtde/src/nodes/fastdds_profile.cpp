@@ -1,6 +1,5 @@
 #include "nodes/fastdds_profile.hpp"
 
-#include <ament_index_cpp/get_package_share_directory.hpp>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -9,6 +8,8 @@
 #include <optional>
 #include <string>
 #include <system_error>
+
+#include "plugins/ament_index.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -55,7 +56,7 @@ bool mentions(const fs::path & file, const std::string & text)
 std::optional<fs::path> config_folder()
 {
   try {
-    return fs::path(ament_index_cpp::get_package_share_directory("ur_ros_rtde")) / "config";
+    return ament_index::share_folder("ur_ros_rtde") / "config";
   } catch (const std::exception &) {
     return std::nullopt;  // without an ament index there are no plugins either, and the nodes say so
   }

@@ -3,14 +3,10 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
-#include <ament_index_cpp/get_resources.hpp>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
-#if __has_include(<ament_index_cpp/version.h>)
-#include <ament_index_cpp/version.h>
-#endif
+#include "plugins/ament_index.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -18,17 +14,6 @@ namespace fs = std::filesystem;
 
 /// What pluginlib_export_plugin_description_file(ur_ros_rtde plugins.xml) registers under.
 constexpr const char * resource_type = "ur_ros_rtde__pluginlib__plugin";
-
-/// The packages that register plugins, with their installation prefix.
-std::map<std::string, fs::path> packages_with_plugins()
-{
-#if AMENT_INDEX_CPP_VERSION_MAJOR > 1 || AMENT_INDEX_CPP_VERSION_MINOR >= 13  // Lyrical
-  return ament_index_cpp::get_resources_by_name(resource_type);
-#else
-  const auto found = ament_index_cpp::get_resources(resource_type);
-  return {found.begin(), found.end()};
-#endif
-}
 
 std::string attribute(const tinyxml2::XMLElement & element, const char * name)
 {
@@ -120,7 +105,7 @@ std::vector<PluginEntry> read_plugins_file(const std::string & file, const std::
 std::vector<PluginEntry> find_plugins(const ReportProblem & report)
 {
   std::vector<PluginEntry> all;
-  for (const auto & [package, prefix] : packages_with_plugins()) {
+  for (const auto & [package, prefix] : ament_index::resources(resource_type)) {
     std::ifstream lines(prefix / "share/ament_index/resource_index" / resource_type / package);
     if (!lines) {
       report(fmt::format("the ament index of package {} in {} cannot be read", package, prefix.string()));
