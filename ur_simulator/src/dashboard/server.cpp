@@ -40,7 +40,7 @@ void Server::accept(const std::shared_ptr<Connection> & connection)
 
 void Server::receive(Client & client, std::string_view bytes)
 {
-  // The reply to one of the lines may end the client: keep the connection until all are done.
+  // Sending a reply may end the client: only its connection is sure to be there afterwards.
   const std::shared_ptr<Connection> connection = client.connection;
   client.received.append(bytes);
   std::string received = std::move(client.received);
@@ -92,15 +92,16 @@ void Server::deliver(Client & client)
 
 void Server::answer(Client & client, std::string_view line)
 {
+  const std::shared_ptr<Connection> connection = client.connection;  // as in receive()
   std::string_view argument;
   const Command * command = find_command(line, pendant_.options().version, argument);
   if (command == nullptr) {
-    client.connection->send(fmt::format("could not understand: '{}'\n", line));
+    connection->send(fmt::format("could not understand: '{}'\n", line));
     return;
   }
   const bool local = !pendant_.remote_control() || !client.remote_when_connected;
   if (command->needs_remote_control && local && pendant_.options().version.is_e_series()) {
-    client.connection->send(
+    connection->send(
         "Command is not allowed due to safety reasons, please switch robot to Remote Control mode and "
         "reconnect to port "
         "29999\n");
@@ -111,9 +112,9 @@ void Server::answer(Client & client, std::string_view line)
     deliver(client);
     return;
   }
-  client.connection->send(command->reply(pendant_, argument) + "\n");
+  connection->send(command->reply(pendant_, argument) + "\n");
   if (command->name == "quit") {
-    client.connection->close_after_sending();
+    connection->close_after_sending();
   }
 }
 

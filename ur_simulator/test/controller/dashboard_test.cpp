@@ -31,6 +31,20 @@ TEST_F(Dashboard, greets_and_says_goodbye)
   EXPECT_TRUE(client.socket().closed_by_peer());
 }
 
+// AddressSanitizer sees it if the client is used after that.
+TEST_F(Dashboard, survives_a_client_that_is_gone_when_its_quit_is_answered)
+{
+  const auto stall = [&](bool stalled) {
+    controller.control({{"command", "stall_links"}, {"which", "dashboard"}, {"stalled", stalled}});
+  };
+  stall(true);
+  client.socket().send("quit\n");
+  client.socket().reset();
+  stall(false);
+  DashboardClient next(controller.address());
+  EXPECT_EQ(next.ask("quit"), "Disconnected");
+}
+
 TEST_F(Dashboard, answers_inquiries_as_the_manual_says)
 {
   EXPECT_EQ(client.ask("robotmode"), "Robotmode: RUNNING");

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace ur_simulator::testing {
 
@@ -51,6 +52,14 @@ class RawSocket {
       }
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
+  }
+
+  /// Ends the connection as a crashed client would.
+  void reset()
+  {
+    const linger at_once{1, 0};
+    setsockopt(file_, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
+    close(std::exchange(file_, -1));
   }
 
   /// Exactly so many bytes; throws when they do not come within the limit or the connection ends.
