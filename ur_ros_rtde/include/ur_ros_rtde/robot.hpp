@@ -35,6 +35,10 @@ enum class ControlMode {
   control_urcap,  ///< the External Control URCap fetches it when its program is played on the robot
 };
 
+constexpr double min_watchdog_frequency = 1.0;  // Hz
+/// A CB3 controller sends a package, and gets a sign of life, every 8 ms: two within 1/50 s.
+constexpr double max_watchdog_frequency = 50.0;  // Hz
+
 struct RobotOptions {
   std::string address;
   /// Hz, of the samples; see StateReceiverOptions.
@@ -51,7 +55,7 @@ struct RobotOptions {
   std::chrono::milliseconds retry_interval{250};
   std::chrono::milliseconds silence_limit{100};
   /// The robot program stops the arm when it has had no sign of life from here for 1/watchdog_frequency s.
-  /// Hz; 0: no watchdog.
+  /// Hz, min_watchdog_frequency to max_watchdog_frequency; 0: no watchdog.
   double watchdog_frequency = 10.0;
   /// Start the control program again when it was stopped (with control_urcap: by a lost link) and the robot
   /// is ready for it; never what it was doing.
@@ -133,8 +137,9 @@ class Robot {
   bool moving() const;
   /// Freedrive or teach mode is on: somebody may be moving the arm by hand.
   bool guided() const;
-  /// From now on the control program stops the arm when it has had no sign of life for 1/frequency s (Hz, 1
-  /// to 100), until it is started anew: then it is RobotOptions::watchdog_frequency again.
+  /// From now on the control program stops the arm when it has had no sign of life for 1/frequency s (Hz,
+  /// min_watchdog_frequency to max_watchdog_frequency), until it is started again: then the limit is
+  /// RobotOptions::watchdog_frequency again.
   Status set_watchdog(double frequency);
 
   /// Whatever moves: decelerates, waits for standstill by actual joint velocities. If that does not work,

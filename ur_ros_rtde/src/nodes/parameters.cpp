@@ -188,7 +188,7 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
   robot.silence_limit = declare_silence_limit(node);
   robot.realtime_priority = declare_realtime_priority(node);
   robot.watchdog_frequency = declare_number(
-      node, "watchdog_frequency", robot.watchdog_frequency, 0.0, 50.0,
+      node, "watchdog_frequency", robot.watchdog_frequency, 0.0, max_watchdog_frequency,
       "Hz: the robot stops the arm after 1/watchdog_frequency s without a sign of life of this "
       "node; 0: no watchdog");
   robot.restart_program = node.declare_parameter(

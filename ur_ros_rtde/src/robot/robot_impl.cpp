@@ -32,13 +32,17 @@ DashboardLinkOptions dashboard_options(const RobotOptions & options)
   return result;
 }
 
+bool is_watchdog_frequency(double frequency)
+{
+  return frequency >= min_watchdog_frequency && frequency <= max_watchdog_frequency;
+}
+
 const RobotOptions & checked(const RobotOptions & options)
 {
-  if (options.watchdog_frequency != 0.0 &&
-      !(options.watchdog_frequency >= 1.0 && options.watchdog_frequency <= 50.0)) {
+  if (options.watchdog_frequency != 0.0 && !is_watchdog_frequency(options.watchdog_frequency)) {
     throw std::invalid_argument(
-        fmt::format("watchdog_frequency is {} Hz: it must be from 1 to 50 Hz, or 0 for no watchdog",
-                    options.watchdog_frequency));
+        fmt::format("watchdog_frequency is {} Hz: it must be from {} to {} Hz, or 0 for no watchdog",
+                    options.watchdog_frequency, min_watchdog_frequency, max_watchdog_frequency));
   }
   return options;
 }
@@ -95,6 +99,11 @@ void Robot::Impl::feed_watchdog(const Sample & sample)
 
 Status Robot::Impl::set_watchdog(double frequency)
 {
+  if (!is_watchdog_frequency(frequency)) {
+    return failure(ErrorCode::invalid_goal,
+                   fmt::format("the watchdog's frequency is {} Hz: it must be from {} to {} Hz", frequency,
+                               min_watchdog_frequency, max_watchdog_frequency));
+  }
   const auto control = links.control();
   if (!control) {
     return tl::unexpected(why_not());

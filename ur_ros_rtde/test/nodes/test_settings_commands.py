@@ -88,6 +88,13 @@ def test_the_robot_keeps_running_with_a_faster_watchdog_and_stops_by_it(robot, d
         driver.go_on()
 
 
+def test_a_watchdog_that_is_faster_than_the_signs_of_life_is_refused(robot):
+    refused = robot.send(SetWatchdog, "set_watchdog", min_frequency=60.0)
+    assert not refused.accepted
+    message = robot.refusal(refused).message
+    assert "min_frequency" in message and "50" in message
+
+
 def test_an_output_that_does_not_change_because_nothing_comes_is_a_lost_link(robot, simulator):
     simulator.control("stall_links", which="rtde")
     try:

@@ -312,6 +312,11 @@ TEST_F(ARobot, refuses_options_out_of_range)
   options.watchdog_frequency = 10.0;
   options.frequency = 1000.0;
   EXPECT_THROW(Robot{options}, std::invalid_argument);
+  make_robot();
+  const auto set = robot->set_watchdog(60.0);
+  ASSERT_FALSE(set);
+  EXPECT_EQ(set.error().code, ErrorCode::invalid_goal);
+  EXPECT_NE(set.error().message.find("from 1 to 50 Hz"), std::string::npos);
 }
 
 }  // namespace
