@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+
+#include <rcl_cxx/executor.hpp>
+#include <ur_ros_rtde_msgs/action/trigger.hpp>
+
+#include "ur_ros_rtde/goal_server.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+using Trigger = ur_ros_rtde_msgs::action::Trigger;
+using std::chrono::seconds;
+
+rcl_cxx::Context::SharedPtr make_context()
+{
+  return std::make_shared<rcl_cxx::Context>(std::vector<std::string>{"goal_server_client_test"},
+                                            rcl_cxx::ContextOptions{.handle_signals = false});
+}
+
+/// A node whose executor spins in a thread, with a participant of its own as another process has it.
+struct SpinningNode {
+  explicit SpinningNode(const std::string & name) : node(context, name)
+  {
+    executor.add_node(rcl_cxx::Node::SharedPtr(&node, [](rcl_cxx::Node *) {}));
+    thread = std::thread([this] { executor.spin(); });
+  }
+  ~SpinningNode()
+  {
+    context->shutdown("end of the test");
+    thread.join();
+  }
+
+  rcl_cxx::Context::SharedPtr context = make_context();
+  rcl_cxx::Node node;
+  rcl_cxx::Executor executor{context};
+  std::thread thread;
+};
+
+/// Goals that go on until they have to end.
+class EndlessCommand : public GoalServer<Trigger> {
+ public:
+  EndlessCommand(rcl_cxx::Node & node, bool needs_client) : host_(node), book_(host_, "/endless")
+  {
+    serve(node, "endless", book_, needs_client);
+  }
+  ~EndlessCommand() override
+  {
+    host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
+    end_service();
+  }
+
+  std::promise<void> started;
+  std::promise<ErrorCode> ended;
+
+ private:
+  tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id, const Trigger::Goal &) override
+  {
+    return book_.admit(id, [](GoalBook::Ticket &) { return Status(); });
+  }
+  void carry_out(Handle & handle, GoalBook::Ticket & ticket) override
+  {
+    started.set_value();
+    const auto limit = std::chrono::steady_clock::now() + seconds(10);
+    while (!ticket.interrupt->requested() && std::chrono::steady_clock::now() < limit) {
+      std::this_thread::yield();
+    }
+    const auto why = ticket.interrupt->requested();
+    Trigger::Result result;
+    finish(handle, result, why ? Outcome(*why) : Outcome::success());
+    ended.set_value(static_cast<ErrorCode>(result.error_code));
+  }
+  void give_up(Handle & handle, const Outcome & outcome) override
+  {
+    Trigger::Result result;
+    finish(handle, result, outcome);
+  }
+
+  PluginHost host_;
+  GoalBook book_;
+};
+
+class GoalServerClientTest : public testing::Test {
+ protected:
+  /// How a goal ends whose client disappears, or the end of the node if it does not end before.
+  static ErrorCode end_without_client(bool needs_client)
+  {
+    auto ended = std::future<ErrorCode>();
+    {
+      SpinningNode server("server");
+      EndlessCommand command(server.node, needs_client);
+      ended = command.ended.get_future();
+      {
+        SpinningNode other("client");
+        const auto client = other.node.create_action_client<Trigger>("endless");
+        EXPECT_TRUE(client->wait_for_server(seconds(10)));
+        const auto response = client->send_goal(Trigger::Goal());
+        EXPECT_EQ(command.started.get_future().wait_for(seconds(10)), std::future_status::ready);
+      }
+      if (needs_client) {
+        EXPECT_EQ(ended.wait_for(seconds(5)), std::future_status::ready);
+      } else {
+        EXPECT_EQ(ended.wait_for(seconds(2)), std::future_status::timeout);
+      }
+    }
+    return ended.get();
+  }
+};
+
+TEST_F(GoalServerClientTest, EndsGoalThatNeedsItsClient)
+{
+  EXPECT_EQ(end_without_client(true), ErrorCode::client_lost);
+}
+
+TEST_F(GoalServerClientTest, LetsGoalGoOnThatDoesNot)
+{
+  EXPECT_EQ(end_without_client(false), ErrorCode::shutdown);
+}
+}  // namespace
+}  // namespace ur_ros_rtde
