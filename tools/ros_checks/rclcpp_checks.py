@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Builds the checks in rclcpp/ against an installed ROS 2 and runs them on the installed driver and simulator.
+
+The environment is that of the installation (`source install/setup.bash`); --prefix puts further installations on top of it. What comes
+after `--` goes to the checks, which are GoogleTest's: `-- --gtest_filter=ActionCheck.*`.
+"""
+
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+from typing import Dict, List
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "ur_ros_rtde" / "test" / "nodes")]
+
+SOURCES = pathlib.Path(__file__).parent / "rclcpp"
+PACKAGES = {"rclcpp_action": "share/rclcpp_action", "ur_ros_rtde": "share/ur_ros_rtde", "ur_simulator": "share/ur_simulator"}
+
+
+def overlay(prefixes: List[pathlib.Path]) -> None:
+    """Puts the installations before those of the environment."""
+    for prefix in reversed(prefixes):
+        python = f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
+        for name, folder in (("AMENT_PREFIX_PATH", ""), ("CMAKE_PREFIX_PATH", ""), ("LD_LIBRARY_PATH", "lib"), ("PYTHONPATH", python)):
+            os.environ[name] = os.pathsep.join(part for part in (str(prefix / folder), os.environ.get(name)) if part)
+
+
+def missing_packages() -> List[str]:
+    prefixes = [pathlib.Path(prefix) for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
+    return [name for name, path in PACKAGES.items() if not any((prefix / path).is_dir() for prefix in prefixes)]
+
+
+def build(folder: pathlib.Path) -> pathlib.Path:
+    arguments = ["-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O0"]
+    if "ROS_WHEELS_PREFIX" in os.environ:
+        arguments.append(f"-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES={ROOT / 'wheels' / 'provider.cmake'}")
+    subprocess.run(["cmake", "-S", SOURCES, "-B", folder, *arguments], check=True)
+    subprocess.run(["cmake", "--build", folder, "--parallel", "2"], check=True)
+    return folder / "rclcpp_checks"
+
+
+def run(checks: pathlib.Path, arguments: List[str], driver_parameters: List[str]) -> int:
+    from support import Simulator, node
+    from ur_tools.isolation import Domain
+
+    with Domain() as domain:
+        environment: Dict[str, str] = domain.environment()
+        os.environ.update(environment)
+        address = environment["UR_TEST_ADDRESS"]
+        simulator = Simulator(address)
+        driver = node("driver", address, "ur_type:=ur10e", *driver_parameters)
+        try:
+            return subprocess.run([checks, *arguments]).returncode
+        finally:
+            driver.end()
+            simulator.end()
+            pathlib.Path(checks.parent, "driver.log").write_text(driver.output() + "\n")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[], help="installation on top of the environment's")
+    parser.add_argument("--build", type=pathlib.Path, help="build folder to keep (the driver's log goes there, too); default: a temporary one")
+    parser.add_argument("--driver", metavar="PARAMETER:=VALUE", action="append", default=[], help="parameter of the driver")
+    parser.add_argument("checks", nargs="*", help="arguments of the checks")
+    options = parser.parse_args()
+    overlay([prefix.resolve() for prefix in options.prefix])
+    if missing := missing_packages():
+        parser.error(f"not in AMENT_PREFIX_PATH: {', '.join(missing)}; source the installation's setup.bash, or name it with --prefix")
+    with tempfile.TemporaryDirectory() as temporary:
+        checks = build(options.build or pathlib.Path(temporary))
+        return run(checks, options.checks, options.driver)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
