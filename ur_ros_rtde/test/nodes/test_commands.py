@@ -89,7 +89,7 @@ BAD_GOALS = [
     (MoveL, "move_l", {"pose": Pose(position=Point(x=NAN))}, "pose.position", "nan"),
     (MoveL, "move_l", {"pose": Pose(position=Point(x=0.5)), "speed": 3.1}, "speed is 3.1 m/s", "3"),
     (MoveL, "move_l", {"pose": Pose(position=Point(x=0.5)), "acceleration": -1.0}, "acceleration is -1", "150"),
-    (ServoJ, "servo_j", {"joint_positions": HOME, "time": 0.0}, "time is 0", "0.01"),
+    (ServoJ, "servo_j", {"joint_positions": HOME, "time": 0.001}, "time is 0.001", "0.01"),
     (ServoJ, "servo_j", {"joint_positions": HOME, "lookahead_time": 0.5}, "lookahead_time is 0.5", "0.2"),
     (ServoJ, "servo_j", {"joint_positions": HOME, "gain": 5000.0}, "gain is 5000", "2000"),
     (ServoJ, "servo_j", {"joint_positions": [NAN] * 6}, "joint_positions[0]", "nan"),

@@ -69,8 +69,10 @@ def limits(descriptor):
 
 
 def choices(descriptor):
-    _, begins, names = descriptor.additional_constraints.partition("one of: ")
-    return tuple(names.split(", ")) if begins else None
+    prefix, begins, names = descriptor.additional_constraints.partition("one of: ")
+    if not begins:
+        return None
+    return (*(("",) if prefix == "empty, or " else ()), *names.split(", "))
 
 
 def test_every_parameter_is_a_launch_argument_with_its_type_default_limits_and_choices(start):
