@@ -1,5 +1,6 @@
 """The client of a running goal disappears."""
 
+import os
 import pathlib
 import signal
 import sys
@@ -15,29 +16,12 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 
 AWAY = HOME[0] + 2.0  # 10 s away with the speed of careless_client.py
 
-# A process that is killed is noticed when its participant's lease ends, after 20 s by default.
-SHORT_LEASE = """<?xml version="1.0" encoding="UTF-8" ?>
-<dds xmlns="http://www.eprosima.com"><profiles>
-  <participant profile_name="short_lease" is_default_profile="true"><rtps><builtin><discovery_config>
-    <leaseDuration><sec>2</sec></leaseDuration>
-    <leaseAnnouncement><sec>0</sec><nanosec>500000000</nanosec></leaseAnnouncement>
-  </discovery_config></builtin></rtps></participant>
-</profiles></dds>
-"""
-
 
 class CarelessClient(Process):
-    def __init__(self, *arguments, namespace="", env=None):
+    def __init__(self, *arguments, namespace=""):
         program = pathlib.Path(__file__).with_name("careless_client.py")
-        super().__init__([sys.executable, program, AWAY, namespace, *arguments], env, stdin=True)
+        super().__init__([sys.executable, program, AWAY, namespace, *arguments], stdin=True)
         self.goal_id = bytes.fromhex(self.wait_for_output("goal ", 30.0).split()[1])
-
-
-@pytest.fixture
-def short_lease(tmp_path):
-    file = tmp_path / "short_lease.xml"
-    file.write_text(SHORT_LEASE)
-    return {"FASTDDS_DEFAULT_PROFILES_FILE": str(file), "FASTRTPS_DEFAULT_PROFILES_FILE": str(file)}
 
 
 def wait_until_moving(simulator):
@@ -72,8 +56,10 @@ def test_the_arm_stops_at_once_when_its_client_ends(number, robot, simulator, dr
     make_ready(robot)
 
 
-def test_the_arm_stops_when_the_lease_of_a_killed_client_ends(robot, simulator, short_lease, processes):
-    client = processes(CarelessClient(env=short_lease))
+def test_the_arm_stops_when_the_lease_of_a_killed_client_ends(robot, simulator, processes):
+    """The lease is that of the package's profile, which the environment of the tests names: 3 s."""
+    assert {"FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE"} & os.environ.keys()
+    client = processes(CarelessClient())
     wait_until_moving(simulator)
     client.kill()
     wait_for(simulator.stands_still, 5.0 + 1.0 / REAL_TIME_FACTOR, "the arm to stand still")
