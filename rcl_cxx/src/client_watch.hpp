@@ -34,8 +34,8 @@ std::optional<ServiceClients> find_clients(NodeCore & node, const std::string & 
 /// rmw_cyclonedds puts an id of its own there.
 bool requests_carry_endpoints() noexcept;
 
-/// Decides whether the client that sent one request still exists. Nobody disappears who was not discovered:
-/// discovery has kDiscoveryLimit.
+/// Decides whether the client that sent one request still exists. A client that is not discovered yet has
+/// kDiscoveryLimit to be discovered.
 class ClientWatch {
  public:
   using Clock = std::chrono::steady_clock;

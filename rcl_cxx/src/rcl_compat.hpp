@@ -57,7 +57,7 @@ inline rcl_ret_t action_server_init(rcl_action_server_t * server, rcl_node_t * n
 #endif
 }
 
-/// Before Jazzy nobody counts clients: one is there for all that is known.
+/// Clients cannot be counted before Jazzy: 1, because one may be there.
 inline rcl_ret_t count_clients(const rcl_node_t * node, const char * service, std::size_t * count)
 {
 #if RCL_VERSION_MAJOR >= 9

@@ -1,6 +1,6 @@
 #pragma once
 
-/// While one exists, whatever its thread publishes fails: the program's rcl_publish() is replaced.
+/// While one exists, everything that its thread publishes fails: the program's rcl_publish() is replaced.
 class FailingPublish {
  public:
   FailingPublish();

@@ -20,7 +20,7 @@ std::optional<std::string> model_of_type(std::int32_t type, bool cb3);
 /// Which model the arm is, by the user and by the controller, and what it can do. Thread-safe.
 class ArmModel {
  public:
-  /// `stated` by the user; empty: whatever the controller has. Throws std::invalid_argument for an unknown
+  /// `stated` by the user; empty: the detected one. Throws std::invalid_argument for an unknown
   /// model.
   ArmModel(std::string address, std::string stated, LogFunction log);
 
