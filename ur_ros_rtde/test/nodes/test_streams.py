@@ -191,10 +191,13 @@ def test_servo_pose_follows_a_line(robot):
 
 
 def test_a_goal_is_refused_while_a_stream_lives_and_accepted_after_it(robot):
-    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base")):
-        wait_for(lambda: not (goal := robot.send(MoveJ, "move_j", joint_positions=HOME)).accepted and
-                 robot.refusal(goal).error_code == ErrorCode.BUSY and "/twist" in robot.refusal(goal).message,
-                 5.0, "a refusal that names the stream")
+    start = pose_now(robot).position
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.05)):
+        wait_for(lambda: abs(pose_now(robot).position.z - start.z) > 0.005, 5.0, "the stream to move the arm")
+        goal = robot.send(MoveJ, "move_j", joint_positions=HOME)
+        assert not goal.accepted
+        refusal = robot.refusal(goal)
+        assert refusal.error_code == ErrorCode.BUSY and "/twist" in refusal.message, refusal
     pause()
     robot.send(MoveJ, "move_j", joint_positions=HOME).succeeded()
 
