@@ -7,14 +7,13 @@
 #include <vector>
 
 #include "node_core.hpp"
+#include "ns_per_second.hpp"
 #include "qos_rmw.hpp"
 #include "rcl_error.hpp"
 
 namespace rcl_cxx::detail {
 namespace {
 enum Source : std::size_t { kGoal, kCancel, kResult, kFeedback, kStatus };
-
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 /// Takes what is there; false if nothing is.
 bool taken(rcl_ret_t code, const std::string & name, const char * what)

@@ -3,13 +3,12 @@
 #include "action_messages.hpp"
 #include "action_server_core.hpp"
 #include "node_core.hpp"
+#include "ns_per_second.hpp"
 #include "rcl_error.hpp"
 
 /// What clients ask of an action server: goals, cancellations, results. In the executor's thread.
 namespace rcl_cxx::detail {
 namespace {
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-
 bool nothing_to_take(rcl_ret_t code)
 {
   if (code == RCL_RET_ACTION_SERVER_TAKE_FAILED) {

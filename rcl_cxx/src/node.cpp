@@ -5,6 +5,7 @@
 #include "arguments.hpp"
 #include "client_core.hpp"
 #include "node_core.hpp"
+#include "ns_per_second.hpp"
 #include "parameter_messages.hpp"
 #include "parameter_services.hpp"
 #include "parameters.hpp"
@@ -18,8 +19,6 @@
 
 namespace rcl_cxx {
 namespace {
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-
 std::map<std::string, ParameterValue> read_overrides(const detail::NodeCore & node,
                                                      detail::ContextCore & context,
                                                      const NodeOptions & options,
@@ -49,8 +48,8 @@ detail::Parameters::Observer parameter_event_publisher(
     }
     rcl_interfaces::msg::ParameterEvent event = detail::to_message(changes);
     const std::int64_t now = core->clock().now_ns();
-    event.stamp.sec = static_cast<std::int32_t>(now / kNsPerSecond);
-    event.stamp.nanosec = static_cast<std::uint32_t>(now % kNsPerSecond);
+    event.stamp.sec = static_cast<std::int32_t>(now / detail::kNsPerSecond);
+    event.stamp.nanosec = static_cast<std::uint32_t>(now % detail::kNsPerSecond);
     event.node = core->fully_qualified_name();
     publisher->publish(event);
   };
@@ -120,8 +119,8 @@ builtin_interfaces::msg::Time Node::now() const
 {
   const std::int64_t ns = now_ns();
   builtin_interfaces::msg::Time time;
-  time.sec = static_cast<std::int32_t>(ns / kNsPerSecond);
-  time.nanosec = static_cast<std::uint32_t>(ns % kNsPerSecond);
+  time.sec = static_cast<std::int32_t>(ns / detail::kNsPerSecond);
+  time.nanosec = static_cast<std::uint32_t>(ns % detail::kNsPerSecond);
   return time;
 }
 

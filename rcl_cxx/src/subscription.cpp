@@ -10,7 +10,7 @@
 namespace rcl_cxx {
 namespace detail {
 namespace {
-enum Source : std::size_t { kMessage, kQos };
+enum SubscriptionEvent : std::size_t { kMessage, kQos };
 }
 
 std::shared_ptr<SubscriptionCore> SubscriptionCore::create(std::shared_ptr<NodeCore> node,

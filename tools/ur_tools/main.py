@@ -76,19 +76,19 @@ def command_shell(options: argparse.Namespace) -> int:
     return subprocess.run([shell], env=env).returncode
 
 
-def _python_command(name: str, options: argparse.Namespace) -> int:
+def _python_command(name: str, options: argparse.Namespace, packages: Optional[List[str]] = None) -> int:
     """demo, bench, chaos and plan, as modules of their own: their help needs no build."""
     arguments = _forwarded(options)
     layout = _layout(options)
     if not any(argument in ("-h", "--help") for argument in arguments):
-        _build(options)
+        _build(options, packages=packages)
     env = {**os.environ, "UR_LAYOUT": f"{layout.ros}:{layout.variant}", "PYTHONPATH": str(ROOT / "tools"),
            "PYTHONDONTWRITEBYTECODE": "1"}
     os.execve(sys.executable, [sys.executable, "-m", f"ur_tools.{name}", *arguments], env)
 
 
 def command_demo(options: argparse.Namespace) -> int:
-    return _python_command("demo", options)
+    return _python_command("demo", options, ["ur_simulator", "ur_ros_rtde_tutorials"])
 
 
 def command_bench(options: argparse.Namespace) -> int:

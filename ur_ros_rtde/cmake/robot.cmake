@@ -8,13 +8,11 @@ include(${CMAKE_CURRENT_LIST_DIR}/script.cmake)
 
 file(GLOB robot_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/robot/*.cpp)
 add_library(ur_ros_rtde_robot SHARED ${robot_sources})
-target_compile_features(ur_ros_rtde_robot PUBLIC cxx_std_20)
-target_compile_options(ur_ros_rtde_robot PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+ur_ros_rtde_settings(ur_ros_rtde_robot)
 target_include_directories(ur_ros_rtde_robot
   PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
-    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>
-  PRIVATE src)
+    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>)
 target_link_libraries(ur_ros_rtde_robot
   PUBLIC ur_rtde::rtde tl::expected Threads::Threads
   PRIVATE ur_ros_rtde_script fmt::fmt)

@@ -4,11 +4,9 @@ find_package(tl-expected REQUIRED)
 
 file(GLOB script_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/../src/script/*.cpp)
 add_library(ur_ros_rtde_script STATIC ${script_sources})
-target_compile_features(ur_ros_rtde_script PUBLIC cxx_std_20)
-target_compile_options(ur_ros_rtde_script PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+ur_ros_rtde_settings(ur_ros_rtde_script)
 target_include_directories(ur_ros_rtde_script
   PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_LIST_DIR}/../include>
-    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>
-  PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../src)
+    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>)
 target_link_libraries(ur_ros_rtde_script PUBLIC tl::expected PRIVATE fmt::fmt)

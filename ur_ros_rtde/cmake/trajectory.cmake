@@ -6,14 +6,12 @@ find_package(tl-expected REQUIRED)
 file(GLOB trajectory_sources CONFIGURE_DEPENDS
   ${CMAKE_CURRENT_LIST_DIR}/../src/trajectory/*.cpp ${CMAKE_CURRENT_LIST_DIR}/../src/kinematics/*.cpp)
 add_library(ur_ros_rtde_trajectory SHARED ${trajectory_sources})
-target_compile_features(ur_ros_rtde_trajectory PUBLIC cxx_std_20)
-target_compile_options(ur_ros_rtde_trajectory PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
-  $<$<CONFIG:Release,RelWithDebInfo>:-O3>)
+ur_ros_rtde_settings(ur_ros_rtde_trajectory)
+target_compile_options(ur_ros_rtde_trajectory PRIVATE $<$<CONFIG:Release,RelWithDebInfo>:-O3>)
 target_include_directories(ur_ros_rtde_trajectory
   PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_LIST_DIR}/../include>
-    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>
-  PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../src)
+    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>)
 target_link_libraries(ur_ros_rtde_trajectory
   PUBLIC Eigen3::Eigen tl::expected
   PRIVATE fmt::fmt)

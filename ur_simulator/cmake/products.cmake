@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 # The rooms are linked into the one library, so that users see only the public header and nlohmann_json.
-add_library(ur_simulator SHARED src/controller/simulated_controller.cpp)
+add_library(ur_simulator SHARED src/library/simulated_controller.cpp)
 add_library(ur_simulator::ur_simulator ALIAS ur_simulator)
 target_include_directories(ur_simulator PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
                                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -13,7 +13,7 @@ target_compile_features(ur_simulator PUBLIC cxx_std_20)
 add_executable(ur_simulator_app src/app/main.cpp src/app/options.cpp)
 target_link_libraries(ur_simulator_app PRIVATE sim_controller CLI11::CLI11)
 target_compile_options(ur_simulator_app PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
-set_target_properties(ur_simulator_app PROPERTIES OUTPUT_NAME ur_simulator RUNTIME_OUTPUT_DIRECTORY bin)
+set_target_properties(ur_simulator_app PROPERTIES OUTPUT_NAME ur_simulator RUNTIME_OUTPUT_DIRECTORY bin UNITY_BUILD ON)
 
 install(TARGETS ur_simulator EXPORT ur_simulatorTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

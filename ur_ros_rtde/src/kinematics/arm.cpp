@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "kinematics/extent.hpp"
+
 namespace ur_ros_rtde::kinematics {
 namespace {
 
@@ -14,7 +16,6 @@ using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
 constexpr double half_turn = std::numbers::pi;
-constexpr double arm_length = 0.2;  // m/rad: what a rotation counts as beside a translation
 
 struct Link {
   double a, d, alpha;
@@ -43,11 +44,6 @@ Vector3d rotation_vector(const Eigen::Matrix3d & rotation)
 {
   const AngleAxisd turn(rotation);
   return turn.angle() * turn.axis();
-}
-
-double extent(const Twist & twist)
-{
-  return twist.head<3>().norm() + arm_length * twist.tail<3>().norm();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "kinematics/extent.hpp"
 #include "kinematics/follow.hpp"
 
 namespace ur_ros_rtde::kinematics {
@@ -15,12 +16,6 @@ using trajectory::Trajectory;
 constexpr std::size_t most_references = 100;
 constexpr double same_correction = 1e-5;  // m
 constexpr double farthest = 0.015;        // m: beyond that it is not the same arm
-constexpr double arm_length = 0.2;        // m/rad
-
-double extent(const Twist & twist)
-{
-  return twist.head<3>().norm() + arm_length * twist.tail<3>().norm();
-}
 
 /// The joint positions at a place, of blocks that were followed without knowing better.
 Joints joints_at(const std::vector<SampledBlock> & blocks, double place)

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/extent.hpp"
+
 namespace ur_ros_rtde::kinematics {
 namespace {
 
@@ -16,7 +18,6 @@ constexpr double shortest_step = 2e-6;    // m
 constexpr double longest_turn = 0.04;     // rad of a joint, between two samples
 constexpr int fewest_intervals = 8;       // of a block
 constexpr double least_singular = 0.01;   // of the Jacobian, rotations by arm_length
-constexpr double arm_length = 0.2;        // m/rad
 constexpr double nearly_singular = 0.05;  // rad from where a joint makes the arm singular
 
 double smallest_singular_value(Jacobian jacobian)

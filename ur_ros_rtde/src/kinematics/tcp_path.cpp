@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/extent.hpp"
+
 namespace ur_ros_rtde::kinematics {
 namespace {
 
-constexpr double arm_length = 0.2;    // m/rad
 constexpr double same_pose = 1e-7;    // m
 constexpr double straight_on = 1e-6;  // change of direction below which a line goes on
 // How far a blend passes from its corner, by its reach and the change of direction: twice the integral of the
 // smooth step up to its middle.
 constexpr double sag = 2.0 * 5.0 / 64.0;
 
-double extent(const Twist & twist)
+double larger_extent(const Twist & twist)
 {
   return std::max(twist.head<3>().norm(), arm_length * twist.tail<3>().norm());
 }
@@ -33,7 +34,7 @@ TcpPath::TcpPath(const std::vector<Pose> & poses, double blend_radius)
   Pose last = poses.front();
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const Twist way = difference(last, poses[i]);
-    const double length = extent(way);
+    const double length = larger_extent(way);
     if (length > same_pose) {
       lines_.push_back({last, way / length, length});
       corners_.push_back(corners_.back() + length);
@@ -55,7 +56,7 @@ double TcpPath::reach_at(std::size_t corner, double radius) const
 {
   const Line & before = lines_[corner - 1];
   const Line & after = lines_[corner];
-  const double turn = extent(after.rate - before.rate);
+  const double turn = larger_extent(after.rate - before.rate);
   return std::min({radius / (sag * std::max(turn, straight_on)), 0.5 * before.length, 0.5 * after.length});
 }
 
@@ -81,7 +82,7 @@ std::vector<double> TcpPath::stops() const
 {
   std::vector<double> stops{0.0};
   for (std::size_t k = 1; k < lines_.size(); ++k) {
-    const double turn = extent(lines_[k].rate - lines_[k - 1].rate);
+    const double turn = larger_extent(lines_[k].rate - lines_[k - 1].rate);
     if (turn > straight_on && !(reach_[k] > same_pose)) {
       stops.push_back(corners_[k]);
     }

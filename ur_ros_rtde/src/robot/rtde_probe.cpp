@@ -7,14 +7,12 @@
 #include <vector>
 
 #include "robot/ports.hpp"
+#include "robot/rtde_header.hpp"
 #include "robot/tcp_stream.hpp"
 
 namespace ur_ros_rtde {
 namespace {
 
-// UR, "Real-Time Data Exchange (RTDE) Guide": header = uint16 size of the whole package, big-endian, and a
-// type.
-constexpr std::size_t header_size = 3;
 constexpr char request_protocol_version = 'V';
 constexpr char get_urcontrol_version = 'v';
 constexpr char text_message = 'M';
@@ -42,16 +40,16 @@ Expected<std::vector<std::byte>> reply(TcpStream & stream, const std::string & a
                                        TcpStream::Clock::time_point deadline)
 {
   while (true) {
-    std::array<std::byte, header_size> header{};
+    std::array<std::byte, rtde_header_size> header{};
     if (const auto status = stream.read(header, deadline); !status) {
       return tl::unexpected(not_rtde(address, status.error().message));
     }
     const auto size = std::to_integer<std::size_t>(header[0]) << 8U | std::to_integer<std::size_t>(header[1]);
     const auto found = static_cast<char>(header[2]);
-    if (size < header_size || size > longest_package || (found != type && found != text_message)) {
+    if (size < rtde_header_size || size > longest_package || (found != type && found != text_message)) {
       return tl::unexpected(not_rtde(address, "its answer is not an RTDE package"));
     }
-    std::vector<std::byte> body(size - header_size);
+    std::vector<std::byte> body(size - rtde_header_size);
     if (const auto status = stream.read(body, deadline); !status) {
       return tl::unexpected(not_rtde(address, status.error().message));
     }

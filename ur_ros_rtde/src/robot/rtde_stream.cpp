@@ -12,6 +12,7 @@
 
 #include "robot/ports.hpp"
 #include "robot/rtde_probe.hpp"
+#include "robot/rtde_header.hpp"
 #include "robot/tcp_stream.hpp"
 
 namespace ur_ros_rtde {
@@ -20,7 +21,6 @@ namespace {
 using Clock = RtdeStream::Clock;
 using Bytes = std::span<const std::byte>;
 
-constexpr std::size_t header_size = 3;  // uint16 size of the whole package, uint8 type
 /// Types of packages: the ASCII letters of the protocol (UR, "RTDE Guide", "Protocol").
 constexpr char protocol_version = 'V';
 constexpr char setup_outputs = 'O';
@@ -99,7 +99,7 @@ std::vector<std::string> split(std::string_view list)
 
 std::string request(char type, std::string_view payload)
 {
-  const std::size_t size = header_size + payload.size();
+  const std::size_t size = rtde_header_size + payload.size();
   std::string package{static_cast<char>(size >> 8U), static_cast<char>(size & 0xFFU), type};
   return package.append(payload);
 }
@@ -144,15 +144,15 @@ Expected<std::optional<RtdeStream::Impl::Package>> RtdeStream::Impl::package(Clo
   taken_ = 0;
   std::array<std::byte, 2048> bytes;
   while (true) {
-    if (buffer_.size() >= header_size) {
+    if (buffer_.size() >= rtde_header_size) {
       const auto size = static_cast<std::size_t>(big_endian(Bytes(buffer_).first(2)));
-      if (size < header_size) {
+      if (size < rtde_header_size) {
         return nonsense(fmt::format("a package of {} bytes", size));
       }
       if (buffer_.size() >= size) {
         taken_ = size;
         return Package{std::to_integer<char>(buffer_[2]),
-                       Bytes(buffer_).subspan(header_size, size - header_size)};
+                       Bytes(buffer_).subspan(rtde_header_size, size - rtde_header_size)};
       }
     }
     const auto got = stream_.read_some(bytes, deadline);

@@ -11,7 +11,6 @@
 namespace ur_ros_rtde {
 namespace {
 
-using ur_rtde::RobotState;
 using ur_rtde::rtde_type_variant_;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -38,7 +37,7 @@ Sample empty_sample()
 /// type.
 class Binder {
  public:
-  Binder(const RobotState & state, std::vector<std::function<void(Sample &)>> & copies)
+  Binder(const ur_rtde::RobotState & state, std::vector<std::function<void(Sample &)>> & copies)
       : state_(state), copies_(copies)
   {
   }
@@ -74,7 +73,7 @@ class Binder {
   }
 
  private:
-  const RobotState & state_;
+  const ur_rtde::RobotState & state_;
   std::vector<std::function<void(Sample &)>> & copies_;
 };
 
@@ -161,7 +160,7 @@ void bind_registers(Binder & bind, int offset)
 
 }  // namespace
 
-SampleReader::SampleReader(std::shared_ptr<RobotState> state, int register_offset) : state_(std::move(state))
+SampleReader::SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset) : state_(std::move(state))
 {
   Binder bind(*state_, copies_);
   bind_joints(bind);
@@ -182,8 +181,8 @@ std::chrono::steady_clock::time_point SampleReader::read(Sample & sample) const
   sample.link = link;
 
   state_->lockUpdateStateMutex();
-  const std::unique_ptr<RobotState, void (*)(RobotState *)> unlock(
-      state_.get(), [](RobotState * state) { state->unlockUpdateStateMutex(); });
+  const std::unique_ptr<ur_rtde::RobotState, void (*)(ur_rtde::RobotState *)> unlock(
+      state_.get(), [](ur_rtde::RobotState * state) { state->unlockUpdateStateMutex(); });
   for (const auto & copy : copies_) {
     copy(sample);
   }

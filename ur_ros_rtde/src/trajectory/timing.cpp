@@ -16,7 +16,7 @@ namespace {
 
 constexpr int inner_points = 3;  // looked at between two stations
 constexpr double most_stations = 50000;
-constexpr double shortest_step = 0.002;  // s, between stations
+constexpr double shortest_station_step = 0.002;  // s, between stations
 
 double sum(const std::vector<double> & values)
 {
@@ -76,7 +76,7 @@ Grid grid_for_jerk(const Path & path, std::size_t first, std::size_t last, const
   const double total = sum(guess.time);
   const double jerk_time = (limits.acceleration / limits.jerk).minCoeff();
   const double step =
-      std::min(std::max({0.3 * jerk_time, shortest_step, total / most_stations}), total / 100.0);
+      std::min(std::max({0.3 * jerk_time, shortest_station_step, total / most_stations}), total / 100.0);
   return timed_grid(path, coarse, guess, step, 6);
 }
 

@@ -129,7 +129,7 @@ json trace(Bench & bench, Fields & fields)
   return {{"cycles", std::move(cycles)}, {"commands", std::move(commands)}, {"repeats", std::move(repeats)}};
 }
 
-constexpr std::array table{
+constexpr std::array inquiry_command_table{
     Command{"state", "", "All of the state after the last cycle, in SI units.", state},
     Command{"registers", "", "The general purpose registers.", get_registers},
     Command{"log", "after (0)",
@@ -187,7 +187,7 @@ json to_json(const Bench & bench)
 
 std::span<const Command> inquiry_commands()
 {
-  return table;
+  return inquiry_command_table;
 }
 
 }  // namespace ur_simulator::control_port

@@ -123,7 +123,7 @@ json reboot(Bench & bench, Fields & fields)
   return json::object();
 }
 
-constexpr std::array table{
+constexpr std::array link_command_table{
     Command{"drop_links",
             "which all|rtde|dashboard|script|primary|secondary|realtime (all); clients "
             "all|control|receive|io (all); reset "
@@ -155,7 +155,7 @@ constexpr std::array table{
 
 std::span<const Command> link_commands()
 {
-  return table;
+  return link_command_table;
 }
 
 }  // namespace ur_simulator::control_port

@@ -196,7 +196,7 @@ json close_popup(Bench & bench, Fields & fields)
   return json::object();
 }
 
-constexpr std::array table{
+constexpr std::array robot_command_table{
     Command{"protective_stop", "reason", "Trips a protective stop.", protective_stop},
     Command{"unlock_protective_stop", "", "As the pendant's button, 5 s after the stop at the earliest.",
             unlock_protective_stop},
@@ -232,7 +232,7 @@ constexpr std::array table{
 
 std::span<const Command> robot_commands()
 {
-  return table;
+  return robot_command_table;
 }
 
 }  // namespace ur_simulator::control_port

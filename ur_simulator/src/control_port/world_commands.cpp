@@ -145,7 +145,7 @@ json gripper(Bench & bench, Fields & fields)
   return {{"width", gripper->width()}, {"busy", gripper->busy()}, {"holds_object", gripper->holds_object()}};
 }
 
-constexpr std::array table{
+constexpr std::array world_command_table{
     Command{"push", "force [3] N or wrench [6] N, N m; duration s (0.3); frame base|tool (base)",
             "A hand pushes at the TCP: a half-sine with this peak.", push},
     Command{"clear_pushes", "", "Ends all pushes.", clear_pushes},
@@ -175,7 +175,7 @@ constexpr std::array table{
 
 std::span<const Command> world_commands()
 {
-  return table;
+  return world_command_table;
 }
 
 }  // namespace ur_simulator::control_port

@@ -14,7 +14,7 @@
 namespace ur_simulator {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double rounding = 1e-10;       // what a cosine may exceed 1 by and still count as reachable
 constexpr double wrist_singular = 1e-8;  // |sin q5| under which joint 6 is free
 

@@ -12,7 +12,7 @@
 namespace ur_simulator {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// What differs from model to model and is published: DH lengths (m), joint speed limits (deg/s), joint
 /// torques (N m), rated payload (kg), reach (m). Lengths: Universal Robots, "DH Parameters for calculations

@@ -7,7 +7,7 @@
 namespace ur_simulator {
 namespace {
 
-constexpr std::string_view source = "pendant";
+constexpr std::string_view pendant_source = "pendant";
 constexpr std::string_view folder = "/programs/";
 
 /// The name inside the programs folder: clients give it with and without the folder.
@@ -54,7 +54,7 @@ tl::expected<void, Pendant::LoadError> Pendant::load_program(const std::string &
   }
   const bool fetched = external_.contains(found->first);
   if (const auto compiled = runner_.compile(found->second); !fetched && !compiled) {
-    log_.error(source, fmt::format("'{}' cannot be loaded: {}", name, compiled.error().text()));
+    log_.error(pendant_source, fmt::format("'{}' cannot be loaded: {}", name, compiled.error().text()));
     return tl::make_unexpected(LoadError::not_a_program);
   }
   runner_.stop("another program was loaded");
@@ -165,11 +165,11 @@ Pendant::Answer Pendant::play_fetched(const ProgramHost & host,
         "popup(\"The connection to the remote PC at {}:{} could not be established. Reason: {}\", \"Receive "
         "program failed\", False, True, blocking=True)\nsync()",
         host.address, host.port, text.error());
-    log_.error(source, fmt::format("no program from {}:{}: {}", host.address, host.port, text.error()));
+    log_.error(pendant_source, fmt::format("no program from {}:{}: {}", host.address, host.port, text.error()));
   }
   const Answer answer = start(script + "\nend\n");
   if (!answer) {
-    log_.error(source, "play was refused: " + answer.error());
+    log_.error(pendant_source, "play was refused: " + answer.error());
   }
   return answer;
 }
@@ -184,7 +184,7 @@ Pendant::Answer Pendant::play_now()
     answer = script.empty() ? tl::make_unexpected(std::string("no program is loaded")) : start(script);
   }
   if (!answer) {
-    log_.error(source, "play was refused: " + answer.error());
+    log_.error(pendant_source, "play was refused: " + answer.error());
   }
   return answer;
 }
@@ -205,7 +205,7 @@ void Pendant::stop()
 Pendant::Answer Pendant::logged(std::string_view action, const SafetyAnswer & answer)
 {
   if (!answer) {
-    log_.error(source, fmt::format("{} was refused: {}", action, answer.error()));
+    log_.error(pendant_source, fmt::format("{} was refused: {}", action, answer.error()));
   }
   return answer;
 }
@@ -242,7 +242,7 @@ Pendant::Answer Pendant::restart_safety()
 void Pendant::set_remote_control(bool remote)
 {
   remote_control_ = remote;
-  log_.info(source, remote ? "remote control" : "local control");
+  log_.info(pendant_source, remote ? "remote control" : "local control");
 }
 
 }  // namespace ur_simulator

@@ -7,7 +7,7 @@
 namespace ur_simulator {
 namespace {
 
-constexpr std::string_view source = "program";
+constexpr std::string_view program_source = "program";
 constexpr std::size_t most_secondaries = 16;
 constexpr double stood_still = 1e-3;  // speed scaling below which a paused trajectory counts as standing
 
@@ -40,7 +40,7 @@ void ProgramRunner::start(urscript::Program program)
 void ProgramRunner::start_secondary(std::unique_ptr<urscript::Machine> machine)
 {
   if (secondaries_.size() == most_secondaries) {
-    access_.log.error(source, fmt::format("{} secondary programs run already: '{}' was not started",
+    access_.log.error(program_source, fmt::format("{} secondary programs run already: '{}' was not started",
                                           most_secondaries, machine->program().name()));
     return;
   }
@@ -60,7 +60,7 @@ void ProgramRunner::stop(std::string_view why)
 void ProgramRunner::log(LogKind kind, std::string text)
 {
   LogEntry entry;
-  entry.source = source;
+  entry.source = program_source;
   entry.text = std::move(text);
   entry.kind = kind;
   entry.title = name_;
@@ -153,7 +153,7 @@ void ProgramRunner::run_primary()
       log(LogKind::program_ended, fmt::format("program '{}' ended", name_));
       break;
     case urscript::MachineStatus::failed:
-      access_.log.add(LogLevel::error, source,
+      access_.log.add(LogLevel::error, program_source,
                       fmt::format("program '{}' failed in line {}: {}", name_, primary_->error().line,
                                   primary_->error().message),
                       primary_->error().line);
@@ -167,7 +167,7 @@ void ProgramRunner::run_secondaries()
   std::erase_if(secondaries_, [this](const std::unique_ptr<urscript::Machine> & machine) {
     const urscript::MachineStatus status = machine->cycle();
     if (status == urscript::MachineStatus::failed) {
-      access_.log.add(LogLevel::error, source,
+      access_.log.add(LogLevel::error, program_source,
                       fmt::format("secondary program '{}' failed in line {}: {}", machine->program().name(),
                                   machine->error().line, machine->error().message),
                       machine->error().line);

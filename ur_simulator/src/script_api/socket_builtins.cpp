@@ -77,9 +77,9 @@ class Connecting final : public urscript::Operation {
 using Take = std::function<std::optional<Value>(std::string & received)>;
 
 /// Waits for what `take` takes; `otherwise` when the time is up or the peer has gone.
-class Reading final : public urscript::Operation {
+class SocketReading final : public urscript::Operation {
  public:
-  Reading(SocketPtr socket, Take take, Value otherwise, double timeout)
+  SocketReading(SocketPtr socket, Take take, Value otherwise, double timeout)
       : socket_(std::move(socket)),
         take_(std::move(take)),
         otherwise_(std::move(otherwise)),
@@ -135,7 +135,7 @@ Outcome read(Sockets & sockets, CallContext & context, const std::string & name,
   if (socket == nullptr) {
     return NextCycle{std::move(otherwise)};
   }
-  return std::make_unique<Reading>(std::move(socket), std::move(take), std::move(otherwise), timeout);
+  return std::make_unique<SocketReading>(std::move(socket), std::move(take), std::move(otherwise), timeout);
 }
 
 std::optional<std::string> take_line(std::string & received)

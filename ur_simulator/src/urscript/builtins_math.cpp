@@ -1,5 +1,6 @@
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 
 #include "urscript/argument_reader.hpp"
@@ -9,7 +10,7 @@ namespace ur_simulator::urscript {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 struct Unary {
   const char * name;

@@ -1,6 +1,7 @@
 #include "world/sensor.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "common/pose.hpp"
 
@@ -8,7 +9,7 @@ namespace ur_simulator {
 namespace {
 
 constexpr double cut_off = 50.0;  // Hz, of the low-pass filter
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// What a load does to the flange when the flange is accelerated: `specific_force` is what an accelerometer
 /// there reads, so that standing still means the load's weight. All in flange axes, about the flange's

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "common/pose.hpp"
@@ -11,7 +12,7 @@
 namespace ur_simulator {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 void require(bool granted, const std::string & complaint)
 {
