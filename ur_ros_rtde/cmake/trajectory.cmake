@@ -3,6 +3,8 @@ find_package(Eigen3 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(tl-expected REQUIRED)
 
+include(${CMAKE_CURRENT_LIST_DIR}/settings.cmake)
+
 file(GLOB trajectory_sources CONFIGURE_DEPENDS
   ${CMAKE_CURRENT_LIST_DIR}/../src/trajectory/*.cpp ${CMAKE_CURRENT_LIST_DIR}/../src/kinematics/*.cpp)
 add_library(ur_ros_rtde_trajectory SHARED ${trajectory_sources})

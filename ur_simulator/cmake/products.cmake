@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 # The rooms are linked into the one library, so that users see only the public header and nlohmann_json.
-add_library(ur_simulator SHARED src/library/simulated_controller.cpp)
+add_library(ur_simulator SHARED $<TARGET_OBJECTS:sim_library>)
 add_library(ur_simulator::ur_simulator ALIAS ur_simulator)
 target_include_directories(ur_simulator PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
                                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

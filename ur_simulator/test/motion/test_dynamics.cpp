@@ -14,7 +14,7 @@ namespace {
 
 using testing::model_named;
 using testing::RandomVectors;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Payload some_payload()
 {

@@ -12,7 +12,7 @@ namespace {
 
 using testing::model_named;
 using testing::RandomVectors;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Vector6 some_tool()
 {

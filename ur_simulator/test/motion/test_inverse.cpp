@@ -14,7 +14,7 @@ namespace {
 
 using testing::model_named;
 using testing::RandomVectors;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double pose_error(const RobotModel & model, const Vector6 & joints, const Transform & flange)
 {

@@ -10,7 +10,7 @@ namespace {
 using testing::ArmRig;
 using testing::pose_distance;
 using testing::six;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Distance of a point from the line between two others.
 double off_line(const Vector6 & from, const Vector6 & to, const Vector6 & pose)

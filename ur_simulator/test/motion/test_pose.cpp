@@ -9,7 +9,7 @@
 namespace ur_simulator {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Pose, rotation_vector_survives_the_way_through_the_matrix_at_every_angle)
 {

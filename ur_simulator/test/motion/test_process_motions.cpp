@@ -14,7 +14,7 @@ using testing::six;
 using testing::Starts;
 using testing::Track;
 using testing::turned;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double turn_between(const Vector6 & a, const Vector6 & b)
 {
