@@ -7,15 +7,25 @@ import re
 import subprocess
 import time
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Set
+from typing import Dict, List, Optional, Set, Tuple
 
-from . import downloads, say, system_packages, venv
+from . import build_times, disk, downloads, say, system_packages, venv
+from .build_times import BuildTimes, Forecast
 from .environment import build_environment
-from .layout import ROOT, Layout
+from .layout import ROOT, STATE, Layout
+from .lock import Lock
 from .packages import Package, discover, state, with_dependencies
 from .processes import end_group
 
 STAMP = "ur_stamp.txt"
+MEMORY_OF_A_JOB = 1.0e9  # bytes; the largest translation units
+WORKERS = 2  # packages at a time, each with all jobs
+
+
+def default_jobs() -> int:
+    """All cores, or as many as the memory is enough for."""
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return max(1, min(len(os.sched_getaffinity(0)), int(memory / MEMORY_OF_A_JOB)))
 
 
 @dataclass
@@ -26,7 +36,7 @@ class Options:
     jobs: int = 0
 
     def __post_init__(self) -> None:
-        self.jobs = self.jobs or len(os.sched_getaffinity(0))
+        self.jobs = self.jobs or default_jobs()
 
 
 def cmake_arguments(options: Options, tests: bool) -> List[str]:
@@ -84,10 +94,11 @@ class Progress:
     """Follows colcon's output and the logs of the packages it is working on."""
 
     _EVENT = re.compile(r"^(Starting >>>|Finished <<<|Failed\s+<<<|Aborted\s+<<<)\s+(\S+)")
-    _STEP = re.compile(r"^(\[\d+/\d+\]) (.*)$")
+    _STEP = re.compile(r"^\[(\d+)/(\d+)\] ")  # step 0 checks the build files
 
-    def __init__(self, layout: Layout, output: pathlib.Path, stamps: Stamps, tests: bool):
+    def __init__(self, layout: Layout, output: pathlib.Path, stamps: Stamps, forecast: Forecast, tests: bool):
         self._layout, self._output, self._stamps, self._tests = layout, output, stamps, tests
+        self._forecast = forecast
         self._seen = 0
         self._running: Dict[str, float] = {}
         self._status = say.Status()
@@ -95,13 +106,14 @@ class Progress:
         self.done: Set[str] = set()
 
     def update(self) -> None:
+        self._forecast.update(self._running)
         lines = self._output.read_text(errors="replace").split("\n")
         for text in lines[self._seen:-1]:
             self._event(text)
         self._seen = len(lines) - 1
-        doing = [f"{name} {time.monotonic() - start:.0f} s {self._doing(name)}" for name, start in self._running.items()]
-        if doing:
-            self._status.show("  |  ".join(doing))
+        if self._running:
+            doing = ", ".join(f"{name} {self._step(name)}" for name in self._running)
+            self._status.show(f"{self._forecast.text()}: {doing}")
 
     def _event(self, text: str) -> None:
         match = self._EVENT.match(text)
@@ -111,15 +123,17 @@ class Progress:
         start = self._running.setdefault(name, time.monotonic())
         if what == "Starting":
             return
+        self._step(name)
         del self._running[name]
         if what == "Finished":
             self._stamps.write(name, self._tests)
+            self._forecast.finish(name)
             self.done.add(name)
         elif what == "Failed":
             self.failed.append(name)
         self._status.keep(f"    {what.lower():8} {name} ({time.monotonic() - start:.0f} s)")
 
-    def _doing(self, name: str) -> str:
+    def _step(self, name: str) -> str:
         log = self._layout.log / "latest_build" / name / "stdout.log"
         try:
             with log.open("rb") as file:
@@ -130,8 +144,9 @@ class Progress:
             return ""
         for text in reversed(lines):
             match = self._STEP.match(text)
-            if match:
-                return f"{match.group(1)} {match.group(2).split()[0]} {pathlib.PurePath(match.group(2).split()[-1]).name}"
+            if match and match.group(1) != "0":
+                self._forecast.step(name, int(match.group(1)), int(match.group(2)))
+                return f"{match.group(1)}/{match.group(2)}"
         return "configuring"
 
     def end(self) -> None:
@@ -144,7 +159,7 @@ def _colcon(options: Options, names: List[str], folders: List[pathlib.Path], tes
     return [str(layout.venv / "bin" / "colcon"), "--log-base", str(layout.log), "build", "--merge-install",
             "--base-paths", *map(str, folders), "--packages-select", *names,
             "--build-base", str(layout.build), "--install-base", str(layout.install),
-            "--executor", "parallel", "--parallel-workers", str(min(2, options.jobs)),
+            "--executor", "parallel", "--parallel-workers", str(min(WORKERS, options.jobs)),
             "--event-handlers", "console_start_end+", "console_cohesion-", "parallel_status-", "summary-",
             "--cmake-force-configure", "--cmake-args", *cmake_arguments(options, tests)]
 
@@ -158,6 +173,8 @@ def _explain(layout: Layout, progress: Progress, output: pathlib.Path) -> say.Fa
         at = next((at for at in (text.find("FAILED: "), text.find("CMake Error")) if at >= 0), -1)
         shown = "\n".join(text[at:].splitlines()[:40]) if at >= 0 else say.tail(text)
         parts.append(f"{name} did not build ({log}):\n{shown}")
+    if any("No space left on device" in part for part in parts):
+        parts.append(disk.full(layout.build))
     if not parts:
         parts.append(f"colcon failed ({output}):\n{say.tail(output.read_text(errors='replace'), 20)}")
     return say.Failure("\n\n".join(parts))
@@ -180,7 +197,8 @@ def _run_colcon(options: Options, packages: Dict[str, Package], outdated: List[s
     with output.open("w") as file:
         process = subprocess.Popen(command, cwd=layout.base, env=build_environment(layout, options.jobs), stdout=file,
                                    stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True)
-    progress = Progress(layout, output, stamps, tests)
+    times = _times(options)
+    progress = Progress(layout, output, stamps, Forecast(times, _firsts(layout, outdated), tests), tests)
     try:
         while process.poll() is None:
             progress.update()
@@ -188,35 +206,119 @@ def _run_colcon(options: Options, packages: Dict[str, Package], outdated: List[s
     finally:
         end_group(process)
         progress.end()
+        times.write()
     if process.returncode != 0 or not set(outdated) <= progress.done:
         raise _explain(layout, progress, output)
 
 
-def setup(layout: Layout) -> None:
-    """System packages, the virtual environment and the sources of ur_rtde."""
+def _times(options: Options) -> BuildTimes:
+    variant = f"_{options.layout.variant}" if options.layout.variant else ""
+    return BuildTimes(options.layout.base / f"build_times{variant}.json", options.jobs)
+
+
+def _firsts(layout: Layout, names: List[str]) -> Dict[str, bool]:
+    """Whether each package has not been built before, not even in part."""
+    return {name: not (layout.build / name / ".ninja_log").is_file() for name in names}
+
+
+@dataclass
+class Pending:
+    """What has to be done before everything is built."""
+
+    system: List[str]  # packages of the operating system
+    venv: bool
+    archive: bool
+    outdated: List[str]
+    tests: bool = False
+
+    def __bool__(self) -> bool:
+        return bool(self.system or self.venv or self.archive or self.outdated)
+
+    def text(self, options: Options) -> str:
+        """One line: what is downloaded and built, and how long that takes."""
+        times, first = _times(options), _firsts(options.layout, self.outdated)
+        megabytes = self.venv * venv.MEGABYTES + self.archive * downloads.MEGABYTES
+        seconds = self.venv * venv.SECONDS + sum(times.first(name, self.tests)[0] for name in self.outdated)
+        parts = []
+        if self.system:
+            parts.append(f"installs {len(self.system)} system packages")
+        if megabytes:
+            parts.append(f"downloads about {megabytes} MB")
+        if self.outdated:
+            parts.append(f"builds {len(self.outdated)} package{'s' * (len(self.outdated) > 1)}")
+        again = [name for name, is_first in first.items() if not is_first]
+        cores = f" on {options.jobs} core{'s' * (options.jobs > 1)}" if self.outdated else ""
+        duration = f"{'at most' if again else 'about'} {build_times.rounded(seconds)}{cores}"
+        last = [times.last(name, self.tests) for name in again]
+        if last and len(last) == len(first) and all(last):
+            duration += f" (last time {build_times.rounded(sum(entry[0] for entry in last if entry))})"
+        start = "First run: " if not options.layout.venv.exists() else ""
+        text = f"{', '.join(parts)}, {duration}"
+        return start + (text if start else text[0].upper() + text[1:])
+
+
+def _pending_setup(layout: Layout) -> Pending:
+    return Pending(system_packages.absent(), not venv.is_current(layout), not downloads.is_current(), [])
+
+
+def _setup(layout: Layout, pending: Pending) -> None:
+    if pending:
+        disk.check(STATE, disk.FIRST_RUN if pending.venv else disk.LATER)
     system_packages.ensure()
     venv.ensure(layout)
     downloads.ensure(layout)
 
 
-def build(options: Options) -> Dict[str, Package]:
-    """Sets up what is missing, builds what changed; the packages that were asked for and those they need."""
-    setup(options.layout)
+def setup(layout: Layout) -> None:
+    """System packages, the virtual environment and the sources of ur_rtde."""
+    if not _pending_setup(layout):
+        return
+    with Lock("build"):
+        pending = _pending_setup(layout)
+        if pending:
+            say.step(pending.text(Options(layout)))
+        _setup(layout, pending)
+
+
+def _chosen(options: Options) -> Dict[str, Package]:
     packages = discover()
-    if options.packages:
+    if options.packages is not None:
         try:
             packages = with_dependencies(packages, options.packages)
         except KeyError as error:
             raise say.Failure(str(error.args[0]))
+    return packages
+
+
+def _pending(options: Options, packages: Dict[str, Package]) -> Tuple[Pending, Stamps]:
     stamps = Stamps(options, packages)
-    outdated = [name for name in packages if not stamps.is_current(name, options.tests)]
-    if not outdated:
-        return packages
+    pending = _pending_setup(options.layout)
+    pending.outdated = [name for name in packages if not stamps.is_current(name, options.tests)]
     # A package once built with its tests keeps them, or building and testing in turn would configure it each time.
-    tests = options.tests or any(stamps.has_tests(name) for name in outdated)
-    say.step(f"Building {', '.join(outdated)} for ROS 2 {options.layout.ros.capitalize()}"
+    pending.tests = options.tests or any(stamps.has_tests(name) for name in pending.outdated)
+    return pending, stamps
+
+
+def build(options: Options) -> Dict[str, Package]:
+    """Sets up what is missing, builds what changed; the packages that were asked for and those they need."""
+    packages = _chosen(options)
+    if not _pending(options, packages)[0]:
+        return packages
+    with Lock("build"):
+        packages = _chosen(options)
+        pending, stamps = _pending(options, packages)  # another ./ur may have built it meanwhile
+        if pending:
+            say.step(pending.text(options))
+        _setup(options.layout, pending)
+        if pending.outdated:
+            disk.check(STATE, disk.LATER)
+            _build(options, packages, pending, stamps)
+    return packages
+
+
+def _build(options: Options, packages: Dict[str, Package], pending: Pending, stamps: Stamps) -> None:
+    say.step(f"Building {', '.join(pending.outdated)} for ROS 2 {options.layout.ros.capitalize()}"
              + (f" ({options.layout.variant})" if options.layout.variant else ""))
     start = time.monotonic()
-    _run_colcon(options, packages, outdated, stamps, tests)
+    _run_colcon(options, packages, pending.outdated, stamps, pending.tests)
     say.line(f"    built in {time.monotonic() - start:.0f} s")
-    return packages

@@ -10,6 +10,7 @@ from typing import Tuple
 from . import say
 from .layout import DOWNLOADS, ROOT, Layout
 
+MEGABYTES = 4
 PIN = ROOT / "wheels" / "ur_rtde.txt"
 
 
@@ -25,6 +26,10 @@ def ur_rtde_archive() -> pathlib.Path:
 
 def _is_good(archive: pathlib.Path) -> bool:
     return archive.is_file() and hashlib.sha256(archive.read_bytes()).hexdigest() == _pinned()[1]
+
+
+def is_current() -> bool:
+    return _is_good(ur_rtde_archive())
 
 
 def ensure(layout: Layout) -> None:

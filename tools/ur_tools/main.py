@@ -1,6 +1,7 @@
 """Command line of ./ur."""
 
 import argparse
+import errno
 import os
 import pathlib
 import shutil
@@ -10,9 +11,10 @@ import sys
 from typing import List, Optional
 
 from . import build as building
-from . import lint, new, say, testing
+from . import disk, lint, new, say, testing
 from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, ROOT, SANITIZERS, STATE, Layout
+from .lock import Lock
 
 DESCRIPTION = """\
 Builds, tests and shows the ROS 2 driver for Universal Robots arms and its simulated controller, on a machine with or
@@ -134,10 +136,13 @@ def command_clean(options: argparse.Namespace) -> int:
     else:
         folders = [path for base in STATE.glob("*") for path in base.glob("*")
                    if path.name.split("-")[0] in ("build", "install", "log", "test")]
-    for folder in folders:
-        if folder.exists():
-            say.line(f"removing {folder.relative_to(ROOT)}")
-            shutil.rmtree(folder)
+    if not STATE.exists():
+        return 0
+    with Lock("test"), Lock("build"):
+        for folder in folders:
+            if folder.exists():
+                say.line(f"removing {folder.relative_to(ROOT)}")
+                shutil.rmtree(folder)
     return 0
 
 
@@ -234,6 +239,14 @@ def _ours_first(arguments: List[str]) -> List[str]:
     return ours + (["--", *rest] if rest else [])
 
 
+def _explain(error: OSError) -> str:
+    if error.errno == errno.ENOSPC:
+        return disk.full(STATE)
+    if error.errno in (errno.EACCES, errno.EPERM, errno.EROFS):
+        return f"{error.filename}: {error.strerror}. ./ur writes into its checkout, below {STATE}."
+    return str(error)
+
+
 def _interrupt(_number: int, _frame: object) -> None:
     raise KeyboardInterrupt
 
@@ -252,8 +265,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except say.Failure as failure:
         print(f"\n{failure}", file=sys.stderr)
         return 1
-    except FileNotFoundError as error:
-        print(f"\n{error}", file=sys.stderr)
+    except OSError as error:
+        print(f"\n{_explain(error)}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("\ninterrupted", file=sys.stderr)

@@ -33,20 +33,24 @@ def _prefix() -> List[str]:
     raise PermissionError
 
 
+def absent() -> List[str]:
+    """Packages to install; none where dpkg cannot tell."""
+    return missing(needed()) if shutil.which("dpkg-query") else []
+
+
 def ensure() -> None:
-    names = needed()
     if not shutil.which("dpkg-query"):
-        say.line("    no dpkg here: what Debian calls " + " ".join(names) + " must be installed already")
+        say.line("    no dpkg here: what Debian calls " + " ".join(needed()) + " must be installed already")
         return
-    absent = missing(names)
-    if not absent:
+    names = absent()
+    if not names:
         return
-    command = "apt-get install -y --no-install-recommends " + " ".join(absent)
+    command = "apt-get install -y --no-install-recommends " + " ".join(names)
     try:
         prefix = _prefix()
     except PermissionError:
         raise say.Failure(f"These system packages are missing. Install them, then run ./ur again:\n\n    sudo {command}\n")
-    say.step("Installing system packages: " + " ".join(absent))
+    say.step("Installing system packages: " + " ".join(names))
     env = dict(os.environ, DEBIAN_FRONTEND="noninteractive")
     if prefix:
         prefix = prefix + ["env", "DEBIAN_FRONTEND=noninteractive"]

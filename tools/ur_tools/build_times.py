@@ -1,0 +1,142 @@
+"""How long builds take: measured times of each package, and the remaining time while one runs."""
+
+import json
+import math
+import pathlib
+import time
+from typing import Dict, Iterable, List, Optional, Tuple
+
+REFERENCE_CORES = 2
+# Seconds of a first build without a compiler cache, with all cores of REFERENCE_CORES for this package: without and with its
+# tests. Source: "first" in .ur/<distribution>/build_times.json after `./ur build` and `./ur build --tests` from nothing.
+REFERENCE: Dict[str, Tuple[float, float]] = {
+    "ur_rtde_vendor": (45.0, 45.0),
+    "rcl_cxx": (55.0, 110.0),
+    "ur_ros_rtde_msgs": (280.0, 280.0),
+    "ur_simulator": (210.0, 410.0),
+    "ur_ros_rtde": (300.0, 600.0),
+    "ur_ros_rtde_cli": (2.0, 2.0),
+    "ur_ros_rtde_gripper_commands": (20.0, 20.0),
+    "ur_ros_rtde_tutorials": (20.0, 20.0),
+}
+UNKNOWN_PACKAGE = (30.0, 30.0)
+STEPS_PER_SECOND = 1.0  # until ninja tells a package's number of steps
+PRIOR = 60.0  # s, after which the measured speed of this build counts as much as the estimate
+
+
+def rounded(seconds: float) -> str:
+    """A duration in steps of 5 s or 1 min."""
+    if seconds <= 55.0:
+        return f"{max(5, 5 * math.ceil(seconds / 5))} s"
+    return f"{round(seconds / 60.0)} min"
+
+
+class BuildTimes:
+    """The times of this checkout's builds: the last first build of each package, and its last build."""
+
+    def __init__(self, file: pathlib.Path, jobs: int):
+        self._file, self._jobs = file, jobs
+        try:
+            self._times = json.loads(file.read_text())
+        except (OSError, ValueError):
+            self._times = {}
+
+    def _entry(self, kind: str, name: str, tests: bool) -> Optional[dict]:
+        entry = self._times.get(f"{name} with tests" if tests else name, {}).get(kind)
+        return entry if entry and entry["jobs"] == self._jobs else None
+
+    def first(self, name: str, tests: bool) -> Tuple[float, int]:
+        """Seconds and steps of a first build; 0 steps: unknown."""
+        entry = self._entry("first", name, tests)
+        if entry:
+            return entry["seconds"], entry["steps"]
+        return REFERENCE.get(name, UNKNOWN_PACKAGE)[tests] * REFERENCE_CORES / self._jobs, 0
+
+    def last(self, name: str, tests: bool) -> Optional[Tuple[float, int]]:
+        entry = self._entry("last", name, tests)
+        return (entry["seconds"], entry["steps"]) if entry else None
+
+    def record(self, name: str, tests: bool, seconds: float, steps: int, is_first: bool) -> None:
+        kinds = self._times.setdefault(f"{name} with tests" if tests else name, {})
+        entry = {"seconds": round(seconds, 1), "steps": steps, "jobs": self._jobs}
+        kinds["last"] = entry
+        if is_first:
+            kinds["first"] = entry
+
+    def write(self) -> None:
+        self._file.write_text(json.dumps(self._times, indent=1, sort_keys=True))
+
+
+class _Work:
+    """One package: `seconds` is its share of the build's time, as if the others waited meanwhile."""
+
+    def __init__(self, times: BuildTimes, name: str, tests: bool, is_first: bool):
+        self.is_first = is_first
+        self._first_seconds, self._first_steps = times.first(name, tests)
+        last = None if is_first else times.last(name, tests)
+        self._seconds, self._expected_steps = last or (self._first_seconds, self._first_steps)
+        self.step = 0
+        self.steps: Optional[int] = None  # as ninja says
+        self.finished = False
+        self.spent = 0.0
+
+    @property
+    def expected_steps(self) -> int:
+        if self.steps is not None:
+            return self.steps
+        return self._expected_steps or max(1, round(self._seconds * STEPS_PER_SECOND))
+
+    @property
+    def seconds(self) -> float:
+        if self.steps and self._first_steps:
+            return self._first_seconds * min(1.0, self.steps / self._first_steps)
+        return self._seconds
+
+    @property
+    def remaining(self) -> float:
+        return 0.0 if self.finished else self.seconds * (1.0 - self.step / max(1, self.expected_steps))
+
+
+class Forecast:
+    """Files done and in total, and the remaining time, over all packages of a build."""
+
+    def __init__(self, times: BuildTimes, firsts: Dict[str, bool], tests: bool, clock=time.monotonic):
+        self._times, self._tests, self._clock = times, tests, clock
+        self._work = {name: _Work(times, name, tests, is_first) for name, is_first in firsts.items()}
+        self._updated = clock()
+        self._elapsed = 0.0
+
+    def update(self, running: Iterable[str]) -> None:
+        """Counts the time since the last update for the packages that are being built, in equal shares."""
+        now = self._clock()
+        names = [name for name in running if name in self._work]
+        for name in names:
+            self._work[name].spent += (now - self._updated) / len(names)
+        self._elapsed += now - self._updated
+        self._updated = now
+
+    def step(self, name: str, step: int, steps: int) -> None:
+        work = self._work[name]
+        work.step, work.steps = step, steps
+
+    def finish(self, name: str) -> None:
+        work = self._work[name]
+        work.finished, work.steps = True, work.steps or 0
+        work.step = work.steps
+        self._times.record(name, self._tests, work.spent, work.steps, work.is_first)
+
+    def files(self) -> Tuple[int, int, bool]:
+        """Done, in total, and whether the total is known."""
+        works = self._work.values()
+        return (sum(work.step for work in works), sum(work.expected_steps for work in works),
+                all(work.steps is not None for work in works))
+
+    def remaining(self) -> float:
+        works: List[_Work] = list(self._work.values())
+        remaining = sum(work.remaining for work in works)
+        done = sum(work.seconds for work in works) - remaining
+        return remaining * (self._elapsed + PRIOR) / (done + PRIOR)
+
+    def text(self) -> str:
+        done, total, known = self.files()
+        return f"{done} of {'' if known else 'about '}{total} files, about {rounded(self.remaining())} left"

@@ -1,0 +1,28 @@
+"""Free space on the disk."""
+
+import pathlib
+import shutil
+
+from . import say
+
+FIRST_RUN = 2.5e9  # bytes: virtual environment, what pip keeps, a build with tests
+LATER = 0.3e9
+
+
+def free(path: pathlib.Path) -> int:
+    """Bytes free where the path is, or will be."""
+    while not path.exists():
+        path = path.parent
+    return shutil.disk_usage(path).free
+
+
+def full(path: pathlib.Path) -> str:
+    return (f"The disk that holds {path} is full ({free(path) / 1e9:.1f} GB free). Free some space and run ./ur again: "
+            "what was done is kept.")
+
+
+def check(path: pathlib.Path, needed: float) -> None:
+    available = free(path)
+    if available < needed:
+        raise say.Failure(f"Not enough space on the disk that holds {path}: {available / 1e9:.1f} GB free, "
+                          f"{needed / 1e9:.1f} GB needed.")

@@ -1,0 +1,70 @@
+"""Keeps two ./ur from building, or from testing, in one checkout at the same time: the second waits for the first."""
+
+import errno
+import fcntl
+import os
+import pathlib
+import sys
+from typing import IO, Optional
+
+from . import say
+from .layout import STATE
+
+_NOT_WRITABLE = (errno.EACCES, errno.EPERM, errno.EROFS)
+
+
+def _command() -> str:
+    return " ".join(["./ur", *sys.argv[1:]])
+
+
+class Lock:
+    """An exclusive lock on a file that names its holder. The kernel releases it when the process ends, however it ends."""
+
+    def __init__(self, name: str, folder: pathlib.Path = STATE):
+        self._path = folder / f"{name}.lock"
+        self._file: Optional[IO[str]] = None
+
+    def __enter__(self) -> "Lock":
+        while self._file is None:
+            file = self._open()
+            try:
+                self._lock(file)
+                if self._is_current(file):
+                    file.truncate(0)
+                    file.write(f"`{_command()}` (process {os.getpid()})")
+                    file.flush()
+                    self._file = file
+            finally:
+                if self._file is None:
+                    file.close()
+        return self
+
+    def __exit__(self, *_unused: object) -> None:
+        if self._file:
+            self._file.close()
+            self._file = None
+
+    def _open(self) -> IO[str]:
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            return self._path.open("a+")
+        except OSError as error:
+            if error.errno in _NOT_WRITABLE:
+                raise say.Failure(f"{self._path.parent} cannot be written: {error.strerror}.\n"
+                                  "Everything that ./ur makes lies there. Use a checkout that you can write to.") from None
+            raise
+
+    def _lock(self, file: IO[str]) -> None:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            file.seek(0)
+            say.step(f"Waiting for {file.read() or 'another ./ur'}, which is running in this checkout")
+            fcntl.flock(file, fcntl.LOCK_EX)
+
+    def _is_current(self, file: IO[str]) -> bool:
+        """`./ur clean --all` removes the file while others may wait for it."""
+        try:
+            return os.path.samestat(os.fstat(file.fileno()), os.stat(self._path))
+        except FileNotFoundError:
+            return False
