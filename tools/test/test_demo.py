@@ -6,7 +6,7 @@ import re
 import subprocess
 import sys
 
-from ur_tools.environment import workspace_environment
+from ur_tools.environment import program, workspace_environment
 from ur_tools.layout import ROOT, Layout
 
 for folder in ("demo", "ur_ros_rtde/test/nodes"):
@@ -66,6 +66,22 @@ def test_the_first_motions_of_the_readme_work_on_what_the_demo_leaves(tmp_path):
         running.interrupt()
         code = running.wait(30.0)
     assert code == 130
+
+
+def test_another_simulator_on_the_address_is_left_alone(tmp_path):
+    address = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
+    simulator = Process([program(Layout.of_environment(), "ur_simulator", "ur_simulator"), "--address", address])
+    try:
+        simulator.wait_for_output("ready: ", 20.0)
+        result = demo("--address", address, "--output", str(tmp_path))
+        assert result.returncode == 1
+        assert f"of {address}: in use by process" in result.stdout and "ur_simulator" in result.stdout
+        assert "Starting" not in result.stdout and list(tmp_path.iterdir()) == []
+        with ControlPort(address) as control:
+            assert not [entry for entry in control.request("log")["entries"] if "connect" in entry["text"]]
+    finally:
+        simulator.interrupt()
+        simulator.wait(20.0)
 
 
 def test_options_out_of_range_are_named_with_their_limits():

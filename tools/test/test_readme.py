@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 from ur_ros_rtde.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
+from ur_tools import cell
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text()
@@ -47,6 +48,7 @@ def test_the_launch_arguments_are_declared():
 def test_the_launch_file_knows_the_models_of_the_driver():
     table = (ROOT / "ur_ros_rtde" / "src" / "robot" / "arm_limits.cpp").read_text()
     assert list(MODELS) == re.findall(r'Model\{"(\w+)"', table)
+    assert MODELS == cell.MODELS
 
 
 def test_the_installation_with_ros_is_complete():

@@ -9,7 +9,7 @@ import sys
 import time
 from typing import Dict, List, Optional, Tuple
 
-from . import bench_discovery, bench_trajectory, boilerplate, cell, say, scheduling
+from . import bench_discovery, bench_trajectory, boilerplate, cell, ports, say, scheduling
 from .environment import program, run_environment
 from .layout import ROOT, Layout
 from .processes import Programs
@@ -68,6 +68,11 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     if options.real_time_factor != 1.0 and not options.stream:
         parser.error("--real-time-factor needs --stream: everything else is in the host's time")
     return options
+
+
+def check(options: argparse.Namespace) -> None:
+    """Failure before any work."""
+    ports.check(options.address)
 
 
 def _nodes(options: argparse.Namespace, priority: int) -> Dict[str, Tuple[str, ...]]:
@@ -163,4 +168,4 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(cell.main(parse, run))
+    sys.exit(cell.main(parse, run, check))

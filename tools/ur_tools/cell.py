@@ -1,7 +1,6 @@
 """What demo and bench share: a simulated controller, the three nodes, and how such a command starts and ends."""
 
 import argparse
-import socket
 import sys
 from typing import Callable, Dict, List
 
@@ -11,23 +10,15 @@ from .layout import Layout
 from .processes import Program, Programs
 
 NODES = ("robot_state_receiver", "command_server", "dashboard_server")
-DASHBOARD_PORT = 29999
-
-
-def _answers(address: str, port: int) -> bool:
-    try:
-        socket.create_connection((address, port), 0.2).close()
-        return True
-    except OSError:
-        return False
+MODELS = ("ur3", "ur5", "ur10", "ur3e", "ur5e", "ur7e", "ur10e", "ur12e", "ur16e", "ur8long", "ur15", "ur18", "ur20", "ur30")
 
 
 def start_simulator(programs: Programs, layout: Layout, env: Dict[str, str], address: str, model: str,
                     *arguments: str) -> Program:
-    """Returns when its ports listen."""
+    """Returns when its ports listen: as it says itself, because another simulator may answer on the address."""
     simulator = programs.start("simulator", [program(layout, "ur_simulator", "ur_simulator"), "--address", address,
                                              "--model", model, *arguments], env)
-    programs.wait_until(lambda: _answers(address, DASHBOARD_PORT), 10.0, "the simulator's ports")
+    programs.wait_until(lambda: "ready: " in simulator.output, 10.0, "the simulator's ports")
     return simulator
 
 
@@ -36,9 +27,11 @@ def start_node(programs: Programs, layout: Layout, env: Dict[str, str], node: st
     return programs.start(node, [program(layout, "ur_ros_rtde", node), "--ros-args", *arguments], env)
 
 
-def main(parse: Callable[[List[str]], argparse.Namespace], run: Callable[[argparse.Namespace, Layout], int]) -> int:
+def main(parse: Callable[[List[str]], argparse.Namespace], run: Callable[[argparse.Namespace, Layout], int],
+         check: Callable[[argparse.Namespace], None] = lambda _options: None) -> int:
     options = parse(sys.argv[1:])
     try:
+        check(options)
         return run(options, Layout.of_environment())
     except say.Failure as failure:
         say.line(f"\n{failure}")

@@ -11,7 +11,7 @@ import random
 import sys
 from typing import List
 
-from . import cell, say
+from . import cell, ports, say
 from .environment import run_environment
 from .layout import ROOT, SANITIZERS, Layout
 from .processes import Programs
@@ -41,6 +41,11 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     return options
 
 
+def check(options: argparse.Namespace) -> None:
+    """Failure before any work."""
+    ports.check(options.address)
+
+
 def run(options: argparse.Namespace, layout: Layout) -> int:
     what = f"{options.faults} faults" if options.faults else f"{options.minutes:g} minutes without faults"
     say.step(f"Seed {options.seed}: {what}, {options.clients} clients")
@@ -61,4 +66,4 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(cell.main(parse, run))
+    sys.exit(cell.main(parse, run, check))

@@ -7,10 +7,11 @@ ignored marked blue, the stop red.
 import argparse
 import pathlib
 import sys
+import tempfile
 import time
 from typing import List
 
-from . import cell, say
+from . import cell, ports, say
 from .environment import run_environment
 from .layout import ROOT, Layout
 from .processes import Programs
@@ -25,7 +26,8 @@ PARAMETERS = {"robot_state_receiver": ("rtde_frequency:=125.0",)}
 def parse(arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="./ur demo", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")
+    parser.add_argument("--model", type=str.lower, choices=cell.MODELS, metavar="MODEL", default="ur10e",
+                        help="arm to simulate: " + ", ".join(cell.MODELS) + " (default: ur10e)")
     parser.add_argument("--threshold", type=float, default=20.0, metavar="N",
                         help="force along the flange Z axis that stops the arm, newtons, 5 to 100 (default: 20)")
     parser.add_argument("--speed", type=float, default=0.1, metavar="M/S",
@@ -43,10 +45,21 @@ def parse(arguments: List[str]) -> argparse.Namespace:
         if not low <= value <= high:
             parser.error(f"--{name} {value:g}: must be from {low:g} to {high:g}")
     if options.drop is None:
-        options.drop = DROP.get(options.model.lower(), DEFAULT_DROP)
+        options.drop = DROP.get(options.model, DEFAULT_DROP)
     if not 0.05 <= options.drop <= 0.6:
         parser.error(f"--drop {options.drop:g}: must be from 0.05 to 0.6")
     return options
+
+
+def check(options: argparse.Namespace) -> None:
+    """What would make the demo fail at its end, or move somebody else's robot. Failure names it before any work."""
+    if not options.output.is_dir():
+        raise say.Failure(f"--output {options.output}: there is no such folder. `mkdir -p {options.output}` makes it.")
+    try:
+        tempfile.TemporaryFile(dir=options.output).close()  # permissions say too little: root may, a full disk may not
+    except OSError as error:
+        raise say.Failure(f"--output {options.output}: the folder cannot be written: {error.strerror}") from None
+    ports.check(options.address)
 
 
 def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> None:
@@ -86,4 +99,4 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(cell.main(parse, run))
+    sys.exit(cell.main(parse, run, check))

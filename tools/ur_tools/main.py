@@ -2,6 +2,7 @@
 
 import argparse
 import errno
+import importlib
 import os
 import pathlib
 import shutil
@@ -78,19 +79,22 @@ def command_shell(options: argparse.Namespace) -> int:
     return subprocess.run([shell], env=env).returncode
 
 
-def _python_command(name: str, options: argparse.Namespace, packages: Optional[List[str]] = None) -> int:
-    """demo, bench, chaos and plan, as modules of their own: their help needs no build."""
+def _python_command(name: str, options: argparse.Namespace) -> int:
+    """demo, bench, chaos and plan, as modules of their own: help and wrong arguments need no build."""
     arguments = _forwarded(options)
     layout = _layout(options)
-    if not any(argument in ("-h", "--help") for argument in arguments):
-        _build(options, packages=packages)
+    module = importlib.import_module(f"ur_tools.{name}")
+    parsed = module.parse(arguments)
+    if hasattr(module, "check"):
+        module.check(parsed)
+    _build(options)
     env = {**os.environ, "UR_LAYOUT": f"{layout.ros}:{layout.variant}", "PYTHONPATH": str(ROOT / "tools"),
            "PYTHONDONTWRITEBYTECODE": "1"}
     os.execve(sys.executable, [sys.executable, "-m", f"ur_tools.{name}", *arguments], env)
 
 
 def command_demo(options: argparse.Namespace) -> int:
-    return _python_command("demo", options, ["ur_simulator", "ur_ros_rtde_tutorials"])
+    return _python_command("demo", options)
 
 
 def command_bench(options: argparse.Namespace) -> int:

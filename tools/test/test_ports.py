@@ -1,0 +1,126 @@
+"""Ports of a controller on this machine: whether they are free, and which process has them."""
+
+import os
+import socket
+import subprocess
+import sys
+
+import pytest
+from ur_tools import ports, say
+from ur_tools.layout import ROOT
+
+ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
+
+LISTENER = """
+import socket, sys
+listener = socket.socket()
+listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+listener.bind((sys.argv[1], int(sys.argv[2])))
+listener.listen()
+print("listening", flush=True)
+sys.stdin.readline()
+"""
+
+
+@pytest.fixture
+def listening():
+    """Starts a process that listens: listening(address, port) is its id."""
+    started = []
+
+    def start(address, port):
+        process = subprocess.Popen([sys.executable, "-c", LISTENER, address, str(port)], stdin=subprocess.PIPE,
+                                   stdout=subprocess.PIPE, text=True)
+        started.append(process)
+        assert process.stdout.readline() == "listening\n"
+        return process.pid
+
+    yield start
+    for process in started:
+        process.communicate("\n", timeout=20.0)
+
+
+def test_free_ports_are_free_and_stay_so():
+    for _unused in range(2):
+        assert ports.in_use(ADDRESS, list(ports.PORTS.values())) == []
+    ports.check(ADDRESS)
+
+
+def test_a_port_in_use_is_named_with_its_process_and_another_address(listening):
+    pid = listening(ADDRESS, 30001)
+    assert ports.in_use(ADDRESS, [29999, 30001]) == [30001]
+    assert ports.holder(ADDRESS, 30001)[0] == pid
+    with pytest.raises(say.Failure) as failure:
+        ports.check(ADDRESS)
+    text = str(failure.value)
+    assert text.startswith(f"port 30001 (primary) of {ADDRESS}: in use by process {pid}: {sys.executable} -c")
+    other = text.rsplit("--address ", 1)[1]
+    assert other != ADDRESS and ports.in_use(other, list(ports.PORTS.values())) == []
+
+
+def test_a_listener_on_all_addresses_has_the_port_as_well(listening):
+    pid = listening("0.0.0.0", 30099)
+    assert ports.in_use(ADDRESS, [30099]) == [30099]
+    assert ports.holder(ADDRESS, 30099)[0] == pid
+
+
+def test_a_listener_on_another_address_does_not_matter(listening):
+    listening("127.0.2.1", 30001)
+    assert ports.in_use(ADDRESS, [30001]) == []
+
+
+def test_a_connection_that_is_closing_does_not_matter():
+    """Its port is in TIME_WAIT, which the simulator may reuse."""
+    listener = socket.create_server((ADDRESS, 30001), reuse_port=False)
+    client = socket.create_connection((ADDRESS, 30001))
+    server, _ = listener.accept()
+    server.close()
+    listener.close()
+    assert client.recv(1) == b""
+    client.close()
+    assert ports.in_use(ADDRESS, [30001]) == []
+
+
+@pytest.mark.parametrize("address, text", [("robot", "not an IPv4 address"), ("192.0.2.1", "no network interface")])
+def test_an_address_that_is_not_of_this_machine_is_refused(address, text):
+    with pytest.raises(say.Failure, match=text):
+        ports.check(address)
+
+
+def test_a_process_of_another_user_is_not_named(monkeypatch):
+    monkeypatch.setattr(ports, "holder", lambda *_: None)
+    assert ports.explain(ADDRESS, [30001, 30002]) == (
+        f"ports 30001 (primary), 30002 (secondary) of {ADDRESS}: in use by a process of another user")
+
+
+# --- Commands refuse before they build ------------------------------------------------------------------------------------
+
+
+def refused(*arguments):
+    """What `./ur` says and its status, where setting up or building anything is an error of its own."""
+    code = (f"import sys; sys.path.insert(0, {str(ROOT / 'tools')!r})\n"
+            "from ur_tools import build, main\n"
+            "build.build = lambda *_: sys.exit('it builds')\n"
+            f"sys.exit(main.main({list(arguments)!r}))")
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert "it builds" not in result.stderr, result.stderr
+    return result.returncode, result.stderr
+
+
+@pytest.mark.parametrize("command", ["demo", "bench", "chaos"])
+def test_ports_in_use_are_found_before_anything_is_built(listening, command):
+    pid = listening(ADDRESS, 29999)
+    arguments = ["--output", str(ROOT)] if command == "demo" else []
+    code, text = refused(command, "--address", ADDRESS, *arguments)
+    assert code == 1 and f"in use by process {pid}" in text and "--address" in text
+
+
+@pytest.mark.parametrize("arguments, expected, text", [
+    (["--output", "/no/such/folder"], 1, "--output /no/such/folder: there is no such folder"),
+    (["--output", "/proc"], 1, "cannot be written"),
+    (["--speed", "1"], 2, "--speed 1: must be from 0.01 to 0.25"),
+    (["--model", "ur99"], 2, "invalid choice: 'ur99'"),
+    (["--address", "192.0.2.1"], 1, "no network interface"),
+])
+def test_wrong_arguments_of_the_demo_are_refused_before_anything_is_built(arguments, expected, text):
+    code, said = refused("demo", "--address", ADDRESS, *arguments)
+    assert code == expected and text in said

@@ -1,0 +1,108 @@
+"""The TCP ports of a controller on this machine, and the processes that have them."""
+
+import errno
+import os
+import pathlib
+import re
+import socket
+import struct
+from typing import Dict, List, Optional, Tuple
+
+from . import say
+
+# As the simulated controller opens them.
+PORTS = {"dashboard": 29999, "primary": 30001, "secondary": 30002, "real-time": 30003, "RTDE": 30004, "control": 30099}
+_LISTEN = "0A"
+
+
+def in_use(address: str, ports: "List[int]") -> List[int]:
+    """The ports that cannot be opened; Failure for an address that is not this machine's."""
+    try:
+        socket.inet_aton(address)
+    except OSError:
+        raise say.Failure(f"--address {address}: not an IPv4 address, as in 127.0.0.2") from None
+    found = []
+    for port in ports:
+        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind((address, port))
+                probe.listen(1)  # only this notices a listener with SO_REUSEADDR
+            except OSError as error:
+                if error.errno == errno.EADDRNOTAVAIL:
+                    raise say.Failure(f"--address {address}: no network interface of this machine has that address. "
+                                      "Loopback addresses are 127.0.0.1, 127.0.0.2 and so on.") from None
+                if error.errno != errno.EADDRINUSE:
+                    raise say.Failure(f"port {port} of {address} cannot be opened: {error.strerror}") from None
+                found.append(port)
+    return found
+
+
+def _hex(address: str) -> str:
+    """As in /proc/net/tcp."""
+    return f"{struct.unpack('=I', socket.inet_aton(address))[0]:08X}"
+
+
+def _listeners(address: str, port: int) -> List[str]:
+    """The inodes of the sockets that listen there."""
+    locals_v4 = (_hex(address), _hex("0.0.0.0"))
+    found = []
+    for name in ("tcp", "tcp6"):
+        try:
+            lines = pathlib.Path("/proc/net", name).read_text().splitlines()[1:]
+        except OSError:
+            continue
+        for fields in (text.split() for text in lines):
+            host, _, number = fields[1].partition(":")
+            if int(number, 16) == port and fields[3] == _LISTEN and (
+                    host in locals_v4 or host == "0" * 32 or host.endswith(locals_v4[0])):
+                found.append(fields[9])
+    return found
+
+
+def holder(address: str, port: int) -> Optional[Tuple[int, str]]:
+    """Id and command of the process that listens there, if we may see it."""
+    sockets = {f"socket:[{inode}]" for inode in _listeners(address, port)}
+    if not sockets:
+        return None
+    for link in pathlib.Path("/proc").glob("[0-9]*/fd/*"):
+        try:
+            if os.readlink(link) in sockets:
+                process = link.parents[1]
+                command = (process / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace").strip()
+                return int(process.name), command
+        except OSError:
+            continue
+    return None
+
+
+def another_address(address: str) -> str:
+    """The next loopback address on which all ports are free, or only the next."""
+    match = re.fullmatch(r"127\.(\d+)\.(\d+)\.(\d+)", address)
+    first = int(match.group(3)) + 1 if match else 2
+    prefix = f"127.{match.group(1)}.{match.group(2)}" if match else "127.0.0"
+    for last in range(first, 255):
+        if not in_use(f"{prefix}.{last}", list(PORTS.values())):
+            return f"{prefix}.{last}"
+    return f"{prefix}.{first}"
+
+
+def explain(address: str, taken: List[int]) -> str:
+    """One line for each process that has some of the ports."""
+    names = {number: name for name, number in PORTS.items()}
+    by_holder: Dict[Optional[Tuple[int, str]], List[str]] = {}
+    for port in taken:
+        by_holder.setdefault(holder(address, port), []).append(f"{port} ({names.get(port, 'TCP')})")
+    lines = []
+    for process, ports in by_holder.items():
+        by = f"process {process[0]}: {process[1][:150]}" if process else "a process of another user"
+        lines.append(f"port{'s' * (len(ports) > 1)} {', '.join(ports)} of {address}: in use by {by}")
+    return "\n".join(lines)
+
+
+def check(address: str) -> None:
+    """Failure when a simulated controller cannot open its ports there."""
+    taken = in_use(address, list(PORTS.values()))
+    if taken:
+        raise say.Failure(f"{explain(address, taken)}\nStop that process, or use another address: "
+                          f"--address {another_address(address)}")
