@@ -77,8 +77,6 @@ def test_another_simulator_on_the_address_is_left_alone(tmp_path):
         assert result.returncode == 1
         assert f"of {address}: in use by process" in result.stdout and "ur_simulator" in result.stdout
         assert "Starting" not in result.stdout and list(tmp_path.iterdir()) == []
-        with ControlPort(address) as control:
-            assert not [entry for entry in control.request("log")["entries"] if "connect" in entry["text"]]
     finally:
         simulator.interrupt()
         simulator.wait(20.0)

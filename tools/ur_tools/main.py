@@ -55,8 +55,10 @@ def command_build(options: argparse.Namespace) -> int:
 
 
 def command_test(options: argparse.Namespace) -> int:
-    return testing.run(testing.Options(_layout(options), options.package, options.only, options.jobs, options.timeout,
-                                       options.repeat))
+    if options.names and options.changed:
+        raise say.Failure("./ur test takes names or --changed, not both")
+    return testing.run(testing.Options(_layout(options), options.names, options.changed or bool(options.base), options.base,
+                                       options.jobs, options.timeout, options.repeat))
 
 
 def command_sim(options: argparse.Namespace) -> int:
@@ -173,10 +175,15 @@ def _parser() -> argparse.ArgumentParser:
 
     add_forwarding("demo", command_demo, "the main job: simulator, nodes, a motion that stops on force, the figure")
 
-    test = add("test", command_test, "build and run all tests; the last line says `N passed, N failed`")
+    test = add("test", command_test, "build and run tests; the last line says `N passed, N failed`")
     _add_build_options(test)
-    test.add_argument("--only", metavar="PATTERN", help="only tests whose name matches this regular expression")
-    test.add_argument("--package", action="append", metavar="NAME", help="only this package (may be repeated)")
+    test.add_argument("names", nargs="*", metavar="NAME",
+                      help="only tests with this in their name: of a package, a test file or a GoogleTest case "
+                           "(default: all tests)")
+    test.add_argument("--changed", action="store_true",
+                      help="only tests that the changed files can affect, and the checks of the sources")
+    test.add_argument("--base", default="", metavar="COMMIT",
+                      help="--changed since this commit or branch (default: origin/main where there is one, else HEAD)")
     test.add_argument("--timeout", type=float, default=0.0, metavar="S",
                       help="limit of one test in seconds (default: what its package says, else 120)")
     test.add_argument("--repeat", type=int, default=1, metavar="N", help="run each test N times (default: 1)")

@@ -14,10 +14,11 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional
 
 from . import build as building
-from . import boilerplate, isolation, lint, say
+from . import boilerplate, isolation, lint, say, selection
 from .environment import run_environment
 from .layout import ROOT, SANITIZERS, Layout
-from .packages import Package
+from .lock import Lock
+from .packages import Package, discover
 from .processes import end_group
 
 DEFAULT_LIMIT = 120.0
@@ -29,8 +30,9 @@ SANITIZED_REAL_TIME_FACTOR = 0.5  # and the simulated robot's time passes slower
 @dataclass
 class Options:
     layout: Layout
-    packages: Optional[List[str]] = None
-    only: Optional[str] = None
+    names: List[str] = field(default_factory=list)  # what the tests' names contain; none: all tests
+    changed: bool = False
+    base: str = ""  # of the changes
     jobs: int = 0
     timeout: float = 0.0
     repeat: int = 1
@@ -88,20 +90,29 @@ def _pytest(layout: Layout, name: str, folder: pathlib.Path) -> List[Test]:
             for file in sorted(folder.rglob("test_*.py"))]
 
 
-def _collect(options: Options, packages: Dict[str, Package]) -> List[Test]:
+def _path_of(test: Test) -> pathlib.Path:
+    """The pytest file, or the program."""
+    return pathlib.Path(test.command[-1] if "pytest" in test.command else test.command[0])
+
+
+def _collect(options: Options, packages: Dict[str, Package], chosen: selection.Selection) -> List[Test]:
     layout = options.layout
-    chosen = options.packages or list(packages)
+    names = list(packages)
     tests: List[Test] = []
-    for name in chosen:
-        tests += _pytest(layout, name, packages[name].folder / "test")
-    if not options.packages:
-        tests += _pytest(layout, "tools", ROOT / "tools" / "test")
-    for name in chosen:
+    for name, folder in selection.test_folders(packages).items():
+        if name in packages or chosen.packages is None:
+            tests += _pytest(layout, name, folder)
+    for name in names:
         tests += _ctest(layout, packages[name])
-    if options.only:
-        pattern = re.compile(options.only)
-        tests = [test for test in tests if pattern.search(test.name)]
+    tests = [test for test in tests if chosen.chooses(test.name.split(":")[0], test.name, _path_of(test))]
     return [test for test in tests for _unused in range(options.repeat)]
+
+
+def _select(options: Options) -> selection.Selection:
+    packages = discover()
+    if options.changed:
+        return selection.by_change(options.base or selection.default_base(), packages)
+    return selection.by_name(options.names, packages) if options.names else selection.everything()
 
 
 # --- Running one ------------------------------------------------------------------------------------------------------
@@ -311,17 +322,28 @@ def _summary(results: List[Result], checks: List[lint.Check], seconds: float) ->
 def run(options: Options) -> int:
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)  # begun with "&": programs under test would inherit it
-    packages = building.build(building.Options(options.layout, options.packages, True, options.jobs))
+    chosen = _select(options)
+    if chosen.packages == [] and options.changed:
+        building.setup(options.layout)
+        return _run_selected(options, chosen, {})
+    return _run_selected(options, chosen,
+                         building.build(building.Options(options.layout, chosen.packages, True, options.jobs)))
+
+
+def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[str, Package]) -> int:
     start = time.monotonic()
-    tests = _collect(options, packages)
-    folder = isolation.fresh_folder(options.layout.base / "test")
-    checks = [] if options.only or options.packages else lint.checks(options.layout)
-    for check in checks:
-        if not check.ok:
-            say.line(f"FAILED  {check.name}\n{check.text}")
-    say.step(f"Running {len(tests)} tests")
-    with isolation.CleanUp():
-        results = _run_all(options, tests, folder)
-    if checks:
+    with Lock("test"):
+        tests = _collect(options, packages, chosen)
+        if options.names and not tests:
+            raise say.Failure(f"no test has {' or '.join(options.names)} in its name")
+        folder = isolation.fresh_folder(options.layout.base / "test")
+        checks = [] if options.names else lint.checks(options.layout)
+        for check in checks:
+            if not check.ok:
+                say.line(f"FAILED  {check.name}\n{check.text}")
+        say.step(f"Running {len(tests)} test{'s' * (len(tests) != 1)}")
+        with isolation.CleanUp():
+            results = _run_all(options, tests, folder)
+    if not (options.names or options.changed):
         say.line("\n" + boilerplate.table())
     return _summary(results, checks, time.monotonic() - start)

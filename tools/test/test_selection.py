@@ -1,0 +1,233 @@
+"""`./ur test NAME…` and `./ur test --changed`: which tests run."""
+
+import pathlib
+import subprocess
+
+import pytest
+from ur_tools import main, packages, say, selection, testing
+from ur_tools.layout import ROOT
+
+STOP = "TEST_F(StopTest, KeepsItsLine)\n{\n}\nTEST_P(Angles, AreRead)\n{\n}\n"
+FILES = {
+    "messages/package.xml": "<package><name>messages</name></package>",
+    "messages/CMakeLists.txt": "",
+    "messages/action/Move.action": "",
+    "driver/package.xml": "<package><name>driver</name><depend>messages</depend></package>",
+    "driver/CMakeLists.txt": "",
+    "driver/src/stop.cpp": "",
+    "driver/test/CMakeLists.txt": "add_executable(goal_test goals.cpp)\n",
+    "driver/test/test_stop.cpp": STOP,
+    "driver/test/typed/documentation.py": 'FOLDER = ROOT / "docs" / "commands"\n',
+    "driver/test/typed/test_cancel.py": "",
+    "driver/test/nodes/test_node.py": "",
+    "driver/test/nodes/support.py": "",
+    "driver_cli/package.xml": "<package><name>driver_cli</name><exec_depend>driver</exec_depend></package>",
+    "driver_cli/CMakeLists.txt": "",
+    "driver_cli/test/test_cli.py": "",
+    "tools/test/test_say.py": "from ur_tools import say\n",
+    "tools/test/test_demo.py": 'import ur_tools.demo\nsys.path.insert(0, ROOT / "driver/test/nodes")\n',
+    "tools/test/test_readme.py": 'README = ROOT / "README.md"\n',
+    "tools/ur_tools/say.py": "",
+    "tools/ur_tools/cell.py": "from . import say\n",
+    "tools/ur_tools/demo.py": "from .cell import start\n",
+    "tools/ur_tools/main.py": "from . import say\n",
+    "tools/cmake/sanitize.cmake": "",
+    "docs/commands/io.md": "",
+    "docs/simulator.md": "",
+    "README.md": "",
+    "LICENSE": "",
+    "wheels/kilted.txt": "",
+    "demo/figure.py": "",
+}
+ALL = {"driver: robot.StopTest.KeepsItsLine": "build/driver/test_stop", "driver: Each/Angles.AreRead/0": "build/driver/test_stop",
+       "driver: goals": "build/driver/goal_test"}
+
+
+@pytest.fixture
+def root(tmp_path):
+    for name, text in FILES.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+@pytest.fixture
+def repository(root):
+    def git(*arguments):
+        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *arguments], cwd=root, check=True, capture_output=True)
+
+    git("init", "-q", "-b", "main")
+    git("add", "-A")
+    git("commit", "-qm", "first")
+    return root, git
+
+
+def collected(root):
+    """Name and file of every test, as collected after a build."""
+    found = {name: root / path for name, path in ALL.items()}
+    for package, folder in selection.test_folders(packages.discover(root), root).items():
+        found.update({f"{package}: {path.stem}": path for path in folder.rglob("test_*.py")})
+    return found
+
+
+def chosen(root, selected):
+    return sorted(name for name, path in collected(root).items() if selected.chooses(name.split(":")[0], name, path))
+
+
+def named(root, *words):
+    return selection.by_name(list(words), packages.discover(root), root)
+
+
+def affected(root, *names):
+    found = selection.Affected(packages.discover(root), root)
+    for name in names:
+        found.add(name)
+    return found.selection()
+
+
+# --- By name ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("word, expected", [
+    ("test_cancel", ["driver: test_cancel"]),
+    ("CANCEL", ["driver: test_cancel"]),
+    ("driver/test/typed/test_cancel.py", ["driver: test_cancel"]),
+    ("driver_cli", ["driver_cli: test_cli"]),
+    ("driver", ["driver: Each/Angles.AreRead/0", "driver: goals", "driver: robot.StopTest.KeepsItsLine", "driver: test_cancel",
+                "driver: test_node"]),
+    ("StopTest", ["driver: robot.StopTest.KeepsItsLine"]),
+    ("robot.StopTest.Keeps", ["driver: robot.StopTest.KeepsItsLine"]),
+    ("Each/Angles.AreRead/0", ["driver: Each/Angles.AreRead/0"]),
+    ("test_stop", ["driver: Each/Angles.AreRead/0", "driver: robot.StopTest.KeepsItsLine"]),
+    ("goal_test", ["driver: goals"]),
+    ("tools", ["tools: test_demo", "tools: test_readme", "tools: test_say"]),
+])
+def test_a_name_chooses_packages_files_and_cases(root, word, expected):
+    assert chosen(root, named(root, word)) == expected
+
+
+def test_several_names_choose_what_any_of_them_chooses(root):
+    assert chosen(root, named(root, "test_node", "StopTest")) == ["driver: robot.StopTest.KeepsItsLine", "driver: test_node"]
+
+
+@pytest.mark.parametrize("word, needed", [("test_cli", ["driver_cli"]), ("test_cancel", ["driver"]), ("test_say", None)])
+def test_only_the_packages_of_the_tests_are_built(root, word, needed):
+    assert named(root, word).packages == needed
+
+
+@pytest.mark.parametrize("word, near", [("test_cansel", "test_cancel"), ("drivr", "driver"), ("StopTestt", "StopTest"),
+                                        ("xyzzy", "Packages: messages, driver, driver_cli, tools")])
+def test_an_unknown_name_is_refused_with_near_ones(root, word, near):
+    with pytest.raises(say.Failure) as failure:
+        named(root, "test_say", word)
+    assert f'"{word}"' in str(failure.value) and near in str(failure.value)
+
+
+def test_every_test_of_this_checkout_can_be_named():
+    found = packages.discover(ROOT)
+    for source in selection.sources(found):
+        assert selection.by_name([source.path.stem], found) is not None
+    cases = [case for source in selection.sources(found) for case in source.cases]
+    assert len(cases) > 200
+
+
+# --- By change ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("changed, expected", [
+    ("driver/test/typed/test_cancel.py", ["driver: test_cancel"]),
+    ("driver/test/test_stop.cpp", sorted(ALL)),
+    ("driver/test/nodes/support.py", [*sorted(ALL), "driver: test_cancel", "driver: test_node", "tools: test_demo"]),
+    ("driver/src/stop.cpp", [*sorted(ALL), "driver: test_cancel", "driver: test_node", "driver_cli: test_cli", "tools: test_demo",
+                             "tools: test_readme", "tools: test_say"]),
+    ("driver_cli/CMakeLists.txt", ["driver_cli: test_cli", "tools: test_demo", "tools: test_readme", "tools: test_say"]),
+    ("docs/commands/io.md", ["driver: test_cancel"]),
+    ("docs/simulator.md", []),
+    ("README.md", ["tools: test_readme"]),
+    ("tools/ur_tools/demo.py", ["tools: test_demo"]),
+    ("tools/ur_tools/say.py", ["tools: test_demo", "tools: test_say"]),
+    ("tools/test/test_say.py", ["tools: test_say"]),
+    ("demo/figure.py", ["tools: test_demo"]),
+    ("LICENSE", []),
+    (".gitignore", []),
+])
+def test_a_changed_file_chooses_what_it_can_affect(root, changed, expected):
+    assert chosen(root, affected(root, changed)) == expected
+
+
+@pytest.mark.parametrize("changed", ["messages/action/Move.action", "wheels/kilted.txt", "tools/cmake/sanitize.cmake",
+                                     "a_new_folder/file"])
+def test_what_everything_depends_on_chooses_everything(root, changed):
+    assert chosen(root, affected(root, changed)) == sorted(collected(root))
+
+
+def test_a_removed_test_is_not_run(root):
+    (root / "tools/test/test_say.py").unlink()
+    assert affected(root, "tools/test/test_say.py").packages == []
+
+
+def test_changes_are_those_since_the_common_commit_and_what_is_not_committed(repository):
+    root, git = repository
+    git("checkout", "-qb", "work")
+    (root / "driver/src/stop.cpp").write_text("// committed\n")
+    git("commit", "-qam", "second")
+    (root / "README.md").write_text("written")
+    (root / "driver/src/new file.cpp").write_text("")
+    git("checkout", "-q", "--detach", "main")
+    (root / "LICENSE").write_text("on main, later")
+    git("commit", "-qm", "third", "LICENSE")
+    git("branch", "-f", "main")
+    git("checkout", "-q", "work")
+    assert selection.changed_files("main", root) == ["README.md", "driver/src/new file.cpp", "driver/src/stop.cpp"]
+    assert selection.changed_files("HEAD", root) == ["README.md", "driver/src/new file.cpp"]
+
+
+def test_a_renamed_file_counts_with_both_names(repository):
+    root, git = repository
+    git("mv", "driver_cli/test/test_cli.py", "driver_cli/test/test_call.py")
+    assert selection.changed_files("HEAD", root) == ["driver_cli/test/test_call.py", "driver_cli/test/test_cli.py"]
+
+
+def test_the_default_base_is_origin_main_where_there_is_one(repository):
+    root, git = repository
+    assert selection.default_base(root) == "HEAD"
+    git("update-ref", "refs/remotes/origin/main", "HEAD")
+    assert selection.default_base(root) == "origin/main"
+
+
+def test_an_unknown_base_is_named(repository):
+    root, _ = repository
+    with pytest.raises(say.Failure, match="--base no_branch"):
+        selection.by_change("no_branch", packages.discover(root), root)
+
+
+def test_without_changes_nothing_is_built_and_nothing_runs(repository, capsys):
+    root, _ = repository
+    found = selection.by_change("HEAD", packages.discover(root), root)
+    assert found.packages == [] and chosen(root, found) == []
+    assert capsys.readouterr().out == "0 files changed since HEAD\n"
+
+
+# --- The command ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("arguments, names, changed, base", [
+    (["test"], [], False, ""), (["test", "move_j", "StopTest", "--repeat", "2"], ["move_j", "StopTest"], False, ""),
+    (["test", "--changed"], [], True, ""), (["test", "--base", "main"], [], True, "main"),
+])
+def test_the_options_of_the_command(monkeypatch, arguments, names, changed, base):
+    given = []
+    monkeypatch.setattr(testing, "run", lambda options: given.append(options) or 0)
+    assert main.main(arguments) == 0
+    assert (given[0].names, given[0].changed, given[0].base) == (names, changed, base)
+
+
+def test_names_and_changed_exclude_each_other(capsys):
+    assert main.main(["test", "move_j", "--changed"]) == 1
+    assert "names or --changed, not both" in capsys.readouterr().err
+
+
+def test_a_collected_test_is_chosen_by_its_program_or_its_file():
+    program = testing.Test("driver: robot.StopTest.x", ["build/test_stop", "--gtest_filter=StopTest.x"], pathlib.Path(), 1.0)
+    file = testing.Test("driver: test_node", ["python", "-m", "pytest", "driver/test/test_node.py"], pathlib.Path(), 1.0)
+    assert testing._path_of(program).stem == "test_stop" and testing._path_of(file).name == "test_node.py"
