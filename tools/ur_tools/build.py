@@ -22,6 +22,17 @@ MEMORY_OF_A_JOB = 1.0e9  # bytes; the largest translation units
 WORKERS = 2  # packages at a time, each with all jobs
 
 
+_NOT_IN_PATHS = ":;$\\\"'"
+
+
+def check_path(root: pathlib.Path) -> None:
+    """Spaces are fine; PATH, CMake lists and the shell cannot hold these."""
+    wrong = [character for character in _NOT_IN_PATHS if character in str(root)]
+    if wrong:
+        raise say.Failure(f"The checkout's path {root} contains {' '.join(wrong)}, which cannot be in a search path or a CMake "
+                          "list. Move the checkout.")
+
+
 def default_jobs() -> int:
     """All cores, or as many as the memory is enough for."""
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
@@ -263,6 +274,7 @@ def _pending_setup(layout: Layout) -> Pending:
 
 def _setup(layout: Layout, pending: Pending) -> None:
     if pending:
+        check_path(ROOT)
         disk.check(STATE, disk.FIRST_RUN if pending.venv else disk.LATER)
     system_packages.ensure()
     venv.ensure(layout)
@@ -311,7 +323,6 @@ def build(options: Options) -> Dict[str, Package]:
             say.step(pending.text(options))
         _setup(options.layout, pending)
         if pending.outdated:
-            disk.check(STATE, disk.LATER)
             _build(options, packages, pending, stamps)
     return packages
 

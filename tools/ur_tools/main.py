@@ -12,7 +12,7 @@ import sys
 from typing import List, Optional
 
 from . import build as building
-from . import disk, lint, new, say, testing
+from . import disk, doctor, lint, new, say, testing
 from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
@@ -136,6 +136,10 @@ def _prepared(options: argparse.Namespace) -> Layout:
     return layout
 
 
+def command_doctor(options: argparse.Namespace) -> int:
+    return doctor.run(Layout(options.ros))
+
+
 def command_clean(options: argparse.Namespace) -> int:
     if options.all:
         folders = [STATE]
@@ -215,6 +219,10 @@ def _parser() -> argparse.ArgumentParser:
         if name == "lint":
             sub.add_argument("--tidy", action="store_true", help="also run clang-tidy (minutes)")
 
+    sub = add("doctor", command_doctor,
+              "check this machine (compiler, Python, disk, memory, ports, timing) and say what to do; status 1 where it cannot work")
+    sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
+
     clean = add("clean", command_clean, "remove what was built")
     clean.add_argument("--all", action="store_true", help="also the virtual environments and downloads")
     return parser
@@ -276,6 +284,9 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except say.Failure as failure:
         print(f"\n{failure}", file=sys.stderr)
         return 1
+    except BrokenPipeError:  # `./ur doctor | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
     except OSError as error:
         print(f"\n{_explain(error)}", file=sys.stderr)
         return 1
