@@ -1,0 +1,135 @@
+"""`./ur build` with a program in place of colcon: in a path with spaces, interrupted and run again, failing."""
+
+import sys
+
+import pytest
+from ur_tools import build, downloads, lock, say, system_packages, venv
+from ur_tools.layout import Layout
+
+COLCON = r"""
+import pathlib, sys, time
+arguments = sys.argv[1:]
+value = lambda name: pathlib.Path(arguments[arguments.index(name) + 1])
+log, build, install = value("--log-base"), value("--build-base"), value("--install-base")
+names = arguments[arguments.index("--packages-select") + 1:arguments.index("--build-base")]
+with (log / "calls.txt").open("a") as file:
+    print(*names, file=file)
+for name in names:
+    print("Starting >>>", name, flush=True)
+    folder = log / "latest_build" / name
+    folder.mkdir(parents=True, exist_ok=True)
+    (build / name).mkdir(parents=True, exist_ok=True)
+    trouble = log / "trouble.txt"
+    if trouble.exists() and name == names[2]:
+        for file in ("stdout.log", "stdout_stderr.log"):
+            (folder / file).write_text("[1/4] Building a.o\nFAILED: a.o\n" + trouble.read_text())
+        if trouble.read_text() == "hangs":
+            time.sleep(60)
+        print("Failed   <<<", name, "[0.1s, exited with code 1]", flush=True)
+        sys.exit(1)
+    (folder / "stdout.log").write_text("[0/4] Checking\n[4/4] Linking a\n")
+    (install / "share" / name).mkdir(parents=True, exist_ok=True)
+    (install / "share" / name / "package.xml").write_text("")
+    print("Finished <<<", name, "[0.1s]", flush=True)
+"""
+
+
+@pytest.fixture
+def state(tmp_path, monkeypatch):
+    """The .ur of a checkout in a path with spaces."""
+    state = tmp_path / "a path with spaces" / ".ur"
+    monkeypatch.setattr("ur_tools.layout.STATE", state)
+    monkeypatch.setattr(build, "STATE", state)
+    return state
+
+
+@pytest.fixture
+def layout(state, monkeypatch):
+    """A checkout with everything but a build."""
+    monkeypatch.setattr(build, "Lock", lambda name: lock.Lock(name, state))
+    monkeypatch.setattr(system_packages, "absent", list)
+    monkeypatch.setattr(venv, "is_current", lambda _: True)
+    monkeypatch.setattr(downloads, "is_current", lambda: True)
+    monkeypatch.setattr(downloads, "ensure", lambda _: None)
+    layout = Layout("kilted")
+    script = layout.venv / "bin" / "colcon"
+    script.parent.mkdir(parents=True)
+    (layout.base / "colcon.py").write_text(COLCON)
+    script.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{layout.base / "colcon.py"}" "$@"\n')
+    script.chmod(0o755)
+    return layout
+
+
+def calls(layout):
+    return [line.split() for line in (layout.log / "calls.txt").read_text().splitlines()]
+
+
+def trouble(layout, text):
+    layout.log.mkdir(parents=True, exist_ok=True)
+    (layout.log / "trouble.txt").write_text(text)
+
+
+def test_in_a_path_with_spaces_everything_is_built_once(layout, capsys):
+    names = list(build.build(build.Options(layout)))
+    said = capsys.readouterr().out
+    assert said.splitlines()[0].startswith(f"==> Builds {len(names)} packages, about ")
+    assert all(f"finished {name}" in said for name in names)
+    build.build(build.Options(layout))
+    assert calls(layout) == [names]
+    assert capsys.readouterr().out == ""
+
+
+def test_the_times_of_a_build_are_kept_for_the_next_forecast(layout):
+    build.build(build.Options(layout))
+    seconds, steps = build._times(build.Options(layout)).last("rcl_cxx", False)
+    assert steps == 4 and seconds < 30.0
+
+
+def test_an_interrupted_build_goes_on_where_it_was(layout, monkeypatch):
+    trouble(layout, "hangs")
+    update = build.Progress.update
+
+    def interrupted(self):
+        update(self)
+        if len(self.done) == 2 and self._running:
+            monkeypatch.setattr(build.Progress, "update", update)
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(build.Progress, "update", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        build.build(build.Options(layout))
+    (layout.log / "trouble.txt").unlink()
+    names = list(build.build(build.Options(layout)))
+    assert calls(layout) == [names, names[2:]]
+
+
+def test_a_failure_shows_what_failed_and_the_next_run_goes_on_there(layout):
+    trouble(layout, "a.cpp:1: error: oh no")
+    with pytest.raises(say.Failure, match="did not build(.|\n)*FAILED: a.o\na.cpp:1: error: oh no"):
+        build.build(build.Options(layout))
+    (layout.log / "trouble.txt").unlink()
+    names = list(build.build(build.Options(layout)))
+    assert calls(layout)[1] == names[2:]
+
+
+def test_a_disk_that_is_full_is_named(layout):
+    trouble(layout, "a.cpp: fatal error: cannot write a.o: No space left on device")
+    with pytest.raises(say.Failure, match="The disk that holds .* is full"):
+        build.build(build.Options(layout))
+
+
+def test_an_interrupted_installation_of_the_wheels_goes_on_in_the_same_environment(state, monkeypatch):
+    layout = Layout("kilted")
+    python = layout.venv / "bin" / "python"
+    assert state in python.parents
+    python.parent.mkdir(parents=True)
+    python.write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
+    python.chmod(0o755)
+    (layout.venv / "bin" / "pip").write_text(f"#!{python}")
+    (layout.venv / "pyvenv.cfg").write_text("")
+    installed = []
+    monkeypatch.setattr(venv, "find_python", lambda: pytest.fail("a new environment"))
+    monkeypatch.setattr(venv, "_pip_install", installed.append)
+    assert not venv.is_current(layout)
+    venv.ensure(layout)
+    assert installed == [layout] and venv.is_current(layout)
