@@ -5,11 +5,13 @@ import re
 import subprocess
 import sys
 
+import pytest
 from ur_ros_rtde.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
-from ur_tools import cell
+from ur_tools import cell, main, packages, selection
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text()
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text()
 LAUNCH_FILES = {"driver": DRIVER, "two_robots": (*TWO_ROBOTS, *DRIVER), "moveit": (*MOVEIT, *DRIVER)}
 
 
@@ -17,8 +19,11 @@ def blocks():
     return re.findall(r"```bash\n(.*?)```", README, re.S)
 
 
-def test_every_link_leads_to_a_file():
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
+@pytest.mark.parametrize("text", [README, CONTRIBUTING], ids=["README", "CONTRIBUTING"])
+def test_every_link_leads_to_a_file(text):
+    targets = re.findall(r"\]\(([^)#]+)\)", text)
+    assert targets
+    for target in targets:
         assert (ROOT / target).exists(), target
 
 
@@ -33,6 +38,26 @@ def test_every_command_of_ur_is_known():
         result = subprocess.run([sys.executable, str(ROOT / "ur"), command, "--help"], capture_output=True, text=True,
                                 timeout=60)
         assert result.returncode == 0, (command, result.stderr)
+
+
+def test_the_options_of_the_contributors_commands_are_known():
+    lines = re.findall(r"^\./ur (.*?)(?: *#.*)?$", CONTRIBUTING, re.M)
+    assert len(lines) >= 8
+    for line in lines:
+        main._parse(line.split())  # exits with an unknown one
+
+
+def test_the_names_in_the_examples_of_ur_test_choose_tests():
+    found = packages.discover(ROOT)
+    examples = re.findall(r"^\./ur test (\w[\w ]*?) *(?:#.*)?$", CONTRIBUTING, re.M)
+    assert len(examples) >= 2
+    for words in examples:
+        selection.by_name(words.split(), found)  # refuses an unknown one
+
+
+def test_every_folder_of_packages_is_in_the_table_of_contributing():
+    for package in packages.discover(ROOT).values():
+        assert f"`{package.folder.name}`" in CONTRIBUTING, package.name
 
 
 def test_the_launch_arguments_are_declared():

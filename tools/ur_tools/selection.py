@@ -14,7 +14,7 @@ from .packages import Package
 
 TOOLS = "tools"  # the tests in tools/test, as if they were a package's
 _CASE = re.compile(r"^\s*(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)", re.M)
-_TARGET = re.compile(r"\b(?:add_executable|ament_add_gtest)\((\w+)")
+_TARGET = re.compile(r"\b(?:add_executable|ament_add_gtest)\((\w+)[\s)]")
 _CPP = (".cpp", ".hpp", ".h", ".c")
 # Files on which everything depends: the ROS wheels and how we build with them.
 _EVERYTHING = ("wheels/", "tools/cmake/")
