@@ -6,6 +6,8 @@ import re
 import subprocess
 import sys
 
+from ur_tools import packages
+from ur_tools.demo import PACKAGES
 from ur_tools.environment import program, workspace_environment
 from ur_tools.layout import ROOT, Layout
 
@@ -80,6 +82,16 @@ def test_another_simulator_on_the_address_is_left_alone(tmp_path):
     finally:
         simulator.interrupt()
         simulator.wait(20.0)
+
+
+def test_what_the_demo_imports_is_built_for_it():
+    built = packages.with_dependencies(packages.discover(), PACKAGES)
+    used = set()
+    for file in (ROOT / "demo").glob("*.py"):
+        used.update(re.findall(r"^from (\w+)\.(?:action|msg|srv) import", file.read_text(), re.M))
+    assert "ur_ros_rtde_tutorials" in used
+    assert used & set(packages.discover()) <= set(built)
+    assert "ur_ros_rtde_gripper_commands" not in built
 
 
 def test_options_out_of_range_are_named_with_their_limits():

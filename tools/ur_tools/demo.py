@@ -16,6 +16,8 @@ from .environment import run_environment
 from .layout import ROOT, Layout
 from .processes import Programs
 
+# The packages that it needs, with those that they depend on.
+PACKAGES = ["ur_ros_rtde", "ur_ros_rtde_tutorials", "ur_simulator"]
 # m between the tool and the table: what each size of arm can go down from its start pose.
 DROP = {"ur3": 0.15, "ur3e": 0.15}
 DEFAULT_DROP = 0.3

@@ -89,7 +89,7 @@ def _python_command(name: str, options: argparse.Namespace) -> int:
     parsed = module.parse(arguments)
     if hasattr(module, "check"):
         module.check(parsed)
-    _build(options)
+    _build(options, packages=getattr(module, "PACKAGES", None))
     env = {**os.environ, "UR_LAYOUT": f"{layout.ros}:{layout.variant}", "PYTHONPATH": str(ROOT / "tools"),
            "PYTHONDONTWRITEBYTECODE": "1"}
     os.execve(sys.executable, [sys.executable, "-m", f"ur_tools.{name}", *arguments], env)
