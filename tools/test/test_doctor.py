@@ -35,7 +35,7 @@ def test_this_machine_can_build_and_run():
     assert result.returncode == 0, result.stdout + result.stderr
     for what in ("checkout", "compiler", "system packages", "Python", "disk", "memory", "ports", "loopback", "time jitter"):
         assert len([line for line in result.stdout.splitlines() if f" {what} " in line]) == 1, result.stdout
-    assert result.stdout.splitlines()[-1] == "Everything that ./ur needs is here."
+    assert result.stdout.splitlines()[-1] == "This machine can build and run everything."
 
 
 def test_the_status_is_1_when_something_prevents_work(monkeypatch, capsys):

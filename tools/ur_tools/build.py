@@ -18,7 +18,7 @@ from .packages import Package, discover, state, with_dependencies
 from .processes import end_group
 
 STAMP = "ur_stamp.txt"
-MEMORY_OF_A_JOB = 1.0e9  # bytes; the largest translation units
+MEMORY_OF_A_JOB = 1.0e9  # bytes, for the largest translation units
 WORKERS = 2  # packages at a time, each with all jobs
 
 
@@ -26,7 +26,7 @@ _NOT_IN_PATHS = ":;$\\\"'"
 
 
 def check_path(root: pathlib.Path) -> None:
-    """Spaces are fine; PATH, CMake lists and the shell cannot hold these."""
+    """Raises Failure for characters that separate entries in PATH or CMake lists, or that need quoting. Spaces are allowed."""
     wrong = [character for character in _NOT_IN_PATHS if character in str(root)]
     if wrong:
         raise say.Failure(f"The checkout's path {root} contains {' '.join(wrong)}, which cannot be in a search path or a CMake "
@@ -34,7 +34,7 @@ def check_path(root: pathlib.Path) -> None:
 
 
 def default_jobs() -> int:
-    """All cores, or as many as the memory is enough for."""
+    """One job per core, limited by memory."""
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     return max(1, min(len(os.sched_getaffinity(0)), int(memory / MEMORY_OF_A_JOB)))
 
@@ -228,13 +228,13 @@ def _times(options: Options) -> BuildTimes:
 
 
 def _firsts(layout: Layout, names: List[str]) -> Dict[str, bool]:
-    """Whether each package has not been built before, not even in part."""
+    """Maps each package to whether it is built from nothing."""
     return {name: not (layout.build / name / ".ninja_log").is_file() for name in names}
 
 
 @dataclass
 class Pending:
-    """What has to be done before everything is built."""
+    """The work that is left before everything is built."""
 
     system: List[str]  # packages of the operating system
     venv: bool
@@ -246,7 +246,7 @@ class Pending:
         return bool(self.system or self.venv or self.archive or self.outdated)
 
     def text(self, options: Options) -> str:
-        """One line: what is downloaded and built, and how long that takes."""
+        """Returns one line: downloads, packages to build, duration."""
         times, first = _times(options), _firsts(options.layout, self.outdated)
         megabytes = self.venv * venv.MEGABYTES + self.archive * downloads.MEGABYTES
         seconds = self.venv * venv.SECONDS + sum(times.first(name, self.tests)[0] for name in self.outdated)
@@ -318,7 +318,7 @@ def build(options: Options) -> Dict[str, Package]:
         return packages
     with Lock("build"):
         packages = _chosen(options)
-        pending, stamps = _pending(options, packages)  # another ./ur may have built it meanwhile
+        pending, stamps = _pending(options, packages)  # another ./ur may have built them while this one waited
         if pending:
             say.step(pending.text(options))
         _setup(options.layout, pending)

@@ -7,8 +7,8 @@ import time
 from typing import Dict, Iterable, List, Optional, Tuple
 
 REFERENCE_CORES = 2
-# Seconds of a first build without a compiler cache, with all cores of REFERENCE_CORES for this package: without and with its
-# tests. Source: "first" in .ur/<distribution>/build_times.json after `./ur build` and `./ur build --tests` from nothing.
+# Seconds of a first build on REFERENCE_CORES without a compiler cache, if no other package is built at the same time: without and
+# with tests. Source: "first" in .ur/<distribution>/build_times.json after `./ur build` and `./ur build --tests` from nothing.
 REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_rtde_vendor": (45.0, 45.0),
     "rcl_cxx": (55.0, 110.0),
@@ -20,8 +20,8 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_ros_rtde_tutorials": (20.0, 20.0),
 }
 UNKNOWN_PACKAGE = (30.0, 30.0)
-STEPS_PER_SECOND = 1.0  # until ninja tells a package's number of steps
-PRIOR = 60.0  # s, after which the measured speed of this build counts as much as the estimate
+STEPS_PER_SECOND = 1.0  # until ninja reports the number of steps of a package
+PRIOR = 60.0  # s of build time after which measured speed and estimate have equal weight
 
 
 def rounded(seconds: float) -> str:
@@ -32,7 +32,7 @@ def rounded(seconds: float) -> str:
 
 
 class BuildTimes:
-    """The times of this checkout's builds: the last first build of each package, and its last build."""
+    """Measured times of this checkout: per package its last build, and its last build from nothing ("first")."""
 
     def __init__(self, file: pathlib.Path, jobs: int):
         self._file, self._jobs = file, jobs
@@ -68,7 +68,7 @@ class BuildTimes:
 
 
 class _Work:
-    """One package: `seconds` is its share of the build's time, as if the others waited meanwhile."""
+    """One package. `seconds` is its share of the total build time."""
 
     def __init__(self, times: BuildTimes, name: str, tests: bool, is_first: bool):
         self.is_first = is_first
@@ -76,7 +76,7 @@ class _Work:
         last = None if is_first else times.last(name, tests)
         self._seconds, self._expected_steps = last or (self._first_seconds, self._first_steps)
         self.step = 0
-        self.steps: Optional[int] = None  # as ninja says
+        self.steps: Optional[int] = None  # as reported by ninja
         self.finished = False
         self.spent = 0.0
 
@@ -98,7 +98,7 @@ class _Work:
 
 
 class Forecast:
-    """Files done and in total, and the remaining time, over all packages of a build."""
+    """Files and remaining time over all packages of a build."""
 
     def __init__(self, times: BuildTimes, firsts: Dict[str, bool], tests: bool, clock=time.monotonic):
         self._times, self._tests, self._clock = times, tests, clock
@@ -107,7 +107,7 @@ class Forecast:
         self._elapsed = 0.0
 
     def update(self, running: Iterable[str]) -> None:
-        """Counts the time since the last update for the packages that are being built, in equal shares."""
+        """Divides the time since the last update equally among the packages that are being built."""
         now = self._clock()
         names = [name for name in running if name in self._work]
         for name in names:
@@ -126,7 +126,7 @@ class Forecast:
         self._times.record(name, self._tests, work.spent, work.steps, work.is_first)
 
     def files(self) -> Tuple[int, int, bool]:
-        """Done, in total, and whether the total is known."""
+        """Returns the number of files done, the total, and whether the total is exact."""
         works = self._work.values()
         return (sum(work.step for work in works), sum(work.expected_steps for work in works),
                 all(work.steps is not None for work in works))

@@ -42,7 +42,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
 
 
 def check(options: argparse.Namespace) -> None:
-    """Failure before any work."""
+    """Raises Failure if the address is in use."""
     ports.check(options.address)
 
 

@@ -54,7 +54,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
 
 
 def check(options: argparse.Namespace) -> None:
-    """What would make the demo fail at its end, or move somebody else's robot. Failure names it before any work."""
+    """Raises Failure if the output folder cannot be written or the address is in use."""
     if not options.output.is_dir():
         raise say.Failure(f"--output {options.output}: there is no such folder. `mkdir -p {options.output}` makes it.")
     try:

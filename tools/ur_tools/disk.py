@@ -10,7 +10,7 @@ LATER = 0.3e9
 
 
 def free(path: pathlib.Path) -> int:
-    """Bytes free where the path is, or will be."""
+    """Returns the free bytes of the file system that holds the path, or will hold it."""
     while not path.exists():
         path = path.parent
     return shutil.disk_usage(path).free
@@ -18,7 +18,7 @@ def free(path: pathlib.Path) -> int:
 
 def full(path: pathlib.Path) -> str:
     return (f"The disk that holds {path} is full ({free(path) / 1e9:.1f} GB free). Free some space and run ./ur again: "
-            "what was done is kept.")
+            "it continues where it ended.")
 
 
 def check(path: pathlib.Path, needed: float) -> None:

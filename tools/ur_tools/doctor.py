@@ -1,4 +1,4 @@
-"""./ur doctor: whether this machine can build and run everything, and what to do where it cannot."""
+"""./ur doctor: checks whether this machine can build and run everything."""
 
 import os
 import pathlib
@@ -17,10 +17,10 @@ from .layout import ROOT, STATE, Layout
 OK, NOTE, FAILED = "ok", "note", "FAILED"
 DEMO_ADDRESS = "127.0.0.1"
 TEST_ADDRESSES = ("127.0.0.2", "127.0.1.1", "127.0.1.101")
-CYCLE = 0.002  # s, a controller's
+CYCLE = 0.002  # s, cycle time of a controller
 CYCLES = 500
-LATE = (0.5, 5.0)  # ms, of 1 % of the cycles and of the latest one: above them streams of targets suffer
-RATIONED = 0.01  # share of the processor time that the hypervisor gives to others
+LATE = (0.5, 5.0)  # ms, limits of p99 and maximum
+RATIONED = 0.01  # steal time: share of processor time given to other virtual machines
 LITTLE_MEMORY = 2.0e9
 _CPP = "#include <concepts>\n#include <span>\nint main() { static_assert(__cplusplus >= 202002L); }\n"
 
@@ -45,7 +45,7 @@ def compiler() -> Finding:
     name = os.environ.get("CXX") or shutil.which("c++") or shutil.which("g++") or ""
     if not name:
         advice = "./ur installs it" if _may_install() else "sudo apt-get install -y g++"
-        return Finding("compiler", NOTE if _may_install() else FAILED, "there is no C++ compiler", advice)
+        return Finding("compiler", NOTE if _may_install() else FAILED, "no C++ compiler found", advice)
     try:
         version = subprocess.run([*name.split(), "--version"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                  universal_newlines=True).stdout.splitlines()[:1]
@@ -64,7 +64,7 @@ def system() -> Finding:
     absent = system_packages.absent()
     if not shutil.which("dpkg-query"):
         return Finding("system packages", NOTE, "no dpkg here, so they are not checked",
-                       "What Debian calls " + " ".join(system_packages.needed()) + " must be installed.")
+                       "Install the equivalents of these Debian packages: " + " ".join(system_packages.needed()))
     if not absent:
         return Finding("system packages", OK, "all installed")
     text = "missing: " + " ".join(absent)
@@ -91,7 +91,7 @@ def checkout() -> Finding:
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
         return Finding("checkout", FAILED, f"{folder} cannot be written: {error.strerror}",
-                       "Everything that ./ur makes lies in .ur: use a checkout that you can write to.")
+                       "./ur writes all its files to .ur in the checkout. Use a writable checkout.")
     return Finding("checkout", OK, str(ROOT))
 
 
@@ -116,7 +116,7 @@ def memory() -> Finding:
 def demo_ports() -> Finding:
     taken = ports.in_use(DEMO_ADDRESS, list(ports.PORTS.values()))
     if not taken:
-        return Finding("ports", OK, f"those of the demo are free on {DEMO_ADDRESS}")
+        return Finding("ports", OK, f"the ports of the demo are free on {DEMO_ADDRESS}")
     return Finding("ports", NOTE, ports.explain(DEMO_ADDRESS, taken).replace("\n", "; "),
                    f"Stop that process, or use another address: ./ur demo --address {ports.another_address(DEMO_ADDRESS)}")
 
@@ -127,18 +127,18 @@ def loopback() -> Finding:
             ports.in_use(address, [0])
     except say.Failure as failure:
         return Finding("loopback", FAILED, str(failure).replace("--address ", ""),
-                       "Tests run side by side on addresses of their own. On Linux: ip addr add 127.0.0.1/8 dev lo; ip link set lo up")
+                       "Parallel tests use one loopback address each. On Linux: ip addr add 127.0.0.1/8 dev lo; ip link set lo up")
     return Finding("loopback", OK, f"{', '.join(TEST_ADDRESSES)} can be used")
 
 
 def _processor_time() -> Tuple[int, int]:
-    """Ticks since the start of the machine: all, and those that the hypervisor gave to others (steal)."""
+    """Returns total and steal time since boot, in ticks."""
     fields = [int(value) for value in pathlib.Path("/proc/stat").read_text().splitlines()[0].split()[1:9]]
     return sum(fields), fields[7]
 
 
 def lateness() -> List[float]:
-    """How late a thread wakes up in each cycle, ms."""
+    """Returns the wake-up latency of each cycle, ms."""
     late = []
     due = time.monotonic()
     for _unused in range(CYCLES):
@@ -151,15 +151,15 @@ def lateness() -> List[float]:
 
 def judge_jitter(late: List[float], stolen: float) -> Finding:
     p99, latest = statistics.quantiles(late, n=100)[98], max(late)
-    text = (f"a 2 ms cycle wakes up late by {statistics.median(late):.2f} ms (median), {p99:.2f} ms (p99), "
+    text = (f"wake-up latency of a 2 ms cycle: {statistics.median(late):.2f} ms (median), {p99:.2f} ms (p99), "
             f"{latest:.2f} ms (max)")
     if stolen > RATIONED:
         return Finding("time jitter", NOTE, f"{text}; {100 * stolen:.0f} % of the processor time goes to other virtual machines",
-                       "Demo and tests work; figures of ./ur bench mean little, and streams of targets stutter.")
+                       "Demo and tests work. Results of ./ur bench are not meaningful; servo motions at 500 Hz may be uneven.")
     if p99 > LATE[0] or latest > LATE[1]:
         return Finding("time jitter", NOTE, text,
-                       "Demo and tests work; streams of targets at 500 Hz may stutter. Close other programs; for a real robot use a "
-                       "kernel with PREEMPT_RT, the CPU governor \"performance\" and the parameter realtime_priority.")
+                       "Demo and tests work. Servo motions at 500 Hz may be uneven: close other programs. For a real robot use a "
+                       "PREEMPT_RT kernel, the CPU governor \"performance\" and the parameter realtime_priority.")
     return Finding("time jitter", OK, text)
 
 
@@ -185,5 +185,6 @@ def run(layout: Layout) -> int:
         finding = check()
         failed += finding.state == FAILED
         show(finding)
-    say.line(f"{failed} problem{'s' * (failed != 1)} must be solved first." if failed else "Everything that ./ur needs is here.")
+    say.line(f"{failed} problem{'s' * (failed > 1)} must be solved first." if failed else
+             "This machine can build and run everything.")
     return 1 if failed else 0

@@ -1,4 +1,4 @@
-"""Keeps two ./ur from building, or from testing, in one checkout at the same time: the second waits for the first."""
+"""Only one ./ur at a time builds, or tests, in a checkout. Others wait."""
 
 import errno
 import fcntl
@@ -18,7 +18,7 @@ def _command() -> str:
 
 
 class Lock:
-    """An exclusive lock on a file that names its holder. The kernel releases it when the process ends, however it ends."""
+    """An exclusive lock on a file that names its holder. The kernel releases it when the process ends."""
 
     def __init__(self, name: str, folder: pathlib.Path = STATE):
         self._path = folder / f"{name}.lock"
@@ -51,7 +51,7 @@ class Lock:
         except OSError as error:
             if error.errno in _NOT_WRITABLE:
                 raise say.Failure(f"{self._path.parent} cannot be written: {error.strerror}.\n"
-                                  "Everything that ./ur makes lies there. Use a checkout that you can write to.") from None
+                                  "./ur writes all its files there. Use a writable checkout.") from None
             raise
 
     def _lock(self, file: IO[str]) -> None:
@@ -63,7 +63,7 @@ class Lock:
             fcntl.flock(file, fcntl.LOCK_EX)
 
     def _is_current(self, file: IO[str]) -> bool:
-        """`./ur clean --all` removes the file while others may wait for it."""
+        """False if `./ur clean --all` removed the file in the meantime."""
         try:
             return os.path.samestat(os.fstat(file.fileno()), os.stat(self._path))
         except FileNotFoundError:

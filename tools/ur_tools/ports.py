@@ -1,4 +1,4 @@
-"""The TCP ports of a controller on this machine, and the processes that have them."""
+"""The TCP ports of a simulated controller, and the processes that use them."""
 
 import errno
 import os
@@ -10,13 +10,12 @@ from typing import Dict, List, Optional, Tuple
 
 from . import say
 
-# As the simulated controller opens them.
 PORTS = {"dashboard": 29999, "primary": 30001, "secondary": 30002, "real-time": 30003, "RTDE": 30004, "control": 30099}
 _LISTEN = "0A"
 
 
 def in_use(address: str, ports: "List[int]") -> List[int]:
-    """The ports that cannot be opened; Failure for an address that is not this machine's."""
+    """Returns the ports that are in use. Raises Failure for an address that this machine does not have."""
     try:
         socket.inet_aton(address)
     except OSError:
@@ -27,7 +26,7 @@ def in_use(address: str, ports: "List[int]") -> List[int]:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
                 probe.bind((address, port))
-                probe.listen(1)  # only this notices a listener with SO_REUSEADDR
+                probe.listen(1)  # bind() succeeds beside a listener with SO_REUSEADDR
             except OSError as error:
                 if error.errno == errno.EADDRNOTAVAIL:
                     raise say.Failure(f"--address {address}: no network interface of this machine has that address. "
@@ -39,12 +38,12 @@ def in_use(address: str, ports: "List[int]") -> List[int]:
 
 
 def _hex(address: str) -> str:
-    """As in /proc/net/tcp."""
+    """The format of /proc/net/tcp."""
     return f"{struct.unpack('=I', socket.inet_aton(address))[0]:08X}"
 
 
 def _listeners(address: str, port: int) -> List[str]:
-    """The inodes of the sockets that listen there."""
+    """Returns the inodes of the sockets that listen on the port."""
     locals_v4 = (_hex(address), _hex("0.0.0.0"))
     found = []
     for name in ("tcp", "tcp6"):
@@ -61,7 +60,7 @@ def _listeners(address: str, port: int) -> List[str]:
 
 
 def holder(address: str, port: int) -> Optional[Tuple[int, str]]:
-    """Id and command of the process that listens there, if we may see it."""
+    """Returns id and command of the process that listens on the port; None without permission to see it."""
     sockets = {f"socket:[{inode}]" for inode in _listeners(address, port)}
     if not sockets:
         return None
@@ -77,7 +76,7 @@ def holder(address: str, port: int) -> Optional[Tuple[int, str]]:
 
 
 def another_address(address: str) -> str:
-    """The next loopback address on which all ports are free, or only the next."""
+    """Returns the next loopback address with all ports free."""
     match = re.fullmatch(r"127\.(\d+)\.(\d+)\.(\d+)", address)
     first = int(match.group(3)) + 1 if match else 2
     prefix = f"127.{match.group(1)}.{match.group(2)}" if match else "127.0.0"
@@ -88,7 +87,7 @@ def another_address(address: str) -> str:
 
 
 def explain(address: str, taken: List[int]) -> str:
-    """One line for each process that has some of the ports."""
+    """Returns one line per process."""
     names = {number: name for name, number in PORTS.items()}
     by_holder: Dict[Optional[Tuple[int, str]], List[str]] = {}
     for port in taken:
@@ -101,7 +100,7 @@ def explain(address: str, taken: List[int]) -> str:
 
 
 def check(address: str) -> None:
-    """Failure when a simulated controller cannot open its ports there."""
+    """Raises Failure if a simulated controller cannot open its ports on the address."""
     taken = in_use(address, list(PORTS.values()))
     if taken:
         raise say.Failure(f"{explain(address, taken)}\nStop that process, or use another address: "

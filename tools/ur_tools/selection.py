@@ -1,4 +1,4 @@
-"""Which tests to run: those that are named, or those that a change can affect."""
+"""Selects tests by name or by changed files."""
 
 import ast
 import difflib
@@ -12,11 +12,11 @@ from . import say
 from .layout import ROOT
 from .packages import Package
 
-TOOLS = "tools"  # the tests in tools/test, as if they were a package's
+TOOLS = "tools"  # stands for tools/test
 _CASE = re.compile(r"^\s*(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)", re.M)
 _TARGET = re.compile(r"\b(?:add_executable|ament_add_gtest)\((\w+)[\s)]")
 _CPP = (".cpp", ".hpp", ".h", ".c")
-# Files on which everything depends: the ROS wheels and how we build with them.
+# A change below these folders affects all packages.
 _EVERYTHING = ("wheels/", "tools/cmake/")
 _NOTHING = ("LICENSE", ".")
 # Folders that belong to a module of ur_tools.
@@ -26,7 +26,7 @@ _FOLDERS_OF_MODULES = {"tools/templates/": "new", "bench/": "bench", "chaos/": "
 
 @dataclass
 class Source:
-    """A file with tests, and the names by which they can be asked for."""
+    """A file with tests."""
 
     package: str
     path: pathlib.Path
@@ -55,7 +55,7 @@ def sources(packages: Dict[str, Package], root: pathlib.Path = ROOT) -> List[Sou
 
 
 class Selection:
-    """Chooses tests; `packages` are those to build before (None: all)."""
+    """A choice of tests, and the packages to build for them (None: all)."""
 
     def __init__(self, chooses: Callable[..., bool], packages: Optional[Set[str]]):
         self._chooses = chooses
@@ -74,7 +74,7 @@ def everything() -> Selection:
 
 
 def _as_name(word: str) -> str:
-    """A path is as good as the file's name."""
+    """A path stands for its file name."""
     return pathlib.PurePath(word).stem if "/" in word and re.search(r"\.(py|cpp)$", word) else word
 
 
@@ -86,7 +86,7 @@ def _is_meant(word: str, source: Source, packages: Iterable[str]) -> bool:
     if word in packages:
         return source.package == word
     suites = {case.split(".")[0] for case in source.cases}
-    # CTest knows cases by longer names: robot.AStop.keeps_its_line, Each/OnTheWay.is_refused/2.
+    # CTest adds prefixes and parameters: robot.AStop.keeps_its_line, Each/OnTheWay.is_refused/2.
     if suites & set(re.split(r"[./]", word)):
         return True
     return word.lower() in source.package or any(word.lower() in name.lower() for name in _names(source))
@@ -135,7 +135,7 @@ def default_base(root: pathlib.Path = ROOT) -> str:
 
 
 def changed_files(base: str, root: pathlib.Path = ROOT) -> List[str]:
-    """Changed since the last commit that HEAD shares with `base`, committed or not; paths relative to the root."""
+    """Returns the files changed since the merge base of HEAD and `base`, including uncommitted and new ones."""
     common = _git("merge-base", base, "HEAD", root=root)
     if common.returncode != 0:
         raise say.Failure(f"--base {base}: git finds no commit that it shares with HEAD. {common.stderr.strip()}".rstrip())
@@ -150,7 +150,7 @@ def changed_files(base: str, root: pathlib.Path = ROOT) -> List[str]:
 
 
 def _imports(path: pathlib.Path) -> Set[str]:
-    """Modules of ur_tools that a Python file uses, or runs."""
+    """Returns the modules of ur_tools that a Python file imports or runs."""
     text = path.read_text()
     found = set(re.findall(r"ur_tools\.(\w+)", text))
     if re.search(r"""ROOT / ["']ur["']""", text):
@@ -165,7 +165,7 @@ def _imports(path: pathlib.Path) -> Set[str]:
 
 
 class Affected:
-    """What the changed files can affect."""
+    """The tests that changed files can affect."""
 
     def __init__(self, packages: Dict[str, Package], root: pathlib.Path = ROOT):
         self._packages, self._root = packages, root
@@ -217,7 +217,7 @@ class Affected:
             self.files.add(path)
         elif path.suffix in _CPP or path.name == "CMakeLists.txt":
             self.programs_of.add(package)
-        else:  # used by the package's tests, and perhaps by others'
+        else:  # a helper of this package's tests; other tests may import it
             self.all_of.add(package)
             self._add_mentions(pathlib.PurePath(name).parent.as_posix())
 
@@ -233,7 +233,7 @@ class Affected:
         graph = {path.stem: _imports(path) for path in (self._root / "tools" / "ur_tools").glob("*.py")}
         users = {module}
         while True:
-            # main uses every module; each command has tests of its own.
+            # main imports all modules. The commands have their own tests.
             more = {name for name, used in graph.items() if used & users and name != "main"} - users
             if not more:
                 break
@@ -241,7 +241,7 @@ class Affected:
         self.files.update(source.path for source in self._pytests if source.package == TOOLS and _imports(source.path) & users)
 
     def _add_mentions(self, text: str) -> None:
-        """pytest files that contain the text, or stand beside a module that does."""
+        """Adds the pytest files that contain the text, or whose folder has a helper module that does."""
         for source in self._pytests:
             helpers = (path for path in source.path.parent.glob("*.py") if not path.name.startswith("test_"))
             if any(text in path.read_text() for path in (source.path, *helpers)):
@@ -250,7 +250,7 @@ class Affected:
     def selection(self) -> Selection:
         if self.everything:
             return everything()
-        files = {path for path in self.files if path.is_file()}  # others were removed
+        files = {path for path in self.files if path.is_file()}  # the others were deleted
         packages = self.all_of | self.programs_of | {source.package for source in self._pytests if source.path in files}
 
         def chooses(package: str, _name: str, path: Optional[pathlib.Path]) -> bool:

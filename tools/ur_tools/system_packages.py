@@ -34,7 +34,7 @@ def _prefix() -> List[str]:
 
 
 def absent() -> List[str]:
-    """Packages to install; none where dpkg cannot tell."""
+    """Returns the packages to install; an empty list without dpkg."""
     return missing(needed()) if shutil.which("dpkg-query") else []
 
 

@@ -30,9 +30,9 @@ SANITIZED_REAL_TIME_FACTOR = 0.5  # and the simulated robot's time passes slower
 @dataclass
 class Options:
     layout: Layout
-    names: List[str] = field(default_factory=list)  # what the tests' names contain; none: all tests
+    names: List[str] = field(default_factory=list)  # parts of test names; empty: all tests
     changed: bool = False
-    base: str = ""  # of the changes
+    base: str = ""  # for `changed`
     jobs: int = 0
     timeout: float = 0.0
     repeat: int = 1
@@ -91,7 +91,7 @@ def _pytest(layout: Layout, name: str, folder: pathlib.Path) -> List[Test]:
 
 
 def _path_of(test: Test) -> pathlib.Path:
-    """The pytest file, or the program."""
+    """Returns the pytest file or the test program."""
     return pathlib.Path(test.command[-1] if "pytest" in test.command else test.command[0])
 
 
