@@ -6,8 +6,9 @@ import subprocess
 import sys
 
 import pytest
-from ur_tools import ports, say
-from ur_tools.layout import ROOT
+from ur_tools import cell, ports, say
+from ur_tools.layout import ROOT, Layout
+from ur_tools.processes import Programs
 
 ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
 
@@ -90,6 +91,16 @@ def test_a_process_of_another_user_is_not_named(monkeypatch):
     monkeypatch.setattr(ports, "holder", lambda *_: None)
     assert ports.explain(ADDRESS, [30001, 30002]) == (
         f"ports 30001 (primary), 30002 (secondary) of {ADDRESS}: in use by a process of another user")
+
+
+def test_a_simulator_that_does_not_start_is_not_taken_for_another_on_the_address(listening, tmp_path, monkeypatch):
+    listening(ADDRESS, ports.PORTS["dashboard"])
+    failing = tmp_path / "simulator"
+    failing.write_text("#!/bin/sh\necho port 29999 is in use by another process\nexit 1\n")
+    failing.chmod(0o755)
+    monkeypatch.setattr(cell, "program", lambda *_: failing)
+    with Programs(tmp_path) as programs, pytest.raises(say.Failure, match="port 29999 is in use"):
+        cell.start_simulator(programs, Layout.of_environment(), dict(os.environ), ADDRESS, "ur10e")
 
 
 # --- Commands refuse before they build ------------------------------------------------------------------------------------
