@@ -50,8 +50,6 @@ macro(_ros_wheels_find_package _ros_wheels_method _ros_wheels_package)
   # Fast DDS, the only middleware of the wheels, has type support of its own and no use for introspection.
   list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "^rosidl_typesupport_introspection_")
 endmacro()
-set(STATIC_ROSIDL_TYPESUPPORT_C rosidl_typesupport_fastrtps_c)
-set(STATIC_ROSIDL_TYPESUPPORT_CPP rosidl_typesupport_fastrtps_cpp)
 
 cmake_policy(POP)
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from typing import List
 
 from . import say
+from .build import Options, build, cmake_arguments
+from .environment import build_environment
 from .layout import ROOT, Layout
 
 CPP = (".cpp", ".hpp", ".h", ".c")
@@ -74,12 +76,26 @@ def format_sources(layout: Layout) -> int:
     return 0
 
 
+def _databases(layout: Layout) -> List[pathlib.Path]:
+    """How each file is compiled by itself; the build compiles several at a time."""
+    databases = []
+    for name, package in build(Options(layout, tests=True)).items():
+        if not (package.folder / "src").is_dir():
+            continue  # interfaces, Python
+        folder = layout.base / "tidy" / name
+        command = ["cmake", "-S", package.folder, "-B", folder, *cmake_arguments(Options(layout), True), "-DCMAKE_UNITY_BUILD=OFF",
+                   f"-DCMAKE_PREFIX_PATH={layout.install}"]
+        subprocess.run(command, check=True, env=build_environment(layout, 1), stdout=subprocess.DEVNULL)
+        databases.append(folder / "compile_commands.json")
+    return databases
+
+
 def tidy(layout: Layout) -> List[Check]:
     program = next((found for found in map(shutil.which, ("clang-tidy-19", "clang-tidy")) if found), None)
     if program is None:
         raise say.Failure("clang-tidy is not installed: sudo apt-get install -y clang-tidy")
     found = []
-    for database in sorted(layout.build.glob("*/compile_commands.json")):
+    for database in _databases(layout):
         sources = [path for path in cpp_files() if path.suffix == ".cpp" and str(path) in database.read_text()]
         for source in sources:
             say.line(f"    {source.relative_to(ROOT)}")

@@ -8,6 +8,8 @@ include(${CMAKE_CURRENT_LIST_DIR}/script.cmake)
 
 file(GLOB robot_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/robot/*.cpp)
 add_library(ur_ros_rtde_robot SHARED ${robot_sources})
+# Classes with members of types that only their own file has, of which the compiler warns in a file that is included.
+set_source_files_properties(src/robot/script_server.cpp src/robot/rtde_stream.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 ur_ros_rtde_settings(ur_ros_rtde_robot)
 target_include_directories(ur_ros_rtde_robot
   PUBLIC

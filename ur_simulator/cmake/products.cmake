@@ -1,6 +1,5 @@
 # What leaves this package: the library that tests embed, and the program.
 include(GNUInstallDirs)
-include(CMakePackageConfigHelpers)
 
 # The rooms are linked into the one library, so that users see only the public header and nlohmann_json.
 add_library(ur_simulator SHARED $<TARGET_OBJECTS:sim_library>)
@@ -13,23 +12,10 @@ target_compile_features(ur_simulator PUBLIC cxx_std_20)
 add_executable(ur_simulator_app src/app/main.cpp src/app/options.cpp)
 target_link_libraries(ur_simulator_app PRIVATE sim_controller CLI11::CLI11)
 target_compile_options(ur_simulator_app PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
-set_target_properties(ur_simulator_app PROPERTIES OUTPUT_NAME ur_simulator RUNTIME_OUTPUT_DIRECTORY bin UNITY_BUILD ON)
+set_target_properties(ur_simulator_app PROPERTIES OUTPUT_NAME ur_simulator RUNTIME_OUTPUT_DIRECTORY bin)
 
 install(TARGETS ur_simulator EXPORT ur_simulatorTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS ur_simulator_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # Where `ros2 run` looks.
 install(TARGETS ur_simulator_app RUNTIME DESTINATION lib/${PROJECT_NAME})
-install(FILES package.xml DESTINATION share/${PROJECT_NAME})
-file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/ament_marker/${PROJECT_NAME} "")
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/ament_marker/${PROJECT_NAME}
-        DESTINATION share/ament_index/resource_index/packages)
-
-install(EXPORT ur_simulatorTargets NAMESPACE ur_simulator:: DESTINATION share/${PROJECT_NAME}/cmake)
-configure_package_config_file(cmake/ur_simulatorConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/ur_simulatorConfig.cmake
-                              INSTALL_DESTINATION share/${PROJECT_NAME}/cmake)
-write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/ur_simulatorConfigVersion.cmake
-                                 COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/ur_simulatorConfig.cmake
-              ${CMAKE_CURRENT_BINARY_DIR}/ur_simulatorConfigVersion.cmake
-        DESTINATION share/${PROJECT_NAME}/cmake)

@@ -86,9 +86,11 @@ Status InterfaceLinks::ensure_io()
   try {
     auto io = std::make_shared<RTDEIOInterface>(options_.address, false, options_.upper_range_registers,
                                                 keep_priority);
-    const std::lock_guard lock(mutex_);
-    io_ = std::move(io);
-    return {};
+    {
+      const std::lock_guard lock(mutex_);
+      io_.swap(io);
+    }
+    return {};  // the one before is closed here
   } catch (const std::exception & error) {
     return tl::unexpected(refused("the robot refuses the IO interface", error));
   }
@@ -231,11 +233,14 @@ bool InterfaceLinks::resume_parked()
   } catch (const std::exception &) {
     works = false;
   }
-  const std::lock_guard lock(mutex_);
-  parked_.reset();
-  if (works) {
-    control_ = std::move(control);
-  } else if (control) {
+  {
+    const std::lock_guard lock(mutex_);
+    parked_.reset();
+    if (works) {
+      control_ = control;
+    }
+  }
+  if (control && !works) {
     control->disconnect();
   }
   return works;
@@ -261,8 +266,9 @@ void InterfaceLinks::drop_control()
 void InterfaceLinks::drop()
 {
   drop_control();
+  std::shared_ptr<RTDEIOInterface> io;  // closed after the lock is released
   const std::lock_guard lock(mutex_);
-  io_.reset();
+  io.swap(io_);
 }
 
 std::shared_ptr<RTDEControlInterface> InterfaceLinks::control_pointer() const

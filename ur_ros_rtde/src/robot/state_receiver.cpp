@@ -231,15 +231,17 @@ Error StateReceiver::Impl::follow(const std::stop_token & stop)
 void StateReceiver::Impl::set_link(LinkStatus status)
 {
   bool changed = false;
+  std::shared_ptr<ur_rtde::RTDEReceiveInterface> dropped;  // closes its connection and joins its thread, without our lock
   {
     const std::lock_guard lock(mutex_);
     if (!status.connected) {
-      interface_.reset();
+      dropped = std::exchange(interface_, nullptr);
     }
     changed = link_.connected != status.connected || link_.error.message != status.error.message;
     link_ = status;
   }
   changed_.notify_all();
+  dropped.reset();
   if (changed && link_function_) {
     link_function_(status);
   }

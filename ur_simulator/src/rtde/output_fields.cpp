@@ -39,7 +39,7 @@ bool powered(const State & s)
 void add_registers(std::vector<OutputField> & fields)
 {
   const Since inputs_readable{v(5, 0), v(3, 4)};
-  const Since upper_range{v(5, 3), v(3, 9)};
+  const Since upper_registers_since{v(5, 3), v(3, 9)};
   const auto add = [&fields](std::string name, FieldType type, Since since, unsigned index, auto write) {
     fields.push_back({std::move(name), type, since, index, write});
   };
@@ -50,14 +50,14 @@ void add_registers(std::vector<OutputField> & fields)
         UR_FIELD(word(s.inputs.bits, 32 * i)));
   }
   for (unsigned n = 64; n < 128; ++n) {
-    add(fmt::format("output_bit_register_{}", n), FieldType::boolean, upper_range, n,
+    add(fmt::format("output_bit_register_{}", n), FieldType::boolean, upper_registers_since, n,
         UR_FIELD(s.outputs.bits.test(i)));
-    add(fmt::format("input_bit_register_{}", n), FieldType::boolean, upper_range, n,
+    add(fmt::format("input_bit_register_{}", n), FieldType::boolean, upper_registers_since, n,
         UR_FIELD(s.inputs.bits.test(i)));
   }
   for (unsigned n = 0; n < 48; ++n) {
-    const Since outputs = n < 24 ? Since{} : upper_range;
-    const Since inputs = n < 24 ? inputs_readable : upper_range;
+    const Since outputs = n < 24 ? Since{} : upper_registers_since;
+    const Since inputs = n < 24 ? inputs_readable : upper_registers_since;
     add(fmt::format("output_int_register_{}", n), FieldType::int32, outputs, n,
         UR_FIELD(s.outputs.integers[i]));
     add(fmt::format("output_double_register_{}", n), FieldType::double_, outputs, n,

@@ -1,5 +1,7 @@
 #include "urscript/expression_parser.hpp"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstdlib>
 #include <limits>
@@ -85,7 +87,7 @@ void ExpressionParser::expect(std::string_view text)
     const std::string found = current_.kind == TokenKind::end_of_text
                                   ? "the end of the text"
                                   : "'" + std::string(current_.text.substr(0, 40)) + "'";
-    fail_here("expected '" + std::string(text) + "', found " + found);
+    fail_here(fmt::format("expected '{}', found {}", text, found));
   }
 }
 

@@ -1,0 +1,18 @@
+# How other packages find this one: in a ROS workspace as an ament package, elsewhere by a package file of CMake.
+find_package(ament_cmake QUIET)
+if(ament_cmake_FOUND)
+  ament_export_targets(ur_simulatorTargets HAS_LIBRARY_TARGET NAMESPACE ur_simulator::)
+  ament_export_dependencies(nlohmann_json)
+  ament_package()
+  return()
+endif()
+
+include(CMakePackageConfigHelpers)
+install(EXPORT ur_simulatorTargets NAMESPACE ur_simulator:: DESTINATION share/${PROJECT_NAME}/cmake)
+configure_package_config_file(cmake/ur_simulatorConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/ur_simulatorConfig.cmake
+                              INSTALL_DESTINATION share/${PROJECT_NAME}/cmake)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/ur_simulatorConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/ur_simulatorConfig.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/ur_simulatorConfigVersion.cmake
+        DESTINATION share/${PROJECT_NAME}/cmake)
