@@ -1,9 +1,16 @@
 """`ur` as its user types it."""
 
+import contextlib
 import csv
+import fcntl
 import os
+import pty
+import re
 import signal
+import struct
 import subprocess
+import sys
+import termios
 import time
 
 import pytest
@@ -12,7 +19,10 @@ from rclpy.action import ActionServer
 from rclpy.task import Future
 from support import HOME, PATIENCE, Client, Process, Simulator, node, program, wait_for
 
-from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
+from ur_ros_rtde_msgs.action import ExecuteTrajectory, MoveJ
+
+EMPTY_DOMAIN = "102"  # nothing runs there: domains of tests are below 102
 
 
 @pytest.fixture(scope="module")
@@ -29,9 +39,9 @@ def running():
         simulator.end()
 
 
-def ur(*arguments, limit=60.0):
+def ur(*arguments, limit=60.0, domain=None):
     """Return code and output."""
-    process = Process([program("ur_ros_rtde_cli", "ur"), *arguments])
+    process = Process([program("ur_ros_rtde_cli", "ur"), *arguments], {} if domain is None else {"ROS_DOMAIN_ID": domain})
     return process.wait(limit), process.output()
 
 
@@ -41,7 +51,7 @@ def goal(**fields):
 
 def test_a_goal_is_sent_and_its_result_printed(running):
     turned = [HOME[0] + 0.3, *HOME[1:]]
-    code, output = ur("call", "move_j", goal(joint_positions=turned, speed=1))
+    code, output = ur("call", "move_j", "--quiet", goal(joint_positions=turned, speed=1))
     assert code == 0, output
     result = yaml.safe_load(output)
     assert result["success"] and result["final_state"]["joint_positions"] == pytest.approx(turned, abs=0.005)
@@ -53,20 +63,89 @@ def test_a_refused_goal_ends_with_2_and_the_reason(running):
 
 
 @pytest.mark.parametrize("text, mentions", [
-    ("{jointpositions: [0]}", ["jointpositions", "joint_positions, speed, acceleration"]),
-    ("{speed: fast}", ["speed is 'fast'", "double"]),
-    ("{speed: [", ["not YAML"]),
-    ("7", ["mapping"]),
-    ("{joint_positions: 1.0}", ["joint_positions is 1.0", "a list"]),
+    ("{jointpositions: [0]}", ["no field jointpositions; did you mean joint_positions?", "joint_positions, speed, acceleration"]),
+    ("{speed: fast}", ["speed is 'fast'", "expected a number"]),
+    ("{speed: [", ["not YAML: line "]),
+    ("7", ["expected a mapping"]),
+    ("{joint_positions: 1.0}", ["joint_positions is 1.0", "expected a list of numbers"]),
 ])
-def test_a_goal_that_cannot_be_meant_names_its_field(running, text, mentions):
-    code, output = ur("call", "move_j", text)
+def test_a_wrong_field_is_named_without_a_server(text, mentions):
+    code, output = ur("call", "move_j", text, domain=EMPTY_DOMAIN)
     assert code == 2 and all(part in output for part in mentions), output
 
 
-def test_an_action_nobody_serves_is_named_with_those_there_are(running):
-    code, output = ur("call", "move_x", "--wait", "10")
-    assert code == 2 and "/move_x" in output and "/move_l" in output, output
+def test_a_goal_of_a_shared_type_is_checked_when_the_server_is_found(running):
+    code, output = ur("call", "set_standard_digital_output", "{pim: 1}")
+    assert code == 2 and "there is no field pim; did you mean pin?" in output, output
+
+
+@pytest.mark.parametrize("number", ["nan", ".nan", "inf", "-.inf"])
+def test_nan_and_infinity_reach_the_driver_which_refuses_them(running, number):
+    code, output = ur("call", "move_j", f"{{joint_positions: {HOME}, speed: {number}}}")
+    assert code == 2 and "refused: speed is" in output, output
+
+
+def test_the_nearest_names_are_suggested(running):
+    code, output = ur("call", "movej", "--wait", "10")
+    hint, error = output.splitlines()
+    assert code == 2 and hint.startswith("no plugin is called movej; did you mean move_j "), output
+    assert error.startswith("no server of /movej; did you mean move_j "), output
+
+
+def test_a_name_that_resembles_none_is_answered_with_those_there_are(running):
+    code, output = ur("call", "qqq", "--wait", "10")
+    assert code == 2 and "/move_l" in output and "/dashboard/power_on" in output, output
+
+
+def test_a_goal_is_read_from_a_file(running, tmp_path):
+    file = tmp_path / "goal.yaml"
+    file.write_text(f"# both ways\njoint_positions: {HOME}\nspeed: 1e0\n")
+    code, output = ur("call", "move_j", "--file", str(file))
+    assert code == 0, output
+    code, output = ur("call", "move_j", "--file", str(file), "{}")
+    assert code == 2 and "not both" in output, output
+    file.write_text(f"joint_positions: {HOME}\n\nspeed: fast\n")
+    code, output = ur("call", "move_j", "--file", str(file))
+    assert code == 2 and f"{file}:3: speed is 'fast': expected a number" in output, output
+
+
+def feedback_lines(output):
+    """Time and feedback of each line."""
+    found = (re.fullmatch(r"(\d+\.\d) s  (\{.*\})", line) for line in output.splitlines())
+    return [(float(match.group(1)), yaml.safe_load(match.group(2))) for match in found if match]
+
+
+def test_all_feedback_is_shown_once_a_second_without_a_terminal(at_home):
+    points = [HOME, [HOME[0] + 0.4, *HOME[1:]]]
+    limits = {name: [value] * 6 for name, value in (("max_velocity", 0.1), ("max_acceleration", 1.0))}
+    code, output = ur("call", "execute_trajectory", goal(waypoints=[{"positions": point} for point in points], **limits))
+    assert code == 0, output
+    lines = feedback_lines(output)
+    times = [time for time, _ in lines]
+    assert len(lines) >= 3 and all(after - before >= 0.9 for before, after in zip(times, times[1:])), output
+    assert all(set(fields) == set(ExecuteTrajectory.Feedback().get_fields_and_field_types()) for _, fields in lines), output
+    progress = [fields["motion"]["progress"] for _, fields in lines]
+    assert progress == sorted(progress) and progress[0] < progress[-1]
+
+
+def test_all_feedback_is_shown_on_a_terminal(at_home):
+    terminal, end = pty.openpty()
+    fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
+    turned = [HOME[0] + 0.2, *HOME[1:]]
+    command = [program("ur_ros_rtde_cli", "ur"), "call", "move_j", goal(joint_positions=turned, speed=0.5)]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=end)
+    os.close(end)
+    shown = b""
+    with contextlib.suppress(OSError):  # EIO: all its ends are closed
+        while True:
+            shown += os.read(terminal, 65536)
+    os.close(terminal)
+    assert process.wait(PATIENCE * 20.0) == 0
+    text = shown.decode()
+    assert "###" in text and " % " in text and "\x1b[" in text
+    for field in ("motion:", "progress:", "elapsed:", "joint_positions:", "tcp_pose:"):
+        assert field in text
+    assert max(len(line) for line in re.sub(r"\x1b\[\d*[AJ]", "", text).replace("\r", "").split("\n")) < 100
 
 
 def test_nested_fields_and_arrays_of_messages_can_be_given(running):
@@ -74,14 +153,14 @@ def test_nested_fields_and_arrays_of_messages_can_be_given(running):
     assert code == 2 and "reach" in output, output
 
 
-def test_the_fields_of_a_goal_are_shown_without_sending_it(running):
-    code, output = ur("call", "move_j", "--show")
-    assert code == 0 and yaml.safe_load(output)["speed"] == 0.5, output
+def test_the_fields_of_a_goal_are_shown_without_a_server():
+    code, output = ur("call", "move_j", "--show", "{acceleration: 2}", domain=EMPTY_DOMAIN)
+    assert code == 0 and yaml.safe_load(output) == {"joint_positions": [], "speed": 0.5, "acceleration": 2.0}, output
 
 
 def slow_motion():
     away = [HOME[0] - 2.0, *HOME[1:]]
-    return [program("ur_ros_rtde_cli", "ur"), "call", "move_j", goal(joint_positions=away, speed=0.2)]
+    return [program("ur_ros_rtde_cli", "ur"), "call", "move_j", "--quiet", goal(joint_positions=away, speed=0.2)]
 
 
 @pytest.fixture
@@ -189,8 +268,42 @@ def test_a_recording_has_the_rows_it_says(running, tmp_path):
     assert code == 2 and str(file) in output, output
 
 
-@pytest.mark.parametrize("command", ["call", "state", "plugins", "record"])
-def test_every_command_explains_itself(command):
-    begin = time.monotonic()
-    code, output = ur(command, "--help")
-    assert code == 0 and "usage: ur" in output and time.monotonic() - begin < 30.0
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself_without_ros(command):
+    code = f"""
+import sys
+for missing in ("rclpy", "ament_index_python", "numpy", "yaml", "ur_ros_rtde_msgs"):
+    sys.modules[missing] = None
+from ur_ros_rtde_cli.main import main
+main(["{command}", "--help"])
+"""
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert result.returncode == 0 and f"usage: ur {command}" in result.stdout, result.stderr
+
+
+def test_the_help_lists_all_commands_and_where_the_others_are(monkeypatch):
+    monkeypatch.delenv(CHECKOUT_VARIABLE, raising=False)
+    for arguments, expected in (((), 2), (("--help",), 0)):
+        code, output = ur(*arguments)
+        assert code == expected and all(f"    {command} " in output for command in COMMANDS), output
+        assert ", ".join(CHECKOUT_COMMANDS)[:40] in output and "./ur" in output
+
+
+@pytest.mark.parametrize("command, mentions", [("build", "run `./ur build` in a checkout"), ("cal", "did you mean call?"),
+                                               ("qqq", "The commands are: call, state, plugins, record")])
+def test_a_command_that_is_not_installed_is_explained(monkeypatch, command, mentions):
+    monkeypatch.delenv(CHECKOUT_VARIABLE, raising=False)
+    code, output = ur(command)
+    assert code == 2 and mentions in output, output
+
+
+def test_the_commands_of_a_checkout_are_handed_to_its_script(monkeypatch, tmp_path):
+    script = tmp_path / "ur"
+    script.write_text('#!/bin/sh\necho "checkout: $@"\nexit 7\n')
+    script.chmod(0o755)
+    monkeypatch.setenv(CHECKOUT_VARIABLE, str(tmp_path))
+    for arguments in (("build", "--package", "x"), ("--help",), ("qqq",), ()):
+        code, output = ur(*arguments)
+        assert (code, output.split()) == (7, ["checkout:", *arguments]), output
+    code, output = ur("plugins", "move_l")
+    assert code == 0 and "checkout" not in output, output

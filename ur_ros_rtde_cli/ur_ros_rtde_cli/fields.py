@@ -1,61 +1,253 @@
-"""Messages from YAML and to YAML."""
+"""Goals and other messages from YAML and to YAML.
+
+A file of goal fields, for `ur call --file`, `./ur plan` and Python clients:
+
+    goal = fields.read_file("goal.yaml", MoveJ.Goal())
+"""
 
 import array
+import difflib
 import importlib
-from typing import Any
+import pathlib
+import re
+from typing import Any, Tuple
 
 import numpy
 import yaml
-from rosidl_parser.definition import AbstractNestedType, NamespacedType
+from rosidl_parser import definition as idl
 
 from .problem import Problem
 
+Path = Tuple[Any, ...]  # ("waypoints", 0, "positions")
 
-def read(text: str, message: Any) -> Any:
-    """Fills `message` from a YAML mapping; what is not named keeps its default."""
-    try:
-        values = yaml.safe_load(text or "{}")
-    except yaml.YAMLError as error:
-        raise Problem(f"the goal is not YAML: {error}")
-    fill(message, values if values is not None else {}, "")
-    return message
+# What float() reads and YAML 1.1 takes for text: 1e-3, nan, inf.
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|[-+]?\.?(nan|inf|infinity)", re.I)
 
 
-def fill(message: Any, values: Any, where: str) -> None:
-    if not isinstance(values, dict):
-        raise Problem(f"{where or 'the goal'} is {values!r}: it must be a mapping of fields, as in {{speed: 0.5}}")
-    types = dict(zip(message.get_fields_and_field_types(), message.SLOT_TYPES))
-    for name, value in values.items():
-        path = f"{where}.{name}" if where else str(name)
-        if name not in types:
-            raise Problem(f"there is no field {path}; there are: {', '.join(types) or 'none'}")
+class FieldError(Problem):
+    def __init__(self, path: Path, text: str):
+        super().__init__(text)
+        self.path = path
+
+
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
+    """YAML keeps the last of two equal keys and does not report the first."""
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> Any:
+        seen = set()
+        for key, _ in node.value if isinstance(node, yaml.MappingNode) else ():
+            if isinstance(key, yaml.ScalarNode) and key.value in seen:
+                raise yaml.constructor.ConstructorError(None, None, f"the field {key.value} is given twice", key.start_mark)
+            seen.add(key.value if isinstance(key, yaml.ScalarNode) else None)
+        return super().construct_mapping(node, deep)
+
+
+class Document:
+    """A YAML document with the fields of a message. The name of its file precedes error messages, with the line."""
+
+    def __init__(self, text: str, source: str = ""):
+        self._source = source
+        self._node, values = _load(text, source)
+        self._values = {} if values is None else values
+        if not isinstance(self._values, dict):
+            raise Problem(f"{self._where(())}{_not_a_mapping((), values)}, as in {{speed: 0.5}}")
+
+    @classmethod
+    def of_file(cls, file: pathlib.Path) -> "Document":
         try:
-            setattr(message, name, _value(types[name], getattr(message, name), value, path))
+            return cls(pathlib.Path(file).read_text(encoding="utf-8"), str(file))
+        except OSError as error:
+            raise Problem(f"{file}: {error.strerror}") from None
+        except UnicodeDecodeError:
+            raise Problem(f"{file} is not a text file") from None
+
+    @property
+    def names(self) -> Tuple[Any, ...]:
+        """Of the outermost fields."""
+        return tuple(self._values)
+
+    def fill(self, message: Any) -> Any:
+        """Sets the named fields of `message`. The others keep their values."""
+        try:
+            fill(message, self._values)
+        except FieldError as error:
+            raise Problem(f"{self._where(error.path)}{error}") from None
+        return message
+
+    def _where(self, path: Path) -> str:
+        return f"{self._source}:{_line(self._node, path)}: " if self._source else ""
+
+
+def read_file(file: pathlib.Path, message: Any) -> Any:
+    """Sets the fields of `message` that a YAML file names."""
+    return Document.of_file(file).fill(message)
+
+
+def _load(text: str, source: str) -> Tuple[Any, Any]:
+    """The node, which knows lines, and the value of the only document."""
+    try:
+        loader = _Loader(text)
+        try:
+            node = loader.get_single_node()
+            return node, None if node is None else loader.construct_document(node)
+        finally:
+            loader.dispose()
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
+        if source:
+            where = f"{source}:{mark.line + 1}: " if mark else f"{source}: "
+        what = ", ".join(filter(None, (error.context, error.problem)))
+        raise Problem(f"{where}not YAML: {what}" if source else f"the goal is not YAML: {where}{what}") from None
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise Problem(f"{source or 'the goal'}: not YAML: {' '.join(str(error).split())}") from None
+
+
+def _line(node: Any, path: Path) -> int:
+    """Of the field, or of the innermost enclosing one that is there."""
+    line = node.start_mark.line if node is not None else 0
+    for part in path:
+        if isinstance(node, yaml.SequenceNode) and isinstance(part, int) and part < len(node.value):
+            node = node.value[part]
+            line = node.start_mark.line
+        elif isinstance(node, yaml.MappingNode):
+            found = next(((key, value) for key, value in node.value if key.value == str(part)), None)
+            if found is None:
+                break
+            line, node = found[0].start_mark.line, found[1]
+        else:
+            break
+    return line + 1
+
+
+def _name(path: Path) -> str:
+    """("waypoints", 0, "speed") as "waypoints[0].speed"."""
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
+    return text.lstrip(".") or "the goal"
+
+
+def _not_a_mapping(path: Path, values: Any) -> str:
+    return f"{_name(path)} is {_shown(values)}: expected a mapping of fields"
+
+
+def fill(message: Any, values: Any, path: Path = ()) -> None:
+    """Sets the fields of `message` from a mapping."""
+    types = dict(zip(message.get_fields_and_field_types(), message.SLOT_TYPES))
+    if not isinstance(values, dict):
+        raise FieldError(path, f"{_not_a_mapping(path, values)}: {_listed(types)}")
+    for name, value in values.items():
+        own = (*path, name)
+        if name not in types:
+            close = difflib.get_close_matches(str(name), types, 1)
+            hint = f"; did you mean {close[0]}?" if close else "."
+            raise FieldError(own, f"there is no field {_name(own)}{hint} The fields are: {_listed(types)}")
+        try:
+            setattr(message, name, _value(types[name], getattr(message, name), value, own))
         except (AssertionError, TypeError, ValueError, OverflowError) as error:
-            kind = message.get_fields_and_field_types()[name]
-            raise Problem(f"{path} is {value!r}: it must be of type {kind} ({' '.join(str(error).split())})")
+            raise FieldError(own, f"{_name(own)} is {_shown(value)}: expected {_expected(types[name])} "
+                             f"({' '.join(str(error).split())})") from None
 
 
-def _value(kind: Any, old: Any, value: Any, path: str) -> Any:
-    if isinstance(kind, NamespacedType):
+def _listed(names: Any) -> str:
+    return ", ".join(names) or "none"
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _expected(kind: Any) -> str:
+    """The type in the words of an error message."""
+    if isinstance(kind, idl.NamespacedType):
+        return f"a mapping of the fields of {kind.namespaces[0]}/{kind.name}"
+    if isinstance(kind, idl.AbstractNestedType):
+        size = ""
+        if isinstance(kind, idl.Array):
+            size = f"{kind.size} "
+        elif isinstance(kind, idl.BoundedSequence):
+            size = f"at most {kind.maximum_size} "
+        inner = kind.value_type
+        if isinstance(inner, idl.NamespacedType):
+            return f"a list of {size}{inner.namespaces[0]}/{inner.name}"
+        if isinstance(inner, idl.BasicType):
+            return f"a list of {size}{'numbers' if _is_float(inner) else f'{inner.typename} values'}"
+        return f"a list of {size}strings"
+    if isinstance(kind, idl.AbstractGenericString):
+        limit = f" of at most {kind.maximum_size} characters" if getattr(kind, "maximum_size", None) else ""
+        return f"a string{limit}"
+    if _is_float(kind):
+        return "a number"
+    if kind.typename == idl.BOOLEAN_TYPE:
+        return "true or false"
+    bounds = _integer_bounds(kind)
+    return f"an integer from {bounds[0]} to {bounds[1]}" if bounds else f"a value of type {kind.typename}"
+
+
+def _is_float(kind: Any) -> bool:
+    return isinstance(kind, idl.BasicType) and kind.typename in idl.FLOATING_POINT_TYPES
+
+
+def _integer_bounds(kind: Any) -> Any:
+    match = re.fullmatch(r"(u?)int(8|16|32|64)", kind.typename) if isinstance(kind, idl.BasicType) else None
+    if match is None:
+        return (0, 255) if isinstance(kind, idl.BasicType) and kind.typename == idl.OCTET_TYPE else None
+    bits = int(match.group(2))
+    return (0, 2**bits - 1) if match.group(1) else (-2**(bits - 1), 2**(bits - 1) - 1)
+
+
+def _value(kind: Any, old: Any, value: Any, path: Path) -> Any:
+    """What to assign to a field of the type `kind` with the value `old`."""
+    if isinstance(kind, idl.NamespacedType):
         fill(old, value, path)
         return old
-    if isinstance(kind, AbstractNestedType):
-        if not isinstance(value, list):
-            raise ValueError("a list is needed")
-        if isinstance(kind.value_type, NamespacedType):
-            return [_message(kind.value_type, item, f"{path}[{index}]") for index, item in enumerate(value)]
-        return [_scalar(old, item) for item in value]
-    return type(old)(value) if isinstance(value, int) and isinstance(old, float) else value
+    if isinstance(kind, idl.AbstractNestedType):
+        return _sequence(kind, value, path)
+    if _is_float(kind):
+        number = _float(value)
+        if number is not None:
+            return number
+    elif isinstance(kind, idl.AbstractGenericString):
+        limit = getattr(kind, "maximum_size", None)
+        if isinstance(value, str) and (limit is None or len(value) <= limit):
+            return value
+        if isinstance(value, (bool, int, float)):
+            raise FieldError(path, f"{_name(path)} is {_shown(value)}: expected {_expected(kind)}; put it in quotes")
+    elif kind.typename == idl.BOOLEAN_TYPE:
+        if isinstance(value, bool):
+            return value
+    else:
+        bounds = _integer_bounds(kind)
+        if bounds is None:
+            return value  # checked when it is assigned
+        if isinstance(value, int) and not isinstance(value, bool) and bounds[0] <= value <= bounds[1]:
+            return bytes([value]) if kind.typename == idl.OCTET_TYPE else value
+    raise FieldError(path, f"{_name(path)} is {_shown(value)}: expected {_expected(kind)}")
 
 
-def _scalar(old: Any, item: Any) -> Any:
-    """YAML's 1 is a float where floats are needed."""
-    floats = (isinstance(old, numpy.ndarray) and old.dtype.kind == "f") or (isinstance(old, array.array) and old.typecode in "fd")
-    return float(item) if floats and isinstance(item, int) and not isinstance(item, bool) else item
+def _float(value: Any) -> Any:
+    """None if it is no number."""
+    if isinstance(value, str) and _NUMBER.fullmatch(value):
+        return float(value.replace(".nan", "nan").replace(".inf", "inf"))
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
 
 
-def _message(kind: NamespacedType, values: Any, path: str) -> Any:
+def _sequence(kind: Any, value: Any, path: Path) -> Any:
+    wrong = not isinstance(value, list)
+    if not wrong and isinstance(kind, idl.Array):
+        wrong = len(value) != kind.size
+    elif not wrong and isinstance(kind, idl.BoundedSequence):
+        wrong = len(value) > kind.maximum_size
+    if wrong:
+        found = f"has {len(value)} values" if isinstance(value, list) else f"is {_shown(value)}"
+        raise FieldError(path, f"{_name(path)} {found}: expected {_expected(kind)}")
+    inner = kind.value_type
+    if isinstance(inner, idl.NamespacedType):
+        return [_message(inner, item, (*path, index)) for index, item in enumerate(value)]
+    return [_value(inner, None, item, (*path, index)) for index, item in enumerate(value)]
+
+
+def _message(kind: Any, values: Any, path: Path) -> Any:
     module = importlib.import_module(".".join(kind.namespaces))
     message = getattr(module, kind.name)()
     fill(message, values, path)
@@ -79,6 +271,11 @@ def _rounded(value: Any) -> Any:
     return round(value, 6) + 0.0 if isinstance(value, float) else value
 
 
-def show(message: Any) -> str:
-    """For people: YAML, six digits behind the point."""
-    return yaml.safe_dump(_rounded(plain(message)), sort_keys=False, default_flow_style=None, width=120).rstrip("\n")
+def show(message: Any, width: int = 120) -> str:
+    """YAML with six decimals."""
+    return yaml.safe_dump(_rounded(plain(message)), sort_keys=False, default_flow_style=None, width=width).rstrip("\n")
+
+
+def show_in_one_line(message: Any) -> str:
+    """YAML with six decimals, as a flow mapping."""
+    return yaml.safe_dump(_rounded(plain(message)), sort_keys=False, default_flow_style=True, width=float("inf")).rstrip("\n")

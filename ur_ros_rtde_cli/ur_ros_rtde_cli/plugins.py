@@ -1,21 +1,25 @@
-"""Lists the plugins that are installed: name, package, what they do."""
+"""Lists the installed plugins: name, package, description.
+
+The description of a plugin is that of its plugins.xml, else the first sentence of its .action file, else the description of its
+package.
+"""
 
 import argparse
 import pathlib
+import re
 import xml.etree.ElementTree as xml
-from typing import Iterator, Tuple
-
-from ament_index_python import get_resource, get_resources
+from typing import Iterator, List, Optional, Tuple
 
 RESOURCE = "ur_ros_rtde__pluginlib__plugin"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("pattern", nargs="?", default="", help="only those whose name contains this")
+    parser.add_argument("pattern", nargs="?", default="", help="only plugins whose name contains this")
 
 
 def installed() -> Iterator[Tuple[str, str, str]]:
-    """Name, package and description."""
+    """Name, package and description from plugins.xml."""
+    from ament_index_python import get_resource, get_resources  # only here: --help needs no ROS
     for package in get_resources(RESOURCE):
         content, prefix = get_resource(RESOURCE, package)
         for file in filter(None, map(str.strip, content.splitlines())):
@@ -28,8 +32,48 @@ def installed() -> Iterator[Tuple[str, str, str]]:
                 yield entry.get("name") or entry.get("type", "?"), package, (entry.findtext("description") or "").strip()
 
 
+def action_type(name: str, package: str) -> Optional[Tuple[str, str]]:
+    """Package and name of the action that is called as the plugin, in its package or the one of its interfaces.
+
+    "move_j" of ur_ros_rtde is MoveJ of ur_ros_rtde_msgs. None for plugins that share an action type with others.
+    """
+    wanted = re.sub("[_/]", "", name).lower()
+    for candidate in (package, f"{package}_msgs"):
+        found = [action for action in _actions(candidate) if action.lower() == wanted]
+        if len(found) == 1:
+            return candidate, found[0]
+    return None
+
+
+def _actions(package: str) -> List[str]:
+    from ament_index_python import get_resource
+    try:
+        content, _ = get_resource("rosidl_interfaces", package)
+    except LookupError:
+        return []
+    return sorted(set(re.findall(r"^action/(\w+)\.(?:action|idl)$", content, re.M)))
+
+
+def _description(name: str, package: str) -> str:
+    """From the files that a plugin has in any case."""
+    from ament_index_python import get_package_share_directory
+    action = action_type(name, package)
+    try:
+        if action is not None:
+            text = pathlib.Path(get_package_share_directory(action[0]), "action", f"{action[1]}.action").read_text()
+            comment = re.match(r"(?:#.*\n)+", text)
+            if comment is not None:
+                joined = " ".join(line.strip("# ") for line in comment.group().splitlines())
+                return re.split(r"(?<=\.)\s", joined)[0].rstrip(".")
+        manifest = xml.parse(pathlib.Path(get_package_share_directory(package), "package.xml")).getroot()
+        return (manifest.findtext("description") or "").strip().rstrip(".")
+    except (OSError, xml.ParseError):
+        return ""
+
+
 def run(options: argparse.Namespace) -> int:
-    found = sorted(entry for entry in installed() if options.pattern in entry[0])
+    found = sorted((name, package, description or _description(name, package)) for name, package, description in installed()
+                   if options.pattern in name)
     width = max((len(name) for name, _, _ in found), default=0)
     origin = max((len(package) for _, package, _ in found), default=0)
     for name, package, description in found:

@@ -1,4 +1,4 @@
-"""Records fields of the robot's state into a CSV file until Ctrl-C, or for a time.
+"""Records fields of the robot's state into a CSV file, until Ctrl-C or for a given time.
 
     ur record run.csv timestamp actual_q actual_TCP_force --time 10
 """
@@ -6,11 +6,10 @@
 import argparse
 import pathlib
 import sys
+from typing import Any
 
-from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
-
+from .interruptions import Interrupted
 from .problem import Problem
-from .session import Interrupted, Session, session
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,11 +19,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--frequency", type=float, default=0.0, metavar="HZ", help="rows a second (default: each package)")
 
 
-def _call(use: Session, kind, name: str, **request):
-    client = use.node.create_client(kind, name)
-    if not use.wait(client.service_is_ready, 5.0):
-        raise Problem(f"nobody serves {name}. Does robot_state_receiver run, in this ROS_DOMAIN_ID?")
-    answer = use.answer(client.call_async(kind.Request(**request)), 10.0)
+def _call(session: Any, kind: Any, name: str, **request: Any) -> Any:
+    client = session.node.create_client(kind, name)
+    if not session.wait(client.service_is_ready, 5.0):
+        raise Problem(f"no server of {name}. Does robot_state_receiver run, in this ROS_DOMAIN_ID?")
+    answer = session.result(client.call_async(kind.Request(**request)), 10.0)
     if answer is None:
         raise Problem(f"{name} did not answer")
     if not answer.success:
@@ -33,6 +32,9 @@ def _call(use: Session, kind, name: str, **request):
 
 
 def run(options: argparse.Namespace) -> int:
+    from ur_ros_rtde_msgs.srv import StartRecording, StopRecording  # only here: --help needs no ROS
+
+    from .session import session
     with session(options.namespace) as use:
         _call(use, StartRecording, "start_recording", filename=str(options.file.absolute()), fields=options.fields,
               frequency=options.frequency)

@@ -1,0 +1,110 @@
+"""Messages from YAML: what is read, and what an error says."""
+
+import math
+import pathlib
+
+import pytest
+from geometry_msgs.msg import Inertia
+from std_msgs.msg import Int8, UInt8MultiArray
+from ur_ros_rtde_cli import fields
+from ur_ros_rtde_cli.problem import Problem
+
+from ur_ros_rtde_msgs.action import DashboardText, ExecuteParametrizedTrajectory, ExecuteTrajectory, ForceMode, MoveJ, SetDigitalOutput
+
+
+def read(text, message):
+    return fields.Document(text).fill(message)
+
+
+@pytest.mark.parametrize("text, value", [("1", 1.0), ("1e-3", 0.001), ("-2E3", -2000.0), ("inf", math.inf), ("-inf", -math.inf),
+                                         (".inf", math.inf), ("+.5", 0.5), ("-Infinity", -math.inf)])
+def test_numbers_are_read_as_people_write_them(text, value):
+    assert read(f"speed: {text}", MoveJ.Goal()).speed == value
+    assert list(read(f"joint_positions: [{text}]", MoveJ.Goal()).joint_positions) == [value]
+
+
+@pytest.mark.parametrize("text", ["nan", ".nan", ".NaN", "NaN", "-nan"])
+def test_nan_is_a_number(text):
+    assert math.isnan(read(f"speed: {text}", MoveJ.Goal()).speed)
+
+
+def test_fields_that_are_not_named_keep_their_values():
+    goal = read("", MoveJ.Goal(acceleration=3.0))
+    assert (goal.speed, goal.acceleration) == (0.5, 3.0)
+
+
+def test_nested_messages_and_lists_of_them_are_read():
+    goal = read("trajectory: {joint_names: [a], points: [{positions: [1], time_from_start: {sec: 2}}]}",
+                ExecuteParametrizedTrajectory.Goal())
+    point, = goal.trajectory.points
+    assert (list(point.positions), point.time_from_start.sec, goal.trajectory.joint_names) == ([1.0], 2, ["a"])
+
+
+@pytest.mark.parametrize("message, text, expected", [
+    (MoveJ.Goal, "speed: true", "speed is True: expected a number"),
+    (MoveJ.Goal, "speed: 1.2.3", "speed is '1.2.3': expected a number"),
+    (MoveJ.Goal, "speed:", "speed is None: expected a number"),
+    (MoveJ.Goal, "joint_positions: [0, fast]", "joint_positions[1] is 'fast': expected a number"),
+    (MoveJ.Goal, "joint_positions: {a: 1}", "joint_positions is {'a': 1}: expected a list of numbers"),
+    (MoveJ.Goal, "[1]", "the goal is [1]: expected a mapping of fields, as in {speed: 0.5}"),
+    (ForceMode.Goal, "compliant: [true]", "compliant has 1 values: expected a list of 6 boolean values"),
+    (ForceMode.Goal, "compliant: [1, 1, 1, 1, 1, 1]", "compliant[0] is 1: expected true or false"),
+    (SetDigitalOutput.Goal, "pin: 256", "pin is 256: expected an integer from 0 to 255"),
+    (SetDigitalOutput.Goal, "pin: -1", "pin is -1: expected an integer from 0 to 255"),
+    (SetDigitalOutput.Goal, "pin: 1.0", "pin is 1.0: expected an integer from 0 to 255"),
+    (SetDigitalOutput.Goal, "pin: true", "pin is True: expected an integer from 0 to 255"),
+    (SetDigitalOutput.Goal, "state: 1", "state is 1: expected true or false"),
+    (Int8, "data: 128", "data is 128: expected an integer from -128 to 127"),
+    (UInt8MultiArray, "data: [256]", "data[0] is 256: expected an integer from 0 to 255"),
+    (DashboardText.Goal, "text: 5", "text is 5: expected a string; put it in quotes"),
+    (ExecuteTrajectory.Goal, "waypoints: [[0, 1]]", "waypoints[0] is [0, 1]: expected a mapping of fields: positions"),
+    (ExecuteTrajectory.Goal, "waypoints: {positions: []}", "expected a list of ur_ros_rtde_msgs/JointWaypoint"),
+    (ExecuteTrajectory.Goal, "waypoints: [{position: []}]", "there is no field waypoints[0].position; did you mean positions?"),
+    (ExecuteTrajectory.Goal, "1: 2", "there is no field [1]. The fields are: waypoints, "),
+    (Inertia, "com: {x: [1]}", "com.x is [1]: expected a number"),
+    (MoveJ.Goal, "speed: 1\nspeed: 2", "the field speed is given twice"),
+    (MoveJ.Goal, "speed: 1\n---\nspeed: 2", "not YAML: "),
+    (MoveJ.Goal, "joint_positions: &a [*a]", "joint_positions[0] is [[...]]: expected a number"),
+    (MoveJ.Goal, "joint_positions: *a", "undefined alias"),
+    (MoveJ.Goal, "speed: !!python/object:os.system 1", "not YAML: "),
+    (MoveJ.Goal, "{speed: [", "not YAML: line "),
+    (MoveJ.Goal, "speed: \x00", "not YAML"),
+])
+def test_an_error_names_field_value_and_what_is_expected(message, text, expected):
+    with pytest.raises(Problem) as problem:
+        read(text, message())
+    assert expected in str(problem.value)
+
+
+@pytest.mark.parametrize("text, line, expected", [
+    ("# a path\nwaypoints:\n  - {positions: [0]}\n  - {positions: [1, x]}\n", 4, "waypoints[1].positions[1] is 'x'"),
+    ("waypoints:\n  - positions: [0]\n\n  - sped: 1\n", 4, "no field waypoints[1].sped"),
+    ("waypoints: []\n\nspeed_fraction: x\n", 3, "speed_fraction is 'x'"),
+    ("waypoints: []\ngain:\n  [1,\n   2]\n", 2, "gain is [1, 2]"),
+    ("waypoints: [\n  {positions: [0]}\n  {positions: [0]}\n]\n", 3, "not YAML"),
+    ("gain: 1\nwaypoints: []\ngain: 2\n", 3, "gain is given twice"),
+    ("gain: 1\n\tgain: 2\n", 2, "not YAML"),
+    ("7\n", 1, "expected a mapping"),
+])
+def test_an_error_in_a_file_names_file_and_line(tmp_path, text, line, expected):
+    file = tmp_path / "goal.yaml"
+    file.write_text(text)
+    with pytest.raises(Problem) as problem:
+        fields.read_file(file, ExecuteTrajectory.Goal())
+    assert str(problem.value).startswith(f"{file}:{line}: ") and expected in str(problem.value)
+
+
+@pytest.mark.parametrize("content, expected", [(None, "No such file"), (b"\xff\xfe", "is not a text file")])
+def test_a_file_that_cannot_be_read_is_named(tmp_path, content, expected):
+    file = pathlib.Path(tmp_path, "goal.yaml")
+    if content is not None:
+        file.write_bytes(content)
+    with pytest.raises(Problem) as problem:
+        fields.read_file(file, MoveJ.Goal())
+    assert str(file) in str(problem.value) and expected in str(problem.value)
+
+
+def test_what_is_shown_can_be_read():
+    goal = ForceMode.Goal(compliant=[True, False, True, False, False, False])
+    assert read(fields.show(goal), ForceMode.Goal()) == goal
+    assert "\n" not in fields.show_in_one_line(goal) and read(fields.show_in_one_line(goal), ForceMode.Goal()) == goal
