@@ -11,7 +11,7 @@ from typing import Dict, List, Optional, Tuple
 
 from . import bench_discovery, bench_trajectory, boilerplate, cell, ports, say, scheduling
 from .environment import program, run_environment
-from .layout import ROOT, Layout
+from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
 
 # Of the servo stream: the part, the aim, the unit.
@@ -47,7 +47,7 @@ KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 
 
 def parse(arguments: List[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="./ur bench", description=__doc__,
+    parser = argparse.ArgumentParser(prog=f"{PROGRAM} bench", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
     parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")

@@ -13,7 +13,7 @@ from typing import List
 
 from . import cell, ports, say
 from .environment import run_environment
-from .layout import ROOT, SANITIZERS, Layout
+from .layout import PROGRAM, ROOT, SANITIZERS, Layout
 from .processes import Programs
 
 SOAK_MINUTES = 30.0
@@ -21,7 +21,7 @@ FAULT_SECONDS = 60.0  # more than the longest fault takes, its goals and their e
 
 
 def parse(arguments: List[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="./ur chaos", description=__doc__,
+    parser = argparse.ArgumentParser(prog=f"{PROGRAM} chaos", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--faults", type=int, default=100, metavar="N", help="how many; 0: a soak (default: 100)")
     parser.add_argument("--seed", type=int, metavar="S", help="of the goals and faults (default: a new one)")

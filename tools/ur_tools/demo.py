@@ -13,7 +13,7 @@ from typing import List
 
 from . import cell, ports, say
 from .environment import run_environment
-from .layout import ROOT, Layout
+from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
 
 # The packages that it needs, with those that they depend on.
@@ -26,7 +26,7 @@ PARAMETERS = {"robot_state_receiver": ("rtde_frequency:=125.0",)}
 
 
 def parse(arguments: List[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="./ur demo", description=__doc__,
+    parser = argparse.ArgumentParser(prog=f"{PROGRAM} demo", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--model", type=str.lower, choices=cell.MODELS, metavar="MODEL", default="ur10e",
                         help="arm to simulate: " + ", ".join(cell.MODELS) + " (default: ur10e)")

@@ -7,13 +7,13 @@ import shutil
 from typing import Dict, Iterable
 
 from .downloads import ur_rtde_archive
-from .layout import Layout
+from .layout import ROOT, Layout
 
 # What another ROS installation may have left in the user's environment. rcl of the wheels ends with 102 if
 # RMW_IMPLEMENTATION names anything else than the middleware it is linked with.
 FOREIGN = ("RMW_IMPLEMENTATION", "ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "ROS_LOCALHOST_ONLY", "PYTHONHOME",
            "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "COLCON_DEFAULTS_FILE", "PYTHONPATH", "LD_LIBRARY_PATH",
-           "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
+           "_ROS_WHEELS_BOOTSTRAP_COMPLETE", "UR_CHECKOUT")
 
 
 def _path(*parts: object) -> str:
@@ -77,12 +77,15 @@ def _set_fastdds_profile(env: Dict[str, str], layout: Layout) -> None:
 
 
 def workspace_environment(layout: Layout) -> Dict[str, str]:
-    """run_environment(), in which `colcon build` of somebody's own workspace needs no arguments either."""
+    """As run_environment(), with `ur` on PATH and the arguments that `colcon build` of a user's own workspace needs."""
     env = run_environment(layout)
+    # For `ur` of ur_ros_rtde_cli, which hands the commands of the checkout to ./ur, and for that: with the same build.
+    env["UR_CHECKOUT"] = str(ROOT)
+    env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
     env["CMAKE_PREFIX_PATH"] = str(layout.install)
     env["PYTHONPATH"] = _path(env["PYTHONPATH"], layout.provider.parent / "generators")
     folders = [layout.install / "lib" / name for name in ("ur_ros_rtde", "ur_ros_rtde_cli")]
-    env["PATH"] = _path(*folders, env["PATH"])  # there is no `ros2 run` here
+    env["PATH"] = _path(*folders, env["PATH"])  # the wheels have no `ros2 run`
     defaults = layout.base / "colcon_defaults.yaml"
     arguments = ["-GNinja", "-DCMAKE_BUILD_TYPE=Release", f"-DROS_WHEELS_PREFIX={layout.venv}",
                  f"-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES={layout.provider}", "-Wno-unused-cli"]

@@ -9,6 +9,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 STATE = ROOT / ".ur"
 DOWNLOADS = STATE / "downloads"
 DISTRIBUTIONS = ("kilted", "jazzy")
+# What the user types: in `./ur shell` the program is called `ur`.
+PROGRAM = "ur" if os.environ.get("UR_CHECKOUT") == str(ROOT) else "./ur"
 SANITIZERS = ("address", "undefined", "thread")
 
 

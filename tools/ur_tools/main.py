@@ -1,6 +1,7 @@
 """Command line of ./ur."""
 
 import argparse
+import difflib
 import errno
 import importlib
 import os
@@ -9,12 +10,12 @@ import shutil
 import signal
 import subprocess
 import sys
-from typing import List, Optional
+from typing import List, Optional, Tuple
 
 from . import build as building
 from . import disk, doctor, lint, new, say, testing
 from .environment import program, run_environment, workspace_environment
-from .layout import DISTRIBUTIONS, ROOT, SANITIZERS, STATE, Layout
+from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
 
 DESCRIPTION = """\
@@ -24,14 +25,16 @@ only what changed. All of it lies in .ur/; `./ur clean` removes it.
 """
 
 
-# What is handed to `ur` of ur_ros_rtde_cli.
-CLI = {"call": "send a goal: ./ur call move_j \"{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0]}\"",
-       "state": "show the state of the robot", "plugins": "list the plugins that are installed",
-       "record": "record the robot's state into a CSV file"}
+# Commands of `ur` in ur_ros_rtde_cli, which runs them.
+CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0]}\"",
+       "state": "show the state of the robot", "plugins": "list the installed plugins",
+       "record": "record fields of the robot's state into a CSV file"}
+FORWARDED = ("demo", "bench", "chaos", "plan", "sim", *CLI)  # all but our own options are for the program that does it
 
 
 def _add_build_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help="ROS 2 distribution (default: kilted)")
+    parser.add_argument("--ros", choices=DISTRIBUTIONS, default=Layout.of_environment().ros,
+                        help="ROS 2 distribution (default: %(default)s)")
     parser.add_argument("-j", "--jobs", type=int, default=0, metavar="N", help="parallel jobs (default: all cores)")
     variant = parser.add_mutually_exclusive_group()
     variant.add_argument("--debug", action="store_true", help="a debug build, beside the release build")
@@ -39,7 +42,9 @@ def _add_build_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _layout(options: argparse.Namespace) -> Layout:
-    return Layout(options.ros, "debug" if options.debug else options.sanitize or "")
+    current = Layout.of_environment()  # in `./ur shell` that of the shell
+    inherited = current.variant if options.ros == current.ros else ""
+    return Layout(options.ros, "debug" if options.debug else options.sanitize or inherited)
 
 
 def _build(options: argparse.Namespace, tests: bool = False, packages: Optional[List[str]] = None) -> Layout:
@@ -50,7 +55,7 @@ def _build(options: argparse.Namespace, tests: bool = False, packages: Optional[
 
 def command_build(options: argparse.Namespace) -> int:
     _build(options, options.tests, options.package)
-    say.line("Everything is built. `./ur shell` opens a shell in which it is found.")
+    say.line("Everything is built." + (" `./ur shell` opens a shell in which it is found." if PROGRAM == "./ur" else ""))
     return 0
 
 
@@ -74,7 +79,8 @@ def command_shell(options: argparse.Namespace) -> int:
     if command:
         return subprocess.run(command, env=env).returncode
     shell = env.get("SHELL", "/bin/sh")
-    say.line(f"A shell with ROS 2 {layout.ros.capitalize()} and this project's packages; `exit` leaves it.")
+    say.line(f"A shell with ROS 2 {layout.ros.capitalize()} and this project's packages; `exit` leaves it. `ur` has the commands of "
+             "./ur, `ur --help` lists them. The wheels do not contain the program `ros2`.")
     if os.path.basename(shell) == "bash":
         env["PS1"] = "(ur) \\w\\$ "
         return subprocess.run([shell, "--norc"], env=env).returncode
@@ -112,10 +118,18 @@ def command_chaos(options: argparse.Namespace) -> int:
 
 
 def command_cli(options: argparse.Namespace) -> int:
-    """`./ur call …` is `ur call …` of ur_ros_rtde_cli, where it is found."""
-    layout = _build(options)
-    command = str(program(layout, "ur_ros_rtde_cli", "ur"))
-    os.execve(command, [command, options.command, *_forwarded(options)], workspace_environment(layout))
+    """`./ur call …` is `ur call …` of ur_ros_rtde_cli. Nothing is built that is there: the driver may be running."""
+    arguments = [options.command, *_forwarded(options)]
+    if any(argument in ("-h", "--help") for argument in arguments):
+        source = ROOT / "ur_ros_rtde_cli"
+        env = {**os.environ, "PYTHONPATH": str(source), "PYTHONDONTWRITEBYTECODE": "1"}
+        os.execve(sys.executable, [sys.executable, str(source / "scripts" / "ur"), *arguments], env)
+    layout = _layout(options)
+    try:
+        command = program(layout, "ur_ros_rtde_cli", "ur")
+    except FileNotFoundError:
+        command = program(_build(options), "ur_ros_rtde_cli", "ur")
+    os.execve(command, [str(command), *arguments], workspace_environment(layout))
 
 
 def command_new(options: argparse.Namespace) -> int:
@@ -161,8 +175,9 @@ def _forwarded(options: argparse.Namespace) -> List[str]:
     return arguments[1:] if arguments[:1] == ["--"] else arguments
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="./ur", description=DESCRIPTION,
+def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
+    """The parser and the names of the commands."""
+    parser = argparse.ArgumentParser(prog=PROGRAM, description=DESCRIPTION,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", metavar="command")
 
@@ -173,7 +188,7 @@ def _parser() -> argparse.ArgumentParser:
 
     def add_forwarding(name: str, function, text: str) -> None:
         # Its own options go to the program; only those before them are ours.
-        sub = add(name, function, text, add_help=name not in ("demo", "bench", "chaos", "plan", *CLI))
+        sub = add(name, function, text, add_help=name in ("sim", "shell"))
         _add_build_options(sub)
         sub.add_argument("arguments", nargs=argparse.REMAINDER, help="handed on as they are")
 
@@ -197,7 +212,7 @@ def _parser() -> argparse.ArgumentParser:
     build.add_argument("--package", action="append", metavar="NAME", help="only this package and those it needs")
     build.add_argument("--tests", action="store_true", help="build the tests as well")
 
-    add_forwarding("sim", command_sim, "run the simulated controller; options go to ur_simulator (`./ur sim -- --help`)")
+    add_forwarding("sim", command_sim, "run the simulated controller; options go to ur_simulator (`sim -- --help`)")
     add_forwarding("bench", command_bench, "measure latency and load")
     add_forwarding("plan", command_plan, "plan a trajectory without a robot, draw it against its limits")
     add_forwarding("chaos", command_chaos, "random goals while random faults happen; with --faults 0 a soak")
@@ -225,17 +240,24 @@ def _parser() -> argparse.ArgumentParser:
 
     clean = add("clean", command_clean, "remove what was built")
     clean.add_argument("--all", action="store_true", help="also the virtual environments and downloads")
-    return parser
+    return parser, list(commands.choices)
 
 
 def _parse(arguments: List[str]) -> argparse.Namespace:
-    """argparse, except that what demo, bench, chaos and plan do not share with the other commands is theirs."""
-    parser = _parser()
-    if not arguments or arguments[0] not in ("demo", "bench", "chaos", "plan", "sim", *CLI):
+    """argparse, except that options of forwarded commands may have any order."""
+    parser, names = _parser()
+    if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
+        _explain_unknown(parser, arguments[0], names)
+    if not arguments or arguments[0] not in FORWARDED:
         return parser.parse_args(arguments)
     options, unknown = parser.parse_known_args(arguments[:1] + _ours_first(arguments[1:]))
     options.arguments = unknown + list(options.arguments)
     return options
+
+
+def _explain_unknown(parser: argparse.ArgumentParser, command: str, names: List[str]) -> None:
+    close = difflib.get_close_matches(command, names, 1)
+    parser.error(f"there is no command {command}; " + (f"did you mean {close[0]}?" if close else f"there are: {', '.join(names)}"))
 
 
 def _ours_first(arguments: List[str]) -> List[str]:
@@ -277,7 +299,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     options = _parse(arguments)
     if options.command is None:
-        _parser().print_help()
+        _parser()[0].print_help()
         return 2
     try:
         return options.function(options)

@@ -21,11 +21,11 @@ from typing import List
 
 from . import cell, say
 from .environment import program, run_environment
-from .layout import ROOT, Layout
+from .layout import PROGRAM, ROOT, Layout
 
 
 def parse(arguments: List[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="./ur plan", description=__doc__,
+    parser = argparse.ArgumentParser(prog=f"{PROGRAM} plan", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=pathlib.Path, help="the goal as YAML")
     parser.add_argument("--plot", type=pathlib.Path, metavar="PNG",

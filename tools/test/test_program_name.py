@@ -1,0 +1,72 @@
+"""`./ur` outside and `ur` inside of `./ur shell` are one program with the same commands."""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
+from ur_tools.environment import workspace_environment
+from ur_tools.layout import ROOT, Layout
+
+
+def outside(*arguments, cwd=ROOT):
+    """./ur as in a terminal, in which no ROS is found."""
+    env = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "AMENT_PREFIX_PATH", CHECKOUT_VARIABLE)}
+    return subprocess.run([sys.executable, str(ROOT / "ur"), *arguments], cwd=cwd, env=env, capture_output=True, text=True, timeout=60)
+
+
+def inside(*arguments, cwd=ROOT):
+    """ur in ./ur shell."""
+    return subprocess.run(["ur", *arguments], cwd=cwd, env=workspace_environment(Layout.of_environment()), capture_output=True,
+                          text=True, timeout=60)
+
+
+def commands_in(text):
+    return set(re.findall(r"^    (\w+)  ", text, re.M))
+
+
+def test_the_help_lists_the_same_commands():
+    expected = {*COMMANDS, *CHECKOUT_COMMANDS}
+    for result, name in ((outside("--help"), "./ur"), (inside("--help"), "ur")):
+        assert result.returncode == 0 and f"usage: {name} " in result.stdout, result.stderr
+        assert commands_in(result.stdout) == expected
+        assert "==SUPPRESS==" not in result.stdout
+
+
+@pytest.mark.parametrize("command", [*COMMANDS, *CHECKOUT_COMMANDS])
+def test_every_command_has_a_help(command):
+    for run in (outside, inside):
+        result = run(command, "--help")
+        assert result.returncode == 0 and "usage: " in result.stdout.lower(), result.stderr
+
+
+def test_commands_of_the_checkout_run_inside_where_the_user_is(tmp_path):
+    result = inside("new", "command", "wag", cwd=tmp_path)
+    assert result.returncode == 0 and (tmp_path / "wag_command" / "package.xml").is_file(), result.stderr
+
+
+def test_commands_of_the_installed_program_run_outside(tmp_path):
+    result = outside("plugins", "move_l", cwd=tmp_path)
+    assert result.returncode == 0 and result.stdout == inside("plugins", "move_l").stdout, result.stderr
+    assert "move_l_relative" in result.stdout
+    result = outside("call", "move_j", "--show", "{speed: 2}", cwd=tmp_path)
+    assert result.returncode == 0 and "speed: 2.0" in result.stdout, result.stderr
+
+
+@pytest.mark.parametrize("command, mentions", [("buidl", "did you mean build?"), ("cal", "did you mean call?"), ("qqq", "demo, test")])
+def test_an_unknown_command_is_explained(command, mentions):
+    for run in (outside, inside):
+        result = run(command)
+        assert result.returncode == 2 and f"there is no command {command}" in result.stderr and mentions in result.stderr
+
+
+def test_the_shell_keeps_its_build(monkeypatch):
+    """Inside `./ur shell --debug`, commands use the debug build."""
+    monkeypatch.setenv("UR_LAYOUT", "jazzy:debug")
+    code = "from ur_tools import main; options = main._parse(['build']); print(main._layout(options))"
+    env = {**os.environ, "PYTHONPATH": str(pathlib.Path(ROOT, "tools"))}
+    result = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=60)
+    assert result.stdout.strip() == str(Layout("jazzy", "debug")), result.stderr
