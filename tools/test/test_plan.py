@@ -7,22 +7,25 @@ import subprocess
 import sys
 
 import pytest
+from ur_tools.environment import program
+from ur_tools.layout import Layout
 
 ROOT = pathlib.Path(__file__).parents[2]
 HOME = "[0.0, -1.57, 1.57, -1.57, -1.57, 0.0]"
 PATH = f"""
-model: ur10e
 blend_tolerance: 0.05
 waypoints:
-  - {HOME}
-  - [0.6, -1.37, 1.37, -1.57, -1.57, 0.0]
-  - [0.6, -1.57, 1.57, -1.57, -1.57, 0.5]
+  - positions: {HOME}
+  - positions: [0.6, -1.37, 1.37, -1.57, -1.57, 0.0]
+  - {{positions: [0.6, -1.57, 1.57, -1.57, -1.57, 0.5]}}
 """
 TIMED = f"""
-points:
-  - {{time: 0.0, positions: {HOME}}}
-  - {{time: 2.0, positions: [0.6, -1.37, 1.37, -1.57, -1.57, 0.0]}}
+trajectory:
+  points:
+    - {{positions: {HOME}}}
+    - {{positions: [0.6, -1.37, 1.37, -1.57, -1.57, 0.0], time_from_start: {{sec: 2}}}}
 """
+FAST = "time_from_start: {sec: 1, nanosec: 200000000}"
 
 
 def plan(tmp_path, text, *options):
@@ -35,7 +38,7 @@ def plan(tmp_path, text, *options):
 
 
 def test_a_path_is_planned_and_drawn(tmp_path):
-    result = plan(tmp_path, PATH, "--plot", tmp_path / "plan.png", "--json", tmp_path / "plan.json")
+    result = plan(tmp_path, PATH, "--model", "ur10e", "--plot", tmp_path / "plan.png", "--json", tmp_path / "plan.json")
     assert result.returncode == 0, result.stdout
     assert "3 waypoints" in result.stdout and "largest use of the limits" in result.stdout
     assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")
@@ -51,31 +54,72 @@ def test_given_times_are_kept(tmp_path):
 
 
 def velocities(tmp_path, text):
-    result = plan(tmp_path, text, "--json", tmp_path / "plan.json")
+    result = plan(tmp_path, text, "--model", "ur10e", "--json", tmp_path / "plan.json")
     assert result.returncode == 0, result.stdout
     return [abs(value) for row in json.loads((tmp_path / "plan.json").read_text())["samples"]["velocity"] for value in row]
 
 
 def test_a_path_without_limits_is_slow_and_given_times_are_a_choice(tmp_path):
-    far = f"model: ur10e\nwaypoints:\n  - {HOME}\n  - [1.2, -1.57, 1.57, -1.57, -1.57, 0.0]\n"
+    far = f"waypoints:\n  - positions: {HOME}\n  - positions: [1.2, -1.57, 1.57, -1.57, -1.57, 0.0]\n"
     assert 1.0 < max(velocities(tmp_path, far)) <= 1.05
     assert 1.7 < max(velocities(tmp_path, far + "max_velocity: [1.8, 1.8, 1.8, 1.8, 1.8, 1.8]\n"
                                 "max_acceleration: [5, 5, 5, 5, 5, 5]\n")) <= 1.8
-    assert 1.3 < max(velocities(tmp_path, TIMED.replace("2.0", "1.2").replace("0.6", "0.9")))
+    assert 1.3 < max(velocities(tmp_path, TIMED.replace("time_from_start: {sec: 2}", FAST).replace("0.6", "0.9")))
 
 
 @pytest.mark.parametrize("text, what", [
-    ("waypoints: [[0, 0, 0]]", "waypoint 0 has 3 values"),
-    ("model: ur99\nwaypoints: [[0, 0, 0, 0, 0, 0]]", "ur99"),
-    ("waypoint: []", "there is no field waypoint"),
-    ("model: ur10e", "give either waypoints"),
+    ("waypoints: [{positions: [0, 0, 0]}]", "plan.yaml: waypoint 0 has 3 values"),
+    ("waypoint: []", "plan.yaml:1: there is no field waypoint; did you mean waypoints?"),
+    (f"waypoints:\n  - {HOME}", "plan.yaml:2: waypoints[0] is [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]: expected a mapping of fields: positions"),
+    ("model: ur10e", "plan.yaml: there is no field model: the model is given by --model"),
+    ("", "plan.yaml: "),
     (PATH + "max_velocity: [1, 1, 0, 1, 1, 1]", "velocity limit of elbow_joint is 0"),
-    (TIMED.replace("2.0", "0.1"), " of shoulder_pan_joint is "),
-    ("waypoints: [", "while parsing"),
+    (PATH + "max_velocity: [1, 1, x, 1, 1, 1]", "plan.yaml:7: max_velocity[2] is 'x': expected a number"),
+    (PATH + "gain: fast", "plan.yaml:7: gain is 'fast'"),
+    (TIMED.replace("{sec: 2}", "{nanosec: 100000000}"), " of shoulder_pan_joint is "),
+    (TIMED.replace(f"{{positions: {HOME}}}", f"{{positions: {HOME}, time_from_start: {{sec: 1}}}}"), "points[0].time_from_start is 1 s"),
+    (TIMED.replace(HOME, "[0, 0]"), "trajectory.points[0].positions has 2 values: expected 6"),
+    (TIMED + "  joint_names: [a, b]", "trajectory.joint_names is a, b: expected shoulder_pan_joint, "),
+    ("trajectory: {}", "trajectory.points is empty"),
+    ("waypoints: [", "not YAML"),
+    ("waypoints: []\nwaypoints: []", "plan.yaml:2: not YAML: the field waypoints is given twice"),
+    ("7", "plan.yaml:1: the goal is 7: expected a mapping"),
 ])
 def test_what_cannot_be_planned_is_refused_with_the_reason(tmp_path, text, what):
     result = plan(tmp_path, text)
     assert result.returncode == 1 and what in result.stdout, result.stdout
+    assert "Traceback" not in result.stdout and "json" not in result.stdout.lower() and result.stdout.count("plan.yaml") == 1
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    result = plan(tmp_path, PATH, "--model", "ur99")
+    assert result.returncode == 1 and 'model is "ur99"' in result.stdout, result.stdout
+    result = subprocess.run([sys.executable, "-m", "ur_tools.plan", "nowhere.yaml"], cwd=ROOT / "tools", stdout=subprocess.PIPE,
+                            text=True, timeout=60)
+    assert result.returncode == 1 and "nowhere.yaml: No such file" in result.stdout, result.stdout
+
+
+def test_joints_may_have_any_order_and_a_prefix(tmp_path):
+    names = ["left_elbow_joint", "left_shoulder_pan_joint", *(f"left_{name}_joint" for name in
+             ("shoulder_lift", "wrist_1", "wrist_2", "wrist_3"))]
+    points = "".join(f"    - {{positions: [1.57, {pan}, -1.57, 0, 0, 0], time_from_start: {{sec: {time}}}}}\n"
+                     for time, pan in enumerate((0.0, 0.3)))
+    result = plan(tmp_path, f"trajectory:\n  joint_names: [{', '.join(names)}]\n  points:\n{points}", "--json", tmp_path / "plan.json")
+    assert result.returncode == 0, result.stdout
+    positions = json.loads((tmp_path / "plan.json").read_text())["samples"]["position"]
+    assert positions[0] == pytest.approx([0.0, -1.57, 1.57, 0.0, 0.0, 0.0])
+    assert positions[-1] == pytest.approx([0.3, -1.57, 1.57, 0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("action, text", [("execute_trajectory", PATH), ("execute_parametrized_trajectory", TIMED)])
+def test_the_file_is_the_goal_of_an_action(tmp_path, action, text):
+    """`ur call` understands it, and `./ur plan` what `ur call --show` prints."""
+    assert plan(tmp_path, text).returncode == 0
+    command = [str(program(Layout.of_environment(), "ur_ros_rtde_cli", "ur")), "call", action, "--show", "--file", "plan.yaml"]
+    shown = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert shown.returncode == 0, shown.stderr
+    first, second = plan(tmp_path, text).stdout, plan(tmp_path, shown.stdout).stdout
+    assert first.split(", planned")[0] == second.split(", planned")[0] and " waypoints, " in first
 
 
 def test_the_help_needs_no_build():

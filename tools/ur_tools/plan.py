@@ -1,13 +1,14 @@
-"""./ur plan FILE: plans a trajectory without a robot, and says how long it takes and how much of the limits it uses.
+"""./ur plan FILE: plans a trajectory without a robot, and prints its duration and how much of the limits it uses.
 
-FILE is YAML with the fields of a goal of execute_trajectory (model, waypoints, max_velocity, max_acceleration, max_jerk,
-speed_fraction, blend_tolerance), or with points of their own times:
+FILE is the YAML of a goal, as `ur call ACTION --file FILE` sends it: of execute_trajectory, or, with the field trajectory, of
+execute_parametrized_trajectory. Fields that concern only the motion of an arm (start_tolerance, gain, ...) have no effect.
 
-    model: ur10e                                        |    model: ur10e
-    blend_tolerance: 0.05                               |    points:
-    waypoints:                                          |      - {time: 0.0, positions: [0, -1.57, 1.57, -1.57, -1.57, 0]}
-      - [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]           |      - {time: 2.0, positions: [1, -1.20, 1.30, -1.57, -1.57, 0]}
-      - [1.0, -1.20, 1.30, -1.57, -1.57, 0.0]           |
+    blend_tolerance: 0.05                                       |    trajectory:
+    waypoints:                                                  |      points:
+      - positions: [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]        |        - positions: [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
+      - positions: [1.0, -1.20, 1.30, -1.57, -1.57, 0.0]        |          time_from_start: {sec: 0}
+                                                                |        - positions: [1.0, -1.20, 1.30, -1.57, -1.57, 0.0]
+                                                                |          time_from_start: {sec: 2, nanosec: 500000000}
 
 A plan that would exceed a limit is refused with the first one.
 """
@@ -17,7 +18,7 @@ import json
 import pathlib
 import subprocess
 import sys
-from typing import List
+from typing import List, Mapping
 
 from . import cell, say
 from .environment import program, run_environment
@@ -28,13 +29,15 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=f"{PROGRAM} plan", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=pathlib.Path, help="the goal as YAML")
+    parser.add_argument("--model", default="", metavar="MODEL",
+                        help="whose limits count: ur3e, ur5e, ur10e, ... (default: the widest limits of all models)")
     parser.add_argument("--plot", type=pathlib.Path, metavar="PNG",
                         help="draw positions, velocities, accelerations and jerks against their limits")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write the plan's samples")
     return parser.parse_args(arguments)
 
 
-def _run(command: List[str], text: str, env) -> str:
+def _run(command: List[str], text: str, env: Mapping[str, str]) -> str:
     result = subprocess.run(command, input=text, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                             universal_newlines=True)
     if result.returncode != 0:
@@ -42,19 +45,18 @@ def _run(command: List[str], text: str, env) -> str:
     return result.stdout
 
 
-def _as_json(layout: Layout, file: pathlib.Path, env) -> str:
-    """By the Python of the build: the one that runs this need not have a YAML parser."""
-    code = "import json, sys, yaml; print(json.dumps(yaml.safe_load(sys.stdin)))"
-    try:
-        text = file.read_text()
-    except OSError as error:
-        raise say.Failure(f"{file}: {error.strerror}") from None
-    return _run([str(layout.python), "-c", code], text, env)
+def _goal_as_json(layout: Layout, options: argparse.Namespace, env: Mapping[str, str]) -> str:
+    """By the Python of the build: the one that runs this need not have YAML and the messages."""
+    return _run([str(layout.python), str(ROOT / "tools" / "ur_tools" / "plan_goal.py"), str(options.file), options.model], "", env)
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
-    answer = _run([str(program(layout, "ur_ros_rtde", "plan_trajectory"))], _as_json(layout, options.file, env), env)
+    goal = _goal_as_json(layout, options, env)
+    try:
+        answer = _run([str(program(layout, "ur_ros_rtde", "plan_trajectory"))], goal, env)
+    except say.Failure as failure:
+        raise say.Failure(f"{options.file}: {failure}") from None
     plan = json.loads(answer)
     use = plan["use"]
     say.line(f"{len(plan['waypoint_times'])} waypoints, {plan['duration']:.3f} s, planned in "
