@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -46,6 +47,13 @@ def test_a_path_is_planned_and_drawn(tmp_path):
     assert samples["position"][0] == pytest.approx([0.0, -1.57, 1.57, -1.57, -1.57, 0.0])
     assert samples["velocity"][-1] == [0.0] * 6
     assert max(abs(value) for row in samples["jerk"] for value in row) <= 100.0
+
+
+def test_the_documented_file_is_planned(tmp_path):
+    page = (ROOT / "docs" / "trajectory.md").read_text()
+    text, = re.findall(r"```yaml\n(.*?)```", page, re.S)
+    result = plan(tmp_path, text)
+    assert result.returncode == 0 and "3 waypoints" in result.stdout, result.stdout
 
 
 def test_given_times_are_kept(tmp_path):

@@ -2,12 +2,15 @@
 
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 
 import pytest
 from ur_ros_rtde.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
 from ur_tools import cell, main, packages, selection
+from ur_tools.environment import program
+from ur_tools.layout import Layout
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text()
@@ -33,8 +36,10 @@ def test_every_file_in_a_command_exists():
             assert (ROOT / path).is_file(), path
 
 
-def test_every_command_of_ur_is_known():
-    for command in set(re.findall(r"\./ur (\w+)", README)):
+@pytest.mark.parametrize("document", [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))], ids=lambda file: file.stem)
+def test_every_command_of_ur_is_known(document):
+    """`./ur …` anywhere, `ur …` at the beginning of a line or of code."""
+    for command in set(re.findall(r"(?:\./ur |^ur |`ur )([a-z]+)\b", document.read_text(), re.M)):
         result = subprocess.run([sys.executable, str(ROOT / "ur"), command, "--help"], capture_output=True, text=True,
                                 timeout=60)
         assert result.returncode == 0, (command, result.stderr)
@@ -58,6 +63,15 @@ def test_the_names_in_the_examples_of_ur_test_choose_tests():
 def test_every_folder_of_packages_is_in_the_table_of_contributing():
     for package in packages.discover(ROOT).values():
         assert f"`{package.folder.name}`" in CONTRIBUTING, package.name
+
+
+def test_the_goal_of_each_ur_call_fits_its_action():
+    calls = [shlex.split(line, comments=True) for block in blocks() for line in block.splitlines() if line.startswith("ur call")]
+    assert calls
+    for _, call, *arguments in calls:
+        result = subprocess.run([str(program(Layout.of_environment(), "ur_ros_rtde_cli", "ur")), call, *arguments, "--show"],
+                                capture_output=True, text=True, timeout=60)
+        assert result.returncode == 0, (arguments, result.stderr)
 
 
 def test_the_launch_arguments_are_declared():

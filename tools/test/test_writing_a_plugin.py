@@ -17,7 +17,7 @@ READY = "until ur call get_robot_status --quiet > /dev/null 2>&1; do sleep 0.2; 
 
 
 def environment():
-    return {**workspace_environment(Layout.of_environment()), "UR": str(ROOT / "ur"), "ROBOT_IP": os.environ.get("UR_TEST_ADDRESS", "127.0.1.200")}
+    return {**workspace_environment(Layout.of_environment()), "ROBOT_IP": os.environ.get("UR_TEST_ADDRESS", "127.0.1.200")}
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,11 @@ def test_the_extension_runs_on_the_controller(done):
 
 
 def test_the_new_plugins_are_listed(done):
-    assert "my_commands" in output(done, "ur plugins wag")
+    listed = output(done, "ur plugins\n").splitlines()
+    for plugin, package, description in (("wag", "my_commands", "Turns wrist 3 by an angle and back"),
+                                         ("twist", "my_extensions", "Turns wrist 3 by an angle, by a program on the controller"),
+                                         ("dashboard/tell", "my_dashboard", "Shows a text on the teach pendant and asks for the robot mode")):
+        assert [plugin, package, *description.split()] in [line.split() for line in listed], listed
 
 
 @pytest.mark.parametrize("file", re.findall(r"<!-- file: (\S+) -->", PAGE))
@@ -66,7 +70,17 @@ def test_the_code_on_the_page_is_the_code_that_was_written(done, file):
 
 def test_every_kind_of_plugin_is_on_the_page():
     for kind in KINDS:
-        assert f"$UR new {kind} " in PAGE
+        assert f"ur new {kind} " in PAGE
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_description_is_in_one_file(tmp_path, kind):
+    result = subprocess.run([str(ROOT / "ur"), "new", kind, "wag"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    shown, = re.findall(r"^    (\S+)  .*`ur plugins` shows", result.stdout, re.M)
+    text = (tmp_path / shown).read_text()
+    description = re.search(r"^# (.*?)\.|<description>(.*?)\.?</description>", text)
+    words = description.group(1) or description.group(2)
+    assert [file for file in tmp_path.rglob("*") if file.is_file() and words in file.read_text()] == [tmp_path / shown]
 
 
 @pytest.mark.parametrize("name, mentions", [("Bad", "lower case"), ("a__b", "single underscores"), ("part_2", "part2")])

@@ -1,4 +1,4 @@
-"""./ur new: a package with a plugin of one's own, complete: it builds, loads and does something."""
+"""./ur new: writes a package with a plugin that builds, loads and does something."""
 
 import pathlib
 import re
@@ -55,10 +55,23 @@ def create(kind: str, name: str, package: str, folder: pathlib.Path) -> pathlib.
     return target
 
 
+def _purpose(file: pathlib.Path, kind: str) -> str:
+    """What its author changes in a file; empty for files that need no change."""
+    if file.suffix == ".action":
+        return "what it does, and its fields; `ur plugins` shows the first sentence"
+    if file.suffix == ".cpp":
+        return "the code"
+    if kind == "dashboard" and file.name == "package.xml":
+        return "<description>: what it does; `ur plugins` shows it"
+    return ""
+
+
 def run(kind: str, name: str, package: str, folder: pathlib.Path) -> int:
     target = create(kind, name, package, folder)
-    for file in sorted(path for path in target.rglob("*") if path.is_file()):
-        say.line(f"    {file.relative_to(folder)}")
-    say.line("`colcon build` in the workspace it lies in (`./ur shell` where no ROS is installed) builds it; "
-             "docs/writing_a_plugin.md goes on from there.")
+    files = sorted((path for path in target.rglob("*") if path.is_file()), key=lambda path: not _purpose(path, kind))
+    width = max(len(str(file.relative_to(folder))) for file in files)
+    for file in files:
+        say.line(f"    {str(file.relative_to(folder)):{width}}  {_purpose(file, kind)}".rstrip())
+    say.line("Only the files with a remark need changes. `colcon build` in the workspace builds the package (in `./ur shell` where no ROS is "
+             "installed); docs/writing_a_plugin.md continues from there.")
     return 0

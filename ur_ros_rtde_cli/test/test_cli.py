@@ -258,6 +258,40 @@ def test_plugins_are_listed_with_package_and_description():
     assert code == 0 and ["move_l", "ur_ros_rtde", "Moves"] in [line.split()[:3] for line in output.splitlines()], output
 
 
+@pytest.fixture
+def own_plugin(tmp_path, monkeypatch):
+    """A package with the plugin `wag` in a prefix of its own; gives its share folder."""
+    share = tmp_path / "share" / "my_commands"
+    index = tmp_path / "share" / "ament_index" / "resource_index"
+    for resource, content in (("packages", ""), ("ur_ros_rtde__pluginlib__plugin", "share/my_commands/plugins.xml\n"),
+                              ("rosidl_interfaces", "action/Wag.action\naction/Wag.idl\n")):
+        (index / resource).mkdir(parents=True)
+        (index / resource / "my_commands").write_text(content)
+    (share / "action").mkdir(parents=True)
+    (share / "package.xml").write_text("<package><description>What it is about.</description></package>")
+    (share / "plugins.xml").write_text('<library path="x"><class name="wag" type="x::Wag"/></library>')
+    (share / "action" / "Wag.action").write_text("# Turns wrist 3\n# and back. Then more.\n\nfloat64 angle   # rad\n---\n---\n")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path), prepend=os.pathsep)
+    return share
+
+
+def listed_description():
+    code, output = ur("plugins", "wag")
+    assert code == 0, output
+    return " ".join(output.split()[2:])
+
+
+def test_a_plugin_without_description_has_that_of_its_action_file_or_package(own_plugin):
+    assert listed_description() == "Turns wrist 3 and back"
+    (own_plugin / "action" / "Wag.action").write_text("float64 angle\n---\n---\n")
+    assert listed_description() == "What it is about"
+
+
+def test_a_description_in_plugins_xml_comes_first(own_plugin):
+    (own_plugin / "plugins.xml").write_text('<library path="x"><class name="wag" type="x::Wag"><description>Wags</description></class></library>')
+    assert listed_description() == "Wags"
+
+
 def test_a_recording_has_the_rows_it_says(running, tmp_path):
     file = tmp_path / "run.csv"
     code, output = ur("record", str(file), "timestamp", "actual_q", "--time", "1")

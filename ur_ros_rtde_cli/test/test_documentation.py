@@ -1,0 +1,38 @@
+"""The examples of docs/commands: `ur call` and `ros2 action send_goal` send the same goal, which fits the action."""
+
+import importlib.util
+import pathlib
+import re
+import shlex
+
+import pytest
+import yaml
+from ur_ros_rtde_cli import fields
+
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "docs" / "commands"
+
+
+def examples():
+    """The commands of each block that has one of ros2."""
+    for file in sorted(FOLDER.glob("*.md")):
+        for block in re.findall(r"^```bash\n(.*?)^```", file.read_text(), re.S | re.M):
+            if "send_goal" in block:
+                commands = re.split(r"\n(?=ur |ros2 )", block.replace("\\\n", " ").strip())
+                yield pytest.param([shlex.split(command) for command in commands], id=f"{file.stem}-{block.split()[2]}")
+
+
+@pytest.mark.parametrize("commands", examples())
+def test_both_lines_send_the_same_goal(commands):
+    (_, call, name, *goal), (_, _, _, *ros2) = commands
+    full_name, kind, ros2_goal = (word for word in ros2 if word != "--feedback")
+    assert call == "call" and full_name == f"/{name}" and len(goal) <= 1
+    assert yaml.safe_load(goal[0] if goal else "{}") == yaml.safe_load(ros2_goal)
+    package, _, short = kind.split("/")
+    if importlib.util.find_spec(package) is None:
+        pytest.skip(f"{package} is not installed")
+    action = getattr(importlib.import_module(f"{package}.action"), short)
+    fields.Document(goal[0] if goal else "{}").fill(action.Goal())
+
+
+def test_there_are_examples():
+    assert len(list(examples())) > 100
