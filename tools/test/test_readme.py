@@ -100,7 +100,7 @@ def test_the_installation_with_ros_is_complete():
 
 
 def test_every_program_that_ros2_run_starts_is_installed():
-    for package, program in re.findall(r"ros2 run (\w+) (\S+)", README):
+    for package, program in re.findall(r"ros2 run (\w+) ([\w.]+)", README):
         assert program in (ROOT / package / "CMakeLists.txt").read_text(), program
 
 
