@@ -60,7 +60,7 @@ def test_the_first_motions_of_the_readme_work_on_what_the_demo_leaves(tmp_path):
     try:
         running.wait_for_output("go on until Ctrl-C", 120.0)
         lines = first_motions()
-        assert len(lines) == 4
+        assert len(lines) == 5
         for line in lines:
             done = subprocess.run(["bash", "-c", line], cwd=ROOT, env=shell, capture_output=True, text=True, timeout=60)
             assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}\n{log_of_the_robot(address)}"

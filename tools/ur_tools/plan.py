@@ -30,7 +30,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=pathlib.Path, help="the goal as YAML")
     parser.add_argument("--model", default="", metavar="MODEL",
-                        help="whose limits count: ur3e, ur5e, ur10e, ... (default: the widest limits of all models)")
+                        help="model of the arm: ur3e, ur5e, ur10e, ... (default: the widest limits of all models)")
     parser.add_argument("--plot", type=pathlib.Path, metavar="PNG",
                         help="draw positions, velocities, accelerations and jerks against their limits")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write the plan's samples")

@@ -55,8 +55,8 @@ def _timed(goal: Any) -> Dict[str, Any]:
     if not points:
         raise Problem("trajectory.points is empty: expected 2 points or more")
     if points[0]["time"] > 0.0:
-        raise Problem(f"trajectory.points[0].time_from_start is {points[0]['time']:g} s: expected 0. The driver would move from where "
-                      "the arm is; a plan without a robot starts at the first point")
+        raise Problem(f"trajectory.points[0].time_from_start is {points[0]['time']:g} s: expected 0, because a plan "
+                      "without a robot starts at the first point")
     return {"points": points, **_limits(goal)}
 
 
