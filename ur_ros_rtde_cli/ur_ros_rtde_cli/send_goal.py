@@ -13,7 +13,7 @@ from . import actions, fields
 from .feedback import FeedbackDisplay, write
 from .interruptions import Interrupted
 from .problem import Problem
-from .session import Session
+from .session import GRAPH_POLL_PERIOD, Session
 
 CANCEL_LIMIT = 10.0  # s, for the result after the goal was canceled
 
@@ -42,14 +42,14 @@ class _Server:
 
     def connect(self) -> Tuple[Optional[ActionClient], Any]:
         """The client and the goal; no client with --show, which needs no server if a plugin tells the type."""
-        expected = actions.type_of_plugin(self._options.action)
+        expected = actions.type_of_plugin(self._options.action.lstrip("/"))
         if expected is not None:
             action, goal = self._checked(expected)
             if self._options.show:
                 return None, goal
         else:
             self._hint_at_names()
-        kind = self._session.wait(self._served_type, self._options.wait)
+        kind = self._session.wait(self._served_type, self._options.wait, GRAPH_POLL_PERIOD)
         if kind is None:
             raise _nobody_serves(self._session, self.name, self._options.action)
         if kind != expected:
@@ -58,7 +58,7 @@ class _Server:
             return None, goal
         # Not earlier: the client would be discovered in parts, while the server's announcements still arrive.
         client = ActionClient(self._session.node, action, self.name)
-        if not self._session.wait(client.server_is_ready, self._options.wait):
+        if not self._session.wait(client.server_is_ready, self._options.wait, GRAPH_POLL_PERIOD):
             raise Problem(f"the server of {self.name} does not answer")
         return client, goal
 
@@ -72,7 +72,7 @@ class _Server:
     def _hint_at_names(self) -> None:
         requested, plugins = self._options.action, actions.plugin_names()
         hint = actions.suggestion(requested, plugins)
-        if hint and requested.lstrip("/") not in plugins and self._served_type() is None:
+        if hint and not requested.startswith("/") and requested not in plugins and self._served_type() is None:
             write(f"no plugin is called {requested}{hint} Waiting {self._options.wait:g} s for a server\n")
 
 

@@ -13,7 +13,8 @@ from .interruptions import PendingInterruption
 
 T = TypeVar("T")
 
-POLL_PERIOD = 0.01  # s; changes of the ROS graph do not wake the executor
+POLL_PERIOD = 0.05  # s, for signals; messages and results wake the executor
+GRAPH_POLL_PERIOD = 0.01  # s; changes of the ROS graph do not wake the executor
 
 
 class Session:
@@ -33,7 +34,7 @@ class Session:
         self.context.try_shutdown()
         self._interruption.restore_handlers()
 
-    def wait(self, condition: Callable[[], Optional[T]], limit: Optional[float] = None) -> Optional[T]:
+    def wait(self, condition: Callable[[], Optional[T]], limit: Optional[float] = None, period: float = POLL_PERIOD) -> Optional[T]:
         """Returns the first true value of `condition`, or None after `limit` s. Raises Interrupted."""
         end = None if limit is None else time.monotonic() + limit
         while True:
@@ -42,7 +43,7 @@ class Session:
                 return value
             if end is not None and time.monotonic() >= end:
                 return None
-            self._executor.spin_once(timeout_sec=POLL_PERIOD)
+            self._executor.spin_once(timeout_sec=period)
             interrupted = self._interruption.take()
             if interrupted:
                 raise interrupted
