@@ -18,7 +18,7 @@ COMMANDS = {"call": "send a goal, show its feedback and print its result",
             "record": "record fields of the robot's state into a CSV file"}
 
 # Those of the script `ur` of a checkout, which are not installed.
-CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "shell", "new", "format", "lint", "clean")
+CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "shell", "new", "format", "lint", "doctor", "clean")
 
 # Set in the shell of a checkout: its folder.
 CHECKOUT_VARIABLE = "UR_CHECKOUT"

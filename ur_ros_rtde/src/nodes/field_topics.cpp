@@ -15,11 +15,11 @@ namespace ur_ros_rtde {
 namespace {
 using Clock = RtdeStream::Clock;
 
-constexpr std::chrono::milliseconds connect_limit{500};
-constexpr std::chrono::milliseconds retry_interval{500};
+constexpr std::chrono::milliseconds fields_connect_limit{500};
+constexpr std::chrono::milliseconds fields_retry_interval{500};
 /// How soon a new listener of tool_data is noticed.
-constexpr std::chrono::milliseconds look_interval{100};
-constexpr std::chrono::milliseconds silence_limit{1000};
+constexpr std::chrono::milliseconds fields_look_interval{100};
+constexpr std::chrono::milliseconds fields_silence_limit{1000};
 
 /// What ToolData is made of, in the order in which publish_tool() reads it.
 const std::array<std::string, 10> tool_fields{"tool_analog_input0",
@@ -76,18 +76,18 @@ void FieldTopics::run(const std::stop_token & stop)
   while (!stop.stop_requested()) {
     const bool with_tool = tool_wanted();
     if (!with_tool && options_.fields.empty()) {
-      wait(stop, look_interval);
+      wait(stop, fields_look_interval);
       continue;
     }
     auto stream = RtdeStream::open(options_.address, recipe(options_.fields, with_tool), options_.frequency,
-                                   connect_limit);
+                                   fields_connect_limit);
     Status ended = stream ? Status() : tl::unexpected(stream.error());
     if (stream) {
       report_.forget();
       ended = follow(*stream, with_tool, stop);
     }
     if (!ended) {
-      wait(stop, retry_interval);
+      wait(stop, fields_retry_interval);
     }
     if (!ended && !stop.stop_requested()) {
       report_.once(LogLevel::error,
@@ -102,9 +102,9 @@ Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_
   lay_out(stream);
   std::vector<double> numbers(stream.width());
   auto last = Clock::now();
-  auto look = last + look_interval;
+  auto look = last + fields_look_interval;
   while (!stop.stop_requested()) {
-    const auto got = stream.next(numbers, Clock::now() + look_interval);
+    const auto got = stream.next(numbers, Clock::now() + fields_look_interval);
     if (!got) {
       return tl::unexpected(got.error());
     }
@@ -117,11 +117,11 @@ Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_
       if (robot_state_) {
         publish_state(numbers);
       }
-    } else if (now - last > silence_limit) {
+    } else if (now - last > fields_silence_limit) {
       return failure(ErrorCode::link_lost, fmt::format("{} sends nothing any more", options_.address));
     }
     if (now >= look) {
-      look = now + look_interval;
+      look = now + fields_look_interval;
       if (tool_wanted() != with_tool) {
         return {};
       }

@@ -20,7 +20,7 @@ constexpr milliseconds acknowledgement_limit(1000);
 constexpr milliseconds stop_limit(3000);
 constexpr milliseconds unseen_limit(30);
 constexpr milliseconds message_limit(300);  // for the reason, after the program was seen to end
-constexpr int lines_before = 1;             // of the text: `def rtde_control():`
+constexpr int lines_before_extensions = 1;  // of the text: `def rtde_control():`
 
 }  // namespace
 
@@ -105,7 +105,7 @@ Status ExtensionRunner::failed(Run & run) const
       break;
     }
     if (*message && (*message)->kind == PrimaryMessage::Kind::error) {
-      const std::string where = scripts_.place(version, (*message)->line - lines_before);
+      const std::string where = scripts_.place(version, (*message)->line - lines_before_extensions);
       return failure(ErrorCode::rejected_by_robot,
                      fmt::format("{} failed: {}", where.empty() ? "the extension " + run.name : where,
                                  (*message)->text));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "robot/ports.hpp"
+#include "robot/realtime_priority.hpp"
 #include "robot/script_check.hpp"
 #include "robot/tcp_stream.hpp"
 #include "robot/text.hpp"
@@ -21,8 +22,6 @@ namespace {
 using ur_rtde::RTDEControlInterface;
 using ur_rtde::RTDEIOInterface;
 
-/// ur_rtde must not change the priority of our thread: it would, to SCHED_FIFO 90, on a real-time kernel.
-constexpr int keep_priority = -1;
 constexpr double controllers_frequency = -1.0;
 
 std::uint16_t control_flags(const RobotOptions & options)

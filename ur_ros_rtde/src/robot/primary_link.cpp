@@ -15,7 +15,7 @@ namespace {
 
 // UR, "Client Interface": size, type, timestamp (uint64), source, kind of message.
 constexpr std::size_t shortest_package = 5;
-constexpr std::size_t longest_package = 1U << 20U;
+constexpr std::size_t longest_primary_package = 1U << 20U;
 constexpr std::size_t message_header = 15;
 constexpr std::uint8_t robot_state = 16;
 constexpr std::uint8_t robot_message = 20;
@@ -140,7 +140,7 @@ bool PrimaryReader::feed(std::span<const std::byte> bytes)
   std::span<const std::byte> rest(buffer_);
   while (rest.size() >= shortest_package) {
     const std::size_t size = big_endian(rest);
-    if (size < shortest_package || size > longest_package) {
+    if (size < shortest_package || size > longest_primary_package) {
       return false;
     }
     if (rest.size() < size) {

@@ -6,6 +6,10 @@
 
 namespace ur_ros_rtde {
 
+/// For ur_rtde's constructors: they must not change the priority of our thread, as they would, to SCHED_FIFO
+/// 90, on a real-time kernel.
+inline constexpr int keep_priority = -1;
+
 /// The calling thread, and the threads that it starts from now on, under SCHED_FIFO (sched(7)) with
 /// `priority`, 1 to 99; 0 changes nothing. Refused when this process may not: the error tells what to do.
 Status set_realtime_priority(int priority);

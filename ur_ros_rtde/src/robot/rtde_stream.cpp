@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "robot/ports.hpp"
-#include "robot/rtde_probe.hpp"
 #include "robot/rtde_header.hpp"
+#include "robot/rtde_probe.hpp"
 #include "robot/tcp_stream.hpp"
 
 namespace ur_ros_rtde {

@@ -160,7 +160,8 @@ void bind_registers(Binder & bind, int offset)
 
 }  // namespace
 
-SampleReader::SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset) : state_(std::move(state))
+SampleReader::SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset)
+    : state_(std::move(state))
 {
   Binder bind(*state_, copies_);
   bind_joints(bind);

@@ -25,9 +25,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double highest_frequency = 500.0;
 constexpr std::chrono::milliseconds longest_wait(10);
 
-/// ur_rtde must not change the priority of our thread: it would, to SCHED_FIFO 90, on a real-time kernel.
-constexpr int keep_priority = -1;
-
 void check(const StateReceiverOptions & options)
 {
   if (options.realtime_priority < 0 || options.realtime_priority > 99) {
@@ -231,7 +228,8 @@ Error StateReceiver::Impl::follow(const std::stop_token & stop)
 void StateReceiver::Impl::set_link(LinkStatus status)
 {
   bool changed = false;
-  std::shared_ptr<ur_rtde::RTDEReceiveInterface> dropped;  // closes its connection and joins its thread, without our lock
+  std::shared_ptr<ur_rtde::RTDEReceiveInterface>
+      dropped;  // closes its connection and joins its thread, without our lock
   {
     const std::lock_guard lock(mutex_);
     if (!status.connected) {

@@ -8,7 +8,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds begin_limit(500);
+constexpr milliseconds fetched_begin_limit(500);
 
 RobotStatus not_running(std::string message)
 {
@@ -72,7 +72,7 @@ RobotStatus Supervisor::wait_for_play()
 
 RobotStatus Supervisor::take_over_fetched_program()
 {
-  if (!links_.prepared_program_lives(begin_limit)) {
+  if (!links_.prepared_program_lives(fetched_begin_limit)) {
     return not_running(fmt::format(
         "a program runs on the robot, but not the control program: {}",
         server_->fetched() == 0

@@ -9,7 +9,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds program_end_limit(1000);
+constexpr milliseconds turn_end_limit(1000);
 
 }  // namespace
 
@@ -73,7 +73,7 @@ bool Supervisor::end_own_program(const Sample & sample)
 {
   program_ours_ = false;  // from here on its end is no surprise
   links_.park_control();
-  return wait_for_runtime(RuntimeState::stopped, program_end_limit) || stop_other_program(sample);
+  return wait_for_runtime(RuntimeState::stopped, turn_end_limit) || stop_other_program(sample);
 }
 
 RobotStatus Supervisor::look_at_turn(const Sample & sample, const std::optional<Error> & condition)

@@ -8,21 +8,21 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double same_place = 1e-9;  // rad; closer samples are one
+constexpr double same_sample = 1e-9;  // rad; closer samples are one
 
 // A block without samples that repeat.
-struct Knots {
+struct SampledKnots {
   std::vector<Joints> q;
   std::vector<double> width;     // rad, chords
   std::vector<double> shortest;  // s
 
-  explicit Knots(const SampledBlock & block) : q{block.positions.front()}
+  explicit SampledKnots(const SampledBlock & block) : q{block.positions.front()}
   {
     double time = 0.0;
     for (std::size_t i = 1; i < block.positions.size(); ++i) {
       time += block.shortest[i - 1];
       const double chord = (block.positions[i] - q.back()).matrix().norm();
-      if (chord > same_place) {
+      if (chord > same_sample) {
         q.push_back(block.positions[i]);
         width.push_back(chord);
         shortest.push_back(time);
@@ -32,7 +32,7 @@ struct Knots {
   }
 };
 
-void add_block(Path & path, const Knots & knots)
+void add_block(Path & path, const SampledKnots & knots)
 {
   const auto slopes = natural_spline_slopes(knots.q, knots.width);
   for (std::size_t i = 0; i + 1 < knots.q.size(); ++i) {
@@ -97,7 +97,7 @@ Expected<Trajectory> plan_sampled(const std::vector<SampledBlock> & blocks,
   }
   auto path = std::make_shared<Path>();
   for (const SampledBlock & block : blocks) {
-    const Knots knots(block);
+    const SampledKnots knots(block);
     if (knots.q.size() < 2) {
       continue;
     }

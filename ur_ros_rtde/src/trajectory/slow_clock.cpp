@@ -6,8 +6,8 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double step = 0.005;       // s
-constexpr int longest_return = 400;  // steps
+constexpr double clock_step = 0.005;  // s
+constexpr int longest_return = 400;   // steps
 
 struct Range {
   double low = -1e9;
@@ -31,8 +31,8 @@ class Search {
       consider_landing(time, state);
       const double bend = hardest(state, way_back);
       clock_.phases.push_back({time, bend, state});
-      state = state.after(step, bend);
-      time += step;
+      state = state.after(clock_step, bend);
+      time += clock_step;
     }
     return best_;
   }
@@ -88,7 +88,8 @@ class Search {
     return true;
   }
 
-  // From this state the rate can become constant before it is zero. `first`: the bend of the first step.
+  // From this state the rate can become constant before it is zero. `first`: the bend of the first
+  // clock_step.
   bool can_return(ClockState s, double & first) const
   {
     first = 0.0;
@@ -97,22 +98,22 @@ class Search {
         return true;
       }
       const Range allowed = range(s);
-      const double highest = std::min(allowed.high, -s.change / step);
+      const double highest = std::min(allowed.high, -s.change / clock_step);
       double bend = highest;
       bool found = false;
       for (const double share : {0.98, 0.8, 0.5, 0.2}) {
         bend = highest * share;
-        found = bend >= allowed.low && keeps(s, bend, step);
+        found = bend >= allowed.low && keeps(s, bend, clock_step);
         if (found) {
           break;
         }
       }
-      const ClockState next = s.after(step, bend);
+      const ClockState next = s.after(clock_step, bend);
       if (!found || next.rate < 0.0) {
         return false;
       }
       first = k == 0 ? bend : first;
-      // The remaining change fades away: a rest of it that one step could take away is none.
+      // The remaining change fades away: a rest of it that one clock_step could take away is none.
       s = next;
       if (s.change > -1e-4) {
         s.change = 0.0;
@@ -121,21 +122,22 @@ class Search {
     return false;
   }
 
-  // The lowest bend for the next step that keeps the limits and leaves a way back. `way_back` holds the bend
-  // that begins the way back from here, and receives that of the next state.
+  // The lowest bend for the next clock_step that keeps the limits and leaves a way back. `way_back` holds the
+  // bend that begins the way back from here, and receives that of the next state.
   double hardest(const ClockState & s, double & way_back) const
   {
     const Range allowed = range(s);
     double next_way_back = 0.0;
     for (const double share : {0.98, 0.8, 0.6, 0.4, 0.25, 0.12, 0.05, 0.02}) {
       const double bend = allowed.low + (1.0 - share) * std::max(0.0, way_back - allowed.low);
-      if (bend < way_back && keeps(s, bend, step) && can_return(s.after(step, bend), next_way_back)) {
+      if (bend < way_back && keeps(s, bend, clock_step) &&
+          can_return(s.after(clock_step, bend), next_way_back)) {
         way_back = next_way_back;
         return bend;
       }
     }
     const double bend = way_back;
-    can_return(s.after(step, bend), way_back);
+    can_return(s.after(clock_step, bend), way_back);
     return bend;
   }
 
@@ -150,7 +152,7 @@ class Search {
     if (time + length >= best_end_) {
       return;
     }
-    const int parts = std::max(4, static_cast<int>(std::ceil(length / step)));
+    const int parts = std::max(4, static_cast<int>(std::ceil(length / clock_step)));
     for (int k = 0; k < parts; ++k) {
       for (const double offset : {0.01, 0.5, 0.99}) {
         const Range allowed = range(s.after(length * (k + offset) / parts, bend));

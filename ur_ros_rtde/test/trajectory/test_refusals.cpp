@@ -47,7 +47,7 @@ TEST_P(BadRequest, is_refused_with_field_value_and_limit)
   EXPECT_NE(plan.error().message.find(GetParam().part_of_message), std::string::npos) << plan.error().message;
 }
 
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 INSTANTIATE_TEST_SUITE_P(
     Each, BadRequest,
@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"five_joints", [](Request & r) { r.waypoints[1].pop_back(); }, "waypoint 1 has 5 values"},
         Bad{"no_joints", [](Request & r) { r.waypoints[2].clear(); }, "waypoint 2 has 0 values"},
         Bad{"seven_joints", [](Request & r) { r.waypoints[0].push_back(0.0); }, "waypoint 0 has 7 values"},
-        Bad{"position_nan", [](Request & r) { r.waypoints[1][2] = nan_value; },
+        Bad{"position_nan", [](Request & r) { r.waypoints[1][2] = not_a_number; },
             "waypoint 1 of elbow_joint is nan"},
         Bad{"position_infinite", [](Request & r) { r.waypoints[1][2] = -INFINITY; }, "elbow_joint is -inf"},
         Bad{"position_beyond_limit", [](Request & r) { r.waypoints[2][4] = 6.5; },
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
             "velocity limit"},
         Bad{"acceleration_limit_negative", [](Request & r) { r.limits.acceleration[0] = -1.0; },
             "acceleration limit of shoulder_pan_joint is -1"},
-        Bad{"jerk_limit_nan", [](Request & r) { r.limits.jerk[5] = nan_value; },
+        Bad{"jerk_limit_nan", [](Request & r) { r.limits.jerk[5] = not_a_number; },
             "jerk limit of wrist_3_joint is nan"},
         Bad{"jerk_limit_zero", [](Request & r) { r.limits.jerk[5] = 0.0; },
             "jerk limit of wrist_3_joint is 0"},
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
             "position limits of wrist_1_joint"},
         Bad{"tolerance_negative", [](Request & r) { r.options.blend_tolerance = -0.1; },
             "blend_tolerance is -0.1"},
-        Bad{"tolerance_nan", [](Request & r) { r.options.blend_tolerance = nan_value; },
+        Bad{"tolerance_nan", [](Request & r) { r.options.blend_tolerance = not_a_number; },
             "blend_tolerance is nan"},
         Bad{"corner_angle_too_large", [](Request & r) { r.options.corner_angle = 4.0; }, "corner_angle is 4"},
         Bad{"speed_zero", [](Request & r) { r.options.speed_fraction = 0.0; }, "speed_fraction is 0"},
@@ -89,8 +89,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Fuzz, whatever_comes_in_ends_in_a_verified_plan_or_a_reason)
 {
   std::mt19937 random(4711);
-  const double strange[]{0.0,  -0.0, 1e-300, 1e-12, 1e-9,  1e-6,      1e-3,     0.1,       1.0,
-                         -1.0, 6.29, 1e3,    1e300, -1e-8, nan_value, INFINITY, -INFINITY, 3.0};
+  const double strange[]{0.0,  -0.0, 1e-300, 1e-12, 1e-9,  1e-6,         1e-3,     0.1,       1.0,
+                         -1.0, 6.29, 1e3,    1e300, -1e-8, not_a_number, INFINITY, -INFINITY, 3.0};
   const auto pick = [&] { return strange[random() % std::size(strange)]; };
   int planned = 0;
   for (int round = 0; round < 3000; ++round) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double cycle = 0.002;
 constexpr double memory = 0.1;
 
-Limits limits()
+Limits stream_limits()
 {
   Limits result;
   result.velocity.setConstant(1.0);
@@ -24,7 +24,7 @@ Limits limits()
 
 Trajectory line()
 {
-  return *plan_path(std::vector<Joints>{Joints::Zero(), Joints::Constant(5.0)}, limits());
+  return *plan_path(std::vector<Joints>{Joints::Zero(), Joints::Constant(5.0)}, stream_limits());
 }
 
 TEST(AStreamClock, runs_with_the_controllers_clock)
@@ -32,7 +32,7 @@ TEST(AStreamClock, runs_with_the_controllers_clock)
   const Trajectory plan = line();
   StreamClock clock(cycle, memory, 1.0);
   for (int k = 0; k < 1000; ++k) {
-    clock.advance(cycle, 1.0, plan.sample(clock.time()), limits());
+    clock.advance(cycle, 1.0, plan.sample(clock.time()), stream_limits());
   }
   EXPECT_NEAR(clock.time(), 2.0, 1e-9);
 }
@@ -42,7 +42,7 @@ TEST(AStreamClock, loses_nothing_to_packages_that_come_in_pairs)
   const Trajectory plan = line();
   StreamClock clock(cycle, memory, 1.0);
   for (int k = 0; k < 500; ++k) {
-    clock.advance(2.0 * cycle, 1.0, plan.sample(clock.time()), limits());
+    clock.advance(2.0 * cycle, 1.0, plan.sample(clock.time()), stream_limits());
   }
   EXPECT_NEAR(clock.time(), 2.0, 1e-9);
 }
@@ -51,12 +51,12 @@ TEST(AStreamClock, of_a_late_host_skips_nothing_and_goes_on_slower_at_first)
 {
   const Trajectory plan = line();
   StreamClock clock(cycle, memory, 1.0, 1.0);
-  clock.advance(0.054, 1.0, plan.sample(clock.time()), limits());
+  clock.advance(0.054, 1.0, plan.sample(clock.time()), stream_limits());
   EXPECT_LE(clock.time() - 1.0, 2.0 * cycle + 1e-12);
   EXPECT_NEAR(clock.rate(), 0.5, 0.03);
   double before = clock.rate();
   for (int k = 0; k < 500; ++k) {
-    clock.advance(cycle, 1.0, plan.sample(clock.time()), limits());
+    clock.advance(cycle, 1.0, plan.sample(clock.time()), stream_limits());
     EXPECT_LE(std::abs(clock.rate() - before), 2.001 * cycle);  // 2 rad/s^2 at 1 rad/s
     before = clock.rate();
   }
@@ -71,9 +71,9 @@ TEST(AStreamClock, gets_on_though_the_host_is_late_again_and_again)
   double elapsed = 0.0;
   while (clock.time() < plan.duration() && elapsed < 10.0 * plan.duration()) {
     for (int k = 0; k < 10; ++k, elapsed += cycle) {
-      clock.advance(cycle, 1.0, plan.sample(clock.time()), limits());
+      clock.advance(cycle, 1.0, plan.sample(clock.time()), stream_limits());
     }
-    clock.advance(0.02, 1.0, plan.sample(clock.time()), limits());
+    clock.advance(0.02, 1.0, plan.sample(clock.time()), stream_limits());
     elapsed += 0.02;
   }
   EXPECT_LT(elapsed, 8.0 * plan.duration());
@@ -83,7 +83,7 @@ TEST(AStreamClock, begins_anew_from_standstill_after_a_long_silence)
 {
   const Trajectory plan = line();
   StreamClock clock(cycle, memory, 1.0, 1.0);
-  clock.advance(3.0, 1.0, plan.sample(clock.time()), limits());
+  clock.advance(3.0, 1.0, plan.sample(clock.time()), stream_limits());
   EXPECT_LE(clock.time() - 1.0, 2.0 * cycle);
   EXPECT_LT(clock.rate(), 0.05);
 }
@@ -97,7 +97,7 @@ TEST(AStreamClock, never_runs_backward_or_faster_than_the_plan_whatever_the_pack
   for (int k = 0; k < 20000; ++k) {
     const double before = clock.time();
     const double elapsed = k % 3 == 0 ? between(random) : cycle;
-    clock.advance(elapsed, between(random) * 10.0, plan.sample(clock.time()), limits());
+    clock.advance(elapsed, between(random) * 10.0, plan.sample(clock.time()), stream_limits());
     ASSERT_GE(clock.time(), before);
     ASSERT_LE(clock.time() - before, std::max(0.0, elapsed) + 1e-12);
     ASSERT_GE(clock.rate(), 0.0);
@@ -143,11 +143,11 @@ TEST(AStreamClock, stands_while_the_speed_is_zero)
   const Trajectory plan = line();
   StreamClock clock(cycle, memory, 1.0, 1.0);
   for (int k = 0; k < 1000; ++k) {
-    clock.advance(cycle, 0.0, plan.sample(clock.time()), limits());
+    clock.advance(cycle, 0.0, plan.sample(clock.time()), stream_limits());
   }
   EXPECT_EQ(clock.rate(), 0.0);
   const double time = clock.time();
-  clock.advance(cycle, 0.0, plan.sample(time), limits());
+  clock.advance(cycle, 0.0, plan.sample(time), stream_limits());
   EXPECT_EQ(clock.time(), time);
 }
 

@@ -165,7 +165,8 @@ Pendant::Answer Pendant::play_fetched(const ProgramHost & host,
         "popup(\"The connection to the remote PC at {}:{} could not be established. Reason: {}\", \"Receive "
         "program failed\", False, True, blocking=True)\nsync()",
         host.address, host.port, text.error());
-    log_.error(pendant_source, fmt::format("no program from {}:{}: {}", host.address, host.port, text.error()));
+    log_.error(pendant_source,
+               fmt::format("no program from {}:{}: {}", host.address, host.port, text.error()));
   }
   const Answer answer = start(script + "\nend\n");
   if (!answer) {

@@ -41,7 +41,7 @@ void ProgramRunner::start_secondary(std::unique_ptr<urscript::Machine> machine)
 {
   if (secondaries_.size() == most_secondaries) {
     access_.log.error(program_source, fmt::format("{} secondary programs run already: '{}' was not started",
-                                          most_secondaries, machine->program().name()));
+                                                  most_secondaries, machine->program().name()));
     return;
   }
   secondaries_.push_back(std::move(machine));

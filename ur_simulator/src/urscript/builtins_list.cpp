@@ -13,7 +13,7 @@ std::int32_t count(std::size_t size)
   return static_cast<std::int32_t>(size);
 }
 
-Outcome length(CallContext &, Arguments arguments)
+Outcome list_length(CallContext &, Arguments arguments)
 {
   const Value & v = arguments[0];
   switch (v.type()) {
@@ -117,8 +117,8 @@ Outcome make_list_builtin(CallContext &, Arguments arguments)
 
 void add_list_builtins(Library & library)
 {
-  library.add({"get_list_length", {"v"}, 1, length});
-  library.add({"length", {"v"}, 1, length});
+  library.add({"get_list_length", {"v"}, 1, list_length});
+  library.add({"length", {"v"}, 1, list_length});
   library.add({"size", {"v"}, 1, size});
   library.add({"transpose", {"m"}, 1, transpose});
   library.add({"binary_list_to_integer", {"l"}, 1, binary_list_to_integer});

@@ -12,9 +12,9 @@
 namespace ur_simulator {
 namespace {
 
+using std::numbers::pi;
 using testing::model_named;
 using testing::RandomVectors;
-using std::numbers::pi;
 
 Payload some_payload()
 {

@@ -10,9 +10,9 @@
 namespace ur_simulator {
 namespace {
 
+using std::numbers::pi;
 using testing::model_named;
 using testing::RandomVectors;
-using std::numbers::pi;
 
 Vector6 some_tool()
 {

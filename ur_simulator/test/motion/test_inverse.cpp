@@ -12,9 +12,9 @@
 namespace ur_simulator {
 namespace {
 
+using std::numbers::pi;
 using testing::model_named;
 using testing::RandomVectors;
-using std::numbers::pi;
 
 double pose_error(const RobotModel & model, const Vector6 & joints, const Transform & flange)
 {

@@ -7,10 +7,10 @@
 namespace ur_simulator {
 namespace {
 
+using std::numbers::pi;
 using testing::ArmRig;
 using testing::pose_distance;
 using testing::six;
-using std::numbers::pi;
 
 /// Distance of a point from the line between two others.
 double off_line(const Vector6 & from, const Vector6 & to, const Vector6 & pose)

@@ -6,6 +6,7 @@
 namespace ur_simulator {
 namespace {
 
+using std::numbers::pi;
 using testing::ArmRig;
 using testing::drive;
 using testing::moved;
@@ -14,9 +15,8 @@ using testing::six;
 using testing::Starts;
 using testing::Track;
 using testing::turned;
-using std::numbers::pi;
 
-double turn_between(const Vector6 & a, const Vector6 & b)
+double rotation_between(const Vector6 & a, const Vector6 & b)
 {
   return to_rotation_vector(to_rotation(a.tail<3>()).transpose() * to_rotation(b.tail<3>())).norm();
 }
@@ -133,7 +133,7 @@ TEST(MoveC, keeps_to_the_circle_through_its_points_at_its_speed)
       ASSERT_NEAR(spoke.norm(), 0.1, 1e-7) << name;
       ASSERT_NEAR(spoke[0], 0.0, 1e-7) << name;
       ASSERT_GT(spoke[2], -1e-7) << name;
-      ASSERT_LT(turn_between(pose, half.from), 1e-6) << name;
+      ASSERT_LT(rotation_between(pose, half.from), 1e-6) << name;
     }
     EXPECT_LT(track.nearest(half.via), 1e-3);
     const double time = static_cast<double>(track.arrived) * rig.dt;
@@ -182,7 +182,7 @@ TEST(MoveC, in_fixed_mode_keeps_the_tool_at_the_same_angle_to_the_circle)
     ASSERT_LT((to_rotation(pose.tail<3>()).transpose() * spoke - in_tool_at_start).norm(), 1e-6);
   }
   EXPECT_LT((rig.tcp() - on_circle(1.2)).head<3>().norm(), 1e-7);
-  EXPECT_NEAR(turn_between(rig.tcp(), from), 1.2, 1e-6);
+  EXPECT_NEAR(rotation_between(rig.tcp(), from), 1.2, 1e-6);
 }
 
 TEST(MoveC, in_unconstrained_mode_turns_the_tool_evenly_to_its_target)
