@@ -5,6 +5,7 @@ import pathlib
 import subprocess
 
 import pytest
+from ament_index_python.packages import get_package_share_directory
 from catkin_pkg.packages import find_packages
 from colcon_core import package_discovery, package_identification
 from ur_tools import new, packages
@@ -46,6 +47,14 @@ def test_colcon_finds_exactly_the_packages(workspace):
 def test_rosdep_finds_exactly_the_packages(workspace):
     found = find_packages(str(workspace / "src"))  # what `rosdep --from-paths src` calls
     assert sorted(package.name for package in found.values()) == sorted(packages.discover(ROOT))
+
+
+@pytest.mark.parametrize("name", sorted(packages.discover(ROOT)))
+def test_ros2_finds_the_package_also_where_each_is_installed_by_itself(name):
+    """`source install/setup.bash` of a workspace that was built without --merge-install."""
+    share = pathlib.Path(get_package_share_directory(name))
+    hooks = [share / "environment" / "ament_prefix_path.dsv", share / "hook" / "ament_prefix_path.dsv"]
+    assert any(hook.is_file() for hook in hooks), f"nothing in {share} adds the package to AMENT_PREFIX_PATH"
 
 
 @pytest.mark.parametrize("kind", new.KINDS)

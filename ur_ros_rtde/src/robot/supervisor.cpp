@@ -269,7 +269,8 @@ RobotStatus Supervisor::look_at_program(const Sample & sample)
 
 std::optional<Error> Supervisor::other_program(const Sample & sample)
 {
-  if (!program_ended_) {
+  start_failed_ = start_failed_ && sample.runtime_state != RuntimeState::stopped;
+  if (!program_ended_ || start_failed_) {
     return std::nullopt;
   }
   if (sample.program_running()) {
@@ -314,16 +315,19 @@ RobotStatus Supervisor::start_program()
     if (started.error().code == ErrorCode::robot_in_use) {
       links_.drop();  // also the IO interface: whoever has the control program gets all of the robot
     }
+    start_failed_ = started.error().code == ErrorCode::not_ready;
     return not_made(started.error());
   }
   if (!wait_for_runtime(RuntimeState::playing, milliseconds(500))) {
     links_.drop_control();
+    start_failed_ = true;
     return {RobotState::connecting, ErrorCode::not_ready,
             "the control program ended at once: look at the pendant's log"};
   }
   begins_afresh_ = false;
   program_ours_ = true;
   program_ended_ = false;
+  start_failed_ = false;
   return {RobotState::ready, ErrorCode::none, {}};
 }
 

@@ -87,6 +87,8 @@ class Supervisor {
   std::atomic<bool> program_ours_{false};
   /// It has ended since the link was made: a program that plays now is somebody else's.
   bool program_ended_ = false;
+  /// Starting it has failed, and no program has been seen to be stopped since: what runs is that one.
+  bool start_failed_ = false;
   /// Inputs were in use, and no program has been seen to end since.
   bool was_in_use_ = false;
   std::uint32_t link_ = 0;

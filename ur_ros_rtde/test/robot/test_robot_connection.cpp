@@ -108,6 +108,23 @@ TEST_F(ARobot, never_takes_its_own_program_that_ends_for_somebody_elses)
   EXPECT_EQ(log.count("another program"), 0U) << log.text();
 }
 
+TEST_F(ARobot, takes_its_own_program_that_runs_after_a_failed_start_for_its_own)
+{
+  make_both();
+  for (int i = 0; i < 5; ++i) {
+    controller.control({{"command", "stop_program"}});
+    ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") != "PLAYING"; }));
+    ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "PLAYING"; }))
+        << log.text();
+    // It has been uploaded, and what it is told first is lost: nearly always the start fails.
+    controller.control(
+        {{"command", "lose_commands"}, {"which", "rtde"}, {"clients", "control"}, {"count", 100000}});
+    ASSERT_TRUE(eventually([&] { return robot->status().state != RobotState::ready; })) << log.text();
+    ASSERT_TRUE(becomes_ready()) << log.text();
+  }
+  EXPECT_EQ(log.count("another program"), 0U) << log.text();
+}
+
 TEST_F(ARobot, leaves_the_program_stopped_where_restarting_is_off)
 {
   controller.start();

@@ -36,7 +36,7 @@ Outcome size(CallContext & context, Arguments arguments)
   if (v.is(Type::matrix)) {
     return Value(List{Value(count(v.matrix().rows)), Value(count(v.matrix().columns))});
   }
-  return length(context, arguments);
+  return list_length(context, arguments);
 }
 
 Outcome transpose(CallContext &, Arguments arguments)
