@@ -23,6 +23,8 @@ using ur_rtde::RTDEControlInterface;
 using ur_rtde::RTDEIOInterface;
 
 constexpr double controllers_frequency = -1.0;
+/// A control program that runs answers its first command within some cycles.
+constexpr std::chrono::seconds answer_limit(1);
 
 std::uint16_t control_flags(const RobotOptions & options)
 {
@@ -97,7 +99,10 @@ Status InterfaceLinks::ensure_io()
 
 Status InterfaceLinks::start_watchdog(RTDEControlInterface & control) const
 {
-  if (options_.watchdog_frequency > 0.0 && !control.setWatchdog(options_.watchdog_frequency)) {
+  control.setCommandTimeout(answer_limit);
+  const bool started = options_.watchdog_frequency == 0.0 || control.setWatchdog(options_.watchdog_frequency);
+  control.setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
+  if (!started) {
     return failure(ErrorCode::not_ready,
                    "the control program does not answer: look at the log of the pendant for what ended it");
   }

@@ -13,8 +13,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using ur_rtde::RTDEControlInterface;
 
-constexpr std::chrono::milliseconds answer_limit(1000);
-
 }  // namespace
 
 Status InterfaceLinks::prepare_control()
@@ -74,9 +72,7 @@ Status InterfaceLinks::take_prepared()
   Status taken = failure(ErrorCode::not_ready, "the connection to the control program was lost");
   try {
     if (control) {
-      control->setCommandTimeout(answer_limit);
       taken = start_watchdog(*control);
-      control->setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
     }
   } catch (const std::exception & error) {
     taken = failure(ErrorCode::not_ready,
