@@ -47,8 +47,6 @@ endif()
 macro(_ros_wheels_find_package _ros_wheels_method _ros_wheels_package)
   find_package(${_ros_wheels_package} ${ARGN} BYPASS_PROVIDER)
   _ros_wheels_repair_targets()
-  # Fast DDS, the only middleware of the wheels, has type support of its own and no use for introspection.
-  list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "^rosidl_typesupport_introspection_")
 endmacro()
 
 cmake_policy(POP)

@@ -86,7 +86,7 @@ void ExpressionParser::expect(std::string_view text)
   if (!accept(text)) {
     const std::string found = current_.kind == TokenKind::end_of_text
                                   ? "the end of the text"
-                                  : "'" + std::string(current_.text.substr(0, 40)) + "'";
+                                  : fmt::format("'{}'", current_.text.substr(0, 40));
     fail_here(fmt::format("expected '{}', found {}", text, found));
   }
 }
