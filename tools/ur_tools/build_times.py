@@ -10,11 +10,11 @@ REFERENCE_CORES = 2
 # Seconds of a first build on REFERENCE_CORES without a compiler cache, if no other package is built at the same time: without and
 # with tests. Source: "first" in .ur/<distribution>/build_times.json after `./ur build` and `./ur build --tests` from nothing.
 REFERENCE: Dict[str, Tuple[float, float]] = {
-    "ur_rtde_vendor": (45.0, 45.0),
-    "rcl_cxx": (55.0, 110.0),
-    "ur_ros_rtde_msgs": (280.0, 280.0),
-    "ur_simulator": (210.0, 410.0),
-    "ur_ros_rtde": (300.0, 600.0),
+    "ur_rtde_vendor": (14.0, 14.0),
+    "rcl_cxx": (16.0, 60.0),
+    "ur_ros_rtde_msgs": (112.0, 112.0),
+    "ur_simulator": (84.0, 150.0),
+    "ur_ros_rtde": (141.0, 290.0),
     "ur_ros_rtde_cli": (2.0, 2.0),
     "ur_ros_rtde_gripper_commands": (20.0, 20.0),
     "ur_ros_rtde_tutorials": (20.0, 20.0),
