@@ -228,8 +228,8 @@ Error StateReceiver::Impl::follow(const std::stop_token & stop)
 void StateReceiver::Impl::set_link(LinkStatus status)
 {
   bool changed = false;
-  std::shared_ptr<ur_rtde::RTDEReceiveInterface>
-      dropped;  // closes its connection and joins its thread, without our lock
+  // Closes its connection and joins its thread, which must not happen under the lock.
+  std::shared_ptr<ur_rtde::RTDEReceiveInterface> dropped;
   {
     const std::lock_guard lock(mutex_);
     if (!status.connected) {

@@ -88,8 +88,7 @@ class Search {
     return true;
   }
 
-  // From this state the rate can become constant before it is zero. `first`: the bend of the first
-  // clock_step.
+  // From this state the rate can become constant before it is zero. `first`: the bend of the first step.
   bool can_return(ClockState s, double & first) const
   {
     first = 0.0;
@@ -113,7 +112,7 @@ class Search {
         return false;
       }
       first = k == 0 ? bend : first;
-      // The remaining change fades away: a rest of it that one clock_step could take away is none.
+      // The remaining change fades away: a rest of it that one step could take away is none.
       s = next;
       if (s.change > -1e-4) {
         s.change = 0.0;
@@ -122,7 +121,7 @@ class Search {
     return false;
   }
 
-  // The lowest bend for the next clock_step that keeps the limits and leaves a way back. `way_back` holds the
+  // The lowest bend for the next step that keeps the limits and leaves a way back. `way_back` holds the
   // bend that begins the way back from here, and receives that of the next state.
   double hardest(const ClockState & s, double & way_back) const
   {
