@@ -25,7 +25,8 @@ class RtdeStream {
   /// `frequency`: Hz; 0, or more than the controller can: what it can. `limit`: for each step of connecting.
   /// Errors: link_lost; not_supported, naming the fields that this controller does not have.
   static Expected<RtdeStream> open(const std::string & address, const std::vector<std::string> & fields,
-                                   double frequency, std::chrono::milliseconds limit);
+                                   double frequency,
+                                   std::chrono::milliseconds limit = std::chrono::milliseconds(500));
   RtdeStream(RtdeStream &&) noexcept;
   RtdeStream & operator=(RtdeStream &&) noexcept;
   ~RtdeStream();

@@ -15,7 +15,6 @@ namespace ur_ros_rtde {
 namespace {
 using Clock = RtdeStream::Clock;
 
-constexpr std::chrono::milliseconds fields_connect_limit{500};
 constexpr std::chrono::milliseconds fields_retry_interval{500};
 /// How soon a new listener of tool_data is noticed.
 constexpr std::chrono::milliseconds fields_look_interval{100};
@@ -79,8 +78,7 @@ void FieldTopics::run(const std::stop_token & stop)
       wait(stop, fields_look_interval);
       continue;
     }
-    auto stream = RtdeStream::open(options_.address, recipe(options_.fields, with_tool), options_.frequency,
-                                   fields_connect_limit);
+    auto stream = RtdeStream::open(options_.address, recipe(options_.fields, with_tool), options_.frequency);
     Status ended = stream ? Status() : tl::unexpected(stream.error());
     if (stream) {
       report_.forget();

@@ -12,7 +12,6 @@
 namespace ur_ros_rtde {
 namespace {
 constexpr double highest_frequency = 500.0;  // Hz
-constexpr std::chrono::milliseconds probe_limit{500};
 const std::string timestamp = "timestamp";
 
 Status check(const std::string & file, const std::vector<std::string> & fields, double frequency)
@@ -71,7 +70,7 @@ Expected<std::vector<std::string>> Recorder::start(const std::string & file, std
   if (std::ranges::find(fields, timestamp) == fields.end()) {
     plan.fields.push_back(timestamp);
   }
-  auto stream = RtdeStream::open(address_, plan.fields, frequency, probe_limit);
+  auto stream = RtdeStream::open(address_, plan.fields, frequency);
   if (!stream) {
     return tl::unexpected(stream.error());
   }

@@ -16,7 +16,6 @@ using Clock = RtdeStream::Clock;
 constexpr std::size_t queue_rows = 4000;
 constexpr std::chrono::milliseconds look_interval{50};
 constexpr std::chrono::milliseconds silence_limit{1000};
-constexpr std::chrono::milliseconds connect_limit{500};
 constexpr std::chrono::milliseconds retry_interval{250};
 }  // namespace
 
@@ -62,7 +61,7 @@ void RecordingSession::receive(const std::stop_token & stop)
     }
     report_.once(LogLevel::warn, fmt::format("recording {}: {}; trying to connect again", file_.path(),
                                              ended.error().message));
-    if (auto stream = RtdeStream::open(plan_.address, plan_.fields, plan_.frequency, connect_limit)) {
+    if (auto stream = RtdeStream::open(plan_.address, plan_.fields, plan_.frequency)) {
       stream_ = std::move(*stream);
       report_.forget();
     }

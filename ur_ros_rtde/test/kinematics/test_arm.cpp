@@ -3,17 +3,11 @@
 #include <cmath>
 #include <random>
 
+#include "home.hpp"
 #include "ur_ros_rtde/kinematics/arm.hpp"
 
 namespace ur_ros_rtde::kinematics {
 namespace {
-
-Joints arm_home()
-{
-  Joints q;
-  q << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0;
-  return q;
-}
 
 Joints random_joints(std::mt19937 & random)
 {
@@ -79,34 +73,34 @@ TEST(AnArm, finds_back_to_the_joints_that_it_came_from)
 TEST(AnArm, knows_what_is_out_of_reach)
 {
   const Arm arm(published_lengths()[4]);
-  Pose far = arm.forward(arm_home());
+  Pose far = arm.forward(home());
   far.translation() *= 5.0;
-  EXPECT_FALSE(arm.inverse(far, arm_home()));
+  EXPECT_FALSE(arm.inverse(far, home()));
 }
 
 TEST(AnArm, is_recognised_by_where_its_tool_is)
 {
   for (const Lengths & lengths : published_lengths()) {
     const Arm arm(lengths, tool());
-    const auto recognised = recognise_arm(arm_home(), arm.forward(arm_home()), tool());
+    const auto recognised = recognise_arm(home(), arm.forward(home()), tool());
     ASSERT_TRUE(recognised) << recognised.error().message;
-    EXPECT_LT(difference(recognised->forward(arm_home() + 0.3), arm.forward(arm_home() + 0.3)).norm(), 1e-9);
+    EXPECT_LT(difference(recognised->forward(home() + 0.3), arm.forward(home() + 0.3)).norm(), 1e-9);
   }
 }
 
 TEST(AnArm, is_recognised_in_spite_of_its_calibration)
 {
   const Lengths calibrated{0.1809, -0.6121, -0.5722, 0.1738, 0.1201, 0.1164};
-  const auto recognised = recognise_arm(arm_home(), Arm(calibrated, tool()).forward(arm_home()), tool());
+  const auto recognised = recognise_arm(home(), Arm(calibrated, tool()).forward(home()), tool());
   ASSERT_TRUE(recognised);
   const Arm published({0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655}, tool());
-  EXPECT_LT(difference(recognised->forward(arm_home()), published.forward(arm_home())).norm(), 1e-9);
+  EXPECT_LT(difference(recognised->forward(home()), published.forward(home())).norm(), 1e-9);
 }
 
 TEST(AnArm, of_an_unknown_model_or_with_another_tool_is_refused)
 {
   const Lengths stranger{0.3, -0.5, -0.45, 0.2, 0.1, 0.1};
-  const auto refused = recognise_arm(arm_home(), Arm(stranger).forward(arm_home()), Pose::Identity());
+  const auto refused = recognise_arm(home(), Arm(stranger).forward(home()), Pose::Identity());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::not_supported);
   EXPECT_NE(refused.error().message.find("mm"), std::string::npos);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "home.hpp"
 #include "kinematics/tcp_path.hpp"
 #include "ur_ros_rtde/arm_limits.hpp"
 #include "ur_ros_rtde/kinematics/cartesian.hpp"
@@ -10,13 +11,6 @@ namespace ur_ros_rtde::kinematics {
 namespace {
 
 constexpr Lengths ur10e{0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655};
-
-Joints home()
-{
-  Joints q;
-  q << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0;
-  return q;
-}
 
 trajectory::Limits limits()
 {
