@@ -9,7 +9,7 @@ import time
 from collections import defaultdict
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-for folder in ("ur_ros_rtde/test/nodes", "ur_ros_rtde/test/typed", "demo", "tools"):
+for folder in ("ur_ros_rtde_commands/test/system", "ur_ros_rtde_commands/test/every_command", "demo", "tools"):
     sys.path.insert(0, str(ROOT / folder))
 
 import faults  # noqa: E402

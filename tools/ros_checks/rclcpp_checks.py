@@ -14,7 +14,7 @@ import tempfile
 from typing import Dict, List
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "ur_ros_rtde" / "test" / "nodes")]
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "ur_ros_rtde_commands" / "test" / "system")]
 
 SOURCES = pathlib.Path(__file__).parent / "rclcpp"
 PACKAGES = {"rclcpp_action": "share/rclcpp_action", "ur_ros_rtde": "share/ur_ros_rtde", "ur_simulator": "share/ur_simulator"}

@@ -14,7 +14,7 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.202")
-for folder in ("chaos", "demo", "ur_ros_rtde/test/nodes", "ur_ros_rtde/test/typed"):
+for folder in ("chaos", "demo", "ur_ros_rtde_commands/test/system", "ur_ros_rtde_commands/test/every_command"):
     sys.path.insert(0, str(ROOT / folder))
 
 import clients  # noqa: E402

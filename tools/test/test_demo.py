@@ -11,7 +11,7 @@ from ur_tools.demo import PACKAGES
 from ur_tools.environment import program, workspace_environment
 from ur_tools.layout import ROOT, Layout
 
-for folder in ("demo", "ur_ros_rtde/test/nodes"):
+for folder in ("demo", "ur_ros_rtde_commands/test/system"):
     sys.path.insert(0, str(ROOT / folder))
 
 from control_port import ControlPort  # noqa: E402

@@ -85,7 +85,7 @@ def test_the_launch_arguments_are_declared():
 
 
 def test_the_launch_file_knows_the_models_of_the_driver():
-    table = (ROOT / "ur_ros_rtde" / "src" / "robot" / "arm_limits.cpp").read_text()
+    table = (ROOT / "ur_ros_rtde_trajectory" / "src" / "kinematics" / "arm_limits.cpp").read_text()
     assert list(MODELS) == re.findall(r'Model\{"(\w+)"', table)
     assert MODELS == cell.MODELS
 

@@ -9,7 +9,7 @@ from .environment import run_environment
 from .layout import ROOT, Layout
 from .processes import Program, Programs
 
-CLIENTS = ROOT / "ur_ros_rtde" / "test" / "nodes" / "discovery_clients.py"
+CLIENTS = ROOT / "ur_ros_rtde_commands" / "test" / "system" / "discovery_clients.py"
 LISTS = ("]: commands: ", "]: dashboard commands: ")
 TIME_LIMIT = 600.0  # s
 

@@ -51,9 +51,9 @@ def _run(command: List[str], env) -> None:
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
-    building.build(building.Options(layout, ["ur_ros_rtde"], True))
+    building.build(building.Options(layout, ["ur_ros_rtde_trajectory"], True))
     env = run_environment(layout)
-    programs = layout.build / "ur_ros_rtde" / "test" / "trajectory"
+    programs = layout.build / "ur_ros_rtde_trajectory" / "test"
     say.step(f"Planning {options.paths} random paths, with jerk limits and without")
     sys.stdout.flush()
     _run([str(programs / "trajectory_bench"), str(options.paths)], env)
@@ -66,6 +66,6 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         paths = layout.log / "trajectory_paths.bin"
         paths.parent.mkdir(parents=True, exist_ok=True)
         _run([str(programs / "trajectory_export"), str(paths), "0", str(options.oracle), jerk, step], env)
-        _run([str(python), str(ROOT / "ur_ros_rtde" / "test" / "trajectory" / "oracle.py"), str(paths)], {})
+        _run([str(python), str(ROOT / "ur_ros_rtde_trajectory" / "test" / "trajectory" / "oracle.py"), str(paths)], {})
         paths.unlink()
     return 0

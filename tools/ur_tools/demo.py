@@ -17,7 +17,7 @@ from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
 
 # The packages that it needs, with those that they depend on.
-PACKAGES = ["ur_ros_rtde", "ur_ros_rtde_tutorials", "ur_simulator"]
+PACKAGES = ["ur_ros_rtde_commands", "ur_ros_rtde_tutorials", "ur_simulator"]
 # m between the tool and the table: what each size of arm can go down from its start pose.
 DROP = {"ur3": 0.15, "ur3e": 0.15}
 DEFAULT_DROP = 0.3

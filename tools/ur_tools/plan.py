@@ -54,7 +54,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
     goal = _goal_as_json(layout, options, env)
     try:
-        answer = _run([str(program(layout, "ur_ros_rtde", "plan_trajectory"))], goal, env)
+        answer = _run([str(program(layout, "ur_ros_rtde_trajectory", "plan_trajectory"))], goal, env)
     except say.Failure as failure:
         raise say.Failure(f"{options.file}: {failure}") from None
     plan = json.loads(answer)

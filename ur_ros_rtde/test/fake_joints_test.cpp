@@ -1,4 +1,4 @@
-#include "nodes/fake_joints.hpp"
+#include "state/fake_joints.hpp"
 
 #include <gtest/gtest.h>
 

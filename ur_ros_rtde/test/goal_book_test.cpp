@@ -1,4 +1,4 @@
-#include "ur_ros_rtde/goal_book.hpp"
+#include "ur_ros_rtde/detail/goal_book.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <rcl_cxx/executor.hpp>
 #include <ur_ros_rtde_msgs/action/trigger.hpp>
 
-#include "ur_ros_rtde/goal_server.hpp"
+#include "ur_ros_rtde/detail/goal_server.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -1,5 +1,5 @@
 // What a plugin throws outside of run() ends its goal, not the process.
-#include "ur_ros_rtde/goal_server.hpp"
+#include "ur_ros_rtde/detail/goal_server.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <thread>
 #include <ur_ros_rtde_msgs/action/trigger.hpp>
 
-#include "ur_ros_rtde/command_goals.hpp"
-#include "ur_ros_rtde/robot.hpp"
+#include "ur_ros_rtde/detail/command_goals.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -10,9 +10,9 @@
 #include <sstream>
 #include <thread>
 
-#include "nodes/csv_file.hpp"
-#include "nodes/package_statistics.hpp"
-#include "nodes/row_queue.hpp"
+#include "recording/csv_file.hpp"
+#include "state/package_statistics.hpp"
+#include "recording/row_queue.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -1,4 +1,4 @@
-#include "nodes/state_messages.hpp"
+#include "state/state_messages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,4 +2,4 @@ import pathlib
 import sys
 
 # The tests of the driver's nodes have what is needed here, too.
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde" / "test" / "nodes"))
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde_commands" / "test" / "system"))

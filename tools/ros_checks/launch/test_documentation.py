@@ -76,7 +76,7 @@ def test_services_answer(driver, line, tmp_path):
 
 @pytest.mark.parametrize("line", cases("action send_goal"))
 def test_goals_are_understood(driver, line, tmp_path):
-    """Whether they succeed is shown by ur_ros_rtde/test/typed; here that types and fields are those of the line."""
+    """Whether they succeed is shown by ur_ros_rtde_commands/test/every_command; here that types and fields are those of the line."""
     try:
         said = ros2(*arguments(line, tmp_path), limit=20.0)[1]
     except subprocess.TimeoutExpired as expired:  # a long motion: its client is gone, and the arm stops

@@ -4,8 +4,8 @@
 #include <rcl_cxx/node.hpp>
 #include <string>
 
-#include "ur_ros_rtde/command_goals.hpp"
-#include "ur_ros_rtde/goal_server.hpp"
+#include "ur_ros_rtde/detail/command_goals.hpp"
+#include "ur_ros_rtde/detail/goal_server.hpp"
 #include "ur_ros_rtde/plugin.hpp"
 
 namespace ur_ros_rtde {

@@ -9,7 +9,7 @@
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/dashboard_run.hpp"
-#include "ur_ros_rtde/goal_server.hpp"
+#include "ur_ros_rtde/detail/goal_server.hpp"
 #include "ur_ros_rtde/plugin.hpp"
 
 namespace ur_ros_rtde {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "ur_ros_rtde/dashboard_link.hpp"
-#include "ur_ros_rtde/interrupt.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde/detail/interrupt.hpp"
 #include "ur_ros_rtde/outcome.hpp"
 
 namespace ur_ros_rtde {

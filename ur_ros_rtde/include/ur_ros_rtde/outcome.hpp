@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "ur_ros_rtde/error.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 

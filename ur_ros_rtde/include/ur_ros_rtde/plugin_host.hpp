@@ -7,10 +7,10 @@
 #include <string>
 #include <ur_ros_rtde_msgs/msg/goal_refused.hpp>
 
-#include "ur_ros_rtde/arm_limits.hpp"
-#include "ur_ros_rtde/error.hpp"
-#include "ur_ros_rtde/goal_threads.hpp"
-#include "ur_ros_rtde/motion.hpp"
+#include "ur_ros_rtde_trajectory/arm_limits.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
+#include "ur_ros_rtde/detail/goal_threads.hpp"
+#include "ur_ros_rtde_robot/motion/motion.hpp"
 
 namespace ur_ros_rtde {
 

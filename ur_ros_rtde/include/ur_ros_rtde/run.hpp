@@ -9,8 +9,8 @@
 #include <ur_ros_rtde_msgs/msg/motion_feedback.hpp>
 #include <vector>
 
-#include "ur_ros_rtde/interfaces.hpp"
-#include "ur_ros_rtde/interrupt.hpp"
+#include "ur_ros_rtde_robot/connection/interfaces.hpp"
+#include "ur_ros_rtde/detail/interrupt.hpp"
 #include "ur_ros_rtde/outcome.hpp"
 #include "ur_ros_rtde/registers.hpp"
 

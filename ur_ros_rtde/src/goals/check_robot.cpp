@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "ur_ros_rtde/check.hpp"
-#include "ur_ros_rtde/interfaces.hpp"
+#include "ur_ros_rtde_robot/connection/interfaces.hpp"
 
 namespace ur_ros_rtde {
 namespace {

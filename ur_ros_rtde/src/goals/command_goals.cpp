@@ -1,4 +1,4 @@
-#include "ur_ros_rtde/command_goals.hpp"
+#include "ur_ros_rtde/detail/command_goals.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "ur_ros_rtde/goal_book.hpp"
+#include "ur_ros_rtde/detail/goal_book.hpp"
 
 #include <fmt/format.h>
 
-#include "robot/text.hpp"
+#include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {

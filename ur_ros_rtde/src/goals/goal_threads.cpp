@@ -1,4 +1,4 @@
-#include "ur_ros_rtde/goal_threads.hpp"
+#include "ur_ros_rtde/detail/goal_threads.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "ur_ros_rtde/plugin_host.hpp"
 
-#include "ur_ros_rtde/robot.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
 

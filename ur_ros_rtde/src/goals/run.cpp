@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "ur_ros_rtde/check.hpp"
-#include "ur_ros_rtde/conversions.hpp"
+#include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ur_ros_rtde/conversions.hpp"
+#include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "nodes/node_log.hpp"
-#include "nodes/plugin_problems.hpp"
+#include "state/plugin_problems.hpp"
 #include "plugins/plugin_selection.hpp"
 
 namespace ur_ros_rtde {

@@ -2,14 +2,14 @@
 
 #include <memory>
 
-#include "nodes/diagnostics.hpp"
-#include "nodes/driver_state.hpp"
+#include "state/diagnostics.hpp"
+#include "state/driver_state.hpp"
 #include "nodes/parameters.hpp"
 #include "nodes/server.hpp"
 #include "plugins/plugin_set.hpp"
 #include "teleoperation/teleoperation.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
-#include "ur_ros_rtde/robot.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
 

@@ -2,7 +2,7 @@
 
 #include <rcl_cxx/node.hpp>
 
-#include "ur_ros_rtde/log.hpp"
+#include "ur_ros_rtde_robot/connection/log.hpp"
 
 namespace ur_ros_rtde {
 

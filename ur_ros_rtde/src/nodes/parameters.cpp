@@ -7,8 +7,8 @@
 #include <cctype>
 #include <cmath>
 
-#include "ur_ros_rtde/arm_limits.hpp"
-#include "ur_ros_rtde/rtde_outputs.hpp"
+#include "ur_ros_rtde_trajectory/arm_limits.hpp"
+#include "ur_ros_rtde_robot/state/rtde_outputs.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -14,15 +14,15 @@
 #include <ur_ros_rtde_msgs/srv/get_wrench.hpp>
 #include <vector>
 
-#include "nodes/fake_joints.hpp"
-#include "nodes/field_topics.hpp"
-#include "nodes/latched_state.hpp"
-#include "nodes/recording_services.hpp"
-#include "nodes/state_diagnostics.hpp"
-#include "nodes/state_messages.hpp"
-#include "nodes/tool_transform.hpp"
-#include "ur_ros_rtde/error.hpp"
-#include "ur_ros_rtde/sample.hpp"
+#include "state/fake_joints.hpp"
+#include "state/field_topics.hpp"
+#include "state/latched_state.hpp"
+#include "recording/recording_services.hpp"
+#include "state/state_diagnostics.hpp"
+#include "state/state_messages.hpp"
+#include "state/tool_transform.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
+#include "ur_ros_rtde_robot/state/sample.hpp"
 
 namespace ur_ros_rtde {
 

@@ -2,7 +2,7 @@
 
 #include "nodes/node_log.hpp"
 #include "nodes/parameters.hpp"
-#include "ur_ros_rtde/robot.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
 namespace {

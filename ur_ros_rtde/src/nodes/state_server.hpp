@@ -5,7 +5,7 @@
 
 #include "nodes/robot_state_receiver.hpp"
 #include "nodes/server.hpp"
-#include "ur_ros_rtde/state_receiver.hpp"
+#include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
 namespace ur_ros_rtde {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "plugins/plugin_index.hpp"
-#include "ur_ros_rtde/error.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde/plugin.hpp"
 
 namespace ur_ros_rtde {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "teleoperation/options.hpp"
-#include "ur_ros_rtde/arm_limits.hpp"
+#include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde/run.hpp"
 
 namespace ur_ros_rtde {

@@ -5,8 +5,8 @@
 
 #include "teleoperation/follower.hpp"
 #include "ur_ros_rtde/check.hpp"
-#include "ur_ros_rtde/conversions.hpp"
-#include "ur_ros_rtde/default_speeds.hpp"
+#include "ur_ros_rtde_robot/state/conversions.hpp"
+#include "ur_ros_rtde_trajectory/default_speeds.hpp"
 
 namespace ur_ros_rtde {
 namespace {

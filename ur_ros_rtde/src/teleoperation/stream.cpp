@@ -6,7 +6,7 @@
 #include <exception>
 #include <utility>
 
-#include "robot/realtime_priority.hpp"
+#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "teleoperation/follower.hpp"
-#include "ur_ros_rtde/interrupt.hpp"
-#include "ur_ros_rtde/log.hpp"
+#include "ur_ros_rtde/detail/interrupt.hpp"
+#include "ur_ros_rtde_robot/connection/log.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
 
 namespace ur_ros_rtde {

@@ -1,0 +1,124 @@
+#include "recording/recording_session.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <utility>
+
+namespace ur_ros_rtde {
+namespace {
+using Clock = RtdeStream::Clock;
+
+/// 8 s at 500 Hz: a disk may be busy for that long.
+constexpr std::size_t queue_rows = 4000;
+constexpr std::chrono::milliseconds look_interval{50};
+constexpr std::chrono::milliseconds silence_limit{1000};
+constexpr std::chrono::milliseconds retry_interval{250};
+}  // namespace
+
+RecordingSession::RecordingSession(Plan plan, RtdeStream stream, CsvFile file, const LogFunction & log)
+    : plan_(std::move(plan)),
+      report_(log),
+      stream_(std::move(stream)),
+      file_(std::move(file)),
+      queue_(plan_.columns, queue_rows),
+      writer_([this] { write(); }),
+      receiver_([this](const std::stop_token & stop) { receive(stop); })
+{
+}
+
+RecordingSession::~RecordingSession()
+{
+  if (receiver_.joinable()) {
+    end();
+  }
+}
+
+RecordingReport RecordingSession::end()
+{
+  receiver_.request_stop();
+  receiver_.join();
+  queue_.close();
+  writer_.join();
+  if (state_) {
+    state_ = file_.close();
+  }
+  return {file_.path(), file_.rows(), lost_, state_};
+}
+
+void RecordingSession::receive(const std::stop_token & stop)
+{
+  while (!stop.stop_requested()) {
+    const Status ended = follow(stop);
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any().wait_for(lock, stop, retry_interval, [] { return false; });
+    if (stop.stop_requested()) {
+      return;
+    }
+    report_.once(LogLevel::warn, fmt::format("recording {}: {}; trying to connect again", file_.path(),
+                                             ended.error().message));
+    if (auto stream = RtdeStream::open(plan_.address, plan_.fields, plan_.frequency)) {
+      stream_ = std::move(*stream);
+      report_.forget();
+    }
+  }
+}
+
+Status RecordingSession::follow(const std::stop_token & stop)
+{
+  std::vector<double> numbers(stream_.width());
+  auto last = Clock::now();
+  while (!stop.stop_requested()) {
+    const auto got = stream_.next(numbers, Clock::now() + look_interval);
+    if (!got) {
+      return tl::unexpected(got.error());
+    }
+    if (*got) {
+      last = Clock::now();
+      take(numbers);
+    } else if (Clock::now() - last > silence_limit) {
+      return failure(ErrorCode::link_lost, fmt::format("{} sends nothing any more", plan_.address));
+    }
+  }
+  return {};
+}
+
+void RecordingSession::take(std::span<const double> numbers)
+{
+  const double now = numbers[plan_.timestamp];
+  const double periods = std::round((now - last_) * plan_.frequency);
+  if (began_ && periods > 1.0) {
+    lost_ += static_cast<std::uint64_t>(periods) - 1;
+  }
+  began_ = true;
+  last_ = now;
+  if (!queue_.push(numbers.first(plan_.columns))) {
+    ++lost_;
+  }
+}
+
+void RecordingSession::write()
+{
+  std::vector<double> rows;
+  rows.reserve(plan_.columns * queue_rows);
+  while (queue_.take(rows)) {
+    const std::size_t count = rows.size() / plan_.columns;
+    const std::uint64_t before = file_.rows();
+    if (state_) {
+      for (std::size_t i = 0; i < count; ++i) {
+        file_.append(std::span(rows).subspan(i * plan_.columns, plan_.columns));
+      }
+      state_ = file_.flush();
+      if (!state_) {
+        report_.say(LogLevel::error, fmt::format("recording: {}", state_.error().message));
+      }
+    }
+    lost_ += count - (file_.rows() - before);
+  }
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "recording/csv_file.hpp"
+#include "recording/recorder.hpp"
+#include "recording/row_queue.hpp"
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
+#include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
+
+namespace ur_ros_rtde {
+
+/// A recording under way: one thread takes packages, and connects again when the link was lost; another one
+/// writes.
+class RecordingSession {
+ public:
+  struct Plan {
+    std::string address;
+    std::vector<std::string> fields;  ///< "timestamp" is one of them
+    double frequency;                 ///< Hz, agreed
+    std::size_t columns;    ///< of the numbers of a package so many, from the first on, become a row
+    std::size_t timestamp;  ///< where it is among them
+  };
+
+  RecordingSession(Plan plan, RtdeStream stream, CsvFile file, const LogFunction & log);
+  ~RecordingSession();
+  const std::string & path() const { return file_.path(); }
+  /// Writes what has come and closes the file. Once.
+  RecordingReport end();
+
+ private:
+  void receive(const std::stop_token & stop);
+  Status follow(const std::stop_token & stop);
+  void take(std::span<const double> numbers);
+  void write();
+
+  const Plan plan_;
+  Reporter report_;
+  RtdeStream stream_;
+  CsvFile file_;
+  Status state_;  ///< the writer's, until it has ended
+  RowQueue queue_;
+  double last_ = 0.0;  ///< timestamp
+  bool began_ = false;
+  std::atomic<std::uint64_t> lost_ = 0;
+  std::jthread writer_;
+  std::jthread receiver_;
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,178 @@
+#include "state/field_topics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <utility>
+
+#include "state/state_messages.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+using Clock = RtdeStream::Clock;
+
+constexpr std::chrono::milliseconds fields_retry_interval{500};
+/// How soon a new listener of tool_data is noticed.
+constexpr std::chrono::milliseconds fields_look_interval{100};
+constexpr std::chrono::milliseconds fields_silence_limit{1000};
+
+/// What ToolData is made of, in the order in which publish_tool() reads it.
+const std::array<std::string, 10> tool_fields{"tool_analog_input0",
+                                              "tool_analog_input1",
+                                              "tool_analog_input_types",
+                                              "tool_output_voltage",
+                                              "tool_output_current",
+                                              "tool_temperature",
+                                              "tool_mode",
+                                              "actual_digital_input_bits",
+                                              "actual_digital_output_bits",
+                                              "actual_tool_accelerometer"};
+constexpr unsigned first_tool_pin = 16;
+
+bool bit(double word, unsigned number)
+{
+  return (static_cast<std::uint64_t>(word) >> number & 1U) != 0;
+}
+
+std::vector<std::string> recipe(const std::vector<std::string> & wanted, bool with_tool)
+{
+  std::vector<std::string> fields;
+  if (with_tool) {
+    fields.assign(tool_fields.begin(), tool_fields.end());
+  }
+  std::ranges::copy_if(wanted, std::back_inserter(fields), [&](const std::string & name) {
+    return std::ranges::find(fields, name) == fields.end();
+  });
+  return fields;
+}
+
+void wait(const std::stop_token & stop, std::chrono::milliseconds duration)
+{
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any().wait_for(lock, stop, duration, [] { return false; });
+}
+}  // namespace
+
+FieldTopics::FieldTopics(rcl_cxx::Node & node, Options options, LogFunction log)
+    : options_(std::move(options)), report_(std::move(log))
+{
+  const rcl_cxx::QoS qos = rcl_cxx::QoS::from_name(options_.qos);
+  tool_.header.frame_id = options_.tf_prefix + "tool0";
+  tool_data_ = node.create_publisher<ur_ros_rtde_msgs::msg::ToolData>("tool_data", qos);
+  if (!options_.fields.empty()) {
+    robot_state_ = node.create_publisher<ur_ros_rtde_msgs::msg::RobotState>("robot_state", qos);
+  }
+  thread_ = std::jthread([this](const std::stop_token & stop) { run(stop); });
+}
+
+void FieldTopics::run(const std::stop_token & stop)
+{
+  while (!stop.stop_requested()) {
+    const bool with_tool = tool_wanted();
+    if (!with_tool && options_.fields.empty()) {
+      wait(stop, fields_look_interval);
+      continue;
+    }
+    auto stream = RtdeStream::open(options_.address, recipe(options_.fields, with_tool), options_.frequency);
+    Status ended = stream ? Status() : tl::unexpected(stream.error());
+    if (stream) {
+      report_.forget();
+      ended = follow(*stream, with_tool, stop);
+    }
+    if (!ended) {
+      wait(stop, fields_retry_interval);
+    }
+    if (!ended && !stop.stop_requested()) {
+      report_.once(LogLevel::error,
+                   fmt::format("tool_data and robot_state: {}; trying again", ended.error().message));
+    }
+  }
+}
+
+/// Until somebody else wants it, or there is something the matter.
+Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_token & stop)
+{
+  lay_out(stream);
+  std::vector<double> numbers(stream.width());
+  auto last = Clock::now();
+  auto look = last + fields_look_interval;
+  while (!stop.stop_requested()) {
+    const auto got = stream.next(numbers, Clock::now() + fields_look_interval);
+    if (!got) {
+      return tl::unexpected(got.error());
+    }
+    const auto now = Clock::now();
+    if (*got) {
+      last = now;
+      if (with_tool) {
+        publish_tool(numbers);
+      }
+      if (robot_state_) {
+        publish_state(numbers);
+      }
+    } else if (now - last > fields_silence_limit) {
+      return failure(ErrorCode::link_lost, fmt::format("{} sends nothing any more", options_.address));
+    }
+    if (now >= look) {
+      look = now + fields_look_interval;
+      if (tool_wanted() != with_tool) {
+        return {};
+      }
+    }
+  }
+  return {};
+}
+
+void FieldTopics::lay_out(const RtdeStream & stream)
+{
+  state_.fields.clear();
+  begins_.clear();
+  for (const std::string & name : options_.fields) {
+    std::size_t begin = 0;
+    for (const RtdeStream::Field & field : stream.fields()) {
+      if (field.name == name) {
+        begins_.push_back(begin);
+        state_.fields.emplace_back();
+        state_.fields.back().name = name;
+        state_.fields.back().values.resize(field.size);
+      }
+      begin += field.size;
+    }
+  }
+}
+
+void FieldTopics::publish_tool(std::span<const double> numbers)
+{
+  tool_.header.stamp = to_time(std::chrono::system_clock::now());
+  for (unsigned i = 0; i < 2; ++i) {
+    tool_.analog_inputs[i] = numbers[i];
+    tool_.analog_input_modes[i] = bit(numbers[2], i) ? 1 : 0;
+    tool_.digital_inputs[i] = bit(numbers[7], first_tool_pin + i);
+    tool_.digital_outputs[i] = bit(numbers[8], first_tool_pin + i);
+  }
+  tool_.output_voltage = numbers[3];
+  tool_.output_current = numbers[4];
+  tool_.temperature = numbers[5];
+  tool_.mode = static_cast<std::uint8_t>(numbers[6]);
+  tool_.acceleration.x = numbers[9];
+  tool_.acceleration.y = numbers[10];
+  tool_.acceleration.z = numbers[11];
+  tool_data_->publish(tool_);
+}
+
+void FieldTopics::publish_state(std::span<const double> numbers)
+{
+  state_.header.stamp = to_time(std::chrono::system_clock::now());
+  for (std::size_t i = 0; i < begins_.size(); ++i) {
+    auto & values = state_.fields[i].values;
+    std::ranges::copy(numbers.subspan(begins_[i], values.size()), values.begin());
+  }
+  robot_state_->publish(state_);
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <rcl_cxx/node.hpp>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <ur_ros_rtde_msgs/msg/robot_state.hpp>
+#include <ur_ros_rtde_msgs/msg/tool_data.hpp>
+#include <vector>
+
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
+#include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
+
+namespace ur_ros_rtde {
+
+/// tool_data, and robot_state with the RTDE fields that somebody wants: what a Sample does not hold, on a
+/// connection of its own with a thread of its own. There is none while nobody listens to tool_data and no
+/// fields are wanted.
+class FieldTopics {
+ public:
+  struct Options {
+    std::string address;
+    std::string tf_prefix;
+    std::string qos;
+    double frequency = 0.0;           ///< Hz
+    std::vector<std::string> fields;  ///< of robot_state; none: no such topic
+  };
+
+  FieldTopics(rcl_cxx::Node & node, Options options, LogFunction log);
+  /// Ends the thread; takes as long as a step of connecting at most.
+  ~FieldTopics() = default;
+  FieldTopics(const FieldTopics &) = delete;
+  FieldTopics & operator=(const FieldTopics &) = delete;
+
+ private:
+  void run(const std::stop_token & stop);
+  bool tool_wanted() const { return tool_data_->subscription_count() > 0; }
+  Status follow(RtdeStream & stream, bool with_tool, const std::stop_token & stop);
+  /// Gives robot_state its fields, and remembers where their numbers are.
+  void lay_out(const RtdeStream & stream);
+  void publish_tool(std::span<const double> numbers);
+  void publish_state(std::span<const double> numbers);
+
+  const Options options_;
+  Reporter report_;
+  std::vector<std::size_t> begins_;  ///< of the fields of robot_state in a package
+  ur_ros_rtde_msgs::msg::ToolData tool_;
+  ur_ros_rtde_msgs::msg::RobotState state_;
+  rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::ToolData>::SharedPtr tool_data_;
+  rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::RobotState>::SharedPtr robot_state_;
+  std::jthread thread_;
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,73 @@
+#include "state/latched_state.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace ur_ros_rtde {
+namespace {
+/// Whether `shown` has to be shown anew, which it then counts as.
+template <typename T>
+bool changes(std::optional<T> & shown, const T & value)
+{
+  return std::exchange(shown, value) != value;
+}
+}  // namespace
+
+LatchedState::LatchedState(rcl_cxx::Node & node)
+    : robot_mode_(
+          node.create_publisher<ur_ros_rtde_msgs::msg::RobotMode>("robot_mode", rcl_cxx::QoS::latched())),
+      safety_mode_(
+          node.create_publisher<ur_ros_rtde_msgs::msg::SafetyMode>("safety_mode", rcl_cxx::QoS::latched())),
+      program_running_(
+          node.create_publisher<std_msgs::msg::Bool>("program_running", rcl_cxx::QoS::latched())),
+      speed_scaling_(node.create_publisher<std_msgs::msg::Float64>("speed_scaling", rcl_cxx::QoS::latched()))
+{
+  publish_no_controller();
+}
+
+void LatchedState::publish(const Sample & sample)
+{
+  const std::lock_guard lock(mutex_);
+  if (changes(robot_mode_shown_, sample.robot_mode)) {
+    publish(sample.robot_mode);
+  }
+  if (changes(safety_mode_shown_, sample.safety_mode)) {
+    publish(sample.safety_mode);
+  }
+  if (changes(program_running_shown_, sample.program_running())) {
+    std_msgs::msg::Bool message;
+    message.data = sample.program_running();
+    program_running_->publish(message);
+  }
+  if (changes(speed_scaling_shown_, std::lround(1000.0 * sample.speed_scaling))) {
+    std_msgs::msg::Float64 message;
+    message.data = sample.speed_scaling;
+    speed_scaling_->publish(message);
+  }
+}
+
+void LatchedState::publish_no_controller()
+{
+  const std::lock_guard lock(mutex_);
+  if (changes(robot_mode_shown_, RobotMode::no_controller)) {
+    publish(RobotMode::no_controller);
+  }
+}
+
+void LatchedState::publish(RobotMode mode)
+{
+  ur_ros_rtde_msgs::msg::RobotMode message;
+  message.mode = static_cast<std::int8_t>(mode);
+  message.name = to_string(mode);
+  robot_mode_->publish(message);
+}
+
+void LatchedState::publish(SafetyMode mode)
+{
+  ur_ros_rtde_msgs::msg::SafetyMode message;
+  message.mode = static_cast<std::uint8_t>(mode);
+  message.name = to_string(mode);
+  safety_mode_->publish(message);
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "state/diagnostics.hpp"
+#include "state/package_statistics.hpp"
+#include "ur_ros_rtde_robot/connection/link.hpp"
+#include "ur_ros_rtde_robot/state/sample.hpp"
+
+namespace ur_ros_rtde {
+
+/// Where the packages come from, as it is now.
+struct StateSource {
+  LinkStatus link;
+  std::optional<ControllerVersion> version;
+  double frequency = 0.0;  ///< Hz, agreed with the controller; 0: not yet
+};
+
+/// STALE before the first connection, ERROR when it is lost.
+Diagnosis diagnose_link(const StateSource & source, const std::string & address);
+/// WARN below 95 % of the agreed rate or when packages were lost, ERROR below half of it.
+Diagnosis diagnose_packages(const StateSource & source, const PackageStatistics::Report & packages);
+/// WARN when the robot cannot move or a joint is hot, ERROR for what needs more than a button: emergency
+/// stop, violation, fault. STALE without a connection, with what was last.
+Diagnosis diagnose_robot(const StateSource & source, const std::optional<Sample> & sample);
+
+}  // namespace ur_ros_rtde

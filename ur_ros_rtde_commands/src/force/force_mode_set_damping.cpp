@@ -1,0 +1,24 @@
+#include <ur_ros_rtde_msgs/action/set_force_mode_parameter.hpp>
+
+#include "force/compliance.hpp"
+
+namespace ur_ros_rtde {
+
+class ForceModeSetDamping : public Command<ur_ros_rtde_msgs::action::SetForceModeParameter> {
+  Resource resource() const override { return Resource::none; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.in_range("value", goal.value, 0.0, 1.0).polyscope(0, 5).answers();
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    must_do(run.control()->forceModeSetDamping(goal.value), "set the damping of force mode");
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(ForceModeSetDamping, "force_mode_set_damping")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,24 @@
+#include <ur_ros_rtde_msgs/action/set_force_mode_parameter.hpp>
+
+#include "force/compliance.hpp"
+
+namespace ur_ros_rtde {
+
+class ForceModeSetGainScaling : public Command<ur_ros_rtde_msgs::action::SetForceModeParameter> {
+  Resource resource() const override { return Resource::none; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.in_range("value", goal.value, 0.0, 2.0).polyscope(0).answers();
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    must_do(run.control()->forceModeSetGainScaling(goal.value), "set the gain of force mode");
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(ForceModeSetGainScaling, "force_mode_set_gain_scaling")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,35 @@
+#include <cmath>
+#include <ur_ros_rtde_msgs/action/zero_ft_sensor.hpp>
+
+#include "force/compliance.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+constexpr double zero_force = 5.0;  // N: above the noise of the sensors, below what anyone would call zero
+}
+
+class ZeroFtSensor : public Command<ur_ros_rtde_msgs::action::ZeroFtSensor> {
+  Outcome run(const Goal &, Run & run) override
+  {
+    must_do(run.control()->zeroFtSensor(), "zero the sensor");
+    const auto reads_zero = [&] {
+      const Vector6 f = run.flange_force();
+      return std::hypot(f[0], f[1], f[2]) < zero_force;
+    };
+    const Outcome outcome =
+        run.expect(reads_zero, std::chrono::seconds(1), "the sensor does not read zero afterwards");
+    const Vector6 f = run.flange_force();
+    auto & wrench = run.result().wrench;
+    wrench.force.x = f[0];
+    wrench.force.y = f[1];
+    wrench.force.z = f[2];
+    wrench.torque.x = f[3];
+    wrench.torque.y = f[4];
+    wrench.torque.z = f[5];
+    return outcome;
+  }
+};
+
+UR_ROS_RTDE_EXPORT(ZeroFtSensor, "zero_ft_sensor")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,55 @@
+#include <cmath>
+#include <numbers>
+#include <ur_ros_rtde_msgs/action/move_l_relative.hpp>
+
+#include "ur_ros_rtde/command.hpp"
+#include "ur_ros_rtde_robot/state/conversions.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+/// `start` moved by `goal`: about the TCP, in the axes of the base or of the tool.
+std::vector<double> moved(const Vector6 & start, const ur_ros_rtde_msgs::action::MoveLRelative::Goal & goal)
+{
+  const auto & t = goal.translation;
+  const auto & r = goal.rotation;
+  Vector6 pose = pose_trans(start, {t.x, t.y, t.z, r.x, r.y, r.z});
+  if (goal.frame == goal.BASE) {
+    pose = pose_trans({0.0, 0.0, 0.0, r.x, r.y, r.z}, {0.0, 0.0, 0.0, start[3], start[4], start[5]});
+    pose[0] = start[0] + t.x;
+    pose[1] = start[1] + t.y;
+    pose[2] = start[2] + t.z;
+  }
+  return {pose.begin(), pose.end()};
+}
+
+double angle(const geometry_msgs::msg::Vector3 & rotation)
+{
+  return std::hypot(rotation.x, rotation.y, rotation.z);
+}
+}  // namespace
+
+class MoveLRelative : public Command<ur_ros_rtde_msgs::action::MoveLRelative> {
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.in_range("frame", goal.frame, Goal::BASE, Goal::TOOL)
+        .vector("translation", goal.translation, 3.0, "m")
+        .vector("rotation", goal.rotation, std::numbers::pi, "rad")  // std::hypot(0, 0, nan) may be 0
+        .in_range("the length of rotation", angle(goal.rotation), 0.0, std::numbers::pi, "rad")
+        .above_zero("speed", goal.speed, 3.0, "m/s")
+        .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2");
+    if (const auto start = check.start()) {
+      check.reachable("with translation and rotation the target", moved(start->actual_tcp_pose, goal));
+    }
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const auto target = moved(run.state().actual_tcp_pose, goal);
+    run.control()->moveL(target, goal.speed, goal.acceleration, true);
+    return run.until_pose_reached(target);
+  }
+};
+
+UR_ROS_RTDE_EXPORT(MoveLRelative, "move_l_relative")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,294 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <control_msgs/action/follow_joint_trajectory.hpp>
+#include <limits>
+
+#include "moveit/tolerances.hpp"
+#include "streaming/execute.hpp"
+#include "streaming/goal_fields.hpp"
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Action = control_msgs::action::FollowJointTrajectory;
+using trajectory::Joints;
+
+constexpr double default_goal_tolerance = 0.01;      // rad
+constexpr double default_goal_time_tolerance = 2.0;  // s
+constexpr double start_tolerance = 0.02;             // rad; MoveIt looks, too
+constexpr double latest_start = 60.0;                // s from now
+constexpr double velocity_reserve = 1.05;            // a spline between points at a limit exceeds it a little
+constexpr double highest_acceleration = 40.0;        // rad/s^2
+constexpr auto feedback_period = std::chrono::milliseconds(50);
+
+template <typename Stamp>
+double seconds(const Stamp & stamp)
+{
+  return static_cast<double>(stamp.sec) + 1e-9 * static_cast<double>(stamp.nanosec);
+}
+
+bool is_zero(const builtin_interfaces::msg::Time & stamp)
+{
+  return stamp.sec == 0 && stamp.nanosec == 0;
+}
+
+/// MoveIt's times come from limits of its own: only what the arm can do at most is a limit here.
+trajectory::Limits widest_limits(const ArmLimits & arm)
+{
+  trajectory::Limits limits = trajectory::make_limits(arm, highest_acceleration, 1e7);
+  limits.velocity *= velocity_reserve;
+  return limits;
+}
+
+/// For a stop on the way: what the plan itself asks of the arm, at least what is usual.
+trajectory::Limits limits_for_stops(const trajectory::Trajectory & plan, trajectory::Limits limits)
+{
+  if (const auto use = plan.verify(limits)) {
+    limits.acceleration = (limits.acceleration * use->acceleration).max(trajectory::default_acceleration);
+    limits.jerk = (limits.jerk * use->jerk).max(trajectory::default_jerk);
+  }
+  return limits;
+}
+
+/// Feedback has an index since 2025.
+template <typename Feedback>
+void set_index(Feedback & feedback, std::size_t index)
+{
+  if constexpr (requires { feedback.index; }) {
+    feedback.index = static_cast<std::int32_t>(index);
+  }
+}
+
+trajectory_msgs::msg::JointTrajectoryPoint to_point(const std::array<std::size_t, 6> & order, double time,
+                                                    const Joints & position, const Joints & velocity)
+{
+  trajectory_msgs::msg::JointTrajectoryPoint point;
+  point.positions.resize(order.size());
+  point.velocities.resize(order.size());
+  for (std::size_t joint = 0; joint < order.size(); ++joint) {
+    point.positions[order[joint]] = position[static_cast<int>(joint)];
+    point.velocities[order[joint]] = velocity[static_cast<int>(joint)];
+  }
+  const auto whole = static_cast<std::int32_t>(time);
+  point.time_from_start.sec = whole;
+  point.time_from_start.nanosec = static_cast<std::uint32_t>((time - whole) * 1e9);
+  return point;
+}
+
+}  // namespace
+
+/// As ros2_control's joint trajectory controller, which MoveIt speaks to; where it differs,
+/// docs/trajectory.md says so.
+class FollowJointTrajectory : public Command<Action> {
+ public:
+  void start_action_server(CommandHost & host, const std::string & name) override;
+
+ private:
+  bool replaces_its_own() const override { return true; }
+  void check(const Goal & goal, Check & check) const override;
+  Outcome run(const Goal & goal, Run & run) override;
+  void tell(const Outcome & outcome, Result & result) const override;
+
+  double seconds_until(const builtin_interfaces::msg::Time & stamp) const
+  {
+    return is_zero(stamp) ? 0.0 : seconds(stamp) - seconds(host_->node().now());
+  }
+  void check_time(const Goal & goal, Check & check) const;
+  Expected<Planned> plan(const Goal & goal, const Joints & start) const;
+  Status watch(const Goal & goal, Run & run, const Tolerances & path,
+               const trajectory::Trajectory & trajectory, const StreamState & state) const;
+  void feed_back(const Goal & goal, Run & run, std::size_t index, const StreamState & state) const;
+  static Outcome arrive(const Goal & goal, Run & run, const Tolerances & tolerances, const Joints & end);
+
+  CommandHost * host_ = nullptr;
+  ServoSettings servo_;
+};
+
+void FollowJointTrajectory::start_action_server(CommandHost & host, const std::string & name)
+{
+  host_ = &host;
+  const auto declare = [&](const char * what, double value, double low, double high, const char * text) {
+    rcl_cxx::ParameterOptions options;
+    options.description = text;
+    options.read_only = true;
+    options.floating_point_range = rcl_cxx::FloatingPointRange{low, high};
+    return host.node().declare_parameter(name + "." + what, value, options);
+  };
+  servo_.lookahead_time =
+      declare("lookahead_time", 0.03, 0.03, 0.2,
+              "s: how far ahead the controller smooths; the arm lags behind by about that");
+  servo_.gain = declare("gain", 2000.0, 100.0, 2000.0, "of the controller's position control");
+  servo_.max_tracking_error = declare("max_tracking_error", 0.3, 0.001, 3.14,
+                                      "rad: farther behind, the goal ends and the arm stops, whatever its "
+                                      "tolerances are");
+  servo_.stopped_by_another = [&host] { return host.takeover_stop().has_value(); };
+  Command<Action>::start_action_server(host, name);
+}
+
+void FollowJointTrajectory::check_time(const Goal & goal, Check & check) const
+{
+  const double begin = seconds_until(goal.trajectory.header.stamp);
+  const double end = begin + seconds(goal.trajectory.points.back().time_from_start);
+  check
+      .that(end >= 0.0 || is_zero(goal.trajectory.header.stamp),
+            fmt::format(
+                "trajectory.header.stamp is {:.3f} s ago, and the trajectory over: send a stamp of 0 to "
+                "begin at once",
+                -begin))
+      .that(
+          begin <= latest_start,
+          fmt::format("trajectory.header.stamp is {:.1f} s ahead, it may be {:.0f} s ahead at most: the arm "
+                      "would be taken for so long",
+                      begin, latest_start));
+}
+
+void FollowJointTrajectory::check(const Goal & goal, Check & check) const
+{
+  check.that(goal.multi_dof_trajectory.points.empty() && goal.component_path_tolerance.empty() &&
+                 goal.component_goal_tolerance.empty(),
+             "multi_dof_trajectory and its tolerances are not empty: the arm has single joints only",
+             ErrorCode::not_supported);
+  if (!check.ok() || goal.trajectory.points.empty()) {
+    return;  // an empty trajectory is a stop
+  }
+  check.that(!goal.trajectory.joint_names.empty(), "trajectory.joint_names is empty: name the arm's joints");
+  auto waypoints = timed_waypoints(goal.trajectory);
+  require(check, waypoints.map([](const auto &) {}));
+  for (const auto & [field, list] : {std::pair{"path_tolerance", &goal.path_tolerance},
+                                     std::pair{"goal_tolerance", &goal.goal_tolerance}}) {
+    if (check.ok()) {
+      require(check, Tolerances::read(field, *list, goal.trajectory.joint_names, default_goal_tolerance)
+                         .map([](const Tolerances &) {}));
+    }
+  }
+  if (!check.ok()) {
+    return;
+  }
+  check_time(goal, check);
+  const Joints first = to_joints(waypoints->positions.front());
+  const bool begins_there = waypoints->times.front() == 0.0;
+  trajectory::begin_at(*waypoints, first);
+  require(check, trajectory::check_timed(*waypoints, widest_limits(host_->limits())));
+  if (const auto sample = check.start(); sample && begins_there) {
+    require(check, begins_here(first, commanded_joints(*sample), start_tolerance));
+  }
+}
+
+Expected<Planned> FollowJointTrajectory::plan(const Goal & goal, const Joints & start) const
+{
+  const trajectory::Limits limits = widest_limits(host_->limits());
+  return timed_waypoints(goal.trajectory)
+      .and_then([&](trajectory::TimedWaypoints waypoints) {
+        trajectory::begin_at(waypoints, start);
+        return trajectory::plan_timed(waypoints, limits);
+      })
+      .map([&](trajectory::Trajectory plan) { return Planned{plan, limits_for_stops(plan, limits)}; });
+}
+
+Outcome FollowJointTrajectory::run(const Goal & goal, Run & run)
+{
+  if (goal.trajectory.points.empty()) {
+    return Outcome::success("the trajectory is empty: the arm stands");
+  }
+  const double wait = std::max(0.0, seconds_until(goal.trajectory.header.stamp));
+  if (auto why = run.sleep_for(std::chrono::nanoseconds(static_cast<std::int64_t>(wait * 1e9)))) {
+    return *why;
+  }
+  const auto & names = goal.trajectory.joint_names;
+  const auto path =
+      Tolerances::read("path_tolerance", goal.path_tolerance, names, std::numeric_limits<double>::infinity());
+  const auto end = Tolerances::read("goal_tolerance", goal.goal_tolerance, names, default_goal_tolerance);
+  if (!path || !end) {
+    return path ? end.error() : path.error();
+  }
+  Joints last = Joints::Zero();
+  Execution execution;
+  execution.servo = servo_;
+  execution.start_tolerance = start_tolerance;
+  execution.plan = [&](const Joints & start, const std::stop_token &) { return plan(goal, start); };
+  execution.planned = [&](const trajectory::Trajectory & plan) {
+    last = plan.sample(plan.duration()).position;
+  };
+  execution.watch = [&](const trajectory::Trajectory & plan, const StreamState & state) {
+    return watch(goal, run, *path, plan, state);
+  };
+  execution.arrive = [&] { return arrive(goal, run, *end, last); };
+  return execute(run, execution).outcome;
+}
+
+Status FollowJointTrajectory::watch(const Goal & goal, Run & run, const Tolerances & path,
+                                    const trajectory::Trajectory & trajectory,
+                                    const StreamState & state) const
+{
+  run.progress(trajectory.progress(state.time));
+  feed_back(goal, run, std::min(trajectory.waypoint_at(state.time) + 1, trajectory.waypoint_count() - 1),
+            state);
+  Status held = path.hold(state.position_error, state.velocity_error);
+  if (!held) {
+    run.result().error_code = Result::PATH_TOLERANCE_VIOLATED;
+  }
+  return held;
+}
+
+void FollowJointTrajectory::feed_back(const Goal & goal, Run & run, std::size_t index,
+                                      const StreamState & state) const
+{
+  Feedback & feedback = run.feedback();
+  const auto now = host_->node().now();
+  if (seconds(now) - seconds(feedback.header.stamp) <
+      std::chrono::duration<double>(feedback_period).count()) {
+    return;
+  }
+  const auto order = joint_order(goal.trajectory.joint_names);
+  const Joints position = Eigen::Map<const Joints>(state.sample.actual_q.data());
+  const Joints velocity = Eigen::Map<const Joints>(state.sample.actual_qd.data());
+  feedback.header.stamp = now;
+  feedback.joint_names = goal.trajectory.joint_names;
+  feedback.desired = to_point(*order, state.time, state.desired.position, state.desired.velocity);
+  feedback.actual = to_point(*order, state.time, position, velocity);
+  feedback.error =
+      to_point(*order, state.time, state.desired.position - position, state.desired.velocity - velocity);
+  set_index(feedback, index);
+  run.publish();
+}
+
+Outcome FollowJointTrajectory::arrive(const Goal & goal, Run & run, const Tolerances & tolerances,
+                                      const Joints & end)
+{
+  const double given = seconds(goal.goal_time_tolerance);
+  const double limit = given > 0.0 ? given : default_goal_time_tolerance;
+  Status held;
+  const auto arrived = [&] {
+    const Sample sample = run.state();
+    held = tolerances.hold(end - Eigen::Map<const Joints>(sample.actual_q.data()),
+                           -Eigen::Map<const Joints>(sample.actual_qd.data()));
+    return static_cast<bool>(held);
+  };
+  if (auto why = run.until(arrived, std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e9)))) {
+    if (why->code != ErrorCode::timeout) {
+      return *why;
+    }
+    run.result().error_code = Result::GOAL_TOLERANCE_VIOLATED;
+    return Outcome::failure(ErrorCode::not_reached,
+                            fmt::format("{:.2f} s after the end of the trajectory {}", limit,
+                                        held ? "the arm still moved" : held.error().message));
+  }
+  run.control()->servoStop();
+  return Outcome::success();
+}
+
+void FollowJointTrajectory::tell(const Outcome & outcome, Result & result) const
+{
+  if (outcome) {
+    result.error_code = Result::SUCCESSFUL;
+  } else if (result.error_code == Result::SUCCESSFUL && outcome.code() != ErrorCode::canceled) {
+    result.error_code = Result::INVALID_GOAL;
+  }
+  result.error_string = outcome.message();
+}
+
+UR_ROS_RTDE_EXPORT(FollowJointTrajectory, "follow_joint_trajectory")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,37 @@
+#include "operation/dashboard_talk.hpp"
+
+#include <fmt/format.h>
+
+namespace ur_ros_rtde {
+namespace {
+constexpr std::chrono::milliseconds answer_limit{2000};
+}  // namespace
+
+std::string ask_dashboard(const Robot & robot, const std::string & line)
+{
+  const auto answer = robot.ask_dashboard(line, answer_limit);
+  if (!answer) {
+    throw RobotError({answer.error().code, fmt::format("the dashboard server did not answer \"{}\": {}", line,
+                                                       answer.error().message)});
+  }
+  return *answer;
+}
+
+std::string dashboard_value(const Robot & robot, const std::string & question)
+{
+  const std::string answer = ask_dashboard(robot, question);
+  const auto colon = answer.find(": ");
+  return colon == std::string::npos ? answer : answer.substr(colon + 2);
+}
+
+Status tell_dashboard(const Robot & robot, const std::string & line, const std::string & reply)
+{
+  const std::string answer = ask_dashboard(robot, line);
+  if (answer.rfind(reply, 0) == 0) {
+    return {};
+  }
+  return failure(ErrorCode::rejected_by_robot,
+                 fmt::format("the dashboard server answered \"{}\" to \"{}\"", answer, line));
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,25 @@
+#include "operation/readiness.hpp"
+#include "operation/steps.hpp"
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+
+class MakeReady : public Command<ur_ros_rtde_msgs::action::MakeReady> {
+  Resource resource() const override { return Resource::none; }
+  bool any_state() const override { return true; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.above_zero("timeout", goal.timeout, 600.0, "s");
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    Readiness readiness(run.robot(), goal);
+    return take_steps(run, goal.timeout, [&] { return readiness.step(); });
+  }
+};
+
+UR_ROS_RTDE_EXPORT(MakeReady, "make_ready")
+
+}  // namespace ur_ros_rtde

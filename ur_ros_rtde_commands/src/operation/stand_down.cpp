@@ -1,0 +1,38 @@
+#include <ur_ros_rtde_msgs/action/dashboard_command.hpp>
+
+#include "operation/dashboard_talk.hpp"
+#include "operation/steps.hpp"
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+
+class StandDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
+  bool takes_over() const override { return true; }
+  bool any_state() const override { return true; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.above_zero("timeout", goal.timeout, 600.0, "s");
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const Robot & robot = run.robot();
+    const auto stopped = run.robot().stop_motion();
+    if (!stopped && stopped.error().code != ErrorCode::link_lost) {
+      return stopped.error();
+    }
+    ask_dashboard(robot, "stop");  // without a program it fails, and that is fine
+    if (const Status told = tell_dashboard(robot, "power off", "Powering off"); !told) {
+      return told;
+    }
+    return take_steps(run, goal.timeout, [&]() -> std::string {
+      const std::string mode = dashboard_value(robot, "robotmode");
+      return mode == "POWER_OFF" ? "" : "powering off (mode " + mode + ")";
+    });
+  }
+};
+
+UR_ROS_RTDE_EXPORT(StandDown, "stand_down")
+
+}  // namespace ur_ros_rtde

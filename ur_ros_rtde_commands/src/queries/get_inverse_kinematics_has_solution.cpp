@@ -1,0 +1,25 @@
+#include <ur_ros_rtde_msgs/action/check_pose.hpp>
+
+#include "queries/question.hpp"
+
+namespace ur_ros_rtde {
+
+class GetInverseKinematicsHasSolution : public Question<ur_ros_rtde_msgs::action::CheckPose> {
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.pose("pose", goal.pose);
+    joints_or_none(check, "near", goal.near).polyscope(10, 15).answers();
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const std::vector<double> near = or_present(goal.near, run.state().actual_q);
+    run.result().value = answer(
+        run, [&](auto & control) { return control.getInverseKinematicsHasSolution(to_ur(goal.pose), near); });
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(GetInverseKinematicsHasSolution, "get_inverse_kinematics_has_solution")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,20 @@
+#include <ur_ros_rtde_msgs/action/get_pose.hpp>
+
+#include "queries/question.hpp"
+
+namespace ur_ros_rtde {
+
+class GetTargetWaypoint : public Question<ur_ros_rtde_msgs::action::GetPose> {
+  void check(const Goal &, Check & check) const override { check.polyscope(3).answers(); }
+
+  Outcome run(const Goal &, Run & run) override
+  {
+    run.result().pose = answer(run, [](auto & control) { return to_pose(control.getTargetWaypoint()); });
+    run.result().frame = "base";
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(GetTargetWaypoint, "get_target_waypoint")
+
+}  // namespace ur_ros_rtde

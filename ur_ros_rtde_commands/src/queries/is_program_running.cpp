@@ -1,0 +1,17 @@
+#include <ur_ros_rtde_msgs/action/get_flag.hpp>
+
+#include "queries/question.hpp"
+
+namespace ur_ros_rtde {
+
+class IsProgramRunning : public Question<ur_ros_rtde_msgs::action::GetFlag> {
+  Outcome run(const Goal &, Run & run) override
+  {
+    run.result().value = run.state().program_running();
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(IsProgramRunning, "is_program_running")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,18 @@
+#include "script/given_script.hpp"
+
+namespace ur_ros_rtde {
+
+class SendScript : public Command<SendScriptAction> {
+  Resource resource() const override { return Resource::script; }
+
+  void check(const Goal & goal, Check & check) const override { check_script(goal, check); }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    return run_given(goal, run, ScriptKind::program, goal.timeout);
+  }
+};
+
+UR_ROS_RTDE_EXPORT(SendScript, "send_script")
+
+}  // namespace ur_ros_rtde

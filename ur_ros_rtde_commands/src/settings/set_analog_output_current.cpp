@@ -1,0 +1,24 @@
+#include <ur_ros_rtde_msgs/action/set_analog_output.hpp>
+
+#include "settings/await.hpp"
+
+namespace ur_ros_rtde {
+
+class SetAnalogOutputCurrent : public Command<ur_ros_rtde_msgs::action::SetAnalogOutput> {
+  Resource resource() const override { return Resource::none; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.in_range("pin", goal.pin, 0, 1).in_range("fraction", goal.fraction, 0.0, 1.0);
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    return set_analog_output(run, goal.pin, 0.004 + 0.016 * goal.fraction, 1e-4, "A",
+                             [&](auto & io) { return io.setAnalogOutputCurrent(goal.pin, goal.fraction); });
+  }
+};
+
+UR_ROS_RTDE_EXPORT(SetAnalogOutputCurrent, "set_analog_output_current")
+
+}  // namespace ur_ros_rtde

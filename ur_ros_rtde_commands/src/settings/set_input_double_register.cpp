@@ -1,0 +1,26 @@
+#include <ur_ros_rtde_msgs/action/set_register.hpp>
+
+#include "settings/await.hpp"
+
+namespace ur_ros_rtde {
+
+class SetInputDoubleRegister : public Command<ur_ros_rtde_msgs::action::SetRegister> {
+  Resource resource() const override { return Resource::none; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.in_range("index", goal.index, 19, 22).that(std::isfinite(goal.value), "value is not finite");
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    if (!run.io()->setInputDoubleRegister(goal.index + run.robot().register_offset(), goal.value)) {
+      return Outcome::failure(ErrorCode::link_lost, "the value could not be sent to the robot: try again");
+    }
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(SetInputDoubleRegister, "set_input_double_register")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,33 @@
+#include <fmt/format.h>
+
+#include <limits>
+#include <ur_ros_rtde_msgs/action/set_register.hpp>
+
+#include "settings/await.hpp"
+
+namespace ur_ros_rtde {
+
+class SetInputIntRegister : public Command<ur_ros_rtde_msgs::action::SetRegister> {
+  Resource resource() const override { return Resource::none; }
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    using Limits = std::numeric_limits<std::int32_t>;
+    check.in_range("index", goal.index, 18, 22)
+        .in_range("value", goal.value, Limits::min(), Limits::max())
+        .that(goal.value == std::trunc(goal.value), fmt::format("value is {}, it must be whole", goal.value));
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    if (!run.io()->setInputIntRegister(goal.index + run.robot().register_offset(),
+                                       static_cast<int>(goal.value))) {
+      return Outcome::failure(ErrorCode::link_lost, "the value could not be sent to the robot: try again");
+    }
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(SetInputIntRegister, "set_input_int_register")
+
+}  // namespace ur_ros_rtde

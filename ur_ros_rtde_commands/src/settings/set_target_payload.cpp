@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include <ur_ros_rtde_msgs/action/set_target_payload.hpp>
+
+#include "settings/await.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+constexpr double inertia_limit = 133.0;     // kg m^2, of the controller
+constexpr double inertia_tolerance = 1e-4;  // kg m^2
+
+bool inertia_is(const Sample & sample, const std::array<double, 6> & inertia)
+{
+  for (std::size_t i = 0; i < inertia.size(); ++i) {
+    // Controllers before 5.11 do not report it.
+    if (std::abs(sample.payload_inertia[i] - inertia[i]) > inertia_tolerance) {
+      return false;
+    }
+  }
+  return true;
+}
+}  // namespace
+
+class SetTargetPayload : public Command<ur_ros_rtde_msgs::action::SetTargetPayload> {
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.in_range("mass", goal.mass, 0.0, 50.0, "kg")
+        .vector("center_of_gravity", goal.center_of_gravity, 1.0, "m");
+    for (std::size_t i = 0; i < goal.inertia.size(); ++i) {
+      check.in_range(fmt::format("inertia[{}]", i), goal.inertia[i], -inertia_limit, inertia_limit, "kg m^2");
+    }
+    check.polyscope(10);
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const std::vector<double> inertia(goal.inertia.begin(), goal.inertia.end());
+    const auto cog = center_for_ur(goal.center_of_gravity);
+    must_do(run.control()->setTargetPayload(goal.mass, cog, inertia), "set the payload");
+    const auto is_set = [&] {
+      return payload_is(run.state(), goal.mass, goal.center_of_gravity) &&
+             inertia_is(run.state(), goal.inertia);
+    };
+    return run.expect(is_set, setting_limit, "the robot still reports another payload");
+  }
+};
+
+UR_ROS_RTDE_EXPORT(SetTargetPayload, "set_target_payload")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,160 @@
+"""The arguments of the launch files are the parameters of the nodes, and have priority over a file. Needs no launch."""
+
+import os
+import pathlib
+
+import pytest
+import rclpy
+import yaml
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
+from rclpy.parameter import parameter_value_to_python
+from support import Process, program, wait_for
+
+from ur_ros_rtde import launch_arguments
+from ur_ros_rtde.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_name, to_values
+
+CONFIG = pathlib.Path(__file__).resolve().parents[3] / "ur_ros_rtde" / "config" / "driver.yaml"
+OF_ROS = {"use_sim_time", "start_type_description_service"}
+
+
+@pytest.fixture(scope="module")
+def asker():
+    rclpy.init()
+    node = rclpy.create_node("asker")
+    yield node
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+@pytest.fixture
+def start(asker, addresses, tmp_path):
+    """Starts a program without a robot; gives the parameters that its nodes report."""
+    processes = []
+
+    def run(*arguments, executable="driver", namespace=""):
+        processes.append(Process([program("ur_ros_rtde", executable), "--ros-args", "-r", f"__ns:=/{namespace}",
+                                  "-p", f"robot_ip:={addresses[3]}", *map(str, arguments)]))
+        nodes = NODES if executable == "driver" else (executable,)
+        return {node: reported(asker, f"/{namespace}/{node}".replace("//", "/")) for node in nodes}
+
+    yield run
+    for process in processes:
+        process.end()
+        print(process.output())
+
+
+def ask(asker, node, kind, **request):
+    name = {ListParameters: "list_parameters", DescribeParameters: "describe_parameters", GetParameters: "get_parameters"}[kind]
+    client = asker.create_client(kind, f"{node}/{name}")
+    wait_for(client.service_is_ready, 20.0, f"{node}/{name}")
+    future = client.call_async(kind.Request(**request))
+    rclpy.spin_until_future_complete(asker, future, timeout_sec=10.0)
+    asker.destroy_client(client)
+    assert future.done(), f"no answer of {node}/{name}"
+    return future.result()
+
+
+def reported(asker, node):
+    """{name: (value, descriptor)}; a name with a dot is a plugin's own."""
+    names = [name for name in ask(asker, node, ListParameters).result.names if "." not in name and name not in OF_ROS]
+    values = ask(asker, node, GetParameters, names=names).values
+    descriptors = ask(asker, node, DescribeParameters, names=names).descriptors
+    return {name: (parameter_value_to_python(value), descriptor)
+            for name, value, descriptor in zip(names, values, descriptors)}
+
+
+def limits(descriptor):
+    ranges = [*descriptor.floating_point_range, *descriptor.integer_range]
+    return (ranges[0].from_value, ranges[0].to_value) if ranges else None
+
+
+def choices(descriptor):
+    prefix, begins, names = descriptor.additional_constraints.partition("one of: ")
+    if not begins:
+        return None
+    return (*(("",) if prefix == "empty, or " else ()), *names.split(", "))
+
+
+def test_every_parameter_is_a_launch_argument_with_its_type_default_limits_and_choices(start):
+    found = start()
+    names = set().union(*found.values())
+    assert names == {argument.name for argument in PARAMETERS}
+    for argument in PARAMETERS:
+        for node, parameters in found.items():
+            if argument.name not in parameters:
+                continue
+            value, descriptor = parameters[argument.name]
+            assert limits(descriptor) == argument.limits, (node, argument.name)
+            if choices(descriptor):
+                assert choices(descriptor) == argument.choices, (node, argument.name)
+            if argument.name != "robot_ip":  # which has no default
+                expected = list(argument.default) if isinstance(argument.default, tuple) else argument.default
+                assert value == expected and type(value) is type(expected), (node, argument.name)
+
+
+GIVEN = {"tf_prefix": "left_", "on_busy": "preempt", "rtde_frequency": 100.0, "urcap_port": 50007, "restart_program": False,
+         "plugins": ["move_j"]}
+
+
+# Every name under which a user's file may have a parameter, in the orders that matter.
+@pytest.mark.parametrize("names", [["/**"], ["/**/command_server", "/**"], ["/left/command_server", "/**"],
+                                   ["/**/command_server", "/left/command_server"], ["/left/*", "/*/command_server"]])
+@pytest.mark.parametrize("executable", ["driver", "command_server"])
+def test_launch_arguments_have_priority_over_a_file(start, tmp_path, names, executable):
+    file = tmp_path / "mine.yaml"
+    file.write_text("".join(f"{name}:\n  ros__parameters: {{on_busy: refuse, urcap_port: 50009, stream_gain: 500.0}}\n"
+                            for name in names))
+    written = launch_arguments.write_parameters(GIVEN)
+    try:
+        found = start("--params-file", file, "--params-file", written, executable=executable, namespace="left")
+    finally:
+        os.unlink(written)
+    for node, parameters in found.items():
+        for name, value in GIVEN.items():
+            if name in parameters:
+                got = parameters[name][0]
+                assert (list(got) if isinstance(value, list) else got) == value, (node, name)
+    assert found["command_server"]["stream_gain"][0] == 500.0  # what is not given as an argument comes from the file
+
+
+def test_the_parameter_file_to_copy_has_all_parameters_with_their_defaults():
+    parameters = yaml.safe_load(CONFIG.read_text())["/**"]["ros__parameters"]
+    assert parameters == {argument.name: argument.default for argument in PARAMETERS if argument.default != ()}
+    for argument in PARAMETERS:
+        if argument.default == ():
+            assert f"# {argument.name}: [" in CONFIG.read_text()
+
+
+def test_every_default_and_every_choice_is_a_valid_value():
+    for argument in (*DRIVER, *TWO_ROBOTS):
+        for text in (argument.default_text, *argument.text_choices):
+            if text != "[]":
+                argument.value(text)
+
+
+@pytest.mark.parametrize("name, text, said", [
+    ("ur_type", "ur11", 'ur_type is "ur11", it must be one of: '),
+    ("on_busy", "maybe", 'on_busy is "maybe", it must be one of: refuse, preempt'),
+    ("rtde_frequency", "fast", 'rtde_frequency is "fast", it must be a number from 1 to 500'),
+    ("rtde_frequency", "nan", 'rtde_frequency is "nan", it must be a number from 1 to 500'),
+    ("urcap_port", "70000", 'urcap_port is "70000", it must be an integer from 1 to 65535'),
+    ("urcap_port", "50002.5", 'urcap_port is "50002.5", it must be an integer'),
+    ("restart_program", "yes", 'restart_program is "yes", it must be one of: true, false'),
+    ("plugins", "move_j", 'plugins is "move_j", it must be a list of names'),
+    ("plugins", "[", 'plugins is "[", it must be a list of names'),
+])
+def test_a_wrong_value_is_refused_with_what_it_may_be(name, text, said):
+    with pytest.raises(ArgumentError) as error:
+        to_values(DRIVER, {name: text})
+    assert said in str(error.value)
+
+
+def test_values_have_the_type_of_the_parameter():
+    assert to_values(DRIVER, {"rtde_frequency": "100", "urcap_port": "50007", "restart_program": "false", "tf_prefix": "1",
+                              "plugins": "[move_j, stop]"}) == {
+        "rtde_frequency": 100.0, "urcap_port": 50007, "restart_program": False, "tf_prefix": "1", "plugins": ["move_j", "stop"]}
+
+
+def test_an_unknown_argument_is_refused_with_the_nearest_one():
+    with pytest.raises(ArgumentError, match="has no launch argument realtime_prio; did you mean realtime_priority?"):
+        check_name("realtime_prio", [argument.name for argument in DRIVER], "driver.launch.py")

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <chrono>
+#include <cstdint>
+#include <type_traits>
+
+#include "ur_ros_rtde_trajectory/vector.hpp"
+
+namespace ur_ros_rtde {
+
+/// Numbers as RTDE reports them (UR, "Real-Time Data Exchange (RTDE) Guide", robot_mode).
+enum class RobotMode : std::int32_t {
+  no_controller = -1,
+  disconnected = 0,
+  confirm_safety = 1,
+  booting = 2,
+  power_off = 3,
+  power_on = 4,
+  idle = 5,
+  backdrive = 6,
+  running = 7,
+  updating_firmware = 8,
+};
+
+/// RTDE's safety_mode.
+enum class SafetyMode : std::int32_t {
+  normal = 1,
+  reduced = 2,
+  protective_stop = 3,
+  recovery = 4,
+  safeguard_stop = 5,
+  system_emergency_stop = 6,
+  robot_emergency_stop = 7,
+  violation = 8,
+  fault = 9,
+  validate_joint_id = 10,
+  undefined = 11,
+};
+
+/// RTDE's runtime_state: what the robot program does.
+enum class RuntimeState : std::uint32_t {
+  stopping = 0,
+  stopped = 1,
+  playing = 2,
+  pausing = 3,
+  paused = 4,
+  resuming = 5,
+};
+
+const char * to_string(RobotMode mode);
+const char * to_string(SafetyMode mode);
+const char * to_string(RuntimeState state);
+
+/// The bits of RTDE's safety_status_bits.
+struct SafetyBits {
+  bool normal_mode, reduced_mode, protective_stopped, recovery_mode, safeguard_stopped,
+      system_emergency_stopped, robot_emergency_stopped, emergency_stopped, violation, fault,
+      stopped_due_to_safety;
+};
+
+/// The word that ur_rtde's control script writes into output integer register 2 about asynchronous moves.
+struct AsyncStatus {
+  std::uint32_t word = 0;
+
+  bool running() const { return (word & 0x8000U) != 0; }
+  /// 0..127, increases with each operation that begins (twice for an asynchronous path).
+  unsigned operation() const { return (word >> 24U) & 0x7FU; }
+  /// 0..127, increases with each write: two different values mean that something happened in between.
+  unsigned changes() const { return (word >> 16U) & 0xFFU; }
+  /// Of a path: index of the waypoint under way; of other moves 0.
+  unsigned progress() const { return word & 0x7FFFU; }
+  bool operator==(const AsyncStatus & other) const { return word == other.word; }
+};
+
+/// Everything of one RTDE package, of the same control cycle. Copied without allocation. Fields that the
+/// controller's version does not offer are NaN.
+struct Sample {
+  /// Packages since this receiver was made, across reconnections; 0: no package yet.
+  std::uint64_t sequence = 0;
+  /// Increases when the link was made anew: controller_time may have begun again (a reboot).
+  std::uint32_t link = 0;
+  /// s since the controller started.
+  double controller_time = 0.0;
+  /// When this host had the package: for durations, and for stamps.
+  std::chrono::steady_clock::time_point received;
+  std::chrono::system_clock::time_point stamp;
+
+  Vector6 target_q, target_qd, target_qdd, target_current, target_moment;
+  Vector6 actual_q, actual_qd, actual_current;
+  Vector6 actual_current_as_torque;  ///< Nm, PolyScope 5.23 and later
+  Vector6 joint_control_output;      ///< A
+  Vector6 joint_temperatures;        ///< degrees Celsius
+  Vector6 actual_joint_voltage;
+  std::array<std::int32_t, 6> joint_mode;
+
+  /// Of the active TCP, in the robot's base frame.
+  Vector6 actual_tcp_pose, actual_tcp_speed, target_tcp_pose, target_tcp_speed;
+  /// What the surroundings exert on the tool, at the TCP, in the base frame's orientation; compensated for
+  /// the payload.
+  Vector6 actual_tcp_force;
+  Vector6 ft_raw_wrench;  ///< of the force/torque sensor, in the flange frame, not compensated; PolyScope 5.9
+                          ///< and later
+  Vector3 actual_tool_accelerometer;
+
+  RobotMode robot_mode;
+  SafetyMode safety_mode;
+  RuntimeState runtime_state;
+  std::uint32_t robot_status_bits;  ///< 0 power on, 1 program running, 2 teach button, 3 power button
+  std::uint32_t safety_status_bits;
+
+  double speed_scaling;          ///< 0..1, of the trajectory, as it is now
+  double target_speed_fraction;  ///< 0..1, the speed slider
+  double actual_execution_time;  ///< ms
+  double actual_momentum, actual_main_voltage, actual_robot_voltage, actual_robot_current;
+
+  /// Bits 0-7 standard, 8-15 configurable, 16-17 tool.
+  std::uint64_t digital_inputs, digital_outputs;
+  std::array<double, 2> analog_inputs, analog_outputs;  ///< A or V
+
+  double payload;           ///< kg
+  Vector3 payload_cog;      ///< m, in the flange frame
+  Vector6 payload_inertia;  ///< kg m^2: Ixx, Iyy, Izz, Ixy, Ixz, Iyz
+
+  AsyncStatus async;                                 ///< output integer register 2 (+ register offset)
+  std::array<std::int32_t, 8> output_int_registers;  ///< 12-19 (+ register offset)
+  std::array<double, 8> output_double_registers;     ///< 12-19 (+ register offset)
+
+  SafetyBits safety() const;
+  bool power_on() const { return (robot_status_bits & 1U) != 0; }
+  bool program_running() const { return runtime_state == RuntimeState::playing; }
+};
+
+static_assert(std::is_trivially_copyable_v<Sample>);
+
+}  // namespace ur_ros_rtde

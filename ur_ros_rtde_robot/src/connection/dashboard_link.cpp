@@ -1,0 +1,321 @@
+#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+
+#include <fmt/format.h>
+#include <ur_rtde/dashboard_client.h>
+
+#include <boost/system/system_error.hpp>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "connection/dashboard_request.hpp"
+#include "connection/ports.hpp"
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
+#include "connection/rtde_probe.hpp"
+#include "ur_ros_rtde_robot/connection/text.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using ur_rtde::DashboardClient;
+
+std::optional<ControllerVersion> parse_version(const std::string & text)
+{
+  ControllerVersion version;
+  const int found = std::sscanf(text.c_str(), "%u.%u.%u.%u", &version.major, &version.minor, &version.bugfix,
+                                &version.build);
+  return found >= 2 ? std::optional(version) : std::nullopt;
+}
+
+/// "is in remote control" came with PolyScope 5.6; a CB3 has no such setting.
+bool knows_remote_control(const std::optional<ControllerVersion> & version)
+{
+  return version && version->major == 5 && version->minor >= 6;
+}
+
+}  // namespace
+
+class DashboardLink::Impl {
+ public:
+  Impl(DashboardLinkOptions options, LogFunction log) : options_(std::move(options)), report_(std::move(log))
+  {
+    if (options_.address.empty()) {
+      throw std::invalid_argument("the robot's address is empty: give its IP address or host name");
+    }
+    link_.error = {ErrorCode::link_lost,
+                   fmt::format("connecting to the dashboard server at {}", options_.address)};
+  }
+
+  void run(const std::stop_token & stop);
+  Locked<DashboardClient> dashboard() const;
+  Status call(const std::function<void(DashboardClient &)> & function);
+
+  std::function<void(const LinkStatus &)> link_function_;
+  mutable std::mutex mutex_;
+  LinkStatus link_;
+  std::optional<bool> remote_;
+  std::optional<ControllerVersion> version_;
+  const DashboardLinkOptions options_;
+  std::jthread thread_;
+
+ private:
+  Status connect();
+  Status heartbeat();
+  /// Until the connection is lost, the reason for which it returns, or stop is requested.
+  Status watch(const std::stop_token & stop);
+  [[noreturn]] static void out_of_step(const std::string & question, const std::string & answer);
+  void set_link(LinkStatus status);
+  void broken(const std::shared_ptr<DashboardClient> & client, const std::string & why);
+  void wait(const std::stop_token & stop, std::chrono::milliseconds duration);
+
+  Reporter report_;
+  std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
+  std::shared_ptr<DashboardClient> client_;
+  bool knows_remote_ = false;
+  bool broken_ = false;
+  std::condition_variable_any wake_;
+};
+
+Status DashboardLink::Impl::connect()
+{
+  if (auto status = probe_dashboard(options_.address, options_.connect_timeout); !status) {
+    return status;
+  }
+  try {
+    auto client = std::make_shared<DashboardClient>(options_.address, dashboard_port);
+    client->connect(static_cast<std::uint32_t>(options_.connect_timeout.count()));
+    const auto version = parse_version(client->polyscopeVersion());
+    knows_remote_ = knows_remote_control(version);
+    std::optional<bool> remote;
+    if (knows_remote_) {
+      remote = client->isInRemoteControl();
+    }
+    const std::lock_guard lock(mutex_);
+    client_ = std::move(client);
+    version_ = version;
+    remote_ = remote;
+    broken_ = false;
+    return {};
+  } catch (const std::exception & error) {
+    return failure(ErrorCode::link_lost,
+                   fmt::format("the dashboard server at {}:{} does not do what it should: {}",
+                               options_.address, dashboard_port, printable(error.what())));
+  }
+}
+
+Locked<DashboardClient> DashboardLink::Impl::dashboard() const
+{
+  const std::lock_guard lock(mutex_);
+  if (!link_.connected || !client_) {
+    throw RobotError(link_.error);
+  }
+  return {client_, lock_, "dashboard client"};
+}
+
+void DashboardLink::Impl::broken(const std::shared_ptr<DashboardClient> & client, const std::string & why)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    if (client != client_) {
+      return;
+    }
+    broken_ = true;
+    link_.error = {ErrorCode::link_lost,
+                   fmt::format("lost the dashboard server at {}: {}", options_.address, why)};
+  }
+  wake_.notify_all();
+}
+
+Status DashboardLink::Impl::call(const std::function<void(DashboardClient &)> & function)
+{
+  std::shared_ptr<DashboardClient> client;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!link_.connected || broken_ || !client_) {
+      return tl::unexpected(link_.error);
+    }
+    client = client_;
+  }
+  try {
+    const auto held = Locked(client, lock_, "dashboard client").hold();
+    function(*held);
+    return {};
+  } catch (const RobotError & error) {
+    return tl::unexpected(error.error());
+  } catch (const boost::system::system_error & error) {
+    broken(client, error.what());
+    return failure(ErrorCode::link_lost, fmt::format("the dashboard server at {} did not answer: {}",
+                                                     options_.address, error.what()));
+  } catch (const std::exception & error) {
+    if (!client->isConnected()) {
+      broken(client, error.what());
+    }
+    return failure(ErrorCode::rejected_by_robot,
+                   fmt::format("the robot answered: {}", printable(error.what())));
+  }
+}
+
+/// An answer that does not fit its question: those that follow would not, either.
+[[noreturn]] void DashboardLink::Impl::out_of_step(const std::string & question, const std::string & answer)
+{
+  throw boost::system::system_error(make_error_code(boost::system::errc::protocol_error),
+                                    fmt::format("\"{}\" was answered \"{}\"", question, printable(answer)));
+}
+
+Status DashboardLink::Impl::heartbeat()
+{
+  std::optional<bool> remote;
+  const auto status = call([&](DashboardClient & client) {
+    const std::string question = knows_remote_ ? "is in remote control" : "running";
+    client.send(question + "\n");
+    const std::string answer = client.receive();
+    const bool yes = answer.find("true") != std::string::npos;
+    if (!yes && answer.find("false") == std::string::npos) {
+      out_of_step(question, answer);
+    }
+    if (knows_remote_) {
+      remote = yes;
+    }
+  });
+  if (status) {
+    const std::lock_guard lock(mutex_);
+    remote_ = remote;
+  } else if (status.error().code == ErrorCode::busy) {
+    return {};  // a long call of somebody else: it will tell
+  }
+  return status;
+}
+
+void DashboardLink::Impl::set_link(LinkStatus status)
+{
+  bool changed = false;
+  {
+    const std::lock_guard lock(mutex_);
+    changed = link_.connected != status.connected || link_.error.message != status.error.message;
+    link_ = status;
+    if (!status.connected) {
+      client_.reset();
+      remote_.reset();
+    }
+  }
+  if (changed && link_function_) {
+    link_function_(status);
+  }
+}
+
+void DashboardLink::Impl::wait(const std::stop_token & stop, std::chrono::milliseconds duration)
+{
+  std::unique_lock lock(mutex_);
+  wake_.wait_for(lock, stop, duration, [this] { return broken_; });
+}
+
+Status DashboardLink::Impl::watch(const std::stop_token & stop)
+{
+  Status alive;
+  while (alive && !stop.stop_requested()) {
+    wait(stop, options_.heartbeat);
+    if (!stop.stop_requested()) {
+      alive = heartbeat();
+    }
+  }
+  return alive;
+}
+
+void DashboardLink::Impl::run(const std::stop_token & stop)
+{
+  Status lost;
+  while (!stop.stop_requested()) {
+    const auto connected = connect();
+    if (connected) {
+      if (!lost) {
+        report_.say(LogLevel::warn, fmt::format("{}; connected again", lost.error().message));
+      }
+      report_.forget();
+      set_link({true, {}});
+      // A robot that only closed the connection accepts a new one at once.
+      lost = watch(stop);
+      continue;
+    }
+    lost = {};
+    set_link({false, connected.error()});
+    {
+      const std::lock_guard lock(mutex_);
+      broken_ = false;
+    }
+    wait(stop, options_.retry_interval);
+    if (!stop.stop_requested()) {  // a driver that is shut down together with the controller reports nothing
+      report_.once(LogLevel::error,
+                   fmt::format("{}. Trying again every {} s", connected.error().message,
+                               std::chrono::duration<double>(options_.retry_interval).count()));
+    }
+  }
+}
+
+DashboardLink::DashboardLink(DashboardLinkOptions options, LogFunction log)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(log)))
+{
+}
+
+DashboardLink::~DashboardLink()
+{
+  stop();
+}
+
+void DashboardLink::on_link(std::function<void(const LinkStatus &)> function)
+{
+  impl_->link_function_ = std::move(function);
+}
+
+void DashboardLink::start()
+{
+  if (!impl_->thread_.joinable()) {
+    impl_->thread_ = std::jthread([impl = impl_.get()](const std::stop_token & stop) { impl->run(stop); });
+  }
+}
+
+void DashboardLink::stop()
+{
+  if (impl_->thread_.joinable()) {
+    impl_->thread_.request_stop();
+    impl_->thread_.join();
+  }
+}
+
+LinkStatus DashboardLink::link() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->link_;
+}
+
+std::optional<bool> DashboardLink::in_remote_control() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->remote_;
+}
+
+std::optional<ControllerVersion> DashboardLink::version() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->version_;
+}
+
+Locked<DashboardClient> DashboardLink::dashboard() const
+{
+  return impl_->dashboard();
+}
+
+Status DashboardLink::call(const std::function<void(DashboardClient &)> & function)
+{
+  return impl_->call(function);
+}
+
+Expected<std::string> DashboardLink::request(const std::string & line, std::chrono::milliseconds limit,
+                                             const std::stop_token & stop) const
+{
+  return dashboard_request(impl_->options_.address, line, limit, stop);
+}
+
+}  // namespace ur_ros_rtde

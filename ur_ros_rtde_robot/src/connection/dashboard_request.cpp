@@ -1,0 +1,77 @@
+#include "connection/dashboard_request.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "connection/ports.hpp"
+#include "connection/tcp_stream.hpp"
+#include "ur_ros_rtde_robot/connection/text.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Clock = TcpStream::Clock;
+constexpr std::chrono::milliseconds connect_limit{5000};
+constexpr std::chrono::milliseconds step{50};
+constexpr std::size_t longest_answer = 64 * 1024;
+
+struct Patience {
+  Clock::time_point deadline;
+  std::stop_token stop;
+};
+
+/// The line that `received` begins with, reading on until there is one; it is taken out of `received`.
+Expected<std::string> next_line(TcpStream & stream, std::string & received, const Patience & patience)
+{
+  std::array<std::byte, 512> bytes;
+  for (auto end = received.find('\n'); true; end = received.find('\n')) {
+    if (end != std::string::npos) {
+      std::string line = received.substr(0, end);
+      received.erase(0, end + 1);
+      line.erase(line.find_last_not_of(" \t\r") + 1);
+      return printable(line);
+    }
+    if (patience.stop.stop_requested()) {
+      return failure(ErrorCode::canceled, "nobody waits for the answer of the dashboard server any more");
+    }
+    const auto now = Clock::now();
+    if (now >= patience.deadline) {
+      return failure(ErrorCode::timeout, "the dashboard server has not answered");
+    }
+    const auto got = stream.read_some(bytes, std::min(patience.deadline, now + step));
+    if (!got) {
+      return tl::unexpected(got.error());
+    }
+    received.append(reinterpret_cast<const char *>(bytes.data()), *got);
+    if (received.size() > longest_answer) {
+      return failure(
+          ErrorCode::link_lost,
+          fmt::format("the dashboard server sent {} bytes without an end of line", received.size()));
+    }
+  }
+}
+
+}  // namespace
+
+Expected<std::string> dashboard_request(const std::string & address, const std::string & line,
+                                        std::chrono::milliseconds limit, const std::stop_token & stop)
+{
+  const auto begin = Clock::now();
+  auto stream = TcpStream::connect(address, dashboard_port, std::min(limit, connect_limit));
+  if (!stream) {
+    return tl::unexpected(stream.error());
+  }
+  std::string received;
+  if (const auto greeting = next_line(*stream, received, {begin + limit, stop}); !greeting) {
+    return greeting;
+  }
+  if (const auto sent = stream->write(line + "\n", begin + limit); !sent) {
+    return tl::unexpected(sent.error());
+  }
+  return next_line(*stream, received, {begin + limit, stop});
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,315 @@
+#include "connection/interface_links.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <ur_rtde/rtde.h>
+#include <ur_rtde/rtde_control_interface.h>
+#include <ur_rtde/rtde_io_interface.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "connection/ports.hpp"
+#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
+#include "program/script_check.hpp"
+#include "connection/tcp_stream.hpp"
+#include "ur_ros_rtde_robot/connection/text.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using ur_rtde::RTDEControlInterface;
+using ur_rtde::RTDEIOInterface;
+
+constexpr double controllers_frequency = -1.0;
+/// A control program that runs answers its first command within some cycles.
+constexpr std::chrono::seconds answer_limit(1);
+
+std::uint16_t control_flags(const RobotOptions & options)
+{
+  unsigned flags = options.control_mode == ControlMode::upload
+                       ? RTDEControlInterface::FLAG_UPLOAD_SCRIPT
+                       : RTDEControlInterface::FLAG_NO_WAIT;  // the program comes from a ScriptServer
+  // Looked at before by the supervisor, whose message says more.
+  flags |= RTDEControlInterface::FLAG_DISABLE_REMOTE_CONTROL_CHECK;
+  if (options.upper_range_registers) {
+    flags |= RTDEControlInterface::FLAG_UPPER_RANGE_REGISTERS;
+  }
+  return static_cast<std::uint16_t>(flags);
+}
+
+constexpr std::string_view register_names = "input_";
+
+/// Of inputs that somebody else has; what to do depends on which they are.
+std::string in_use(const RobotOptions & options, const std::vector<std::string> & names)
+{
+  const bool registers_only = std::all_of(
+      names.begin(), names.end(), [](const std::string & name) { return name.starts_with(register_names); });
+  std::string who = "another driver or another RTDE client is connected to it: stop that one";
+  if (registers_only) {
+    who += fmt::format(
+        "; or its installation has a fieldbus (EtherNet/IP, PROFINET, MODBUS): switch that off, or start "
+        "this "
+        "driver with register_range:={} (now {})",
+        options.upper_range_registers ? "lower" : "upper", options.upper_range_registers ? "upper" : "lower");
+  }
+  constexpr std::size_t enough = 4;
+  const std::vector<std::string> first(
+      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), enough)));
+  const std::string more = names.size() > enough ? fmt::format(" and {} more", names.size() - enough) : "";
+  return fmt::format("inputs of the robot at {} are in use ({}{}): {}", options.address,
+                     fmt::join(first, ", "), more, who);
+}
+
+}  // namespace
+
+Error InterfaceLinks::refused(std::string_view what, const std::exception & error) const
+{
+  if (const auto * used = dynamic_cast<const ur_rtde::InputsInUse *>(&error)) {
+    return {ErrorCode::robot_in_use, in_use(options_, used->names())};
+  }
+  return {ErrorCode::not_ready, fmt::format("{}: {}", what, printable(error.what()))};
+}
+
+Status InterfaceLinks::ensure_io()
+{
+  {
+    const std::lock_guard lock(mutex_);
+    if (io_ && io_->isConnected()) {
+      return {};
+    }
+  }
+  if (const auto reachable = TcpStream::connect(options_.address, rtde_port, options_.connect_timeout);
+      !reachable) {
+    return tl::unexpected(reachable.error());
+  }
+  try {
+    auto io = std::make_shared<RTDEIOInterface>(options_.address, false, options_.upper_range_registers,
+                                                keep_priority);
+    {
+      const std::lock_guard lock(mutex_);
+      io_.swap(io);
+    }
+    return {};  // the one before is closed here
+  } catch (const std::exception & error) {
+    return tl::unexpected(refused("the robot refuses the IO interface", error));
+  }
+}
+
+Status InterfaceLinks::start_watchdog(RTDEControlInterface & control) const
+{
+  control.setCommandTimeout(answer_limit);
+  const bool started = options_.watchdog_frequency == 0.0 || control.setWatchdog(options_.watchdog_frequency);
+  control.setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
+  if (!started) {
+    return failure(ErrorCode::not_ready,
+                   "the control program does not answer: look at the log of the pendant for what ended it");
+  }
+  return {};
+}
+
+Status InterfaceLinks::check_extensions(const ControllerVersion & version)
+{
+  while (!extensions_checked_ && scripts_.has_extensions()) {
+    const auto complaint =
+        check_definitions(options_.address, scripts_.text(version), options_.connect_timeout);
+    if (!complaint) {
+      return tl::unexpected(complaint.error());
+    }
+    if (!*complaint) {
+      break;
+    }
+    const auto left_out = scripts_.leave_out(version, (*complaint)->line, (*complaint)->text);
+    if (!left_out) {
+      return failure(ErrorCode::not_ready,
+                     fmt::format("the controller does not take the control program: {}", (*complaint)->text));
+    }
+    if (left_out->urcap.empty()) {
+      log_(LogLevel::error, fmt::format("the extension {} is left out: {}", left_out->name, left_out->why));
+    }
+  }
+  extensions_checked_ = true;
+  extensions_reporter_.once(LogLevel::info, scripts_.without_urcap());
+  return {};
+}
+
+Status InterfaceLinks::reach_control_ports() const
+{
+  for (const auto port : {rtde_port, script_port}) {
+    if (const auto reachable = TcpStream::connect(options_.address, port, options_.connect_timeout);
+        !reachable) {
+      return tl::unexpected(reachable.error());
+    }
+  }
+  return {};
+}
+
+std::shared_ptr<RTDEControlInterface> InterfaceLinks::connect_control(const std::string & script) const
+{
+  return std::make_shared<RTDEControlInterface>(options_.address, controllers_frequency,
+                                                control_flags(options_), options_.urcap_port, keep_priority,
+                                                script);
+}
+
+Status InterfaceLinks::start_control(const ControllerVersion & version)
+{
+  if (resume_parked()) {
+    return {};
+  }
+  if (const auto reachable = reach_control_ports(); !reachable) {
+    return reachable;
+  }
+  if (const auto checked = check_extensions(version); !checked) {
+    return checked;
+  }
+  try {
+    auto control = connect_control(scripts_.text(version));
+    {
+      // From here on the watchdog is fed, which must have begun when the program starts to watch.
+      const std::lock_guard lock(mutex_);
+      control_ = control;
+    }
+    auto started = start_watchdog(*control);
+    if (!started) {
+      drop_control();
+    }
+    return started;
+  } catch (const std::exception & error) {
+    drop_control();
+    extensions_checked_ = false;  // perhaps a URCap is gone
+    return tl::unexpected(refused("the control program cannot be started", error));
+  }
+}
+
+bool InterfaceLinks::take_control_lock(RTDEControlInterface & control, int attempts)
+{
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    control.abandonCommand();
+    if (control_lock_->try_lock_for(std::chrono::milliseconds(20))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void InterfaceLinks::park_control()
+{
+  std::shared_ptr<RTDEControlInterface> control;
+  {
+    const std::lock_guard lock(mutex_);
+    control = parked_ = std::exchange(control_, nullptr);
+  }
+  if (!control || !take_control_lock(*control, 25)) {
+    return;
+  }
+  try {
+    control->setCommandTimeout(std::chrono::milliseconds(500));
+    control->stopScript();
+  } catch (const std::exception &) {
+    // It is stopped by other means, then.
+  }
+  control->setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
+  control_lock_->unlock();
+}
+
+bool InterfaceLinks::control_parked() const
+{
+  const std::lock_guard lock(mutex_);
+  return parked_ != nullptr;
+}
+
+bool InterfaceLinks::resume_parked()
+{
+  std::shared_ptr<RTDEControlInterface> control;
+  {
+    const std::lock_guard lock(mutex_);
+    control = parked_;
+  }
+  bool works = false;
+  try {
+    works = control && control->isConnected() && control->reuploadScript();
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    while (works && !control->isProgramRunning()) {
+      works = control->waitForNextState() && std::chrono::steady_clock::now() < deadline;
+    }
+    works = works && start_watchdog(*control);
+  } catch (const std::exception &) {
+    works = false;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    parked_.reset();
+    if (works) {
+      control_ = control;
+    }
+  }
+  if (control && !works) {
+    control->disconnect();
+  }
+  return works;
+}
+
+void InterfaceLinks::drop_control()
+{
+  std::shared_ptr<RTDEControlInterface> control;
+  {
+    const std::lock_guard lock(mutex_);
+    control = control_ ? control_ : parked_;
+    control_.reset();
+    parked_.reset();
+  }
+  // The robot lets each input register have one client: the connection must be gone before the next one, even
+  // if somebody else still holds the interface.
+  if (control && take_control_lock(*control, 50)) {
+    control->disconnect();
+    control_lock_->unlock();
+  }
+}
+
+void InterfaceLinks::drop()
+{
+  drop_control();
+  std::shared_ptr<RTDEIOInterface> io;  // closed after the lock is released
+  const std::lock_guard lock(mutex_);
+  io.swap(io_);
+}
+
+std::shared_ptr<RTDEControlInterface> InterfaceLinks::control_pointer() const
+{
+  const std::lock_guard lock(mutex_);
+  return control_;
+}
+
+std::optional<Locked<RTDEControlInterface>> InterfaceLinks::control() const
+{
+  const std::lock_guard lock(mutex_);
+  return control_ ? std::optional(Locked(control_, control_lock_, "control interface")) : std::nullopt;
+}
+
+std::optional<Locked<RTDEIOInterface>> InterfaceLinks::io() const
+{
+  const std::lock_guard lock(mutex_);
+  return io_ ? std::optional(Locked(io_, io_lock_, "IO interface")) : std::nullopt;
+}
+
+bool InterfaceLinks::control_silent() const
+{
+  constexpr std::chrono::milliseconds patience(50);
+  const auto control = control_pointer();
+  return control && control->getSilence() > patience;
+}
+
+void InterfaceLinks::kick_watchdog()
+{
+  std::shared_ptr<RTDEControlInterface> control;
+  {
+    const std::lock_guard lock(mutex_);
+    control = control_ ? control_ : parked_;
+  }
+  if (control) {
+    control->kickWatchdog();
+  }
+}
+
+}  // namespace ur_ros_rtde

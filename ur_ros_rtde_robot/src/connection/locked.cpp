@@ -1,0 +1,57 @@
+#include "ur_ros_rtde_robot/connection/locked.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ur_ros_rtde_trajectory/error.hpp"
+
+namespace ur_ros_rtde {
+
+bool InterfaceLock::try_lock_for(std::chrono::milliseconds limit)
+{
+  const auto self = std::this_thread::get_id();
+  std::unique_lock lock(mutex_);
+  if (depth_ != 0 && owner_ == self) {
+    ++depth_;
+    return true;
+  }
+  waiting_.push_back(self);
+  const bool mine = released_.wait_for(lock, limit, [&] { return depth_ == 0 && waiting_.front() == self; });
+  waiting_.erase(std::find(waiting_.begin(), waiting_.end(), self));
+  if (mine) {
+    owner_ = self;
+    depth_ = 1;
+  } else {
+    lock.unlock();
+    released_.notify_all();  // the next in line may have waited for this thread
+  }
+  return mine;
+}
+
+void InterfaceLock::unlock()
+{
+  {
+    const std::lock_guard lock(mutex_);
+    if (--depth_ != 0) {
+      return;
+    }
+    owner_ = {};
+  }
+  released_.notify_all();
+}
+
+std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> acquire(InterfaceLock & lock, const char * what,
+                                                                  std::chrono::milliseconds limit)
+{
+  if (!lock.try_lock_for(limit)) {
+    throw RobotError(
+        {ErrorCode::busy,
+         fmt::format("another call of the {} has been running for {} ms: try again when it has ended, or "
+                     "use the asynchronous form of that call",
+                     what, limit.count())});
+  }
+  return {&lock, [](InterfaceLock * held) { held->unlock(); }};
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,121 @@
+#include "connection/rtde_probe.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "connection/ports.hpp"
+#include "connection/rtde_header.hpp"
+#include "connection/tcp_stream.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+constexpr char request_protocol_version = 'V';
+constexpr char get_urcontrol_version = 'v';
+constexpr char text_message = 'M';
+/// No answer to these two requests is longer; a text message may be.
+constexpr std::size_t longest_package = 2048;
+
+std::uint32_t big_endian(const std::vector<std::byte> & data, std::size_t offset)
+{
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value = value << 8U | std::to_integer<std::uint32_t>(data[offset + i]);
+  }
+  return value;
+}
+
+Error not_rtde(const std::string & address, const std::string & why)
+{
+  return {ErrorCode::link_lost, fmt::format("{}:{} accepts connections but does not answer as the RTDE "
+                                            "server of a UR controller ({}): check the "
+                                            "robot's address",
+                                            address, rtde_port, why)};
+}
+
+Expected<std::vector<std::byte>> reply(TcpStream & stream, const std::string & address, char type,
+                                       TcpStream::Clock::time_point deadline)
+{
+  while (true) {
+    std::array<std::byte, rtde_header_size> header{};
+    if (const auto status = stream.read(header, deadline); !status) {
+      return tl::unexpected(not_rtde(address, status.error().message));
+    }
+    const auto size = std::to_integer<std::size_t>(header[0]) << 8U | std::to_integer<std::size_t>(header[1]);
+    const auto found = static_cast<char>(header[2]);
+    if (size < rtde_header_size || size > longest_package || (found != type && found != text_message)) {
+      return tl::unexpected(not_rtde(address, "its answer is not an RTDE package"));
+    }
+    std::vector<std::byte> body(size - rtde_header_size);
+    if (const auto status = stream.read(body, deadline); !status) {
+      return tl::unexpected(not_rtde(address, status.error().message));
+    }
+    if (found == type) {
+      return body;
+    }
+  }
+}
+
+}  // namespace
+
+Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono::milliseconds limit)
+{
+  auto stream = TcpStream::connect(address, rtde_port, limit);
+  if (!stream) {
+    return tl::unexpected(stream.error());
+  }
+  const auto deadline = TcpStream::Clock::now() + limit;
+  constexpr std::array version_2{std::byte{0}, std::byte{5}, std::byte{request_protocol_version},
+                                 std::byte{0}, std::byte{2}};
+  if (const auto status = stream->write(version_2, deadline); !status) {
+    return tl::unexpected(status.error());
+  }
+  const auto accepted = reply(*stream, address, request_protocol_version, deadline);
+  if (!accepted) {
+    return tl::unexpected(accepted.error());
+  }
+  if (accepted->size() != 1 || accepted->front() != std::byte{1}) {
+    return tl::unexpected(
+        not_rtde(address, "it refuses protocol version 2, which PolyScope has had since 3.3"));
+  }
+  constexpr std::array version{std::byte{0}, std::byte{3}, std::byte{get_urcontrol_version}};
+  if (const auto status = stream->write(version, deadline); !status) {
+    return tl::unexpected(status.error());
+  }
+  const auto numbers = reply(*stream, address, get_urcontrol_version, deadline);
+  if (!numbers) {
+    return tl::unexpected(numbers.error());
+  }
+  if (numbers->size() < 16) {
+    return tl::unexpected(not_rtde(address, "it does not tell its version"));
+  }
+  return ControllerVersion{big_endian(*numbers, 0), big_endian(*numbers, 4), big_endian(*numbers, 8),
+                           big_endian(*numbers, 12)};
+}
+
+Status probe_dashboard(const std::string & address, std::chrono::milliseconds limit)
+{
+  auto stream = TcpStream::connect(address, dashboard_port, limit);
+  if (!stream) {
+    return tl::unexpected(stream.error());
+  }
+  const auto greeting = stream->read_line(TcpStream::Clock::now() + limit);
+  if (!greeting || greeting->find("Dashboard Server") == std::string::npos) {
+    return failure(
+        ErrorCode::link_lost,
+        fmt::format("{}:{} accepts connections but does not greet as a UR dashboard server ({}): check the "
+                    "robot's address",
+                    address, dashboard_port, greeting ? "`" + *greeting + "`" : greeting.error().message));
+  }
+  return {};
+}
+
+std::string to_string(const ControllerVersion & version)
+{
+  return fmt::format("{}.{}.{}", version.major, version.minor, version.bugfix);
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,323 @@
+#include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "connection/ports.hpp"
+#include "connection/rtde_header.hpp"
+#include "connection/rtde_probe.hpp"
+#include "connection/tcp_stream.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Clock = RtdeStream::Clock;
+using Bytes = std::span<const std::byte>;
+
+/// Types of packages: the ASCII letters of the protocol (UR, "RTDE Guide", "Protocol").
+constexpr char protocol_version = 'V';
+constexpr char setup_outputs = 'O';
+constexpr char start = 'S';
+constexpr char data = 'U';
+
+enum class Kind { boolean, uint8, int32, uint32, uint64, real };
+
+struct Layout {
+  Kind kind;
+  std::size_t count;
+};
+
+struct NamedLayout {
+  std::string_view name;
+  Layout layout;
+};
+constexpr std::array layouts{
+    NamedLayout{"BOOL", {Kind::boolean, 1}},       NamedLayout{"UINT8", {Kind::uint8, 1}},
+    NamedLayout{"INT32", {Kind::int32, 1}},        NamedLayout{"UINT32", {Kind::uint32, 1}},
+    NamedLayout{"UINT64", {Kind::uint64, 1}},      NamedLayout{"DOUBLE", {Kind::real, 1}},
+    NamedLayout{"VECTOR3D", {Kind::real, 3}},      NamedLayout{"VECTOR6D", {Kind::real, 6}},
+    NamedLayout{"VECTOR6INT32", {Kind::int32, 6}}, NamedLayout{"VECTOR6UINT32", {Kind::uint32, 6}},
+};
+
+std::size_t bytes_of(Kind kind)
+{
+  switch (kind) {
+    case Kind::boolean:
+    case Kind::uint8:
+      return 1;
+    case Kind::int32:
+    case Kind::uint32:
+      return 4;
+    default:
+      return 8;
+  }
+}
+
+std::uint64_t big_endian(Bytes bytes)
+{
+  std::uint64_t value = 0;
+  for (const std::byte byte : bytes) {
+    value = value << 8U | std::to_integer<std::uint64_t>(byte);
+  }
+  return value;
+}
+
+double number(Kind kind, Bytes bytes)
+{
+  const std::uint64_t value = big_endian(bytes);
+  switch (kind) {
+    case Kind::boolean:
+      return value != 0 ? 1.0 : 0.0;
+    case Kind::int32:
+      return static_cast<double>(static_cast<std::int32_t>(static_cast<std::uint32_t>(value)));
+    case Kind::real:
+      return std::bit_cast<double>(value);
+    default:
+      return static_cast<double>(value);
+  }
+}
+
+std::vector<std::string> split(std::string_view list)
+{
+  std::vector<std::string> parts;
+  while (true) {
+    const std::size_t comma = list.find(',');
+    parts.emplace_back(list.substr(0, comma));
+    if (comma == std::string_view::npos) {
+      return parts;
+    }
+    list.remove_prefix(comma + 1);
+  }
+}
+
+std::string request(char type, std::string_view payload)
+{
+  const std::size_t size = rtde_header_size + payload.size();
+  std::string package{static_cast<char>(size >> 8U), static_cast<char>(size & 0xFFU), type};
+  return package.append(payload);
+}
+
+}  // namespace
+
+class RtdeStream::Impl {
+ public:
+  Impl(TcpStream stream, std::string name) : stream_(std::move(stream)), name_(std::move(name)) {}
+
+  Status set_up(const std::vector<std::string> & names, double frequency, std::chrono::milliseconds limit);
+  Expected<bool> next(std::span<double> numbers, Clock::time_point deadline);
+
+  std::vector<Field> fields_;
+  std::size_t width_ = 0;
+  double frequency_ = 0.0;
+
+ private:
+  struct Package {
+    char type;
+    Bytes payload;  ///< until the next call
+  };
+  Expected<std::optional<Package>> package(Clock::time_point deadline);
+  Expected<std::string> reply(char type, std::string_view payload, std::chrono::milliseconds limit);
+  Status lay_out(const std::vector<std::string> & names, const std::vector<std::string> & types);
+  tl::unexpected<Error> nonsense(const std::string & what) const
+  {
+    return failure(ErrorCode::link_lost, fmt::format("{} does not speak RTDE: {}", name_, what));
+  }
+
+  TcpStream stream_;
+  std::string name_;
+  std::vector<Layout> layouts_;
+  std::size_t package_bytes_ = 0;
+  std::vector<std::byte> buffer_;
+  std::size_t taken_ = 0;  ///< bytes at its beginning that are done with
+};
+
+Expected<std::optional<RtdeStream::Impl::Package>> RtdeStream::Impl::package(Clock::time_point deadline)
+{
+  buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(taken_));
+  taken_ = 0;
+  std::array<std::byte, 2048> bytes;
+  while (true) {
+    if (buffer_.size() >= rtde_header_size) {
+      const auto size = static_cast<std::size_t>(big_endian(Bytes(buffer_).first(2)));
+      if (size < rtde_header_size) {
+        return nonsense(fmt::format("a package of {} bytes", size));
+      }
+      if (buffer_.size() >= size) {
+        taken_ = size;
+        return Package{std::to_integer<char>(buffer_[2]),
+                       Bytes(buffer_).subspan(rtde_header_size, size - rtde_header_size)};
+      }
+    }
+    const auto got = stream_.read_some(bytes, deadline);
+    if (!got) {
+      return tl::unexpected(got.error());
+    }
+    if (*got == 0) {
+      return std::nullopt;
+    }
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(*got));
+  }
+}
+
+/// Text messages may come before it.
+Expected<std::string> RtdeStream::Impl::reply(char type, std::string_view payload,
+                                              std::chrono::milliseconds limit)
+{
+  const auto deadline = Clock::now() + limit;
+  if (const auto sent = stream_.write(request(type, payload), deadline); !sent) {
+    return tl::unexpected(sent.error());
+  }
+  while (true) {
+    const auto answer = package(deadline);
+    if (!answer) {
+      return tl::unexpected(answer.error());
+    }
+    if (!*answer) {
+      return failure(ErrorCode::link_lost, fmt::format("{} does not answer", name_));
+    }
+    if ((*answer)->type == type) {
+      const Bytes bytes = (*answer)->payload;
+      return std::string(reinterpret_cast<const char *>(bytes.data()), bytes.size());
+    }
+  }
+}
+
+Status RtdeStream::Impl::lay_out(const std::vector<std::string> & names,
+                                 const std::vector<std::string> & types)
+{
+  if (types.size() != names.size()) {
+    return nonsense(fmt::format("{} types for {} fields", types.size(), names.size()));
+  }
+  std::vector<std::string> missing;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto known = std::ranges::find(layouts, types[i], &NamedLayout::name);
+    if (types[i] == "NOT_FOUND") {
+      missing.push_back(names[i]);
+    } else if (known == layouts.end()) {
+      return nonsense(fmt::format("{} is of type \"{}\"", names[i], types[i]));
+    } else {
+      layouts_.push_back(known->layout);
+      fields_.push_back({names[i], known->layout.count});
+      width_ += known->layout.count;
+      package_bytes_ += known->layout.count * bytes_of(known->layout.kind);
+    }
+  }
+  if (!missing.empty()) {
+    return failure(ErrorCode::not_supported,
+                   fmt::format("this controller does not have {}", fmt::join(missing, ", ")));
+  }
+  return {};
+}
+
+Status RtdeStream::Impl::set_up(const std::vector<std::string> & names, double frequency,
+                                std::chrono::milliseconds limit)
+{
+  frequency_ = frequency;
+  if (const auto answer = reply(protocol_version, std::string_view("\0\2", 2), limit); !answer) {
+    return tl::unexpected(answer.error());
+  } else if (*answer != "\1") {
+    return nonsense("it refuses protocol version 2, which PolyScope has had since 3.3");
+  }
+  std::string recipe(8, '\0');
+  const auto bits = std::bit_cast<std::uint64_t>(frequency);
+  for (std::size_t i = 0; i < recipe.size(); ++i) {
+    recipe[i] = static_cast<char>(bits >> (56U - 8U * i) & 0xFFU);
+  }
+  const auto types = reply(setup_outputs, recipe + fmt::format("{}", fmt::join(names, ",")), limit);
+  if (!types) {
+    return tl::unexpected(types.error());
+  }
+  if (types->empty()) {
+    return nonsense("an empty answer to the fields");
+  }
+  if (Status laid_out = lay_out(names, split(std::string_view(*types).substr(1))); !laid_out) {
+    return laid_out;
+  }
+  const auto started = reply(start, {}, limit);
+  if (!started) {
+    return tl::unexpected(started.error());
+  }
+  return *started == "\1" ? Status() : nonsense("it does not start");
+}
+
+Expected<bool> RtdeStream::Impl::next(std::span<double> numbers, Clock::time_point deadline)
+{
+  auto got = package(deadline);
+  while (got && *got && (*got)->type != data) {
+    got = package(deadline);
+  }
+  if (!got) {
+    return tl::unexpected(got.error());
+  }
+  if (!*got) {
+    return false;
+  }
+  Bytes bytes = (*got)->payload;
+  if (bytes.size() != 1 + package_bytes_ || numbers.size() < width_) {
+    return nonsense(
+        fmt::format("a package of {} bytes in the place of {}", bytes.size(), 1 + package_bytes_));
+  }
+  bytes = bytes.subspan(1);  // the recipe's number
+  std::size_t at = 0;
+  for (const Layout & layout : layouts_) {
+    for (std::size_t i = 0; i < layout.count; ++i) {
+      numbers[at++] = number(layout.kind, bytes.first(bytes_of(layout.kind)));
+      bytes = bytes.subspan(bytes_of(layout.kind));
+    }
+  }
+  return true;
+}
+
+Expected<RtdeStream> RtdeStream::open(const std::string & address, const std::vector<std::string> & fields,
+                                      double frequency, std::chrono::milliseconds limit)
+{
+  const auto version = probe_rtde(address, limit);
+  if (!version) {
+    return tl::unexpected(version.error());
+  }
+  auto stream = TcpStream::connect(address, rtde_port, limit);
+  if (!stream) {
+    return tl::unexpected(stream.error());
+  }
+  auto impl = std::make_unique<Impl>(std::move(*stream), fmt::format("{}:{}", address, rtde_port));
+  const double most = version->frequency();
+  if (const auto ready = impl->set_up(fields, frequency > 0.0 ? std::min(frequency, most) : most, limit);
+      !ready) {
+    return tl::unexpected(ready.error());
+  }
+  return RtdeStream(std::move(impl));
+}
+
+RtdeStream::RtdeStream(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+RtdeStream::RtdeStream(RtdeStream &&) noexcept = default;
+RtdeStream & RtdeStream::operator=(RtdeStream &&) noexcept = default;
+RtdeStream::~RtdeStream() = default;
+
+const std::vector<RtdeStream::Field> & RtdeStream::fields() const
+{
+  return impl_->fields_;
+}
+
+std::size_t RtdeStream::width() const
+{
+  return impl_->width_;
+}
+
+double RtdeStream::frequency() const
+{
+  return impl_->frequency_;
+}
+
+Expected<bool> RtdeStream::next(std::span<double> numbers, Clock::time_point deadline)
+{
+  return impl_->next(numbers, deadline);
+}
+
+}  // namespace ur_ros_rtde

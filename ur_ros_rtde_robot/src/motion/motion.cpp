@@ -1,0 +1,38 @@
+#include "ur_ros_rtde_robot/motion/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ur_ros_rtde {
+
+const char * to_string(StopMeans means)
+{
+  switch (means) {
+    case StopMeans::nothing_moved:
+      return "nothing moved";
+    case StopMeans::stop_command:
+      return "stop command";
+    case StopMeans::program_stopped:
+      return "program stopped";
+    case StopMeans::stopped_by_robot:
+      return "stopped by the robot";
+  }
+  return "unknown";
+}
+
+void StandstillDetector::add(const Sample & sample)
+{
+  // Written so that NaN counts as motion.
+  const bool quiet = std::all_of(sample.actual_qd.begin(), sample.actual_qd.end(),
+                                 [](double joint_velocity) { return std::abs(joint_velocity) < velocity; });
+  if (!quiet || sample.link != link_) {
+    quiet_since_.reset();
+  }
+  link_ = sample.link;
+  if (quiet && !quiet_since_) {
+    quiet_since_ = sample.controller_time;
+  }
+  at_rest_ = quiet_since_ && sample.controller_time - *quiet_since_ >= duration;
+}
+
+}  // namespace ur_ros_rtde

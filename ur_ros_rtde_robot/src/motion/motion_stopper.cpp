@@ -1,0 +1,205 @@
+#include "motion/motion_stopper.hpp"
+
+#include <fmt/format.h>
+#include <ur_rtde/rtde_control_interface.h>
+
+#include <array>
+
+#include "program/condition.hpp"
+#include "connection/ports.hpp"
+#include "connection/tcp_stream.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Control = ur_rtde::RTDEControlInterface;
+using std::chrono::milliseconds;
+
+constexpr std::uint32_t moves = Control::MOTION_MOVE_JOINT | Control::MOTION_MOVE_LINEAR;
+
+/// Gives the commands of a stop a limit of their own; the default would let them wait for minutes.
+class CommandLimit {
+ public:
+  CommandLimit(Control & control, milliseconds limit) : control_(control)
+  {
+    control_.setCommandTimeout(limit);
+  }
+  ~CommandLimit() { control_.setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT)); }
+  CommandLimit(const CommandLimit &) = delete;
+  CommandLimit & operator=(const CommandLimit &) = delete;
+
+ private:
+  Control & control_;
+};
+
+/// One stop for each kind of motion that was started. Whoever follows a stream must be ended before anything
+/// else moves the arm.
+void send_stops(Control & control, const StopOptions & options)
+{
+  const auto started = control.getStartedMotions();
+  const auto has = [started](std::uint32_t kind) { return (started & kind) != 0; };
+  if (has(Control::MOTION_SERVO)) {
+    control.servoStop(options.linear_deceleration);
+  }
+  if (has(Control::MOTION_SPEED_JOINT)) {
+    control.speedStop(options.joint_deceleration);
+  }
+  if (has(Control::MOTION_SPEED_LINEAR)) {
+    control.speedStop(options.linear_deceleration);
+  }
+  if (has(Control::MOTION_FORCE)) {
+    control.forceModeStop();
+  }
+  if (has(Control::MOTION_JOG)) {
+    control.jogStop();
+  }
+  if (has(Control::MOTION_FREEDRIVE)) {
+    control.endFreedriveMode();
+  }
+  if (has(Control::MOTION_TEACH)) {
+    control.endTeachMode();
+  }
+  if (has(Control::MOTION_MOVE_JOINT)) {
+    control.stopJ(options.joint_deceleration, true);
+  }
+  if (has(Control::MOTION_MOVE_LINEAR)) {
+    control.stopL(options.linear_deceleration, true);
+  }
+  if (has(Control::MOTION_TORQUE)) {
+    control.stopScript();
+  }
+}
+
+}  // namespace
+
+Status stop_program(const std::string & address, milliseconds limit)
+{
+  auto stream = TcpStream::connect(address, dashboard_port, limit);
+  if (!stream) {
+    return tl::unexpected(stream.error());
+  }
+  const auto deadline = TcpStream::Clock::now() + limit;
+  if (const auto greeting = stream->read_line(deadline); !greeting) {
+    return tl::unexpected(greeting.error());
+  }
+  if (const auto sent = stream->write("stop\n", deadline); !sent) {
+    return sent;
+  }
+  const auto answer = stream->read_line(deadline);
+  if (!answer) {
+    return tl::unexpected(answer.error());
+  }
+  if (answer->find("Stopped") == std::string::npos) {
+    return failure(ErrorCode::rejected_by_robot, fmt::format("the robot answered to `stop`: {}", *answer));
+  }
+  return {};
+}
+
+bool MotionStopper::under_way() const
+{
+  const auto view = tracker_.view();
+  if (!view.at_rest || view.operating()) {
+    return true;
+  }
+  const auto control = links_.control_pointer();
+  if (!control) {
+    return false;
+  }
+  const auto started = control->getStartedMotions();
+  // A move that was sent but of which nothing has been heard yet is under way, too; one that has ended is
+  // not.
+  const bool move_pending = (started & moves) != 0 &&
+                            view.async.word == static_cast<std::uint32_t>(control->getAsyncOperationBefore());
+  return move_pending || (started & ~moves) != 0;
+}
+
+bool MotionStopper::command_stop(const StopOptions & options)
+{
+  const auto control = links_.control_pointer();
+  if (!control) {
+    return false;
+  }
+  // A command that blocks holds the lock, and the control program with it: it gives up the lock at once, the
+  // program perhaps not.
+  bool held = links_.control_lock()->try_lock_for(milliseconds(20));
+  for (int attempt = 0; !held && attempt < 10; ++attempt) {
+    control->abandonCommand();
+    held = links_.control_lock()->try_lock_for(milliseconds(20));
+  }
+  if (!held) {
+    return false;
+  }
+  const std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> unlock(
+      links_.control_lock().get(), [](InterfaceLock * lock) { lock->unlock(); });
+  try {
+    const CommandLimit limit(*control, options.limit);
+    send_stops(*control, options);
+    return control->getStartedMotions() == 0;
+  } catch (const std::exception &) {
+    return false;
+  }
+}
+
+bool MotionStopper::wait_for_standstill(milliseconds limit) const
+{
+  // What was under way when the stop was sent shows in the samples some cycles later.
+  constexpr std::uint64_t cycles = 5;
+  const auto begin = tracker_.view().sequence;
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  Sample sample{};
+  while (std::chrono::steady_clock::now() < deadline && state_.link().connected) {
+    state_.wait_for_next(sample, milliseconds(20));
+    const auto view = tracker_.view();
+    if (view.sequence >= begin + cycles && view.at_rest && !view.operating()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Expected<StopReport> MotionStopper::stop(const StopOptions & options)
+{
+  const std::lock_guard lock(mutex_);
+  const auto sample = state_.latest();
+  if (!state_.link().connected || !sample) {
+    return link_lost();
+  }
+  const auto begin = tracker_.view().controller_time;
+  const auto report = [&](StopMeans means) {
+    return StopReport{means, tracker_.view().controller_time - begin};
+  };
+  if (!under_way()) {
+    return report(StopMeans::nothing_moved);
+  }
+  if (robot_condition(*sample) || !sample->program_running()) {
+    if (wait_for_standstill(options.program_stop_limit)) {
+      return report(StopMeans::stopped_by_robot);
+    }
+  } else if (command_stop(options) && wait_for_standstill(options.limit)) {
+    return report(StopMeans::stop_command);
+  }
+  const auto stopped = state_.link().connected ? stop_program(address_, milliseconds(500)) : Status();
+  if (stopped && wait_for_standstill(options.program_stop_limit)) {
+    return report(StopMeans::program_stopped);
+  }
+  links_.drop_control();  // no more signs of life: the watchdog's turn
+  if (wait_for_standstill(options.program_stop_limit)) {
+    return report(StopMeans::program_stopped);
+  }
+  if (!state_.link().connected) {
+    return link_lost();
+  }
+  return failure(ErrorCode::timeout,
+                 fmt::format("the arm still moves after every way to stop it was tried{}: use the "
+                             "emergency stop",
+                             stopped ? "" : " (" + stopped.error().message + ")"));
+}
+
+tl::unexpected<Error> MotionStopper::link_lost() const
+{
+  return failure(ErrorCode::link_lost,
+                 fmt::format("cannot tell the robot to stop: {}. The watchdog of its program stops it",
+                             state_.link().error.message));
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,164 @@
+#include "program/control_scripts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <ur_rtde/script_client.h>
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+namespace ur_ros_rtde {
+namespace {
+
+bool has_word(std::string_view text, std::string_view word)
+{
+  const auto in_word = [&](std::size_t at) {
+    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
+  };
+  for (auto at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
+    if ((at == 0 || !in_word(at - 1)) && !in_word(at + word.size())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// The function of the extension's URCap that the controller complains about not knowing: "name 'f' is not
+/// defined" or "compile_error_name_not_found:f:", as versions differ. Empty for any other fault.
+std::string missing_function(const ScriptExtension & extension, const std::string & complaint)
+{
+  const auto says = [&complaint](std::string_view part) { return complaint.find(part) != std::string::npos; };
+  if (extension.urcap.empty() || (!says("not defined") && !says("not_found") && !says("not found"))) {
+    return {};
+  }
+  const auto function =
+      std::find_if(extension.urcap_functions.begin(), extension.urcap_functions.end(),
+                   [&complaint](const std::string & name) { return has_word(complaint, name); });
+  return function == extension.urcap_functions.end() ? std::string() : *function;
+}
+
+}  // namespace
+
+std::vector<std::string> ControlScripts::set(const std::vector<ScriptExtension> & extensions)
+{
+  const std::lock_guard lock(mutex_);
+  const std::string base = ur_rtde::ScriptClient::controlScript();
+  std::vector<std::string> problems;
+  extensions_.clear();
+  left_out_.clear();
+  for (const ScriptExtension & extension : extensions) {
+    extensions_.push_back(extension);
+    if (const auto composed = script::compose(base, extensions_); !composed) {
+      extensions_.pop_back();
+      left_out_.try_emplace(extension.name, LeftOut{extension.name, composed.error().message});
+      problems.push_back(
+          fmt::format("the extension {} is left out: {}", extension.name, composed.error().message));
+    }
+  }
+  script_ = script::compose(base, extensions_).value();
+  return problems;
+}
+
+bool ControlScripts::has_extensions() const
+{
+  const std::lock_guard lock(mutex_);
+  return !extensions_.empty();
+}
+
+script::Result<script::ControlScript> ControlScripts::resolved(const ControllerVersion & version) const
+{
+  return script::for_controller(script_, version.major, version.minor, upper_range_);
+}
+
+std::string ControlScripts::text(const ControllerVersion & version) const
+{
+  const std::lock_guard lock(mutex_);
+  if (extensions_.empty()) {
+    return {};
+  }
+  const auto script = resolved(version);
+  return script ? script->text.text() : std::string();
+}
+
+std::string ControlScripts::program(const ControllerVersion & version) const
+{
+  const std::lock_guard lock(mutex_);
+  const auto base = script::compose(ur_rtde::ScriptClient::controlScript(), extensions_);
+  const auto script = base ? script::for_controller(*base, version.major, version.minor, upper_range_) : base;
+  if (!script) {
+    throw std::runtime_error(fmt::format("line {}: {}", script.error().line, script.error().message));
+  }
+  return script->text.text();
+}
+
+Expected<int> ControlScripts::id(const std::string & name) const
+{
+  const std::lock_guard lock(mutex_);
+  if (const auto found = script_.ids.find(name); found != script_.ids.end()) {
+    return found->second;
+  }
+  const auto left_out = left_out_.find(name);
+  return tl::unexpected(Error{ErrorCode::not_supported,
+                              left_out == left_out_.end()
+                                  ? fmt::format("the control program has no extension {}", name)
+                                  : fmt::format("the control program runs without the extension {}: {}", name,
+                                                left_out->second.why)});
+}
+
+std::string ControlScripts::place(const ControllerVersion & version, int line) const
+{
+  const std::lock_guard lock(mutex_);
+  const auto script = resolved(version);
+  return script ? script::place(*script, line) : std::string();
+}
+
+std::optional<ControlScripts::LeftOut> ControlScripts::leave_out(const ControllerVersion & version, int line,
+                                                                 const std::string & complaint)
+{
+  const std::lock_guard lock(mutex_);
+  const auto script = resolved(version);
+  const std::string where = script ? script::place(*script, line) : std::string();
+  const auto culprit =
+      std::find_if(extensions_.begin(), extensions_.end(), [&](const ScriptExtension & extension) {
+        return where.find(fmt::format("`{}`", extension.name)) != std::string::npos;
+      });
+  if (culprit == extensions_.end()) {
+    return std::nullopt;
+  }
+  LeftOut left_out{culprit->name, fmt::format("the controller does not take {}: {}", where, complaint)};
+  if (const std::string function = missing_function(*culprit, complaint); !function.empty()) {
+    left_out.urcap = culprit->urcap;
+    left_out.why =
+        fmt::format("the robot does not know the function {}: install {} on it, then start the driver again",
+                    function, culprit->urcap);
+  }
+  left_out_[left_out.name] = left_out;
+  extensions_.erase(culprit);
+  script_ = script::compose(ur_rtde::ScriptClient::controlScript(), extensions_).value();
+  return left_out;
+}
+
+std::string ControlScripts::without_urcap() const
+{
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, std::vector<std::string>> names;
+  for (const auto & [name, left_out] : left_out_) {
+    if (!left_out.urcap.empty()) {
+      names[left_out.urcap].push_back(name);
+    }
+  }
+  std::vector<std::string> parts;
+  for (const auto & [urcap, extensions] : names) {
+    parts.push_back(fmt::format("{} (for {})", urcap, fmt::join(extensions, ", ")));
+  }
+  return parts.empty() ? std::string()
+                       : fmt::format(
+                             "not installed on this robot: {}; goals for these commands are refused; "
+                             "to use them, install it and start the driver again",
+                             fmt::join(parts, "; "));
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,173 @@
+#include "program/script_runner.hpp"
+
+#include <fmt/format.h>
+
+#include <random>
+#include <utility>
+
+#include "motion/motion_stopper.hpp"
+#include "connection/primary_link.hpp"
+#include "program/script_watch.hpp"
+#include "script/program.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds give_way_limit(5000);
+constexpr milliseconds take_back_limit(5000);
+constexpr milliseconds program_end_limit(2000);
+constexpr milliseconds rest_limit(500);
+constexpr milliseconds longest_secondary(10'000);
+
+ScriptReport refused(Error error)
+{
+  ScriptReport report;
+  report.error = std::move(error);
+  return report;
+}
+
+ScriptReport refused(const script::Fault & fault)
+{
+  ScriptReport report =
+      refused(Error{ErrorCode::invalid_goal,
+                    fault.line > 0 ? fmt::format("line {}: {}", fault.line, fault.message) : fault.message});
+  report.line = fault.line;
+  return report;
+}
+
+std::optional<Error> check(const ScriptOptions & options)
+{
+  if (options.limit < milliseconds(1)) {
+    return Error{ErrorCode::invalid_goal,
+                 fmt::format("limit is {} ms: it must be 1 ms or more", options.limit.count())};
+  }
+  if (options.kind == ScriptKind::secondary && options.limit > longest_secondary) {
+    return Error{ErrorCode::invalid_goal,
+                 fmt::format("limit is {} ms: a secondary program must end within {} ms",
+                             options.limit.count(), longest_secondary.count())};
+  }
+  return std::nullopt;
+}
+
+/// The control program's absence, whatever ends it.
+class GivenWay {
+ public:
+  GivenWay(Supervisor & supervisor, const ScriptWatch & watch) : supervisor_(supervisor), watch_(watch) {}
+  ~GivenWay() { supervisor_.take_back(take_back_limit, watch_.replaced()); }
+  GivenWay(const GivenWay &) = delete;
+  GivenWay & operator=(const GivenWay &) = delete;
+
+ private:
+  Supervisor & supervisor_;
+  const ScriptWatch & watch_;
+};
+
+}  // namespace
+
+ScriptRunner::ScriptRunner(const RobotOptions & options, const StateReceiver & state,
+                           const MotionTracker & tracker, InterfaceLinks & links, Supervisor & supervisor)
+    : options_(options),
+      state_(state),
+      tracker_(tracker),
+      links_(links),
+      supervisor_(supervisor),
+      next_id_(std::random_device()())
+{
+}
+
+/// The watchdog of the control program, for this one.
+std::string ScriptRunner::preamble() const
+{
+  if (options_.watchdog_frequency == 0.0) {
+    return {};
+  }
+  return fmt::format("  rtde_set_watchdog(\"input_int_register_{}\", {}, \"stop\")",
+                     register_offset(options_), options_.watchdog_frequency);
+}
+
+bool ScriptRunner::wait_for_standstill(bool of_program) const
+{
+  const auto deadline = std::chrono::steady_clock::now() + (of_program ? program_end_limit : rest_limit);
+  Sample sample = state_.latest().value_or(Sample{});
+  while (!tracker_.view().at_rest || (of_program && sample.runtime_state != RuntimeState::stopped)) {
+    if (!state_.link().connected || std::chrono::steady_clock::now() > deadline) {
+      return false;
+    }
+    state_.wait_for_next(sample, milliseconds(20));
+  }
+  return true;
+}
+
+Status ScriptRunner::stop() const
+{
+  auto stopped = stop_program(options_.address, milliseconds(500));
+  if (stopped && wait_for_standstill(true)) {
+    return {};
+  }
+  links_.drop_control();  // no more signs of life: the watchdog's turn
+  if (wait_for_standstill(true)) {
+    return {};
+  }
+  return stopped ? failure(ErrorCode::timeout, "the program does not end") : stopped;
+}
+
+ScriptReport ScriptRunner::run(const std::string & script, const ScriptOptions & options)
+{
+  if (auto error = check(options)) {
+    return refused(std::move(*error));
+  }
+  const bool secondary = options.kind == ScriptKind::secondary;
+  if (!secondary && options_.control_mode == ControlMode::control_urcap) {
+    return refused(Error{ErrorCode::not_supported,
+                         "not with control_mode control_urcap: the script would end the program of the "
+                         "robot, and nobody but the operator starts that again. Use control_mode upload, or "
+                         "a script of kind `sec`"});
+  }
+  const auto id = next_id_++;
+  const ScriptWatch::Marks marks{fmt::format("ur_ros_rtde: script {:08x} begins", id),
+                                 fmt::format("ur_ros_rtde: script {:08x} ends", id)};
+  const auto program =
+      script::make_program(script, {secondary, marks.begin, marks.end, secondary ? "" : preamble()});
+  if (!program) {
+    return refused(program.error());
+  }
+  auto primary = PrimaryLink::connect(options_.address, options_.connect_timeout);
+  if (!primary) {
+    return refused(primary.error());
+  }
+  ScriptWatch watch(std::move(*primary), state_, marks, options);
+  if (secondary) {
+    watch.follow(*program);
+    return watch.report();
+  }
+  return run_program(*program, watch);
+}
+
+ScriptReport ScriptRunner::run_program(const script::Program & program, ScriptWatch & watch)
+{
+  if (!wait_for_standstill(false)) {
+    return refused(Error{ErrorCode::busy, "the arm moves: a script begins when it stands still"});
+  }
+  if (const auto given = supervisor_.give_way(give_way_limit); !given) {
+    return refused(given.error());
+  }
+  const GivenWay until_the_end(supervisor_, watch);
+  try {
+    watch.follow(program);
+  } catch (...) {
+    stop();
+    throw;
+  }
+  ScriptReport report = watch.report();
+  if (watch.running() && state_.link().connected) {
+    if (const auto stopped = stop(); !stopped) {
+      report.error.message +=
+          fmt::format("; whether the arm stands still is not known: {}", stopped.error().message);
+    }
+  }
+  return report;
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,168 @@
+#include "robot_impl.hpp"
+
+#include <fmt/format.h>
+#include <ur_rtde/rtde_control_interface.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace ur_ros_rtde {
+namespace {
+
+StateReceiverOptions receiver_options(const RobotOptions & options)
+{
+  StateReceiverOptions result;
+  result.address = options.address;
+  result.frequency = options.frequency;
+  result.connect_timeout = options.connect_timeout;
+  result.retry_interval = options.retry_interval;
+  result.silence_limit = options.silence_limit;
+  result.upper_range_registers = options.upper_range_registers;
+  result.realtime_priority = options.realtime_priority;
+  return result;
+}
+
+DashboardLinkOptions dashboard_options(const RobotOptions & options)
+{
+  DashboardLinkOptions result;
+  result.address = options.address;
+  result.connect_timeout = options.connect_timeout;
+  result.retry_interval = options.retry_interval;
+  return result;
+}
+
+bool is_watchdog_frequency(double frequency)
+{
+  return frequency >= min_watchdog_frequency && frequency <= max_watchdog_frequency;
+}
+
+const RobotOptions & checked(const RobotOptions & options)
+{
+  if (options.watchdog_frequency != 0.0 && !is_watchdog_frequency(options.watchdog_frequency)) {
+    throw std::invalid_argument(
+        fmt::format("watchdog_frequency is {} Hz: it must be from {} to {} Hz, or 0 for no watchdog",
+                    options.watchdog_frequency, min_watchdog_frequency, max_watchdog_frequency));
+  }
+  return options;
+}
+
+}  // namespace
+
+Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
+    : options(checked(robot_options)),
+      state(receiver_options(options), log),
+      dashboard(dashboard_options(options), log),
+      model(options.address, options.model, log),
+      control_scripts(options.upper_range_registers),
+      links(options, control_scripts, log),
+      stopper(options.address, state, links, tracker),
+      server(options.urcap_port, options.retry_interval,
+             {[this] { return state.version(); },
+              [this](const ControllerVersion & version) { return control_scripts.program(version); }},
+             log),
+      supervisor(options, state, dashboard, model, links, log, &server),
+      scripts(options, state, tracker, links, supervisor),
+      extensions(options, state, tracker, links, control_scripts),
+      kicked_for_(options.watchdog_frequency)
+{
+  state.on_link([this](const LinkStatus &) { supervisor.look_now(); });
+  state.on_sample([this](const Sample & sample) { add(sample); });
+  dashboard.on_link([this](const LinkStatus &) { supervisor.look_now(); });
+  server.status_function = [this] { supervisor.look_now(); };
+}
+
+void Robot::Impl::add(const Sample & sample)
+{
+  feed_watchdog(sample);
+  tracker.add(sample);
+  supervisor.add(sample);
+  if (sample_function) {
+    sample_function(sample);
+  }
+}
+
+/// Driven by the packages: a link on which nothing comes any more gives no sign of life either.
+void Robot::Impl::feed_watchdog(const Sample & sample)
+{
+  const double frequency = kicked_for_;
+  if (frequency == 0.0) {
+    return;
+  }
+  constexpr double kicks_a_period = 5.0;
+  const std::chrono::duration<double> interval(1.0 / (kicks_a_period * frequency));
+  if (sample.received - last_kick_ >= interval) {
+    last_kick_ = sample.received;
+    links.kick_watchdog();
+  }
+}
+
+Status Robot::Impl::set_watchdog(double frequency)
+{
+  if (!is_watchdog_frequency(frequency)) {
+    return failure(ErrorCode::invalid_goal,
+                   fmt::format("the watchdog's frequency is {} Hz: it must be from {} to {} Hz", frequency,
+                               min_watchdog_frequency, max_watchdog_frequency));
+  }
+  const auto control = links.control();
+  if (!control) {
+    return tl::unexpected(why_not());
+  }
+  kicked_for_ = std::max(kicked_for_.load(), frequency);  // before it is needed
+  if (!(*control)->setWatchdog(frequency)) {
+    return failure(ErrorCode::rejected_by_robot, "the control program did not set its watchdog");
+  }
+  // A program that is started anew has the watchdog of the options.
+  kicked_for_ = std::max(options.watchdog_frequency, frequency);
+  return {};
+}
+
+Error Robot::Impl::why_not() const
+{
+  if (supervisor.gave_way()) {
+    return {ErrorCode::busy, "a script runs in place of the control program: wait for its end, or cancel it"};
+  }
+  const auto status = supervisor.status();
+  if (status.state != RobotState::ready) {
+    return {status.cause, status.message};
+  }
+  return {ErrorCode::not_ready, "the control program is being started"};
+}
+
+void Robot::Impl::end_program()
+{
+  const auto control = links.control();
+  if (!control) {
+    return;
+  }
+  if (options.control_mode == ControlMode::control_urcap) {
+    // What comes behind its External Control node might move the arm.
+    const auto ended = stop_program(options.address, std::chrono::milliseconds(500));
+    if (ended || options.watchdog_frequency > 0.0) {
+      return;
+    }
+  }
+  try {
+    const auto held = control->hold();
+    held->setCommandTimeout(std::chrono::milliseconds(500));
+    held->stopScript();
+  } catch (const std::exception &) {
+    // The watchdog ends it, then.
+  }
+}
+
+Robot::Impl::~Impl()
+{
+  supervisor.stop();
+  if (links.control_pointer()) {
+    stopper.stop({});
+    end_program();
+  }
+  // Their threads call into the members that are destroyed before them.
+  server.stop();
+  state.stop();
+  dashboard.stop();
+  links.drop();
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+
+#include "state/arm_model.hpp"
+#include "program/control_scripts.hpp"
+#include "program/extension_runner.hpp"
+#include "connection/interface_links.hpp"
+#include "motion/motion_stopper.hpp"
+#include "motion/motion_tracker.hpp"
+#include "program/script_runner.hpp"
+#include "program/script_server.hpp"
+#include "program/supervisor.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_robot/state/state_receiver.hpp"
+
+namespace ur_ros_rtde {
+
+/// The parts of the robot side, and the threads that carry samples from one to the other.
+class Robot::Impl {
+ public:
+  Impl(RobotOptions robot_options, const LogFunction & log);
+  ~Impl();
+
+  void add(const Sample & sample);
+  void feed_watchdog(const Sample & sample);
+  Status set_watchdog(double frequency);
+  Error why_not() const;
+
+  const RobotOptions options;
+  Arbiter arbiter;
+  std::function<void(const Sample &)> sample_function;
+  MotionTracker tracker;
+  StateReceiver state;
+  DashboardLink dashboard;
+  ArmModel model;
+  ControlScripts control_scripts;
+  InterfaceLinks links;
+  MotionStopper stopper;
+  ScriptServer server;  ///< for ControlMode::control_urcap
+  Supervisor supervisor;
+  ScriptRunner scripts;
+  ExtensionRunner extensions;
+
+ private:
+  void end_program();
+  std::chrono::steady_clock::time_point last_kick_{};  ///< receiving thread only
+  std::atomic<double> kicked_for_;                     ///< Hz, of the fastest watchdog that may be running
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "script/fault.hpp"
+#include "ur_ros_rtde_robot/program/script_extension.hpp"
+
+namespace ur_ros_rtde::script {
+
+/// `text` with the short forms of registers (`$in19i`) written out; the registers are added to `used`.
+Result<std::string> expand_registers(const std::string & text, ScriptRegisters & used);
+
+/// Whether an extension may use these registers.
+Result<void> check_registers(const ScriptRegisters & used);
+
+/// A register that both use, "input float register 20"; empty if there is none.
+std::string common_register(const ScriptRegisters & a, const ScriptRegisters & b);
+
+}  // namespace ur_ros_rtde::script

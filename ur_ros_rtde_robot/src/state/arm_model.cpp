@@ -1,0 +1,130 @@
+#include "state/arm_model.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "connection/primary_link.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+struct Type {
+  std::int32_t number;
+  std::string_view cb3;
+  std::string_view later;
+};
+
+// UR, "Client Interface", configuration data; the numbers of the later models as in Universal Robots' client
+// library.
+constexpr std::array types{
+    Type{1, "ur5", "ur5e"}, Type{2, "ur10", "ur10e"}, Type{3, "ur3", "ur3e"},
+    Type{4, "", "ur16e"},   Type{5, "", "ur18"},      Type{6, "", "ur8long"},
+    Type{7, "", "ur20"},    Type{8, "", "ur30"},      Type{9, "", "ur15"},
+};
+
+/// What the controller calls a model that has another's arm.
+std::string as_detected(const std::string & model)
+{
+  return model == "ur7e" ? "ur5e" : model == "ur12e" ? "ur10e" : model;
+}
+
+/// For people: which models it may be.
+std::string described(const std::string & detected)
+{
+  return detected == "ur5e" ? "ur5e (or ur7e)" : detected == "ur10e" ? "ur10e (or ur12e)" : detected;
+}
+
+ArmLimits limits_of_stated(const std::string & model)
+{
+  if (model.empty()) {
+    return common_arm_limits();
+  }
+  if (const auto limits = arm_limits(model)) {
+    return *limits;
+  }
+  throw std::invalid_argument(
+      fmt::format("there is no model \"{}\" of the arm, there are {}", model, arm_models()));
+}
+
+}  // namespace
+
+std::optional<std::string> model_of_type(std::int32_t number, bool cb3)
+{
+  for (const Type & type : types) {
+    const auto name = cb3 ? type.cb3 : type.later;
+    if (type.number == number && !name.empty()) {
+      return std::string(name);
+    }
+  }
+  return std::nullopt;
+}
+
+ArmModel::ArmModel(std::string address, std::string stated, LogFunction log)
+    : address_(std::move(address)),
+      stated_(model_key(stated)),
+      report_(std::move(log)),
+      limits_(limits_of_stated(stated_))
+{
+}
+
+void ArmModel::could_not_detect(const std::string & why)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    detected_.reset();
+    limits_ = limits_of_stated(stated_);
+  }
+  const std::string consequence =
+      stated_.empty()
+          ? "motions are limited to what every model can do: set the parameter ur_type to the "
+            "model on the arm's base"
+          : fmt::format("that it is a {}, as the parameter ur_type says, is not checked", stated_);
+  report_.once(LogLevel::warn, fmt::format("the controller at {} does not tell the model of the arm ({}); {}",
+                                           address_, why, consequence));
+}
+
+void ArmModel::detect(const ControllerVersion & version, std::chrono::milliseconds limit)
+{
+  auto primary = PrimaryLink::connect(address_, limit);
+  const auto type = primary.and_then([&](PrimaryLink & link) { return link.robot_type(limit); });
+  if (!type) {
+    return could_not_detect(type.error().message);
+  }
+  const auto model = model_of_type(*type, version.cb3());
+  if (!model) {
+    return could_not_detect(
+        fmt::format("type {} with PolyScope {} is not known here", *type, to_string(version)));
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    detected_ = model;
+    limits_ = stated_.empty() ? arm_limits(*model).value_or(common_arm_limits()) : limits_of_stated(stated_);
+  }
+  report_.once(LogLevel::info, fmt::format("the arm at {} is a {}", address_, described(*model)));
+}
+
+ArmLimits ArmModel::limits() const
+{
+  const std::lock_guard lock(mutex_);
+  return limits_;
+}
+
+std::optional<Error> ArmModel::mismatch() const
+{
+  const std::lock_guard lock(mutex_);
+  if (stated_.empty() || !detected_ || as_detected(stated_) == *detected_) {
+    return std::nullopt;
+  }
+  return Error{
+      ErrorCode::model_mismatch,
+      fmt::format("ur_type is {}, but the arm at {} is a {}: start the driver again with ur_type:={}, "
+                  "or with an empty one to take the controller's word, or with the address of the "
+                  "right robot",
+                  stated_, address_, described(*detected_), *detected_)};
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,361 @@
+#include "ur_ros_rtde_robot/state/state_receiver.hpp"
+
+#include <fmt/format.h>
+#include <ur_rtde/rtde_receive_interface.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "connection/ports.hpp"
+#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
+#include "connection/rtde_probe.hpp"
+#include "state/sample_reader.hpp"
+#include "ur_ros_rtde_robot/connection/text.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double highest_frequency = 500.0;
+constexpr std::chrono::milliseconds longest_wait(10);
+
+void check(const StateReceiverOptions & options)
+{
+  if (options.realtime_priority < 0 || options.realtime_priority > 99) {
+    throw std::invalid_argument(fmt::format("realtime_priority is {}: it must be from 1 to 99, or 0 for none",
+                                            options.realtime_priority));
+  }
+  if (options.address.empty()) {
+    throw std::invalid_argument("the robot's address is empty: give its IP address or host name");
+  }
+  const double frequency = options.frequency;
+  if (!(frequency == 0.0 || (frequency >= 1.0 && frequency <= highest_frequency))) {
+    throw std::invalid_argument(
+        fmt::format("frequency is {} Hz: it must be from 1 to {} Hz, or 0 for the controller's own",
+                    frequency, highest_frequency));
+  }
+}
+
+}  // namespace
+
+class StateReceiver::Impl {
+ public:
+  Impl(StateReceiverOptions options, LogFunction log) : options_(std::move(options)), report_(std::move(log))
+  {
+    check(options_);
+    link_.error = {ErrorCode::link_lost, fmt::format("connecting to {}", options_.address)};
+  }
+
+  void run(const std::stop_token & stop);
+  Locked<ur_rtde::RTDEReceiveInterface> receive() const;
+
+  SampleFunction sample_function_;
+  LinkFunction link_function_;
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable_any changed_;
+  std::condition_variable_any pause_;  ///< nobody notifies it, packages least of all
+  LinkStatus link_;
+  std::optional<ControllerVersion> version_;
+  double frequency_ = 0.0;
+  Sample latest_{};
+  std::shared_ptr<ur_rtde::RTDEReceiveInterface> interface_;
+
+  std::jthread thread_;
+
+ private:
+  Status connect();
+  Error connect_and_follow(const std::stop_token & stop);
+  Error follow(const std::stop_token & stop);
+  Error watch(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface);
+  Clock::time_point silent_since(ur_rtde::RobotState & state) const;
+  void take(Sample & sample, const SampleReader & reader);
+  void publish(Sample & sample, const SampleReader & reader);
+  void pause(const std::stop_token & stop, Clock::duration limit);
+  std::optional<std::string> take_failure();
+  void set_link(LinkStatus status);
+  double choose_frequency(const ControllerVersion & version);
+
+  const StateReceiverOptions options_;
+  std::optional<std::string> failure_;  ///< of on_sample's function
+  std::atomic<bool> taking_ = false;
+  std::atomic<Clock::time_point> taken_{};
+  Reporter report_;
+  bool frequency_reported_ = false;
+  std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
+};
+
+double StateReceiver::Impl::choose_frequency(const ControllerVersion & version)
+{
+  if (options_.frequency == 0.0) {
+    return version.frequency();
+  }
+  if (options_.frequency > version.frequency() && !std::exchange(frequency_reported_, true)) {
+    report_.say(LogLevel::warn,
+                fmt::format("frequency {} Hz is more than a controller of version {} can: using {} Hz",
+                            options_.frequency, to_string(version), version.frequency()));
+  }
+  return std::min(options_.frequency, version.frequency());
+}
+
+Status StateReceiver::Impl::connect()
+{
+  const auto version = probe_rtde(options_.address, options_.connect_timeout);
+  if (!version) {
+    return tl::unexpected(version.error());
+  }
+  const double frequency = choose_frequency(*version);
+  try {
+    auto interface = std::make_shared<ur_rtde::RTDEReceiveInterface>(
+        options_.address, frequency, std::vector<std::string>{}, false, options_.upper_range_registers,
+        keep_priority);
+    if (!interface->isConnected()) {
+      return failure(ErrorCode::link_lost,
+                     fmt::format("{}:{} accepts the set-up but sends no data", options_.address, rtde_port));
+    }
+    const std::lock_guard lock(mutex_);
+    interface_ = std::move(interface);
+    version_ = *version;
+    frequency_ = frequency;
+    return {};
+  } catch (const std::exception & error) {
+    return failure(ErrorCode::link_lost,
+                   fmt::format("the RTDE server at {}:{} does not do what it should: {}", options_.address,
+                               rtde_port, printable(error.what())));
+  }
+}
+
+void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader)
+{
+  const auto arrival = reader.read(sample);
+  ++sample.sequence;
+  sample.received = arrival;
+  sample.stamp = std::chrono::system_clock::now() -
+                 std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - arrival);
+  {
+    const std::lock_guard lock(mutex_);
+    latest_ = sample;
+  }
+  changed_.notify_all();
+  if (sample_function_) {
+    sample_function_(sample);
+  }
+}
+
+/// On ur_rtde's thread, which an exception must not reach.
+void StateReceiver::Impl::take(Sample & sample, const SampleReader & reader)
+{
+  taking_ = true;
+  try {
+    publish(sample, reader);
+  } catch (const std::exception & error) {
+    const std::lock_guard lock(mutex_);
+    failure_ = error.what();
+  }
+  taken_ = Clock::now();
+  taking_ = false;
+}
+
+/// While a package is being taken no other can be read: that is this host's silence, not the controller's.
+Clock::time_point StateReceiver::Impl::silent_since(ur_rtde::RobotState & state) const
+{
+  return taking_ ? Clock::now() : std::max(state.getPackageTime(), taken_.load());
+}
+
+/// Until the link ends, or it shall.
+Error StateReceiver::Impl::watch(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface)
+{
+  const auto state = interface.robotState();
+  const auto silence_limit =
+      std::max(options_.silence_limit,
+               std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
+  // This host may have been busy, not the controller: the last of the time is for ur_rtde's thread to read
+  // what may lie there.
+  const auto last_wait = std::min(longest_wait, silence_limit / 2);
+  const auto left = [&] { return silent_since(*state) + silence_limit - last_wait - Clock::now(); };
+  while (!stop.stop_requested()) {
+    pause(stop, std::clamp<Clock::duration>(left(), std::chrono::milliseconds(1), longest_wait));
+    if (const auto failed = take_failure()) {
+      return {ErrorCode::exception, fmt::format("a package could not be handed on: {}", *failed)};
+    }
+    if (!interface.isConnected()) {
+      return {ErrorCode::link_lost, fmt::format("{} closed the RTDE connection", options_.address)};
+    }
+    if (left() <= Clock::duration::zero()) {
+      pause(stop, last_wait);
+      if (left() <= Clock::duration::zero()) {
+        return {ErrorCode::link_lost,
+                fmt::format("no RTDE package from {} for {} ms: the link or the controller hangs",
+                            options_.address, silence_limit.count())};
+      }
+    }
+  }
+  return {ErrorCode::shutdown, "shutting down"};
+}
+
+void StateReceiver::Impl::pause(const std::stop_token & stop, Clock::duration limit)
+{
+  std::unique_lock lock(mutex_);
+  pause_.wait_for(lock, stop, limit, [] { return false; });
+}
+
+std::optional<std::string> StateReceiver::Impl::take_failure()
+{
+  const std::lock_guard lock(mutex_);
+  return std::exchange(failure_, std::nullopt);
+}
+
+Error StateReceiver::Impl::follow(const std::stop_token & stop)
+{
+  const auto interface = interface_;
+  const auto state = interface->robotState();
+  const SampleReader reader(state, options_.upper_range_registers ? 24 : 0);
+  Sample sample = latest_;
+  ++sample.link;
+  take(sample, reader);
+  state->onPackage([&] { take(sample, reader); });
+  const Error end = watch(stop, *interface);
+  state->onPackage({});
+  return end;
+}
+
+void StateReceiver::Impl::set_link(LinkStatus status)
+{
+  bool changed = false;
+  // Closes its connection and joins its thread, which must not happen under the lock.
+  std::shared_ptr<ur_rtde::RTDEReceiveInterface> dropped;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!status.connected) {
+      dropped = std::exchange(interface_, nullptr);
+    }
+    changed = link_.connected != status.connected || link_.error.message != status.error.message;
+    link_ = status;
+  }
+  changed_.notify_all();
+  dropped.reset();
+  if (changed && link_function_) {
+    link_function_(status);
+  }
+}
+
+void StateReceiver::Impl::run(const std::stop_token & stop)
+{
+  // ur_rtde's threads inherit it.
+  if (const Status allowed = set_realtime_priority(options_.realtime_priority); !allowed) {
+    report_.say(LogLevel::warn, allowed.error().message);
+  }
+  const auto retry_seconds = std::chrono::duration<double>(options_.retry_interval).count();
+  while (!stop.stop_requested()) {
+    const Error end = connect_and_follow(stop);
+    set_link({false, end});
+    pause(stop, options_.retry_interval);
+    if (!stop.stop_requested()) {  // a driver that is shut down together with the controller reports nothing
+      report_.once(LogLevel::error, fmt::format("{}. Trying again every {} s", end.message, retry_seconds));
+    }
+  }
+}
+
+Error StateReceiver::Impl::connect_and_follow(const std::stop_token & stop)
+{
+  if (const auto connected = connect(); !connected) {
+    return connected.error();
+  }
+  report_.forget();
+  report_.say(LogLevel::info, fmt::format("connected to {}: PolyScope {}, {} Hz", options_.address,
+                                          to_string(*version_), frequency_));
+  set_link({true, {}});
+  return follow(stop);
+}
+
+Locked<ur_rtde::RTDEReceiveInterface> StateReceiver::Impl::receive() const
+{
+  const std::lock_guard lock(mutex_);
+  if (!link_.connected || !interface_) {
+    throw RobotError(link_.error);
+  }
+  return {interface_, lock_, "receive interface"};
+}
+
+StateReceiver::StateReceiver(StateReceiverOptions options, LogFunction log)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(log)))
+{
+}
+
+StateReceiver::~StateReceiver()
+{
+  stop();
+}
+
+void StateReceiver::on_sample(SampleFunction function)
+{
+  impl_->sample_function_ = std::move(function);
+}
+
+void StateReceiver::on_link(LinkFunction function)
+{
+  impl_->link_function_ = std::move(function);
+}
+
+void StateReceiver::start()
+{
+  if (!impl_->thread_.joinable()) {
+    impl_->thread_ = std::jthread([impl = impl_.get()](const std::stop_token & stop) { impl->run(stop); });
+  }
+}
+
+void StateReceiver::stop()
+{
+  if (impl_->thread_.joinable()) {
+    impl_->thread_.request_stop();
+    impl_->thread_.join();
+  }
+}
+
+LinkStatus StateReceiver::link() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->link_;
+}
+
+std::optional<ControllerVersion> StateReceiver::version() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->version_;
+}
+
+double StateReceiver::frequency() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->frequency_;
+}
+
+std::optional<Sample> StateReceiver::latest() const
+{
+  const std::lock_guard lock(impl_->mutex_);
+  return impl_->latest_.sequence == 0 ? std::nullopt : std::optional(impl_->latest_);
+}
+
+bool StateReceiver::wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop) const
+{
+  std::unique_lock lock(impl_->mutex_);
+  const bool newer =
+      impl_->changed_.wait_for(lock, stop, limit, [&] { return impl_->latest_.sequence > last.sequence; });
+  if (newer) {
+    last = impl_->latest_;
+  }
+  return newer;
+}
+
+Locked<ur_rtde::RTDEReceiveInterface> StateReceiver::receive() const
+{
+  return impl_->receive();
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "support.hpp"
+#include "ur_ros_rtde_robot/connection/interfaces.hpp"
+
+namespace ur_ros_rtde::test {
+
+/// A controller and a robot side, neither started; and all that happens to them.
+struct RobotFixture : testing::Test {
+  Log log;
+  Controller controller;
+  std::mutex mutex;
+  std::vector<RobotStatus> statuses;
+  std::vector<Sample> samples;  ///< while `recording`
+  std::atomic<bool> recording{false};
+  std::unique_ptr<Robot> robot;  ///< last: its callbacks use the rest
+
+  void make_robot(RobotOptions options = robot_options());
+  void make_both();
+  /// Waits for the state; the failure message is the log.
+  testing::AssertionResult comes_to(RobotState state, ErrorCode cause = ErrorCode::none,
+                                    std::chrono::milliseconds limit = 10s);
+  testing::AssertionResult becomes_ready(std::chrono::milliseconds limit = 10s)
+  {
+    return comes_to(RobotState::ready, {}, limit);
+  }
+
+  /// Has become ready for the n-th time.
+  testing::AssertionResult becomes_ready_again(std::size_t times = 2);
+
+  /// A long joint motion that is well under way when this returns.
+  void move_joints();
+  /// The same straight up, 0.1 m/s.
+  void move_linear();
+  bool at_rest() const { return !robot->moving(); }
+
+  /// Highest deceleration of joint `index` (rad/s^2) in the recorded samples, by target velocities over 10
+  /// ms.
+  double highest_deceleration(std::size_t index);
+  std::vector<Sample> recorded();
+};
+
+}  // namespace ur_ros_rtde::test

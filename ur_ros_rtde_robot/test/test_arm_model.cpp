@@ -1,0 +1,169 @@
+#include "state/arm_model.hpp"
+#include "robot_fixture.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+TEST(ArmModels, are_known_by_their_type_numbers)
+{
+  EXPECT_EQ(model_of_type(1, true), "ur5");
+  EXPECT_EQ(model_of_type(1, false), "ur5e");
+  EXPECT_EQ(model_of_type(2, false), "ur10e");
+  EXPECT_EQ(model_of_type(9, false), "ur15");
+  EXPECT_FALSE(model_of_type(4, true)) << "there is no UR16 of the CB3 series";
+  EXPECT_FALSE(model_of_type(77, false));
+}
+
+TEST(ArmLimits, are_found_in_any_spelling)
+{
+  EXPECT_TRUE(arm_limits("UR8 Long"));
+  EXPECT_TRUE(arm_limits("UR10e"));
+  EXPECT_FALSE(arm_limits("ur99"));
+  EXPECT_NE(arm_models().find("ur8long, ur15"), std::string::npos);
+}
+
+TEST(ArmLimits, of_all_models_in_common_are_within_each)
+{
+  const auto common = common_arm_limits();
+  for (const char * model : {"ur3", "ur5e", "ur10", "ur20", "ur30", "ur15"}) {
+    for (std::size_t joint = 0; joint < 6; ++joint) {
+      EXPECT_LE(common.velocity[joint], arm_limits(model)->velocity[joint]) << model;
+      EXPECT_GT(common.velocity[joint], 2.0);
+    }
+  }
+}
+
+struct ModelCase {
+  const char * simulated;
+  const char * polyscope;
+  const char * detected;
+};
+
+struct AnArm : RobotFixture, testing::WithParamInterface<ModelCase> {};
+
+TEST_P(AnArm, is_recognised_by_what_its_controller_tells)
+{
+  auto simulator = Controller::options();
+  simulator.model = GetParam().simulated;
+  simulator.polyscope_version = GetParam().polyscope;
+  controller.start(simulator);
+  make_robot();
+  ASSERT_TRUE(becomes_ready());
+  const auto expected = arm_limits(GetParam().simulated);
+  EXPECT_EQ(robot->limits().velocity, expected->velocity);
+  EXPECT_EQ(robot->limits().reach, expected->reach);
+  EXPECT_EQ(log.count("is a " + std::string(GetParam().detected)), 1U) << log.text();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfModels, AnArm,
+    testing::Values(ModelCase{"ur3", "3.5.0", "ur3"}, ModelCase{"ur5", "3.12.0", "ur5"},
+                    ModelCase{"ur10", "3.15.8", "ur10"}, ModelCase{"ur3e", "5.6.0", "ur3e"},
+                    ModelCase{"ur5e", "5.13.0", "ur5e"}, ModelCase{"ur7e", "5.25.1", "ur5e (or ur7e)"},
+                    ModelCase{"ur12e", "5.25.1", "ur10e (or ur12e)"}, ModelCase{"ur16e", "5.13.0", "ur16e"},
+                    ModelCase{"ur8long", "5.25.1", "ur8long"}, ModelCase{"ur15", "5.25.1", "ur15"},
+                    ModelCase{"ur18", "5.25.1", "ur18"}, ModelCase{"ur20", "5.25.1", "ur20"},
+                    ModelCase{"ur30", "5.25.1", "ur30"}),
+    [](const auto & one) { return std::string(one.param.simulated); });
+
+struct AStatedModel : RobotFixture {
+  void make_robot_with(const std::string & model)
+  {
+    auto options = robot_options();
+    options.model = model;
+    make_robot(options);
+  }
+};
+
+TEST_F(AStatedModel, that_is_unknown_is_refused_with_those_that_are_known)
+{
+  auto options = robot_options();
+  options.model = "ur99";
+  try {
+    Robot(options, {});
+    FAIL() << "it was taken";
+  } catch (const std::invalid_argument & error) {
+    EXPECT_NE(std::string(error.what()).find("ur99"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("ur8long"), std::string::npos);
+  }
+}
+
+TEST_F(AStatedModel, that_has_the_arm_of_another_one_is_taken)
+{
+  controller.start();
+  make_robot_with("UR12e");
+  EXPECT_TRUE(becomes_ready()) << "a UR12e says that it is a UR10e";
+}
+
+TEST_F(AStatedModel, that_contradicts_the_controller_keeps_the_arm_from_being_moved)
+{
+  controller.start();
+  make_robot_with("ur5e");
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::model_mismatch));
+  const auto message = robot->status().message;
+  for (const char * part : {"ur_type is ur5e", "ur10e", own_address().c_str(), "ur_type:=ur10e"}) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+  EXPECT_EQ(robot->ready_to_move().error().code, ErrorCode::model_mismatch);
+  EXPECT_THROW(robot->control(), RobotError);
+  EXPECT_TRUE(robot->io()->setStandardDigitalOut(1, true)) << "what moves nothing works";
+  EXPECT_TRUE(robot->latest());
+  EXPECT_EQ(robot->run_script("textmsg(\"here\")").error.code, ErrorCode::model_mismatch);
+  EXPECT_EQ(controller.state().at("program").at("state"), "STOPPED");
+  EXPECT_EQ(log.count("ur_type is ur5e"), 1U) << log.text();
+}
+
+TEST_F(AStatedModel, of_another_series_contradicts_the_controller)
+{
+  auto simulator = Controller::options();
+  simulator.model = "ur5";
+  simulator.polyscope_version = "3.15.8";
+  controller.start(simulator);
+  make_robot_with("ur5e");
+  EXPECT_TRUE(comes_to(RobotState::stopped, ErrorCode::model_mismatch));
+}
+
+TEST_F(AStatedModel, is_compared_with_the_arm_of_each_new_connection)
+{
+  controller.start();
+  make_robot_with("ur10e");
+  ASSERT_TRUE(becomes_ready());
+  controller.stop();
+  ASSERT_TRUE(comes_to(RobotState::disconnected));
+  auto simulator = Controller::options();
+  simulator.model = "ur16e";
+  controller.start(simulator);
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::model_mismatch));
+  controller.stop();
+  ASSERT_TRUE(comes_to(RobotState::disconnected));
+  controller.start();
+  EXPECT_TRUE(becomes_ready());
+}
+
+using AnUnknownModel = RobotFixture;
+
+TEST_F(AnUnknownModel, limits_motions_to_what_every_arm_can_do)
+{
+  controller.start();
+  controller.control({{"command", "refuse_connections"}, {"which", "primary"}});
+  make_robot();
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_EQ(robot->limits().velocity, common_arm_limits().velocity);
+  EXPECT_EQ(log.count("does not tell the model"), 1U) << log.text();
+  EXPECT_EQ(log.count("set the parameter ur_type"), 1U) << log.text();
+}
+
+TEST_F(AnUnknownModel, is_the_stated_one_with_a_warning)
+{
+  controller.start();
+  controller.control({{"command", "refuse_connections"}, {"which", "primary"}});
+  auto options = robot_options();
+  options.model = "ur3e";
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_EQ(robot->limits().velocity, arm_limits("ur3e")->velocity);
+  EXPECT_EQ(log.count("as the parameter ur_type says, is not checked"), 1U) << log.text();
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

@@ -1,0 +1,73 @@
+// Extensions that the controller does not take: what is said of them, and what their goals are refused with.
+#include "robot_fixture.hpp"
+#include "ur_ros_rtde_robot/program/script_extension.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+struct ExtensionsTest : RobotFixture {
+  static ScriptExtension of_urcap(const std::string & name, const std::string & snippet)
+  {
+    ScriptExtension extension;
+    extension.name = name;
+    extension.snippet = snippet;
+    extension.urcap = "the Feeder URCap";
+    extension.urcap_functions = {"feeder_open", "feeder_close"};
+    return extension;
+  }
+
+  void start_with(const std::vector<ScriptExtension> & extensions)
+  {
+    controller.start();
+    robot = std::make_unique<Robot>(robot_options(), log.function());
+    ASSERT_TRUE(robot->set_extensions(extensions).empty());
+    robot->start();
+    ASSERT_TRUE(becomes_ready());
+  }
+};
+
+TEST_F(ExtensionsTest, AMissingUrcapIsOneLineOfInformationForAllCommandsThatNeedIt)
+{
+  start_with(
+      {of_urcap("close", "feeder_close(1)"), of_urcap("open", "feeder_open(1)"), of_urcap("wait", "sync()")});
+  EXPECT_EQ(log.count("the Feeder URCap (for close, open)"), 1U) << log.text();
+  EXPECT_EQ(log.count("[info] not installed on this robot"), 1U) << log.text();
+  EXPECT_EQ(log.count("[error]"), 0U) << log.text();
+  EXPECT_TRUE(robot->has_extension("wait"));
+  const auto refused = robot->has_extension("open");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::not_supported);
+  EXPECT_NE(refused.error().message.find("feeder_open"), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("install the Feeder URCap"), std::string::npos)
+      << refused.error().message;
+}
+
+TEST_F(ExtensionsTest, AFaultInASnippetStaysAnError)
+{
+  start_with({of_urcap("typo", "feder_open(1)"), of_urcap("wait", "sync()")});
+  EXPECT_EQ(log.count("[error] the extension typo is left out"), 1U) << log.text();
+  EXPECT_EQ(log.count("not installed"), 0U) << log.text();
+  EXPECT_FALSE(robot->has_extension("typo"));
+  EXPECT_TRUE(robot->has_extension("wait"));
+}
+
+TEST_F(ExtensionsTest, ATypoBesideAMissingUrcapIsToldApartFromIt)
+{
+  start_with({of_urcap("open", "feeder_open(1)"), of_urcap("typo", "x = feeder_opened")});
+  EXPECT_EQ(log.count("[error] the extension typo is left out"), 1U) << log.text();
+  EXPECT_EQ(log.count("the Feeder URCap (for open)"), 1U) << log.text();
+}
+
+TEST_F(ExtensionsTest, OnlyTheirInputRegistersAreWritten)
+{
+  robot = std::make_unique<Robot>(robot_options(), log.function());
+  for (int number = -1; number < 48; ++number) {
+    const ErrorCode expected =
+        number >= 19 && number <= 22 ? ErrorCode::link_lost : ErrorCode::invalid_goal;  // there is no link
+    EXPECT_EQ(robot->set_input_register(number, std::int32_t{1}).error().code, expected) << number;
+    EXPECT_EQ(robot->set_input_register(number, 1.0).error().code, expected) << number;
+  }
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

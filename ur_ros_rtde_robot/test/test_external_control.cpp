@@ -1,0 +1,366 @@
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "program/script_server.hpp"
+#include "connection/tcp_stream.hpp"
+#include "robot_fixture.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// One that nobody listens on at the moment.
+std::uint16_t free_port()
+{
+  const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  ::bind(descriptor, reinterpret_cast<const sockaddr *>(&address), sizeof(address));
+  socklen_t size = sizeof(address);
+  ::getsockname(descriptor, reinterpret_cast<sockaddr *>(&address), &size);
+  ::close(descriptor);
+  return ntohs(address.sin_port);
+}
+
+struct AnExternalControlProgram : RobotFixture {
+  const std::uint16_t port = free_port();
+
+  RobotOptions options() const
+  {
+    RobotOptions result = robot_options();
+    result.control_mode = ControlMode::control_urcap;
+    result.urcap_port = port;
+    return result;
+  }
+
+  void start(const RobotOptions & robot_options, bool remote_control = true)
+  {
+    auto simulator = Controller::options();
+    simulator.remote_control = remote_control;
+    controller.start(simulator);
+    controller.control({{"command", "store_external_control"}, {"host", own_address()}, {"port", port}});
+    make_robot(robot_options);
+    ASSERT_TRUE(waits_for_play());
+  }
+
+  void play() { controller.control({{"command", "play"}}); }
+
+  /// It says what to do.
+  testing::AssertionResult waits_for_play()
+  {
+    if (!eventually(
+            [&] {
+              return robot->status().message.find("External Control node on the pendant") !=
+                     std::string::npos;
+            },
+            10s)) {
+      return testing::AssertionFailure() << robot->status().message << "\n" << log.text();
+    }
+    return comes_to(RobotState::stopped, ErrorCode::program_stopped);
+  }
+
+  /// Nothing moves for a while, though the control program could.
+  testing::AssertionResult keeps_still()
+  {
+    const bool moves = eventually([&] { return !at_rest(); }, 400ms);
+    return moves ? testing::AssertionFailure() << "it moves" : testing::AssertionSuccess();
+  }
+
+  testing::AssertionResult works()
+  {
+    auto there = robot->receive()->getActualQ();
+    there[5] += 0.02;
+    const auto mark = robot->mark_motion();
+    if (!robot->control()->moveJ(there, 1.0, 2.0, true) ||
+        !eventually([&] { return robot->motion_progress(mark).finished(); })) {
+      return testing::AssertionFailure() << "it does not move\n" << log.text();
+    }
+    return testing::AssertionSuccess();
+  }
+};
+
+TEST_F(AnExternalControlProgram, makes_the_robot_ready_when_it_is_played)
+{
+  start(options());
+  EXPECT_NE(robot->status().message.find(std::to_string(port)), std::string::npos) << robot->status().message;
+  EXPECT_THROW(robot->control(), RobotError);
+  EXPECT_FALSE(robot->ready_to_move());
+  EXPECT_FALSE(eventually([&] { return robot->latest()->program_running(); }, 400ms))
+      << "nobody has played it";
+  play();
+  ASSERT_TRUE(eventually([&] { return robot->latest()->program_running(); })) << log.text();
+  const double begin = robot->latest()->controller_time;
+  ASSERT_TRUE(becomes_ready());
+  const double after = robot->latest()->controller_time - begin;
+  RecordProperty("ready_after_play_s", std::to_string(after));
+  EXPECT_LT(after, 1.0);
+  EXPECT_TRUE(robot->ready_to_move());
+  EXPECT_TRUE(works());
+}
+
+TEST_F(AnExternalControlProgram, that_is_stopped_on_the_pendant_ends_the_motion_and_waits_for_play)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  move_joints();
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
+  EXPECT_EQ(robot->motion_possible().error().code, ErrorCode::program_stopped);
+  ASSERT_TRUE(waits_for_play());
+  EXPECT_FALSE(eventually([&] { return robot->latest()->program_running(); }, 700ms))
+      << "it was the operator";
+  EXPECT_TRUE(at_rest());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(keeps_still());
+  EXPECT_TRUE(works());
+}
+
+TEST_F(AnExternalControlProgram, that_is_paused_on_the_pendant_does_not_go_on_with_its_motion)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  move_joints();
+  controller.control({{"command", "pause_program"}});
+  ASSERT_TRUE(waits_for_play());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(keeps_still());
+}
+
+TEST_F(AnExternalControlProgram, that_is_paused_in_local_control_is_ended_by_its_watchdog)
+{
+  start(options(), false);
+  play();
+  ASSERT_TRUE(becomes_ready()) << "local control is where the URCap is for";
+  move_joints();
+  controller.control({{"command", "pause_program"}});
+  ASSERT_TRUE(waits_for_play());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(keeps_still());
+}
+
+TEST_F(AnExternalControlProgram, is_waited_for_after_lost_links_and_does_not_go_on_with_its_motion)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  std::size_t times = 1;
+  for (const bool reset : {false, true}) {
+    move_joints();
+    controller.control({{"command", "drop_links"}, {"reset", reset}});
+    ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+    ASSERT_TRUE(waits_for_play());
+    EXPECT_FALSE(robot->latest()->program_running());
+    play();
+    ASSERT_TRUE(becomes_ready_again(++times));
+    EXPECT_TRUE(keeps_still());
+    EXPECT_TRUE(works());
+  }
+}
+
+TEST_F(AnExternalControlProgram, is_waited_for_after_only_the_control_link_was_lost)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "control"}});
+  ASSERT_TRUE(waits_for_play());
+  play();
+  ASSERT_TRUE(becomes_ready_again());
+  EXPECT_TRUE(works());
+}
+
+TEST_F(AnExternalControlProgram, does_not_go_on_after_a_protective_stop)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  move_joints();
+  controller.control({{"command", "protective_stop"}, {"reason", "test"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
+  ASSERT_TRUE(eventually(
+      [&] {
+        try {
+          robot->dashboard()->unlockProtectiveStop();  // refused for 5 s
+          return true;
+        } catch (const std::exception &) {
+          return false;
+        }
+      },
+      20s));
+  ASSERT_TRUE(waits_for_play());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(keeps_still());
+  EXPECT_TRUE(works());
+}
+
+TEST_F(AnExternalControlProgram, is_waited_for_after_a_reboot)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  controller.control({{"command", "reboot"}, {"duration", 0.3}});
+  ASSERT_TRUE(comes_to(RobotState::disconnected, ErrorCode::link_lost));
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::not_ready));
+  controller.control({{"command", "power"}, {"to", "running"}});
+  ASSERT_TRUE(waits_for_play());
+  controller.control({{"command", "store_external_control"}, {"host", own_address()}, {"port", port}});
+  play();
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(works());
+}
+
+TEST_F(AnExternalControlProgram, is_told_from_another_program)
+{
+  start(options());
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  ASSERT_TRUE(eventually([&] {
+    return robot->status().message.find("not the control program") != std::string::npos;
+  })) << robot->status().message;
+  EXPECT_NE(robot->status().message.find("nobody has fetched it"), std::string::npos);
+  EXPECT_TRUE(robot->latest()->program_running()) << "it is left alone";
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(waits_for_play());
+  play();
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(AnExternalControlProgram, is_not_taken_over_in_the_middle)
+{
+  auto robot_side = options();
+  robot_side.watchdog_frequency = 0.0;
+  start(robot_side);
+  play();
+  ASSERT_TRUE(becomes_ready());
+  controller.control({{"command", "remote_control"}, {"on", false}});
+  ASSERT_TRUE(eventually([&] { return robot->dashboard()->isInRemoteControl() == false; }, 3s));
+  move_joints();
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+  ASSERT_TRUE(eventually([&] {
+    return robot->status().message.find("before the driver was connected") != std::string::npos;
+  })) << robot->status().message;
+  EXPECT_THROW(robot->control(), RobotError);
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(waits_for_play());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(keeps_still());
+}
+
+TEST_F(AnExternalControlProgram, gives_no_place_to_scripts)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  const auto report = robot->run_script("textmsg(\"no\")");
+  EXPECT_EQ(report.end, ScriptEnd::refused);
+  EXPECT_EQ(report.error.code, ErrorCode::not_supported);
+  EXPECT_NE(report.error.message.find("control_urcap"), std::string::npos) << report.error.message;
+  EXPECT_TRUE(works()) << "nothing has happened";
+  ScriptOptions beside;
+  beside.kind = ScriptKind::secondary;
+  beside.limit = 5s;
+  EXPECT_TRUE(robot->run_script("sec f():\n  textmsg(\"yes\")\nend\n", beside));
+  EXPECT_TRUE(robot->ready_to_move());
+}
+
+TEST_F(AnExternalControlProgram, ends_with_the_driver)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  move_joints();
+  robot.reset();
+  EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
+  EXPECT_TRUE(eventually([&] { return controller.state().at("at_rest") == true; }));
+}
+
+TEST_F(AnExternalControlProgram, cannot_be_fetched_while_its_port_is_in_use)
+{
+  controller.start();
+  ScriptServer other(port, 50ms, {[] { return std::nullopt; }, [](const auto &) { return ""; }}, {});
+  other.start();
+  ASSERT_TRUE(eventually([&] { return other.status().has_value(); }));
+  make_robot(options());
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::not_ready));
+  ASSERT_TRUE(eventually([&] { return robot->status().message.find("in use") != std::string::npos; }))
+      << robot->status().message;
+  EXPECT_NE(robot->status().message.find("urcap_port"), std::string::npos);
+  EXPECT_NE(robot->status().message.find(std::to_string(port)), std::string::npos);
+  EXPECT_EQ(log.count("in use"), 1U) << log.text();
+  other.stop();
+  EXPECT_TRUE(waits_for_play());
+}
+
+struct AScriptServer : testing::Test {
+  const std::uint16_t port = free_port();
+  Log log;
+  std::atomic<bool> known{true};
+  ScriptServer server{
+      port,
+      50ms,
+      {[this] { return known ? std::optional(ControllerVersion{5, 11, 0, 0}) : std::nullopt; },
+       [](const ControllerVersion & version) {
+         return std::string(1'000'000, 'x') + std::to_string(version.minor) + "\n";
+       }},
+      log.function()};
+
+  void SetUp() override
+  {
+    server.start();
+    ASSERT_TRUE(eventually([&] { return server.status().has_value(); }));
+  }
+
+  TcpStream connect() { return std::move(TcpStream::connect(own_address(), port, 1s).value()); }
+};
+
+TEST_F(AScriptServer, gives_the_whole_program_for_the_controller_to_each_that_asks)
+{
+  TcpStream silent = connect();
+  for (int i = 0; i < 2; ++i) {
+    TcpStream client = connect();
+    ASSERT_TRUE(client.write("request_", Clock::now() + 1s));
+    ASSERT_TRUE(client.write("program\n", Clock::now() + 1s));
+    std::vector<std::byte> program(1'000'003);
+    ASSERT_TRUE(client.read(program, Clock::now() + 5s));
+    EXPECT_EQ(std::to_integer<char>(program[1'000'001]), '1');
+  }
+  EXPECT_EQ(server.fetched(), 2U);
+}
+
+TEST_F(AScriptServer, closes_the_connection_to_whoever_wants_something_else)
+{
+  for (const std::string request : {"GET / HTTP/1.1\r\n", "request_program_or_whatever\n"}) {
+    TcpStream client = connect();
+    ASSERT_TRUE(client.write(request + std::string(200, 'x'), Clock::now() + 1s));
+    std::byte answer{};
+    const auto status = client.read(std::span(&answer, 1), Clock::now() + 5s);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().message.find("does not answer"), std::string::npos) << status.error().message;
+  }
+  EXPECT_EQ(server.fetched(), 0U);
+}
+
+TEST_F(AScriptServer, gives_nothing_as_long_as_the_controller_is_not_known)
+{
+  known = false;
+  TcpStream client = connect();
+  ASSERT_TRUE(client.write("request_program\n", Clock::now() + 1s));
+  std::byte answer{};
+  EXPECT_FALSE(client.read(std::span(&answer, 1), Clock::now() + 5s));
+  EXPECT_TRUE(eventually([&] { return log.count("press play again") == 1U; })) << log.text();
+  EXPECT_EQ(server.fetched(), 0U);
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "program/condition.hpp"
+#include "ur_ros_rtde_robot/motion/motion.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+Sample moving_at(double joint_velocity, double controller_time)
+{
+  Sample sample{};
+  sample.actual_qd = {0.0, 0.0, joint_velocity, 0.0, 0.0, 0.0};
+  sample.controller_time = controller_time;
+  return sample;
+}
+
+TEST(StandstillDetector, waits_for_some_cycles_of_rest)
+{
+  StandstillDetector detector;
+  detector.add(moving_at(0.0, 1.000));
+  EXPECT_FALSE(detector.at_rest());
+  detector.add(moving_at(0.001, 1.010));
+  EXPECT_FALSE(detector.at_rest());
+  detector.add(moving_at(-0.001, 1.020));
+  EXPECT_TRUE(detector.at_rest());
+}
+
+TEST(StandstillDetector, begins_anew_when_a_joint_moves)
+{
+  StandstillDetector detector;
+  detector.add(moving_at(0.0, 1.000));
+  detector.add(moving_at(0.0, 1.030));
+  ASSERT_TRUE(detector.at_rest());
+  detector.add(moving_at(-0.5, 1.032));
+  EXPECT_FALSE(detector.at_rest());
+  detector.add(moving_at(0.0, 1.034));
+  EXPECT_FALSE(detector.at_rest());
+}
+
+TEST(StandstillDetector, takes_a_velocity_that_is_not_a_number_for_motion)
+{
+  StandstillDetector detector;
+  detector.add(moving_at(0.0, 1.0));
+  detector.add(moving_at(std::numeric_limits<double>::quiet_NaN(), 1.1));
+  EXPECT_FALSE(detector.at_rest());
+}
+
+TEST(StandstillDetector, knows_nothing_after_a_reconnection)
+{
+  StandstillDetector detector;
+  detector.add(moving_at(0.0, 1.0));
+  auto later = moving_at(0.0, 5.0);
+  later.link = 1;
+  detector.add(later);
+  EXPECT_FALSE(detector.at_rest());
+}
+
+TEST(AsyncStatus, reads_the_control_scripts_word)
+{
+  // operation 3, change 5, running, waypoint 2
+  const AsyncStatus status{3U << 24U | 5U << 16U | 1U << 15U | 2U};
+  EXPECT_EQ(status.operation(), 3U);
+  EXPECT_EQ(status.changes(), 5U);
+  EXPECT_TRUE(status.running());
+  EXPECT_EQ(status.progress(), 2U);
+}
+
+Sample running_robot()
+{
+  Sample sample{};
+  sample.robot_mode = RobotMode::running;
+  sample.safety_mode = SafetyMode::normal;
+  sample.safety_status_bits = 1;
+  return sample;
+}
+
+TEST(RobotCondition, finds_nothing_wrong_with_a_running_robot)
+{
+  EXPECT_FALSE(robot_condition(running_robot()));
+  auto reduced = running_robot();
+  reduced.safety_status_bits = 2;
+  EXPECT_FALSE(robot_condition(reduced));
+}
+
+TEST(RobotCondition, names_every_safety_stop_and_what_to_do)
+{
+  const std::vector<std::tuple<unsigned, ErrorCode, const char *>> table{
+      {2, ErrorCode::protective_stop, "make_ready (or dashboard/unlock_protective_stop)"},
+      {3, ErrorCode::safety_violation, "recovery mode"},
+      {4, ErrorCode::safeguard_stop, "guard"},
+      {5, ErrorCode::emergency_stop, "release the button, then make_ready"},
+      {6, ErrorCode::emergency_stop, "release the button, then make_ready"},
+      {7, ErrorCode::emergency_stop, "release the button, then make_ready"},
+      {8, ErrorCode::safety_violation, "make_ready with restart_safety: true (or dashboard/restart_safety"},
+      {9, ErrorCode::safety_violation, "make_ready with restart_safety: true (or dashboard/restart_safety"}};
+  for (const auto & [bit, code, advice] : table) {
+    auto sample = running_robot();
+    sample.safety_status_bits = 1U << bit;
+    const auto condition = robot_condition(sample);
+    ASSERT_TRUE(condition) << "bit " << bit;
+    EXPECT_EQ(condition->code, code) << "bit " << bit;
+    EXPECT_NE(condition->message.find(advice), std::string::npos) << condition->message;
+  }
+}
+
+TEST(RobotCondition, tells_how_to_power_the_arm)
+{
+  auto sample = running_robot();
+  sample.robot_mode = RobotMode::power_off;
+  EXPECT_NE(robot_condition(sample)->message.find("make_ready (or dashboard/power_on"), std::string::npos);
+  sample.robot_mode = RobotMode::idle;
+  EXPECT_NE(robot_condition(sample)->message.find("make_ready (or dashboard/brake_release"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde

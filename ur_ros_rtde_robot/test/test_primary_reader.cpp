@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+#include "connection/primary_link.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+std::string big_endian(std::uint32_t value)
+{
+  std::string text;
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    text.push_back(static_cast<char>(value >> static_cast<unsigned>(shift) & 0xFFU));
+  }
+  return text;
+}
+
+/// A robot message: size, type 20, timestamp, source, kind, body.
+std::string package(char kind, const std::string & body)
+{
+  std::string rest = std::string(1, 20) + std::string(8, '\0') + "\xff" + std::string(1, kind) + body;
+  return big_endian(static_cast<std::uint32_t>(rest.size() + 4)) + rest;
+}
+
+std::string exception(std::uint32_t line, const std::string & text)
+{
+  return package(10, big_endian(line) + big_endian(3) + text);
+}
+
+std::string key(const std::string & title, const std::string & text)
+{
+  return package(
+      7, big_endian(1) + big_endian(0) + std::string(1, static_cast<char>(title.size())) + title + text);
+}
+
+bool feed(PrimaryReader & reader, const std::string & bytes)
+{
+  return reader.feed(std::as_bytes(std::span(bytes.data(), bytes.size())));
+}
+
+TEST(ThePrimaryReader, finds_the_messages_in_a_stream_cut_anywhere)
+{
+  const std::string stream = package(3, "version") + package(0, "hello") + big_endian(9) + "\x10" + "four" +
+                             exception(4, "compile_error_name_not_found:f:") +
+                             key("PROGRAM_XXX_STARTED", "mine") + key("PROGRAM_XXX_STOPPED", "mine");
+  for (std::size_t cut = 1; cut < 20; ++cut) {
+    PrimaryReader reader;
+    for (std::size_t i = 0; i < stream.size(); i += cut) {
+      ASSERT_TRUE(feed(reader, stream.substr(i, cut)));
+    }
+    const auto text = reader.next();
+    ASSERT_TRUE(text);
+    EXPECT_EQ(text->kind, PrimaryMessage::Kind::text);
+    EXPECT_EQ(text->text, "hello");
+    const auto error = reader.next();
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->kind, PrimaryMessage::Kind::error);
+    EXPECT_EQ(error->line, 4);
+    EXPECT_EQ(reader.next()->kind, PrimaryMessage::Kind::program_started);
+    EXPECT_EQ(reader.next()->text, "mine");
+    EXPECT_FALSE(reader.next());
+  }
+}
+
+TEST(ThePrimaryReader, takes_an_errors_line_from_its_text_where_the_field_is_empty)
+{
+  PrimaryReader reader;
+  ASSERT_TRUE(feed(reader, exception(0xFFFFFFFFU, "syntax_error_on_line:12:end:") +
+                               exception(0xFFFFFFFFU, "program 'f' failed in line 7: no") +
+                               exception(0, "no number") + exception(0, "line")));
+  for (const int line : {12, 7, 0, 0}) {
+    EXPECT_EQ(reader.next()->line, line);
+  }
+}
+
+TEST(ThePrimaryReader, skips_messages_that_are_too_short)
+{
+  PrimaryReader reader;
+  EXPECT_TRUE(feed(reader, package(10, "abc") + package(7, "abc") +
+                               package(7, std::string(8, '\0') + "\x20") + big_endian(5) + "\x14" +
+                               package(0, "still there")));
+  EXPECT_EQ(reader.next()->text, "still there");
+}
+
+TEST(ThePrimaryReader, refuses_what_is_no_stream_of_packages)
+{
+  for (const std::uint32_t size : {0U, 4U, 2'000'000U, 0xFFFFFFFFU}) {
+    PrimaryReader reader;
+    EXPECT_FALSE(feed(reader, big_endian(size) + "\x14zzzz")) << size;
+  }
+}
+
+TEST(ThePrimaryReader, survives_any_bytes)
+{
+  std::mt19937 random(4);
+  for (int round = 0; round < 2000; ++round) {
+    std::string bytes = exception(1, "text") + key("PROGRAM_XXX_STARTED", "f") + package(0, "a");
+    for (int i = 0; i < 6; ++i) {
+      bytes[random() % bytes.size()] = static_cast<char>(random());
+    }
+    PrimaryReader reader;
+    feed(reader, bytes);
+    while (reader.next()) {
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde

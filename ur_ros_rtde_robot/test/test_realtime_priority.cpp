@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+#include <linux/capability.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <functional>
+#include <thread>
+#include <utility>
+
+#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
+#include "support.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+constexpr int priority = 20;
+
+/// In a thread of its own, which the test may do anything to.
+void in_a_thread(const std::function<void()> & action)
+{
+  std::jthread(action).join();
+}
+
+std::pair<int, int> policy_and_priority()
+{
+  sched_param now{};
+  sched_getparam(0, &now);
+  return {sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, now.sched_priority};
+}
+
+const std::pair<int, int> ordinary{SCHED_OTHER, 0};
+const std::pair<int, int> realtime{SCHED_FIFO, priority};
+
+/// Of the calling thread alone: capabilities belong to threads.
+void give_up_all_capabilities()
+{
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  std::array<__user_cap_data_struct, 2> none{};
+  ASSERT_EQ(syscall(SYS_capset, &header, none.data()), 0);
+}
+
+/// Root may; everybody else with a limit above 0.
+bool allowed()
+{
+  bool result = false;
+  in_a_thread([&] { result = set_realtime_priority(priority).has_value(); });
+  return result;
+}
+
+TEST(ARealtimePriority, is_the_threads_while_it_lives)
+{
+  if (!allowed()) {
+    GTEST_SKIP() << "this host does not allow it";
+  }
+  in_a_thread([] {
+    {
+      const RealtimePriority lives(priority);
+      EXPECT_EQ(policy_and_priority(), realtime);
+      std::pair<int, int> of_a_child;
+      in_a_thread([&] { of_a_child = policy_and_priority(); });
+      EXPECT_EQ(of_a_child, ordinary) << "what it starts is not in a hurry";
+    }
+    EXPECT_EQ(policy_and_priority(), ordinary);
+  });
+}
+
+TEST(ARealtimePriority, that_is_set_passes_to_the_threads_that_are_started)
+{
+  if (!allowed()) {
+    GTEST_SKIP() << "this host does not allow it";
+  }
+  in_a_thread([] {
+    ASSERT_TRUE(set_realtime_priority(priority));
+    in_a_thread([] { EXPECT_EQ(policy_and_priority(), realtime); });
+  });
+}
+
+TEST(ARealtimePriority, of_zero_changes_nothing)
+{
+  in_a_thread([] {
+    ASSERT_TRUE(set_realtime_priority(0));
+    const RealtimePriority none(0);
+    EXPECT_EQ(policy_and_priority(), ordinary);
+  });
+}
+
+TEST(ARealtimePriority, that_is_not_allowed_is_refused_with_what_to_do_and_nothing_changes)
+{
+  const rlimit none{0, 0};
+  ASSERT_EQ(setrlimit(RLIMIT_RTPRIO, &none), 0);
+  in_a_thread([] {
+    give_up_all_capabilities();
+    const Status refused = set_realtime_priority(priority);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("realtime_priority 20"), std::string::npos);
+    EXPECT_NE(refused.error().message.find("limits.conf"), std::string::npos);
+    const RealtimePriority lives(priority);
+    EXPECT_EQ(policy_and_priority(), ordinary);
+  });
+}
+
+TEST(ARealtimePriority, that_is_not_allowed_keeps_no_receiver_from_its_work)
+{
+  const rlimit none{0, 0};
+  ASSERT_EQ(setrlimit(RLIMIT_RTPRIO, &none), 0);
+  Controller controller(Controller::options());
+  Log log;
+  in_a_thread([&] {
+    give_up_all_capabilities();
+    auto options = receiver_options();
+    options.realtime_priority = priority;
+    StateReceiver receiver(options, log.function());
+    receiver.start();
+    EXPECT_TRUE(eventually([&] { return receiver.link().connected && receiver.latest(); })) << log.text();
+    EXPECT_EQ(log.count("realtime_priority 20 is not allowed"), 1U) << log.text();
+  });
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "connection/dashboard_request.hpp"
+#include "support.hpp"
+#include "ur_ros_rtde_robot/state/rtde_outputs.hpp"
+#include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+using Clock = RtdeStream::Clock;
+constexpr std::chrono::milliseconds limit{2000};
+
+struct AnRtdeStream : testing::Test {
+  Controller controller;
+
+  Expected<RtdeStream> open(const std::vector<std::string> & fields, double frequency = 0.0)
+  {
+    return RtdeStream::open(own_address(), fields, frequency, limit);
+  }
+};
+
+TEST_F(AnRtdeStream, gives_fields_of_every_type_in_the_order_asked_for)
+{
+  controller.start();
+  const auto q = controller.state()["actual"]["position"].get<std::vector<double>>();
+  controller.control({{"command", "set_digital_input"}, {"number", 17}, {"value", true}});
+  auto stream = open({"robot_mode", "actual_q", "tool_output_mode", "actual_digital_input_bits",
+                      "actual_tool_accelerometer", "input_bit_register_64", "joint_mode", "timestamp"});
+  ASSERT_TRUE(stream) << stream.error().message;
+  EXPECT_EQ(stream->width(), 1U + 6 + 1 + 1 + 3 + 1 + 6 + 1);
+  EXPECT_EQ(stream->fields()[4].name, "actual_tool_accelerometer");
+  EXPECT_EQ(stream->fields()[4].size, 3U);
+  std::vector<double> numbers(stream->width());
+  ASSERT_TRUE(stream->next(numbers, Clock::now() + limit).value_or(false));
+  EXPECT_EQ(numbers[0], 7.0);  // RUNNING
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(numbers[1 + i], q[i], 1e-3);
+    EXPECT_EQ(numbers[13 + i], 253.0);  // JOINT_MODE_RUNNING
+  }
+  EXPECT_EQ(numbers[8], std::ldexp(1.0, 17));
+  EXPECT_EQ(numbers[12], 0.0);
+}
+
+TEST_F(AnRtdeStream, has_one_package_a_cycle)
+{
+  controller.start();
+  auto stream = open({"timestamp"}, 125.0);
+  ASSERT_TRUE(stream);
+  EXPECT_EQ(stream->frequency(), 125.0);
+  std::vector<double> now(1);
+  std::vector<double> before(1);
+  ASSERT_TRUE(stream->next(before, Clock::now() + limit).value_or(false));
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(stream->next(now, Clock::now() + limit).value_or(false));
+    EXPECT_NEAR(now[0] - before[0], 0.008, 1e-6);
+    before = now;
+  }
+}
+
+TEST_F(AnRtdeStream, gives_no_more_than_the_controller_can)
+{
+  controller.start();
+  const auto stream = open({"timestamp"}, 2000.0);
+  ASSERT_TRUE(stream);
+  EXPECT_EQ(stream->frequency(), 500.0);
+}
+
+TEST_F(AnRtdeStream, names_the_fields_that_the_controller_does_not_have)
+{
+  controller.start();
+  const auto stream = open({"actual_q", "actual_moment", "encoder0_raw"});
+  ASSERT_FALSE(stream);
+  EXPECT_EQ(stream.error().code, ErrorCode::not_supported);
+  EXPECT_NE(stream.error().message.find("actual_moment, encoder0_raw"), std::string::npos)
+      << stream.error().message;
+}
+
+TEST_F(AnRtdeStream, tells_when_the_link_is_lost_and_when_nothing_comes)
+{
+  controller.start();
+  auto stream = open({"timestamp"});
+  ASSERT_TRUE(stream);
+  std::vector<double> numbers(1);
+  ASSERT_TRUE(stream->next(numbers, Clock::now() + limit).value_or(false));
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+  EXPECT_TRUE(eventually([&] { return !stream->next(numbers, Clock::now() + 100ms).value_or(true); }));
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+  EXPECT_TRUE(eventually([&] { return !stream->next(numbers, Clock::now() + 100ms); }));
+}
+
+TEST_F(AnRtdeStream, has_no_patience_with_a_service_of_another_kind)
+{
+  const OtherService other(30004, "220 mail.example.org ESMTP\r\n");
+  const auto stream = open({"timestamp"});
+  ASSERT_FALSE(stream);
+  EXPECT_EQ(stream.error().code, ErrorCode::link_lost);
+}
+
+TEST(RtdeOutputs, are_known_by_name)
+{
+  for (const char * name : {"timestamp", "actual_TCP_pose", "output_int_register_0",
+                            "output_bit_register_127", "input_double_register_47"}) {
+    EXPECT_TRUE(is_rtde_output(name)) << name;
+  }
+  for (const char * name :
+       {"", "Timestamp", "actual_tcp_pose", "output_int_register_48", "output_int_register_",
+        "output_int_register_01", "output_int_register_-1", "output_bit_register_63"}) {
+    EXPECT_FALSE(is_rtde_output(name)) << name;
+  }
+}
+
+struct ADashboardRequest : testing::Test {
+  Controller controller;
+  Expected<std::string> send(const std::string & line, std::chrono::milliseconds patience = limit)
+  {
+    return dashboard_request(own_address(), line, patience, {});
+  }
+};
+
+TEST_F(ADashboardRequest, has_the_answer_without_its_end)
+{
+  controller.start();
+  EXPECT_EQ(send("robotmode").value_or("nothing"), "Robotmode: RUNNING");
+}
+
+TEST_F(ADashboardRequest, is_made_in_the_control_mode_of_its_own_time)
+{
+  controller.start();
+  controller.control({{"command", "remote_control"}, {"on", false}});
+  EXPECT_NE(send("power off").value_or("").find("Remote Control"), std::string::npos);
+  controller.control({{"command", "remote_control"}, {"on", true}});
+  EXPECT_EQ(send("power off").value_or("nothing"), "Powering off");
+}
+
+TEST_F(ADashboardRequest, ends_by_its_limit_and_by_a_request_to_stop)
+{
+  const OtherService silent(29999, "Connected: Universal Robots Dashboard Server\n");
+  const auto late = send("robotmode", 200ms);
+  ASSERT_FALSE(late);
+  EXPECT_EQ(late.error().code, ErrorCode::timeout);
+  std::stop_source stop;
+  const std::jthread stopper([&] { stop.request_stop(); });
+  const auto stopped = dashboard_request(own_address(), "robotmode", 60s, stop.get_token());
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::canceled);
+}
+
+TEST_F(ADashboardRequest, says_that_there_is_nobody)
+{
+  const auto answer = send("robotmode");
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, ErrorCode::link_lost);
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

@@ -1,0 +1,370 @@
+#include <gtest/gtest.h>
+#include <ur_rtde/rtde_receive_interface.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <future>
+#include <stdexcept>
+#include <utility>
+
+#include "support.hpp"
+#include "ur_ros_rtde_robot/state/state_receiver.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct AStateReceiver : testing::Test {
+  Log log;
+  Controller controller;
+
+  std::unique_ptr<StateReceiver> receiver(StateReceiverOptions options = receiver_options())
+  {
+    auto result = std::make_unique<StateReceiver>(std::move(options), log.function());
+    result->start();
+    return result;
+  }
+  static bool connected(const StateReceiver & receiver, std::chrono::milliseconds limit = 5s)
+  {
+    return eventually([&] { return receiver.link().connected && receiver.latest(); }, limit);
+  }
+};
+
+TEST_F(AStateReceiver, starts_before_the_controller_does)
+{
+  const auto receiver = this->receiver();
+  ASSERT_TRUE(eventually([&] {
+    return log.count("no connection to " + own_address() + ":30004") == 1 &&
+           log.count("check the address") == 1;
+  })) << log.text();
+  EXPECT_FALSE(receiver->latest());
+  controller.start();
+  EXPECT_TRUE(connected(*receiver)) << log.text();
+}
+
+TEST_F(AStateReceiver, follows_every_package_in_the_controllers_time)
+{
+  controller.start();
+  std::mutex mutex;
+  std::vector<double> times;
+  StateReceiver receiver(receiver_options(), log.function());
+  receiver.on_sample([&](const Sample & sample) {
+    const std::lock_guard lock(mutex);
+    times.push_back(sample.controller_time);
+  });
+  receiver.start();
+  ASSERT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return times.size() > 500;
+  }));
+  const std::lock_guard lock(mutex);
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    ASSERT_GT(times[i], times[i - 1]);
+    intervals.push_back(times[i] - times[i - 1]);
+  }
+  // ur_rtde takes the newest of several packages that a busy host was too late for, so not all intervals are
+  // one cycle.
+  std::nth_element(intervals.begin(), intervals.begin() + 250, intervals.end());
+  EXPECT_NEAR(intervals[250], 0.002, 1e-9);
+}
+
+TEST_F(AStateReceiver, fills_a_sample_with_what_the_robot_has)
+{
+  controller.start();
+  const auto receiver = this->receiver();
+  ASSERT_TRUE(connected(*receiver));
+  const auto sample = *receiver->latest();
+  const auto state = controller.state();
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(sample.actual_q[i], state.at("actual").at("position").at(i).get<double>(), 1e-3);
+    EXPECT_NEAR(sample.actual_tcp_pose[i], state.at("actual_tcp_pose").at(i).get<double>(), 1e-3);
+    EXPECT_TRUE(std::isfinite(sample.joint_temperatures[i]));
+    EXPECT_TRUE(std::isfinite(sample.ft_raw_wrench[i]));
+  }
+  EXPECT_EQ(sample.robot_mode, RobotMode::running);
+  EXPECT_EQ(sample.safety_mode, SafetyMode::normal);
+  EXPECT_TRUE(sample.safety().normal_mode);
+  EXPECT_TRUE(sample.power_on());
+  EXPECT_TRUE(std::isfinite(sample.payload));
+  const auto age = std::chrono::system_clock::now() - sample.stamp;
+  EXPECT_LT(std::abs(std::chrono::duration<double>(age).count()), 1.0);
+}
+
+TEST_F(AStateReceiver, gets_packages_at_the_frequency_asked_for)
+{
+  controller.start();
+  auto options = receiver_options();
+  options.frequency = 50.0;
+  const auto receiver = this->receiver(options);
+  ASSERT_TRUE(connected(*receiver));
+  EXPECT_DOUBLE_EQ(receiver->frequency(), 50.0);
+  Sample sample = *receiver->latest();
+  double shortest = 1.0;
+  for (int i = 0; i < 10; ++i) {
+    const double before = sample.controller_time;
+    ASSERT_TRUE(receiver->wait_for_next(sample, 1s));
+    shortest = std::min(shortest, sample.controller_time - before);
+  }
+  EXPECT_NEAR(shortest, 0.02, 1e-9);
+}
+
+TEST_F(AStateReceiver, takes_a_slow_frequency_for_no_silence)
+{
+  controller.start();
+  auto options = receiver_options();
+  options.frequency = 5.0;
+  const auto receiver = this->receiver(options);
+  ASSERT_TRUE(connected(*receiver));
+  Sample sample = *receiver->latest();
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_TRUE(receiver->wait_for_next(sample, 1s)) << log.text();
+  }
+  EXPECT_EQ(sample.link, 1U) << log.text();
+}
+
+TEST_F(AStateReceiver, reduces_a_frequency_that_a_CB3_cannot_have_and_says_so_once)
+{
+  auto simulator = Controller::options();
+  simulator.model = "ur5";
+  simulator.polyscope_version = "3.15.8";
+  controller.start(simulator);
+  auto options = receiver_options();
+  options.frequency = 500.0;
+  const auto receiver = this->receiver(options);
+  ASSERT_TRUE(connected(*receiver)) << log.text();
+  EXPECT_DOUBLE_EQ(receiver->frequency(), 125.0);
+  EXPECT_EQ(log.count("using 125 Hz"), 1U) << log.text();
+  EXPECT_TRUE(std::isnan(receiver->latest()->ft_raw_wrench[0])) << "a CB3 has no force/torque sensor";
+}
+
+TEST_F(AStateReceiver, refuses_an_impossible_frequency_priority_and_an_empty_address)
+{
+  for (const int priority : {-1, 100}) {
+    auto options = receiver_options();
+    options.realtime_priority = priority;
+    EXPECT_THROW(StateReceiver{options}, std::invalid_argument);
+  }
+  for (const double frequency : {-1.0, 0.5, 501.0, std::nan("")}) {
+    auto options = receiver_options();
+    options.frequency = frequency;
+    EXPECT_THROW(StateReceiver{options}, std::invalid_argument);
+  }
+  EXPECT_THROW(StateReceiver{StateReceiverOptions{}}, std::invalid_argument);
+}
+
+TEST_F(AStateReceiver, says_once_that_nobody_is_there_with_address_and_next_try)
+{
+  auto options = receiver_options();
+  options.retry_interval = 10ms;
+  std::atomic<int> changes{0};
+  StateReceiver receiver(options, log.function());
+  receiver.on_link([&](const LinkStatus &) { ++changes; });
+  receiver.start();
+  ASSERT_TRUE(eventually([&] { return log.count(own_address() + ":30004") > 0; }));
+  Sample none{};
+  EXPECT_FALSE(receiver.wait_for_next(none, 200ms));  // some twenty more tries
+  EXPECT_EQ(log.count(own_address() + ":30004"), 1U) << log.text();
+  EXPECT_EQ(log.count("Trying again every 0.01 s"), 1U) << log.text();
+  EXPECT_EQ(changes, 1);
+  EXPECT_EQ(receiver.link().error.code, ErrorCode::link_lost);
+}
+
+TEST_F(AStateReceiver, recognises_a_service_that_never_answers)
+{
+  const OtherService silent(30004, "");
+  const auto receiver = this->receiver();
+  EXPECT_TRUE(eventually([&] { return log.count("does not answer as the RTDE server") == 1; })) << log.text();
+}
+
+TEST_F(AStateReceiver, recognises_a_service_of_another_kind)
+{
+  const OtherService secure_shell(30004, "SSH-2.0-OpenSSH_9.2p1 Debian-2+deb12u3\r\n");
+  const auto receiver = this->receiver();
+  EXPECT_TRUE(eventually([&] { return log.count("not an RTDE package") == 1; })) << log.text();
+  EXPECT_FALSE(receiver->link().connected);
+}
+
+TEST_F(AStateReceiver, finds_the_controller_after_something_else_at_its_address)
+{
+  auto other = std::make_unique<OtherService>(30004, "HTTP/1.1 400 Bad Request\r\n\r\n");
+  const auto receiver = this->receiver();
+  ASSERT_TRUE(eventually([&] { return log.count("not an RTDE package") == 1; })) << log.text();
+  other.reset();
+  controller.start();
+  EXPECT_TRUE(connected(*receiver)) << log.text();
+}
+
+TEST_F(AStateReceiver, outlives_the_controller_and_comes_back_to_it)
+{
+  controller.start();
+  const auto receiver = this->receiver();
+  ASSERT_TRUE(connected(*receiver));
+  controller.stop();
+  ASSERT_TRUE(eventually([&] { return !receiver->link().connected; }));
+  const auto last = receiver->latest();
+  ASSERT_TRUE(last) << "the last sample is kept";
+  controller.start();
+  const auto returned = Clock::now();
+  ASSERT_TRUE(connected(*receiver, 5s)) << log.text();
+  RecordProperty(
+      "reconnected_after_ms",
+      std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - returned).count()));
+  EXPECT_LT(Clock::now() - returned, 1s);
+  EXPECT_EQ(receiver->latest()->link, 2U);
+  EXPECT_GT(receiver->latest()->sequence, last->sequence);
+}
+
+TEST_F(AStateReceiver, notices_a_closed_connection_and_a_reset_one)
+{
+  controller.start();
+  const auto receiver = this->receiver();
+  for (const bool reset : {false, true}) {
+    ASSERT_TRUE(connected(*receiver)) << log.text();
+    const auto link = receiver->latest()->link;
+    controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"reset", reset}});
+    EXPECT_TRUE(eventually([&] { return receiver->latest()->link > link; })) << log.text();
+  }
+}
+
+TEST_F(AStateReceiver, notices_a_half_open_link_by_missing_packages)
+{
+  controller.start();
+  auto options = receiver_options();
+  options.silence_limit = StateReceiverOptions().silence_limit;
+  const auto receiver = this->receiver(options);
+  ASSERT_TRUE(connected(*receiver));
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+  ASSERT_TRUE(eventually([&] { return !receiver->link().connected; }));
+  const auto silence = std::chrono::duration<double>(Clock::now() - receiver->latest()->received).count();
+  RecordProperty("half_open_noticed_after_ms", std::to_string(1000.0 * silence));
+  EXPECT_LT(silence, 0.25) << "100 ms, and what a busy host takes";
+  EXPECT_TRUE(eventually([&] { return log.count("no RTDE package from " + own_address()) == 1; }))
+      << log.text();
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", false}});
+  EXPECT_TRUE(connected(*receiver)) << log.text();
+}
+
+TEST_F(AStateReceiver, takes_no_silence_of_this_host_for_the_controllers)
+{
+  controller.start();
+  auto options = receiver_options();
+  options.silence_limit = StateReceiverOptions().silence_limit;
+  StateReceiver receiver(options, log.function());
+  std::promise<void> go_on;
+  receiver.on_sample([&, held = false, wait = go_on.get_future().share()](const Sample &) mutable {
+    if (!std::exchange(held, true)) {
+      wait.wait();
+    }
+  });
+  receiver.start();
+  ASSERT_TRUE(eventually([&] { return receiver.latest().has_value(); })) << log.text();
+  Sample sample = *receiver.latest();
+  EXPECT_FALSE(receiver.wait_for_next(sample, 3 * options.silence_limit)) << "nobody takes the packages";
+  EXPECT_TRUE(receiver.link().connected) << log.text();
+  go_on.set_value();
+  EXPECT_TRUE(receiver.wait_for_next(sample, 1s)) << log.text();
+  EXPECT_EQ(sample.link, 1U) << log.text();
+}
+
+TEST_F(AStateReceiver, makes_the_link_anew_after_a_package_that_could_not_be_handed_on)
+{
+  controller.start();
+  StateReceiver receiver(receiver_options(), log.function());
+  receiver.on_sample([thrown = false](const Sample & sample) mutable {
+    if (sample.sequence > 20 && !std::exchange(thrown, true)) {
+      throw std::runtime_error("the disk is full");
+    }
+  });
+  receiver.start();
+  ASSERT_TRUE(eventually([&] { return receiver.latest() && receiver.latest()->link == 2; })) << log.text();
+  EXPECT_EQ(log.count("a package could not be handed on: the disk is full"), 1U) << log.text();
+  EXPECT_TRUE(connected(receiver)) << log.text();
+}
+
+TEST_F(AStateReceiver, survives_garbage)
+{
+  controller.start();
+  const auto receiver = this->receiver();
+  for (const int bytes : {1, 3, 64, 5000}) {
+    ASSERT_TRUE(connected(*receiver)) << log.text();
+    const auto sequence = receiver->latest()->sequence;
+    controller.control({{"command", "send_garbage"}, {"which", "rtde"}, {"bytes", bytes}});
+    EXPECT_TRUE(eventually([&] {
+      return receiver->link().connected && receiver->latest()->sequence > sequence + 100;
+    })) << bytes
+        << " bytes\n"
+        << log.text();
+  }
+}
+
+TEST_F(AStateReceiver, ends_a_wait_when_asked_to)
+{
+  const auto receiver = this->receiver();
+  std::stop_source source;
+  std::jthread stopper([&] { source.request_stop(); });
+  Sample none{};
+  const auto begin = Clock::now();
+  EXPECT_FALSE(receiver->wait_for_next(none, 60s, source.get_token()));
+  EXPECT_LT(Clock::now() - begin, 10s);
+}
+
+TEST_F(AStateReceiver, refuses_ur_rtdes_interface_with_the_cause_while_there_is_none)
+{
+  const auto receiver = this->receiver();
+  ASSERT_TRUE(eventually([&] { return log.count("no connection") > 0; }));
+  try {
+    receiver->receive()->getActualQ();
+    FAIL() << "there is nobody to ask";
+  } catch (const RobotError & error) {
+    EXPECT_EQ(error.error().code, ErrorCode::link_lost);
+  }
+  controller.start();
+  ASSERT_TRUE(connected(*receiver));
+  EXPECT_EQ(receiver->receive()->getActualQ().size(), 6U);
+}
+
+TEST_F(AStateReceiver, follows_one_controller_ten_times_at_once)
+{
+  controller.start();
+  std::vector<std::unique_ptr<StateReceiver>> receivers;
+  for (int i = 0; i < 10; ++i) {
+    receivers.push_back(this->receiver());
+  }
+  for (const auto & receiver : receivers) {
+    EXPECT_TRUE(connected(*receiver)) << log.text();
+  }
+}
+
+TEST_F(AStateReceiver, leaks_nothing_over_many_reconnections)
+{
+  controller.start();
+  auto options = receiver_options();
+  options.retry_interval = 1ms;
+  const auto receiver = this->receiver(options);
+  std::size_t descriptors = 0;
+  std::size_t threads = 0;
+  for (int round = 0; round < 30; ++round) {
+    ASSERT_TRUE(eventually([&] {
+      return receiver->link().connected && receiver->latest()->link > static_cast<unsigned>(round);
+    })) << log.text();
+    if (round == 5) {
+      descriptors = open_descriptors();
+      threads = running_threads();
+    }
+    if (round > 5) {
+      // The simulator closes its ends a little later.
+      EXPECT_TRUE(eventually([&] { return open_descriptors() <= descriptors + 2; }))
+          << open_descriptors() << " of " << descriptors;
+      EXPECT_TRUE(eventually([&] { return running_threads() <= threads; }))
+          << running_threads() << " of " << threads;
+    }
+    controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+  }
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

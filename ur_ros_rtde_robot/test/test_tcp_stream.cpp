@@ -1,0 +1,53 @@
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+#include <netdb.h>
+
+#include <atomic>
+#include <string_view>
+
+#include "motion/motion_stopper.hpp"
+#include "connection/ports.hpp"
+#include "connection/tcp_stream.hpp"
+#include "support.hpp"
+
+namespace {
+/// The name server of this program knows names that end so: they are the test's controller.
+constexpr std::string_view domain = ".test";
+std::atomic<bool> name_server_answers{true};
+}  // namespace
+
+extern "C" int getaddrinfo(const char * name, const char * service, const addrinfo * hints, addrinfo ** found)
+{
+  static const auto look_up = reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"));
+  if (name == nullptr || !std::string_view(name).ends_with(domain)) {
+    return look_up(name, service, hints, found);
+  }
+  return name_server_answers ? look_up(ur_ros_rtde::test::own_address().c_str(), service, hints, found)
+                             : EAI_AGAIN;
+}
+
+namespace ur_ros_rtde::test {
+namespace {
+
+TEST(TheLastResortStop, waits_for_no_name_server)
+{
+  Controller controller(Controller::options());
+  ASSERT_TRUE(TcpStream::connect("robot.test", dashboard_port, 1s));  // as when the driver starts
+  name_server_answers = false;
+  const auto stopped = stop_program("robot.test", 1s);
+  EXPECT_TRUE(stopped) << stopped.error().message;
+}
+
+TEST(ATcpStream, looks_a_name_up_again_that_was_not_found)
+{
+  Controller controller(Controller::options());
+  name_server_answers = false;
+  const auto not_found = TcpStream::connect("other.test", dashboard_port, 1s);
+  ASSERT_FALSE(not_found);
+  EXPECT_NE(not_found.error().message.find("`other.test` cannot be resolved"), std::string::npos);
+  name_server_answers = true;
+  EXPECT_TRUE(TcpStream::connect("other.test", dashboard_port, 1s));
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test

@@ -1,0 +1,53 @@
+#include "path/path.hpp"
+
+#include <algorithm>
+
+namespace ur_ros_rtde::trajectory {
+
+PathPoint PathPiece::at(double u) const
+{
+  if (length <= 0.0) {
+    return {c[0], Joints::Zero(), Joints::Zero(), Joints::Zero()};
+  }
+  const double x = u / length;
+  const double scale = 1.0 / length;
+  if (straight()) {
+    return {c[0] + c[1] * x, c[1] * scale, Joints::Zero(), Joints::Zero()};
+  }
+  // Horner's scheme for a polynomial and its first three derivatives, divided by 1, 1, 2 and 6.
+  Joints p = c[static_cast<std::size_t>(degree)];
+  Joints p1 = Joints::Zero();
+  Joints p2 = Joints::Zero();
+  Joints p3 = Joints::Zero();
+  for (int k = degree - 1; k >= 0; --k) {
+    p3 = p3 * x + p2;
+    p2 = p2 * x + p1;
+    p1 = p1 * x + p;
+    p = p * x + c[static_cast<std::size_t>(k)];
+  }
+  return {p, p1 * scale, p2 * (2.0 * scale * scale), p3 * (6.0 * scale * scale * scale)};
+}
+
+std::size_t Path::piece_at(double s) const
+{
+  const auto after =
+      std::upper_bound(pieces.begin(), pieces.end(), s,
+                       [](double value, const PathPiece & piece) { return value < piece.start; });
+  return after == pieces.begin() ? 0 : static_cast<std::size_t>(after - pieces.begin()) - 1;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> Path::blocks() const
+{
+  std::vector<std::pair<std::size_t, std::size_t>> result;
+  std::size_t first = 0;
+  for (const std::size_t stop : stops) {
+    result.emplace_back(first, stop);
+    first = stop;
+  }
+  if (first < pieces.size()) {
+    result.emplace_back(first, pieces.size());
+  }
+  return result;
+}
+
+}  // namespace ur_ros_rtde::trajectory

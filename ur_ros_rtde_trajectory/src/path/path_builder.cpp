@@ -1,0 +1,270 @@
+#include "path/path_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "path/spline.hpp"
+
+namespace ur_ros_rtde::trajectory {
+namespace {
+
+constexpr double same_place = 1e-9;      // rad; closer waypoints are one
+constexpr double same_direction = 1e-9;  // change of the unit direction below which a line goes on
+constexpr double smallest_radius =
+    1e-3;                                // rad; a turn tighter than this is a corner, however small its angle
+constexpr double smallest_blend = 1e-5;  // rad; a blend shorter than this gains nothing over a stop
+
+// The waypoints without repetitions, as lines between them.
+struct Polyline {
+  std::vector<Joints> points;
+  std::vector<std::size_t> owner;  // for each of the caller's waypoints, the index in `points`
+  std::vector<Joints> direction;   // unit vector of each line
+  std::vector<double> length;
+
+  explicit Polyline(const std::vector<Joints> & waypoints)
+  {
+    for (const Joints & waypoint : waypoints) {
+      if (points.empty() || (waypoint - points.back()).abs().maxCoeff() > same_place) {
+        points.push_back(waypoint);
+      }
+      owner.push_back(points.size() - 1);
+    }
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      const Joints step = points[i + 1] - points[i];
+      length.push_back(step.matrix().norm());
+      direction.push_back(step / length.back());
+    }
+  }
+
+  Joints turn(std::size_t i) const { return direction[i] - direction[i - 1]; }
+  double angle(std::size_t i) const { return 2.0 * std::asin(std::min(1.0, 0.5 * turn(i).matrix().norm())); }
+};
+
+class Builder {
+ public:
+  Builder(const std::vector<Joints> & waypoints, const PathShape & shape) : line_(waypoints), shape_(shape) {}
+
+  Path build()
+  {
+    place_.assign(line_.points.size(), 0.0);
+    if (line_.points.size() > 1) {
+      add_runs();
+      finish_corners();
+      place_.back() = path_.length();
+    } else {
+      add_straight(line_.points.front(), Joints::Zero(), 0.0);
+    }
+    for (const std::size_t point : line_.owner) {
+      path_.waypoints.push_back(place_[point]);
+    }
+    return std::move(path_);
+  }
+
+ private:
+  void add(PathPiece piece)
+  {
+    piece.start = path_.length();
+    path_.pieces.push_back(piece);
+  }
+
+  void add_straight(const Joints & from, const Joints & direction, double length)
+  {
+    PathPiece piece;
+    piece.length = length;
+    piece.c[0] = from;
+    piece.c[1] = direction * length;
+    add(piece);
+  }
+
+  // A corner is where the direction changes too much for a smooth curve: one that passes through the waypoint
+  // would swing out between the waypoints, by about an eighth of angle times distance.
+  bool is_corner(std::size_t i) const
+  {
+    const double angle = line_.angle(i);
+    const double nearer = std::min(line_.length[i - 1], line_.length[i]);
+    const double farther = std::max(line_.length[i - 1], line_.length[i]);
+    if (angle > shape_.corner_angle || nearer < smallest_radius * angle) {
+      return angle > same_direction;
+    }
+    return shape_.tolerance > 0.0 && 0.125 * angle * farther > shape_.tolerance;
+  }
+
+  void add_runs()
+  {
+    const std::size_t last = line_.points.size() - 1;
+    std::size_t first = 0;
+    for (std::size_t i = 1; i <= last; ++i) {
+      if (i < last && !is_corner(i)) {
+        continue;
+      }
+      add_run(first, i);
+      place_[i] = path_.length();
+      if (i < last) {
+        corners_.push_back({path_.pieces.size(), i});
+      }
+      first = i;
+    }
+  }
+
+  // All points from first to last lie on the line between these two.
+  bool is_straight(std::size_t first, std::size_t last) const
+  {
+    const Joints chord = line_.points[last] - line_.points[first];
+    const Joints along = chord / chord.matrix().norm();
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const Joints offset = line_.points[i] - line_.points[first];
+      const double forward = (offset * along).sum();
+      if ((offset - forward * along).abs().maxCoeff() > same_place || !(forward > 0.0)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void add_run(std::size_t first, std::size_t last)
+  {
+    if (is_straight(first, last)) {
+      add_straight_run(first, last);
+      return;
+    }
+    const std::span points(line_.points.data() + first, last - first + 1);
+    const std::span widths(line_.length.data() + first, last - first);
+    const auto slopes = natural_spline_slopes(points, widths);
+    for (std::size_t i = first; i < last; ++i) {
+      place_[i] = path_.length();
+      add_cubic(i, slopes[i - first], slopes[i - first + 1]);
+    }
+  }
+
+  void add_straight_run(std::size_t first, std::size_t last)
+  {
+    const double begin = path_.length();
+    const Joints chord = line_.points[last] - line_.points[first];
+    const double length = chord.matrix().norm();
+    for (std::size_t i = first; i < last; ++i) {
+      place_[i] = begin + ((line_.points[i] - line_.points[first]) * chord).sum() / length;
+    }
+    add_straight(line_.points[first], chord / length, length);
+  }
+
+  void add_cubic(std::size_t i, const Joints & slope, const Joints & next_slope)
+  {
+    PathPiece piece;
+    piece.length = line_.length[i];
+    piece.degree = 3;
+    const Joints rise = line_.points[i + 1] - line_.points[i];
+    const Joints m0 = slope * piece.length;
+    const Joints m1 = next_slope * piece.length;
+    piece.c[0] = line_.points[i];
+    piece.c[1] = m0;
+    piece.c[2] = 3.0 * rise - 2.0 * m0 - m1;
+    piece.c[3] = m0 + m1 - 2.0 * rise;
+    add(piece);
+  }
+
+  // --- corners ---
+
+  struct Corner {
+    std::size_t piece = 0;  // the first one after it
+    std::size_t point = 0;
+  };
+
+  // How far before and after a corner its blend begins and ends. The direction changes along the quintic
+  // smoothstep, so between straight lines the middle of the blend passes the corner at 2 * (5/64) * reach *
+  // |d1 - d0|.
+  double blend_reach(const PathPiece & before, const PathPiece & after, const Joints & corner) const
+  {
+    constexpr double sag = 2.0 * 5.0 / 64.0;
+    const double turn = (after.at(0.0).d1 - before.at(before.length).d1).abs().maxCoeff();
+    double reach = std::min({shape_.tolerance / (sag * turn), 0.5 * before.length, 0.5 * after.length});
+    for (; reach > smallest_blend; reach *= 0.8) {
+      const PathPiece blend = make_blend(before, after, reach);
+      if ((blend.at(reach).q - corner).abs().maxCoeff() <= shape_.tolerance * (1.0 + 1e-9)) {
+        return reach;
+      }
+    }
+    return 0.0;
+  }
+
+  // The polynomial that continues three derivatives on both sides; between straight lines of degree six, with
+  // q' = d0 + (d1 - d0) (10 x^3 - 15 x^4 + 6 x^5), inside the triangle of the corner.
+  static PathPiece make_blend(const PathPiece & before, const PathPiece & after, double reach)
+  {
+    PathPiece blend;
+    blend.length = 2.0 * reach;
+    blend.degree = 7;
+    const double l = blend.length;
+    const PathPoint from = before.at(before.length - reach);
+    const PathPoint to = after.at(reach);
+    blend.c[0] = from.q;
+    blend.c[1] = from.d1 * l;
+    blend.c[2] = from.d2 * (l * l / 2.0);
+    blend.c[3] = from.d3 * (l * l * l / 6.0);
+    // What is missing at x = 1 of the position and of x-derivatives 1 to 3.
+    const Joints e0 = to.q - blend.c[0] - blend.c[1] - blend.c[2] - blend.c[3];
+    const Joints e1 = to.d1 * l - blend.c[1] - 2.0 * blend.c[2] - 3.0 * blend.c[3];
+    const Joints e2 = to.d2 * (l * l) - 2.0 * blend.c[2] - 6.0 * blend.c[3];
+    const Joints e3 = to.d3 * (l * l * l) - 6.0 * blend.c[3];
+    blend.c[4] = 35.0 * e0 - 15.0 * e1 + 2.5 * e2 - e3 / 6.0;
+    blend.c[5] = -84.0 * e0 + 39.0 * e1 - 7.0 * e2 + 0.5 * e3;
+    blend.c[6] = 70.0 * e0 - 34.0 * e1 + 6.5 * e2 - 0.5 * e3;
+    blend.c[7] = -20.0 * e0 + 10.0 * e1 - 2.0 * e2 + e3 / 6.0;
+    return blend;
+  }
+
+  // `piece` without `head` at its beginning and `tail` at its end.
+  static PathPiece cut(const PathPiece & piece, double head, double tail)
+  {
+    PathPiece rest = piece;
+    rest.length = piece.length - head - tail;
+    const PathPoint point = piece.at(head);
+    rest.c[0] = point.q;
+    rest.c[1] = point.d1 * rest.length;
+    if (!piece.straight()) {  // a cubic
+      rest.c[2] = point.d2 * (rest.length * rest.length / 2.0);
+      rest.c[3] = point.d3 * (rest.length * rest.length * rest.length / 6.0);
+    }
+    return rest;
+  }
+
+  // Puts stops or blends at the corners; both keep every other place on the path where it was.
+  void finish_corners()
+  {
+    const std::vector<PathPiece> pieces = std::move(path_.pieces);
+    path_.pieces.clear();
+    auto corner = corners_.begin();
+    double head = 0.0;
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      const bool ends_in_corner = corner != corners_.end() && corner->piece == k + 1;
+      const double reach = ends_in_corner && shape_.tolerance > 0.0
+                               ? blend_reach(pieces[k], pieces[k + 1], line_.points[corner->point])
+                               : 0.0;
+      if (pieces[k].length - head - reach > 1e-12 * pieces[k].length) {
+        add(head > 0.0 || reach > 0.0 ? cut(pieces[k], head, reach) : pieces[k]);
+      }
+      if (reach > 0.0) {
+        add(make_blend(pieces[k], pieces[k + 1], reach));
+      } else if (ends_in_corner) {
+        path_.stops.push_back(path_.pieces.size());
+      }
+      corner += ends_in_corner ? 1 : 0;
+      head = reach;
+    }
+  }
+
+  std::vector<Corner> corners_;
+  Polyline line_;
+  PathShape shape_;
+  Path path_;
+  std::vector<double> place_;  // s of each point of the polyline
+};
+
+}  // namespace
+
+Path build_path(const std::vector<Joints> & waypoints, const PathShape & shape)
+{
+  return Builder(waypoints, shape).build();
+}
+
+}  // namespace ur_ros_rtde::trajectory

@@ -1,0 +1,176 @@
+// Plans a trajectory without a robot: reads the fields of a goal as JSON from standard input, writes the plan
+// as JSON to standard output. What ./ur plan draws. A refusal goes to standard error, and the program ends
+// with 1.
+//
+//   {"model": "ur10e", "waypoints": [[rad, …], …]}, and the fields of ExecuteTrajectory; or, with times,
+//   {"points": [{"time": s, "positions": […], "velocities": […], "accelerations": […]}, …]}
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "ur_ros_rtde_trajectory/plan.hpp"
+#include "ur_ros_rtde_trajectory/timed.hpp"
+
+namespace {
+
+using nlohmann::json;
+using namespace ur_ros_rtde;
+using trajectory::Joints;
+using trajectory::Limits;
+
+Expected<Limits> read_limits(const json & goal)
+{
+  const std::string model = goal.value("model", "");
+  const auto arm = model.empty() ? std::optional(widest_arm_limits()) : arm_limits(model);
+  if (!arm) {
+    return failure(ErrorCode::invalid_goal, fmt::format("model is \"{}\", there is no such arm", model));
+  }
+  Limits limits = trajectory::make_limits(*arm);
+  if (goal.contains("waypoints")) {
+    limits = trajectory::slow_limits(limits);  // as execute_trajectory; given times are a choice of speed
+  }
+  for (const auto & [field, limit] :
+       {std::pair{"max_velocity", &limits.velocity}, std::pair{"max_acceleration", &limits.acceleration},
+        std::pair{"max_jerk", &limits.jerk}}) {
+    if (!goal.contains(field)) {
+      continue;
+    }
+    const auto given = trajectory::to_joints(field, goal.at(field).get<std::vector<double>>());
+    if (!given) {
+      return tl::unexpected(given.error());
+    }
+    *limit = *given;
+  }
+  return limits;
+}
+
+trajectory::TimedWaypoints read_points(const json & points)
+{
+  trajectory::TimedWaypoints waypoints;
+  for (const json & point : points) {
+    waypoints.times.push_back(point.at("time").get<double>());
+    waypoints.positions.push_back(point.at("positions").get<std::vector<double>>());
+    if (point.contains("velocities")) {
+      waypoints.velocities.push_back(point["velocities"].get<std::vector<double>>());
+    }
+    if (point.contains("accelerations")) {
+      waypoints.accelerations.push_back(point["accelerations"].get<std::vector<double>>());
+    }
+  }
+  return waypoints;
+}
+
+Status known_fields(const json & goal)
+{
+  static const std::set<std::string> known{"model",          "waypoints",        "points",
+                                           "max_velocity",   "max_acceleration", "max_jerk",
+                                           "speed_fraction", "blend_tolerance",  "corner_angle"};
+  for (const auto & [field, value] : goal.items()) {
+    if (!known.contains(field)) {
+      return failure(ErrorCode::invalid_goal,
+                     fmt::format("there is no field {}: it may have {}", field, fmt::join(known, ", ")));
+    }
+  }
+  if (goal.contains("waypoints") == goal.contains("points")) {
+    return failure(ErrorCode::invalid_goal, "give either waypoints, without times, or points, with times");
+  }
+  return {};
+}
+
+Expected<trajectory::Trajectory> plan(const json & goal, const Limits & limits)
+{
+  if (goal.contains("points")) {
+    return trajectory::plan_timed(read_points(goal["points"]), limits);
+  }
+  trajectory::PathOptions options;
+  options.blend_tolerance = goal.value("blend_tolerance", options.blend_tolerance);
+  options.corner_angle = goal.value("corner_angle", options.corner_angle);
+  options.speed_fraction = goal.value("speed_fraction", options.speed_fraction);
+  return trajectory::plan_path(goal["waypoints"].get<std::vector<std::vector<double>>>(), limits, options);
+}
+
+json to_json(const Joints & values)
+{
+  return std::vector<double>(values.begin(), values.end());
+}
+
+json to_json(const Limits & limits)
+{
+  return {{"position_min", to_json(limits.position_min)},
+          {"position_max", to_json(limits.position_max)},
+          {"velocity", to_json(limits.velocity)},
+          {"acceleration", to_json(limits.acceleration)},
+          {"jerk", to_json(limits.jerk)}};
+}
+
+json to_json(const trajectory::Trajectory & plan)
+{
+  constexpr int most_samples = 4000;
+  const double duration = plan.duration();
+  const int count = std::clamp(static_cast<int>(duration / 0.002), 1, most_samples);
+  json samples;
+  for (int k = 0; k <= count; ++k) {
+    const double time = duration * k / count;
+    const trajectory::Point point = plan.sample(time);
+    samples["time"].push_back(time);
+    samples["position"].push_back(to_json(point.position));
+    samples["velocity"].push_back(to_json(point.velocity));
+    samples["acceleration"].push_back(to_json(point.acceleration));
+    samples["jerk"].push_back(to_json(point.jerk));
+  }
+  json waypoints = json::array();
+  for (std::size_t i = 0; i < plan.waypoint_count(); ++i) {
+    waypoints.push_back(plan.time_of_waypoint(i));
+  }
+  return {{"duration", duration}, {"waypoint_times", waypoints}, {"samples", samples}};
+}
+
+Expected<json> answer(const json & goal)
+{
+  if (Status known = known_fields(goal); !known) {
+    return tl::unexpected(known.error());
+  }
+  const auto limits = read_limits(goal);
+  if (!limits) {
+    return tl::unexpected(limits.error());
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const auto planned = plan(goal, *limits);
+  const std::chrono::duration<double> planning_time = std::chrono::steady_clock::now() - begin;
+  if (!planned) {
+    return tl::unexpected(planned.error());
+  }
+  const auto use = planned->verify(*limits);
+  if (!use) {
+    return tl::unexpected(use.error());
+  }
+  json result = to_json(*planned);
+  result["planning_time"] = planning_time.count();
+  result["limits"] = to_json(*limits);
+  result["use"] = {{"velocity", use->velocity}, {"acceleration", use->acceleration}, {"jerk", use->jerk}};
+  return result;
+}
+
+}  // namespace
+
+int main()
+{
+  try {
+    const auto result = answer(json::parse(std::cin));
+    if (!result) {
+      fmt::print(stderr, "{}\n", result.error().message);
+      return 1;
+    }
+    std::cout << *result << '\n';
+    return 0;
+  } catch (const std::exception & error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}

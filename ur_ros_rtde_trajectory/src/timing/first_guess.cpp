@@ -1,0 +1,188 @@
+#include "timing/first_guess.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "timing/jerk_solver.hpp"
+#include "timing/reach.hpp"
+#include "timing/speed_spline.hpp"
+
+namespace ur_ros_rtde::trajectory {
+namespace {
+
+// Squares of the speed that constant jerk reaches from rest at both ends, a ~ s^(4/3), joined smoothly.
+std::vector<double> ramps(const Grid & grid, const Limits & limits)
+{
+  const auto factor = [&](const Joints & direction) {
+    const double jerk = 0.7 * (limits.jerk / direction.abs().max(1e-300)).minCoeff();
+    return 0.25 * std::cbrt(std::pow(6.0, 4) * jerk * jerk);
+  };
+  const std::size_t last = grid.stations() - 1;
+  std::vector<double> from_begin(last + 1, 0.0);
+  for (std::size_t m = 1; m <= last; ++m) {
+    from_begin[m] = from_begin[m - 1] + grid.width(m - 1);
+  }
+  const double begin = factor(grid.d1.front());
+  const double end = factor(grid.d1.back());
+  std::vector<double> result(last + 1, 0.0);
+  for (std::size_t m = 1; m < last; ++m) {
+    const double up = begin * std::cbrt(std::pow(from_begin[m], 4));
+    const double down = end * std::cbrt(std::pow(from_begin[last] - from_begin[m], 4));
+    result[m] = 1.0 / (1.0 / up + 1.0 / down);
+  }
+  return result;
+}
+
+// The least value within `reach` seconds before and after.
+std::vector<double> least_nearby(const std::vector<double> & values, const std::vector<double> & time,
+                                 double reach)
+{
+  std::vector<double> result(values.size());
+  std::deque<std::size_t> window;  // indices of increasing values
+  std::size_t next = 0;
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    for (; next < values.size() && time[next] <= time[m] + reach; ++next) {
+      while (!window.empty() && values[window.back()] >= values[next]) {
+        window.pop_back();
+      }
+      window.push_back(next);
+    }
+    while (time[window.front()] < time[m] - reach) {
+      window.pop_front();
+    }
+    result[m] = values[window.front()];
+  }
+  return result;
+}
+
+// The mean over `reach` seconds before and after; beyond both ends as at the ends.
+std::vector<double> mean_nearby(const std::vector<double> & values, const std::vector<double> & time,
+                                double reach)
+{
+  const std::size_t last = values.size() - 1;
+  std::vector<double> sum(values.size(), 0.0);
+  for (std::size_t m = 1; m <= last; ++m) {
+    sum[m] = sum[m - 1] + 0.5 * (values[m] + values[m - 1]) * (time[m] - time[m - 1]);
+  }
+  std::size_t index = 0;
+  const auto integral = [&](double t, std::size_t & i) {
+    if (t <= time.front()) {
+      return (t - time.front()) * values.front();
+    }
+    if (t >= time.back()) {
+      return sum[last] + (t - time.back()) * values.back();
+    }
+    while (time[i + 1] < t) {
+      ++i;
+    }
+    const double part = (t - time[i]) / (time[i + 1] - time[i]);
+    return sum[i] + part * (time[i + 1] - time[i]) * (values[i] + 0.5 * part * (values[i + 1] - values[i]));
+  };
+  std::vector<double> result(values.size());
+  std::size_t ahead = 0;
+  for (std::size_t m = 0; m <= last; ++m) {
+    const double low = integral(time[m] - reach, index);
+    result[m] = (integral(time[m] + reach, ahead) - low) / (2.0 * reach);
+  }
+  return result;
+}
+
+}  // namespace
+
+Start start_from(const Grid & grid, Profile profile)
+{
+  const std::size_t count = grid.intervals();
+  Start start{std::move(profile), std::vector<double>(count, 0.0)};
+  const SpeedSpline spline(grid, start.profile);
+  for (std::size_t m = 1; m < count; ++m) {
+    // Each station tells both its neighbours: a_m = (1 - l) w_(m-1) + l w_m, b_m = g (w_m - w_(m-1)).
+    const auto & at = spline.at(m);
+    const double a = start.profile.v[m] * start.profile.v[m];
+    const double rise = start.profile.alpha[m] / at.g;
+    start.w[m - 1] += 0.5 * (a - at.l * rise);
+    start.w[m] += 0.5 * (a + (1.0 - at.l) * rise);
+  }
+  start.w.front() = start.w.back() = 0.0;
+  for (std::size_t i = 1; i + 1 < count; ++i) {
+    const double a = std::min(std::pow(start.profile.v[i], 2), std::pow(start.profile.v[i + 1], 2));
+    start.w[i] = std::max(start.w[i], 0.3 * a);
+  }
+  return start;
+}
+
+namespace {
+
+// The timing whose squared speeds at the stations are these.
+Start start_with(const Grid & grid, const std::vector<double> & squares)
+{
+  const std::size_t last = grid.stations() - 1;
+  Profile profile;
+  profile.v.assign(last + 1, 0.0);
+  profile.alpha.assign(last + 1, 0.0);
+  profile.time.assign(last, 0.0);
+  for (std::size_t m = 1; m < last; ++m) {
+    // Slope of the parabola through three stations.
+    const double before = grid.width(m - 1);
+    const double after = grid.width(m);
+    const double left = (squares[m] - squares[m - 1]) / before;
+    const double right = (squares[m + 1] - squares[m]) / after;
+    profile.v[m] = std::sqrt(squares[m]);
+    profile.alpha[m] = 0.5 * (left * after + right * before) / (before + after);
+  }
+  for (std::size_t i = 0; i < last; ++i) {
+    profile.time[i] =
+        interval_time(grid.width(i), profile.v[i], profile.alpha[i], profile.v[i + 1], profile.alpha[i + 1]);
+  }
+  return start_from(grid, std::move(profile));
+}
+
+std::vector<double> sums(const std::vector<double> & times)
+{
+  std::vector<double> result(times.size() + 1, 0.0);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    result[i + 1] = result[i] + times[i];
+  }
+  return result;
+}
+
+}  // namespace
+
+Start first_guess(const Grid & grid, const Limits & limits)
+{
+  const Profile fastest = fastest_without_jerk(grid, limits);
+  const std::vector<double> ramp = ramps(grid, limits);
+  const std::size_t last = grid.stations() - 1;
+  std::vector<double> share(last + 1, 1.0);  // of the ramps
+  for (std::size_t m = 1; m < last; ++m) {
+    share[m] = std::min(1.0, fastest.v[m] * fastest.v[m] / ramp[m]);
+  }
+  const double reach = (limits.acceleration / limits.jerk).maxCoeff();
+  std::vector<double> time = sums(fastest.time);
+  share = mean_nearby(least_nearby(share, time, reach), time, reach);
+  const Allowance allowance(grid);
+  JerkSolver solver(grid, limits, allowance);
+  std::vector<double> squares(last + 1, 0.0);
+  for (int round = 0;; ++round) {
+    for (std::size_t m = 1; m < last; ++m) {
+      squares[m] = ramp[m] * share[m];
+    }
+    Start start = start_with(grid, squares);
+    // Where it exceeds the limits, slower, and smoothly slower around: the rest of the path need not suffer.
+    std::vector<double> excess = solver.excesses(SpeedSpline(grid, start.profile), start.w);
+    if (round == 4 || *std::max_element(excess.begin(), excess.end()) < 1.5) {
+      return start;
+    }
+    excess.push_back(excess.back());
+    for (double & value : excess) {
+      value = 1.0 / std::max(1.0, value);
+    }
+    time = sums(start.profile.time);
+    const auto slower = mean_nearby(least_nearby(excess, time, 0.5 * reach), time, 0.5 * reach);
+    for (std::size_t m = 0; m <= last; ++m) {
+      share[m] *= slower[m];
+    }
+  }
+}
+
+}  // namespace ur_ros_rtde::trajectory

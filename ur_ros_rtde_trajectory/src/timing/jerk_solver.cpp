@@ -1,0 +1,234 @@
+#include "timing/jerk_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "timing/reach.hpp"
+
+namespace ur_ros_rtde::trajectory {
+namespace {
+
+constexpr double rows_per_interval = 6.0 * joint_count + 1.0;
+
+}  // namespace
+
+JerkSolver::JerkSolver(const Grid & grid, const Limits & limits, const Allowance & allowance)
+    : grid_(grid),
+      allowance_(allowance),
+      inverse_acceleration_(limits.acceleration.inverse()),
+      inverse_jerk_(limits.jerk.inverse()),
+      ceiling_(grid.stations()),
+      weight_(grid.stations()),
+      a_(grid.stations()),
+      b_(grid.stations()),
+      c_(grid.intervals()),
+      use_(grid.intervals()),
+      begin_rows_(grid.intervals()),
+      end_rows_(grid.intervals()),
+      multipliers_(grid.intervals()),
+      change_(grid.intervals())
+{
+  for (std::size_t m = 0; m < grid.stations(); ++m) {
+    ceiling_[m] = std::min(highest_square_speed(grid, m, limits), 1e12);
+  }
+}
+
+void JerkSolver::start(const SpeedSpline & spline, std::vector<double> w, double gap)
+{
+  w_ = std::move(w);
+  spline_ = &spline;
+  change_spline(spline);
+  const double mu = gap * duration() / (rows_per_interval * static_cast<double>(count()));
+  for (Multipliers & m : multipliers_) {
+    for (Joints * values :
+         {&m.station_plus, &m.station_minus, &m.begin_plus, &m.begin_minus, &m.end_plus, &m.end_minus}) {
+      values->setConstant(mu);
+    }
+    m.speed = mu;
+  }
+  balance_multipliers(mu, 1.0);
+}
+
+void JerkSolver::change_spline(const SpeedSpline & spline)
+{
+  spline_ = &spline;
+  for (std::size_t i = 1; i + 1 < count(); ++i) {
+    // The other weights must not make a speed vanish.
+    const double neighbours = std::min(i > 1 ? a_[i] : w_[i], i + 2 < count() ? a_[i + 1] : w_[i]);
+    w_[i] = std::max(w_[i], 0.3 * neighbours);
+  }
+  std::fill(weight_.begin(), weight_.end(), 0.0);
+  for (std::size_t i = 0; i < count(); ++i) {
+    // The ends are at rest: their share goes to the station beside them.
+    weight_[std::max<std::size_t>(i, 1)] += 0.5 * spline.duration(i);
+    weight_[std::min(i + 1, count() - 1)] += 0.5 * spline.duration(i);
+  }
+  evaluate();
+  scale_to_limits(0.98);
+}
+
+void JerkSolver::evaluate()
+{
+  for (std::size_t m = 0; m <= count(); ++m) {
+    a_[m] = spline_->a(w_, m);
+    b_[m] = spline_->b(w_, m);
+  }
+  for (std::size_t i = 0; i < count(); ++i) {
+    c_[i] = (b_[i + 1] - b_[i]) / spline_->duration(i);
+    if (i > 0) {
+      use_[i] = (grid_.d2[i] * a_[i] + grid_.d1[i] * b_[i]) * inverse_acceleration_;
+    }
+    begin_rows_[i] = jerk_row(i, false);
+    end_rows_[i] = jerk_row(i, true);
+  }
+}
+
+// Largest use of the limits of station m and of the interval that begins there, as the factor on a: jerk
+// grows with a^(3/2).
+double JerkSolver::excess(std::size_t m) const
+{
+  double worst = 0.0;
+  if (m > 0) {
+    worst = std::max(a_[m] / ceiling_[m], use_[m].abs().maxCoeff() / allowance_.acceleration[m]);
+  }
+  const double jerk =
+      begin_rows_[m].value.abs().max(end_rows_[m].value.abs()).maxCoeff() / allowance_.jerk[m];
+  return std::max(worst, std::cbrt(jerk * jerk));
+}
+
+std::vector<double> JerkSolver::excesses(const SpeedSpline & spline, const std::vector<double> & w)
+{
+  spline_ = &spline;
+  w_ = w;
+  evaluate();
+  std::vector<double> result(count());
+  for (std::size_t m = 0; m < count(); ++m) {
+    result[m] = excess(m);
+  }
+  return result;
+}
+
+void JerkSolver::scale_to_limits(double target)
+{
+  for (int round = 0; round < 20; ++round) {
+    double worst = 0.0;
+    for (std::size_t m = 0; m < count(); ++m) {
+      worst = std::max(worst, excess(m));
+    }
+    if (worst <= target * 1.01) {
+      return;
+    }
+    for (double & value : w_) {
+      value *= target / worst;
+    }
+    evaluate();
+  }
+}
+
+JerkSolver::JerkRow JerkSolver::jerk_row(std::size_t i, bool end) const
+{
+  const std::size_t station = end ? i + 1 : i;
+  const bool rest = station == 0 || station == count();
+  JerkRow row;
+  row.at = rest ? (station == 0 ? 1 : count() - 1) : station;
+  const double v = std::sqrt(a_[row.at]);
+  row.tangent = 0.5 * allowance_.jerk[i] / a_[row.at];
+  row.pc = grid_.d1[station] * inverse_jerk_ * (v / spline_->speed(row.at));
+  if (rest) {
+    row.pa.setZero();
+    row.pb.setZero();
+  } else {
+    row.pa = (end ? grid_.d3_end[i] : grid_.d3_begin[i]) * inverse_jerk_ * v;
+    row.pb = grid_.d2[station] * inverse_jerk_ * (3.0 * v);
+  }
+  row.value = row.pa * a_[row.at] + row.pb * b_[row.at] + row.pc * c_[i];
+  return row;
+}
+
+// Moves each multiplier to within a factor `spread` of mu / slack.
+void JerkSolver::balance_multipliers(double mu, double spread)
+{
+  const auto balance = [&](Joints & multiplier, const Joints & slack) {
+    const Joints centre = mu * slack.max(1e-9).inverse();
+    multiplier = multiplier.max(centre / spread).min(centre * spread);
+  };
+  for (std::size_t i = 0; i < count(); ++i) {
+    Multipliers & m = multipliers_[i];
+    if (i > 0) {
+      balance(m.station_plus, allowance_.acceleration[i] - use_[i]);
+      balance(m.station_minus, allowance_.acceleration[i] + use_[i]);
+      const double centre = mu / std::max(1.0 - a_[i] / ceiling_[i], 1e-9);
+      m.speed = std::clamp(m.speed, centre / spread, centre * spread);
+    }
+    balance(m.begin_plus, allowance_.jerk[i] - begin_rows_[i].value);
+    balance(m.begin_minus, allowance_.jerk[i] + begin_rows_[i].value);
+    balance(m.end_plus, allowance_.jerk[i] - end_rows_[i].value);
+    balance(m.end_minus, allowance_.jerk[i] + end_rows_[i].value);
+  }
+}
+
+double JerkSolver::mean_product() const
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count(); ++i) {
+    const Multipliers & m = multipliers_[i];
+    if (i > 0) {
+      const double f = allowance_.acceleration[i];
+      sum += (m.station_plus * (f - use_[i]) + m.station_minus * (f + use_[i])).sum();
+      sum += m.speed * (1.0 - a_[i] / ceiling_[i]);
+    }
+    const double f = allowance_.jerk[i];
+    const Joints & begin = begin_rows_[i].value;
+    const Joints & end = end_rows_[i].value;
+    sum += (m.begin_plus * (f - begin) + m.begin_minus * (f + begin) + m.end_plus * (f - end) +
+            m.end_minus * (f + end))
+               .sum();
+  }
+  return sum / (rows_per_interval * static_cast<double>(count()));
+}
+
+double JerkSolver::duration() const
+{
+  double total = 0.0;
+  for (std::size_t m = 1; m < count(); ++m) {
+    total += weight_[m] * spline_->speed(m) / std::sqrt(a_[m]);
+  }
+  return total;
+}
+
+double JerkSolver::gap() const
+{
+  return mean_product() * rows_per_interval * static_cast<double>(count()) / duration();
+}
+
+void JerkSolver::improve(int steps, double gap_limit)
+{
+  double reduction = 0.3;
+  double before = duration();
+  bool settled = false;
+  double product = mean_product();
+  const double rows = rows_per_interval * static_cast<double>(count());
+  std::vector<double> last_w;
+  for (int step = 0; step < steps && !(settled && product * rows < gap_limit * before); ++step) {
+    assemble(reduction * product);
+    if (!system_.solve()) {
+      return;  // the present iterate obeys the limits
+    }
+    const Steps lengths = find_step(system_.right, reduction * product);
+    last_w = w_;
+    advance(system_.right, lengths);
+    const double now = duration();
+    if (!std::isfinite(now)) {
+      w_ = last_w;
+      evaluate();
+      return;
+    }
+    product = mean_product();
+    const double shorter = std::min(lengths.primal, lengths.dual);
+    reduction = shorter > 0.8 ? 0.1 : shorter > 0.5 ? 0.25 : shorter > 0.2 ? 0.6 : 1.0;
+    settled = lengths.primal > 0.5 && std::abs(before - now) < 2.0 * gap_limit * now;
+    before = now;
+  }
+}
+
+}  // namespace ur_ros_rtde::trajectory

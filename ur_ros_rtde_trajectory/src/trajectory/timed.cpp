@@ -1,0 +1,247 @@
+#include "ur_ros_rtde_trajectory/timed.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "trajectory/motion.hpp"
+#include "path/spline.hpp"
+
+namespace ur_ros_rtde::trajectory {
+namespace {
+
+constexpr double at_rest = 1e-3;        // rad/s; a slower end is rest
+constexpr double shortest_step = 1e-4;  // s; polynomials over shorter ones lose their meaning to rounding
+
+struct Knots {
+  std::vector<double> widths;  // s
+  std::vector<Joints> q, v, a;
+};
+
+Status check_times(const std::vector<double> & times)
+{
+  if (times.empty()) {
+    return failure(ErrorCode::invalid_goal, "times is empty: give at least one waypoint");
+  }
+  if (times.size() > max_timed_waypoints) {
+    return failure(ErrorCode::invalid_goal,
+                   fmt::format("times has {} entries, at most {} are possible: send the "
+                               "trajectory in parts",
+                               times.size(), max_timed_waypoints));
+  }
+  if (!(std::abs(times[0]) < 1e-9)) {
+    return failure(
+        ErrorCode::invalid_goal,
+        fmt::format("times[0] is {} s: the first must be 0, with the position where the arm is", times[0]));
+  }
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (!std::isfinite(times[i]) || !(times[i] - times[i - 1] >= shortest_step)) {
+      return failure(
+          ErrorCode::invalid_goal,
+          fmt::format("times[{}] is {} s after times[{}] = {} s: times must increase by at least {} s", i,
+                      times[i], i - 1, times[i - 1], shortest_step));
+    }
+  }
+  return {};
+}
+
+Expected<std::vector<Joints>> read_list(std::string_view field, const std::vector<std::vector<double>> & list,
+                                        std::size_t count)
+{
+  if (list.size() != count) {
+    return failure(
+        ErrorCode::invalid_goal,
+        fmt::format("{} has {} entries, times has {}: give one for each time", field, list.size(), count));
+  }
+  std::vector<Joints> result;
+  result.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto values = to_joints(fmt::format("{}[{}]", field, i), list[i]);
+    if (!values) {
+      return tl::unexpected(values.error());
+    }
+    result.push_back(*values);
+  }
+  return result;
+}
+
+// Velocities of the cubic spline, at rest at both ends.
+std::vector<Joints> spline_velocities(const Knots & knots)
+{
+  if (knots.q.size() < 2) {
+    return {Joints::Zero()};
+  }
+  return clamped_spline_slopes(knots.q, knots.widths, Joints::Zero(), Joints::Zero());
+}
+
+// At each inner knot the mean of the accelerations of the two cubics that meet there (for the cubic spline
+// they are equal); none at the ends.
+std::vector<Joints> estimated_accelerations(const Knots & knots)
+{
+  std::vector<Joints> result(knots.q.size(), Joints::Zero());
+  for (std::size_t i = 1; i + 1 < knots.q.size(); ++i) {
+    const double before = knots.widths[i - 1];
+    const double after = knots.widths[i];
+    const Joints left = (2.0 * knots.v[i - 1] + 4.0 * knots.v[i]) / before -
+                        6.0 * (knots.q[i] - knots.q[i - 1]) / (before * before);
+    const Joints right = 6.0 * (knots.q[i + 1] - knots.q[i]) / (after * after) -
+                         (4.0 * knots.v[i] + 2.0 * knots.v[i + 1]) / after;
+    result[i] = 0.5 * (left + right);
+  }
+  return result;
+}
+
+Status check_rest(std::vector<Joints> & velocities)
+{
+  for (const bool last : {false, true}) {
+    Joints & velocity = last ? velocities.back() : velocities.front();
+    for (int j = 0; j < joint_count; ++j) {
+      if (std::abs(velocity[j]) > at_rest) {
+        return failure(ErrorCode::invalid_goal,
+                       fmt::format("velocities: {} of {} is {} rad/s: a trajectory begins and ends at rest",
+                                   last ? "the last" : "the first", joint_name(j), velocity[j]));
+      }
+    }
+    velocity.setZero();
+  }
+  return {};
+}
+
+// What is given; lists that are not stay empty.
+Expected<Knots> read_given(const TimedWaypoints & waypoints)
+{
+  if (auto status = check_times(waypoints.times); !status) {
+    return tl::unexpected(status.error());
+  }
+  if (waypoints.velocities.empty() && !waypoints.accelerations.empty()) {
+    return failure(ErrorCode::invalid_goal,
+                   "accelerations are given without velocities: give both or neither");
+  }
+  const std::size_t count = waypoints.times.size();
+  Knots knots;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    knots.widths.push_back(waypoints.times[i + 1] - waypoints.times[i]);
+  }
+  const auto read = [count](std::string_view field, const auto & list, std::vector<Joints> & into) -> Status {
+    return read_list(field, list, count).map([&into](std::vector<Joints> values) {
+      into = std::move(values);
+    });
+  };
+  Status status = read("positions", waypoints.positions, knots.q);
+  if (status && !waypoints.velocities.empty()) {
+    status =
+        read("velocities", waypoints.velocities, knots.v).and_then([&knots] { return check_rest(knots.v); });
+  }
+  if (status && !waypoints.accelerations.empty()) {
+    status = read("accelerations", waypoints.accelerations, knots.a);
+  }
+  return status.map([&knots] { return std::move(knots); });
+}
+
+Expected<Knots> read_knots(const TimedWaypoints & waypoints)
+{
+  return read_given(waypoints).map([](Knots knots) {
+    if (knots.v.empty()) {
+      knots.v = spline_velocities(knots);
+    }
+    if (knots.a.empty()) {
+      knots.a = estimated_accelerations(knots);
+    }
+    return knots;
+  });
+}
+
+PathPiece quintic(const Knots & knots, std::size_t i, double start)
+{
+  PathPiece piece;
+  piece.start = start;
+  piece.length = knots.widths[i];
+  piece.degree = 5;
+  const double t = piece.length;
+  const Joints rise = knots.q[i + 1] - knots.q[i];
+  const Joints v0 = knots.v[i] * t;
+  const Joints v1 = knots.v[i + 1] * t;
+  const Joints a0 = knots.a[i] * (t * t);
+  const Joints a1 = knots.a[i + 1] * (t * t);
+  piece.c[0] = knots.q[i];
+  piece.c[1] = v0;
+  piece.c[2] = 0.5 * a0;
+  piece.c[3] = 10.0 * rise - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1;
+  piece.c[4] = -15.0 * rise + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1;
+  piece.c[5] = 6.0 * rise - 3.0 * (v0 + v1) - 0.5 * (a0 - a1);
+  return piece;
+}
+
+// The path parameter is the time itself.
+Trajectory make_trajectory(const Knots & knots, const std::vector<double> & times)
+{
+  auto path = std::make_shared<Path>();
+  auto motion = std::make_shared<Motion>();
+  for (std::size_t i = 0; i < knots.widths.size(); ++i) {
+    path->pieces.push_back(quintic(knots, i, times[i]));
+    motion->timing.push_back({times[i], knots.widths[i], i, {0.0, 1.0, 0.0, 0.0, 0.0, 0.0}});
+  }
+  if (path->pieces.empty()) {
+    path->pieces.emplace_back().c[0] = knots.q.front();
+  }
+  path->waypoints = times;
+  motion->path = std::move(path);
+  return Trajectory(std::move(motion));
+}
+
+}  // namespace
+
+Status check_timed(const TimedWaypoints & waypoints, const Limits & limits)
+{
+  if (auto status = check(limits); !status) {
+    return status;
+  }
+  const auto knots = read_given(waypoints);
+  if (!knots) {
+    return tl::unexpected(knots.error());
+  }
+  for (std::size_t i = 0; i < knots->q.size(); ++i) {
+    for (int j = 0; j < joint_count; ++j) {
+      if (knots->q[i][j] < limits.position_min[j] || knots->q[i][j] > limits.position_max[j]) {
+        return failure(
+            ErrorCode::invalid_goal,
+            fmt::format("positions[{}] of {} is {:.6g} rad, outside its limits {:.6g} to {:.6g} rad", i,
+                        joint_name(j), knots->q[i][j], limits.position_min[j], limits.position_max[j]));
+      }
+    }
+  }
+  return {};
+}
+
+void begin_at(TimedWaypoints & waypoints, const Joints & start)
+{
+  if (waypoints.times.empty() || !(waypoints.times.front() >= shortest_step)) {
+    return;
+  }
+  waypoints.times.insert(waypoints.times.begin(), 0.0);
+  waypoints.positions.insert(waypoints.positions.begin(), {start.begin(), start.end()});
+  for (auto * list : {&waypoints.velocities, &waypoints.accelerations}) {
+    if (!list->empty()) {
+      list->insert(list->begin(), std::vector<double>(joint_count, 0.0));
+    }
+  }
+}
+
+Expected<Trajectory> plan_timed(const TimedWaypoints & waypoints, const Limits & limits)
+{
+  if (auto status = check(limits); !status) {
+    return tl::unexpected(status.error());
+  }
+  auto knots = read_knots(waypoints);
+  if (!knots) {
+    return tl::unexpected(knots.error());
+  }
+  Trajectory trajectory = make_trajectory(*knots, waypoints.times);
+  if (const auto verified = trajectory.verify(limits); !verified) {
+    return tl::unexpected(Error{
+        verified.error().code, verified.error().message + ": give the waypoints more time, or other limits"});
+  }
+  return trajectory;
+}
+
+}  // namespace ur_ros_rtde::trajectory

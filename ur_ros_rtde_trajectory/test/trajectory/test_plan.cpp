@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "checks.hpp"
+#include "random_paths.hpp"
+#include "ur_ros_rtde_trajectory/plan.hpp"
+
+namespace ur_ros_rtde::trajectory::test {
+namespace {
+
+Limits same_limits(double velocity, double acceleration, double jerk)
+{
+  Limits limits;
+  limits.position_min.setConstant(-6.3);
+  limits.position_max.setConstant(6.3);
+  limits.velocity.setConstant(velocity);
+  limits.acceleration.setConstant(acceleration);
+  limits.jerk.setConstant(jerk);
+  return limits;
+}
+
+Joints only(int joint, double value)
+{
+  Joints q = Joints::Zero();
+  q[joint] = value;
+  return q;
+}
+
+class RandomPaths : public testing::TestWithParam<bool> {};
+
+TEST_P(RandomPaths, keep_all_limits_and_pass_all_waypoints)
+{
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const RandomPath path = random_path(seed);
+    const Limits limits = random_limits(seed, GetParam());
+    const auto plan = plan_path(path.waypoints, limits, path.options);
+    ASSERT_TRUE(plan) << "seed " << seed << ": " << plan.error().message;
+    const Utilisation use = use_by_differences(*plan, limits);
+    EXPECT_LE(use.velocity, 1.0) << "seed " << seed;
+    EXPECT_LE(use.acceleration, 1.0) << "seed " << seed;
+    EXPECT_LE(use.jerk, 1.0) << "seed " << seed;
+    EXPECT_LE(worst_miss(*plan, path.waypoints), path.options.blend_tolerance + 1e-8) << "seed " << seed;
+    EXPECT_LT(speed_at_ends(*plan), 1e-6) << "seed " << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(JerkLimits, RandomPaths, testing::Bool(),
+                         [](const auto & with) { return with.param ? "with" : "without"; });
+
+TEST(StraightLine, takes_the_textbook_time_of_seven_phases)
+{
+  // All phases: v = 1, a = 2, j = 10, distance 2: accelerate in v/a + a/j, then cruise.
+  const auto plan = plan_path(std::vector<Joints>{only(2, 0.0), only(2, 2.0)}, same_limits(1.0, 2.0, 10.0));
+  ASSERT_TRUE(plan);
+  EXPECT_NEAR(plan->duration(), 2.0 / 1.0 + 1.0 / 2.0 + 2.0 / 10.0, 1e-3);
+}
+
+TEST(StraightLine, takes_the_textbook_time_when_only_jerk_matters)
+{
+  const auto plan = plan_path(std::vector<Joints>{only(0, 0.0), only(0, 0.002)}, same_limits(1.0, 2.0, 10.0));
+  ASSERT_TRUE(plan);
+  EXPECT_NEAR(plan->duration(), 4.0 * std::cbrt(0.002 / (2.0 * 10.0)), 1e-4);
+}
+
+TEST(StraightLine, takes_the_textbook_time_without_jerk_limits)
+{
+  const auto plan =
+      plan_path(std::vector<Joints>{only(5, 1.0), only(5, -1.0)}, same_limits(10.0, 2.0, unlimited));
+  ASSERT_TRUE(plan);
+  EXPECT_NEAR(plan->duration(), 2.0 * std::sqrt(2.0 / 2.0), 1e-3);
+}
+
+TEST(StraightLine, is_not_interrupted_by_waypoints_on_it)
+{
+  std::vector<Joints> waypoints;
+  for (const double x : {0.0, 0.1, 0.1, 0.5, 0.500001, 2.0}) {
+    waypoints.push_back(Joints::Constant(x));
+  }
+  const Limits limits = same_limits(1.0, 2.0, 10.0);
+  const auto all = plan_path(waypoints, limits);
+  const auto ends = plan_path(std::vector<Joints>{waypoints.front(), waypoints.back()}, limits);
+  ASSERT_TRUE(all && ends);
+  EXPECT_NEAR(all->duration(), ends->duration(), 1e-9);
+}
+
+TEST(Corner, is_passed_exactly_and_at_rest_without_tolerance)
+{
+  const std::vector<Joints> waypoints{Joints::Zero(), only(0, 1.0), only(0, 1.0) + only(1, 1.0)};
+  const auto plan = plan_path(waypoints, same_limits(1.0, 2.0, 20.0));
+  ASSERT_TRUE(plan);
+  const Point corner = plan->sample(plan->time_of_waypoint(1));
+  EXPECT_LT((corner.position - waypoints[1]).abs().maxCoeff(), 1e-12);
+  EXPECT_LT(corner.velocity.abs().maxCoeff(), 1e-6);
+}
+
+TEST(Corner, is_blended_within_its_tolerance_and_faster)
+{
+  const std::vector<Joints> waypoints{Joints::Zero(), only(0, 1.0), only(0, 1.0) + only(1, 1.0)};
+  const Limits limits = same_limits(1.0, 2.0, 20.0);
+  const auto exact = plan_path(waypoints, limits);
+  const auto blended = plan_path(waypoints, limits, {.blend_tolerance = 0.05});
+  ASSERT_TRUE(exact && blended);
+  const Point corner = blended->sample(blended->time_of_waypoint(1));
+  EXPECT_NEAR((corner.position - waypoints[1]).abs().maxCoeff(), 0.05, 1e-6);
+  EXPECT_GT(corner.velocity.abs().maxCoeff(), 0.1);
+  EXPECT_LT(blended->duration(), 0.9 * exact->duration());
+}
+
+TEST(SmoothCurve, is_passed_without_a_stop)
+{
+  std::vector<Joints> waypoints;
+  for (int i = 0; i <= 40; ++i) {
+    waypoints.push_back(only(0, std::sin(0.05 * i)) + only(1, std::cos(0.05 * i)));
+  }
+  const auto plan = plan_path(waypoints, same_limits(1.0, 3.0, 30.0));
+  ASSERT_TRUE(plan);
+  for (std::size_t i = 1; i < 40; ++i) {
+    EXPECT_GT(plan->sample(plan->time_of_waypoint(i)).velocity.matrix().norm(), 0.1) << "waypoint " << i;
+  }
+  EXPECT_LT(worst_miss(*plan, waypoints), 1e-9);
+}
+
+TEST(OneWaypoint, is_a_trajectory_that_stays)
+{
+  for (const std::size_t repetitions : {1U, 3U}) {
+    const auto plan = plan_path(std::vector<Joints>(repetitions, only(3, 0.5)), same_limits(1.0, 2.0, 10.0));
+    ASSERT_TRUE(plan);
+    EXPECT_EQ(plan->duration(), 0.0);
+    EXPECT_EQ(plan->sample(1.0).position[3], 0.5);
+    EXPECT_EQ(plan->waypoint_count(), repetitions);
+    EXPECT_EQ(plan->progress(0.0), 1.0);
+  }
+}
+
+TEST(SpeedFraction, makes_the_same_motion_slower)
+{
+  const RandomPath path = random_path(9);
+  const Limits limits = random_limits(9, true);
+  const auto full = plan_path(path.waypoints, limits);
+  const auto half = plan_path(path.waypoints, limits, {.speed_fraction = 0.5});
+  ASSERT_TRUE(full && half);
+  EXPECT_NEAR(half->duration(), 2.0 * full->duration(), 1e-9);
+  const Point fast = full->sample(0.4 * full->duration());
+  const Point slow = half->sample(0.8 * full->duration());
+  EXPECT_LT((fast.position - slow.position).abs().maxCoeff(), 1e-9);
+  EXPECT_LT((fast.velocity - 2.0 * slow.velocity).abs().maxCoeff(), 1e-9);
+  EXPECT_LT((fast.acceleration - 4.0 * slow.acceleration).abs().maxCoeff(), 1e-6);
+}
+
+TEST(Progress, counts_waypoints_and_never_goes_back)
+{
+  const RandomPath path = random_path(7);
+  const auto plan = plan_path(path.waypoints, random_limits(7, true), path.options);
+  ASSERT_TRUE(plan);
+  std::size_t waypoint = 0;
+  double progress = 0.0;
+  for (double time = -0.1; time < plan->duration() + 0.2; time += 0.01) {
+    EXPECT_GE(plan->waypoint_at(time), waypoint);
+    EXPECT_GE(plan->progress(time), progress);
+    waypoint = plan->waypoint_at(time);
+    progress = plan->progress(time);
+  }
+  EXPECT_EQ(waypoint, path.waypoints.size() - 1);
+  EXPECT_EQ(progress, 1.0);
+}
+
+TEST(Sample, agrees_with_its_own_derivatives)
+{
+  const RandomPath path = random_path(5);
+  const auto plan = plan_path(path.waypoints, random_limits(5, true), path.options);
+  ASSERT_TRUE(plan);
+  const double h = 1e-6;
+  for (double time = 0.01; time < plan->duration() - 0.01; time += 0.0137) {
+    const Point before = plan->sample(time - h);
+    const Point after = plan->sample(time + h);
+    const Point here = plan->sample(time);
+    EXPECT_LT(((after.position - before.position) / (2 * h) - here.velocity).abs().maxCoeff(), 1e-6);
+    EXPECT_LT(((after.velocity - before.velocity) / (2 * h) - here.acceleration).abs().maxCoeff(), 1e-3);
+  }
+}
+
+TEST(ManyWaypoints, up_to_the_limit_can_be_planned)
+{
+  std::vector<Joints> waypoints;
+  for (std::size_t i = 0; i < max_waypoints; ++i) {
+    waypoints.push_back(Joints::Constant(0.0) + only(0, std::sin(0.001 * static_cast<double>(i))) +
+                        only(1, std::cos(0.0013 * static_cast<double>(i))));
+  }
+  const Limits limits = same_limits(3.0, 5.0, 50.0);
+  const auto plan = plan_path(waypoints, limits);
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_TRUE(plan->verify(limits));
+  EXPECT_LT(worst_miss(*plan, waypoints), 1e-8);
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::trajectory::test

@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "checks.hpp"
+#include "ur_ros_rtde_trajectory/plan.hpp"
+
+namespace ur_ros_rtde::trajectory::test {
+namespace {
+
+struct Request {
+  std::vector<std::vector<double>> waypoints{
+      std::vector<double>(6, 0.0), std::vector<double>(6, 0.5), {0.1, -0.2, 0.3, -0.4, 0.5, -0.6}};
+  Limits limits;
+  PathOptions options;
+
+  Request()
+  {
+    limits.position_min.setConstant(-6.3);
+    limits.position_max.setConstant(6.3);
+    limits.velocity.setConstant(3.0);
+    limits.acceleration.setConstant(5.0);
+    limits.jerk.setConstant(50.0);
+  }
+  Expected<Trajectory> plan() const { return plan_path(waypoints, limits, options); }
+};
+
+struct Bad {
+  const char * name;
+  void (*spoil)(Request &);
+  const char * part_of_message;
+};
+
+class BadRequest : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadRequest, is_refused_with_field_value_and_limit)
+{
+  Request request;
+  ASSERT_TRUE(request.plan());
+  GetParam().spoil(request);
+  const auto plan = request.plan();
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
+  EXPECT_NE(plan.error().message.find(GetParam().part_of_message), std::string::npos) << plan.error().message;
+}
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, BadRequest,
+    testing::Values(
+        Bad{"no_waypoint", [](Request & r) { r.waypoints.clear(); }, "waypoints is empty"},
+        Bad{"too_many_waypoints", [](Request & r) { r.waypoints.resize(10001, r.waypoints[0]); },
+            "has 10001 entries"},
+        Bad{"five_joints", [](Request & r) { r.waypoints[1].pop_back(); }, "waypoint 1 has 5 values"},
+        Bad{"no_joints", [](Request & r) { r.waypoints[2].clear(); }, "waypoint 2 has 0 values"},
+        Bad{"seven_joints", [](Request & r) { r.waypoints[0].push_back(0.0); }, "waypoint 0 has 7 values"},
+        Bad{"position_nan", [](Request & r) { r.waypoints[1][2] = not_a_number; },
+            "waypoint 1 of elbow_joint is nan"},
+        Bad{"position_infinite", [](Request & r) { r.waypoints[1][2] = -INFINITY; }, "elbow_joint is -inf"},
+        Bad{"position_beyond_limit", [](Request & r) { r.waypoints[2][4] = 6.5; },
+            "waypoint 2: position of wrist_2_joint is 6.5 rad, outside its limits -6.3 to 6.3 rad"},
+        Bad{"velocity_limit_zero", [](Request & r) { r.limits.velocity[1] = 0.0; },
+            "velocity limit of shoulder_lift_joint is 0"},
+        Bad{"velocity_limit_infinite", [](Request & r) { r.limits.velocity[1] = INFINITY; },
+            "velocity limit"},
+        Bad{"acceleration_limit_negative", [](Request & r) { r.limits.acceleration[0] = -1.0; },
+            "acceleration limit of shoulder_pan_joint is -1"},
+        Bad{"jerk_limit_nan", [](Request & r) { r.limits.jerk[5] = not_a_number; },
+            "jerk limit of wrist_3_joint is nan"},
+        Bad{"jerk_limit_zero", [](Request & r) { r.limits.jerk[5] = 0.0; },
+            "jerk limit of wrist_3_joint is 0"},
+        Bad{"position_limits_crossed", [](Request & r) { r.limits.position_min[3] = 7.0; },
+            "position limits of wrist_1_joint"},
+        Bad{"tolerance_negative", [](Request & r) { r.options.blend_tolerance = -0.1; },
+            "blend_tolerance is -0.1"},
+        Bad{"tolerance_nan", [](Request & r) { r.options.blend_tolerance = not_a_number; },
+            "blend_tolerance is nan"},
+        Bad{"corner_angle_too_large", [](Request & r) { r.options.corner_angle = 4.0; }, "corner_angle is 4"},
+        Bad{"speed_zero", [](Request & r) { r.options.speed_fraction = 0.0; }, "speed_fraction is 0"},
+        Bad{"speed_above_one", [](Request & r) { r.options.speed_fraction = 1.5; }, "speed_fraction is 1.5"}),
+    [](const auto & bad) { return bad.param.name; });
+
+// Anything may come in: the answer is a verified trajectory or a refusal, never a crash, a hang or a wrong
+// plan.
+TEST(Fuzz, whatever_comes_in_ends_in_a_verified_plan_or_a_reason)
+{
+  std::mt19937 random(4711);
+  const double strange[]{0.0,  -0.0, 1e-300, 1e-12, 1e-9,  1e-6,         1e-3,     0.1,       1.0,
+                         -1.0, 6.29, 1e3,    1e300, -1e-8, not_a_number, INFINITY, -INFINITY, 3.0};
+  const auto pick = [&] { return strange[random() % std::size(strange)]; };
+  int planned = 0;
+  for (int round = 0; round < 3000; ++round) {
+    Request request;
+    request.waypoints.resize(random() % 12, std::vector<double>(6, 0.0));
+    for (auto & waypoint : request.waypoints) {
+      for (double & value : waypoint) {
+        value = random() % 4 == 0 ? std::fmod(pick(), 6.0) * (random() % 2 == 0 ? 1.0 : 1e-3) : value;
+      }
+    }
+    if (random() % 6 == 0 && !request.waypoints.empty()) {
+      request.waypoints[random() % request.waypoints.size()].resize(random() % 9);
+    }
+    if (random() % 3 == 0) {
+      request.options.blend_tolerance = pick();
+    }
+    if (random() % 5 == 0) {
+      request.limits.acceleration[static_cast<int>(random() % 6)] = pick();
+      request.limits.jerk[static_cast<int>(random() % 6)] = pick();
+    }
+    const auto plan = request.plan();
+    if (plan) {
+      ++planned;
+      EXPECT_TRUE(plan->verify(request.limits))
+          << "round " << round << ": " << plan->verify(request.limits).error().message;
+      EXPECT_TRUE(std::isfinite(plan->duration())) << "round " << round;
+    } else {
+      EXPECT_FALSE(plan.error().message.empty()) << "round " << round;
+    }
+  }
+  EXPECT_GT(planned, 300);
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::trajectory::test

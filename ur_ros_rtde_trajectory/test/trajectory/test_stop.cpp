@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "checks.hpp"
+#include "random_paths.hpp"
+#include "ur_ros_rtde_trajectory/plan.hpp"
+
+namespace ur_ros_rtde::trajectory::test {
+namespace {
+
+TEST(Stop, keeps_the_limits_and_the_path_from_any_moment)
+{
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const RandomPath path = random_path(seed);
+    const Limits limits = random_limits(seed, true);
+    const auto plan = plan_path(path.waypoints, limits, path.options);
+    ASSERT_TRUE(plan) << plan.error().message;
+    for (const double part : {0.01, 0.3, 0.5, 0.77, 0.99}) {
+      const double time = part * plan->duration();
+      const Trajectory stop = plan->stop_from(time, limits);
+      EXPECT_GE(stop.duration(), time);
+      EXPECT_LE(stop.duration(), plan->duration() + 1e-9);
+      EXPECT_LT(stop.duration() - time, 2.0) << "seed " << seed << " part " << part;
+      EXPECT_LT((stop.sample(0.99 * time).position - plan->sample(0.99 * time).position).abs().maxCoeff(),
+                1e-12);
+      EXPECT_LT(speed_at_ends(stop), 1e-5) << "seed " << seed << " part " << part;
+      EXPECT_LE(stop.progress(stop.duration()), 1.0);
+      const Utilisation use = use_by_differences(stop, limits);
+      EXPECT_LE(use.velocity, 1.0) << "seed " << seed << " part " << part;
+      EXPECT_LE(use.acceleration, 1.0) << "seed " << seed << " part " << part;
+      EXPECT_LE(use.jerk, 1.0) << "seed " << seed << " part " << part;
+    }
+  }
+}
+
+TEST(Stop, from_cruising_takes_hardly_longer_than_the_limits_demand)
+{
+  Limits limits;
+  limits.velocity.setConstant(1.0);
+  limits.acceleration.setConstant(2.0);
+  limits.jerk.setConstant(20.0);
+  const auto plan = plan_path(std::vector<Joints>{Joints::Zero(), Joints::Constant(5.0)}, limits);
+  ASSERT_TRUE(plan);
+  const Trajectory stop = plan->stop_from(2.0, limits);
+  const double shortest = 1.0 / 2.0 + 2.0 / 20.0;
+  EXPECT_LT(stop.duration() - 2.0, 1.15 * shortest);
+}
+
+TEST(Stop, stays_on_the_path)
+{
+  Limits limits;
+  limits.velocity.setConstant(1.0);
+  limits.acceleration.setConstant(2.0);
+  limits.jerk.setConstant(20.0);
+  Joints corner = Joints::Zero();
+  corner[0] = 1.0;
+  Joints end = corner;
+  end[1] = 1.0;
+  const auto plan = plan_path(std::vector<Joints>{Joints::Zero(), corner, end}, limits);
+  ASSERT_TRUE(plan);
+  for (double from = 0.05; from < plan->duration(); from += 0.05) {
+    const Trajectory stop = plan->stop_from(from, limits);
+    const Joints rest = stop.sample(stop.duration()).position;
+    const bool on_first = std::abs(rest[1]) < 1e-9;
+    const bool on_second = std::abs(rest[0] - 1.0) < 1e-9;
+    EXPECT_TRUE(on_first || on_second) << "from " << from;
+  }
+}
+
+TEST(Stop, before_the_beginning_does_not_move)
+{
+  Limits limits = random_limits(1, true);
+  const auto plan = plan_path(random_path(1).waypoints, limits);
+  ASSERT_TRUE(plan);
+  for (const double time : {-1.0, 0.0}) {
+    const Trajectory stop = plan->stop_from(time, limits);
+    EXPECT_LT(stop.duration(), 0.01);
+    EXPECT_LT((stop.sample(1.0).position - plan->sample(0.0).position).abs().maxCoeff(), 1e-12);
+  }
+}
+
+TEST(Stop, after_the_end_is_the_trajectory_itself)
+{
+  Limits limits = random_limits(1, true);
+  const auto plan = plan_path(random_path(1).waypoints, limits);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->stop_from(plan->duration() + 1.0, limits).duration(), plan->duration());
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::trajectory::test

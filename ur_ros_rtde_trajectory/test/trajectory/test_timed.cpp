@@ -1,0 +1,181 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "checks.hpp"
+#include "ur_ros_rtde_trajectory/timed.hpp"
+
+namespace ur_ros_rtde::trajectory::test {
+namespace {
+
+Limits limits()
+{
+  Limits result;
+  result.position_min.setConstant(-6.3);
+  result.position_max.setConstant(6.3);
+  result.velocity.setConstant(3.0);
+  result.acceleration.setConstant(8.0);
+  result.jerk.setConstant(400.0);
+  return result;
+}
+
+// Unevenly spaced samples of a known motion from rest to rest: q = (1 - cos(pi t / 2)) / 2 * (j + 1) / 6, 0
+// <= t <= 2.
+TimedWaypoints samples(int order)
+{
+  TimedWaypoints waypoints;
+  for (const double t : {0.0, 0.15, 0.3, 0.7, 0.9, 1.0, 1.4, 1.41, 1.8, 2.0}) {
+    const double w = M_PI / 2.0;
+    std::vector<double> q, v, a;
+    for (int j = 0; j < joint_count; ++j) {
+      const double size = 0.5 * (j + 1) / 6.0;
+      q.push_back(size * (1.0 - std::cos(w * t)));
+      v.push_back(size * w * std::sin(w * t));
+      a.push_back(size * w * w * std::cos(w * t));
+    }
+    waypoints.times.push_back(t);
+    waypoints.positions.push_back(q);
+    if (order > 0) {
+      waypoints.velocities.push_back(v);
+    }
+    if (order > 1) {
+      waypoints.accelerations.push_back(a);
+    }
+  }
+  return waypoints;
+}
+
+class TimedTrajectory : public testing::TestWithParam<int> {};
+
+TEST_P(TimedTrajectory, is_at_each_waypoint_at_its_time_and_near_the_sampled_motion_between)
+{
+  const TimedWaypoints waypoints = samples(GetParam());
+  const auto plan = plan_timed(waypoints, limits());
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_DOUBLE_EQ(plan->duration(), 2.0);
+  for (std::size_t i = 0; i < waypoints.times.size(); ++i) {
+    const Point point = plan->sample(waypoints.times[i]);
+    EXPECT_NEAR(point.position[5], waypoints.positions[i][5], 1e-9) << "waypoint " << i;
+    EXPECT_NEAR(plan->time_of_waypoint(i), waypoints.times[i], 1e-9);
+    if (GetParam() > 0 && i + 1 < waypoints.times.size()) {
+      EXPECT_NEAR(point.velocity[5], waypoints.velocities[i][5], 1e-9) << "waypoint " << i;
+    }
+    if (GetParam() > 1 && i + 1 < waypoints.times.size()) {
+      EXPECT_NEAR(point.acceleration[5], waypoints.accelerations[i][5], 1e-9) << "waypoint " << i;
+    }
+  }
+  const double accuracy = GetParam() == 0 ? 0.02 : GetParam() == 1 ? 0.005 : 1e-4;
+  for (double t = 0.0; t < 2.0; t += 0.01) {
+    EXPECT_NEAR(plan->sample(t).position[5], 0.5 * (1.0 - std::cos(M_PI / 2.0 * t)), accuracy) << "at " << t;
+  }
+}
+
+TEST_P(TimedTrajectory, can_be_stopped_on_its_path)
+{
+  const auto plan = plan_timed(samples(GetParam()), limits());
+  ASSERT_TRUE(plan) << plan.error().message;
+  const Trajectory stop = plan->stop_from(0.8, limits());
+  EXPECT_LT(stop.duration(), plan->duration());
+  EXPECT_GT(stop.duration(), 0.8);
+  EXPECT_TRUE(stop.verify(limits())) << stop.verify(limits()).error().message;
+  EXPECT_LT(speed_at_ends(stop), 1e-5);
+}
+
+std::string name_of_order(const testing::TestParamInfo<int> & order)
+{
+  return order.param == 0 ? "positions" : order.param == 1 ? "velocities" : "accelerations";
+}
+
+INSTANTIATE_TEST_SUITE_P(Given, TimedTrajectory, testing::Values(0, 1, 2), name_of_order);
+
+TEST(TimedPositions, begin_and_end_without_acceleration)
+{
+  const auto plan = plan_timed(samples(0), limits());
+  ASSERT_TRUE(plan);
+  EXPECT_LT(plan->sample(1e-9).acceleration.abs().maxCoeff(), 1e-5);
+  EXPECT_LT(plan->sample(2.0 - 1e-9).acceleration.abs().maxCoeff(), 1e-5);
+  const Utilisation use = use_by_differences(*plan, limits());
+  EXPECT_LE(use.velocity, 1.0);
+  EXPECT_LE(use.acceleration, 1.0);
+  EXPECT_LE(use.jerk, 1.0);
+}
+
+TEST(TimedTrajectories, that_are_too_fast_are_refused_with_the_first_limit_they_exceed)
+{
+  TimedWaypoints waypoints = samples(2);
+  for (double & time : waypoints.times) {
+    time *= 0.2;
+  }
+  Limits without_jerk = limits();
+  without_jerk.jerk.setConstant(unlimited);
+  const auto plan = plan_timed(waypoints, without_jerk);
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
+  for (const char * part : {"acceleration of ", "rad/s^2 at ", "its limit 8", "waypoint 0"}) {
+    EXPECT_NE(plan.error().message.find(part), std::string::npos) << plan.error().message;
+  }
+}
+
+struct BadTimed {
+  const char * name;
+  void (*spoil)(TimedWaypoints &);
+  const char * part_of_message;
+};
+
+class BadTimedWaypoints : public testing::TestWithParam<BadTimed> {};
+
+TEST_P(BadTimedWaypoints, are_refused_with_the_reason)
+{
+  TimedWaypoints waypoints = samples(2);
+  GetParam().spoil(waypoints);
+  const auto plan = plan_timed(waypoints, limits());
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
+  EXPECT_NE(plan.error().message.find(GetParam().part_of_message), std::string::npos) << plan.error().message;
+}
+
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, BadTimedWaypoints,
+    testing::Values(
+        BadTimed{"none", [](TimedWaypoints & w) { w = {}; }, "times is empty"},
+        BadTimed{"first_time_not_zero", [](TimedWaypoints & w) { w.times[0] = 0.05; }, "times[0] is 0.05"},
+        BadTimed{"times_equal", [](TimedWaypoints & w) { w.times[4] = w.times[3]; }, "times[4] is 0.7"},
+        BadTimed{"times_decreasing", [](TimedWaypoints & w) { w.times[4] = 0.1; }, "times[4] is 0.1"},
+        BadTimed{"time_nan", [](TimedWaypoints & w) { w.times[4] = nan_value; }, "times[4] is nan"},
+        BadTimed{"time_infinite", [](TimedWaypoints & w) { w.times.back() = INFINITY; }, "times[9] is inf"},
+        BadTimed{"position_missing", [](TimedWaypoints & w) { w.positions.pop_back(); },
+                 "positions has 9 entries"},
+        BadTimed{"velocity_missing", [](TimedWaypoints & w) { w.velocities.pop_back(); },
+                 "velocities has 9 entries"},
+        BadTimed{"acceleration_missing", [](TimedWaypoints & w) { w.accelerations.pop_back(); },
+                 "accelerations has 9 entries"},
+        BadTimed{"five_joints", [](TimedWaypoints & w) { w.positions[2].pop_back(); },
+                 "positions[2] has 5 values"},
+        BadTimed{"seven_velocities", [](TimedWaypoints & w) { w.velocities[2].push_back(0); },
+                 "velocities[2] has 7 values"},
+        BadTimed{"position_nan", [](TimedWaypoints & w) { w.positions[3][1] = nan_value; },
+                 "positions[3] of shoulder_lift_joint is nan"},
+        BadTimed{"velocity_at_the_end", [](TimedWaypoints & w) { w.velocities.back()[0] = 0.5; },
+                 "the last of shoulder_pan_joint is 0.5"},
+        BadTimed{"accelerations_alone", [](TimedWaypoints & w) { w.velocities.clear(); },
+                 "accelerations are given without velocities"},
+        BadTimed{"beyond_position_limit", [](TimedWaypoints & w) { w.positions.back()[0] = 7.0; },
+                 "of shoulder_pan_joint is"}),
+    [](const auto & bad) { return bad.param.name; });
+
+TEST(TimedTrajectories, of_one_waypoint_stay)
+{
+  TimedWaypoints waypoints;
+  waypoints.times = {0.0};
+  waypoints.positions = {std::vector<double>(6, 0.25)};
+  const auto plan = plan_timed(waypoints, limits());
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_EQ(plan->duration(), 0.0);
+  EXPECT_EQ(plan->sample(0.0).position[0], 0.25);
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::trajectory::test
