@@ -53,7 +53,7 @@ class Timed : public ur_ros_rtde::Command<SetSpeedSlider> {
   std::vector<double> seconds;
 
  private:
-  ur_ros_rtde::Resource resource() const override { return ur_ros_rtde::Resource::none; }
+  ur_ros_rtde::CommandTraits traits() const override { return {.resource = ur_ros_rtde::Resource::none}; }
   Outcome run(const Goal & goal, Run & run) override
   {
     const auto io = run.io();

@@ -51,14 +51,14 @@ class CommandHost : public PluginHost {
   ArmLimits limits() const;
 
   /// How a goal that gives way is to decelerate, when the one that takes over says so.
-  void set_takeover_stop(std::optional<StopOptions> options);
-  std::optional<StopOptions> takeover_stop() const;
+  void set_preemption_stop(std::optional<StopOptions> options);
+  std::optional<StopOptions> preemption_stop() const;
 
  private:
   Robot & robot_;
   Options options_;
   mutable std::mutex mutex_;
-  std::optional<StopOptions> takeover_stop_;
+  std::optional<StopOptions> preemption_stop_;
 };
 
 class DashboardHost : public PluginHost {

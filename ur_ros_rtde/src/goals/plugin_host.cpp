@@ -28,16 +28,16 @@ ArmLimits CommandHost::limits() const
   return robot_.limits();
 }
 
-void CommandHost::set_takeover_stop(std::optional<StopOptions> options)
+void CommandHost::set_preemption_stop(std::optional<StopOptions> options)
 {
   const std::lock_guard lock(mutex_);
-  takeover_stop_ = std::move(options);
+  preemption_stop_ = std::move(options);
 }
 
-std::optional<StopOptions> CommandHost::takeover_stop() const
+std::optional<StopOptions> CommandHost::preemption_stop() const
 {
   const std::lock_guard lock(mutex_);
-  return takeover_stop_;
+  return preemption_stop_;
 }
 
 }  // namespace ur_ros_rtde

@@ -164,7 +164,7 @@ ScriptReport ScriptRunner::run_program(const script::Program & program, ScriptWa
   if (watch.running() && state_.link().connected) {
     if (const auto stopped = stop(); !stopped) {
       report.error.message +=
-          fmt::format("; whether the arm stands still is not known: {}", stopped.error().message);
+          fmt::format("; standstill is not confirmed: {}", stopped.error().message);
     }
   }
   return report;
