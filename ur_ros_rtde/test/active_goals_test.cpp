@@ -7,13 +7,13 @@
 
 namespace ur_ros_rtde {
 namespace {
-using rcl_cxx::GoalId;
+using rcl_cxx::GoalUUID;
 using std::chrono::seconds;
 
 class Goals : public testing::Test {
  protected:
   rcl_cxx::Context::SharedPtr context_ = std::make_shared<rcl_cxx::Context>(
-      std::vector<std::string>{"active_goals_test"}, rcl_cxx::ContextOptions{.handle_signals = false});
+      std::vector<std::string>{"active_goals_test"}, rcl_cxx::InitOptions{.shutdown_on_signal = false});
   rcl_cxx::Node node_{context_, "active_goals_test"};
   PluginHost host_{node_};
   ActiveGoals active_goals_{host_, "/test"};
@@ -23,14 +23,14 @@ class Goals : public testing::Test {
 TEST_F(Goals, that_are_refused_give_the_reason_with_its_code)
 {
   const auto accepted = active_goals_.accept(
-      GoalId::random(), [](GoalContext &) { return failure(ErrorCode::invalid_goal, "speed is 9"); });
+      GoalUUID::random(), [](GoalContext &) { return failure(ErrorCode::invalid_goal, "speed is 9"); });
   ASSERT_FALSE(accepted);
   EXPECT_EQ(accepted.error(), "speed is 9 (invalid_goal 1)");
 }
 
 TEST_F(Goals, whose_check_throws_are_refused_with_its_text)
 {
-  const auto accepted = active_goals_.accept(GoalId::random(), [](GoalContext &) -> Status {
+  const auto accepted = active_goals_.accept(GoalUUID::random(), [](GoalContext &) -> Status {
     throw std::runtime_error("a fault in the check");
   });
   ASSERT_FALSE(accepted);
@@ -70,7 +70,7 @@ TEST_F(Goals, that_fail_after_they_were_asked_to_end_end_with_that_reason)
 
 TEST_F(Goals, get_their_cancel)
 {
-  const GoalId id = GoalId::random();
+  const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(active_goals_.accept(id, [](GoalContext &) { return Status(); }));
   std::promise<ErrorCode> ended;
   ASSERT_TRUE(active_goals_.start(id, [&ended](const std::shared_ptr<GoalContext> & context) {
@@ -89,7 +89,7 @@ TEST_F(Goals, get_their_cancel)
 /// Goals that hold a resource from their admission on, as motions do.
 class HoldingGoals : public Goals {
  protected:
-  tl::expected<void, std::string> accept(const GoalId & id)
+  tl::expected<void, std::string> accept(const GoalUUID & id)
   {
     return active_goals_.accept(id, [this](GoalContext & context) -> Status {
       auto lease = arbiter_.acquire({Resource::motion, "/test", "1", {}});
@@ -106,7 +106,7 @@ class HoldingGoals : public Goals {
 
 TEST_F(HoldingGoals, FreeWhatTheyHoldWhenTheyAreDiscarded)
 {
-  const GoalId id = GoalId::random();
+  const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
   EXPECT_TRUE(arbiter_.holder(Resource::motion));
   active_goals_.discard(id);
@@ -116,16 +116,16 @@ TEST_F(HoldingGoals, FreeWhatTheyHoldWhenTheyAreDiscarded)
 
 TEST_F(HoldingGoals, WaitForTheirAcceptanceWhileOthersAreAdmitted)
 {
-  const GoalId id = GoalId::random();
+  const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
-  EXPECT_FALSE(accept(GoalId::random())) << "the first one still holds the arm";
+  EXPECT_FALSE(accept(GoalUUID::random())) << "the first one still holds the arm";
   EXPECT_TRUE(active_goals_.start(id, [](const std::shared_ptr<GoalContext> &) {}));
   host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 
 TEST_F(HoldingGoals, FreeWhatTheyHoldWhenTheyHaveToEndBeforeTheyStart)
 {
-  const GoalId id = GoalId::random();
+  const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
   active_goals_.end(id, Error{ErrorCode::preempted, "preempted by stop"});
   EXPECT_FALSE(arbiter_.holder(Resource::motion));
@@ -133,7 +133,7 @@ TEST_F(HoldingGoals, FreeWhatTheyHoldWhenTheyHaveToEndBeforeTheyStart)
 
 TEST_F(HoldingGoals, KeepWhatTheyHoldWhileTheyComeToTheirEnd)
 {
-  const GoalId id = GoalId::random();
+  const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
   ASSERT_TRUE(active_goals_.start(id, [](const std::shared_ptr<GoalContext> &) {}));
   active_goals_.end(id, client_lost());
@@ -145,7 +145,7 @@ TEST_F(HoldingGoals, KeepWhatTheyHoldWhileTheyComeToTheirEnd)
 
 TEST_F(HoldingGoals, AreNotReplacedByAnotherGoalOfTheSameId)
 {
-  const GoalId id = GoalId::random();
+  const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
   std::promise<std::shared_ptr<GoalContext>> started;
   ASSERT_TRUE(
@@ -163,7 +163,7 @@ TEST_F(HoldingGoals, AreNotReplacedByAnotherGoalOfTheSameId)
 
 TEST_F(HoldingGoals, FreeWhatTheyHoldBeforeTheResultIsSent)
 {
-  const GoalId id = GoalId::random();
+  const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
   EXPECT_TRUE(arbiter_.holder(Resource::motion));
   active_goals_.finish(id, Outcome::success());

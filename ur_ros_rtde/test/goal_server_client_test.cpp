@@ -13,7 +13,7 @@ using std::chrono::seconds;
 rcl_cxx::Context::SharedPtr make_context()
 {
   return std::make_shared<rcl_cxx::Context>(std::vector<std::string>{"goal_server_client_test"},
-                                            rcl_cxx::ContextOptions{.handle_signals = false});
+                                            rcl_cxx::InitOptions{.shutdown_on_signal = false});
 }
 
 /// A node whose executor spins in a thread, with a participant of its own as another process has it.
@@ -52,7 +52,7 @@ class EndlessCommand : public GoalServer<Trigger> {
   std::promise<ErrorCode> ended;
 
  private:
-  tl::expected<void, std::string> accept(const rcl_cxx::GoalId & id, const Trigger::Goal &) override
+  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id, const Trigger::Goal &) override
   {
     return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
@@ -91,8 +91,8 @@ class GoalServerClientTest : public testing::Test {
       {
         SpinningNode other("client");
         const auto client = other.node.create_action_client<Trigger>("endless");
-        EXPECT_TRUE(client->wait_for_server(seconds(10)));
-        const auto response = client->send_goal(Trigger::Goal());
+        EXPECT_TRUE(client->wait_for_action_server(seconds(10)));
+        const auto response = client->async_send_goal(Trigger::Goal());
         EXPECT_EQ(command.started.get_future().wait_for(seconds(10)), std::future_status::ready);
       }
       if (needs_client) {

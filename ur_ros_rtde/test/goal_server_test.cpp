@@ -12,13 +12,13 @@
 
 namespace ur_ros_rtde {
 namespace {
-using rcl_cxx::GoalId;
+using rcl_cxx::GoalUUID;
 using ur_ros_rtde_msgs::action::Trigger;
 
 class GoalServerTest : public testing::Test {
  protected:
   rcl_cxx::Context::SharedPtr context_ = std::make_shared<rcl_cxx::Context>(
-      std::vector<std::string>{"goal_server_test"}, rcl_cxx::ContextOptions{.handle_signals = false});
+      std::vector<std::string>{"goal_server_test"}, rcl_cxx::InitOptions{.shutdown_on_signal = false});
   rcl_cxx::Node node_{context_, "goal_server_test"};
 };
 
@@ -32,7 +32,7 @@ class FaultyServer : public GoalServer<Trigger> {
   ~FaultyServer() override { end_service(); }
 
  private:
-  tl::expected<void, std::string> accept(const GoalId & id, const Trigger::Goal &) override
+  tl::expected<void, std::string> accept(const GoalUUID & id, const Trigger::Goal &) override
   {
     return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
@@ -59,7 +59,7 @@ TEST_F(GoalServerTest, AGoalWhoseResultCannotBeFilledInIsAbortedWithTheReason)
   executor.add_node(node_);
   std::jthread spinning([&executor] { executor.spin(); });
   const auto end = client->call(Trigger::Goal(), std::chrono::seconds(20));
-  executor.stop();
+  executor.cancel();
   ASSERT_TRUE(end) << end.error();
   EXPECT_EQ(end->status, rcl_cxx::GoalStatus::aborted);
   EXPECT_FALSE(end->result.success);
@@ -77,7 +77,7 @@ TEST_F(GoalServerTest, ACommandWhoseStopOptionsThrowDoesNothingAndEndsWithTheRea
   GoalContext context;
   bool ran = false;
   const Outcome outcome = goals.execute(
-      GoalId::random(), context, []() -> StopOptions { throw std::runtime_error("a fault in stop_options"); },
+      GoalUUID::random(), context, []() -> StopOptions { throw std::runtime_error("a fault in stop_options"); },
       [&ran] {
         ran = true;
         return Outcome::success();

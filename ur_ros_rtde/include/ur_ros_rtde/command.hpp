@@ -58,8 +58,8 @@ class Command : public CommandPlugin, private GoalServer<A> {
   void stop_action_server() override { this->stop_server(); }
 
  private:
-  using Handle = rcl_cxx::GoalHandle<A>;
-  tl::expected<void, std::string> accept(const rcl_cxx::GoalId & id, const Goal & goal) override;
+  using Handle = rcl_cxx::ServerGoalHandle<A>;
+  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
   void execute(Handle & handle, GoalContext & context) override;
   void abort_unstarted(Handle & handle, const Outcome & outcome) override;
   void send_result(Handle & handle, Run & run, const Outcome & outcome);
@@ -78,7 +78,7 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
 }
 
 template <typename A>
-tl::expected<void, std::string> Command<A>::accept(const rcl_cxx::GoalId & id, const Goal & goal)
+tl::expected<void, std::string> Command<A>::accept(const rcl_cxx::GoalUUID & id, const Goal & goal)
 {
   return executor_->accept(id, [&](Check & result) { check(goal, result); });
 }
@@ -88,12 +88,12 @@ void Command<A>::execute(Handle & handle, GoalContext & context)
 {
   Run goal_run(executor_->host().robot(), context.stop_request, executor_->needs_motion(),
                [&handle](const Feedback & feedback) { handle.publish_feedback(feedback); });
-  goal_run.on_warning([&](const std::string & text) { executor_->goals().warn(handle.goal_id(), text); });
-  const auto stop = [&] { return stop_options(handle.goal()); };
-  const Outcome outcome = executor_->execute(handle.goal_id(), context, stop, [&] {
+  goal_run.on_warning([&](const std::string & text) { executor_->goals().warn(handle.get_goal_id(), text); });
+  const auto stop = [&] { return stop_options(handle.get_goal()); };
+  const Outcome outcome = executor_->execute(handle.get_goal_id(), context, stop, [&] {
     goal_run.set_preempted_goal(context.preempted_goal);
     goal_run.set_plugin(name_);
-    return run(handle.goal(), goal_run);
+    return run(handle.get_goal(), goal_run);
   });
   send_result(handle, goal_run, goal_run.with_warnings(outcome));
 }

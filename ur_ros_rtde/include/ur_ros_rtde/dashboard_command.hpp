@@ -54,8 +54,8 @@ class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
   void stop_action_server() override { this->stop_server(); }
 
  private:
-  using Handle = rcl_cxx::GoalHandle<A>;
-  tl::expected<void, std::string> accept(const rcl_cxx::GoalId & id, const Goal & goal) override;
+  using Handle = rcl_cxx::ServerGoalHandle<A>;
+  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
   void execute(Handle & handle, GoalContext & context) override;
   void abort_unstarted(Handle & handle, const Outcome & outcome) override;
   void send_result(Handle & handle, Run & run, const Outcome & outcome);
@@ -96,7 +96,7 @@ void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::s
 }
 
 template <typename A>
-tl::expected<void, std::string> DashboardCommand<A>::accept(const rcl_cxx::GoalId & id, const Goal & goal)
+tl::expected<void, std::string> DashboardCommand<A>::accept(const rcl_cxx::GoalUUID & id, const Goal & goal)
 {
   return goals_->accept(id, [&](GoalContext &) -> Status {
     Check result;
@@ -119,7 +119,7 @@ void DashboardCommand<A>::execute(Handle & handle, GoalContext & context)
       handle.publish_feedback(feedback);
     }
   });
-  const Outcome outcome = guarded(*context.stop_request, [&] { return run(handle.goal(), goal_run); });
+  const Outcome outcome = guarded(*context.stop_request, [&] { return run(handle.get_goal(), goal_run); });
   send_result(handle, goal_run, outcome);
 }
 

@@ -25,7 +25,7 @@ class PluginHost {
   rcl_cxx::Node & node() { return node_; }
   GoalThreads & goals() { return goals_; }
   /// Tells everyone why a goal was not accepted, on the topic goal_refusals.
-  void publish_refusal(const std::string & action, const rcl_cxx::GoalId & id, const Error & why);
+  void publish_refusal(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why);
 
  private:
   rcl_cxx::Node & node_;

@@ -37,7 +37,7 @@ Outcome missing_result(rcl_cxx::GoalStatus status)
                           "the goal ended without a result that can be sent: the driver's log says why");
 }
 
-tl::expected<void, std::string> ActiveGoals::accept(const rcl_cxx::GoalId & id,
+tl::expected<void, std::string> ActiveGoals::accept(const rcl_cxx::GoalUUID & id,
                                                     const std::function<Status(GoalContext &)> & check)
 {
   const auto context = std::make_shared<GoalContext>();
@@ -65,21 +65,21 @@ tl::expected<void, std::string> ActiveGoals::accept(const rcl_cxx::GoalId & id,
   return {};
 }
 
-std::shared_ptr<GoalContext> ActiveGoals::find(const rcl_cxx::GoalId & id) const
+std::shared_ptr<GoalContext> ActiveGoals::find(const rcl_cxx::GoalUUID & id) const
 {
   const std::lock_guard lock(mutex_);
   const auto found = contexts_.find(id);
   return found == contexts_.end() ? nullptr : found->second;
 }
 
-std::shared_ptr<GoalContext> ActiveGoals::remove(const rcl_cxx::GoalId & id)
+std::shared_ptr<GoalContext> ActiveGoals::remove(const rcl_cxx::GoalUUID & id)
 {
   const std::lock_guard lock(mutex_);
   auto node = contexts_.extract(id);
   return node ? std::move(node.mapped()) : nullptr;
 }
 
-Status ActiveGoals::start(const rcl_cxx::GoalId & id, std::function<void(std::shared_ptr<GoalContext>)> work)
+Status ActiveGoals::start(const rcl_cxx::GoalUUID & id, std::function<void(std::shared_ptr<GoalContext>)> work)
 {
   const auto context = find(id);
   if (!context) {
@@ -90,27 +90,27 @@ Status ActiveGoals::start(const rcl_cxx::GoalId & id, std::function<void(std::sh
                              [work = std::move(work), context] { work(context); });
 }
 
-void ActiveGoals::stop(const rcl_cxx::GoalId & id, const StopReason & reason)
+void ActiveGoals::stop(const rcl_cxx::GoalUUID & id, const StopReason & reason)
 {
   if (const auto context = find(id)) {
     context->stop(reason);
   }
 }
 
-void ActiveGoals::discard(const rcl_cxx::GoalId & id)
+void ActiveGoals::discard(const rcl_cxx::GoalUUID & id)
 {
   if (const auto context = remove(id)) {
     context->release_lease();
   }
 }
 
-void ActiveGoals::finish(const rcl_cxx::GoalId & id, const Outcome & outcome)
+void ActiveGoals::finish(const rcl_cxx::GoalUUID & id, const Outcome & outcome)
 {
   const auto context = remove(id);
   if (context) {
     context->release_lease();
   }
-  const auto & logger = host_.node().logger();
+  const auto & logger = host_.node().get_logger();
   if (outcome) {
     RCL_CXX_INFO(logger, "{}: goal {} succeeded{}{}", action_, id.short_string(),
                  outcome.message().empty() ? "" : ": ", outcome.message());
@@ -125,9 +125,9 @@ void ActiveGoals::finish(const rcl_cxx::GoalId & id, const Outcome & outcome)
   }
 }
 
-void ActiveGoals::warn(const rcl_cxx::GoalId & id, const std::string & text) const
+void ActiveGoals::warn(const rcl_cxx::GoalUUID & id, const std::string & text) const
 {
-  RCL_CXX_WARN(host_.node().logger(), "{}: goal {}: {}", action_, id.short_string(), text);
+  RCL_CXX_WARN(host_.node().get_logger(), "{}: goal {}: {}", action_, id.short_string(), text);
 }
 
 }  // namespace ur_ros_rtde

@@ -19,7 +19,7 @@ constexpr std::chrono::milliseconds dashboard_timeout{500};
 /// Checks the state and acquires the resource when the first check needs the robot.
 class CommandExecutor::RobotPreflight : public Preflight {
  public:
-  RobotPreflight(CommandExecutor & executor, const rcl_cxx::GoalId & id, GoalContext & context)
+  RobotPreflight(CommandExecutor & executor, const rcl_cxx::GoalUUID & id, GoalContext & context)
       : executor_(executor), id_(id), context_(context)
   {
   }
@@ -44,7 +44,7 @@ class CommandExecutor::RobotPreflight : public Preflight {
 
  private:
   CommandExecutor & executor_;
-  const rcl_cxx::GoalId & id_;
+  const rcl_cxx::GoalUUID & id_;
   GoalContext & context_;
 };
 
@@ -54,7 +54,7 @@ CommandExecutor::CommandExecutor(CommandHost & host, std::string action, const C
 {
 }
 
-Claim CommandExecutor::claim(const rcl_cxx::GoalId & id, GoalContext & context) const
+Claim CommandExecutor::claim(const rcl_cxx::GoalUUID & id, GoalContext & context) const
 {
   return {traits_.resource, goals_.action(), id.short_string(),
           [weak = context.weak_from_this()](const std::string & by) {
@@ -101,7 +101,7 @@ Status CommandExecutor::check_state() const
   return {};
 }
 
-tl::expected<void, std::string> CommandExecutor::accept(const rcl_cxx::GoalId & id,
+tl::expected<void, std::string> CommandExecutor::accept(const rcl_cxx::GoalUUID & id,
                                                         const std::function<void(Check &)> & check)
 {
   return goals_.accept(id, [&](GoalContext & context) -> Status {
@@ -113,7 +113,7 @@ tl::expected<void, std::string> CommandExecutor::accept(const rcl_cxx::GoalId & 
   });
 }
 
-Status CommandExecutor::acquire(const rcl_cxx::GoalId & id, GoalContext & context, const StopOptions & stop)
+Status CommandExecutor::acquire(const rcl_cxx::GoalUUID & id, GoalContext & context, const StopOptions & stop)
 {
   if (auto reason = context.stop_request->reason()) {
     return tl::unexpected(*std::move(reason));
@@ -140,7 +140,7 @@ Status CommandExecutor::acquire(const rcl_cxx::GoalId & id, GoalContext & contex
   return {};
 }
 
-Outcome CommandExecutor::execute(const rcl_cxx::GoalId & id, GoalContext & context,
+Outcome CommandExecutor::execute(const rcl_cxx::GoalUUID & id, GoalContext & context,
                                  const std::function<StopOptions()> & stop_options,
                                  const std::function<Outcome()> & body)
 {

@@ -8,11 +8,11 @@ PluginHost::PluginHost(rcl_cxx::Node & node)
     : node_(node),
       // Latched: a client may be refused before its subscription has been matched.
       refusals_(node.create_publisher<ur_ros_rtde_msgs::msg::GoalRefused>("goal_refusals",
-                                                                          rcl_cxx::QoS::latched(100)))
+                                                                          rcl_cxx::QoS::transient_local(100)))
 {
 }
 
-void PluginHost::publish_refusal(const std::string & action, const rcl_cxx::GoalId & id, const Error & why)
+void PluginHost::publish_refusal(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why)
 {
   ur_ros_rtde_msgs::msg::GoalRefused refusal;
   refusal.stamp = node_.now();

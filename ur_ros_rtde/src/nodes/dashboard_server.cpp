@@ -33,7 +33,7 @@ void DashboardServer::start()
       select_plugins(find_plugins(report), dashboard_base, choice_.plugins, choice_.blacklist, report),
       report);
   plugins_.start(*host_, report);
-  RCL_CXX_INFO(node_->logger(), "dashboard commands: {}", fmt::join(plugins_.names(), ", "));
+  RCL_CXX_INFO(node_->get_logger(), "dashboard commands: {}", fmt::join(plugins_.names(), ", "));
 }
 
 std::vector<std::string> DashboardServer::close()

@@ -12,9 +12,9 @@
 
 namespace ur_ros_rtde {
 namespace {
-rcl_cxx::ParameterOptions described(std::string description)
+rcl_cxx::ParameterDescriptor described(std::string description)
 {
-  rcl_cxx::ParameterOptions options;
+  rcl_cxx::ParameterDescriptor options;
   options.description = std::move(description);
   options.read_only = true;
   return options;

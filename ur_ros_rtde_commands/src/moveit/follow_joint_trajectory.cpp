@@ -110,7 +110,7 @@ void FollowJointTrajectory::start_action_server(CommandHost & host, const std::s
 {
   host_ = &host;
   const auto declare = [&](const char * what, double value, double low, double high, const char * text) {
-    rcl_cxx::ParameterOptions options;
+    rcl_cxx::ParameterDescriptor options;
     options.description = text;
     options.read_only = true;
     options.floating_point_range = rcl_cxx::FloatingPointRange{low, high};

@@ -4,7 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <rcl_cxx/goal_id.hpp>
+#include <rcl_cxx/goal_uuid.hpp>
 #include <string>
 #include <tl/expected.hpp>
 
@@ -31,26 +31,26 @@ class ActiveGoals {
 
   /// Registers a goal if `check` succeeds. Otherwise the reason is published on goal_refusals and returned
   /// for the log.
-  tl::expected<void, std::string> accept(const rcl_cxx::GoalId & id,
+  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id,
                                          const std::function<Status(GoalContext &)> & check);
   /// Runs `work`, which must not throw, in a thread of its own for an accepted goal.
-  Status start(const rcl_cxx::GoalId & id, std::function<void(std::shared_ptr<GoalContext>)> work);
+  Status start(const rcl_cxx::GoalUUID & id, std::function<void(std::shared_ptr<GoalContext>)> work);
   /// Asks a goal to stop. Does nothing if the goal is not active.
-  void stop(const rcl_cxx::GoalId & id, const StopReason & reason);
+  void stop(const rcl_cxx::GoalUUID & id, const StopReason & reason);
   /// Removes an accepted goal that will not be executed and releases its lease.
-  void discard(const rcl_cxx::GoalId & id);
+  void discard(const rcl_cxx::GoalUUID & id);
   /// Removes a goal before its result is sent, releases its lease and logs the outcome.
-  void finish(const rcl_cxx::GoalId & id, const Outcome & outcome);
-  void warn(const rcl_cxx::GoalId & id, const std::string & text) const;
+  void finish(const rcl_cxx::GoalUUID & id, const Outcome & outcome);
+  void warn(const rcl_cxx::GoalUUID & id, const std::string & text) const;
 
  private:
-  std::shared_ptr<GoalContext> find(const rcl_cxx::GoalId & id) const;
-  std::shared_ptr<GoalContext> remove(const rcl_cxx::GoalId & id);
+  std::shared_ptr<GoalContext> find(const rcl_cxx::GoalUUID & id) const;
+  std::shared_ptr<GoalContext> remove(const rcl_cxx::GoalUUID & id);
 
   PluginHost & host_;
   const std::string action_;
   mutable std::mutex mutex_;
-  std::map<rcl_cxx::GoalId, std::shared_ptr<GoalContext>> contexts_;
+  std::map<rcl_cxx::GoalUUID, std::shared_ptr<GoalContext>> contexts_;
 };
 
 }  // namespace ur_ros_rtde

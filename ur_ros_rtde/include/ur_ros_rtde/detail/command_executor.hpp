@@ -2,7 +2,7 @@
 
 #include <functional>
 #include <memory>
-#include <rcl_cxx/goal_id.hpp>
+#include <rcl_cxx/goal_uuid.hpp>
 #include <string>
 #include <tl/expected.hpp>
 
@@ -35,22 +35,22 @@ class CommandExecutor {
     return host_.options().stop_when_client_lost && !traits_.preempts_all;
   }
 
-  tl::expected<void, std::string> accept(const rcl_cxx::GoalId & id,
+  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id,
                                          const std::function<void(Check &)> & check);
   /// Acquires the resource, calls `body`, and brings the arm to a standstill if `body` has not. `body` and
   /// `stop_options` may throw. If `stop_options` throws, `body` is not called and the default options apply.
-  Outcome execute(const rcl_cxx::GoalId & id, GoalContext & context,
+  Outcome execute(const rcl_cxx::GoalUUID & id, GoalContext & context,
                   const std::function<StopOptions()> & stop_options, const std::function<Outcome()> & body);
 
  private:
   class RobotPreflight;
 
-  Claim claim(const rcl_cxx::GoalId & id, GoalContext & context) const;
+  Claim claim(const rcl_cxx::GoalUUID & id, GoalContext & context) const;
   /// Success if the state of the robot allows a goal.
   Status check_state() const;
   /// The goal that holds the resource will be preempted when the new goal starts.
   bool preempts() const;
-  Status acquire(const rcl_cxx::GoalId & id, GoalContext & context, const StopOptions & stop);
+  Status acquire(const rcl_cxx::GoalUUID & id, GoalContext & context, const StopOptions & stop);
   Outcome bring_to_standstill(const Outcome & outcome, StopOptions stop);
 
   CommandHost & host_;

@@ -16,12 +16,12 @@ namespace ur_ros_rtde {
 template <typename A>
 class GoalServer {
  protected:
-  using Handle = rcl_cxx::GoalHandle<A>;
+  using Handle = rcl_cxx::ServerGoalHandle<A>;
 
   GoalServer() = default;
   virtual ~GoalServer() = default;
 
-  virtual tl::expected<void, std::string> accept(const rcl_cxx::GoalId & id,
+  virtual tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id,
                                                  const typename A::Goal & goal) = 0;
   /// Runs in the goal's thread and ends with finish().
   virtual void execute(Handle & handle, GoalContext & context) = 0;
@@ -58,28 +58,28 @@ void GoalServer<A>::start_server(rcl_cxx::Node & node, const std::string & name,
                                  bool stop_when_client_lost)
 {
   goals_ = &goals;
-  rcl_cxx::ActionHandlers<A> handlers;
-  handlers.goal = [this](const rcl_cxx::GoalId & id, const typename A::Goal & goal) {
+  rcl_cxx::ActionServerCallbacks<A> handlers;
+  handlers.handle_goal = [this](const rcl_cxx::GoalUUID & id, const typename A::Goal & goal) {
     return accept(id, goal);
   };
-  handlers.accepted = [this](std::shared_ptr<Handle> handle) {
+  handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) {
     const Status started =
-        goals_->start(handle->goal_id(), [this, handle](std::shared_ptr<GoalContext> context) {
+        goals_->start(handle->get_goal_id(), [this, handle](std::shared_ptr<GoalContext> context) {
           execute(*handle, *context);
         });
     if (!started) {
       abort_unstarted(*handle, started);
     }
   };
-  handlers.cancel = [](Handle &) { return true; };
-  handlers.canceling = [this](Handle & handle) {
-    goals_->stop(handle.goal_id(), Error{ErrorCode::canceled, "canceled by a client"});
+  handlers.handle_cancel = [](Handle &) { return true; };
+  handlers.on_canceling = [this](Handle & handle) {
+    goals_->stop(handle.get_goal_id(), Error{ErrorCode::canceled, "canceled by a client"});
   };
-  handlers.discarded = [this](const rcl_cxx::GoalId & id) { goals_->discard(id); };
+  handlers.on_goal_discarded = [this](const rcl_cxx::GoalUUID & id) { goals_->discard(id); };
   if (stop_when_client_lost) {
-    handlers.client_lost = [this](Handle & handle) { goals_->stop(handle.goal_id(), client_lost()); };
+    handlers.on_client_lost = [this](Handle & handle) { goals_->stop(handle.get_goal_id(), client_lost()); };
   }
-  handlers.missing_result = [this](rcl_cxx::GoalStatus status, typename A::Result & result) {
+  handlers.fill_missing_result = [this](rcl_cxx::GoalStatus status, typename A::Result & result) {
     fill_result_guarded(missing_result(status), result);
   };
   server_ = node.template create_action_server<A>(name, std::move(handlers));
@@ -104,7 +104,7 @@ template <typename A>
 void GoalServer<A>::finish(Handle & handle, typename A::Result & result, const Outcome & outcome)
 {
   const Outcome actual = fill_result_guarded(outcome, result);
-  goals_->finish(handle.goal_id(), actual);
+  goals_->finish(handle.get_goal_id(), actual);
   if (actual) {
     handle.succeed(result);
   } else if (actual.code() == ErrorCode::canceled && handle.is_canceling()) {
