@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "action_client_core.hpp"
-#include "node_core.hpp"
+#include "action_client_impl.hpp"
+#include "node_impl.hpp"
 #include "rcl_cxx/error.hpp"
 
 namespace rcl_cxx {
@@ -27,85 +27,85 @@ const char * to_string(CancelCode code) noexcept
   return "invalid";
 }
 
-ClientGoalHandleBase::ClientGoalHandleBase(std::shared_ptr<detail::ClientGoalCore> core)
-    : core_(std::move(core))
+ClientGoalHandleBase::ClientGoalHandleBase(std::shared_ptr<detail::ClientGoalImpl> impl)
+    : impl_(std::move(impl))
 {
 }
 ClientGoalHandleBase::~ClientGoalHandleBase() = default;
-const GoalId & ClientGoalHandleBase::goal_id() const noexcept
+const GoalUUID & ClientGoalHandleBase::get_goal_id() const noexcept
 {
-  return core_->id();
+  return impl_->id();
 }
-GoalStatus ClientGoalHandleBase::status() const noexcept
+GoalStatus ClientGoalHandleBase::get_status() const noexcept
 {
-  return core_->status.load();
+  return impl_->status.load();
 }
 
-std::future<CancelResponse> ClientGoalHandleBase::cancel()
+std::future<CancelResponse> ClientGoalHandleBase::async_cancel()
 {
-  const auto client = core_->client();
+  const auto client = impl_->client();
   if (!client) {
-    throw Error("goal " + core_->id().short_string() + " cannot be canceled: its action client is gone");
+    throw Error("goal " + impl_->id().short_string() + " cannot be canceled: its action client is gone");
   }
-  return client->cancel(core_->id(), 0);
+  return client->cancel(impl_->id(), 0);
 }
 
-ActionClientBase::ActionClientBase(std::shared_ptr<detail::ActionClientCore> core) : core_(std::move(core)) {}
+ActionClientBase::ActionClientBase(std::shared_ptr<detail::ActionClientImpl> impl) : impl_(std::move(impl)) {}
 
 ActionClientBase::~ActionClientBase()
 {
-  core_->close();
-  core_->retire();
+  impl_->close();
+  impl_->retire();
 }
 
-const std::string & ActionClientBase::action_name() const noexcept
+const std::string & ActionClientBase::get_action_name() const noexcept
 {
-  return core_->action_name();
+  return impl_->get_action_name();
 }
 
-bool ActionClientBase::server_is_ready() const
+bool ActionClientBase::action_server_is_ready() const
 {
-  return core_->server_is_ready();
+  return impl_->action_server_is_ready();
 }
 
-bool ActionClientBase::wait_for_server(std::chrono::nanoseconds timeout) const
+bool ActionClientBase::wait_for_action_server(std::chrono::nanoseconds timeout) const
 {
-  return core_->node()->wait_for([this] { return server_is_ready(); }, timeout);
+  return impl_->node()->wait_for([this] { return action_server_is_ready(); }, timeout);
 }
 
-std::future<CancelResponse> ActionClientBase::cancel_goal(const GoalId & id)
+std::future<CancelResponse> ActionClientBase::async_cancel_goal(const GoalUUID & id)
 {
-  return core_->cancel(id, 0);
+  return impl_->cancel(id, 0);
 }
 
-std::future<CancelResponse> ActionClientBase::cancel_all_goals()
+std::future<CancelResponse> ActionClientBase::async_cancel_all_goals()
 {
-  return core_->cancel(GoalId{}, 0);
+  return impl_->cancel(GoalUUID{}, 0);
 }
 
-std::future<CancelResponse> ActionClientBase::cancel_goals_before(std::int64_t stamp_ns)
+std::future<CancelResponse> ActionClientBase::async_cancel_goals_before(std::int64_t stamp_ns)
 {
-  return core_->cancel(GoalId{}, stamp_ns);
+  return impl_->cancel(GoalUUID{}, stamp_ns);
 }
 
-GoalId ActionClientBase::send(const void * goal, detail::ErasedGoalCallbacks callbacks)
+GoalUUID ActionClientBase::send(const void * goal, detail::ErasedGoalCallbacks callbacks)
 {
-  return core_->send(goal, std::move(callbacks));
+  return impl_->send(goal, std::move(callbacks));
 }
 
-void ActionClientBase::abandon(const GoalId & id) noexcept
+void ActionClientBase::abandon(const GoalUUID & id) noexcept
 {
-  core_->abandon(id);
+  impl_->abandon(id);
 }
 
 tl::expected<void, std::string> ActionClientBase::check_blocking_call(std::chrono::nanoseconds timeout) const
 {
-  if (core_->node()->in_own_callback()) {
-    return tl::make_unexpected(action_name() +
+  if (impl_->node()->in_own_callback()) {
+    return tl::make_unexpected(get_action_name() +
                                ": a blocking call from a callback would wait for ever, use send_goal");
   }
-  if (!wait_for_server(timeout)) {
-    return tl::make_unexpected(action_name() + ": there is no such action server");
+  if (!wait_for_action_server(timeout)) {
+    return tl::make_unexpected(get_action_name() + ": there is no such action server");
   }
   return {};
 }
@@ -113,7 +113,7 @@ tl::expected<void, std::string> ActionClientBase::check_blocking_call(std::chron
 bool ActionClientBase::wait_until_ready(const std::function<bool(std::chrono::nanoseconds)> & ready_within,
                                         std::chrono::steady_clock::time_point deadline) const
 {
-  while (core_->node()->context().ok()) {
+  while (impl_->node()->get_context().ok()) {
     const std::chrono::nanoseconds left = deadline - std::chrono::steady_clock::now();
     if (ready_within(std::clamp(left, std::chrono::nanoseconds::zero(), kShutdownCheckPeriod))) {
       return true;

@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <iterator>
 
-#include "rcl_cxx/goal_id.hpp"
+#include "rcl_cxx/goal_uuid.hpp"
 
 /// rcl_action's own messages are C structs, those that the C++ type supports send are classes.
 namespace rcl_cxx::detail {
-inline GoalId to_goal_id(const rcl_action_goal_info_t & info)
+inline GoalUUID to_goal_id(const rcl_action_goal_info_t & info)
 {
-  GoalId id;
+  GoalUUID id;
   std::copy(std::begin(info.goal_id.uuid), std::end(info.goal_id.uuid), id.bytes.begin());
   return id;
 }

@@ -1,20 +1,20 @@
 #include "rcl_cxx/action_server.hpp"
 
-#include "action_server_core.hpp"
+#include "action_server_impl.hpp"
 
 namespace rcl_cxx {
-ActionServerBase::ActionServerBase(std::shared_ptr<detail::ActionServerCore> core) : core_(std::move(core)) {}
+ActionServerBase::ActionServerBase(std::shared_ptr<detail::ActionServerImpl> impl) : impl_(std::move(impl)) {}
 ActionServerBase::~ActionServerBase()
 {
-  core_->retire();
+  impl_->retire();
 }
-const std::string & ActionServerBase::action_name() const noexcept
+const std::string & ActionServerBase::get_action_name() const noexcept
 {
-  return core_->action_name();
+  return impl_->get_action_name();
 }
 std::size_t ActionServerBase::active_goal_count() const
 {
-  return core_->active_goal_count();
+  return impl_->active_goal_count();
 }
 
 }  // namespace rcl_cxx

@@ -1,11 +1,11 @@
-#include "action_server_core.hpp"
-#include "node_core.hpp"
-#include "timer_core.hpp"
+#include "action_server_impl.hpp"
+#include "node_impl.hpp"
+#include "timer_impl.hpp"
 
 /// Whether the clients of active goals are still there. In the executor's thread.
 namespace rcl_cxx::detail {
 
-void ActionServerCore::watch_client(GoalCore & goal, const rmw_request_id_t & request)
+void ActionServerImpl::watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request)
 {
   if (!client_check_) {
     return;
@@ -19,7 +19,7 @@ void ActionServerCore::watch_client(GoalCore & goal, const rmw_request_id_t & re
   }
 }
 
-void ActionServerCore::check_clients()
+void ActionServerImpl::check_clients()
 {
   if (!client_check_) {
     return;
@@ -30,31 +30,31 @@ void ActionServerCore::check_clients()
   }
   const auto known = find_clients(*node(), name_ + "/_action/send_goal");
   if (!known) {
-    if (node()->context().ok()) {
-      RCL_CXX_WARN_ONCE(node()->logger(), "{}: the middleware lists no clients, a lost one is not noticed",
-                        name_);
+    if (node()->get_context().ok()) {
+      RCL_CXX_WARN_ONCE(node()->get_logger(),
+                        "{}: the middleware lists no clients, a lost one is not noticed", name_);
     }
     return;
   }
-  std::vector<std::shared_ptr<GoalHandleBase>> lost;
+  std::vector<std::shared_ptr<ServerGoalHandleBase>> lost;
   {
     const std::lock_guard lock(mutex_);
     lost = lost_clients_locked(*known);
   }
   for (const auto & handle : lost) {
-    RCL_CXX_WARN(node()->logger(), "{}: goal {}: its client has disappeared", name_,
-                 handle->goal_id().short_string());
-    call("client_lost", handle->goal_id(), [&] { erased_.client_lost(*handle); });
+    RCL_CXX_WARN(node()->get_logger(), "{}: goal {}: its client has disappeared", name_,
+                 handle->get_goal_id().short_string());
+    call("client_lost", handle->get_goal_id(), [&] { erased_.client_lost(*handle); });
   }
 }
 
-std::vector<std::shared_ptr<GoalHandleBase>> ActionServerCore::lost_clients_locked(
+std::vector<std::shared_ptr<ServerGoalHandleBase>> ActionServerImpl::lost_clients_locked(
     const ServiceClients & known)
 {
-  std::vector<std::shared_ptr<GoalHandleBase>> lost;
+  std::vector<std::shared_ptr<ServerGoalHandleBase>> lost;
   const auto now = ClientWatch::Clock::now();
   for (const auto & [id, goal] : goals_) {
-    if (!goal->client || is_terminal(goal->status()) || !goal->client->is_lost(known, now)) {
+    if (!goal->client || is_terminal(goal->get_status()) || !goal->client->is_lost(known, now)) {
       continue;
     }
     goal->client.reset();

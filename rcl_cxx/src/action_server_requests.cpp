@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "action_messages.hpp"
-#include "action_server_core.hpp"
-#include "node_core.hpp"
+#include "action_server_impl.hpp"
+#include "node_impl.hpp"
 #include "ns_per_second.hpp"
 #include "rcl_error.hpp"
 
@@ -19,7 +19,7 @@ bool nothing_to_take(rcl_ret_t code)
 }
 }  // namespace
 
-void ActionServerCore::take_goal()
+void ActionServerImpl::take_goal()
 {
   const std::shared_ptr<void> request = ops_.make_goal_request();
   rmw_request_id_t request_id;
@@ -28,9 +28,9 @@ void ActionServerCore::take_goal()
     return;
   }
   check_rcl(code, name_, "cannot take a goal");
-  const GoalId id = ops_.goal_id_of_goal_request(request.get());
+  const GoalUUID id = ops_.goal_id_of_goal_request(request.get());
   const auto refuse = [&](const std::string & reason) {
-    RCL_CXX_WARN(node()->logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
+    RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
     answer(&rcl_action_send_goal_response, request_id, ops_.make_goal_response(false, 0, 0));
   };
   if (find(id)) {
@@ -47,7 +47,7 @@ void ActionServerCore::take_goal()
   }
 }
 
-void ActionServerCore::discard(const GoalId & id) noexcept
+void ActionServerImpl::discard(const GoalUUID & id) noexcept
 {
   call("discarded", id, [&] {
     if (erased_.discarded) {
@@ -56,18 +56,19 @@ void ActionServerCore::discard(const GoalId & id) noexcept
   });
 }
 
-void ActionServerCore::announce(const rmw_request_id_t & request, std::shared_ptr<GoalHandleBase> accepted)
+void ActionServerImpl::announce(const rmw_request_id_t & request,
+                                std::shared_ptr<ServerGoalHandleBase> accepted)
 {
   const std::int64_t stamp = accepted->accepted_ns();
   auto response = ops_.make_goal_response(true, static_cast<std::int32_t>(stamp / kNsPerSecond),
                                           static_cast<std::uint32_t>(stamp % kNsPerSecond));
   answer(&rcl_action_send_goal_response, request, std::move(response),
          [this, request, accepted](bool delivered) {
-           const auto goal = find(accepted->goal_id());
+           const auto goal = find(accepted->get_goal_id());
            if (!delivered || !goal || !accepted->is_active()) {
              // The client does not know of the goal, and dropping the handle aborts it; or the goal has ended
              // while its client was looked for.
-             discard(accepted->goal_id());
+             discard(accepted->get_goal_id());
              return;
            }
            watch_client(*goal, request);
@@ -80,7 +81,7 @@ void ActionServerCore::announce(const rmw_request_id_t & request, std::shared_pt
          });
 }
 
-tl::expected<void, std::string> ActionServerCore::decide_goal(const GoalId & id,
+tl::expected<void, std::string> ActionServerImpl::decide_goal(const GoalUUID & id,
                                                               const void * request) noexcept
 {
   try {
@@ -92,11 +93,11 @@ tl::expected<void, std::string> ActionServerCore::decide_goal(const GoalId & id,
   }
 }
 
-tl::expected<std::shared_ptr<GoalHandleBase>, std::string> ActionServerCore::accept(
-    const GoalId & id, const std::shared_ptr<void> & request)
+tl::expected<std::shared_ptr<ServerGoalHandleBase>, std::string> ActionServerImpl::accept(
+    const GoalUUID & id, const std::shared_ptr<void> & request)
 {
   const std::lock_guard lock(mutex_);
-  if (!node()->context().ok()) {
+  if (!node()->get_context().ok()) {
     return tl::make_unexpected(std::string("shutting down"));
   }
   rcl_action_goal_info_t info = rcl_action_get_zero_initialized_goal_info();
@@ -105,26 +106,26 @@ tl::expected<std::shared_ptr<GoalHandleBase>, std::string> ActionServerCore::acc
   if (rcl_handle == nullptr) {
     return tl::make_unexpected(take_rcl_error());
   }
-  const auto self = std::static_pointer_cast<ActionServerCore>(shared_from_this());
-  const auto goal = std::make_shared<GoalCore>(self, id, *rcl_handle);
+  const auto self = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
+  const auto goal = std::make_shared<ServerGoalImpl>(self, id, *rcl_handle);
   goals_.emplace(id, goal);
   goal->update(GOAL_EVENT_EXECUTE);
-  std::shared_ptr<GoalHandleBase> handle = ops_.make_handle(goal, request);
+  std::shared_ptr<ServerGoalHandleBase> handle = ops_.make_handle(goal, request);
   goal->handle = handle;
   return handle;
 }
 
-void ActionServerCore::answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
+void ActionServerImpl::answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
                               std::function<void(bool)> done, std::shared_ptr<void> instead)
 {
-  const auto self = std::static_pointer_cast<ActionServerCore>(shared_from_this());
+  const auto self = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
   answers_->send(
       [self, send, request, response, instead]() -> rcl_ret_t {
         rmw_request_id_t to = request;
         try {
           return send(&self->server_, &to, response.get());
         } catch (...) {
-          RCL_CXX_ERROR(self->node()->logger(),
+          RCL_CXX_ERROR(self->node()->get_logger(),
                         "{}: the middleware cannot send an answer{}: has a text a zero byte?", self->name_,
                         instead ? ", its client gets another one" : "");
           return instead ? send(&self->server_, &to, instead.get()) : RCL_RET_ERROR;
@@ -132,7 +133,7 @@ void ActionServerCore::answer(Send send, const rmw_request_id_t & request, std::
       },
       [self, done = std::move(done)](rcl_ret_t code) {
         if (code != RCL_RET_OK) {
-          RCL_CXX_WARN(self->node()->logger(), "{}: an answer did not reach its client: {}", self->name_,
+          RCL_CXX_WARN(self->node()->get_logger(), "{}: an answer did not reach its client: {}", self->name_,
                        take_rcl_error());
         }
         if (done) {
@@ -141,32 +142,33 @@ void ActionServerCore::answer(Send send, const rmw_request_id_t & request, std::
       });
 }
 
-void ActionServerCore::send_result(const rmw_request_id_t & request, GoalCore & goal)
+void ActionServerImpl::send_result(const rmw_request_id_t & request, ServerGoalImpl & goal)
 {
-  answer(&rcl_action_send_result_response, request, goal.result_response, {}, missing_result(goal.status()));
+  answer(&rcl_action_send_result_response, request, goal.result_response, {},
+         missing_result(goal.get_status()));
   goal.result_sent = true;
 }
 
-void ActionServerCore::run_accepted(std::shared_ptr<GoalHandleBase> handle) noexcept
+void ActionServerImpl::run_accepted(std::shared_ptr<ServerGoalHandleBase> handle) noexcept
 {
-  const std::string id = handle->goal_id().short_string();
+  const std::string id = handle->get_goal_id().short_string();
   try {
     erased_.accepted(handle);
     return;
   } catch (const std::exception & error) {
-    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: {}", name_, id, error.what());
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {}", name_, id, error.what());
   } catch (...) {
-    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: its handler threw something that is no std::exception",
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: its handler threw something that is no std::exception",
                   name_, id);
   }
   if (handle->is_active()) {
-    if (const auto goal = find(handle->goal_id())) {
+    if (const auto goal = find(handle->get_goal_id())) {
       finish(*goal, GoalStatus::aborted, missing_result(GoalStatus::aborted));
     }
   }
 }
 
-void ActionServerCore::take_cancel()
+void ActionServerImpl::take_cancel()
 {
   action_msgs::srv::CancelGoal::Request request;
   rmw_request_id_t request_id;
@@ -180,7 +182,7 @@ void ActionServerCore::take_cancel()
   answer(&rcl_action_send_cancel_response, request_id, response);
 }
 
-void ActionServerCore::process_cancel(const action_msgs::srv::CancelGoal::Request & request,
+void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Request & request,
                                       action_msgs::srv::CancelGoal::Response & response)
 {
   using Response = action_msgs::srv::CancelGoal::Response;
@@ -200,10 +202,10 @@ void ActionServerCore::process_cancel(const action_msgs::srv::CancelGoal::Reques
   }
   bool all_ended = true;
   for (const auto & info : candidates) {
-    const auto goal = find(GoalId{info.goal_id.uuid});
+    const auto goal = find(GoalUUID{info.goal_id.uuid});
     if (goal && decide_cancel(*goal)) {
       response.goals_canceling.push_back(info);
-    } else if (goal && !is_terminal(goal->status())) {
+    } else if (goal && !is_terminal(goal->get_status())) {
       all_ended = false;
     }
   }
@@ -216,13 +218,13 @@ void ActionServerCore::process_cancel(const action_msgs::srv::CancelGoal::Reques
   }
 }
 
-bool ActionServerCore::decide_cancel(GoalCore & goal)
+bool ActionServerImpl::decide_cancel(ServerGoalImpl & goal)
 {
-  std::shared_ptr<GoalHandleBase> handle;
+  std::shared_ptr<ServerGoalHandleBase> handle;
   {
     const std::lock_guard lock(mutex_);
     handle = goal.handle.lock();
-    if (!handle || is_terminal(goal.status())) {
+    if (!handle || is_terminal(goal.get_status())) {
       return false;
     }
     goal.cancel_being_decided = true;
@@ -231,7 +233,7 @@ bool ActionServerCore::decide_cancel(GoalCore & goal)
   {
     const std::lock_guard lock(mutex_);
     goal.cancel_being_decided = false;
-    if (goal.status() == GoalStatus::canceled) {
+    if (goal.get_status() == GoalStatus::canceled) {
       return true;  // its worker was quicker than its handler
     }
     if (!granted || !goal.update(GOAL_EVENT_CANCEL_GOAL)) {
@@ -239,35 +241,35 @@ bool ActionServerCore::decide_cancel(GoalCore & goal)
     }
   }
   if (erased_.canceling) {
-    call("canceling", handle->goal_id(), [&] { erased_.canceling(*handle); });
+    call("canceling", handle->get_goal_id(), [&] { erased_.canceling(*handle); });
   }
   return true;
 }
 
-bool ActionServerCore::ask_cancel(GoalHandleBase & handle) noexcept
+bool ActionServerImpl::ask_cancel(ServerGoalHandleBase & handle) noexcept
 {
   bool granted = false;
   if (erased_.cancel) {
-    call("cancel", handle.goal_id(), [&] { granted = erased_.cancel(handle); });
+    call("cancel", handle.get_goal_id(), [&] { granted = erased_.cancel(handle); });
   }
   return granted;
 }
 
-void ActionServerCore::call(const char * name, const GoalId & id,
+void ActionServerImpl::call(const char * name, const GoalUUID & id,
                             const std::function<void()> & handler) const noexcept
 {
   try {
     handler();
   } catch (const std::exception & error) {
-    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: {} handler: {}", name_, id.short_string(), name,
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {} handler: {}", name_, id.short_string(), name,
                   error.what());
   } catch (...) {
-    RCL_CXX_ERROR(node()->logger(), "{}: goal {}: {} handler threw something that is no std::exception",
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {} handler threw something that is no std::exception",
                   name_, id.short_string(), name);
   }
 }
 
-bool ActionServerCore::take_result()
+bool ActionServerImpl::take_result()
 {
   const std::shared_ptr<void> request = ops_.make_result_request();
   rmw_request_id_t request_id;
@@ -276,7 +278,7 @@ bool ActionServerCore::take_result()
     return false;
   }
   check_rcl(code, name_, "cannot take a request for a result");
-  const GoalId id = ops_.goal_id_of_result_request(request.get());
+  const GoalUUID id = ops_.goal_id_of_result_request(request.get());
   const std::lock_guard lock(mutex_);
   const auto found = goals_.find(id);
   if (found == goals_.end()) {

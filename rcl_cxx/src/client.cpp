@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <rcl/graph.h>
 
-#include "client_core.hpp"
-#include "node_core.hpp"
+#include "client_impl.hpp"
+#include "node_impl.hpp"
 #include "qos_rmw.hpp"
 #include "rcl_error.hpp"
 
@@ -15,18 +15,18 @@ namespace {
 constexpr std::chrono::milliseconds kShutdownCheckPeriod{20};
 }  // namespace
 
-std::shared_ptr<ClientCore> ClientCore::create(std::shared_ptr<NodeCore> node, ErasedClient erased,
+std::shared_ptr<ClientImpl> ClientImpl::create(std::shared_ptr<NodeImpl> node, ErasedClient erased,
                                                const std::string & name, const QoS & qos)
 {
-  auto core = std::make_shared<ClientCore>(std::move(node), erased, name, qos);
-  check_rcl(rcl_client_set_on_new_response_callback(&core->client_, &on_event, core->source(0)),
-            core->label(), "its middleware does not report new responses");
-  return core;
+  auto impl = std::make_shared<ClientImpl>(std::move(node), erased, name, qos);
+  check_rcl(rcl_client_set_on_new_response_callback(&impl->client_, &on_event, impl->source(0)),
+            impl->label(), "its middleware does not report new responses");
+  return impl;
 }
 
-ClientCore::ClientCore(std::shared_ptr<NodeCore> node, ErasedClient erased, const std::string & name,
+ClientImpl::ClientImpl(std::shared_ptr<NodeImpl> node, ErasedClient erased, const std::string & name,
                        const QoS & qos)
-    : Entity(std::move(node), fmt::format("client of {}", name)),
+    : Waitable(std::move(node), fmt::format("client of {}", name)),
       erased_(erased),
       client_(rcl_get_zero_initialized_client())
 {
@@ -38,13 +38,13 @@ ClientCore::ClientCore(std::shared_ptr<NodeCore> node, ErasedClient erased, cons
   name_ = rcl_client_get_service_name(&client_);
 }
 
-ClientCore::~ClientCore()
+ClientImpl::~ClientImpl()
 {
   const std::lock_guard lock(node()->mutex());
   ignore_rcl(rcl_client_fini(&client_, node()->handle()));
 }
 
-bool ClientCore::service_is_ready() const
+bool ClientImpl::service_is_ready() const
 {
   bool ready = false;
   if (rcl_service_server_is_available(node()->handle(), &client_, &ready) != RCL_RET_OK) {
@@ -54,12 +54,12 @@ bool ClientCore::service_is_ready() const
   return ready;
 }
 
-bool ClientCore::wait_for_service(std::chrono::nanoseconds timeout) const
+bool ClientImpl::wait_for_service(std::chrono::nanoseconds timeout) const
 {
   return node()->wait_for([this] { return service_is_ready(); }, timeout);
 }
 
-std::int64_t ClientCore::send(const void * request, OnResponse on_response)
+std::int64_t ClientImpl::send(const void * request, OnResponse on_response)
 {
   std::int64_t sequence = 0;
   const std::lock_guard lock(mutex_);  // the response may be here before the call returns
@@ -68,13 +68,13 @@ std::int64_t ClientCore::send(const void * request, OnResponse on_response)
   return sequence;
 }
 
-tl::expected<std::shared_ptr<void>, std::string> ClientCore::call(const void * request,
+tl::expected<std::shared_ptr<void>, std::string> ClientImpl::call(const void * request,
                                                                   std::chrono::nanoseconds timeout)
 {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   if (node()->in_own_callback()) {
-    return tl::make_unexpected(
-        fmt::format("{}: a blocking call from a callback would wait for ever, use async_call", name_));
+    return tl::make_unexpected(fmt::format(
+        "{}: a blocking call from a callback would wait for ever, use async_send_request", name_));
   }
   if (!wait_for_service(timeout)) {
     return tl::make_unexpected(fmt::format("{}: there is no such service", name_));
@@ -89,12 +89,12 @@ tl::expected<std::shared_ptr<void>, std::string> ClientCore::call(const void * r
     return tl::make_unexpected(std::string(error.what()));
   }
   while (answer.wait_for(kShutdownCheckPeriod) != std::future_status::ready) {
-    if (node()->context().ok() && std::chrono::steady_clock::now() < deadline) {
+    if (node()->get_context().ok() && std::chrono::steady_clock::now() < deadline) {
       continue;
     }
     take_pending(sequence);
     return tl::make_unexpected(fmt::format(
-        "{}: {}{}", name_, node()->context().ok() ? "no answer within the time given" : "shutting down",
+        "{}: {}{}", name_, node()->get_context().ok() ? "no answer within the time given" : "shutting down",
         node()->executor_hint()));
   }
   try {
@@ -104,27 +104,27 @@ tl::expected<std::shared_ptr<void>, std::string> ClientCore::call(const void * r
   }
 }
 
-std::size_t ClientCore::pending_count() const
+std::size_t ClientImpl::pending_count() const
 {
   const std::lock_guard lock(mutex_);
   return pending_.size();
 }
 
-void ClientCore::forget_all()
+void ClientImpl::forget_all()
 {
   std::map<std::int64_t, OnResponse> dropped;
   const std::lock_guard lock(mutex_);
   dropped.swap(pending_);
 }
 
-ClientCore::OnResponse ClientCore::take_pending(std::int64_t sequence)
+ClientImpl::OnResponse ClientImpl::take_pending(std::int64_t sequence)
 {
   const std::lock_guard lock(mutex_);
   auto node = pending_.extract(sequence);
   return node.empty() ? OnResponse{} : std::move(node.mapped());
 }
 
-void ClientCore::execute(std::size_t /*source*/)
+void ClientImpl::execute(std::size_t /*source*/)
 {
   const std::shared_ptr<void> response = erased_.make_response();
   rmw_request_id_t id;
@@ -139,46 +139,46 @@ void ClientCore::execute(std::size_t /*source*/)
   }
 }
 
-void ClientCore::stop() noexcept
+void ClientImpl::stop() noexcept
 {
   ignore_rcl(rcl_client_set_on_new_response_callback(&client_, nullptr, nullptr));
 }
 }  // namespace detail
 
-ClientBase::ClientBase(std::shared_ptr<detail::ClientCore> core) : core_(std::move(core)) {}
+ClientBase::ClientBase(std::shared_ptr<detail::ClientImpl> impl) : impl_(std::move(impl)) {}
 
 ClientBase::~ClientBase()
 {
-  core_->close();
-  core_->forget_all();
+  impl_->close();
+  impl_->forget_all();
 }
 
-const std::string & ClientBase::service_name() const noexcept
+const std::string & ClientBase::get_service_name() const noexcept
 {
-  return core_->service_name();
+  return impl_->get_service_name();
 }
 bool ClientBase::service_is_ready() const
 {
-  return core_->service_is_ready();
+  return impl_->service_is_ready();
 }
 bool ClientBase::wait_for_service(std::chrono::nanoseconds timeout) const
 {
-  return core_->wait_for_service(timeout);
+  return impl_->wait_for_service(timeout);
 }
 std::size_t ClientBase::pending_count() const
 {
-  return core_->pending_count();
+  return impl_->pending_count();
 }
 
 std::int64_t ClientBase::send(const void * request, OnResponse on_response)
 {
-  return core_->send(request, std::move(on_response));
+  return impl_->send(request, std::move(on_response));
 }
 
 tl::expected<std::shared_ptr<void>, std::string> ClientBase::call_and_wait(const void * request,
                                                                            std::chrono::nanoseconds timeout)
 {
-  return core_->call(request, timeout);
+  return impl_->call(request, timeout);
 }
 
 }  // namespace rcl_cxx

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "node_core.hpp"
+#include "node_impl.hpp"
 #include "rcl_compat.hpp"
 #include "rcl_error.hpp"
 
@@ -29,7 +29,7 @@ bool contains(const std::vector<Gid> & gids, const Gid & gid)
 using ListEndpoints = decltype(&rcl_get_subscriptions_info_by_topic);
 
 /// Appends the endpoints of a topic that is named as the middleware names it.
-bool list_endpoints(ListEndpoints list, NodeCore & node, const std::string & topic, std::vector<Gid> & gids)
+bool list_endpoints(ListEndpoints list, NodeImpl & node, const std::string & topic, std::vector<Gid> & gids)
 {
   rcutils_allocator_t allocator = rcutils_get_default_allocator();
   rcl_topic_endpoint_info_array_t endpoints = rcl_get_zero_initialized_topic_endpoint_info_array();
@@ -50,7 +50,7 @@ Gid client_of(const rmw_request_id_t & request) noexcept
   return to_gid(request.writer_guid);
 }
 
-std::optional<ServiceClients> find_clients(NodeCore & node, const std::string & service)
+std::optional<ServiceClients> find_clients(NodeImpl & node, const std::string & service)
 {
   ServiceClients clients;
   // The names that every middleware on DDS gives to the topics of a service.

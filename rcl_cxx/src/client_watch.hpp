@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace rcl_cxx::detail {
-class NodeCore;
+class NodeImpl;
 
 /// The id of an endpoint, as the graph and the header of a request give it.
 using Gid = std::array<std::uint8_t, 16>;
@@ -28,7 +28,7 @@ struct ServiceClients {
 };
 
 /// Asks the middleware. Nothing if it does not answer.
-std::optional<ServiceClients> find_clients(NodeCore & node, const std::string & service);
+std::optional<ServiceClients> find_clients(NodeImpl & node, const std::string & service);
 
 /// Whether the id in a request's header is that of an endpoint of the client. It is with rmw_fastrtps.
 /// rmw_cyclonedds puts an id of its own there.

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "entity.hpp"
-#include "event_hub.hpp"
-#include "node_core.hpp"
-#include "timer_core.hpp"
+#include "node_impl.hpp"
+#include "pending_events.hpp"
+#include "timer_impl.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
 namespace {
@@ -99,7 +99,7 @@ std::optional<Event> EventQueue::pop_due_timer(Clock::time_point now)
     const TimedEvent due = std::move(timers_.back());
     timers_.pop_back();
     if (!due.is_void()) {
-      return Event{due.timer, TimerCore::source_of(due.generation), {}};
+      return Event{due.timer, TimerImpl::source_of(due.generation), {}};
     }
   }
   return std::nullopt;
@@ -141,19 +141,19 @@ bool EventQueue::ended() const
   return ended_;
 }
 
-std::vector<Event> EventQueue::extract(const EventHub & hub)
+std::vector<Event> EventQueue::extract(const PendingEvents & events)
 {
-  const auto belongs = [&hub](const std::shared_ptr<Entity> & entity) {
-    return entity && &entity->node()->hub() == &hub;
+  const auto belongs = [&events](const std::shared_ptr<Waitable> & waitable) {
+    return waitable && &waitable->node()->pending_events() == &events;
   };
-  std::vector<std::shared_ptr<Entity>>
+  std::vector<std::shared_ptr<Waitable>>
       kept;  // released after the lock: the last reference may be one of these
   std::vector<Event> taken;
   const std::lock_guard lock(mutex_);
   std::vector<Event> rest;
   while (auto next = pop_event()) {
     Event & event = *next;
-    kept.push_back(event.entity.lock());
+    kept.push_back(event.waitable.lock());
     if (belongs(kept.back())) {
       taken.push_back(std::move(event));
     } else {

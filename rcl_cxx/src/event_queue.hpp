@@ -11,14 +11,14 @@
 #include <vector>
 
 namespace rcl_cxx::detail {
-class Entity;
-class EventHub;
-class TimerCore;
+class Waitable;
+class PendingEvents;
+class TimerImpl;
 
 /// One thing for the executor's thread to do: serve an entity, run a timer, or run a task. Of an entity that
 /// is gone meanwhile nothing is left to do.
 struct Event {
-  std::weak_ptr<Entity> entity;
+  std::weak_ptr<Waitable> waitable;
   std::size_t source = 0;
   std::function<void()> task;
 };
@@ -27,7 +27,7 @@ struct Event {
 /// the timer so that looking at it never holds the last reference to a timer.
 struct TimedEvent {
   std::chrono::steady_clock::time_point due;
-  std::weak_ptr<TimerCore> timer;
+  std::weak_ptr<TimerImpl> timer;
   std::size_t generation = 0;
   std::shared_ptr<const std::atomic<std::size_t>> current_generation;
 
@@ -54,7 +54,7 @@ class EventQueue {
   bool ended() const;
 
   /// Removes and returns the events of a node's entities, and forgets its timers.
-  std::vector<Event> extract(const EventHub & hub);
+  std::vector<Event> extract(const PendingEvents & events);
 
   /// The queue whose callback runs in this thread, if any.
   static const EventQueue *& current() noexcept;

@@ -4,14 +4,14 @@
 
 #include <exception>
 
-#include "context_core.hpp"
-#include "entity.hpp"
-#include "event_hub.hpp"
+#include "context_impl.hpp"
 #include "event_queue.hpp"
-#include "node_core.hpp"
+#include "node_impl.hpp"
+#include "pending_events.hpp"
 #include "rcl_cxx/error.hpp"
 #include "rcl_cxx/logging.hpp"
 #include "rcl_cxx/node.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx {
 namespace {
@@ -41,8 +41,8 @@ void serve(const detail::Event & event) noexcept
 {
   if (event.task) {
     run_task(event.task);
-  } else if (const auto entity = event.entity.lock()) {
-    entity->serve(event.source);
+  } else if (const auto waitable = event.waitable.lock()) {
+    waitable->serve(event.source);
   }
 }
 }  // namespace
@@ -75,7 +75,7 @@ Executor::Executor(Context::SharedPtr context)
     : context_(std::move(context)), queue_(std::make_shared<detail::EventQueue>())
 {
   end_callback_ =
-      context_->core()->add_callback(detail::ContextCore::Phase::after, [queue = std::weak_ptr(queue_)] {
+      context_->impl()->add_callback(detail::ContextImpl::Phase::after, [queue = std::weak_ptr(queue_)] {
         if (const auto alive = queue.lock()) {
           alive->end();
         }
@@ -84,22 +84,22 @@ Executor::Executor(Context::SharedPtr context)
 
 Executor::~Executor()
 {
-  context_->core()->remove_callback(end_callback_);
+  context_->impl()->remove_callback(end_callback_);
   for (const auto & weak : nodes_) {
     if (const auto node = weak.lock()) {
-      node->hub().detach(*queue_);
+      node->pending_events().detach(*queue_);
     }
   }
 }
 
 void Executor::add_node(const Node & node)
 {
-  if (!node.core()->hub().attach(queue_)) {
-    throw Error(fmt::format("executor: node {} is in an executor already", node.fully_qualified_name()));
+  if (!node.impl()->pending_events().attach(queue_)) {
+    throw Error(fmt::format("executor: node {} is in an executor already", node.get_fully_qualified_name()));
   }
   const std::lock_guard lock(nodes_mutex_);
   std::erase_if(nodes_, [](const auto & other) { return other.expired(); });
-  nodes_.push_back(node.core());
+  nodes_.push_back(node.impl());
 }
 
 void Executor::add_node(const std::shared_ptr<Node> & node)
@@ -109,9 +109,9 @@ void Executor::add_node(const std::shared_ptr<Node> & node)
 
 void Executor::remove_node(const Node & node)
 {
-  node.core()->hub().detach(*queue_);
+  node.impl()->pending_events().detach(*queue_);
   const std::lock_guard lock(nodes_mutex_);
-  std::erase_if(nodes_, [&](const auto & other) { return other.lock() == node.core(); });
+  std::erase_if(nodes_, [&](const auto & other) { return other.lock() == node.impl(); });
 }
 
 void Executor::spin()
@@ -151,7 +151,7 @@ bool Executor::spin_until(const std::function<bool()> & condition, std::chrono::
   return true;
 }
 
-void Executor::stop()
+void Executor::cancel()
 {
   queue_->stop();
 }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "node_core.hpp"
+#include "node_impl.hpp"
 #include "rcl_cxx/node.hpp"
 #include "rcl_error.hpp"
 
@@ -49,7 +49,7 @@ class RclNamesAndTypes {
 std::size_t Node::count_publishers(const std::string & topic) const
 {
   std::size_t count = 0;
-  detail::check_rcl(rcl_count_publishers(core_->handle(), resolve_topic_name(topic).c_str(), &count), topic,
+  detail::check_rcl(rcl_count_publishers(impl_->handle(), resolve_topic_name(topic).c_str(), &count), topic,
                     "its publishers cannot be counted");
   return count;
 }
@@ -57,7 +57,7 @@ std::size_t Node::count_publishers(const std::string & topic) const
 std::size_t Node::count_subscribers(const std::string & topic) const
 {
   std::size_t count = 0;
-  detail::check_rcl(rcl_count_subscribers(core_->handle(), resolve_topic_name(topic).c_str(), &count), topic,
+  detail::check_rcl(rcl_count_subscribers(impl_->handle(), resolve_topic_name(topic).c_str(), &count), topic,
                     "its subscribers cannot be counted");
   return count;
 }
@@ -67,8 +67,8 @@ std::vector<std::string> Node::get_node_names() const
   StringArray names;
   StringArray namespaces;
   detail::check_rcl(
-      rcl_get_node_names(core_->handle(), rcl_get_default_allocator(), names.get(), namespaces.get()),
-      fully_qualified_name(), "the nodes cannot be listed");
+      rcl_get_node_names(impl_->handle(), rcl_get_default_allocator(), names.get(), namespaces.get()),
+      get_fully_qualified_name(), "the nodes cannot be listed");
   std::vector<std::string> result;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string space = namespaces[i];
@@ -81,8 +81,8 @@ Node::NamesAndTypes Node::get_topic_names_and_types() const
 {
   RclNamesAndTypes topics;
   rcl_allocator_t allocator = rcl_get_default_allocator();
-  detail::check_rcl(rcl_get_topic_names_and_types(core_->handle(), &allocator, false, topics.get()),
-                    fully_qualified_name(), "the topics cannot be listed");
+  detail::check_rcl(rcl_get_topic_names_and_types(impl_->handle(), &allocator, false, topics.get()),
+                    get_fully_qualified_name(), "the topics cannot be listed");
   return topics.to_map();
 }
 
@@ -90,26 +90,26 @@ Node::NamesAndTypes Node::get_service_names_and_types() const
 {
   RclNamesAndTypes services;
   rcl_allocator_t allocator = rcl_get_default_allocator();
-  detail::check_rcl(rcl_get_service_names_and_types(core_->handle(), &allocator, services.get()),
-                    fully_qualified_name(), "the services cannot be listed");
+  detail::check_rcl(rcl_get_service_names_and_types(impl_->handle(), &allocator, services.get()),
+                    get_fully_qualified_name(), "the services cannot be listed");
   return services.to_map();
 }
 
 bool Node::wait_for_publishers(const std::string & topic, std::size_t count,
                                std::chrono::nanoseconds timeout) const
 {
-  return core_->wait_for([&] { return count_publishers(topic) >= count; }, timeout);
+  return impl_->wait_for([&] { return count_publishers(topic) >= count; }, timeout);
 }
 
 bool Node::wait_for_subscribers(const std::string & topic, std::size_t count,
                                 std::chrono::nanoseconds timeout) const
 {
-  return core_->wait_for([&] { return count_subscribers(topic) >= count; }, timeout);
+  return impl_->wait_for([&] { return count_subscribers(topic) >= count; }, timeout);
 }
 
 bool Node::wait_for_node(const std::string & name, std::chrono::nanoseconds timeout) const
 {
-  return core_->wait_for(
+  return impl_->wait_for(
       [&] {
         const auto names = get_node_names();
         return std::find(names.begin(), names.end(), name) != names.end();

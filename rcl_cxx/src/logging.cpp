@@ -5,7 +5,7 @@
 #include <rcl/logging.h>
 #include <rcutils/logging.h>
 
-#include "logging_core.hpp"
+#include "logging_impl.hpp"
 #include "rcl_compat.hpp"
 #include "rcl_error.hpp"
 
@@ -103,7 +103,7 @@ struct RosoutChild {
 
 Logger::Logger(std::string name) : name_(std::make_shared<const std::string>(std::move(name))) {}
 
-Logger Logger::child(std::string_view suffix) const
+Logger Logger::get_child(std::string_view suffix) const
 {
   Logger logger(fmt::format("{}.{}", *name_, suffix));
   logger.registration_ = std::make_shared<const detail::RosoutChild>(*name_, std::string(suffix));

@@ -1,35 +1,35 @@
 #include "rcl_cxx/node.hpp"
 
-#include "action_client_core.hpp"
-#include "action_server_core.hpp"
+#include "action_client_impl.hpp"
+#include "action_server_impl.hpp"
 #include "arguments.hpp"
-#include "client_core.hpp"
-#include "node_core.hpp"
+#include "client_impl.hpp"
+#include "node_impl.hpp"
 #include "ns_per_second.hpp"
 #include "parameter_messages.hpp"
 #include "parameter_services.hpp"
 #include "parameters.hpp"
-#include "publisher_core.hpp"
+#include "publisher_impl.hpp"
 #include "rcl_error.hpp"
-#include "service_core.hpp"
+#include "service_impl.hpp"
 #include "sim_time.hpp"
-#include "subscription_core.hpp"
-#include "timer_core.hpp"
+#include "subscription_impl.hpp"
+#include "timer_impl.hpp"
 #include "type_description_service.hpp"
 
 namespace rcl_cxx {
 namespace {
-std::map<std::string, ParameterValue> read_overrides(const detail::NodeCore & node,
-                                                     detail::ContextCore & context,
+std::map<std::string, ParameterValue> read_overrides(const detail::NodeImpl & node,
+                                                     detail::ContextImpl & context,
                                                      const NodeOptions & options,
                                                      const rcl_arguments_t & arguments)
 {
   std::map<std::string, ParameterValue> overrides;
   if (options.use_global_arguments) {
-    detail::read_parameter_overrides(context.handle()->global_arguments, node.fully_qualified_name(),
+    detail::read_parameter_overrides(context.handle()->global_arguments, node.get_fully_qualified_name(),
                                      overrides);
   }
-  detail::read_parameter_overrides(arguments, node.fully_qualified_name(), overrides);
+  detail::read_parameter_overrides(arguments, node.get_fully_qualified_name(), overrides);
   for (const Parameter & parameter : options.parameter_overrides) {
     overrides[parameter.name] = parameter.value;
   }
@@ -38,25 +38,25 @@ std::map<std::string, ParameterValue> read_overrides(const detail::NodeCore & no
 
 /// Publishes each change of the node's parameters.
 detail::Parameters::Observer parameter_event_publisher(
-    const std::shared_ptr<detail::NodeCore> & node,
+    const std::shared_ptr<detail::NodeImpl> & node,
     std::shared_ptr<Publisher<rcl_interfaces::msg::ParameterEvent>> publisher)
 {
   return [weak = std::weak_ptr(node), publisher](const detail::ParameterChanges & changes) {
-    const auto core = weak.lock();
-    if (!core) {
+    const auto impl = weak.lock();
+    if (!impl) {
       return;
     }
     rcl_interfaces::msg::ParameterEvent event = detail::to_message(changes);
-    const std::int64_t now = core->clock().now_ns();
+    const std::int64_t now = impl->get_clock().now_ns();
     event.stamp.sec = static_cast<std::int32_t>(now / detail::kNsPerSecond);
     event.stamp.nanosec = static_cast<std::uint32_t>(now % detail::kNsPerSecond);
-    event.node = core->fully_qualified_name();
+    event.node = impl->get_fully_qualified_name();
     publisher->publish(event);
   };
 }
 }  // namespace
 
-/// What every node brings along. Destroyed before the node's core.
+/// What every node brings along. Destroyed before the node's impl.
 struct Node::Standard {
   std::unique_ptr<detail::SimTime> sim_time;
   std::unique_ptr<detail::TypeDescriptionService> type_description;
@@ -68,18 +68,18 @@ Node::Node(Context::SharedPtr context, const std::string & name, const std::stri
     : context_(std::move(context))
 {
   const detail::ParsedArguments arguments(options.arguments);
-  core_ =
-      std::make_shared<detail::NodeCore>(context_->core(), name, node_namespace, options, arguments.get());
+  impl_ =
+      std::make_shared<detail::NodeImpl>(context_->impl(), name, node_namespace, options, arguments.get());
   parameters_ = std::make_shared<detail::Parameters>(
-      core_->logger(), read_overrides(*core_, *context_->core(), options, arguments.get()));
+      impl_->get_logger(), read_overrides(*impl_, *context_->impl(), options, arguments.get()));
   if (options.start_parameter_event_publisher) {
     auto publisher =
         create_publisher<rcl_interfaces::msg::ParameterEvent>("/parameter_events", QoS::parameters());
-    parameters_->observe(parameter_event_publisher(core_, std::move(publisher)));
+    parameters_->observe(parameter_event_publisher(impl_, std::move(publisher)));
   }
   standard_ = std::make_unique<Standard>();
   standard_->sim_time = std::make_unique<detail::SimTime>(*this, *parameters_);
-  standard_->type_description = std::make_unique<detail::TypeDescriptionService>(core_, *parameters_);
+  standard_->type_description = std::make_unique<detail::TypeDescriptionService>(impl_, *parameters_);
   if (options.automatically_declare_parameters_from_overrides) {
     parameters_->declare_all_overrides();
   }
@@ -94,25 +94,25 @@ Node::~Node()
   parameters_->observe({});
 }
 
-const std::string & Node::name() const noexcept
+const std::string & Node::get_name() const noexcept
 {
-  return core_->name();
+  return impl_->get_name();
 }
-const std::string & Node::node_namespace() const noexcept
+const std::string & Node::get_namespace() const noexcept
 {
-  return core_->node_namespace();
+  return impl_->get_namespace();
 }
-const std::string & Node::fully_qualified_name() const noexcept
+const std::string & Node::get_fully_qualified_name() const noexcept
 {
-  return core_->fully_qualified_name();
+  return impl_->get_fully_qualified_name();
 }
-const Context::SharedPtr & Node::context() const noexcept
+const Context::SharedPtr & Node::get_context() const noexcept
 {
   return context_;
 }
-const Logger & Node::logger() const noexcept
+const Logger & Node::get_logger() const noexcept
 {
-  return core_->logger();
+  return impl_->get_logger();
 }
 
 builtin_interfaces::msg::Time Node::now() const
@@ -126,66 +126,67 @@ builtin_interfaces::msg::Time Node::now() const
 
 std::int64_t Node::now_ns() const
 {
-  return core_->clock().now_ns();
+  return impl_->get_clock().now_ns();
 }
 
 std::string Node::resolve_topic_name(const std::string & topic) const
 {
-  return core_->resolve(topic, false);
+  return impl_->resolve(topic, false);
 }
 
 std::string Node::resolve_service_name(const std::string & service) const
 {
-  return core_->resolve(service, true);
+  return impl_->resolve(service, true);
 }
 
-std::shared_ptr<Timer> Node::create_timer(std::chrono::nanoseconds period, std::function<void()> callback)
+std::shared_ptr<Timer> Node::create_wall_timer(std::chrono::nanoseconds period,
+                                               std::function<void()> callback)
 {
-  auto timer = detail::TimerCore::create(core_, period, std::move(callback));
+  auto timer = detail::TimerImpl::create(impl_, period, std::move(callback));
   timer->arm();
   return std::make_shared<Timer>(std::move(timer));
 }
 
-std::shared_ptr<detail::PublisherCore> Node::make_publisher(
+std::shared_ptr<detail::PublisherImpl> Node::make_publisher(
     const rosidl_message_type_support_t * type_support, const std::string & topic, const QoS & qos)
 {
-  return detail::PublisherCore::create(core_, type_support, topic, qos);
+  return detail::PublisherImpl::create(impl_, type_support, topic, qos);
 }
 
-std::shared_ptr<detail::SubscriptionCore> Node::make_subscription(detail::ErasedSubscription erased,
+std::shared_ptr<detail::SubscriptionImpl> Node::make_subscription(detail::ErasedSubscription erased,
                                                                   const std::string & topic, const QoS & qos)
 {
-  return detail::SubscriptionCore::create(core_, std::move(erased), topic, qos);
+  return detail::SubscriptionImpl::create(impl_, std::move(erased), topic, qos);
 }
 
-std::shared_ptr<detail::ServiceCore> Node::make_service(detail::ErasedService erased,
+std::shared_ptr<detail::ServiceImpl> Node::make_service(detail::ErasedService erased,
                                                         const std::string & service, const QoS & qos)
 {
-  return detail::ServiceCore::create(core_, std::move(erased), service, qos);
+  return detail::ServiceImpl::create(impl_, std::move(erased), service, qos);
 }
 
-std::shared_ptr<detail::ClientCore> Node::make_client(detail::ErasedClient erased,
+std::shared_ptr<detail::ClientImpl> Node::make_client(detail::ErasedClient erased,
                                                       const std::string & service, const QoS & qos)
 {
-  return detail::ClientCore::create(core_, erased, service, qos);
+  return detail::ClientImpl::create(impl_, erased, service, qos);
 }
 
-std::shared_ptr<detail::ActionServerCore> Node::make_action_server(detail::ErasedActionServer erased,
+std::shared_ptr<detail::ActionServerImpl> Node::make_action_server(detail::ErasedActionServer erased,
                                                                    const std::string & action,
                                                                    const ActionServerOptions & options)
 {
-  return detail::ActionServerCore::create(core_, std::move(erased), action, options);
+  return detail::ActionServerImpl::create(impl_, std::move(erased), action, options);
 }
 
-std::shared_ptr<detail::ActionClientCore> Node::make_action_client(const detail::ActionClientOps * ops,
+std::shared_ptr<detail::ActionClientImpl> Node::make_action_client(const detail::ActionClientOps * ops,
                                                                    const std::string & action,
                                                                    const ActionClientOptions & options)
 {
-  return detail::ActionClientCore::create(core_, *ops, action, options);
+  return detail::ActionClientImpl::create(impl_, *ops, action, options);
 }
 
-ParameterValue Node::declare(const std::string & parameter, const ParameterValue & default_value,
-                             const ParameterOptions & options)
+ParameterValue Node::declare_parameter(const std::string & parameter, const ParameterValue & default_value,
+                                       const ParameterDescriptor & options)
 {
   return parameters_->declare(parameter, default_value, options);
 }
@@ -210,22 +211,22 @@ std::vector<Parameter> Node::get_parameters() const
   return parameters_->all();
 }
 
-ParameterResult Node::set_parameter(const std::string & parameter, const ParameterValue & value)
+SetParametersResult Node::set_parameter(const std::string & parameter, const ParameterValue & value)
 {
   return parameters_->set({Parameter{parameter, value}});
 }
 
-ParameterResult Node::set_parameters_atomically(const std::vector<Parameter> & parameters)
+SetParametersResult Node::set_parameters_atomically(const std::vector<Parameter> & parameters)
 {
   return parameters_->set(parameters);
 }
 
-ParameterCallbackHandle Node::on_set_parameters(OnSetParameters callback)
+ParameterCallbackHandle Node::add_on_set_parameters_callback(OnSetParametersCallback callback)
 {
   return parameters_->add_on_set(std::move(callback));
 }
 
-ParameterCallbackHandle Node::on_parameters_set(OnParametersSet callback)
+ParameterCallbackHandle Node::add_post_set_parameters_callback(PostSetParametersCallback callback)
 {
   return parameters_->add_after_set(std::move(callback));
 }

@@ -30,7 +30,7 @@ std::vector<rcl_interfaces::msg::Parameter> to_messages(const std::vector<Parame
 rcl_interfaces::msg::ParameterValue to_message(const ParameterValue & value)
 {
   rcl_interfaces::msg::ParameterValue message;
-  message.type = static_cast<std::uint8_t>(value.type());
+  message.type = static_cast<std::uint8_t>(value.get_type());
   std::visit(Fill{message}, value.variant());
   return message;
 }
@@ -44,7 +44,7 @@ ParameterValue from_message(const rcl_interfaces::msg::ParameterValue & message)
       return message.bool_value;
     case ParameterType::integer:
       return message.integer_value;
-    case ParameterType::real:
+    case ParameterType::floating_point:
       return message.double_value;
     case ParameterType::string:
       return message.string_value;
@@ -54,7 +54,7 @@ ParameterValue from_message(const rcl_interfaces::msg::ParameterValue & message)
       return message.bool_array_value;
     case ParameterType::integer_array:
       return message.integer_array_value;
-    case ParameterType::real_array:
+    case ParameterType::floating_point_array:
       return message.double_array_value;
     case ParameterType::string_array:
       return message.string_array_value;
@@ -86,15 +86,15 @@ rcl_interfaces::msg::ParameterDescriptor to_message(const std::string & name, co
   message.dynamic_typing = entry.options.dynamic_typing;
   if (const auto & range = entry.options.floating_point_range) {
     rcl_interfaces::msg::FloatingPointRange limits;
-    limits.from_value = range->from;
-    limits.to_value = range->to;
+    limits.from_value = range->from_value;
+    limits.to_value = range->to_value;
     limits.step = range->step;
     message.floating_point_range.push_back(limits);
   }
   if (const auto & range = entry.options.integer_range) {
     rcl_interfaces::msg::IntegerRange limits;
-    limits.from_value = range->from;
-    limits.to_value = range->to;
+    limits.from_value = range->from_value;
+    limits.to_value = range->to_value;
     limits.step = range->step;
     message.integer_range.push_back(limits);
   }

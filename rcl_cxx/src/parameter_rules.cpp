@@ -17,56 +17,58 @@ bool nearly_equal(double a, double b)
 
 bool within(double value, const FloatingPointRange & range)
 {
-  if (nearly_equal(value, range.from) || nearly_equal(value, range.to)) {
+  if (nearly_equal(value, range.from_value) || nearly_equal(value, range.to_value)) {
     return true;
   }
-  if (!(value >= range.from && value <= range.to)) {  // also refuses NaN
+  if (!(value >= range.from_value && value <= range.to_value)) {  // also refuses NaN
     return false;
   }
   return range.step == 0.0 ||
-         nearly_equal(value, range.from + std::round((value - range.from) / range.step) * range.step);
+         nearly_equal(value,
+                      range.from_value + std::round((value - range.from_value) / range.step) * range.step);
 }
 
 bool within(std::int64_t value, const IntegerRange & range)
 {
-  if (value < range.from || value > range.to) {
+  if (value < range.from_value || value > range.to_value) {
     return false;
   }
-  const auto distance = static_cast<std::uint64_t>(value) - static_cast<std::uint64_t>(range.from);
-  return value == range.to || range.step == 0 || distance % range.step == 0;
+  const auto distance = static_cast<std::uint64_t>(value) - static_cast<std::uint64_t>(range.from_value);
+  return value == range.to_value || range.step == 0 || distance % range.step == 0;
 }
 
 template <typename Range>
-ParameterResult outside(const std::string & name, const ParameterValue & value, const Range & range)
+SetParametersResult outside(const std::string & name, const ParameterValue & value, const Range & range)
 {
   const std::string steps = range.step == 0 ? "" : fmt::format(" in steps of {}", range.step);
   return tl::make_unexpected(fmt::format("parameter '{}' is limited to the range {} to {}{}, it cannot be {}",
-                                         name, range.from, range.to, steps, value.to_string()));
+                                         name, range.from_value, range.to_value, steps, value.to_string()));
 }
 
 template <typename Element, typename Range>
-ParameterResult check_range(const std::string & name, const ParameterValue & value, const Range & range)
+SetParametersResult check_range(const std::string & name, const ParameterValue & value, const Range & range)
 {
   const auto fits = [&range](Element element) { return within(element, range); };
   if (const auto * single = std::get_if<Element>(&value.variant())) {
-    return fits(*single) ? ParameterResult{} : outside(name, value, range);
+    return fits(*single) ? SetParametersResult{} : outside(name, value, range);
   }
   if (const auto * array = std::get_if<std::vector<Element>>(&value.variant())) {
-    return std::all_of(array->begin(), array->end(), fits) ? ParameterResult{} : outside(name, value, range);
+    return std::all_of(array->begin(), array->end(), fits) ? SetParametersResult{}
+                                                           : outside(name, value, range);
   }
   return {};
 }
 }  // namespace
 
-ParameterResult check_value(const std::string & name, ParameterType type, const ParameterOptions & options,
-                            const ParameterValue & value)
+SetParametersResult check_value(const std::string & name, ParameterType type,
+                                const ParameterDescriptor & options, const ParameterValue & value)
 {
-  if (!options.dynamic_typing && value.type() != type) {
+  if (!options.dynamic_typing && value.get_type() != type) {
     return tl::make_unexpected(
         fmt::format("Wrong parameter type: parameter '{}' is of type {}, it cannot be {} ({})", name,
-                    to_string(type), value.to_string(), to_string(value.type())));
+                    to_string(type), value.to_string(), to_string(value.get_type())));
   }
-  ParameterResult result;
+  SetParametersResult result;
   if (options.floating_point_range) {
     result = check_range<double>(name, value, *options.floating_point_range);
   }
@@ -78,10 +80,10 @@ ParameterResult check_value(const std::string & name, ParameterType type, const 
 
 ParameterValue as_type(const ParameterValue & value, ParameterType type)
 {
-  if (type == ParameterType::real && value.type() == ParameterType::integer) {
+  if (type == ParameterType::floating_point && value.get_type() == ParameterType::integer) {
     return static_cast<double>(value.get<std::int64_t>());
   }
-  if (type == ParameterType::real_array && value.type() == ParameterType::integer_array) {
+  if (type == ParameterType::floating_point_array && value.get_type() == ParameterType::integer_array) {
     const auto integers = value.get<std::vector<std::int64_t>>();
     return std::vector<double>(integers.begin(), integers.end());
   }

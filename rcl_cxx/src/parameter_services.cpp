@@ -28,7 +28,7 @@ bool is_listed(const std::string & name, const std::vector<std::string> & prefix
   });
 }
 
-rcl_interfaces::msg::SetParametersResult to_result(const ParameterResult & result)
+rcl_interfaces::msg::SetParametersResult to_result(const SetParametersResult & result)
 {
   rcl_interfaces::msg::SetParametersResult message;
   message.successful = result.has_value();
@@ -76,7 +76,7 @@ rcl_interfaces::msg::ListParametersResult list_parameters(const std::vector<Para
 
 ParameterServices::ParameterServices(Node & node, std::shared_ptr<Parameters> parameters)
 {
-  const Logger & logger = node.logger();
+  const Logger & logger = node.get_logger();
   const auto add = [&]<typename S>(const char * name, auto callback) {
     services_.push_back(
         node.create_service<S>(std::string("~/") + name, std::move(callback), QoS::parameters()));
@@ -90,7 +90,7 @@ ParameterServices::ParameterServices(Node & node, std::shared_ptr<Parameters> pa
   add.template operator()<srv::GetParameterTypes>(
       "get_parameter_types", [parameters, logger](const auto & request, auto & response) {
         response.types = for_each_known(logger, request.names, [&](const std::string & name) {
-          return static_cast<std::uint8_t>(parameters->get(name).value.type());
+          return static_cast<std::uint8_t>(parameters->get(name).value.get_type());
         });
       });
   add.template operator()<srv::GetParameters>(

@@ -44,7 +44,7 @@ std::string_view to_string(ParameterType type) noexcept
       return "bool";
     case ParameterType::integer:
       return "integer";
-    case ParameterType::real:
+    case ParameterType::floating_point:
       return "double";
     case ParameterType::string:
       return "string";
@@ -54,7 +54,7 @@ std::string_view to_string(ParameterType type) noexcept
       return "bool_array";
     case ParameterType::integer_array:
       return "integer_array";
-    case ParameterType::real_array:
+    case ParameterType::floating_point_array:
       return "double_array";
     case ParameterType::string_array:
       return "string_array";
@@ -69,7 +69,7 @@ std::string ParameterValue::to_string() const
 
 void ParameterValue::throw_wrong_type(ParameterType wanted) const
 {
-  throw Error(fmt::format("the value {} is of type {}, not {}", to_string(), rcl_cxx::to_string(type()),
+  throw Error(fmt::format("the value {} is of type {}, not {}", to_string(), rcl_cxx::to_string(get_type()),
                           rcl_cxx::to_string(wanted)));
 }
 

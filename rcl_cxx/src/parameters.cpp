@@ -14,12 +14,12 @@ ParameterError not_declared(const std::string & name)
 }
 
 void check_declaration(const std::string & name, const ParameterValue & value,
-                       const ParameterOptions & options)
+                       const ParameterDescriptor & options)
 {
   if (name.empty()) {
     throw ParameterError(name, "a parameter needs a name");
   }
-  if (!options.dynamic_typing && value.type() == ParameterType::not_set) {
+  if (!options.dynamic_typing && value.get_type() == ParameterType::not_set) {
     throw ParameterError(name, fmt::format("parameter '{}' has neither a default nor dynamic typing", name));
   }
 }
@@ -55,7 +55,7 @@ void Parameters::observe(Observer observer)
 }
 
 ParameterValue Parameters::declare(const std::string & name, const ParameterValue & default_value,
-                                   const ParameterOptions & options)
+                                   const ParameterDescriptor & options)
 {
   check_declaration(name, default_value, options);
   const std::lock_guard lock(mutex_);
@@ -63,26 +63,26 @@ ParameterValue Parameters::declare(const std::string & name, const ParameterValu
   if (entries_.contains(name)) {
     throw ParameterError(name, fmt::format("parameter '{}' is declared already", name));
   }
-  const ParameterType type = default_value.type();
+  const ParameterType type = default_value.get_type();
   ParameterValue value = default_value;
   const auto override = overrides_.find(name);
   if (override != overrides_.end() && !options.ignore_override) {
     value = options.dynamic_typing ? override->second : as_type(override->second, type);
   }
   const Parameter parameter{name, value};
-  const ParameterResult result =
+  const SetParametersResult result =
       check_value(name, type, options, value).and_then([&] { return ask_callbacks({parameter}); });
   if (!result) {
     throw ParameterError(name, result.error());
   }
-  entries_.emplace(name, Entry{value, options, value.type()});
+  entries_.emplace(name, Entry{value, options, value.get_type()});
   tell({parameter}, ParameterChanges{{parameter}, {}, {}});
   return value;
 }
 
 void Parameters::declare_all_overrides()
 {
-  ParameterOptions options;
+  ParameterDescriptor options;
   options.dynamic_typing = true;
   for (const auto & [name, value] : overrides_) {
     if (!has(name)) {
@@ -133,31 +133,31 @@ std::vector<Parameter> Parameters::all() const
   return list;
 }
 
-ParameterResult Parameters::set(const std::vector<Parameter> & parameters)
+SetParametersResult Parameters::set(const std::vector<Parameter> & parameters)
 {
   const std::lock_guard lock(mutex_);
   if (in_callback_) {
     return tl::make_unexpected(std::string(kNotInCallbacks));
   }
   const NoSettingInCallbacks guard(*this);
-  const ParameterResult result = check(parameters).and_then([&] { return ask_callbacks(parameters); });
+  const SetParametersResult result = check(parameters).and_then([&] { return ask_callbacks(parameters); });
   if (result) {
     tell(parameters, apply(parameters));
   }
   return result;
 }
 
-ParameterResult Parameters::check(const std::vector<Parameter> & parameters) const
+SetParametersResult Parameters::check(const std::vector<Parameter> & parameters) const
 {
   for (const Parameter & parameter : parameters) {
-    if (ParameterResult result = check_one(parameter); !result) {
+    if (SetParametersResult result = check_one(parameter); !result) {
       return result;
     }
   }
   return {};
 }
 
-ParameterResult Parameters::check_one(const Parameter & parameter) const
+SetParametersResult Parameters::check_one(const Parameter & parameter) const
 {
   const auto found = entries_.find(parameter.name);
   if (found == entries_.end()) {
@@ -172,7 +172,7 @@ ParameterResult Parameters::check_one(const Parameter & parameter) const
   return check_value(parameter.name, entry.type, entry.options, parameter.value);
 }
 
-ParameterResult Parameters::ask_callbacks(const std::vector<Parameter> & parameters) const
+SetParametersResult Parameters::ask_callbacks(const std::vector<Parameter> & parameters) const
 {
   for (const auto & weak : on_set_) {
     const auto callback = weak.lock();
@@ -180,7 +180,7 @@ ParameterResult Parameters::ask_callbacks(const std::vector<Parameter> & paramet
       continue;
     }
     try {
-      if (ParameterResult result = (*callback)(parameters); !result) {
+      if (SetParametersResult result = (*callback)(parameters); !result) {
         return result;
       }
     } catch (const std::exception & error) {
@@ -199,14 +199,15 @@ ParameterChanges Parameters::apply(const std::vector<Parameter> & parameters)
       continue;  // deleted by an earlier one of the same set
     }
     Entry & entry = found->second;
-    if (parameter.value.type() == ParameterType::not_set && entry.value.type() != ParameterType::not_set) {
+    if (parameter.value.get_type() == ParameterType::not_set &&
+        entry.value.get_type() != ParameterType::not_set) {
       // As in rclcpp: unsetting a parameter of dynamic type undeclares it.
       changes.deleted.push_back({parameter.name, entry.value});
       entries_.erase(found);
       continue;
     }
     entry.value = parameter.value;
-    entry.type = parameter.value.type();
+    entry.type = parameter.value.get_type();
     changes.changed.push_back(parameter);
   }
   return changes;
@@ -230,20 +231,20 @@ void Parameters::tell(const std::vector<Parameter> & parameters, const Parameter
   }
 }
 
-ParameterCallbackHandle Parameters::add_on_set(OnSetParameters callback)
+ParameterCallbackHandle Parameters::add_on_set(OnSetParametersCallback callback)
 {
   const std::lock_guard lock(mutex_);
   on_set_.remove_if([](const auto & other) { return other.expired(); });
-  auto handle = std::make_shared<OnSetParameters>(std::move(callback));
+  auto handle = std::make_shared<OnSetParametersCallback>(std::move(callback));
   on_set_.push_front(handle);
   return handle;
 }
 
-ParameterCallbackHandle Parameters::add_after_set(OnParametersSet callback)
+ParameterCallbackHandle Parameters::add_after_set(PostSetParametersCallback callback)
 {
   const std::lock_guard lock(mutex_);
   after_set_.remove_if([](const auto & other) { return other.expired(); });
-  auto handle = std::make_shared<OnParametersSet>(std::move(callback));
+  auto handle = std::make_shared<PostSetParametersCallback>(std::move(callback));
   after_set_.push_front(handle);
   return handle;
 }

@@ -26,7 +26,7 @@ class Parameters : public std::enable_shared_from_this<Parameters> {
  public:
   struct Entry {
     ParameterValue value;
-    ParameterOptions options;
+    ParameterDescriptor options;
     ParameterType type;  // of the value, or the only one allowed
   };
   using Observer = std::function<void(const ParameterChanges &)>;
@@ -37,7 +37,7 @@ class Parameters : public std::enable_shared_from_this<Parameters> {
   void observe(Observer observer);
 
   ParameterValue declare(const std::string & name, const ParameterValue & default_value,
-                         const ParameterOptions & options);
+                         const ParameterDescriptor & options);
   void declare_all_overrides();
   void undeclare(const std::string & name);
 
@@ -46,17 +46,17 @@ class Parameters : public std::enable_shared_from_this<Parameters> {
   Entry get(const std::string & name) const;
   std::vector<Parameter> all() const;
   /// All or nothing.
-  ParameterResult set(const std::vector<Parameter> & parameters);
+  SetParametersResult set(const std::vector<Parameter> & parameters);
 
-  ParameterCallbackHandle add_on_set(OnSetParameters callback);
-  ParameterCallbackHandle add_after_set(OnParametersSet callback);
+  ParameterCallbackHandle add_on_set(OnSetParametersCallback callback);
+  ParameterCallbackHandle add_after_set(PostSetParametersCallback callback);
 
  private:
   class NoSettingInCallbacks;
 
-  ParameterResult check(const std::vector<Parameter> & parameters) const;
-  ParameterResult check_one(const Parameter & parameter) const;
-  ParameterResult ask_callbacks(const std::vector<Parameter> & parameters) const;
+  SetParametersResult check(const std::vector<Parameter> & parameters) const;
+  SetParametersResult check_one(const Parameter & parameter) const;
+  SetParametersResult ask_callbacks(const std::vector<Parameter> & parameters) const;
   ParameterChanges apply(const std::vector<Parameter> & parameters);
   void tell(const std::vector<Parameter> & parameters, const ParameterChanges & changes) const;
 
@@ -66,8 +66,8 @@ class Parameters : public std::enable_shared_from_this<Parameters> {
   const std::map<std::string, ParameterValue> overrides_;
   std::map<std::string, Entry> entries_;
   // Newest first. Pointers, so that one may unregister while it runs.
-  std::list<std::weak_ptr<OnSetParameters>> on_set_;
-  std::list<std::weak_ptr<OnParametersSet>> after_set_;
+  std::list<std::weak_ptr<OnSetParametersCallback>> on_set_;
+  std::list<std::weak_ptr<PostSetParametersCallback>> after_set_;
   Observer observer_;
 };
 

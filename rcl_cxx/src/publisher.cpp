@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "node_core.hpp"
-#include "publisher_core.hpp"
+#include "node_impl.hpp"
+#include "publisher_impl.hpp"
 #include "qos_rmw.hpp"
 #include "rcl_error.hpp"
 
@@ -13,20 +13,20 @@ namespace {
 constexpr std::chrono::seconds kFailureLogPeriod{1};
 }
 
-std::shared_ptr<PublisherCore> PublisherCore::create(std::shared_ptr<NodeCore> node,
+std::shared_ptr<PublisherImpl> PublisherImpl::create(std::shared_ptr<NodeImpl> node,
                                                      const rosidl_message_type_support_t * type_support,
                                                      const std::string & topic, const QoS & qos)
 {
-  auto core = std::make_shared<PublisherCore>(std::move(node), type_support, topic, qos);
-  core->warning_ = std::make_unique<QosWarning>();
-  core->warning_->start(core->publisher_, &on_event, core->source(0));
-  return core;
+  auto impl = std::make_shared<PublisherImpl>(std::move(node), type_support, topic, qos);
+  impl->warning_ = std::make_unique<QosWarning>();
+  impl->warning_->start(impl->publisher_, &on_event, impl->source(0));
+  return impl;
 }
 
-PublisherCore::PublisherCore(std::shared_ptr<NodeCore> node,
+PublisherImpl::PublisherImpl(std::shared_ptr<NodeImpl> node,
                              const rosidl_message_type_support_t * type_support, const std::string & topic,
                              const QoS & qos)
-    : Entity(std::move(node), fmt::format("publisher {}", topic)),
+    : Waitable(std::move(node), fmt::format("publisher {}", topic)),
       publisher_(rcl_get_zero_initialized_publisher())
 {
   rcl_publisher_options_t options = rcl_publisher_get_default_options();
@@ -37,14 +37,14 @@ PublisherCore::PublisherCore(std::shared_ptr<NodeCore> node,
   topic_ = rcl_publisher_get_topic_name(&publisher_);
 }
 
-PublisherCore::~PublisherCore()
+PublisherImpl::~PublisherImpl()
 {
   const std::lock_guard lock(node()->mutex());
   warning_.reset();
   ignore_rcl(rcl_publisher_fini(&publisher_, node()->handle()));
 }
 
-bool PublisherCore::publish(const void * message) noexcept
+bool PublisherImpl::publish(const void * message) noexcept
 {
   const rcl_ret_t code = rcl_publish(&publisher_, message, nullptr);
   if (code == RCL_RET_OK) {
@@ -54,14 +54,14 @@ bool PublisherCore::publish(const void * message) noexcept
       !rcl_publisher_is_valid(&publisher_) && rcl_publisher_is_valid_except_context(&publisher_);
   if (!shut_down && throttle_passes(last_failure_ns_, kFailureLogPeriod)) {
     const rcl_error_string_t reason = rcl_get_error_string();
-    RCL_CXX_ERROR(node()->logger(), "{}: message not published (rcl error {}: {})", label(), code,
+    RCL_CXX_ERROR(node()->get_logger(), "{}: message not published (rcl error {}: {})", label(), code,
                   reason.str);
   }
   rcl_reset_error();
   return false;
 }
 
-std::size_t PublisherCore::subscription_count() const
+std::size_t PublisherImpl::get_subscription_count() const
 {
   std::size_t count = 0;
   if (rcl_publisher_get_subscription_count(&publisher_, &count) != RCL_RET_OK) {
@@ -71,38 +71,38 @@ std::size_t PublisherCore::subscription_count() const
   return count;
 }
 
-void PublisherCore::execute(std::size_t /*source*/)
+void PublisherImpl::execute(std::size_t /*source*/)
 {
   const std::string policy = warning_->take_policy();
   if (!policy.empty()) {
-    RCL_CXX_WARN(node()->logger(),
+    RCL_CXX_WARN(node()->get_logger(),
                  "{}: a subscription asks for another quality of service ({}), it gets no messages", topic_,
                  policy);
   }
 }
 
-void PublisherCore::stop() noexcept
+void PublisherImpl::stop() noexcept
 {
   warning_->stop();
 }
 }  // namespace detail
 
-PublisherBase::PublisherBase(std::shared_ptr<detail::PublisherCore> core) : core_(std::move(core)) {}
+PublisherBase::PublisherBase(std::shared_ptr<detail::PublisherImpl> impl) : impl_(std::move(impl)) {}
 PublisherBase::~PublisherBase()
 {
-  core_->close();
+  impl_->close();
 }
-const std::string & PublisherBase::topic_name() const noexcept
+const std::string & PublisherBase::get_topic_name() const noexcept
 {
-  return core_->topic_name();
+  return impl_->get_topic_name();
 }
-std::size_t PublisherBase::subscription_count() const
+std::size_t PublisherBase::get_subscription_count() const
 {
-  return core_->subscription_count();
+  return impl_->get_subscription_count();
 }
 bool PublisherBase::publish_message(const void * message) noexcept
 {
-  return core_->publish(message);
+  return impl_->publish(message);
 }
 
 }  // namespace rcl_cxx

@@ -20,7 +20,7 @@ QoS QoS::reliable(std::size_t depth)
 QoS QoS::best_effort(std::size_t depth)
 {
   QoS qos = reliable(depth);
-  qos.reliability = Reliability::best_effort;
+  qos.reliability = ReliabilityPolicy::best_effort;
   return qos;
 }
 
@@ -29,10 +29,10 @@ QoS QoS::sensor_data()
   return best_effort(rmw_qos_profile_sensor_data.depth);
 }
 
-QoS QoS::latched(std::size_t depth)
+QoS QoS::transient_local(std::size_t depth)
 {
   QoS qos = reliable(depth);
-  qos.durability = Durability::transient_local;
+  qos.durability = DurabilityPolicy::transient_local;
   return qos;
 }
 
@@ -49,10 +49,10 @@ QoS QoS::parameters()
 QoS QoS::system_default()
 {
   QoS qos;
-  qos.history = History::system_default;
+  qos.history = HistoryPolicy::system_default;
   qos.depth = RMW_QOS_POLICY_DEPTH_SYSTEM_DEFAULT;
-  qos.reliability = Reliability::system_default;
-  qos.durability = Durability::system_default;
+  qos.reliability = ReliabilityPolicy::system_default;
+  qos.durability = DurabilityPolicy::system_default;
   return qos;
 }
 
@@ -66,8 +66,8 @@ constexpr Named kNamed[] = {{"default", [] { return QoS::reliable(); }},
                             {"reliable", [] { return QoS::reliable(); }},
                             {"best_effort", [] { return QoS::best_effort(); }},
                             {"sensor_data", [] { return QoS::sensor_data(); }},
-                            {"latched", [] { return QoS::latched(); }},
-                            {"transient_local", [] { return QoS::latched(); }},
+                            {"latched", [] { return QoS::transient_local(); }},
+                            {"transient_local", [] { return QoS::transient_local(); }},
                             {"services_default", [] { return QoS::services_default(); }},
                             {"parameters", [] { return QoS::parameters(); }},
                             {"system_default", [] { return QoS::system_default(); }}};
@@ -95,7 +95,7 @@ const std::vector<std::string> & QoS::names()
   return all;
 }
 
-QoS QoS::with_depth(std::size_t new_depth) const
+QoS QoS::keep_last(std::size_t new_depth) const
 {
   QoS qos = *this;
   qos.depth = new_depth;
@@ -104,40 +104,40 @@ QoS QoS::with_depth(std::size_t new_depth) const
 
 namespace detail {
 namespace {
-rmw_qos_history_policy_t to_rmw(History history)
+rmw_qos_history_policy_t to_rmw(HistoryPolicy history)
 {
   switch (history) {
-    case History::keep_last:
+    case HistoryPolicy::keep_last:
       return RMW_QOS_POLICY_HISTORY_KEEP_LAST;
-    case History::keep_all:
+    case HistoryPolicy::keep_all:
       return RMW_QOS_POLICY_HISTORY_KEEP_ALL;
-    case History::system_default:
+    case HistoryPolicy::system_default:
       break;
   }
   return RMW_QOS_POLICY_HISTORY_SYSTEM_DEFAULT;
 }
 
-rmw_qos_reliability_policy_t to_rmw(Reliability reliability)
+rmw_qos_reliability_policy_t to_rmw(ReliabilityPolicy reliability)
 {
   switch (reliability) {
-    case Reliability::reliable:
+    case ReliabilityPolicy::reliable:
       return RMW_QOS_POLICY_RELIABILITY_RELIABLE;
-    case Reliability::best_effort:
+    case ReliabilityPolicy::best_effort:
       return RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT;
-    case Reliability::system_default:
+    case ReliabilityPolicy::system_default:
       break;
   }
   return RMW_QOS_POLICY_RELIABILITY_SYSTEM_DEFAULT;
 }
 
-rmw_qos_durability_policy_t to_rmw(Durability durability)
+rmw_qos_durability_policy_t to_rmw(DurabilityPolicy durability)
 {
   switch (durability) {
-    case Durability::is_volatile:
+    case DurabilityPolicy::is_volatile:
       return RMW_QOS_POLICY_DURABILITY_VOLATILE;
-    case Durability::transient_local:
+    case DurabilityPolicy::transient_local:
       return RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL;
-    case Durability::system_default:
+    case DurabilityPolicy::system_default:
       break;
   }
   return RMW_QOS_POLICY_DURABILITY_SYSTEM_DEFAULT;

@@ -1,8 +1,8 @@
 #include "response_retry.hpp"
 
-#include "node_core.hpp"
+#include "node_impl.hpp"
 #include "rcl_error.hpp"
-#include "timer_core.hpp"
+#include "timer_impl.hpp"
 
 namespace rcl_cxx::detail {
 namespace {
@@ -10,7 +10,7 @@ constexpr std::chrono::milliseconds kPeriod{100};
 constexpr std::chrono::seconds kPatience{5};
 }  // namespace
 
-ResponseRetry::ResponseRetry(std::shared_ptr<NodeCore> node) : node_(std::move(node)) {}
+ResponseRetry::ResponseRetry(std::shared_ptr<NodeImpl> node) : node_(std::move(node)) {}
 
 ResponseRetry::~ResponseRetry()
 {
@@ -36,7 +36,7 @@ void ResponseRetry::keep(Answer answer)
   }
   answers_.push_back(std::move(answer));
   if (!timer_) {
-    timer_ = TimerCore::create(node_, kPeriod, [weak = weak_from_this()] {
+    timer_ = TimerImpl::create(node_, kPeriod, [weak = weak_from_this()] {
       if (const auto self = weak.lock()) {
         self->run();
       }
@@ -71,7 +71,7 @@ void ResponseRetry::run()
 void ResponseRetry::stop() noexcept
 {
   std::deque<Answer> dropped;  // destroyed after the lock is released: they may hold the last references
-  std::shared_ptr<TimerCore> timer;
+  std::shared_ptr<TimerImpl> timer;
   {
     const std::lock_guard lock(mutex_);
     stopped_ = true;

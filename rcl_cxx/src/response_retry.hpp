@@ -9,8 +9,8 @@
 #include <mutex>
 
 namespace rcl_cxx::detail {
-class NodeCore;
-class TimerCore;
+class NodeImpl;
+class TimerImpl;
 
 /// Sends answers once more. A request may be here before the server has discovered the reader of its answer:
 /// discovery has two directions. The middleware then waits for 0.1 s and gives up with RCL_RET_TIMEOUT, and
@@ -22,7 +22,7 @@ class ResponseRetry : public std::enable_shared_from_this<ResponseRetry> {
   /// Gets what the last attempt returned.
   using Done = std::function<void(rcl_ret_t)>;
 
-  explicit ResponseRetry(std::shared_ptr<NodeCore> node);
+  explicit ResponseRetry(std::shared_ptr<NodeImpl> node);
   ~ResponseRetry();
   ResponseRetry(const ResponseRetry &) = delete;
   ResponseRetry & operator=(const ResponseRetry &) = delete;
@@ -43,10 +43,10 @@ class ResponseRetry : public std::enable_shared_from_this<ResponseRetry> {
   void keep(Answer answer);
   void run();
 
-  const std::shared_ptr<NodeCore> node_;
+  const std::shared_ptr<NodeImpl> node_;
   std::mutex mutex_;
   std::deque<Answer> answers_;
-  std::shared_ptr<TimerCore> timer_;
+  std::shared_ptr<TimerImpl> timer_;
   bool stopped_ = false;
 };
 

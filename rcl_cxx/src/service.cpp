@@ -2,25 +2,25 @@
 
 #include <fmt/format.h>
 
-#include "node_core.hpp"
+#include "node_impl.hpp"
 #include "qos_rmw.hpp"
 #include "rcl_error.hpp"
-#include "service_core.hpp"
+#include "service_impl.hpp"
 
 namespace rcl_cxx {
 namespace detail {
-std::shared_ptr<ServiceCore> ServiceCore::create(std::shared_ptr<NodeCore> node, ErasedService erased,
+std::shared_ptr<ServiceImpl> ServiceImpl::create(std::shared_ptr<NodeImpl> node, ErasedService erased,
                                                  const std::string & name, const QoS & qos)
 {
-  auto core = std::make_shared<ServiceCore>(std::move(node), std::move(erased), name, qos);
-  check_rcl(rcl_service_set_on_new_request_callback(&core->service_, &on_event, core->source(0)),
-            core->label(), "its middleware does not report new requests");
-  return core;
+  auto impl = std::make_shared<ServiceImpl>(std::move(node), std::move(erased), name, qos);
+  check_rcl(rcl_service_set_on_new_request_callback(&impl->service_, &on_event, impl->source(0)),
+            impl->label(), "its middleware does not report new requests");
+  return impl;
 }
 
-ServiceCore::ServiceCore(std::shared_ptr<NodeCore> node, ErasedService erased, const std::string & name,
+ServiceImpl::ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, const std::string & name,
                          const QoS & qos)
-    : Entity(std::move(node), fmt::format("service {}", name)),
+    : Waitable(std::move(node), fmt::format("service {}", name)),
       erased_(std::move(erased)),
       answers_(std::make_shared<ResponseRetry>(this->node())),
       service_(rcl_get_zero_initialized_service())
@@ -33,13 +33,13 @@ ServiceCore::ServiceCore(std::shared_ptr<NodeCore> node, ErasedService erased, c
   name_ = rcl_service_get_service_name(&service_);
 }
 
-ServiceCore::~ServiceCore()
+ServiceImpl::~ServiceImpl()
 {
   const std::lock_guard lock(node()->mutex());
   ignore_rcl(rcl_service_fini(&service_, node()->handle()));
 }
 
-void ServiceCore::execute(std::size_t /*source*/)
+void ServiceImpl::execute(std::size_t /*source*/)
 {
   const std::shared_ptr<void> request = erased_.make_request();
   rmw_request_id_t id;
@@ -59,9 +59,9 @@ void ServiceCore::execute(std::size_t /*source*/)
   respond(id, response);
 }
 
-void ServiceCore::respond(const rmw_request_id_t & id, const std::shared_ptr<void> & response)
+void ServiceImpl::respond(const rmw_request_id_t & id, const std::shared_ptr<void> & response)
 {
-  const auto self = std::static_pointer_cast<ServiceCore>(shared_from_this());
+  const auto self = std::static_pointer_cast<ServiceImpl>(shared_from_this());
   answers_->send(
       [self, id, response] {
         rmw_request_id_t to = id;
@@ -69,27 +69,27 @@ void ServiceCore::respond(const rmw_request_id_t & id, const std::shared_ptr<voi
       },
       [self](rcl_ret_t code) {
         if (code != RCL_RET_OK) {
-          RCL_CXX_WARN(self->node()->logger(), "{}: a response did not reach its client: {}", self->name_,
+          RCL_CXX_WARN(self->node()->get_logger(), "{}: a response did not reach its client: {}", self->name_,
                        take_rcl_error());
         }
       });
 }
 
-void ServiceCore::stop() noexcept
+void ServiceImpl::stop() noexcept
 {
   ignore_rcl(rcl_service_set_on_new_request_callback(&service_, nullptr, nullptr));
   answers_->stop();
 }
 }  // namespace detail
 
-ServiceBase::ServiceBase(std::shared_ptr<detail::ServiceCore> core) : core_(std::move(core)) {}
+ServiceBase::ServiceBase(std::shared_ptr<detail::ServiceImpl> impl) : impl_(std::move(impl)) {}
 ServiceBase::~ServiceBase()
 {
-  core_->close();
+  impl_->close();
 }
-const std::string & ServiceBase::service_name() const noexcept
+const std::string & ServiceBase::get_service_name() const noexcept
 {
-  return core_->service_name();
+  return impl_->get_service_name();
 }
 
 }  // namespace rcl_cxx

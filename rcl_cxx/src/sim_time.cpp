@@ -1,6 +1,6 @@
 #include "sim_time.hpp"
 
-#include "node_core.hpp"
+#include "node_impl.hpp"
 
 namespace rcl_cxx::detail {
 namespace {
@@ -25,19 +25,19 @@ void SimTime::follow(bool use_sim_time)
   if (use_sim_time == (clock_ != nullptr)) {
     return;
   }
-  const std::weak_ptr<NodeCore> weak = node_.core();
+  const std::weak_ptr<NodeImpl> weak = node_.impl();
   if (use_sim_time) {
-    node_.core()->clock().override_with(0);  // until the first message, as in rclcpp
+    node_.impl()->get_clock().override_with(0);  // until the first message, as in rclcpp
     clock_ = node_.create_subscription<rosgraph_msgs::msg::Clock>(
         "/clock", QoS::best_effort(1), [weak](const rosgraph_msgs::msg::Clock & message) {
-          if (const auto core = weak.lock()) {
-            core->clock().override_with(std::int64_t{message.clock.sec} * 1'000'000'000 +
-                                        message.clock.nanosec);
+          if (const auto impl = weak.lock()) {
+            impl->get_clock().override_with(std::int64_t{message.clock.sec} * 1'000'000'000 +
+                                            message.clock.nanosec);
           }
         });
   } else {
     clock_.reset();
-    node_.core()->clock().override_with(std::nullopt);
+    node_.impl()->get_clock().override_with(std::nullopt);
   }
 }
 

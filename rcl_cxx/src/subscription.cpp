@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "node_core.hpp"
+#include "node_impl.hpp"
 #include "qos_rmw.hpp"
 #include "rcl_error.hpp"
-#include "subscription_core.hpp"
+#include "subscription_impl.hpp"
 
 namespace rcl_cxx {
 namespace detail {
@@ -13,22 +13,22 @@ namespace {
 enum SubscriptionEvent : std::size_t { kMessage, kQos };
 }
 
-std::shared_ptr<SubscriptionCore> SubscriptionCore::create(std::shared_ptr<NodeCore> node,
+std::shared_ptr<SubscriptionImpl> SubscriptionImpl::create(std::shared_ptr<NodeImpl> node,
                                                            ErasedSubscription erased,
                                                            const std::string & topic, const QoS & qos)
 {
-  auto core = std::make_shared<SubscriptionCore>(std::move(node), std::move(erased), topic, qos);
+  auto impl = std::make_shared<SubscriptionImpl>(std::move(node), std::move(erased), topic, qos);
   check_rcl(
-      rcl_subscription_set_on_new_message_callback(&core->subscription_, &on_event, core->source(kMessage)),
-      core->label(), "its middleware does not report new messages");
-  core->warning_ = std::make_unique<QosWarning>();
-  core->warning_->start(core->subscription_, &on_event, core->source(kQos));
-  return core;
+      rcl_subscription_set_on_new_message_callback(&impl->subscription_, &on_event, impl->source(kMessage)),
+      impl->label(), "its middleware does not report new messages");
+  impl->warning_ = std::make_unique<QosWarning>();
+  impl->warning_->start(impl->subscription_, &on_event, impl->source(kQos));
+  return impl;
 }
 
-SubscriptionCore::SubscriptionCore(std::shared_ptr<NodeCore> node, ErasedSubscription erased,
+SubscriptionImpl::SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscription erased,
                                    const std::string & topic, const QoS & qos)
-    : Entity(std::move(node), fmt::format("subscription {}", topic)),
+    : Waitable(std::move(node), fmt::format("subscription {}", topic)),
       erased_(std::move(erased)),
       subscription_(rcl_get_zero_initialized_subscription())
 {
@@ -42,14 +42,14 @@ SubscriptionCore::SubscriptionCore(std::shared_ptr<NodeCore> node, ErasedSubscri
   topic_ = rcl_subscription_get_topic_name(&subscription_);
 }
 
-SubscriptionCore::~SubscriptionCore()
+SubscriptionImpl::~SubscriptionImpl()
 {
   const std::lock_guard lock(node()->mutex());
   warning_.reset();
   ignore_rcl(rcl_subscription_fini(&subscription_, node()->handle()));
 }
 
-std::size_t SubscriptionCore::publisher_count() const
+std::size_t SubscriptionImpl::get_publisher_count() const
 {
   std::size_t count = 0;
   if (rcl_subscription_get_publisher_count(&subscription_, &count) != RCL_RET_OK) {
@@ -59,7 +59,7 @@ std::size_t SubscriptionCore::publisher_count() const
   return count;
 }
 
-void SubscriptionCore::execute(std::size_t source)
+void SubscriptionImpl::execute(std::size_t source)
 {
   if (source == kQos) {
     warn_of_qos();
@@ -78,17 +78,17 @@ void SubscriptionCore::execute(std::size_t source)
   erased_.callback(message_);
 }
 
-void SubscriptionCore::warn_of_qos()
+void SubscriptionImpl::warn_of_qos()
 {
   const std::string policy = warning_->take_policy();
   if (!policy.empty()) {
-    RCL_CXX_WARN(node()->logger(),
+    RCL_CXX_WARN(node()->get_logger(),
                  "{}: a publisher offers another quality of service ({}), its messages are not received",
                  topic_, policy);
   }
 }
 
-void SubscriptionCore::stop() noexcept
+void SubscriptionImpl::stop() noexcept
 {
   ignore_rcl(rcl_subscription_set_on_new_message_callback(&subscription_, nullptr, nullptr));
   if (warning_) {
@@ -97,18 +97,18 @@ void SubscriptionCore::stop() noexcept
 }
 }  // namespace detail
 
-SubscriptionBase::SubscriptionBase(std::shared_ptr<detail::SubscriptionCore> core) : core_(std::move(core)) {}
+SubscriptionBase::SubscriptionBase(std::shared_ptr<detail::SubscriptionImpl> impl) : impl_(std::move(impl)) {}
 SubscriptionBase::~SubscriptionBase()
 {
-  core_->close();
+  impl_->close();
 }
-const std::string & SubscriptionBase::topic_name() const noexcept
+const std::string & SubscriptionBase::get_topic_name() const noexcept
 {
-  return core_->topic_name();
+  return impl_->get_topic_name();
 }
-std::size_t SubscriptionBase::publisher_count() const
+std::size_t SubscriptionBase::get_publisher_count() const
 {
-  return core_->publisher_count();
+  return impl_->get_publisher_count();
 }
 
 }  // namespace rcl_cxx

@@ -2,7 +2,7 @@
 
 #include <rcl/service.h>
 
-#include "node_core.hpp"
+#include "node_impl.hpp"
 #include "rcl_compat.hpp"
 #include "rcl_error.hpp"
 
@@ -10,17 +10,17 @@ namespace rcl_cxx::detail {
 #if RCL_CXX_HAS_TYPE_DESCRIPTION_SERVICE
 namespace {
 /// rcl makes the service, with the C types, and composes the answers.
-class Core : public Entity {
+class Impl : public Waitable {
  public:
-  explicit Core(const std::shared_ptr<NodeCore> & owner)
-      : Entity(owner, "service get_type_description"), service_(rcl_get_zero_initialized_service())
+  explicit Impl(const std::shared_ptr<NodeImpl> & owner)
+      : Waitable(owner, "service get_type_description"), service_(rcl_get_zero_initialized_service())
   {
     const std::lock_guard lock(node()->mutex());
     check_rcl(rcl_node_type_description_service_init(&service_, node()->handle()), label(),
               "cannot be created");
   }
 
-  ~Core() override
+  ~Impl() override
   {
     const std::lock_guard lock(node()->mutex());
     ignore_rcl(rcl_service_fini(&service_, node()->handle()));
@@ -81,26 +81,26 @@ class Core : public Entity {
 };
 }  // namespace
 
-TypeDescriptionService::TypeDescriptionService(const std::shared_ptr<NodeCore> & node,
+TypeDescriptionService::TypeDescriptionService(const std::shared_ptr<NodeImpl> & node,
                                                Parameters & parameters)
 {
-  ParameterOptions options;
+  ParameterDescriptor options;
   options.description = "Start the ~/get_type_description service for this node.";
   options.read_only = true;
   if (parameters.declare("start_type_description_service", true, options).get<bool>()) {
-    auto core = std::make_shared<Core>(node);
-    core->start();
-    core_ = std::move(core);
+    auto impl = std::make_shared<Impl>(node);
+    impl->start();
+    impl_ = std::move(impl);
   }
 }
 #else
-TypeDescriptionService::TypeDescriptionService(const std::shared_ptr<NodeCore> &, Parameters &) {}
+TypeDescriptionService::TypeDescriptionService(const std::shared_ptr<NodeImpl> &, Parameters &) {}
 #endif
 
 TypeDescriptionService::~TypeDescriptionService()
 {
-  if (core_) {
-    core_->close();
+  if (impl_) {
+    impl_->close();
   }
 }
 

@@ -12,7 +12,7 @@
 #include "ros_fixture.hpp"
 
 using Fibonacci = test_msgs::action::Fibonacci;
-using Handle = rcl_cxx::GoalHandle<Fibonacci>;
+using Handle = rcl_cxx::ServerGoalHandle<Fibonacci>;
 using rcl_cxx::CancelCode;
 using rcl_cxx::GoalStatus;
 
@@ -37,11 +37,11 @@ class Actions : public Spinning {
 
   void serve(const rcl_cxx::ActionServerOptions & options = {})
   {
-    rcl_cxx::ActionHandlers<Fibonacci> handlers;
-    handlers.goal = [this](const rcl_cxx::GoalId & id, const Fibonacci::Goal & goal) {
+    rcl_cxx::ActionServerCallbacks<Fibonacci> handlers;
+    handlers.handle_goal = [this](const rcl_cxx::GoalUUID & id, const Fibonacci::Goal & goal) {
       return on_goal ? on_goal(id, goal) : tl::expected<void, std::string>{};
     };
-    handlers.accepted = [this](std::shared_ptr<Handle> handle) {
+    handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) {
       if (on_accepted) {
         on_accepted(std::move(handle));
         return;
@@ -49,25 +49,25 @@ class Actions : public Spinning {
       const std::lock_guard lock(mutex);
       handles.push_back(std::move(handle));
     };
-    handlers.cancel = [this](Handle & handle) { return !on_cancel || on_cancel(handle); };
-    handlers.client_lost = [this](Handle & handle) {
+    handlers.handle_cancel = [this](Handle & handle) { return !on_cancel || on_cancel(handle); };
+    handlers.on_client_lost = [this](Handle & handle) {
       const std::lock_guard lock(mutex);
-      without_client.push_back(handle.goal_id());
+      without_client.push_back(handle.get_goal_id());
     };
-    handlers.discarded = [this](const rcl_cxx::GoalId & id) {
+    handlers.on_goal_discarded = [this](const rcl_cxx::GoalUUID & id) {
       const std::lock_guard lock(mutex);
       discarded.push_back(id);
     };
-    handlers.missing_result = on_missing_result;
+    handlers.fill_missing_result = on_missing_result;
     server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers), options);
     client = node->create_action_client<Fibonacci>("fibonacci");
-    ASSERT_TRUE(client->wait_for_server(kLimit));
+    ASSERT_TRUE(client->wait_for_action_server(kLimit));
   }
 
   std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>> send(int order,
                                                              rcl_cxx::SendGoalOptions<Fibonacci> options = {})
   {
-    auto response = client->send_goal(goal_of(order), std::move(options));
+    auto response = client->async_send_goal(goal_of(order), std::move(options));
     return response.wait_for(kLimit) == std::future_status::ready ? response.get() : nullptr;
   }
 
@@ -82,12 +82,12 @@ class Actions : public Spinning {
     return handles.at(n);
   }
 
-  static rcl_cxx::ActionResult<Fibonacci> result(
+  static rcl_cxx::WrappedResult<Fibonacci> result(
       const std::shared_ptr<rcl_cxx::ClientGoalHandle<Fibonacci>> & goal)
   {
-    const bool ready = goal->result().wait_for(kLimit) == std::future_status::ready;
+    const bool ready = goal->async_get_result().wait_for(kLimit) == std::future_status::ready;
     EXPECT_TRUE(ready);
-    return ready ? goal->result().get() : rcl_cxx::ActionResult<Fibonacci>();
+    return ready ? goal->async_get_result().get() : rcl_cxx::WrappedResult<Fibonacci>();
   }
 
   template <typename T>
@@ -99,9 +99,9 @@ class Actions : public Spinning {
 
   std::mutex mutex;
   std::vector<std::shared_ptr<Handle>> handles;
-  std::vector<rcl_cxx::GoalId> without_client;
-  std::vector<rcl_cxx::GoalId> discarded;
-  std::function<tl::expected<void, std::string>(const rcl_cxx::GoalId &, const Fibonacci::Goal &)> on_goal;
+  std::vector<rcl_cxx::GoalUUID> without_client;
+  std::vector<rcl_cxx::GoalUUID> discarded;
+  std::function<tl::expected<void, std::string>(const rcl_cxx::GoalUUID &, const Fibonacci::Goal &)> on_goal;
   std::function<void(std::shared_ptr<Handle>)> on_accepted;
   std::function<bool(Handle &)> on_cancel;
   std::function<void(GoalStatus, Fibonacci::Result &)> on_missing_result;

@@ -30,8 +30,8 @@ inline bool eventually(const std::function<bool()> & condition, std::chrono::nan
 inline std::shared_ptr<rcl_cxx::Context> make_context(std::vector<std::string> arguments = {})
 {
   arguments.insert(arguments.begin(), "test");
-  rcl_cxx::ContextOptions options;
-  options.handle_signals = false;
+  rcl_cxx::InitOptions options;
+  options.shutdown_on_signal = false;
   return std::make_shared<rcl_cxx::Context>(arguments, options);
 }
 

@@ -15,7 +15,7 @@
 #include "rcl_cxx/rcl_cxx.hpp"
 
 using rcl_cxx::Context;
-using rcl_cxx::ContextOptions;
+using rcl_cxx::InitOptions;
 using std::chrono::milliseconds;
 
 namespace {
@@ -62,10 +62,10 @@ bool shuts_down_slowly(milliseconds grace)
   sigemptyset(&set);
   sigaddset(&set, SIGUSR1);
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  ContextOptions options;
+  InitOptions options;
   options.signal_grace = grace;
   const auto context = std::make_shared<Context>(std::vector<std::string>{"test"}, options);
-  context->on_pre_shutdown([&] {
+  context->add_pre_shutdown_callback([&] {
     tell();
     const timespec limit{10, 0};
     while (::sigtimedwait(&set, nullptr, &limit) < 0 && errno == EINTR) {

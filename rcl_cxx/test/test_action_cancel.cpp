@@ -18,9 +18,9 @@ TEST_F(ActionCancel, is_granted_and_ends_as_canceled)
   serve();
   const auto goal = send(5);
   const auto handle = accepted(0);
-  const auto response = get(goal->cancel());
+  const auto response = get(goal->async_cancel());
   EXPECT_EQ(response.code, CancelCode::none);
-  EXPECT_THAT(response.goals, ElementsAre(goal->goal_id()));
+  EXPECT_THAT(response.goals, ElementsAre(goal->get_goal_id()));
   EXPECT_TRUE(handle->is_canceling());
   EXPECT_TRUE(handle->canceled(result_of({1})));
   EXPECT_EQ(result(goal).status, GoalStatus::canceled);
@@ -33,10 +33,10 @@ TEST_F(ActionCancel, that_is_refused_leaves_the_goal_alone)
   on_cancel = [](Handle &) { return false; };
   const auto goal = send(5);
   const auto handle = accepted(0);
-  const auto response = get(goal->cancel());
+  const auto response = get(goal->async_cancel());
   EXPECT_EQ(response.code, CancelCode::rejected);
   EXPECT_TRUE(response.goals.empty());
-  EXPECT_EQ(handle->status(), GoalStatus::executing);
+  EXPECT_EQ(handle->get_status(), GoalStatus::executing);
   EXPECT_TRUE(handle->succeed());
 }
 
@@ -45,7 +45,7 @@ TEST_F(ActionCancel, whose_handler_throws_is_refused)
   serve();
   on_cancel = [](Handle &) -> bool { throw std::runtime_error("is logged"); };
   const auto goal = send(5);
-  EXPECT_EQ(get(goal->cancel()).code, CancelCode::rejected);
+  EXPECT_EQ(get(goal->async_cancel()).code, CancelCode::rejected);
   EXPECT_TRUE(accepted(0)->is_active());
 }
 
@@ -54,7 +54,7 @@ TEST_F(ActionCancel, may_be_carried_out_by_its_handler)
   serve();
   on_cancel = [](Handle & handle) { return handle.canceled(result_of({3})); };
   const auto goal = send(5);
-  const auto response = get(goal->cancel());
+  const auto response = get(goal->async_cancel());
   EXPECT_EQ(response.code, CancelCode::none);
   EXPECT_EQ(result(goal).status, GoalStatus::canceled);
 }
@@ -67,17 +67,17 @@ TEST_F(ActionCancel, loses_against_a_result_that_comes_first)
     return true;
   };
   const auto goal = send(5);
-  const auto response = get(goal->cancel());
+  const auto response = get(goal->async_cancel());
   EXPECT_EQ(response.code, CancelCode::goal_terminated);
   EXPECT_TRUE(response.goals.empty());
   EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
-  EXPECT_EQ(get(goal->cancel()).code, CancelCode::goal_terminated);
+  EXPECT_EQ(get(goal->async_cancel()).code, CancelCode::goal_terminated);
 }
 
 TEST_F(ActionCancel, of_an_unknown_goal_says_so)
 {
   serve();
-  EXPECT_EQ(get(client->cancel_goal(rcl_cxx::GoalId::random())).code, CancelCode::unknown_goal);
+  EXPECT_EQ(get(client->async_cancel_goal(rcl_cxx::GoalUUID::random())).code, CancelCode::unknown_goal);
 }
 
 TEST_F(ActionCancel, of_all_or_of_earlier_goals)
@@ -86,14 +86,14 @@ TEST_F(ActionCancel, of_all_or_of_earlier_goals)
   const auto one = send(1);
   const auto two = send(2);
   const auto three = send(3);
-  EXPECT_THAT(get(client->cancel_goals_before(accepted(1)->accepted_ns())).goals,
-              UnorderedElementsAre(one->goal_id(), two->goal_id()));
+  EXPECT_THAT(get(client->async_cancel_goals_before(accepted(1)->accepted_ns())).goals,
+              UnorderedElementsAre(one->get_goal_id(), two->get_goal_id()));
   EXPECT_FALSE(accepted(2)->is_canceling());
-  EXPECT_THAT(get(client->cancel_all_goals()).goals, ElementsAre(three->goal_id()));
+  EXPECT_THAT(get(client->async_cancel_all_goals()).goals, ElementsAre(three->get_goal_id()));
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_TRUE(accepted(i)->canceled());
   }
-  const auto nothing = get(client->cancel_all_goals());
+  const auto nothing = get(client->async_cancel_all_goals());
   EXPECT_EQ(nothing.code, CancelCode::none);
   EXPECT_TRUE(nothing.goals.empty());
 }
@@ -109,7 +109,7 @@ TEST_F(ActionCancel, races_with_results_without_losing_a_goal)
         handle->succeed();
       }
     });
-    const auto response = get(goal->cancel());
+    const auto response = get(goal->async_cancel());
     worker.join();
     const GoalStatus end = result(goal).status;
     EXPECT_TRUE(end == GoalStatus::canceled || end == GoalStatus::succeeded);

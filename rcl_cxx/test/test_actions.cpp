@@ -22,16 +22,16 @@ TEST_F(ActionGoals, end_with_the_result_that_was_given)
   const auto goal = send(5);
   ASSERT_TRUE(goal);
   const auto handle = accepted(0);
-  EXPECT_EQ(handle->goal().order, 5);
-  EXPECT_EQ(handle->goal_id(), goal->goal_id());
-  EXPECT_EQ(handle->status(), GoalStatus::executing);
+  EXPECT_EQ(handle->get_goal().order, 5);
+  EXPECT_EQ(handle->get_goal_id(), goal->get_goal_id());
+  EXPECT_EQ(handle->get_status(), GoalStatus::executing);
   EXPECT_TRUE(handle->succeed(result_of({0, 1, 1})));
-  EXPECT_EQ(handle->status(), GoalStatus::succeeded);
+  EXPECT_EQ(handle->get_status(), GoalStatus::succeeded);
   EXPECT_FALSE(handle->is_active());
   const auto end = result(goal);
   EXPECT_EQ(end.status, GoalStatus::succeeded);
   EXPECT_THAT(end.result.sequence, ElementsAre(0, 1, 1));
-  EXPECT_EQ(goal->status(), GoalStatus::succeeded);
+  EXPECT_EQ(goal->get_status(), GoalStatus::succeeded);
 }
 
 TEST_F(ActionGoals, take_exactly_one_result)
@@ -63,7 +63,7 @@ TEST_F(ActionGoals, take_the_first_result_of_racing_threads)
       worker.join();
     }
     EXPECT_EQ(taken, 1);
-    EXPECT_EQ(result(goal).status, handle->status());
+    EXPECT_EQ(result(goal).status, handle->get_status());
   }
 }
 
@@ -96,7 +96,7 @@ TEST_F(ActionGoals, whose_handler_throws_are_aborted)
 TEST_F(ActionGoals, are_refused_by_reason_or_by_exception)
 {
   serve();
-  on_goal = [](const rcl_cxx::GoalId &, const Fibonacci::Goal & goal) -> tl::expected<void, std::string> {
+  on_goal = [](const rcl_cxx::GoalUUID &, const Fibonacci::Goal & goal) -> tl::expected<void, std::string> {
     if (goal.order == 1) {
       throw std::runtime_error("is logged");
     }
@@ -131,9 +131,9 @@ TEST_F(ActionGoals, send_feedback_to_their_own_client)
   std::atomic<int> first{0};
   std::atomic<int> second{0};
   rcl_cxx::SendGoalOptions<Fibonacci> options;
-  options.on_feedback = [&](const Fibonacci::Feedback & feedback) { first = feedback.sequence.at(0); };
+  options.feedback_callback = [&](const Fibonacci::Feedback & feedback) { first = feedback.sequence.at(0); };
   const auto one = send(1, options);
-  options.on_feedback = [&](const Fibonacci::Feedback & feedback) { second = feedback.sequence.at(0); };
+  options.feedback_callback = [&](const Fibonacci::Feedback & feedback) { second = feedback.sequence.at(0); };
   const auto two = send(2, options);
   Fibonacci::Feedback feedback;
   feedback.sequence = {42};
@@ -170,7 +170,7 @@ TEST_F(ActionEnd, of_the_server_answers_who_has_just_been_accepted)
 {
   for (std::size_t round = 0; round < 10; ++round) {
     serve();
-    auto response = client->send_goal(goal_of(5));
+    auto response = client->async_send_goal(goal_of(5));
     accepted(round);
     server.reset();
     const auto goal = get(std::move(response));
@@ -186,10 +186,10 @@ TEST_F(ActionEnd, of_the_context_aborts_its_goals_after_the_users_callbacks)
   const auto other = send(6);
   const auto handle = accepted(0);
   const auto left = accepted(1);
-  context->on_pre_shutdown([&] { EXPECT_TRUE(handle->succeed(result_of({1}))); });
+  context->add_pre_shutdown_callback([&] { EXPECT_TRUE(handle->succeed(result_of({1}))); });
   context->shutdown("test");
-  EXPECT_EQ(handle->status(), GoalStatus::succeeded);
-  EXPECT_EQ(left->status(), GoalStatus::aborted);
+  EXPECT_EQ(handle->get_status(), GoalStatus::succeeded);
+  EXPECT_EQ(left->get_status(), GoalStatus::aborted);
   EXPECT_FALSE(left->abort());
 }
 
@@ -197,7 +197,7 @@ TEST_F(ActionEnd, of_the_shutdown_refuses_new_goals)
 {
   serve();
   std::optional<bool> refused;
-  context->on_pre_shutdown([&] { refused = send(5) == nullptr; });
+  context->add_pre_shutdown_callback([&] { refused = send(5) == nullptr; });
   context->shutdown("test");
   EXPECT_EQ(refused, true);
 }
@@ -210,9 +210,9 @@ TEST_F(ActionEnd, of_results_comes_with_their_time)
   const auto goal = send(5);
   EXPECT_TRUE(accepted(0)->succeed());
   EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
-  EXPECT_EQ(get(client->cancel_goal(goal->goal_id())).code, CancelCode::goal_terminated);
-  EXPECT_TRUE(
-      eventually([&] { return get(client->cancel_goal(goal->goal_id())).code == CancelCode::unknown_goal; }));
+  EXPECT_EQ(get(client->async_cancel_goal(goal->get_goal_id())).code, CancelCode::goal_terminated);
+  EXPECT_TRUE(eventually(
+      [&] { return get(client->async_cancel_goal(goal->get_goal_id())).code == CancelCode::unknown_goal; }));
 }
 
 TEST_F(ActionEnd, of_the_client_breaks_its_promises)
@@ -220,8 +220,8 @@ TEST_F(ActionEnd, of_the_client_breaks_its_promises)
   serve();
   const auto goal = send(5);
   client.reset();
-  EXPECT_THROW(goal->result().get(), std::future_error);
-  EXPECT_THROW(goal->cancel(), rcl_cxx::Error);
+  EXPECT_THROW(goal->async_get_result().get(), std::future_error);
+  EXPECT_THROW(goal->async_cancel(), rcl_cxx::Error);
   EXPECT_TRUE(accepted(0)->abort());
 }
 
@@ -230,7 +230,7 @@ TEST_F(ActionCalls, wait_for_the_result)
   serve();
   on_accepted = [](std::shared_ptr<Handle> handle) {
     handle->publish_feedback(Fibonacci::Feedback());
-    handle->succeed(result_of({handle->goal().order}));
+    handle->succeed(result_of({handle->get_goal().order}));
   };
   const auto end = client->call(goal_of(9), kLimit);
   ASSERT_TRUE(end) << end.error();
@@ -241,7 +241,7 @@ TEST_F(ActionCalls, wait_for_the_result)
 TEST_F(ActionCalls, say_what_went_wrong)
 {
   serve();
-  on_goal = [](const rcl_cxx::GoalId &, const Fibonacci::Goal & goal) -> tl::expected<void, std::string> {
+  on_goal = [](const rcl_cxx::GoalUUID &, const Fibonacci::Goal & goal) -> tl::expected<void, std::string> {
     return goal.order == 0 ? tl::make_unexpected(std::string("no")) : tl::expected<void, std::string>{};
   };
   EXPECT_THAT(client->call(goal_of(0), kLimit).error(), HasSubstr("refused"));

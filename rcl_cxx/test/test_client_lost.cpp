@@ -90,7 +90,7 @@ class OtherProcess {
     executor_.add_node(node_);
     thread_ = std::thread([this] { executor_.spin(); });
     client = node_->create_action_client<Fibonacci>("fibonacci");
-    EXPECT_TRUE(client->wait_for_server(kLimit));
+    EXPECT_TRUE(client->wait_for_action_server(kLimit));
   }
   ~OtherProcess()
   {
@@ -98,15 +98,15 @@ class OtherProcess {
     thread_.join();
   }
 
-  rcl_cxx::GoalId send_accepted_goal()
+  rcl_cxx::GoalUUID send_accepted_goal()
   {
-    auto response = client->send_goal(goal_of(1));
+    auto response = client->async_send_goal(goal_of(1));
     if (response.wait_for(kLimit) != std::future_status::ready) {
       ADD_FAILURE() << "no answer to the goal";
       return {};
     }
     handles_.push_back(response.get());
-    return handles_.back()->goal_id();
+    return handles_.back()->get_goal_id();
   }
 
  private:
@@ -124,12 +124,12 @@ class OtherProcess {
 
 class ClientLostTest : public Actions {
  protected:
-  std::vector<rcl_cxx::GoalId> lost()
+  std::vector<rcl_cxx::GoalUUID> lost()
   {
     const std::lock_guard lock(mutex);
     return without_client;
   }
-  bool is_lost(const rcl_cxx::GoalId & id)
+  bool is_lost(const rcl_cxx::GoalUUID & id)
   {
     const auto ids = lost();
     return std::find(ids.begin(), ids.end(), id) != ids.end();
@@ -189,13 +189,13 @@ TEST_F(ClientLostTest, DoesNotLeaveGoalRunningThatItSentAsItEnded)
   serve();
   auto other = std::make_unique<OtherProcess>();
   std::promise<void> client_ended;
-  std::promise<rcl_cxx::GoalId> asked;
-  on_goal = [&](const rcl_cxx::GoalId & id, const Fibonacci::Goal &) -> tl::expected<void, std::string> {
+  std::promise<rcl_cxx::GoalUUID> asked;
+  on_goal = [&](const rcl_cxx::GoalUUID & id, const Fibonacci::Goal &) -> tl::expected<void, std::string> {
     asked.set_value(id);
     client_ended.get_future().wait_for(kLimit);
     return {};
   };
-  auto response = other->client->send_goal(goal_of(1));
+  auto response = other->client->async_send_goal(goal_of(1));
   const auto goal = get(asked.get_future());
   other.reset();
   client_ended.set_value();
@@ -209,16 +209,16 @@ TEST_F(ClientLostTest, MayDestroyItsServerInTheHandler)
 {
   serve();
   auto other = std::make_unique<OtherProcess>();
-  rcl_cxx::ActionHandlers<Fibonacci> handlers;
+  rcl_cxx::ActionServerCallbacks<Fibonacci> handlers;
   std::promise<void> called;
-  handlers.accepted = [this](std::shared_ptr<Handle> handle) { handles.push_back(std::move(handle)); };
-  handlers.client_lost = [&](Handle &) {
+  handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) { handles.push_back(std::move(handle)); };
+  handlers.on_client_lost = [&](Handle &) {
     server.reset();
     called.set_value();
   };
   server.reset();
   server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers));
-  ASSERT_TRUE(other->client->wait_for_server(kLimit));
+  ASSERT_TRUE(other->client->wait_for_action_server(kLimit));
   other->send_accepted_goal();
   other.reset();
   EXPECT_EQ(called.get_future().wait_for(kLimit), std::future_status::ready);
@@ -226,10 +226,10 @@ TEST_F(ClientLostTest, MayDestroyItsServerInTheHandler)
 
 TEST_F(ClientLostTest, LeavesOtherGoalsToBeWatchedWhenTheHandlerThrows)
 {
-  rcl_cxx::ActionHandlers<Fibonacci> handlers;
+  rcl_cxx::ActionServerCallbacks<Fibonacci> handlers;
   std::atomic<int> calls{0};
-  handlers.accepted = [this](std::shared_ptr<Handle> handle) { handles.push_back(std::move(handle)); };
-  handlers.client_lost = [&](Handle &) {
+  handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) { handles.push_back(std::move(handle)); };
+  handlers.on_client_lost = [&](Handle &) {
     ++calls;
     throw std::runtime_error("is logged");
   };
@@ -247,7 +247,7 @@ TEST_F(GoalIdTest, OfRunningGoalIsRefusedWithoutAskingTheHandler)
 {
   serve();
   std::atomic<int> asked{0};
-  on_goal = [&](const rcl_cxx::GoalId &, const Fibonacci::Goal &) -> tl::expected<void, std::string> {
+  on_goal = [&](const rcl_cxx::GoalUUID &, const Fibonacci::Goal &) -> tl::expected<void, std::string> {
     ++asked;
     return {};
   };
@@ -258,7 +258,7 @@ TEST_F(GoalIdTest, OfRunningGoalIsRefusedWithoutAskingTheHandler)
   const auto sender = node->create_client<SendGoal>("fibonacci/_action/send_goal");
   ASSERT_TRUE(sender->wait_for_service(kLimit));
   SendGoal::Request again;
-  again.goal_id.uuid = goal->goal_id().bytes;
+  again.goal_id.uuid = goal->get_goal_id().bytes;
   const auto response = sender->call(again, kLimit);
   ASSERT_TRUE(response) << response.error();
   EXPECT_FALSE(response->accepted);

@@ -9,7 +9,7 @@
 #include "ros_fixture.hpp"
 
 using rcl_cxx::Context;
-using rcl_cxx::ContextOptions;
+using rcl_cxx::InitOptions;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -46,10 +46,10 @@ TEST(ContextArguments, that_are_malformed_are_refused)
 
 TEST(ContextArguments, choose_the_domain_by_option)
 {
-  ContextOptions options;
-  options.handle_signals = false;
+  InitOptions options;
+  options.shutdown_on_signal = false;
   options.domain_id = 42;
-  EXPECT_EQ(Context({"test"}, options).domain_id(), 42U);
+  EXPECT_EQ(Context({"test"}, options).get_domain_id(), 42U);
 }
 
 TEST(ContextShutdown, happens_once_and_keeps_its_reason)
@@ -68,14 +68,14 @@ TEST(ContextShutdown, runs_callbacks_in_their_order)
 {
   const auto context = make_context();
   std::vector<std::string> calls;
-  context->on_shutdown([&] { calls.push_back("after"); });
-  context->on_pre_shutdown([&] { calls.push_back(context->ok() ? "still ok" : "before 1"); });
-  context->on_pre_shutdown([&] { throw std::runtime_error("is logged"); });
-  const auto removed = context->on_pre_shutdown([&] { calls.push_back("removed"); });
-  context->on_pre_shutdown([&] { calls.push_back("before 2"); });
-  context->remove_callback(removed);
+  context->add_on_shutdown_callback([&] { calls.push_back("after"); });
+  context->add_pre_shutdown_callback([&] { calls.push_back(context->ok() ? "still ok" : "before 1"); });
+  context->add_pre_shutdown_callback([&] { throw std::runtime_error("is logged"); });
+  const auto removed = context->add_pre_shutdown_callback([&] { calls.push_back("removed"); });
+  context->add_pre_shutdown_callback([&] { calls.push_back("before 2"); });
+  context->remove_shutdown_callback(removed);
   context->shutdown("test");
-  context->on_shutdown([&] { calls.push_back("late"); });
+  context->add_on_shutdown_callback([&] { calls.push_back("late"); });
   EXPECT_THAT(calls, ElementsAre("before 1", "before 2", "after", "late"));
 }
 
@@ -83,7 +83,7 @@ TEST(ContextShutdown, wakes_who_waits_for_its_beginning_before_its_end)
 {
   const auto context = make_context();
   std::promise<void> go_on;
-  context->on_pre_shutdown([&] { go_on.get_future().wait_for(kLimit); });
+  context->add_pre_shutdown_callback([&] { go_on.get_future().wait_for(kLimit); });
   auto done = std::async(std::launch::async, [&] { context->shutdown("test"); });
   EXPECT_TRUE(context->wait_for_shutdown_begin(kLimit));
   EXPECT_FALSE(context->wait_for_shutdown(std::chrono::milliseconds(5)));
@@ -106,7 +106,7 @@ TEST(ContextShutdown, LaterLogMessagesGoToTheConsoleOnly)
   const rcl_cxx::Node node(context, "node");
   context->shutdown("test");
   testing::internal::CaptureStderr();
-  RCL_CXX_INFO(node.logger(), "a late message");
+  RCL_CXX_INFO(node.get_logger(), "a late message");
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_THAT(said, HasSubstr("a late message"));
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
@@ -131,9 +131,9 @@ TEST(NodeNames, follow_namespace_and_remaps)
   const auto context =
       make_context({"--ros-args", "-r", "__ns:=/left", "-r", "chatter:=talk", "-r", "__node:=arm"});
   const rcl_cxx::Node node(context, "node", "/robot");
-  EXPECT_EQ(node.fully_qualified_name(), "/left/arm");
-  EXPECT_EQ(node.name(), "arm");
-  EXPECT_EQ(node.node_namespace(), "/left");
+  EXPECT_EQ(node.get_fully_qualified_name(), "/left/arm");
+  EXPECT_EQ(node.get_name(), "arm");
+  EXPECT_EQ(node.get_namespace(), "/left");
   EXPECT_EQ(node.resolve_topic_name("chatter"), "/left/talk");
   EXPECT_EQ(node.resolve_topic_name("~/state"), "/left/arm/state");
   EXPECT_EQ(node.resolve_service_name("/absolute"), "/absolute");
@@ -143,8 +143,8 @@ TEST(NodeNames, follow_namespace_and_remaps)
 TEST(NodeNames, may_ignore_the_command_line)
 {
   const auto context = make_context({"--ros-args", "-r", "__node:=arm"});
-  EXPECT_EQ(rcl_cxx::Node(context, "node", "", {.use_global_arguments = false}).name(), "node");
-  EXPECT_EQ(rcl_cxx::Node(context, "node", "", {.arguments = {"--ros-args", "-r", "__node:=leg"}}).name(),
+  EXPECT_EQ(rcl_cxx::Node(context, "node", "", {.use_global_arguments = false}).get_name(), "node");
+  EXPECT_EQ(rcl_cxx::Node(context, "node", "", {.arguments = {"--ros-args", "-r", "__node:=leg"}}).get_name(),
             "leg");
 }
 

@@ -70,7 +70,7 @@ TEST_F(ExecutorTasks, may_post_further_ones_but_not_spin)
 
 TEST_F(ExecutorStop, before_the_spin_is_not_lost)
 {
-  executor.stop();
+  executor.cancel();
   executor.spin();  // would not return
   bool ran = false;
   executor.post([&] { ran = true; });
@@ -82,7 +82,7 @@ TEST_F(ExecutorStop, ends_a_spin_in_another_thread_and_leaves_the_rest_for_the_n
   int count = 0;
   executor.post([&] {
     ++count;
-    executor.stop();
+    executor.cancel();
   });
   executor.post([&] { ++count; });
   std::thread([&] { executor.spin(); }).join();
@@ -111,7 +111,7 @@ TEST_F(ExecutorNodes, belong_to_one_executor_at_a_time)
   executor.remove_node(node);
   other.add_node(node);
   bool called = false;
-  const auto timer = node.create_timer(kPeriod, [&] { called = true; });
+  const auto timer = node.create_wall_timer(kPeriod, [&] { called = true; });
   EXPECT_FALSE(executor.spin_until([&] { return called; }, 3 * kPeriod));
   EXPECT_TRUE(other.spin_until([&] { return called; }, kLimit));
 }
@@ -123,7 +123,7 @@ TEST_F(ExecutorNodes, keep_what_arrives_until_an_executor_comes)
   const auto subscription = late.create_subscription<String>(
       "topic", rcl_cxx::QoS::reliable(10), [&](const String & message) { heard.push_back(message.data); });
   const auto publisher = node.create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
-  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  ASSERT_TRUE(eventually([&] { return publisher->get_subscription_count() == 1; }));
   for (const char * text : {"a", "b"}) {
     String message;
     message.data = text;
@@ -138,7 +138,8 @@ TEST_F(Timers, keep_their_rate_without_drift)
 {
   std::vector<std::chrono::steady_clock::time_point> calls;
   const auto start = std::chrono::steady_clock::now();
-  const auto timer = node.create_timer(kPeriod, [&] { calls.push_back(std::chrono::steady_clock::now()); });
+  const auto timer =
+      node.create_wall_timer(kPeriod, [&] { calls.push_back(std::chrono::steady_clock::now()); });
   ASSERT_TRUE(executor.spin_until([&] { return calls.size() == 50; }, kLimit));
   // None may come before its time, and all times are multiples of the period from the start: however late
   // single calls are on a busy machine, the phase stays.
@@ -151,7 +152,7 @@ TEST_F(Timers, skip_the_periods_they_have_missed)
 {
   std::vector<std::chrono::steady_clock::time_point> calls;
   const auto start = std::chrono::steady_clock::now();
-  const auto timer = node.create_timer(kPeriod, [&] {
+  const auto timer = node.create_wall_timer(kPeriod, [&] {
     calls.push_back(std::chrono::steady_clock::now());
     if (calls.size() == 1) {
       std::this_thread::sleep_for(10 * kPeriod);
@@ -167,7 +168,7 @@ TEST_F(Timers, stop_when_canceled_and_go_on_when_reset)
 {
   int calls = 0;
   std::shared_ptr<rcl_cxx::Timer> timer;
-  timer = node.create_timer(kPeriod, [&] {
+  timer = node.create_wall_timer(kPeriod, [&] {
     ++calls;
     timer->cancel();
   });
@@ -182,9 +183,9 @@ TEST_F(Timers, stop_when_canceled_and_go_on_when_reset)
 TEST_F(Timers, that_are_reset_in_time_never_run)
 {
   int calls = 0;
-  const auto watchdog = node.create_timer(std::chrono::hours(1), [&] { ++calls; });
+  const auto watchdog = node.create_wall_timer(std::chrono::hours(1), [&] { ++calls; });
   int fed = 0;
-  const auto feeder = node.create_timer(std::chrono::milliseconds(1), [&] {
+  const auto feeder = node.create_wall_timer(std::chrono::milliseconds(1), [&] {
     for (int i = 0; i < 100; ++i, ++fed) {
       watchdog->reset();
     }
@@ -196,17 +197,17 @@ TEST_F(Timers, that_are_reset_in_time_never_run)
 TEST_F(Timers, follow_a_changed_period)
 {
   int calls = 0;
-  const auto timer = node.create_timer(std::chrono::hours(1), [&] { ++calls; });
+  const auto timer = node.create_wall_timer(std::chrono::hours(1), [&] { ++calls; });
   timer->set_period(kPeriod);
   EXPECT_EQ(timer->period(), kPeriod);
   EXPECT_TRUE(executor.spin_until([&] { return calls == 2; }, kLimit));
   EXPECT_THROW(timer->set_period(std::chrono::seconds(0)), rcl_cxx::Error);
-  EXPECT_THROW(node.create_timer(std::chrono::seconds(-1), [] {}), rcl_cxx::Error);
+  EXPECT_THROW(node.create_wall_timer(std::chrono::seconds(-1), [] {}), rcl_cxx::Error);
 }
 
 TEST_F(Timers, do_not_starve_events)
 {
-  const auto timer = node.create_timer(std::chrono::nanoseconds(1), [] {});
+  const auto timer = node.create_wall_timer(std::chrono::nanoseconds(1), [] {});
   bool reached = false;
   executor.post([&] { reached = true; });
   EXPECT_TRUE(executor.spin_until([&] { return reached; }, kLimit));
@@ -216,7 +217,7 @@ TEST_F(Timers, may_destroy_themselves_in_their_callback)
 {
   int calls = 0;
   std::shared_ptr<rcl_cxx::Timer> timer;
-  timer = node.create_timer(kPeriod, [&] {
+  timer = node.create_wall_timer(kPeriod, [&] {
     ++calls;
     timer.reset();
   });
@@ -229,7 +230,7 @@ using WhileSpinning = Spinning;
 class Answers : public InThread {
  protected:
   std::shared_ptr<rcl_cxx::detail::ResponseRetry> answers =
-      std::make_shared<rcl_cxx::detail::ResponseRetry>(node.core());
+      std::make_shared<rcl_cxx::detail::ResponseRetry>(node.impl());
   int attempts = 0;
   std::vector<rcl_ret_t> done;
 };
@@ -282,8 +283,8 @@ TEST_F(WhileSpinning, callbacks_never_overlap)
   };
   std::atomic<int> timed{0};
   std::atomic<int> posted{0};
-  const auto one = node->create_timer(std::chrono::milliseconds(1), callback(timed));
-  const auto two = node->create_timer(std::chrono::milliseconds(1), callback(timed));
+  const auto one = node->create_wall_timer(std::chrono::milliseconds(1), callback(timed));
+  const auto two = node->create_wall_timer(std::chrono::milliseconds(1), callback(timed));
   std::thread poster([&] {
     for (int i = 0; i < 200; ++i) {
       executor->post(callback(posted));
@@ -313,7 +314,7 @@ TEST_F(WhileSpinning, entities_come_and_go_in_other_threads)
           EXPECT_TRUE(*alive) << "a callback ran after its subscription was destroyed";
           ++heard;
         });
-    auto timer = node->create_timer(std::chrono::milliseconds(1), [alive] { EXPECT_TRUE(*alive); });
+    auto timer = node->create_wall_timer(std::chrono::milliseconds(1), [alive] { EXPECT_TRUE(*alive); });
     const int before = heard;
     EXPECT_TRUE(eventually([&] { return heard > before; }));
     timer.reset();
@@ -339,7 +340,8 @@ TEST_F(WhileSpinning, entities_come_and_go_in_callbacks)
         });
   };
   executor->post(subscribe);
-  const auto timer = node->create_timer(std::chrono::milliseconds(1), [&] { publisher->publish(String()); });
+  const auto timer =
+      node->create_wall_timer(std::chrono::milliseconds(1), [&] { publisher->publish(String()); });
   EXPECT_TRUE(eventually([&] { return destroyed == 5; }));
 }
 
@@ -348,7 +350,7 @@ TEST_F(WhileSpinning, whole_nodes_come_and_go)
   for (int round = 0; round < 5; ++round) {
     auto other = std::make_shared<rcl_cxx::Node>(context, "other");
     std::atomic<int> calls{0};
-    auto timer = other->create_timer(std::chrono::milliseconds(1), [&] { ++calls; });
+    auto timer = other->create_wall_timer(std::chrono::milliseconds(1), [&] { ++calls; });
     executor->add_node(other);
     EXPECT_TRUE(eventually([&] { return calls > 2; }));
     executor->remove_node(*other);
@@ -361,7 +363,7 @@ TEST_F(WhileSpinning, an_entity_outlives_its_node_object)
   std::atomic<int> calls{0};
   auto other = std::make_unique<rcl_cxx::Node>(context, "other");
   executor->add_node(*other);
-  const auto timer = other->create_timer(std::chrono::milliseconds(1), [&] { ++calls; });
+  const auto timer = other->create_wall_timer(std::chrono::milliseconds(1), [&] { ++calls; });
   other.reset();
   const int before = calls;
   EXPECT_TRUE(eventually([&] { return calls > before; }));

@@ -18,7 +18,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Fibonacci = test_msgs::action::Fibonacci;
-using Handle = rcl_cxx::GoalHandle<Fibonacci>;
+using Handle = rcl_cxx::ServerGoalHandle<Fibonacci>;
 using String = std_msgs::msg::String;
 
 // Orders that mean something else than a number of elements.
@@ -40,14 +40,16 @@ constexpr std::size_t kLongest = 40;
 class Counting {
  public:
   Counting(rcl_cxx::Node & node, const std::string & name, const rcl_cxx::ActionServerOptions & options = {})
-      : logger_(node.logger())
+      : logger_(node.get_logger())
   {
-    rcl_cxx::ActionHandlers<Fibonacci> handlers;
-    handlers.goal = [](const rcl_cxx::GoalId &, const Fibonacci::Goal & goal) { return check(goal); };
-    handlers.accepted = [this](std::shared_ptr<Handle> handle) { start(std::move(handle)); };
-    handlers.cancel = [](Handle & handle) { return grant_cancel(handle); };
-    handlers.canceling = [this](Handle &) { wake_.notify_all(); };
-    handlers.client_lost = [](Handle & handle) { handle.abort(); };
+    rcl_cxx::ActionServerCallbacks<Fibonacci> handlers;
+    handlers.handle_goal = [](const rcl_cxx::GoalUUID &, const Fibonacci::Goal & goal) {
+      return check(goal);
+    };
+    handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) { start(std::move(handle)); };
+    handlers.handle_cancel = [](Handle & handle) { return grant_cancel(handle); };
+    handlers.on_canceling = [this](Handle &) { wake_.notify_all(); };
+    handlers.on_client_lost = [](Handle & handle) { handle.abort(); };
     server_ = node.create_action_server<Fibonacci>(name, std::move(handlers), options);
   }
 
@@ -79,18 +81,18 @@ class Counting {
 
   static bool grant_cancel(Handle & handle)
   {
-    if (handle.goal().order == kCancelInHandler) {
+    if (handle.get_goal().order == kCancelInHandler) {
       handle.canceled();
     }
-    return handle.goal().order != kRefuseCancel;
+    return handle.get_goal().order != kRefuseCancel;
   }
 
   void start(std::shared_ptr<Handle> handle)
   {
-    if (handle->goal().order == kThrow) {
+    if (handle->get_goal().order == kThrow) {
       throw std::runtime_error("the accepted handler failed");
     }
-    if (handle->goal().order == kDropHandle) {
+    if (handle->get_goal().order == kDropHandle) {
       return;
     }
     threads_.emplace_back([this, handle = std::move(handle)] { run(*handle); });
@@ -100,7 +102,7 @@ class Counting {
   {
     Fibonacci::Feedback progress;
     progress.sequence = {0, 1};
-    const int order = handle.goal().order;
+    const int order = handle.get_goal().order;
     for (int i = 2; handle.is_active() && (i < order || order >= kRunUntilCanceled); ++i) {
       if (finish_early(handle, progress) || sleep(handle)) {
         return;
@@ -116,7 +118,7 @@ class Counting {
 
   bool finish_early(Handle & handle, const Fibonacci::Feedback & progress)
   {
-    const int order = handle.goal().order;
+    const int order = handle.get_goal().order;
     if (handle.is_canceling()) {
       return order == kSucceedOnCancel ? handle.succeed(result_of(progress))
                                        : handle.canceled(result_of(progress));
@@ -244,11 +246,11 @@ void declare_parameters(rcl_cxx::Node & node)
   node.declare_parameter<std::vector<std::int64_t>>("integers", {1, 2});
   node.declare_parameter<std::vector<bool>>("flags", {true, false});
   node.declare_parameter<std::vector<std::uint8_t>>("bytes", {1, 255});
-  node.declare("anything", rcl_cxx::ParameterValue{}, {.dynamic_typing = true});
+  node.declare_parameter("anything", rcl_cxx::ParameterValue{}, {.dynamic_typing = true});
   node.declare_parameter("picky", 0);
 }
 
-rcl_cxx::ParameterResult refuse_seven(const std::vector<rcl_cxx::Parameter> & parameters)
+rcl_cxx::SetParametersResult refuse_seven(const std::vector<rcl_cxx::Parameter> & parameters)
 {
   for (const auto & parameter : parameters) {
     if (parameter.name == "picky" && parameter.value.get<int>() == 7) {
@@ -263,9 +265,9 @@ int run(int argc, char ** argv)
   const auto context = std::make_shared<rcl_cxx::Context>(argc, argv);
   const auto node = std::make_shared<rcl_cxx::Node>(context, "test_node");
   declare_parameters(*node);
-  const auto picky = node->on_set_parameters(refuse_seven);
+  const auto picky = node->add_on_set_parameters_callback(refuse_seven);
 
-  const auto latched = node->create_publisher<String>("latched", rcl_cxx::QoS::latched());
+  const auto latched = node->create_publisher<String>("latched", rcl_cxx::QoS::transient_local());
   String message;
   message.data = "from before";
   latched->publish(message);
@@ -283,11 +285,11 @@ int run(int argc, char ** argv)
         response.message = "half done";
         throw std::runtime_error("the service handler failed");
       });
-  const auto child = node->logger().child("part");
+  const auto child = node->get_logger().get_child("part");
   const auto log = node->create_service<std_srvs::srv::Trigger>(
       "~/log", [&](const std_srvs::srv::Trigger::Request &, std_srvs::srv::Trigger::Response & response) {
-        RCL_CXX_DEBUG(node->logger(), "a debug message");
-        RCL_CXX_WARN(node->logger(), "a warning with {} and 100 %s", 42);
+        RCL_CXX_DEBUG(node->get_logger(), "a debug message");
+        RCL_CXX_WARN(node->get_logger(), "a warning with {} and 100 %s", 42);
         RCL_CXX_ERROR(child, "an error of a part");
         response.success = true;
       });

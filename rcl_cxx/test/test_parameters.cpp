@@ -138,7 +138,7 @@ TEST_F(Parameters, are_declared_once)
   node.declare_parameter("a", 1);
   EXPECT_THAT(error_of([&] { node.declare_parameter("a", 1); }), HasSubstr("'a' is declared already"));
   EXPECT_THAT(error_of([&] { node.declare_parameter("", 1); }), HasSubstr("needs a name"));
-  EXPECT_THAT(error_of([&] { node.declare("b", {}); }), HasSubstr("'b' has neither a default"));
+  EXPECT_THAT(error_of([&] { node.declare_parameter("b", {}); }), HasSubstr("'b' has neither a default"));
 }
 
 TEST_F(Parameters, are_unknown_until_declared)
@@ -153,7 +153,7 @@ TEST_F(Parameters, are_unknown_until_declared)
 
 TEST_F(Parameters, have_limits_that_their_default_must_keep)
 {
-  const rcl_cxx::ParameterOptions options{.integer_range = rcl_cxx::IntegerRange{0, 10}};
+  const rcl_cxx::ParameterDescriptor options{.integer_range = rcl_cxx::IntegerRange{0, 10}};
   EXPECT_THAT(error_of([&] { node.declare_parameter("n", 11, options); }), HasSubstr("range 0 to 10"));
   node.declare_parameter("n", 5, options);
   EXPECT_FALSE(node.set_parameter("n", -1));
@@ -179,12 +179,12 @@ TEST_F(Parameters, are_set_all_or_none)
 
 TEST_F(Parameters, of_dynamic_type_change_it_and_can_go)
 {
-  node.declare("any", 1, {.dynamic_typing = true});
+  node.declare_parameter("any", 1, {.dynamic_typing = true});
   EXPECT_TRUE(node.set_parameter("any", "text"));
   EXPECT_EQ(node.get_parameter<std::string>("any"), "text");
   EXPECT_TRUE(node.set_parameter("any", {}));
   EXPECT_FALSE(node.has_parameter("any"));
-  node.declare("any", 1, {.dynamic_typing = true});
+  node.declare_parameter("any", 1, {.dynamic_typing = true});
   node.undeclare_parameter("any");
   EXPECT_FALSE(node.has_parameter("any"));
   node.declare_parameter("fixed", 1);
@@ -195,15 +195,15 @@ TEST_F(Parameters, ask_their_callbacks_and_tell_them)
 {
   node.declare_parameter("a", 1);
   std::vector<Parameter> told;
-  auto guard =
-      node.on_set_parameters([](const std::vector<Parameter> & parameters) -> rcl_cxx::ParameterResult {
+  auto guard = node.add_on_set_parameters_callback(
+      [](const std::vector<Parameter> & parameters) -> rcl_cxx::SetParametersResult {
         if (parameters.at(0).value.get<int>() == 7) {
           return tl::make_unexpected(std::string("7 is not liked"));
         }
         return {};
       });
-  auto listener =
-      node.on_parameters_set([&](const std::vector<Parameter> & parameters) { told = parameters; });
+  auto listener = node.add_post_set_parameters_callback(
+      [&](const std::vector<Parameter> & parameters) { told = parameters; });
   EXPECT_EQ(node.set_parameter("a", 7).error(), "7 is not liked");
   EXPECT_TRUE(told.empty());
   EXPECT_TRUE(node.set_parameter("a", 8));
@@ -217,10 +217,11 @@ TEST_F(Parameters, refuse_what_a_callback_throws_or_sets)
 {
   node.declare_parameter("a", 1);
   std::string error;
-  auto setter = node.on_set_parameters([&](const std::vector<Parameter> &) -> rcl_cxx::ParameterResult {
-    error = node.set_parameter("a", 5).error();
-    throw std::runtime_error("the callback failed");
-  });
+  auto setter = node.add_on_set_parameters_callback(
+      [&](const std::vector<Parameter> &) -> rcl_cxx::SetParametersResult {
+        error = node.set_parameter("a", 5).error();
+        throw std::runtime_error("the callback failed");
+      });
   EXPECT_EQ(node.set_parameter("a", 2).error(), "the callback failed");
   EXPECT_THAT(error, HasSubstr("cannot be declared or set from a parameter callback"));
   EXPECT_EQ(node.get_parameter<int>("a"), 1);

@@ -42,9 +42,9 @@ TEST_F(Topics, carry_messages_in_their_order)
         }
       });
   const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(100));
-  EXPECT_EQ(publisher->topic_name(), "/test/topic");
-  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
-  EXPECT_TRUE(eventually([&] { return subscription->publisher_count() == 1; }));
+  EXPECT_EQ(publisher->get_topic_name(), "/test/topic");
+  ASSERT_TRUE(eventually([&] { return publisher->get_subscription_count() == 1; }));
+  EXPECT_TRUE(eventually([&] { return subscription->get_publisher_count() == 1; }));
   publisher->publish(text("a"));
   publisher->publish(text("b"));
   publisher->publish(text("c"));
@@ -54,11 +54,12 @@ TEST_F(Topics, carry_messages_in_their_order)
 
 TEST_F(Topics, that_are_latched_reach_who_comes_late)
 {
-  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::latched());
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::transient_local());
   publisher->publish(text("from before"));
   std::promise<std::string> heard;
-  const auto subscription = node->create_subscription<String>(
-      "topic", rcl_cxx::QoS::latched(), [&](const String & message) { heard.set_value(message.data); });
+  const auto subscription =
+      node->create_subscription<String>("topic", rcl_cxx::QoS::transient_local(),
+                                        [&](const String & message) { heard.set_value(message.data); });
   auto future = heard.get_future();
   ASSERT_EQ(future.wait_for(kLimit), std::future_status::ready);
   EXPECT_EQ(future.get(), "from before");
@@ -74,7 +75,7 @@ TEST_F(Topics, give_messages_that_can_be_kept)
                                                                 kept.push_back(std::move(message));
                                                               });
   const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(100));
-  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  ASSERT_TRUE(eventually([&] { return publisher->get_subscription_count() == 1; }));
   publisher->publish(text("a"));
   publisher->publish(text("b"));
   ASSERT_TRUE(eventually([&] {
@@ -96,7 +97,7 @@ TEST_F(Topics, survive_a_callback_that_throws)
         }
       });
   const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
-  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  ASSERT_TRUE(eventually([&] { return publisher->get_subscription_count() == 1; }));
   publisher->publish(text("bad"));
   publisher->publish(text("good"));
   EXPECT_TRUE(eventually([&] { return calls == 2; }));
@@ -122,7 +123,7 @@ TEST_F(Topics, report_a_failure_and_go_on)
   const auto subscription = node->create_subscription<String>(
       "topic", rcl_cxx::QoS::reliable(10), [&](const String & message) { heard.set_value(message.data); });
   const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
-  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  ASSERT_TRUE(eventually([&] { return publisher->get_subscription_count() == 1; }));
   testing::internal::CaptureStderr();
   {
     const FailingPublish failing;
@@ -145,7 +146,7 @@ TEST_F(Topics, take_messages_from_many_threads)
   const auto subscription = node->create_subscription<String>("topic", rcl_cxx::QoS::reliable(1000),
                                                               [&](const String &) { ++heard; });
   const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(1000));
-  ASSERT_TRUE(eventually([&] { return publisher->subscription_count() == 1; }));
+  ASSERT_TRUE(eventually([&] { return publisher->get_subscription_count() == 1; }));
   std::vector<std::thread> talkers;
   for (int t = 0; t < 4; ++t) {
     talkers.emplace_back([&] {
@@ -176,7 +177,7 @@ TEST_F(Topics, are_silent_after_the_shutdown)
   const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
   context->shutdown("test");
   EXPECT_FALSE(publisher->publish(text("nobody")));
-  EXPECT_EQ(publisher->subscription_count(), 0U);
+  EXPECT_EQ(publisher->get_subscription_count(), 0U);
 }
 
 TEST_F(Services, answer_calls)
@@ -186,7 +187,7 @@ TEST_F(Services, answer_calls)
         response.success = request.data;
         response.message = "done";
       });
-  EXPECT_EQ(service->service_name(), "/test/set");
+  EXPECT_EQ(service->get_service_name(), "/test/set");
   const auto client = node->create_client<SetBool>("set");
   SetBool::Request request;
   request.data = true;
@@ -200,7 +201,7 @@ TEST_F(Services, answer_calls)
 TEST_F(Services, answer_many_calls_at_once)
 {
   // The default depth, 10, would let the middleware drop some.
-  const rcl_cxx::QoS deep = rcl_cxx::QoS::services_default().with_depth(100);
+  const rcl_cxx::QoS deep = rcl_cxx::QoS::services_default().keep_last(100);
   const auto service = node->create_service<SetBool>(
       "set", [](const SetBool::Request & request, auto & response) { response.success = request.data; },
       deep);
@@ -210,7 +211,7 @@ TEST_F(Services, answer_many_calls_at_once)
   SetBool::Request request;
   for (int i = 0; i < 20; ++i) {
     request.data = i % 2 == 0;
-    answers.push_back(client->async_call(request));
+    answers.push_back(client->async_send_request(request));
   }
   for (int i = 0; i < 20; ++i) {
     ASSERT_EQ(answers[static_cast<std::size_t>(i)].wait_for(kLimit), std::future_status::ready);
@@ -274,7 +275,7 @@ TEST_F(Services, break_the_promises_of_a_destroyed_client)
   const auto service = mute.create_service<SetBool>("set", [](const SetBool::Request &, auto &) {});
   auto client = node->create_client<SetBool>("set");
   ASSERT_TRUE(client->wait_for_service(kLimit));
-  auto answer = client->async_call(SetBool::Request());
+  auto answer = client->async_send_request(SetBool::Request());
   client.reset();
   EXPECT_THROW(answer.get(), std::future_error);
 }

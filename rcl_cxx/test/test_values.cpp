@@ -10,11 +10,11 @@
 #include "../src/parameter_rules.hpp"
 #include "../src/parameter_services.hpp"
 #include "rcl_cxx/error.hpp"
-#include "rcl_cxx/goal_id.hpp"
+#include "rcl_cxx/goal_uuid.hpp"
 #include "rcl_cxx/parameter_value.hpp"
 #include "rcl_cxx/qos.hpp"
 
-using rcl_cxx::ParameterOptions;
+using rcl_cxx::ParameterDescriptor;
 using rcl_cxx::ParameterType;
 using rcl_cxx::ParameterValue;
 using rcl_cxx::QoS;
@@ -46,24 +46,24 @@ TEST(QosByName, names_the_known_ones_when_it_does_not_know_one)
 
 TEST(QosByName, keeps_everything_but_the_depth_when_the_depth_changes)
 {
-  const QoS qos = QoS::sensor_data().with_depth(1);
+  const QoS qos = QoS::sensor_data().keep_last(1);
   EXPECT_EQ(qos.depth, 1U);
-  EXPECT_EQ(qos.reliability, rcl_cxx::Reliability::best_effort);
+  EXPECT_EQ(qos.reliability, rcl_cxx::ReliabilityPolicy::best_effort);
 }
 
 TEST(ParameterValues, have_the_type_of_what_they_are_made_from)
 {
-  EXPECT_EQ(ParameterValue().type(), ParameterType::not_set);
-  EXPECT_EQ(ParameterValue(true).type(), ParameterType::boolean);
-  EXPECT_EQ(ParameterValue(7).type(), ParameterType::integer);
-  EXPECT_EQ(ParameterValue(7U).type(), ParameterType::integer);
-  EXPECT_EQ(ParameterValue(7.0F).type(), ParameterType::real);
-  EXPECT_EQ(ParameterValue("text").type(), ParameterType::string);
-  EXPECT_EQ(ParameterValue(std::vector<std::uint8_t>{1}).type(), ParameterType::byte_array);
-  EXPECT_EQ(ParameterValue(std::vector<bool>{true}).type(), ParameterType::boolean_array);
-  EXPECT_EQ(ParameterValue(std::vector<int>{1}).type(), ParameterType::integer_array);
-  EXPECT_EQ(ParameterValue(std::vector<double>{1.0}).type(), ParameterType::real_array);
-  EXPECT_EQ(ParameterValue(std::vector<std::string>{"a"}).type(), ParameterType::string_array);
+  EXPECT_EQ(ParameterValue().get_type(), ParameterType::not_set);
+  EXPECT_EQ(ParameterValue(true).get_type(), ParameterType::boolean);
+  EXPECT_EQ(ParameterValue(7).get_type(), ParameterType::integer);
+  EXPECT_EQ(ParameterValue(7U).get_type(), ParameterType::integer);
+  EXPECT_EQ(ParameterValue(7.0F).get_type(), ParameterType::floating_point);
+  EXPECT_EQ(ParameterValue("text").get_type(), ParameterType::string);
+  EXPECT_EQ(ParameterValue(std::vector<std::uint8_t>{1}).get_type(), ParameterType::byte_array);
+  EXPECT_EQ(ParameterValue(std::vector<bool>{true}).get_type(), ParameterType::boolean_array);
+  EXPECT_EQ(ParameterValue(std::vector<int>{1}).get_type(), ParameterType::integer_array);
+  EXPECT_EQ(ParameterValue(std::vector<double>{1.0}).get_type(), ParameterType::floating_point_array);
+  EXPECT_EQ(ParameterValue(std::vector<std::string>{"a"}).get_type(), ParameterType::string_array);
 }
 
 TEST(ParameterValues, refuse_to_be_read_as_another_type)
@@ -120,16 +120,17 @@ TEST(ParameterValues, of_an_unknown_type_count_as_not_set)
 }
 
 namespace {
-rcl_cxx::ParameterResult check(const ParameterOptions & options, const ParameterValue & value)
+rcl_cxx::SetParametersResult check(const ParameterDescriptor & options, const ParameterValue & value)
 {
-  const ParameterType type = options.floating_point_range ? ParameterType::real : ParameterType::integer;
+  const ParameterType type =
+      options.floating_point_range ? ParameterType::floating_point : ParameterType::integer;
   return rcl_cxx::detail::check_value("p", type, options, value);
 }
 }  // namespace
 
 TEST(ParameterRanges, include_their_limits)
 {
-  const ParameterOptions options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.5}};
+  const ParameterDescriptor options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.5}};
   EXPECT_TRUE(check(options, 0.0));
   EXPECT_TRUE(check(options, 1.5));
   EXPECT_FALSE(check(options, -0.01));
@@ -138,18 +139,18 @@ TEST(ParameterRanges, include_their_limits)
 
 TEST(ParameterRanges, refuse_what_is_no_number)
 {
-  const ParameterOptions options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.0}};
+  const ParameterDescriptor options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.0}};
   EXPECT_FALSE(check(options, std::nan("")));
   EXPECT_FALSE(check(options, std::numeric_limits<double>::infinity()));
 }
 
 TEST(ParameterRanges, with_a_step_allow_its_multiples_and_the_end)
 {
-  const ParameterOptions options{.floating_point_range = rcl_cxx::FloatingPointRange{0.1, 1.0, 0.2}};
+  const ParameterDescriptor options{.floating_point_range = rcl_cxx::FloatingPointRange{0.1, 1.0, 0.2}};
   EXPECT_TRUE(check(options, 0.1 + 0.2 + 0.2));
   EXPECT_TRUE(check(options, 1.0));
   EXPECT_FALSE(check(options, 0.2));
-  const ParameterOptions integers{.integer_range = rcl_cxx::IntegerRange{-5, 6, 2}};
+  const ParameterDescriptor integers{.integer_range = rcl_cxx::IntegerRange{-5, 6, 2}};
   EXPECT_TRUE(check(integers, -3));
   EXPECT_TRUE(check(integers, 6));
   EXPECT_FALSE(check(integers, -4));
@@ -157,7 +158,7 @@ TEST(ParameterRanges, with_a_step_allow_its_multiples_and_the_end)
 
 TEST(ParameterRanges, of_the_whole_width_of_integers_do_not_overflow)
 {
-  const ParameterOptions options{.integer_range = rcl_cxx::IntegerRange{INT64_MIN, INT64_MAX, 2}};
+  const ParameterDescriptor options{.integer_range = rcl_cxx::IntegerRange{INT64_MIN, INT64_MAX, 2}};
   EXPECT_TRUE(check(options, std::int64_t{INT64_MAX - 1}));
   EXPECT_TRUE(check(options, std::int64_t{INT64_MAX}));
   EXPECT_FALSE(check(options, std::int64_t{INT64_MAX - 2}));
@@ -165,9 +166,10 @@ TEST(ParameterRanges, of_the_whole_width_of_integers_do_not_overflow)
 
 TEST(ParameterRanges, hold_for_each_element_of_an_array)
 {
-  const ParameterOptions options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.0}};
+  const ParameterDescriptor options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.0}};
   const auto check_array = [&](std::vector<double> values) {
-    return rcl_cxx::detail::check_value("p", ParameterType::real_array, options, values).has_value();
+    return rcl_cxx::detail::check_value("p", ParameterType::floating_point_array, options, values)
+        .has_value();
   };
   EXPECT_TRUE(check_array({0.0, 1.0}));
   EXPECT_FALSE(check_array({0.0, 1.1}));
@@ -213,9 +215,9 @@ TEST(NodeNamesOfParameterFiles, may_have_wildcards)
 
 TEST(GoalIds, are_random_version_4_uuids)
 {
-  std::set<rcl_cxx::GoalId> ids;
+  std::set<rcl_cxx::GoalUUID> ids;
   for (int i = 0; i < 100; ++i) {
-    const auto id = rcl_cxx::GoalId::random();
+    const auto id = rcl_cxx::GoalUUID::random();
     ids.insert(id);
     const std::string text = id.to_string();
     ASSERT_EQ(text.size(), 36U);
@@ -227,12 +229,12 @@ TEST(GoalIds, are_random_version_4_uuids)
 
 TEST(GoalIds, are_written_as_usual)
 {
-  rcl_cxx::GoalId id;
+  rcl_cxx::GoalUUID id;
   for (std::uint8_t i = 0; i < 16; ++i) {
     id.bytes[i] = i;
   }
   EXPECT_EQ(id.to_string(), "00010203-0405-0607-0809-0a0b0c0d0e0f");
   EXPECT_EQ(id.short_string(), "00010203");
   EXPECT_FALSE(id.is_zero());
-  EXPECT_TRUE(rcl_cxx::GoalId{}.is_zero());
+  EXPECT_TRUE(rcl_cxx::GoalUUID{}.is_zero());
 }

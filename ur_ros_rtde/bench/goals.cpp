@@ -53,7 +53,7 @@ class Timed : public ur_ros_rtde::Command<SetSpeedSlider> {
   std::vector<double> seconds;
 
  private:
-  ur_ros_rtde::Resource resource() const override { return ur_ros_rtde::Resource::none; }
+  ur_ros_rtde::CommandTraits traits() const override { return {.resource = ur_ros_rtde::Resource::none}; }
   Outcome run(const Goal & goal, Run & run) override
   {
     const auto io = run.io();
@@ -115,7 +115,7 @@ int client(int repetitions, int pipe)
   {
     auto timed = node.create_action_client<SetSpeedSlider>("bench_timed");
     auto swing = node.create_action_client<MoveJ>("bench_swing");
-    if (!timed->wait_for_server(20s) || !swing->wait_for_server(20s)) {
+    if (!timed->wait_for_action_server(20s) || !swing->wait_for_action_server(20s)) {
       fmt::print(stderr, "the servers do not show up\n");
       std::_Exit(1);
     }
@@ -128,14 +128,14 @@ int client(int repetitions, int pipe)
     for (int i = 0; i < std::max(repetitions / 20, 3); ++i) {
       MoveJ::Goal goal;
       goal.speed = 0.8;
-      const auto handle = swing->send_goal(goal).get();
+      const auto handle = swing->async_send_goal(goal).get();
       if (!handle) {
         continue;
       }
       std::this_thread::sleep_for(900ms);  // the arm is at its speed
       const double canceled = now();
-      handle->cancel();
-      handle->result().wait_for(10s);
+      handle->async_cancel();
+      handle->async_get_result().wait_for(10s);
       if (::write(pipe, &canceled, sizeof(canceled)) != sizeof(canceled)) {
         break;
       }

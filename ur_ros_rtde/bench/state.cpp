@@ -33,7 +33,7 @@ int main(int argc, char ** argv)
   executor.add_node(node);
   executor.spin_for(std::chrono::nanoseconds(static_cast<std::int64_t>(duration * 1e9)));
   if (milliseconds.empty()) {
-    fmt::print(stderr, "nothing came on {}\n", subscription->topic_name());
+    fmt::print(stderr, "nothing came on {}\n", subscription->get_topic_name());
     return 1;
   }
   std::sort(milliseconds.begin(), milliseconds.end());

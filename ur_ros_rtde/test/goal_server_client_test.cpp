@@ -13,7 +13,7 @@ using std::chrono::seconds;
 rcl_cxx::Context::SharedPtr make_context()
 {
   return std::make_shared<rcl_cxx::Context>(std::vector<std::string>{"goal_server_client_test"},
-                                            rcl_cxx::ContextOptions{.handle_signals = false});
+                                            rcl_cxx::InitOptions{.shutdown_on_signal = false});
 }
 
 /// A node whose executor spins in a thread, with a participant of its own as another process has it.
@@ -38,9 +38,9 @@ struct SpinningNode {
 /// Goals that go on until they have to end.
 class EndlessCommand : public GoalServer<Trigger> {
  public:
-  EndlessCommand(rcl_cxx::Node & node, bool needs_client) : host_(node), book_(host_, "/endless")
+  EndlessCommand(rcl_cxx::Node & node, bool needs_client) : host_(node), active_goals_(host_, "/endless")
   {
-    serve(node, "endless", book_, needs_client);
+    serve(node, "endless", active_goals_, needs_client);
   }
   ~EndlessCommand() override
   {
@@ -52,30 +52,30 @@ class EndlessCommand : public GoalServer<Trigger> {
   std::promise<ErrorCode> ended;
 
  private:
-  tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id, const Trigger::Goal &) override
+  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id, const Trigger::Goal &) override
   {
-    return book_.admit(id, [](GoalBook::Ticket &) { return Status(); });
+    return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
-  void carry_out(Handle & handle, GoalBook::Ticket & ticket) override
+  void execute(Handle & handle, GoalContext & context) override
   {
     started.set_value();
     const auto limit = std::chrono::steady_clock::now() + seconds(10);
-    while (!ticket.interrupt->requested() && std::chrono::steady_clock::now() < limit) {
+    while (!context.stop_request->reason() && std::chrono::steady_clock::now() < limit) {
       std::this_thread::yield();
     }
-    const auto why = ticket.interrupt->requested();
+    const auto why = context.stop_request->reason();
     Trigger::Result result;
     finish(handle, result, why ? Outcome(*why) : Outcome::success());
     ended.set_value(static_cast<ErrorCode>(result.error_code));
   }
-  void give_up(Handle & handle, const Outcome & outcome) override
+  void abort_unstarted(Handle & handle, const Outcome & outcome) override
   {
     Trigger::Result result;
     finish(handle, result, outcome);
   }
 
   PluginHost host_;
-  GoalBook book_;
+  ActiveGoals active_goals_;
 };
 
 class GoalServerClientTest : public testing::Test {
@@ -91,8 +91,8 @@ class GoalServerClientTest : public testing::Test {
       {
         SpinningNode other("client");
         const auto client = other.node.create_action_client<Trigger>("endless");
-        EXPECT_TRUE(client->wait_for_server(seconds(10)));
-        const auto response = client->send_goal(Trigger::Goal());
+        EXPECT_TRUE(client->wait_for_action_server(seconds(10)));
+        const auto response = client->async_send_goal(Trigger::Goal());
         EXPECT_EQ(command.started.get_future().wait_for(seconds(10)), std::future_status::ready);
       }
       if (needs_client) {

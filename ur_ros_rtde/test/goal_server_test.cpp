@@ -7,47 +7,47 @@
 #include <thread>
 #include <ur_ros_rtde_msgs/action/trigger.hpp>
 
-#include "ur_ros_rtde/detail/command_goals.hpp"
+#include "ur_ros_rtde/detail/command_executor.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
 namespace {
-using rcl_cxx::GoalId;
+using rcl_cxx::GoalUUID;
 using ur_ros_rtde_msgs::action::Trigger;
 
 class GoalServerTest : public testing::Test {
  protected:
   rcl_cxx::Context::SharedPtr context_ = std::make_shared<rcl_cxx::Context>(
-      std::vector<std::string>{"goal_server_test"}, rcl_cxx::ContextOptions{.handle_signals = false});
+      std::vector<std::string>{"goal_server_test"}, rcl_cxx::InitOptions{.shutdown_on_signal = false});
   rcl_cxx::Node node_{context_, "goal_server_test"};
 };
 
 /// An action whose result cannot be filled in.
 class FaultyServer : public GoalServer<Trigger> {
  public:
-  FaultyServer(rcl_cxx::Node & node, PluginHost & host) : book_(host, "/faulty")
+  FaultyServer(rcl_cxx::Node & node, PluginHost & host) : active_goals_(host, "/faulty")
   {
-    serve(node, "faulty", book_, false);
+    serve(node, "faulty", active_goals_, false);
   }
   ~FaultyServer() override { end_service(); }
 
  private:
-  tl::expected<void, std::string> admit(const GoalId & id, const Trigger::Goal &) override
+  tl::expected<void, std::string> accept(const GoalUUID & id, const Trigger::Goal &) override
   {
-    return book_.admit(id, [](GoalBook::Ticket &) { return Status(); });
+    return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
-  void carry_out(Handle & handle, GoalBook::Ticket &) override { give_up(handle, Outcome::success("done")); }
-  void give_up(Handle & handle, const Outcome & outcome) override
+  void execute(Handle & handle, GoalContext &) override { abort_unstarted(handle, Outcome::success("done")); }
+  void abort_unstarted(Handle & handle, const Outcome & outcome) override
   {
     Trigger::Result result;
     finish(handle, result, outcome);
   }
-  void tell(const Outcome &, Trigger::Result &) const override
+  void fill_result(const Outcome &, Trigger::Result &) const override
   {
     throw std::runtime_error("a fault in tell");
   }
 
-  GoalBook book_;
+  ActiveGoals active_goals_;
 };
 
 TEST_F(GoalServerTest, AGoalWhoseResultCannotBeFilledInIsAbortedWithTheReason)
@@ -59,7 +59,7 @@ TEST_F(GoalServerTest, AGoalWhoseResultCannotBeFilledInIsAbortedWithTheReason)
   executor.add_node(node_);
   std::jthread spinning([&executor] { executor.spin(); });
   const auto end = client->call(Trigger::Goal(), std::chrono::seconds(20));
-  executor.stop();
+  executor.cancel();
   ASSERT_TRUE(end) << end.error();
   EXPECT_EQ(end->status, rcl_cxx::GoalStatus::aborted);
   EXPECT_FALSE(end->result.success);
@@ -73,11 +73,12 @@ TEST_F(GoalServerTest, ACommandWhoseStopOptionsThrowDoesNothingAndEndsWithTheRea
   options.address = "127.0.0.1";
   Robot robot(options, [](LogLevel, const std::string &) {});
   CommandHost host(node_, robot, {});
-  CommandGoals goals(host, "/faulty", CommandTraits{.resource = Resource::none, .extension = {}});
-  GoalBook::Ticket ticket;
+  CommandExecutor goals(host, "/faulty", CommandTraits{.resource = Resource::none, .extension = {}});
+  GoalContext context;
   bool ran = false;
-  const Outcome outcome = goals.carry_out(
-      GoalId::random(), ticket, []() -> StopOptions { throw std::runtime_error("a fault in stop_options"); },
+  const Outcome outcome = goals.execute(
+      GoalUUID::random(), context,
+      []() -> StopOptions { throw std::runtime_error("a fault in stop_options"); },
       [&ran] {
         ran = true;
         return Outcome::success();

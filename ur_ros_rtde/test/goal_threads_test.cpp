@@ -16,7 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-const Interruption shutdown{ErrorCode::shutdown, "the end"};
+const StopReason shutdown{ErrorCode::shutdown, "the end"};
 
 /// What a thread does when its function has returned.
 struct AtThreadExit {
@@ -34,12 +34,12 @@ void wait_until_asleep(pid_t thread)
 }
 
 /// Waits until it is asked to end.
-void wait_for(const Interrupt & interrupt)
+void wait_for(const StopRequest & stop_request)
 {
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
-  wake.wait(lock, interrupt.token(), [] { return false; });
+  wake.wait(lock, stop_request.token(), [] { return false; });
 }
 
 TEST(GoalThreads, run_their_work_at_the_same_time)
@@ -49,12 +49,12 @@ TEST(GoalThreads, run_their_work_at_the_same_time)
   std::promise<void> second_runs;
   auto second_future = second_runs.get_future();
   std::atomic<bool> met{false};
-  ASSERT_TRUE(threads.start("first", std::make_shared<Interrupt>(), [&] {
+  ASSERT_TRUE(threads.start("first", std::make_shared<StopRequest>(), [&] {
     first_runs.set_value();
     met = second_future.wait_for(seconds(10)) == std::future_status::ready;
   }));
   ASSERT_EQ(first_runs.get_future().wait_for(seconds(10)), std::future_status::ready);
-  ASSERT_TRUE(threads.start("second", std::make_shared<Interrupt>(), [&] { second_runs.set_value(); }));
+  ASSERT_TRUE(threads.start("second", std::make_shared<StopRequest>(), [&] { second_runs.set_value(); }));
   EXPECT_TRUE(threads.close(shutdown, seconds(10)).empty());
   EXPECT_TRUE(met);
 }
@@ -62,23 +62,23 @@ TEST(GoalThreads, run_their_work_at_the_same_time)
 TEST(GoalThreads, ask_everything_to_end_with_the_reason_and_wait_for_it)
 {
   GoalThreads threads;
-  auto interrupt = std::make_shared<Interrupt>();
+  auto stop_request = std::make_shared<StopRequest>();
   std::atomic<bool> ended{false};
-  ASSERT_TRUE(threads.start("goal", interrupt, [&] {
-    wait_for(*interrupt);
+  ASSERT_TRUE(threads.start("goal", stop_request, [&] {
+    wait_for(*stop_request);
     ended = true;
   }));
   EXPECT_TRUE(threads.close(shutdown, seconds(10)).empty());
   EXPECT_TRUE(ended);
-  ASSERT_TRUE(interrupt->requested());
-  EXPECT_EQ(interrupt->requested()->code, ErrorCode::shutdown);
+  ASSERT_TRUE(stop_request->reason());
+  EXPECT_EQ(stop_request->reason()->code, ErrorCode::shutdown);
 }
 
 TEST(GoalThreads, take_nothing_after_they_were_closed)
 {
   GoalThreads threads;
   threads.close(shutdown, milliseconds(0));
-  const auto status = threads.start("late", std::make_shared<Interrupt>(), [] { FAIL(); });
+  const auto status = threads.start("late", std::make_shared<StopRequest>(), [] { FAIL(); });
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::shutdown);
 }
@@ -88,7 +88,7 @@ TEST(GoalThreads, take_nothing_when_they_are_closed_while_a_finished_thread_is_j
   GoalThreads threads;
   std::promise<void> release;
   std::promise<void> leaving;
-  ASSERT_TRUE(threads.start("finished", std::make_shared<Interrupt>(), [&] {
+  ASSERT_TRUE(threads.start("finished", std::make_shared<StopRequest>(), [&] {
     static thread_local AtThreadExit at_exit;
     at_exit.action = [&] {
       leaving.set_value();
@@ -100,7 +100,7 @@ TEST(GoalThreads, take_nothing_when_they_are_closed_while_a_finished_thread_is_j
   Status status;
   std::thread starter([&] {
     id.set_value(::gettid());
-    status = threads.start("late", std::make_shared<Interrupt>(), [] { FAIL(); });
+    status = threads.start("late", std::make_shared<StopRequest>(), [] { FAIL(); });
   });
   wait_until_asleep(id.get_future().get());
   threads.close(shutdown, milliseconds(0));
@@ -114,7 +114,7 @@ TEST(GoalThreads, name_what_does_not_end_in_time)
 {
   GoalThreads threads;
   std::promise<void> release;
-  ASSERT_TRUE(threads.start("stubborn", std::make_shared<Interrupt>(),
+  ASSERT_TRUE(threads.start("stubborn", std::make_shared<StopRequest>(),
                             [future = release.get_future().share()] { future.wait(); }));
   EXPECT_EQ(threads.close(shutdown, milliseconds(10)), std::vector<std::string>{"stubborn"});
   release.set_value();
@@ -123,14 +123,14 @@ TEST(GoalThreads, name_what_does_not_end_in_time)
 TEST(GoalThreads, refuse_more_than_their_limit_and_take_more_when_some_have_ended)
 {
   GoalThreads threads;
-  auto interrupt = std::make_shared<Interrupt>();
+  auto stop_request = std::make_shared<StopRequest>();
   for (std::size_t i = 0; i < GoalThreads::limit; ++i) {
-    ASSERT_TRUE(threads.start("goal", interrupt, [interrupt] { wait_for(*interrupt); }));
+    ASSERT_TRUE(threads.start("goal", stop_request, [stop_request] { wait_for(*stop_request); }));
   }
   const auto status = threads.can_start();
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::busy);
-  interrupt->request(shutdown);
+  stop_request->request(shutdown);
   const auto limit = std::chrono::steady_clock::now() + seconds(10);
   while (!threads.can_start() && std::chrono::steady_clock::now() < limit) {
     std::this_thread::yield();
@@ -138,15 +138,15 @@ TEST(GoalThreads, refuse_more_than_their_limit_and_take_more_when_some_have_ende
   EXPECT_TRUE(threads.can_start());
 }
 
-TEST(Interrupt, keeps_the_first_reason)
+TEST(StopRequest, keeps_the_first_reason)
 {
-  Interrupt interrupt;
-  EXPECT_FALSE(interrupt.requested());
-  interrupt.request(Error{ErrorCode::canceled, "first"});
-  interrupt.request(Error{ErrorCode::preempted, "second"});
-  ASSERT_TRUE(interrupt.requested());
-  EXPECT_EQ(interrupt.requested()->message, "first");
-  EXPECT_TRUE(interrupt.token().stop_requested());
+  StopRequest stop_request;
+  EXPECT_FALSE(stop_request.reason());
+  stop_request.request(Error{ErrorCode::canceled, "first"});
+  stop_request.request(Error{ErrorCode::preempted, "second"});
+  ASSERT_TRUE(stop_request.reason());
+  EXPECT_EQ(stop_request.reason()->message, "first");
+  EXPECT_TRUE(stop_request.token().stop_requested());
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "recording/csv_file.hpp"
-#include "state/package_statistics.hpp"
 #include "recording/row_queue.hpp"
+#include "state/package_statistics.hpp"
 
 namespace ur_ros_rtde {
 namespace {

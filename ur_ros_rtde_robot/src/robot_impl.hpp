@@ -4,15 +4,15 @@
 #include <chrono>
 #include <functional>
 
-#include "state/arm_model.hpp"
-#include "program/control_scripts.hpp"
-#include "program/extension_runner.hpp"
 #include "connection/interface_links.hpp"
 #include "motion/motion_stopper.hpp"
 #include "motion/motion_tracker.hpp"
+#include "program/control_scripts.hpp"
+#include "program/extension_runner.hpp"
 #include "program/script_runner.hpp"
 #include "program/script_server.hpp"
 #include "program/supervisor.hpp"
+#include "state/arm_model.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"

@@ -1,5 +1,5 @@
-#include "state/arm_model.hpp"
 #include "robot_fixture.hpp"
+#include "state/arm_model.hpp"
 
 namespace ur_ros_rtde::test {
 namespace {

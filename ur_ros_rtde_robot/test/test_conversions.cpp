@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
+#include "ur_ros_rtde_trajectory/arm_limits.hpp"
 
 namespace ur_ros_rtde {
 namespace {

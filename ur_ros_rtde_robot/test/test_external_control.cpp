@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "program/script_server.hpp"
 #include "connection/tcp_stream.hpp"
+#include "program/script_server.hpp"
 #include "robot_fixture.hpp"
 
 namespace ur_ros_rtde::test {

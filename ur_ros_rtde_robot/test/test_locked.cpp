@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde_robot/connection/locked.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -9,8 +9,8 @@
 #include <thread>
 #include <utility>
 
-#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
 #include "support.hpp"
+#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
 
 namespace ur_ros_rtde::test {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "connection/dashboard_request.hpp"
 #include "support.hpp"
-#include "ur_ros_rtde_robot/state/rtde_outputs.hpp"
 #include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
+#include "ur_ros_rtde_robot/state/rtde_outputs.hpp"
 
 namespace ur_ros_rtde::test {
 namespace {

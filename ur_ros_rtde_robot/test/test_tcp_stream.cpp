@@ -5,9 +5,9 @@
 #include <atomic>
 #include <string_view>
 
-#include "motion/motion_stopper.hpp"
 #include "connection/ports.hpp"
 #include "connection/tcp_stream.hpp"
+#include "motion/motion_stopper.hpp"
 #include "support.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "rcl_cxx/goal_id.hpp"
+#include "rcl_cxx/goal_uuid.hpp"
 #include "rcl_cxx/qos.hpp"
 
 namespace rcl_cxx {
@@ -20,7 +20,7 @@ struct ActionClientOptions {
   QoS result_service_qos = QoS::services_default();
   QoS cancel_service_qos = QoS::services_default();
   QoS feedback_qos = QoS::reliable(10);
-  QoS status_qos = QoS::latched(1);
+  QoS status_qos = QoS::transient_local(1);
 };
 
 /// Numbers are those of action_msgs/srv/CancelGoal.
@@ -31,39 +31,39 @@ const char * to_string(CancelCode code) noexcept;
 struct CancelResponse {
   CancelCode code = CancelCode::none;
   /// The goals that are being canceled.
-  std::vector<GoalId> goals;
+  std::vector<GoalUUID> goals;
 };
 
 template <typename A>
-struct ActionResult {
-  GoalId goal_id;
+struct WrappedResult {
+  GoalUUID goal_id;
   /// succeeded, canceled or aborted; unknown if the server does not know the goal (any more).
   GoalStatus status = GoalStatus::unknown;
   typename A::Result result;
 };
 
 namespace detail {
-class ActionClientCore;
-class ClientGoalCore;
+class ActionClientImpl;
+class ClientGoalImpl;
 
 /// What the client needs to know of an action's types; one constant table per action.
 struct ActionClientOps {
   const rosidl_action_type_support_t * (*type_support)();
-  std::shared_ptr<void> (*make_goal_request)(const GoalId &, const void * goal);
+  std::shared_ptr<void> (*make_goal_request)(const GoalUUID &, const void * goal);
   std::shared_ptr<void> (*make_goal_response)();
   bool (*accepted)(const void * goal_response);
-  std::shared_ptr<void> (*make_result_request)(const GoalId &);
+  std::shared_ptr<void> (*make_result_request)(const GoalUUID &);
   std::shared_ptr<void> (*make_result_response)();
   std::int8_t (*status)(const void * result_response);
   std::shared_ptr<void> (*make_feedback)();
-  GoalId (*goal_id_of_feedback)(const void * feedback_message);
+  GoalUUID (*goal_id_of_feedback)(const void * feedback_message);
 };
 
 /// All run in the executor's thread.
 struct ErasedGoalCallbacks {
-  std::function<void(const std::shared_ptr<ClientGoalCore> & or_null_if_refused)> response;
+  std::function<void(const std::shared_ptr<ClientGoalImpl> & or_null_if_refused)> response;
   std::function<void(const void * feedback_message)> feedback;
-  std::function<void(const GoalId &, const void * result_response)> result;
+  std::function<void(const GoalUUID &, const void * result_response)> result;
 };
 
 template <typename A>
@@ -74,7 +74,7 @@ struct ActionClientOpsOf {
   using ResultResponse = typename A::Impl::GetResultService::Response;
   using FeedbackMessage = typename A::Impl::FeedbackMessage;
 
-  static std::shared_ptr<void> goal_request(const GoalId & id, const void * goal)
+  static std::shared_ptr<void> goal_request(const GoalUUID & id, const void * goal)
   {
     auto request = std::make_shared<GoalRequest>();
     request->goal_id.uuid = id.bytes;
@@ -82,7 +82,7 @@ struct ActionClientOpsOf {
     return request;
   }
 
-  static std::shared_ptr<void> result_request(const GoalId & id)
+  static std::shared_ptr<void> result_request(const GoalUUID & id)
   {
     auto request = std::make_shared<ResultRequest>();
     request->goal_id.uuid = id.bytes;
@@ -101,7 +101,7 @@ struct ActionClientOpsOf {
       },
       []() -> std::shared_ptr<void> { return std::make_shared<FeedbackMessage>(); },
       [](const void * feedback) {
-        return GoalId{static_cast<const FeedbackMessage *>(feedback)->goal_id.uuid};
+        return GoalUUID{static_cast<const FeedbackMessage *>(feedback)->goal_id.uuid};
       }};
 };
 }  // namespace detail
@@ -109,20 +109,20 @@ struct ActionClientOpsOf {
 /// A goal as its client sees it, once it has been accepted.
 class ClientGoalHandleBase {
  public:
-  explicit ClientGoalHandleBase(std::shared_ptr<detail::ClientGoalCore> core);
+  explicit ClientGoalHandleBase(std::shared_ptr<detail::ClientGoalImpl> impl);
   virtual ~ClientGoalHandleBase();
   ClientGoalHandleBase(const ClientGoalHandleBase &) = delete;
   ClientGoalHandleBase & operator=(const ClientGoalHandleBase &) = delete;
 
-  const GoalId & goal_id() const noexcept;
+  const GoalUUID & get_goal_id() const noexcept;
   /// The latest that the server has told.
-  GoalStatus status() const noexcept;
+  GoalStatus get_status() const noexcept;
 
   /// Asks to cancel; the future holds the answer. @throws Error if the request cannot be sent.
-  std::future<CancelResponse> cancel();
+  std::future<CancelResponse> async_cancel();
 
  private:
-  std::shared_ptr<detail::ClientGoalCore> core_;
+  std::shared_ptr<detail::ClientGoalImpl> impl_;
 };
 
 template <typename A>
@@ -130,25 +130,25 @@ class ClientGoalHandle : public ClientGoalHandleBase {
  public:
   using SharedPtr = std::shared_ptr<ClientGoalHandle<A>>;
 
-  ClientGoalHandle(std::shared_ptr<detail::ClientGoalCore> core, std::shared_future<ActionResult<A>> result)
-      : ClientGoalHandleBase(std::move(core)), result_(std::move(result))
+  ClientGoalHandle(std::shared_ptr<detail::ClientGoalImpl> impl, std::shared_future<WrappedResult<A>> result)
+      : ClientGoalHandleBase(std::move(impl)), result_(std::move(result))
   {
   }
 
   /// Ready when the goal has ended. Broken (std::future_error) if the action client is destroyed first.
-  const std::shared_future<ActionResult<A>> & result() const noexcept { return result_; }
+  const std::shared_future<WrappedResult<A>> & async_get_result() const noexcept { return result_; }
 
  private:
-  std::shared_future<ActionResult<A>> result_;
+  std::shared_future<WrappedResult<A>> result_;
 };
 
 /// All optional, all run in the executor's thread.
 template <typename A>
 struct SendGoalOptions {
   /// A null pointer if the goal was refused.
-  std::function<void(const std::shared_ptr<ClientGoalHandle<A>> &)> on_response{};
-  std::function<void(const typename A::Feedback &)> on_feedback{};
-  std::function<void(const ActionResult<A> &)> on_result{};
+  std::function<void(const std::shared_ptr<ClientGoalHandle<A>> &)> goal_response_callback{};
+  std::function<void(const typename A::Feedback &)> feedback_callback{};
+  std::function<void(const WrappedResult<A> &)> result_callback{};
 };
 
 class ActionClientBase {
@@ -157,22 +157,22 @@ class ActionClientBase {
   ActionClientBase(const ActionClientBase &) = delete;
   ActionClientBase & operator=(const ActionClientBase &) = delete;
 
-  const std::string & action_name() const noexcept;
-  bool server_is_ready() const;
+  const std::string & get_action_name() const noexcept;
+  bool action_server_is_ready() const;
   /// False on timeout or shutdown.
-  bool wait_for_server(std::chrono::nanoseconds timeout) const;
+  bool wait_for_action_server(std::chrono::nanoseconds timeout) const;
 
   /// Cancels a goal of anyone. @throws Error if the request cannot be sent; the same below.
-  std::future<CancelResponse> cancel_goal(const GoalId & id);
-  std::future<CancelResponse> cancel_all_goals();
+  std::future<CancelResponse> async_cancel_goal(const GoalUUID & id);
+  std::future<CancelResponse> async_cancel_all_goals();
   /// All goals accepted at or before `stamp_ns` (nanoseconds since the epoch, ROS time).
-  std::future<CancelResponse> cancel_goals_before(std::int64_t stamp_ns);
+  std::future<CancelResponse> async_cancel_goals_before(std::int64_t stamp_ns);
 
  protected:
-  explicit ActionClientBase(std::shared_ptr<detail::ActionClientCore> core);
-  GoalId send(const void * goal, detail::ErasedGoalCallbacks callbacks);
+  explicit ActionClientBase(std::shared_ptr<detail::ActionClientImpl> impl);
+  GoalUUID send(const void * goal, detail::ErasedGoalCallbacks callbacks);
   /// Nobody waits for this goal any more: it is asked to cancel, now or when it turns out to be accepted.
-  void abandon(const GoalId & id) noexcept;
+  void abandon(const GoalUUID & id) noexcept;
   /// False at `deadline` or on shutdown.
   template <typename Future>
   bool wait(const Future & future, std::chrono::steady_clock::time_point deadline) const
@@ -190,7 +190,7 @@ class ActionClientBase {
   bool wait_until_ready(const std::function<bool(std::chrono::nanoseconds)> & ready_within,
                         std::chrono::steady_clock::time_point deadline) const;
 
-  std::shared_ptr<detail::ActionClientCore> core_;
+  std::shared_ptr<detail::ActionClientImpl> impl_;
 };
 
 /// From Node::create_action_client. Thread-safe. Answers arrive through the executor that the node was added
@@ -203,11 +203,11 @@ class ActionClient : public ActionClientBase {
   using Feedback = typename A::Feedback;
   using Handle = ClientGoalHandle<A>;
 
-  explicit ActionClient(std::shared_ptr<detail::ActionClientCore> core) : ActionClientBase(std::move(core)) {}
+  explicit ActionClient(std::shared_ptr<detail::ActionClientImpl> impl) : ActionClientBase(std::move(impl)) {}
 
   /// The future holds the goal's handle, or a null pointer if the goal was refused.
   /// @throws Error if the request cannot be sent.
-  std::future<std::shared_ptr<Handle>> send_goal(const Goal & goal, SendGoalOptions<A> options = {})
+  std::future<std::shared_ptr<Handle>> async_send_goal(const Goal & goal, SendGoalOptions<A> options = {})
   {
     return start(goal, std::move(options)).response;
   }
@@ -215,50 +215,50 @@ class ActionClient : public ActionClientBase {
   /// Sends and waits for the result, at most `timeout` in all; the executor must be spinning in another
   /// thread. A goal that is running when the time is over is asked to cancel. The error says what went wrong:
   /// no server, refused, no answer, no result, shutdown, or called from the executor's own thread.
-  tl::expected<ActionResult<A>, std::string> call(const Goal & goal, std::chrono::nanoseconds timeout,
-                                                  std::function<void(const Feedback &)> on_feedback = {});
+  tl::expected<WrappedResult<A>, std::string> call(const Goal & goal, std::chrono::nanoseconds timeout,
+                                                   std::function<void(const Feedback &)> on_feedback = {});
 
  private:
   using ResultResponse = typename A::Impl::GetResultService::Response;
   using FeedbackMessage = typename A::Impl::FeedbackMessage;
 
   struct Started {
-    GoalId id;
+    GoalUUID id;
     std::future<std::shared_ptr<Handle>> response;
   };
 
   Started start(const Goal & goal, SendGoalOptions<A> options);
-  tl::expected<ActionResult<A>, std::string> call_until(const Goal & goal,
-                                                        std::chrono::steady_clock::time_point deadline,
-                                                        std::function<void(const Feedback &)> on_feedback);
+  tl::expected<WrappedResult<A>, std::string> call_until(const Goal & goal,
+                                                         std::chrono::steady_clock::time_point deadline,
+                                                         std::function<void(const Feedback &)> on_feedback);
 };
 
 template <typename A>
 typename ActionClient<A>::Started ActionClient<A>::start(const Goal & goal, SendGoalOptions<A> options)
 {
   auto response_promise = std::make_shared<std::promise<std::shared_ptr<Handle>>>();
-  auto result_promise = std::make_shared<std::promise<ActionResult<A>>>();
+  auto result_promise = std::make_shared<std::promise<WrappedResult<A>>>();
   Started started{{}, response_promise->get_future()};
 
   detail::ErasedGoalCallbacks callbacks;
   callbacks.response =
       [response_promise, result = result_promise->get_future().share(),
-       f = std::move(options.on_response)](const std::shared_ptr<detail::ClientGoalCore> & core) {
-        auto handle = core ? std::make_shared<Handle>(core, result) : nullptr;
+       f = std::move(options.goal_response_callback)](const std::shared_ptr<detail::ClientGoalImpl> & impl) {
+        auto handle = impl ? std::make_shared<Handle>(impl, result) : nullptr;
         response_promise->set_value(handle);
         if (f) {
           f(handle);
         }
       };
-  if (options.on_feedback) {
-    callbacks.feedback = [f = std::move(options.on_feedback)](const void * message) {
+  if (options.feedback_callback) {
+    callbacks.feedback = [f = std::move(options.feedback_callback)](const void * message) {
       f(static_cast<const FeedbackMessage *>(message)->feedback);
     };
   }
-  callbacks.result = [result_promise, f = std::move(options.on_result)](const GoalId & goal_id,
-                                                                        const void * message) {
+  callbacks.result = [result_promise, f = std::move(options.result_callback)](const GoalUUID & goal_id,
+                                                                              const void * message) {
     const auto & response = *static_cast<const ResultResponse *>(message);
-    ActionResult<A> result{goal_id, static_cast<GoalStatus>(response.status), response.result};
+    WrappedResult<A> result{goal_id, static_cast<GoalStatus>(response.status), response.result};
     result_promise->set_value(result);
     if (f) {
       f(result);
@@ -269,7 +269,7 @@ typename ActionClient<A>::Started ActionClient<A>::start(const Goal & goal, Send
 }
 
 template <typename A>
-tl::expected<ActionResult<A>, std::string> ActionClient<A>::call(
+tl::expected<WrappedResult<A>, std::string> ActionClient<A>::call(
     const Goal & goal, std::chrono::nanoseconds timeout, std::function<void(const Feedback &)> on_feedback)
 {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
@@ -279,31 +279,31 @@ tl::expected<ActionResult<A>, std::string> ActionClient<A>::call(
   try {
     return call_until(goal, deadline, std::move(on_feedback));
   } catch (const std::exception & error) {  // not sent, or the client was destroyed
-    return tl::make_unexpected(action_name() + ": " + error.what());
+    return tl::make_unexpected(get_action_name() + ": " + error.what());
   }
 }
 
 template <typename A>
-tl::expected<ActionResult<A>, std::string> ActionClient<A>::call_until(
+tl::expected<WrappedResult<A>, std::string> ActionClient<A>::call_until(
     const Goal & goal, std::chrono::steady_clock::time_point deadline,
     std::function<void(const Feedback &)> on_feedback)
 {
   SendGoalOptions<A> options;
-  options.on_feedback = std::move(on_feedback);
+  options.feedback_callback = std::move(on_feedback);
   Started started = start(goal, std::move(options));
   if (!wait(started.response, deadline)) {
     abandon(started.id);
-    return tl::make_unexpected(action_name() + ": no answer to the goal within the time given");
+    return tl::make_unexpected(get_action_name() + ": no answer to the goal within the time given");
   }
   const std::shared_ptr<Handle> handle = started.response.get();
   if (!handle) {
-    return tl::make_unexpected(action_name() + ": goal refused (the server's log says why)");
+    return tl::make_unexpected(get_action_name() + ": goal refused (the server's log says why)");
   }
-  if (!wait(handle->result(), deadline)) {
+  if (!wait(handle->async_get_result(), deadline)) {
     abandon(started.id);
-    return tl::make_unexpected(action_name() + ": no result within the time given, cancel requested");
+    return tl::make_unexpected(get_action_name() + ": no result within the time given, cancel requested");
   }
-  return handle->result().get();
+  return handle->async_get_result().get();
 }
 
 }  // namespace rcl_cxx

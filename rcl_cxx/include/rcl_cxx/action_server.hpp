@@ -9,8 +9,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "rcl_cxx/goal_handle.hpp"
 #include "rcl_cxx/qos.hpp"
+#include "rcl_cxx/server_goal_handle.hpp"
 
 namespace rcl_cxx {
 struct ActionServerOptions {
@@ -18,7 +18,7 @@ struct ActionServerOptions {
   QoS result_service_qos = QoS::services_default();
   QoS cancel_service_qos = QoS::services_default();
   QoS feedback_qos = QoS::reliable(10);
-  QoS status_qos = QoS::latched(1);
+  QoS status_qos = QoS::transient_local(1);
   /// How long the result of an ended goal can be asked for; unset: rcl_action's default (10 s; Humble: 15
   /// min); negative: for ever.
   std::optional<std::chrono::nanoseconds> result_timeout{};
@@ -27,57 +27,57 @@ struct ActionServerOptions {
 /// What a server does with its goals. All run in the executor's thread and must return soon: a goal is
 /// carried out in a thread of the user's.
 template <typename A>
-struct ActionHandlers {
+struct ActionServerCallbacks {
   using Goal = typename A::Goal;
 
   /// Refuses with a reason, which is logged as a warning with the action's name. Empty: accepts everything.
   /// An exception refuses, with its text.
-  std::function<tl::expected<void, std::string>(const GoalId &, const Goal &)> goal{};
+  std::function<tl::expected<void, std::string>(const GoalUUID &, const Goal &)> handle_goal{};
   /// Gets the goal, EXECUTING already. Whoever keeps the handle owes the goal a result. An exception aborts
   /// it.
-  std::function<void(std::shared_ptr<GoalHandle<A>>)> accepted{};
+  std::function<void(std::shared_ptr<ServerGoalHandle<A>>)> handle_accepted{};
   /// Grants (true) or refuses a request to cancel an active goal. Empty: refuses. An exception refuses.
-  std::function<bool(GoalHandle<A> &)> cancel{};
+  std::function<bool(ServerGoalHandle<A> &)> handle_cancel{};
   /// Runs when the goal has become CANCELING (is_canceling() is true): the place to wake its worker.
   /// Optional.
-  std::function<void(GoalHandle<A> &)> canceling{};
+  std::function<void(ServerGoalHandle<A> &)> on_canceling{};
   /// Runs once when the client that sent an active goal has disappeared: its process has ended, or it has
   /// destroyed its action client. The goal goes on unless this ends it. Optional: without it clients are not
   /// watched. A process that was killed disappears when its participant's lease ends.
-  std::function<void(GoalHandle<A> &)> client_lost{};
-  /// Runs when a goal that `goal` took will not be accepted after all: its client could not be told.
-  /// Optional.
-  std::function<void(const GoalId &)> discarded{};
+  std::function<void(ServerGoalHandle<A> &)> on_client_lost{};
+  /// Runs when a goal that `handle_goal` accepted will not be accepted after all: its client could not be
+  /// told. Optional.
+  std::function<void(const GoalUUID &)> on_goal_discarded{};
   /// Fills in a result that the server gives by itself: for a goal that it does not know
   /// (GoalStatus::unknown) or that ended without a result that can be sent. Any thread; must not throw.
   /// Optional: it is empty then.
-  std::function<void(GoalStatus, typename A::Result &)> missing_result{};
+  std::function<void(GoalStatus, typename A::Result &)> fill_missing_result{};
 };
 
 namespace detail {
-class ActionServerCore;
+class ActionServerImpl;
 
 /// What the server needs to know of an action's types; one constant table per action.
 struct ActionServerOps {
   const rosidl_action_type_support_t * (*type_support)();
   std::shared_ptr<void> (*make_goal_request)();
-  GoalId (*goal_id_of_goal_request)(const void *);
+  GoalUUID (*goal_id_of_goal_request)(const void *);
   std::shared_ptr<void> (*make_goal_response)(bool accepted, std::int32_t sec, std::uint32_t nanosec);
   std::shared_ptr<void> (*make_result_request)();
-  GoalId (*goal_id_of_result_request)(const void *);
+  GoalUUID (*goal_id_of_result_request)(const void *);
   std::shared_ptr<void> (*make_result_response)(GoalStatus);
-  std::shared_ptr<GoalHandleBase> (*make_handle)(std::shared_ptr<GoalCore>,
-                                                 std::shared_ptr<void> goal_request);
+  std::shared_ptr<ServerGoalHandleBase> (*make_handle)(std::shared_ptr<ServerGoalImpl>,
+                                                       std::shared_ptr<void> goal_request);
 };
 
 struct ErasedActionServer {
   const ActionServerOps * ops;
-  std::function<tl::expected<void, std::string>(const GoalId &, const void * goal_request)> goal{};
-  std::function<void(std::shared_ptr<GoalHandleBase>)> accepted{};
-  std::function<bool(GoalHandleBase &)> cancel{};
-  std::function<void(GoalHandleBase &)> canceling{};
-  std::function<void(GoalHandleBase &)> client_lost{};
-  std::function<void(const GoalId &)> discarded{};
+  std::function<tl::expected<void, std::string>(const GoalUUID &, const void * goal_request)> goal{};
+  std::function<void(std::shared_ptr<ServerGoalHandleBase>)> accepted{};
+  std::function<bool(ServerGoalHandleBase &)> cancel{};
+  std::function<void(ServerGoalHandleBase &)> canceling{};
+  std::function<void(ServerGoalHandleBase &)> client_lost{};
+  std::function<void(const GoalUUID &)> discarded{};
   std::function<void(GoalStatus, void * result_response)> missing_result{};
 };
 
@@ -107,14 +107,17 @@ struct ActionServerOpsOf {
   static constexpr ActionServerOps ops{
       &rosidl_typesupport_cpp::get_action_type_support_handle<A>,
       []() -> std::shared_ptr<void> { return std::make_shared<GoalRequest>(); },
-      [](const void * request) { return GoalId{static_cast<const GoalRequest *>(request)->goal_id.uuid}; },
+      [](const void * request) { return GoalUUID{static_cast<const GoalRequest *>(request)->goal_id.uuid}; },
       &goal_response,
       []() -> std::shared_ptr<void> { return std::make_shared<ResultRequest>(); },
-      [](const void * request) { return GoalId{static_cast<const ResultRequest *>(request)->goal_id.uuid}; },
+      [](const void * request) {
+        return GoalUUID{static_cast<const ResultRequest *>(request)->goal_id.uuid};
+      },
       &result_response,
-      [](std::shared_ptr<GoalCore> core, std::shared_ptr<void> request) -> std::shared_ptr<GoalHandleBase> {
-        return std::make_shared<GoalHandle<A>>(std::move(core),
-                                               std::static_pointer_cast<const GoalRequest>(request));
+      [](std::shared_ptr<ServerGoalImpl> impl,
+         std::shared_ptr<void> request) -> std::shared_ptr<ServerGoalHandleBase> {
+        return std::make_shared<ServerGoalHandle<A>>(std::move(impl),
+                                                     std::static_pointer_cast<const GoalRequest>(request));
       }};
 };
 }  // namespace detail
@@ -128,52 +131,54 @@ class ActionServerBase {
   ActionServerBase & operator=(const ActionServerBase &) = delete;
 
   /// The resolved name, "/robot/move_l".
-  const std::string & action_name() const noexcept;
+  const std::string & get_action_name() const noexcept;
   /// Goals without a result.
   std::size_t active_goal_count() const;
 
  protected:
-  explicit ActionServerBase(std::shared_ptr<detail::ActionServerCore> core);
+  explicit ActionServerBase(std::shared_ptr<detail::ActionServerImpl> impl);
 
  private:
-  std::shared_ptr<detail::ActionServerCore> core_;
+  std::shared_ptr<detail::ActionServerImpl> impl_;
 };
 
 /// From Node::create_action_server. Results are cached for ActionServerOptions::result_timeout after a goal's
-/// end. When the context shuts down, what is active after its on_pre_shutdown callbacks is aborted.
+/// end. When the context shuts down, what is active after its add_pre_shutdown_callback callbacks is aborted.
 template <typename A>
 class ActionServer : public ActionServerBase {
  public:
   using SharedPtr = std::shared_ptr<ActionServer<A>>;
 
-  explicit ActionServer(std::shared_ptr<detail::ActionServerCore> core) : ActionServerBase(std::move(core)) {}
+  explicit ActionServer(std::shared_ptr<detail::ActionServerImpl> impl) : ActionServerBase(std::move(impl)) {}
 
-  static detail::ErasedActionServer erase(ActionHandlers<A> handlers)
+  static detail::ErasedActionServer erase(ActionServerCallbacks<A> handlers)
   {
     using GoalRequest = typename A::Impl::SendGoalService::Request;
-    using Handle = GoalHandle<A>;
+    using Handle = ServerGoalHandle<A>;
     detail::ErasedActionServer erased{.ops = &detail::ActionServerOpsOf<A>::ops};
-    if (handlers.goal) {
-      erased.goal = [f = std::move(handlers.goal)](const GoalId & id, const void * request) {
+    if (handlers.handle_goal) {
+      erased.goal = [f = std::move(handlers.handle_goal)](const GoalUUID & id, const void * request) {
         return f(id, static_cast<const GoalRequest *>(request)->goal);
       };
     }
-    if (handlers.accepted) {
-      erased.accepted = [f = std::move(handlers.accepted)](std::shared_ptr<GoalHandleBase> handle) {
-        f(std::static_pointer_cast<Handle>(std::move(handle)));
-      };
+    if (handlers.handle_accepted) {
+      erased.accepted =
+          [f = std::move(handlers.handle_accepted)](std::shared_ptr<ServerGoalHandleBase> handle) {
+            f(std::static_pointer_cast<Handle>(std::move(handle)));
+          };
     }
-    if (handlers.cancel) {
-      erased.cancel = [f = std::move(handlers.cancel)](GoalHandleBase & handle) {
+    if (handlers.handle_cancel) {
+      erased.cancel = [f = std::move(handlers.handle_cancel)](ServerGoalHandleBase & handle) {
         return f(static_cast<Handle &>(handle));
       };
     }
-    erased.canceling = erase_handle(std::move(handlers.canceling));
-    erased.client_lost = erase_handle(std::move(handlers.client_lost));
-    erased.discarded = std::move(handlers.discarded);
-    if (handlers.missing_result) {
+    erased.canceling = erase_handle(std::move(handlers.on_canceling));
+    erased.client_lost = erase_handle(std::move(handlers.on_client_lost));
+    erased.discarded = std::move(handlers.on_goal_discarded);
+    if (handlers.fill_missing_result) {
       using ResultResponse = typename A::Impl::GetResultService::Response;
-      erased.missing_result = [f = std::move(handlers.missing_result)](GoalStatus status, void * response) {
+      erased.missing_result = [f = std::move(handlers.fill_missing_result)](GoalStatus status,
+                                                                            void * response) {
         f(status, static_cast<ResultResponse *>(response)->result);
       };
     }
@@ -181,12 +186,15 @@ class ActionServer : public ActionServerBase {
   }
 
  private:
-  static std::function<void(GoalHandleBase &)> erase_handle(std::function<void(GoalHandle<A> &)> handler)
+  static std::function<void(ServerGoalHandleBase &)> erase_handle(
+      std::function<void(ServerGoalHandle<A> &)> handler)
   {
     if (!handler) {
       return {};
     }
-    return [f = std::move(handler)](GoalHandleBase & handle) { f(static_cast<GoalHandle<A> &>(handle)); };
+    return [f = std::move(handler)](ServerGoalHandleBase & handle) {
+      f(static_cast<ServerGoalHandle<A> &>(handle));
+    };
   }
 };
 

@@ -11,7 +11,7 @@
 
 namespace rcl_cxx {
 namespace detail {
-class ClientCore;
+class ClientImpl;
 
 struct ErasedClient {
   const rosidl_service_type_support_t * type_support;
@@ -26,7 +26,7 @@ class ClientBase {
   ClientBase(const ClientBase &) = delete;
   ClientBase & operator=(const ClientBase &) = delete;
 
-  const std::string & service_name() const noexcept;
+  const std::string & get_service_name() const noexcept;
   bool service_is_ready() const;
   /// False on timeout or shutdown.
   bool wait_for_service(std::chrono::nanoseconds timeout) const;
@@ -36,13 +36,13 @@ class ClientBase {
  protected:
   using OnResponse = std::function<void(const std::shared_ptr<void> &)>;
 
-  explicit ClientBase(std::shared_ptr<detail::ClientCore> core);
+  explicit ClientBase(std::shared_ptr<detail::ClientImpl> impl);
   std::int64_t send(const void * request, OnResponse on_response);
   tl::expected<std::shared_ptr<void>, std::string> call_and_wait(const void * request,
                                                                  std::chrono::nanoseconds timeout);
 
  private:
-  std::shared_ptr<detail::ClientCore> core_;
+  std::shared_ptr<detail::ClientImpl> impl_;
 };
 
 /// From Node::create_client. Thread-safe. Answers arrive through the executor that the node was added to.
@@ -53,10 +53,10 @@ class Client : public ClientBase {
   using Request = typename S::Request;
   using Response = typename S::Response;
 
-  explicit Client(std::shared_ptr<detail::ClientCore> core) : ClientBase(std::move(core)) {}
+  explicit Client(std::shared_ptr<detail::ClientImpl> impl) : ClientBase(std::move(impl)) {}
 
   /// `callback` runs in the executor's thread. @throws Error if the request cannot be sent.
-  void async_call(const Request & request, std::function<void(const Response &)> callback)
+  void async_send_request(const Request & request, std::function<void(const Response &)> callback)
   {
     send(&request, [callback = std::move(callback)](const std::shared_ptr<void> & response) {
       callback(*static_cast<const Response *>(response.get()));
@@ -64,7 +64,7 @@ class Client : public ClientBase {
   }
 
   /// @throws Error if the request cannot be sent.
-  std::future<Response> async_call(const Request & request)
+  std::future<Response> async_send_request(const Request & request)
   {
     auto promise = std::make_shared<std::promise<Response>>();
     auto future = promise->get_future();

@@ -15,7 +15,7 @@ class Node;
 
 namespace detail {
 class EventQueue;
-class NodeCore;
+class NodeImpl;
 }  // namespace detail
 
 /// Runs the callbacks of its nodes, one at a time, in the thread that spins. Event-driven: the middleware
@@ -37,16 +37,16 @@ class Executor {
   void add_node(const std::shared_ptr<Node> & node);
   void remove_node(const Node & node);
 
-  /// Until stop() or the end of the context's shutdown. @throws Error if a thread is spinning already.
+  /// Until cancel() or the end of the context's shutdown. @throws Error if a thread is spinning already.
   void spin();
   void spin_for(std::chrono::nanoseconds duration);
   /// Until `condition` holds (looked at after every callback, and every 10 ms), or `timeout`. Returns whether
   /// it holds at the end.
   bool spin_until(const std::function<bool()> & condition, std::chrono::nanoseconds timeout);
 
-  /// Ends a spin after the callback that is running. Without one, the next spin returns at once: a stop is
+  /// Ends a spin after the callback that is running. Without one, the next spin returns at once: a cancel is
   /// not lost to a thread that has yet to start spinning.
-  void stop();
+  void cancel();
 
   /// Runs `task` in the spinning thread, after what is queued already. From any thread.
   void post(std::function<void()> task);
@@ -61,7 +61,7 @@ class Executor {
   std::shared_ptr<detail::EventQueue> queue_;
   std::size_t end_callback_ = 0;
   std::mutex nodes_mutex_;
-  std::vector<std::weak_ptr<detail::NodeCore>> nodes_;
+  std::vector<std::weak_ptr<detail::NodeImpl>> nodes_;
   std::atomic<bool> spinning_{false};
 };
 

@@ -24,16 +24,16 @@ struct LogLocation {
 /// /rosout only for a node's logger and its children. Cheap to copy, thread-safe. Use through the RCL_CXX_…
 /// macros:
 ///
-///     RCL_CXX_INFO(node->logger(), "connected to {} in {:.1f} s", host, seconds);
+///     RCL_CXX_INFO(node->get_logger(), "connected to {} in {:.1f} s", host, seconds);
 ///     RCL_CXX_WARN_THROTTLE(logger, std::chrono::seconds(1), "{} packages lost", n);
 class Logger {
  public:
   explicit Logger(std::string name);
 
-  const std::string & name() const noexcept { return *name_; }
+  const std::string & get_name() const noexcept { return *name_; }
 
   /// "<name>.<suffix>"; keeps appearing in the node's /rosout while any copy of it lives.
-  Logger child(std::string_view suffix) const;
+  Logger get_child(std::string_view suffix) const;
 
   bool is_enabled(LogLevel level) const noexcept;
   void set_level(LogLevel level) const;

@@ -25,7 +25,7 @@
 
 namespace rcl_cxx {
 namespace detail {
-class NodeCore;
+class NodeImpl;
 class Parameters;
 }  // namespace detail
 
@@ -60,11 +60,11 @@ class Node {
   Node(const Node &) = delete;
   Node & operator=(const Node &) = delete;
 
-  const std::string & name() const noexcept;
-  const std::string & node_namespace() const noexcept;  ///< "/", "/robot"
-  const std::string & fully_qualified_name() const noexcept;
-  const Context::SharedPtr & context() const noexcept;
-  const Logger & logger() const noexcept;
+  const std::string & get_name() const noexcept;
+  const std::string & get_namespace() const noexcept;  ///< "/", "/robot"
+  const std::string & get_fully_qualified_name() const noexcept;
+  const Context::SharedPtr & get_context() const noexcept;
+  const Logger & get_logger() const noexcept;
 
   /// ROS time: the system's, or /clock's if use_sim_time is set.
   builtin_interfaces::msg::Time now() const;
@@ -107,12 +107,12 @@ class Node {
   }
 
   /// First call one period from now. @throws Error for a period <= 0.
-  std::shared_ptr<Timer> create_timer(std::chrono::nanoseconds period, std::function<void()> callback);
+  std::shared_ptr<Timer> create_wall_timer(std::chrono::nanoseconds period, std::function<void()> callback);
 
-  /// @throws Error without handlers.accepted
+  /// @throws Error without handlers.handle_accepted
   template <typename A>
   std::shared_ptr<ActionServer<A>> create_action_server(const std::string & action,
-                                                        ActionHandlers<A> handlers,
+                                                        ActionServerCallbacks<A> handlers,
                                                         const ActionServerOptions & options = {})
   {
     return std::make_shared<ActionServer<A>>(
@@ -132,18 +132,18 @@ class Node {
   /// @throws ParameterError if declared already, or a value does not suit type, range or a callback.
   template <typename T>
   T declare_parameter(const std::string & parameter, const T & default_value,
-                      const ParameterOptions & options = {})
+                      const ParameterDescriptor & options = {})
   {
-    return declare(parameter, ParameterValue(default_value), options).template get<T>();
+    return declare_parameter(parameter, ParameterValue(default_value), options).template get<T>();
   }
   std::string declare_parameter(const std::string & parameter, const char * default_value,
-                                const ParameterOptions & options = {})
+                                const ParameterDescriptor & options = {})
   {
     return declare_parameter<std::string>(parameter, default_value, options);
   }
   /// The type is that of `default_value`, or with dynamic_typing whatever it gets.
-  ParameterValue declare(const std::string & parameter, const ParameterValue & default_value,
-                         const ParameterOptions & options = {});
+  ParameterValue declare_parameter(const std::string & parameter, const ParameterValue & default_value,
+                                   const ParameterDescriptor & options = {});
   /// @throws ParameterError if not declared, or read-only, or statically typed (as rclcpp)
   void undeclare_parameter(const std::string & parameter);
 
@@ -160,14 +160,14 @@ class Node {
   std::vector<Parameter> get_parameters() const;
 
   /// The reason of a refusal names the parameter and what it may be.
-  ParameterResult set_parameter(const std::string & parameter, const ParameterValue & value);
+  SetParametersResult set_parameter(const std::string & parameter, const ParameterValue & value);
   /// All or nothing.
-  ParameterResult set_parameters_atomically(const std::vector<Parameter> & parameters);
+  SetParametersResult set_parameters_atomically(const std::vector<Parameter> & parameters);
 
   /// May refuse a change (also a first value at declaration). Asked in order, latest registered first.
-  [[nodiscard]] ParameterCallbackHandle on_set_parameters(OnSetParameters callback);
+  [[nodiscard]] ParameterCallbackHandle add_on_set_parameters_callback(OnSetParametersCallback callback);
   /// Told after a change took effect.
-  [[nodiscard]] ParameterCallbackHandle on_parameters_set(OnParametersSet callback);
+  [[nodiscard]] ParameterCallbackHandle add_post_set_parameters_callback(PostSetParametersCallback callback);
 
   /// Graph queries; names are resolved first.
   std::size_t count_publishers(const std::string & topic) const;
@@ -185,28 +185,28 @@ class Node {
                             std::chrono::nanoseconds timeout) const;
   bool wait_for_node(const std::string & fully_qualified_name, std::chrono::nanoseconds timeout) const;
 
-  const std::shared_ptr<detail::NodeCore> & core() const noexcept { return core_; }
+  const std::shared_ptr<detail::NodeImpl> & impl() const noexcept { return impl_; }
 
  private:
-  std::shared_ptr<detail::PublisherCore> make_publisher(const rosidl_message_type_support_t *,
+  std::shared_ptr<detail::PublisherImpl> make_publisher(const rosidl_message_type_support_t *,
                                                         const std::string & topic, const QoS &);
-  std::shared_ptr<detail::SubscriptionCore> make_subscription(detail::ErasedSubscription,
+  std::shared_ptr<detail::SubscriptionImpl> make_subscription(detail::ErasedSubscription,
                                                               const std::string & topic, const QoS &);
-  std::shared_ptr<detail::ServiceCore> make_service(detail::ErasedService, const std::string & service,
+  std::shared_ptr<detail::ServiceImpl> make_service(detail::ErasedService, const std::string & service,
                                                     const QoS &);
-  std::shared_ptr<detail::ClientCore> make_client(detail::ErasedClient, const std::string & service,
+  std::shared_ptr<detail::ClientImpl> make_client(detail::ErasedClient, const std::string & service,
                                                   const QoS &);
-  std::shared_ptr<detail::ActionServerCore> make_action_server(detail::ErasedActionServer,
+  std::shared_ptr<detail::ActionServerImpl> make_action_server(detail::ErasedActionServer,
                                                                const std::string & action,
                                                                const ActionServerOptions &);
-  std::shared_ptr<detail::ActionClientCore> make_action_client(const detail::ActionClientOps *,
+  std::shared_ptr<detail::ActionClientImpl> make_action_client(const detail::ActionClientOps *,
                                                                const std::string & action,
                                                                const ActionClientOptions &);
 
   struct Standard;
 
   Context::SharedPtr context_;
-  std::shared_ptr<detail::NodeCore> core_;
+  std::shared_ptr<detail::NodeImpl> impl_;
   std::shared_ptr<detail::Parameters> parameters_;
   std::unique_ptr<Standard> standard_;
 };

@@ -18,21 +18,22 @@ struct Parameter {
   bool operator==(const Parameter &) const = default;
 };
 
-/// from <= value <= to; with a step > 0, (value - from) is a whole multiple of it, or value is `to`.
+/// from_value <= value <= to_value; with a step > 0, (value - from_value) is a whole multiple of it, or value
+/// is `to_value`.
 struct FloatingPointRange {
-  double from;
-  double to;
+  double from_value;
+  double to_value;
   double step = 0.0;
 };
 
 struct IntegerRange {
-  std::int64_t from;
-  std::int64_t to;
+  std::int64_t from_value;
+  std::int64_t to_value;
   std::uint64_t step = 0;
 };
 
 /// What rcl_interfaces/msg/ParameterDescriptor says about a parameter.
-struct ParameterOptions {
+struct ParameterDescriptor {
   std::string description{};
   std::string additional_constraints{};
   bool read_only = false;
@@ -45,12 +46,12 @@ struct ParameterOptions {
 };
 
 /// Nothing, or the reason of a refusal.
-using ParameterResult = tl::expected<void, std::string>;
+using SetParametersResult = tl::expected<void, std::string>;
 
 /// Looks at a set of parameters before any of them is set; a refusal refuses all of them, with its reason.
-using OnSetParameters = std::function<ParameterResult(const std::vector<Parameter> &)>;
+using OnSetParametersCallback = std::function<SetParametersResult(const std::vector<Parameter> &)>;
 /// Told of parameters that have been set.
-using OnParametersSet = std::function<void(const std::vector<Parameter> &)>;
+using PostSetParametersCallback = std::function<void(const std::vector<Parameter> &)>;
 
 /// Keeps a parameter callback registered. Destroying it unregisters.
 using ParameterCallbackHandle = std::shared_ptr<void>;

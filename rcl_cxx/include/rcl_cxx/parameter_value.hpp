@@ -16,12 +16,12 @@ enum class ParameterType : std::uint8_t {
   not_set = 0,
   boolean = 1,
   integer = 2,
-  real = 3,
+  floating_point = 3,
   string = 4,
   byte_array = 5,
   boolean_array = 6,
   integer_array = 7,
-  real_array = 8,
+  floating_point_array = 8,
   string_array = 9
 };
 
@@ -63,7 +63,7 @@ class ParameterValue {
   {
   }
 
-  ParameterType type() const noexcept { return static_cast<ParameterType>(value_.index()); }
+  ParameterType get_type() const noexcept { return static_cast<ParameterType>(value_.index()); }
   const Variant & variant() const noexcept { return value_; }
   /// For messages: `12`, `'text'`, `[1.0, 2.0]`, `not set`.
   std::string to_string() const;
@@ -123,7 +123,7 @@ constexpr ParameterType parameter_type_of()
   } else if constexpr (std::is_integral_v<T>) {
     return ParameterType::integer;
   } else if constexpr (std::is_floating_point_v<T>) {
-    return ParameterType::real;
+    return ParameterType::floating_point;
   } else if constexpr (std::is_same_v<T, std::string>) {
     return ParameterType::string;
   } else if constexpr (std::is_same_v<T, std::vector<std::uint8_t>>) {
@@ -133,7 +133,7 @@ constexpr ParameterType parameter_type_of()
   } else if constexpr (std::is_same_v<T, std::vector<int>> || std::is_same_v<T, std::vector<std::int64_t>>) {
     return ParameterType::integer_array;
   } else if constexpr (std::is_same_v<T, std::vector<float>> || std::is_same_v<T, std::vector<double>>) {
-    return ParameterType::real_array;
+    return ParameterType::floating_point_array;
   } else {
     static_assert(std::is_same_v<T, std::vector<std::string>>, "not a type that a ROS parameter can have");
     return ParameterType::string_array;
@@ -146,7 +146,7 @@ T ParameterValue::get() const
   constexpr ParameterType wanted = parameter_type_of<T>();
   if constexpr (wanted == ParameterType::integer) {
     return narrow<T>(as<std::int64_t>(wanted));
-  } else if constexpr (wanted == ParameterType::real) {
+  } else if constexpr (wanted == ParameterType::floating_point) {
     return static_cast<T>(as<double>(wanted));
   } else if constexpr (std::is_same_v<T, std::vector<int>>) {
     std::vector<int> values;

@@ -7,7 +7,7 @@
 
 namespace rcl_cxx {
 namespace detail {
-class PublisherCore;
+class PublisherImpl;
 }
 
 class PublisherBase {
@@ -17,16 +17,16 @@ class PublisherBase {
   PublisherBase & operator=(const PublisherBase &) = delete;
 
   /// The resolved topic, "/robot/joint_states".
-  const std::string & topic_name() const noexcept;
+  const std::string & get_topic_name() const noexcept;
   /// Matched subscriptions.
-  std::size_t subscription_count() const;
+  std::size_t get_subscription_count() const;
 
  protected:
-  explicit PublisherBase(std::shared_ptr<detail::PublisherCore> core);
+  explicit PublisherBase(std::shared_ptr<detail::PublisherImpl> impl);
   bool publish_message(const void * message) noexcept;
 
  private:
-  std::shared_ptr<detail::PublisherCore> core_;
+  std::shared_ptr<detail::PublisherImpl> impl_;
 };
 
 /// From Node::create_publisher. Thread-safe; may outlive the node object, not its context's shutdown
@@ -36,7 +36,7 @@ class Publisher : public PublisherBase {
  public:
   using SharedPtr = std::shared_ptr<Publisher<M>>;
 
-  explicit Publisher(std::shared_ptr<detail::PublisherCore> core) : PublisherBase(std::move(core)) {}
+  explicit Publisher(std::shared_ptr<detail::PublisherImpl> impl) : PublisherBase(std::move(impl)) {}
 
   /// Serialises and sends in the caller's thread; this layer allocates nothing. Returns false if the message
   /// was not published. A failure is logged, at most once a second for each publisher; it is no reason to end

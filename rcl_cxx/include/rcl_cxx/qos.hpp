@@ -8,17 +8,17 @@
 #include <vector>
 
 namespace rcl_cxx {
-enum class Reliability { reliable, best_effort, system_default };
-enum class Durability { is_volatile, transient_local, system_default };
-enum class History { keep_last, keep_all, system_default };
+enum class ReliabilityPolicy { reliable, best_effort, system_default };
+enum class DurabilityPolicy { is_volatile, transient_local, system_default };
+enum class HistoryPolicy { keep_last, keep_all, system_default };
 
 /// Quality of service of a topic or service, the part of rmw_qos_profile_t that drivers use. A value type:
-/// `QoS::reliable(10)`, `QoS::sensor_data().with_depth(1)`.
+/// `QoS::reliable(10)`, `QoS::sensor_data().keep_last(1)`.
 struct QoS {
-  History history = History::keep_last;
+  HistoryPolicy history = HistoryPolicy::keep_last;
   std::size_t depth = 10;
-  Reliability reliability = Reliability::reliable;
-  Durability durability = Durability::is_volatile;
+  ReliabilityPolicy reliability = ReliabilityPolicy::reliable;
+  DurabilityPolicy durability = DurabilityPolicy::is_volatile;
   /// Longest time between two messages; unset: no deadline.
   std::optional<std::chrono::nanoseconds> deadline;
   /// Age at which a message is no longer delivered; unset: never.
@@ -30,7 +30,7 @@ struct QoS {
   /// rmw_qos_profile_sensor_data: best effort, keep last 5.
   static QoS sensor_data();
   /// Reliable and transient local: a late subscriber gets the last `depth` messages.
-  static QoS latched(std::size_t depth = 1);
+  static QoS transient_local(std::size_t depth = 1);
   /// rmw_qos_profile_services_default.
   static QoS services_default();
   /// rmw_qos_profile_parameters: reliable, keep last 1000.
@@ -44,7 +44,7 @@ struct QoS {
   static QoS from_name(std::string_view name);
   static const std::vector<std::string> & names();
 
-  QoS with_depth(std::size_t new_depth) const;
+  QoS keep_last(std::size_t new_depth) const;
 
   bool operator==(const QoS &) const = default;
 };

@@ -7,7 +7,7 @@
 
 namespace rcl_cxx {
 namespace detail {
-class ServiceCore;
+class ServiceImpl;
 
 struct ErasedService {
   const rosidl_service_type_support_t * type_support;
@@ -24,13 +24,13 @@ class ServiceBase {
   ServiceBase(const ServiceBase &) = delete;
   ServiceBase & operator=(const ServiceBase &) = delete;
 
-  const std::string & service_name() const noexcept;
+  const std::string & get_service_name() const noexcept;
 
  protected:
-  explicit ServiceBase(std::shared_ptr<detail::ServiceCore> core);
+  explicit ServiceBase(std::shared_ptr<detail::ServiceImpl> impl);
 
  private:
-  std::shared_ptr<detail::ServiceCore> core_;
+  std::shared_ptr<detail::ServiceImpl> impl_;
 };
 
 /// From Node::create_service. The callback fills the response, in the executor's thread. If it throws, the
@@ -42,7 +42,7 @@ class Service : public ServiceBase {
   using Request = typename S::Request;
   using Response = typename S::Response;
 
-  explicit Service(std::shared_ptr<detail::ServiceCore> core) : ServiceBase(std::move(core)) {}
+  explicit Service(std::shared_ptr<detail::ServiceImpl> impl) : ServiceBase(std::move(impl)) {}
 
   template <typename F>
   static detail::ErasedService erase(F && callback)

@@ -10,7 +10,7 @@
 
 namespace rcl_cxx {
 namespace detail {
-class SubscriptionCore;
+class SubscriptionImpl;
 
 struct ErasedSubscription {
   const rosidl_message_type_support_t * type_support;
@@ -27,15 +27,15 @@ class SubscriptionBase {
   SubscriptionBase(const SubscriptionBase &) = delete;
   SubscriptionBase & operator=(const SubscriptionBase &) = delete;
 
-  const std::string & topic_name() const noexcept;
+  const std::string & get_topic_name() const noexcept;
   /// Matched publishers.
-  std::size_t publisher_count() const;
+  std::size_t get_publisher_count() const;
 
  protected:
-  explicit SubscriptionBase(std::shared_ptr<detail::SubscriptionCore> core);
+  explicit SubscriptionBase(std::shared_ptr<detail::SubscriptionImpl> impl);
 
  private:
-  std::shared_ptr<detail::SubscriptionCore> core_;
+  std::shared_ptr<detail::SubscriptionImpl> impl_;
 };
 
 /// From Node::create_subscription. The callback takes `const M &` (valid during the call; the message is
@@ -46,7 +46,7 @@ class Subscription : public SubscriptionBase {
  public:
   using SharedPtr = std::shared_ptr<Subscription<M>>;
 
-  explicit Subscription(std::shared_ptr<detail::SubscriptionCore> core) : SubscriptionBase(std::move(core)) {}
+  explicit Subscription(std::shared_ptr<detail::SubscriptionImpl> impl) : SubscriptionBase(std::move(impl)) {}
 
   template <typename F>
   static detail::ErasedSubscription erase(F && callback)

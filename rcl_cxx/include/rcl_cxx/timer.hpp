@@ -5,16 +5,16 @@
 
 namespace rcl_cxx {
 namespace detail {
-class TimerCore;
+class TimerImpl;
 }
 
-/// From Node::create_timer. Steady clock; due times are start + n * period, so they do not drift; periods
-/// that were missed altogether are skipped. Runs in the executor's thread. Thread-safe.
+/// From Node::create_wall_timer. Steady clock; due times are start + n * period, so they do not drift;
+/// periods that were missed altogether are skipped. Runs in the executor's thread. Thread-safe.
 class Timer {
  public:
   using SharedPtr = std::shared_ptr<Timer>;
 
-  explicit Timer(std::shared_ptr<detail::TimerCore> core);
+  explicit Timer(std::shared_ptr<detail::TimerImpl> impl);
   /// No callback runs once this has returned (see SubscriptionBase).
   ~Timer();
   Timer(const Timer &) = delete;
@@ -30,7 +30,7 @@ class Timer {
   void set_period(std::chrono::nanoseconds period);
 
  private:
-  std::shared_ptr<detail::TimerCore> core_;
+  std::shared_ptr<detail::TimerImpl> impl_;
 };
 
 }  // namespace rcl_cxx

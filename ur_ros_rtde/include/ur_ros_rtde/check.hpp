@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "ur_ros_rtde_robot/state/sample.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
-#include "ur_ros_rtde_robot/state/sample.hpp"
 
 namespace ur_ros_rtde {
 

@@ -41,7 +41,7 @@ class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
   using Limits = DashboardLimits;
   using Run = DashboardGoalRun<A>;
 
-  ~DashboardCommand() override { this->end_service(); }
+  ~DashboardCommand() override { this->stop_server(); }
 
   virtual Request request(const Goal &) const { return {}; }
   virtual Limits limits() const { return {}; }
@@ -51,17 +51,17 @@ class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
   virtual Outcome run(const Goal & goal, Run & run);
 
   void start_action_server(DashboardHost & host, const std::string & name) override;
-  void stop_action_server() override { this->end_service(); }
+  void stop_action_server() override { this->stop_server(); }
 
  private:
-  using Handle = rcl_cxx::GoalHandle<A>;
-  tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id, const Goal & goal) override;
-  void carry_out(Handle & handle, GoalBook::Ticket & ticket) override;
-  void give_up(Handle & handle, const Outcome & outcome) override;
-  void conclude(Handle & handle, Run & run, const Outcome & outcome);
+  using Handle = rcl_cxx::ServerGoalHandle<A>;
+  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
+  void execute(Handle & handle, GoalContext & context) override;
+  void abort_unstarted(Handle & handle, const Outcome & outcome) override;
+  void send_result(Handle & handle, Run & run, const Outcome & outcome);
 
   DashboardLink * link_ = nullptr;
-  std::unique_ptr<GoalBook> book_;
+  std::unique_ptr<ActiveGoals> goals_;
 };
 
 template <typename A>
@@ -81,9 +81,9 @@ Outcome DashboardCommand<A>::run(const Goal & goal, Run & run)
 {
   const Request wanted = request(goal);
   if constexpr (requires { goal.timeout; }) {
-    return run.carry_out(wanted, goal.timeout);
+    return run.execute(wanted, goal.timeout);
   } else {
-    return run.carry_out(wanted, wanted.timeout);
+    return run.execute(wanted, wanted.timeout);
   }
 }
 
@@ -91,47 +91,47 @@ template <typename A>
 void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::string & name)
 {
   link_ = &host.link();
-  book_ = std::make_unique<GoalBook>(host, host.node().resolve_service_name(name));
-  this->serve(host.node(), name, *book_, false);
+  goals_ = std::make_unique<ActiveGoals>(host, host.node().resolve_service_name(name));
+  this->start_server(host.node(), name, *goals_, false);
 }
 
 template <typename A>
-tl::expected<void, std::string> DashboardCommand<A>::admit(const rcl_cxx::GoalId & id, const Goal & goal)
+tl::expected<void, std::string> DashboardCommand<A>::accept(const rcl_cxx::GoalUUID & id, const Goal & goal)
 {
-  return book_->admit(id, [&](GoalBook::Ticket &) -> Status {
+  return goals_->accept(id, [&](GoalContext &) -> Status {
     Check result;
     check(goal, result);
     if (!result.ok()) {
       return tl::unexpected(*result.error());
     }
     const Status ready = dashboard_ready(*link_);
-    return ready ? supported(book_->action(), limits(), *link_) : ready;
+    return ready ? supported(goals_->action(), limits(), *link_) : ready;
   });
 }
 
 template <typename A>
-void DashboardCommand<A>::carry_out(Handle & handle, GoalBook::Ticket & ticket)
+void DashboardCommand<A>::execute(Handle & handle, GoalContext & context)
 {
-  Run goal_run(*link_, ticket.interrupt, [&]([[maybe_unused]] const std::string & state) {
+  Run goal_run(*link_, context.stop_request, [&]([[maybe_unused]] const std::string & state) {
     if constexpr (requires(Feedback & feedback) { feedback.state; }) {
       Feedback feedback;
       feedback.state = state;
       handle.publish_feedback(feedback);
     }
   });
-  const Outcome outcome = book_->guarded(*ticket.interrupt, [&] { return run(handle.goal(), goal_run); });
-  conclude(handle, goal_run, outcome);
+  const Outcome outcome = guarded(*context.stop_request, [&] { return run(handle.get_goal(), goal_run); });
+  send_result(handle, goal_run, outcome);
 }
 
 template <typename A>
-void DashboardCommand<A>::give_up(Handle & handle, const Outcome & outcome)
+void DashboardCommand<A>::abort_unstarted(Handle & handle, const Outcome & outcome)
 {
-  Run run(*link_, std::make_shared<Interrupt>(), {});
-  conclude(handle, run, outcome);
+  Run run(*link_, std::make_shared<StopRequest>(), {});
+  send_result(handle, run, outcome);
 }
 
 template <typename A>
-void DashboardCommand<A>::conclude(Handle & handle, Run & run, const Outcome & outcome)
+void DashboardCommand<A>::send_result(Handle & handle, Run & run, const Outcome & outcome)
 {
   if constexpr (requires { run.result().answer; }) {
     run.result().answer = run.answer();

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
-#include "ur_ros_rtde/detail/interrupt.hpp"
+#include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/outcome.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
 
 namespace ur_ros_rtde {
 
@@ -56,7 +56,7 @@ class DashboardRun {
  public:
   using PublishState = std::function<void(const std::string &)>;
 
-  DashboardRun(DashboardLink & link, std::shared_ptr<Interrupt> interrupt, PublishState publish);
+  DashboardRun(DashboardLink & link, std::shared_ptr<StopRequest> stop_request, PublishState publish);
 
   /// Sends a line to the dashboard server and returns its answer, which has to come within 2.5 s. Throws
   /// RobotError (link_lost).
@@ -73,12 +73,12 @@ class DashboardRun {
   /// Sends a line on a connection of its own; the answer, whatever it is, is the result.
   Outcome raw(const std::string & line, double timeout = 60.0);
   /// command() or query(), as the request is.
-  Outcome carry_out(const DashboardRequest & request, double timeout);
+  Outcome execute(const DashboardRequest & request, double timeout);
 
   /// Why the goal has to end now, if it has to.
-  std::optional<Interruption> interruption() const { return interrupt_->requested(); }
+  std::optional<StopReason> stop_reason() const { return stop_request_->reason(); }
   /// Returns early, with the reason, when the goal is to end.
-  std::optional<Interruption> sleep_for(std::chrono::nanoseconds duration);
+  std::optional<StopReason> sleep_for(std::chrono::nanoseconds duration);
 
   /// The last answer to a command or query, for the result.
   const std::string & answer() const { return answer_; }
@@ -89,7 +89,7 @@ class DashboardRun {
   Outcome until(const Effect & effect, Clock::time_point deadline, double timeout);
 
   DashboardLink & link_;
-  std::shared_ptr<Interrupt> interrupt_;
+  std::shared_ptr<StopRequest> stop_request_;
   PublishState publish_;
   std::string answer_;
 };

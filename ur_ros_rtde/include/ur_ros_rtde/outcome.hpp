@@ -8,9 +8,9 @@
 namespace ur_ros_rtde {
 
 /// Why a goal has to end early: canceled, preempted, shutdown, a stop of the robot, a lost link, timeout.
-using Interruption = Error;
+using StopReason = Error;
 
-/// How a goal ended. An Error (and so an Interruption) is one, too.
+/// How a goal ended. An Error (and so an StopReason) is one, too.
 class Outcome {
  public:
   Outcome(Error error) : error_(std::move(error)) {}

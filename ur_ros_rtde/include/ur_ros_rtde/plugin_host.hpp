@@ -7,10 +7,10 @@
 #include <string>
 #include <ur_ros_rtde_msgs/msg/goal_refused.hpp>
 
-#include "ur_ros_rtde_trajectory/arm_limits.hpp"
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde/detail/goal_threads.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
+#include "ur_ros_rtde_trajectory/arm_limits.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 
@@ -25,7 +25,7 @@ class PluginHost {
   rcl_cxx::Node & node() { return node_; }
   GoalThreads & goals() { return goals_; }
   /// Tells everyone why a goal was not accepted, on the topic goal_refusals.
-  void publish_refusal(const std::string & action, const rcl_cxx::GoalId & id, const Error & why);
+  void publish_refusal(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why);
 
  private:
   rcl_cxx::Node & node_;
@@ -51,14 +51,14 @@ class CommandHost : public PluginHost {
   ArmLimits limits() const;
 
   /// How a goal that gives way is to decelerate, when the one that takes over says so.
-  void set_takeover_stop(std::optional<StopOptions> options);
-  std::optional<StopOptions> takeover_stop() const;
+  void set_preemption_stop(std::optional<StopOptions> options);
+  std::optional<StopOptions> preemption_stop() const;
 
  private:
   Robot & robot_;
   Options options_;
   mutable std::mutex mutex_;
-  std::optional<StopOptions> takeover_stop_;
+  std::optional<StopOptions> preemption_stop_;
 };
 
 class DashboardHost : public PluginHost {

@@ -9,10 +9,10 @@
 #include <ur_ros_rtde_msgs/msg/motion_feedback.hpp>
 #include <vector>
 
-#include "ur_ros_rtde_robot/connection/interfaces.hpp"
-#include "ur_ros_rtde/detail/interrupt.hpp"
+#include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/outcome.hpp"
 #include "ur_ros_rtde/registers.hpp"
+#include "ur_ros_rtde_robot/connection/interfaces.hpp"
 
 namespace ur_ros_rtde {
 
@@ -23,7 +23,7 @@ namespace ur_ros_rtde {
 /// that reason; the arm is stopped by the base class. Feedback is published from within the waits.
 class Run {
  public:
-  Run(Robot & robot, std::shared_ptr<Interrupt> interrupt, bool moves);
+  Run(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves);
   virtual ~Run() = default;
   Run(const Run &) = delete;
   Run & operator=(const Run &) = delete;
@@ -46,20 +46,20 @@ class Run {
   Vector6 flange_force() const;
 
   /// Why the goal has to end now, if it has to.
-  std::optional<Interruption> interruption() const;
+  std::optional<StopReason> stop_reason() const;
   /// Nothing if the time has passed.
-  [[nodiscard]] std::optional<Interruption> sleep_for(std::chrono::nanoseconds duration);
+  [[nodiscard]] std::optional<StopReason> sleep_for(std::chrono::nanoseconds duration);
   /// Looks at `condition` with each package of the controller (each 10 ms without link). Nothing if it
   /// holds; timeout.
-  [[nodiscard]] std::optional<Interruption> until(const std::function<bool()> & condition,
-                                                  std::chrono::nanoseconds timeout);
+  [[nodiscard]] std::optional<StopReason> until(const std::function<bool()> & condition,
+                                                std::chrono::nanoseconds timeout);
 
   /// The same for what has to come: `otherwise` is the failure when it has not come within `timeout`.
   [[nodiscard]] Outcome expect(const std::function<bool()> & condition, std::chrono::nanoseconds timeout,
                                const std::string & otherwise, ErrorCode code = ErrorCode::rejected_by_robot);
   /// Waits for the first package of the controller after `sample` and puts it there: for loops that follow
   /// the controller's cycle.
-  [[nodiscard]] std::optional<Interruption> next(Sample & sample);
+  [[nodiscard]] std::optional<StopReason> next(Sample & sample);
 
   /// Until the asynchronous move begun by the last call through control() has ended and the arm stands still.
   /// A failure, if the control program did not begin it, or after `limit`.
@@ -76,7 +76,7 @@ class Run {
   /// The last asynchronous move has ended, or nothing of it began within a second.
   bool motion_ended() const;
   /// The arm stands still (by its joints' velocities). Nothing if it does; timeout.
-  [[nodiscard]] std::optional<Interruption> until_standstill(
+  [[nodiscard]] std::optional<StopReason> until_standstill(
       std::chrono::nanoseconds limit = std::chrono::seconds(5));
 
   /// Robot::run_script, ended early when the goal has to end, with feedback meanwhile. Hold Resource::script.
@@ -98,8 +98,8 @@ class Run {
   double progress() const { return progress_; }
   std::chrono::nanoseconds elapsed() const { return std::chrono::steady_clock::now() - begin_; }
   /// Of a command that takes over: which goal had to end, "/move_j, goal 3f0c12ab"; empty if there was none.
-  const std::string & displaced() const { return displaced_; }
-  void set_displaced(std::string goal) { displaced_ = std::move(goal); }
+  const std::string & preempted_goal() const { return preempted_goal_; }
+  void set_preempted_goal(std::string goal) { preempted_goal_ = std::move(goal); }
   void set_plugin(std::string name) { plugin_ = std::move(name); }
 
   /// For the feedback; nothing while no package has come.
@@ -113,15 +113,15 @@ class Run {
   using Distance = std::function<double(const Sample &)>;
   Outcome until_reached(const Distance & distance, double tolerance, const char * unit);
   Outcome until_at(const Distance & distance, double tolerance, const char * unit);
-  std::optional<Interruption> wait(const std::function<bool()> & condition,
-                                   std::chrono::steady_clock::time_point deadline);
+  std::optional<StopReason> wait(const std::function<bool()> & condition,
+                                 std::chrono::steady_clock::time_point deadline);
   void feed_back();
 
   Robot & robot_;
-  std::shared_ptr<Interrupt> interrupt_;
+  std::shared_ptr<StopRequest> stop_request_;
   bool moves_;
   double progress_ = 0.0;
-  std::string displaced_;
+  std::string preempted_goal_;
   std::string plugin_;
   std::string warnings_;
   std::function<void(const std::string &)> log_warning_ = [](const std::string &) {};
@@ -137,8 +137,8 @@ class GoalRun : public Run {
  public:
   using Publish = std::function<void(const typename A::Feedback &)>;
 
-  GoalRun(Robot & robot, std::shared_ptr<Interrupt> interrupt, bool moves, Publish publish)
-      : Run(robot, std::move(interrupt), moves), publish_(std::move(publish))
+  GoalRun(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves, Publish publish)
+      : Run(robot, std::move(stop_request), moves), publish_(std::move(publish))
   {
   }
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ur_ros_rtde_robot/state/conversions.hpp"
 #include "ur_ros_rtde_robot/connection/interfaces.hpp"
+#include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -72,14 +72,15 @@ Status supported(const std::string & action, const DashboardLimits & limits, con
                              availability("a CB3", limits.cb3)));
 }
 
-DashboardRun::DashboardRun(DashboardLink & link, std::shared_ptr<Interrupt> interrupt, PublishState publish)
-    : link_(link), interrupt_(std::move(interrupt)), publish_(std::move(publish))
+DashboardRun::DashboardRun(DashboardLink & link, std::shared_ptr<StopRequest> stop_request,
+                           PublishState publish)
+    : link_(link), stop_request_(std::move(stop_request)), publish_(std::move(publish))
 {
 }
 
 std::string DashboardRun::ask(const std::string & line)
 {
-  auto answer = link_.request(line, answer_limit, interrupt_->token());
+  auto answer = link_.request(line, answer_limit, stop_request_->token());
   if (!answer) {
     throw RobotError(answer.error());
   }
@@ -102,9 +103,9 @@ Outcome DashboardRun::query(const std::string & question)
 Outcome DashboardRun::raw(const std::string & line, double timeout)
 {
   const auto answer = link_.request(line, std::chrono::ceil<std::chrono::milliseconds>(Seconds(timeout)),
-                                    interrupt_->token());
+                                    stop_request_->token());
   if (!answer) {
-    if (auto why = interruption()) {
+    if (auto why = stop_reason()) {
       return *why;
     }
     return Outcome::failure(answer.error().code,
@@ -127,7 +128,7 @@ Outcome DashboardRun::command(const std::string & line, const std::string & repl
   return effect.question.empty() ? Outcome::success(answer_) : until(effect, deadline, timeout);
 }
 
-Outcome DashboardRun::carry_out(const DashboardRequest & request, double timeout)
+Outcome DashboardRun::execute(const DashboardRequest & request, double timeout)
 {
   return request.reply.empty() ? query(request.line)
                                : command(request.line, request.reply, request.effect, timeout);
@@ -171,13 +172,13 @@ Outcome DashboardRun::until(const Effect & effect, Clock::time_point deadline, d
   }
 }
 
-std::optional<Interruption> DashboardRun::sleep_for(std::chrono::nanoseconds duration)
+std::optional<StopReason> DashboardRun::sleep_for(std::chrono::nanoseconds duration)
 {
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
-  wake.wait_for(lock, interrupt_->token(), duration, [] { return false; });
-  return interruption();
+  wake.wait_for(lock, stop_request_->token(), duration, [] { return false; });
+  return stop_reason();
 }
 
 }  // namespace ur_ros_rtde

@@ -38,7 +38,8 @@ Status GoalThreads::can_start_locked() const
   return {};
 }
 
-Status GoalThreads::start(std::string name, std::shared_ptr<Interrupt> interrupt, std::function<void()> work)
+Status GoalThreads::start(std::string name, std::shared_ptr<StopRequest> stop_request,
+                          std::function<void()> work)
 {
   std::unique_lock lock(mutex_);
   join_finished(lock);  // before the check: close() may be called while it joins
@@ -47,7 +48,7 @@ Status GoalThreads::start(std::string name, std::shared_ptr<Interrupt> interrupt
   }
   Entry & entry = entries_.emplace_back();
   entry.name = std::move(name);
-  entry.interrupt = std::move(interrupt);
+  entry.stop_request = std::move(stop_request);
   try {
     entry.thread = std::jthread([this, &entry, work = std::move(work)]() mutable {
       work();
@@ -63,12 +64,12 @@ Status GoalThreads::start(std::string name, std::shared_ptr<Interrupt> interrupt
   return {};
 }
 
-std::vector<std::string> GoalThreads::close(const Interruption & why, std::chrono::milliseconds wait_limit)
+std::vector<std::string> GoalThreads::close(const StopReason & why, std::chrono::milliseconds wait_limit)
 {
   std::unique_lock lock(mutex_);
   closed_ = true;
   for (const Entry & entry : entries_) {
-    entry.interrupt->request(why);
+    entry.stop_request->request(why);
   }
   changed_.wait_for(lock, wait_limit, [this] {
     return std::all_of(entries_.begin(), entries_.end(), [](const Entry & entry) { return entry.done; });

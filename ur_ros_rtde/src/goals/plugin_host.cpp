@@ -8,11 +8,11 @@ PluginHost::PluginHost(rcl_cxx::Node & node)
     : node_(node),
       // Latched: a client may be refused before its subscription has been matched.
       refusals_(node.create_publisher<ur_ros_rtde_msgs::msg::GoalRefused>("goal_refusals",
-                                                                          rcl_cxx::QoS::latched(100)))
+                                                                          rcl_cxx::QoS::transient_local(100)))
 {
 }
 
-void PluginHost::publish_refusal(const std::string & action, const rcl_cxx::GoalId & id, const Error & why)
+void PluginHost::publish_refusal(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why)
 {
   ur_ros_rtde_msgs::msg::GoalRefused refusal;
   refusal.stamp = node_.now();
@@ -28,16 +28,16 @@ ArmLimits CommandHost::limits() const
   return robot_.limits();
 }
 
-void CommandHost::set_takeover_stop(std::optional<StopOptions> options)
+void CommandHost::set_preemption_stop(std::optional<StopOptions> options)
 {
   const std::lock_guard lock(mutex_);
-  takeover_stop_ = std::move(options);
+  preemption_stop_ = std::move(options);
 }
 
-std::optional<StopOptions> CommandHost::takeover_stop() const
+std::optional<StopOptions> CommandHost::preemption_stop() const
 {
   const std::lock_guard lock(mutex_);
-  return takeover_stop_;
+  return preemption_stop_;
 }
 
 }  // namespace ur_ros_rtde

@@ -83,8 +83,8 @@ std::function<double(const Sample &)> distance_to_pose(const std::vector<double>
 }
 }  // namespace
 
-Run::Run(Robot & robot, std::shared_ptr<Interrupt> interrupt, bool moves)
-    : robot_(robot), interrupt_(std::move(interrupt)), moves_(moves), mark_(robot.mark_motion())
+Run::Run(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves)
+    : robot_(robot), stop_request_(std::move(stop_request)), moves_(moves), mark_(robot.mark_motion())
 {
 }
 
@@ -113,9 +113,9 @@ Vector6 Run::flange_force() const
   return tcp_frame_force(state());
 }
 
-std::optional<Interruption> Run::interruption() const
+std::optional<StopReason> Run::stop_reason() const
 {
-  if (auto why = interrupt_->requested()) {
+  if (auto why = stop_request_->reason()) {
     return why;
   }
   if (moves_) {
@@ -126,11 +126,11 @@ std::optional<Interruption> Run::interruption() const
   return std::nullopt;
 }
 
-std::optional<Interruption> Run::wait(const std::function<bool()> & condition, Clock::time_point deadline)
+std::optional<StopReason> Run::wait(const std::function<bool()> & condition, Clock::time_point deadline)
 {
   Sample last = robot_.latest().value_or(Sample{});
   while (true) {
-    if (auto why = interruption()) {
+    if (auto why = stop_reason()) {
       return why;
     }
     if (condition()) {
@@ -141,18 +141,18 @@ std::optional<Interruption> Run::wait(const std::function<bool()> & condition, C
     if (left <= milliseconds(0)) {
       return Error{ErrorCode::timeout, "the time was over"};
     }
-    robot_.wait_for_next(last, std::min(left, longest_nap), interrupt_->token());
+    robot_.wait_for_next(last, std::min(left, longest_nap), stop_request_->token());
   }
 }
 
-std::optional<Interruption> Run::sleep_for(std::chrono::nanoseconds duration)
+std::optional<StopReason> Run::sleep_for(std::chrono::nanoseconds duration)
 {
   auto why = wait([] { return false; }, Clock::now() + duration);
   return why && why->code == ErrorCode::timeout ? std::nullopt : why;
 }
 
-std::optional<Interruption> Run::until(const std::function<bool()> & condition,
-                                       std::chrono::nanoseconds timeout)
+std::optional<StopReason> Run::until(const std::function<bool()> & condition,
+                                     std::chrono::nanoseconds timeout)
 {
   auto why = wait(condition, Clock::now() + timeout);
   if (why && why->code == ErrorCode::timeout) {
@@ -182,16 +182,16 @@ Outcome Run::expect(const std::function<bool()> & condition, std::chrono::nanose
                                       std::chrono::duration<double>(silence).count()));
 }
 
-std::optional<Interruption> Run::next(Sample & sample)
+std::optional<StopReason> Run::next(Sample & sample)
 {
   const auto deadline = Clock::now() + package_limit;
   while (true) {
-    if (auto why = interruption()) {
+    if (auto why = stop_reason()) {
       return why;
     }
     feed_back();
-    if (robot_.wait_for_next(sample, longest_nap, interrupt_->token())) {
-      return interruption();
+    if (robot_.wait_for_next(sample, longest_nap, stop_request_->token())) {
+      return stop_reason();
     }
     if (Clock::now() >= deadline) {
       return Error{ErrorCode::link_lost, "no package came from the controller within a second"};
@@ -199,7 +199,7 @@ std::optional<Interruption> Run::next(Sample & sample)
   }
 }
 
-std::optional<Interruption> Run::until_standstill(std::chrono::nanoseconds limit)
+std::optional<StopReason> Run::until_standstill(std::chrono::nanoseconds limit)
 {
   auto why = until([this] { return robot_.motion_progress(mark_).at_rest; }, limit);
   if (why && why->code == ErrorCode::timeout) {
@@ -298,7 +298,7 @@ ScriptReport Run::run_script(const std::string & script, ScriptOptions options)
 {
   options.interrupted = [this] {
     feed_back();
-    return interruption();
+    return stop_reason();
   };
   return robot_.run_script(script, options);
 }
@@ -350,7 +350,7 @@ Outcome Run::trigger(double timeout)
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
   options.interrupted = [this] {
     feed_back();
-    return interruption();
+    return stop_reason();
   };
   return robot_.run_extension(plugin_, options);
 }

@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include "nodes/node_log.hpp"
-#include "state/plugin_problems.hpp"
 #include "plugins/plugin_selection.hpp"
+#include "state/plugin_problems.hpp"
 
 namespace ur_ros_rtde {
 
@@ -21,7 +21,7 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
                                                [this] { return diagnose_driver(*robot_); });
   host_ = std::make_unique<CommandHost>(*node_, *robot_, parameters.goals);
   teleoperation_ =
-      std::make_unique<Teleoperation>(*host_, parameters.teleoperation, log_into(node_->logger()));
+      std::make_unique<Teleoperation>(*host_, parameters.teleoperation, log_into(node_->get_logger()));
 }
 
 CommandServer::~CommandServer()
@@ -38,7 +38,7 @@ void CommandServer::start()
   add_extensions(report);
   robot_->start();
   plugins_.start(*host_, report);
-  RCL_CXX_INFO(node_->logger(), "commands: {}", fmt::join(plugins_.names(), ", "));
+  RCL_CXX_INFO(node_->get_logger(), "commands: {}", fmt::join(plugins_.names(), ", "));
 }
 
 void CommandServer::add_extensions(const ReportProblem & report)

@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "state/diagnostics.hpp"
-#include "state/driver_state.hpp"
 #include "nodes/parameters.hpp"
 #include "nodes/server.hpp"
 #include "plugins/plugin_set.hpp"
+#include "state/diagnostics.hpp"
+#include "state/driver_state.hpp"
 #include "teleoperation/teleoperation.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"

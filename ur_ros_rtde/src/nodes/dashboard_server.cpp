@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include "nodes/node_log.hpp"
-#include "state/plugin_problems.hpp"
 #include "plugins/plugin_selection.hpp"
+#include "state/plugin_problems.hpp"
 
 namespace ur_ros_rtde {
 
@@ -33,7 +33,7 @@ void DashboardServer::start()
       select_plugins(find_plugins(report), dashboard_base, choice_.plugins, choice_.blacklist, report),
       report);
   plugins_.start(*host_, report);
-  RCL_CXX_INFO(node_->logger(), "dashboard commands: {}", fmt::join(plugins_.names(), ", "));
+  RCL_CXX_INFO(node_->get_logger(), "dashboard commands: {}", fmt::join(plugins_.names(), ", "));
 }
 
 std::vector<std::string> DashboardServer::close()

@@ -5,8 +5,8 @@
 #include "nodes/parameters.hpp"
 #include "nodes/server.hpp"
 #include "plugins/plugin_set.hpp"
-#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
 
 namespace ur_ros_rtde {
 

@@ -35,8 +35,8 @@ DuplicateCheck::DuplicateCheck(rcl_cxx::Node & node, std::function<void(const st
     : node_(node),
       refuse_(std::move(refuse)),
       own_(this_process()),
-      publisher_(node.create_publisher<Instance>("~/_instance", rcl_cxx::QoS::latched())),
-      subscription_(node.create_subscription<Instance>("~/_instance", rcl_cxx::QoS::latched(8),
+      publisher_(node.create_publisher<Instance>("~/_instance", rcl_cxx::QoS::transient_local())),
+      subscription_(node.create_subscription<Instance>("~/_instance", rcl_cxx::QoS::transient_local(8),
                                                        [this](const Instance & other) { hear(other); }))
 {
   publisher_->publish(own_);
@@ -48,10 +48,10 @@ void DuplicateCheck::hear(const Instance & other)
     return;
   }
   const std::string what = fmt::format("another node with the name {} runs already ({})",
-                                       node_.fully_qualified_name(), other.frame_id);
+                                       node_.get_fully_qualified_name(), other.frame_id);
   const std::string remedy = "end one of them, or give one a namespace of its own (--ros-args -r __ns:=/…)";
   if (std::chrono::steady_clock::now() - begin_ > start_phase) {
-    RCL_CXX_ERROR(node_.logger(), "{}: both answer the same clients: {}", what, remedy);
+    RCL_CXX_ERROR(node_.get_logger(), "{}: both answer the same clients: {}", what, remedy);
   } else if (age(other) < age(own_)) {
     refuse_(fmt::format("{}, so this process ends: {}", what, remedy));
   }

@@ -4,7 +4,8 @@ namespace ur_ros_rtde {
 
 LogFunction log_connection(const rcl_cxx::Node & node)
 {
-  return [log = log_into(node.logger()), context = node.context()](LogLevel level, const std::string & text) {
+  return [log = log_into(node.get_logger()), context = node.get_context()](LogLevel level,
+                                                                           const std::string & text) {
     const bool problem = level == LogLevel::warn || level == LogLevel::error;
     log(problem && !context->ok() ? LogLevel::debug : level, text);
   };

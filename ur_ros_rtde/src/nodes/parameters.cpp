@@ -7,14 +7,14 @@
 #include <cctype>
 #include <cmath>
 
-#include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_robot/state/rtde_outputs.hpp"
+#include "ur_ros_rtde_trajectory/arm_limits.hpp"
 
 namespace ur_ros_rtde {
 namespace {
-rcl_cxx::ParameterOptions described(std::string description)
+rcl_cxx::ParameterDescriptor described(std::string description)
 {
-  rcl_cxx::ParameterOptions options;
+  rcl_cxx::ParameterDescriptor options;
   options.description = std::move(description);
   options.read_only = true;
   return options;

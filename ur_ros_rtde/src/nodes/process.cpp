@@ -32,7 +32,7 @@ void end_goals(const Servers & servers)
     return;
   }
   for (const std::string & name : left) {
-    RCL_CXX_FATAL(servers.front()->node().logger(), "goal {} does not end, the process ends without it",
+    RCL_CXX_FATAL(servers.front()->node().get_logger(), "goal {} does not end, the process ends without it",
                   name);
   }
   // Its thread cannot be joined, and what it uses cannot be destroyed under it. The robot's watchdog stops
@@ -50,7 +50,7 @@ std::vector<std::unique_ptr<DuplicateCheck>> look_for_duplicates(const rcl_cxx::
     rcl_cxx::Node & node = server->node();
     checks.push_back(std::make_unique<DuplicateCheck>(node, [&node, &context, &refused](const auto & why) {
       if (!refused.exchange(true)) {
-        RCL_CXX_FATAL(node.logger(), "{}", why);
+        RCL_CXX_FATAL(node.get_logger(), "{}", why);
         context->shutdown(why);
       }
     }));
@@ -61,7 +61,7 @@ std::vector<std::unique_ptr<DuplicateCheck>> look_for_duplicates(const rcl_cxx::
 void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & refused)
 {
   const auto checks = look_for_duplicates(context, servers, refused);
-  const auto callback = context->on_pre_shutdown([&servers] { end_goals(servers); });
+  const auto callback = context->add_pre_shutdown_callback([&servers] { end_goals(servers); });
   {
     std::vector<std::unique_ptr<rcl_cxx::Executor>> executors;
     std::vector<std::jthread> threads;
@@ -83,7 +83,7 @@ void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers,
       throw;
     }
   }
-  context->remove_callback(callback);
+  context->remove_shutdown_callback(callback);
 }
 }  // namespace
 
@@ -96,7 +96,7 @@ int run_process(int argc, char ** argv, const MakeServers & make)
     use_fastdds_profile();
     context = std::make_shared<rcl_cxx::Context>(argc, argv);
     Servers servers = make(context);
-    report_fastdds_profile(servers.front()->node().logger());
+    report_fastdds_profile(servers.front()->node().get_logger());
     serve(context, servers, refused);
     while (!servers.empty()) {
       servers.pop_back();

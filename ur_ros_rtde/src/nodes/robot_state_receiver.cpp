@@ -18,7 +18,7 @@ constexpr double least_age = 0.5;  // s
 template <typename M>
 void publish_if_heard(rcl_cxx::Publisher<M> & publisher, const M & message)
 {
-  if (publisher.subscription_count() > 0) {
+  if (publisher.get_subscription_count() > 0) {
     publisher.publish(message);
   }
 }
@@ -172,13 +172,13 @@ void RobotStateReceiver::set_faking(const std_srvs::srv::SetBool::Request & requ
     response.message = "joint_states shows the robot";
   }
   response.success = true;
-  RCL_CXX_INFO(node_.logger(), "{}", response.message);
+  RCL_CXX_INFO(node_.get_logger(), "{}", response.message);
 }
 
 void RobotStateReceiver::take_fake(const sensor_msgs::msg::JointState & message)
 {
   if (const auto taken = fake_.set(message); !taken) {
-    RCL_CXX_WARN_THROTTLE(node_.logger(), std::chrono::seconds(1),
+    RCL_CXX_WARN_THROTTLE(node_.get_logger(), std::chrono::seconds(1),
                           "fake_joint_states: a message is ignored: {}", taken.error());
     return;
   }

@@ -14,15 +14,15 @@
 #include <ur_ros_rtde_msgs/srv/get_wrench.hpp>
 #include <vector>
 
+#include "recording/recording_services.hpp"
 #include "state/fake_joints.hpp"
 #include "state/field_topics.hpp"
 #include "state/latched_state.hpp"
-#include "recording/recording_services.hpp"
 #include "state/state_diagnostics.hpp"
 #include "state/state_messages.hpp"
 #include "state/tool_transform.hpp"
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde_robot/state/sample.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 

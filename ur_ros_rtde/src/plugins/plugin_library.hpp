@@ -6,8 +6,8 @@
 #include <string>
 
 #include "plugins/plugin_index.hpp"
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde/plugin.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 

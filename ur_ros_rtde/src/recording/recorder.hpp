@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 

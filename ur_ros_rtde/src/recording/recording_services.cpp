@@ -8,7 +8,7 @@ namespace ur_ros_rtde {
 
 RecordingServices::RecordingServices(rcl_cxx::Node & node, const std::string & address)
     : node_(node),
-      recorder_(address, log_into(node.logger())),
+      recorder_(address, log_into(node.get_logger())),
       start_recording_(node.create_service<Start>(
           "start_recording", [this](const auto & request, auto & response) { start(request, response); })),
       stop_recording_(node.create_service<Stop>("stop_recording",
@@ -23,10 +23,10 @@ void RecordingServices::start(const Start::Request & request, Start::Response & 
   if (columns) {
     response.columns = *columns;
     response.message = fmt::format("recording into {}", request.filename);
-    RCL_CXX_INFO(node_.logger(), "{}", response.message);
+    RCL_CXX_INFO(node_.get_logger(), "{}", response.message);
   } else {
     response.message = columns.error().message;
-    RCL_CXX_WARN(node_.logger(), "start_recording: {}", response.message);
+    RCL_CXX_WARN(node_.get_logger(), "start_recording: {}", response.message);
   }
 }
 
@@ -44,7 +44,7 @@ void RecordingServices::stop(Stop::Response & response)
   response.message = report->state
                          ? fmt::format("{} rows, {} lost", report->rows, report->lost)
                          : fmt::format("{}, after {} rows", report->state.error().message, report->rows);
-  RCL_CXX_INFO(node_.logger(), "{}: {}", report->file, response.message);
+  RCL_CXX_INFO(node_.get_logger(), "{}: {}", report->file, response.message);
 }
 
 }  // namespace ur_ros_rtde

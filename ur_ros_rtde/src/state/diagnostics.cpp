@@ -30,7 +30,7 @@ Diagnostics::Diagnostics(rcl_cxx::Node & node, std::string hardware_id, Examine 
       examine_(std::move(examine)),
       publisher_(node.create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics",
                                                                               rcl_cxx::QoS::reliable(10))),
-      timer_(node.create_timer(std::chrono::seconds(1), [this] { publish(); }))
+      timer_(node.create_wall_timer(std::chrono::seconds(1), [this] { publish(); }))
 {
 }
 
@@ -40,7 +40,8 @@ void Diagnostics::publish()
   array.header.stamp = node_.now();
   for (Diagnosis & diagnosis : examine_()) {
     array.status.push_back(diagnosis.take());
-    array.status.back().name = fmt::format("{}: {}", node_.fully_qualified_name(), array.status.back().name);
+    array.status.back().name =
+        fmt::format("{}: {}", node_.get_fully_qualified_name(), array.status.back().name);
     array.status.back().hardware_id = hardware_id_;
   }
   publisher_->publish(array);

@@ -58,7 +58,7 @@ std::string holder(const Arbiter & arbiter, Resource resource)
 }  // namespace
 
 DriverStateTopic::DriverStateTopic(rcl_cxx::Node & node)
-    : node_(node), publisher_(node.create_publisher<Message>("driver_state", rcl_cxx::QoS::latched()))
+    : node_(node), publisher_(node.create_publisher<Message>("driver_state", rcl_cxx::QoS::transient_local()))
 {
   publish({RobotState::disconnected, ErrorCode::link_lost, "not yet connected"});
 }

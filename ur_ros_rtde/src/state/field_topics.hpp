@@ -36,7 +36,7 @@ class FieldTopics {
 
  private:
   void run(const std::stop_token & stop);
-  bool tool_wanted() const { return tool_data_->subscription_count() > 0; }
+  bool tool_wanted() const { return tool_data_->get_subscription_count() > 0; }
   Status follow(RtdeStream & stream, bool with_tool, const std::stop_token & stop);
   /// Gives robot_state its fields, and remembers where their numbers are.
   void lay_out(const RtdeStream & stream);

@@ -14,13 +14,14 @@ bool changes(std::optional<T> & shown, const T & value)
 }  // namespace
 
 LatchedState::LatchedState(rcl_cxx::Node & node)
-    : robot_mode_(
-          node.create_publisher<ur_ros_rtde_msgs::msg::RobotMode>("robot_mode", rcl_cxx::QoS::latched())),
-      safety_mode_(
-          node.create_publisher<ur_ros_rtde_msgs::msg::SafetyMode>("safety_mode", rcl_cxx::QoS::latched())),
+    : robot_mode_(node.create_publisher<ur_ros_rtde_msgs::msg::RobotMode>("robot_mode",
+                                                                          rcl_cxx::QoS::transient_local())),
+      safety_mode_(node.create_publisher<ur_ros_rtde_msgs::msg::SafetyMode>("safety_mode",
+                                                                            rcl_cxx::QoS::transient_local())),
       program_running_(
-          node.create_publisher<std_msgs::msg::Bool>("program_running", rcl_cxx::QoS::latched())),
-      speed_scaling_(node.create_publisher<std_msgs::msg::Float64>("speed_scaling", rcl_cxx::QoS::latched()))
+          node.create_publisher<std_msgs::msg::Bool>("program_running", rcl_cxx::QoS::transient_local())),
+      speed_scaling_(
+          node.create_publisher<std_msgs::msg::Float64>("speed_scaling", rcl_cxx::QoS::transient_local()))
 {
   publish_no_controller();
 }

@@ -19,8 +19,8 @@ bool first_in_this_process(const std::string & problem)
 ReportProblem log_plugin_problems(std::shared_ptr<rcl_cxx::Node> node)
 {
   return [node = std::move(node)](const std::string & problem) {
-    if (node->context()->ok() && first_in_this_process(problem)) {
-      RCL_CXX_ERROR(node->logger(), "{}", problem);
+    if (node->get_context()->ok() && first_in_this_process(problem)) {
+      RCL_CXX_ERROR(node->get_logger(), "{}", problem);
     }
   };
 }

@@ -19,7 +19,7 @@ class TfPublisher : public ToolTransform {
 
   void publish(const geometry_msgs::msg::PoseStamped & tcp_pose) override
   {
-    if (publisher_->subscription_count() == 0) {
+    if (publisher_->get_subscription_count() == 0) {
       return;
     }
     auto & transform = message_.transforms[0];
@@ -52,7 +52,7 @@ namespace ur_ros_rtde {
 std::unique_ptr<ToolTransform> make_tool_transform(rcl_cxx::Node & node, const std::string & tf_prefix)
 {
   RCL_CXX_INFO(
-      node.logger(),
+      node.get_logger(),
       "publish_tf is true, but this build cannot broadcast {}tool0_controller on /tf: tf2_msgs was not "
       "found. Install tf2_msgs and build ur_ros_rtde again, or set publish_tf to false",
       tf_prefix);

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "teleoperation/options.hpp"
-#include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde/run.hpp"
+#include "ur_ros_rtde_trajectory/arm_limits.hpp"
 
 namespace ur_ros_rtde {
 

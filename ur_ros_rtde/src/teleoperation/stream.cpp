@@ -53,15 +53,15 @@ Stream::~Stream()
 
 void Stream::close()
 {
-  std::shared_ptr<Interrupt> interrupt;
+  std::shared_ptr<StopRequest> stop_request;
   {
     const std::lock_guard lock(mutex_);
     closed_ = true;
-    interrupt = interrupt_;
+    stop_request = stop_request_;
   }
   thread_.request_stop();
-  if (interrupt) {
-    interrupt->request(Error{ErrorCode::shutdown, "the node is being shut down"});
+  if (stop_request) {
+    stop_request->request(Error{ErrorCode::shutdown, "the node is being shut down"});
   }
   if (thread_.joinable()) {
     thread_.join();
@@ -102,7 +102,7 @@ void Stream::serve(const std::stop_token & stop)
         return;
       }
       served = newest_.burst;
-      interrupt_ = std::make_shared<Interrupt>();
+      stop_request_ = std::make_shared<StopRequest>();
     }
     Latency latency;
     log_end(live(served, latency), latency);
@@ -118,19 +118,19 @@ Outcome Stream::live(std::uint64_t burst, Latency & latency)
     if (const Status ready = host_.robot().ready_to_move(); !ready) {
       return ready;
     }
-    const auto interrupt = [&] {
+    const auto stop_request = [&] {
       const std::lock_guard lock(mutex_);
-      return interrupt_;
+      return stop_request_;
     }();
     const auto lease = host_.robot().arbiter().acquire(
-        {Resource::motion, topic_, "", [interrupt](const std::string & by) {
-           interrupt->request(Error{ErrorCode::preempted, fmt::format("{} took over", by)});
+        {Resource::motion, topic_, "", [stop_request](const std::string & by) {
+           stop_request->request(Error{ErrorCode::preempted, fmt::format("preempted by {}", by)});
          }});
     if (!lease) {
       return lease.error();
     }
     log_(LogLevel::info, fmt::format("{}: a stream begins", topic_));
-    Run run(host_.robot(), interrupt, true);
+    Run run(host_.robot(), stop_request, true);
     return stop(follow(run, burst, latency));
   } catch (const RobotError & error) {
     return error.error();
@@ -144,12 +144,12 @@ Outcome Stream::stop(const Error & why) const
   StopOptions options{.joint_deceleration = options_.deceleration,
                       .linear_deceleration = options_.deceleration};
   if (why.code == ErrorCode::preempted) {
-    options = host_.takeover_stop().value_or(options);
+    options = host_.preemption_stop().value_or(options);
   }
   const auto stopped = host_.robot().stop_motion(options);
   return stopped ? Outcome(why)
-                 : Outcome::failure(why.code, fmt::format("{}; whether the arm stands still is not known: {}",
-                                                          why.message, stopped.error().message));
+                 : Outcome::failure(why.code, fmt::format("{}; standstill is not confirmed: {}", why.message,
+                                                          stopped.error().message));
 }
 
 Error Stream::follow(Run & run, std::uint64_t burst, Latency & latency)

@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "teleoperation/follower.hpp"
-#include "ur_ros_rtde/detail/interrupt.hpp"
-#include "ur_ros_rtde_robot/connection/log.hpp"
+#include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
+#include "ur_ros_rtde_robot/connection/log.hpp"
 
 namespace ur_ros_rtde {
 
@@ -74,7 +74,7 @@ class Stream {
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   Message newest_;
-  std::shared_ptr<Interrupt> interrupt_;  ///< of the stream that lives
+  std::shared_ptr<StopRequest> stop_request_;  ///< of the stream that lives
   bool closed_ = false;
   std::jthread thread_;
 };

@@ -11,8 +11,8 @@ constexpr std::chrono::hours for_ever{24 * 365};  // s
 constexpr double patience = 5.0;                  // s, with a controller whose time goes slowly
 }  // namespace
 
-std::optional<Interruption> until_over(Run & run, double duration,
-                                       const std::function<void(const Sample &)> & look)
+std::optional<StopReason> until_over(Run & run, double duration,
+                                     const std::function<void(const Sample &)> & look)
 {
   const double begin = run.state().controller_time;
   const bool ends = duration > 0.0;
@@ -29,8 +29,8 @@ std::optional<Interruption> until_over(Run & run, double duration,
   return run.until(over, ends ? std::chrono::duration_cast<std::chrono::nanoseconds>(limit) : for_ever);
 }
 
-std::optional<Interruption> last_for(Run & run, double duration,
-                                     const std::function<void(const Sample &)> & look)
+std::optional<StopReason> last_for(Run & run, double duration,
+                                   const std::function<void(const Sample &)> & look)
 {
   auto why = until_over(run, duration, look);
   return why && why->code == ErrorCode::canceled ? std::nullopt : why;

@@ -11,11 +11,11 @@ namespace ur_ros_rtde {
 
 /// Until `duration` s of the controller's time are over; with 0 only what ends the goal ends it. `look` sees
 /// every package.
-std::optional<Interruption> until_over(Run & run, double duration,
-                                       const std::function<void(const Sample &)> & look = {});
-/// The same for what lasts as long as its goal: a cancel is its end, not a failure.
-std::optional<Interruption> last_for(Run & run, double duration,
+std::optional<StopReason> until_over(Run & run, double duration,
                                      const std::function<void(const Sample &)> & look = {});
+/// The same for what lasts as long as its goal: a cancel is its end, not a failure.
+std::optional<StopReason> last_for(Run & run, double duration,
+                                   const std::function<void(const Sample &)> & look = {});
 
 /// Throws RobotError (busy) when the arm is in one of ur_rtde's `modes` (RTDEControlInterface::MOTION_…):
 /// `what` cannot be had besides.

@@ -4,7 +4,7 @@ namespace ur_ros_rtde {
 
 class ForceModeStart : public Command<ur_ros_rtde_msgs::action::ForceMode> {
   /// It may be changed while another goal moves the arm.
-  Resource resource() const override { return Resource::none; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   void check(const Goal & goal, Check & check) const override
   {

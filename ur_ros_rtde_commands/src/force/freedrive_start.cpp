@@ -3,7 +3,7 @@
 namespace ur_ros_rtde {
 
 class FreedriveStart : public Command<ur_ros_rtde_msgs::action::Freedrive> {
-  bool switches_mode() const override { return true; }
+  CommandTraits traits() const override { return {.leaves_mode_active = true}; }
 
   void check(const Goal & goal, Check & check) const override { check_freedrive(goal, false, check); }
 

@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class FreedriveStop : public Command<ur_ros_rtde_msgs::action::Trigger> {
-  bool switches_mode() const override { return true; }
+  CommandTraits traits() const override { return {.leaves_mode_active = true}; }
 
   Outcome run(const Goal &, Run & run) override
   {

@@ -20,8 +20,8 @@ Outcome decelerate(Run & run, const StopOptions & options)
     return report.error();
   }
   run.result().time_to_standstill = std::chrono::duration<double>(run.elapsed()).count();
-  return Outcome::success(run.displaced().empty() ? to_string(report->means)
-                                                  : run.displaced() + " was stopped");
+  return Outcome::success(run.preempted_goal().empty() ? to_string(report->means)
+                                                       : run.preempted_goal() + " was stopped");
 }
 
 /// The stop of one kind of motion: `deceleration` is that of the kinds it names, any other motion is stopped
@@ -38,7 +38,7 @@ class DecelerateCommand : public Command<ur_ros_rtde_msgs::action::Decelerate> {
   }
 
  private:
-  bool takes_over() const override { return true; }
+  CommandTraits traits() const override { return {.preempts_all = true}; }
 
   void check(const Goal & goal, Check & check) const override
   {

@@ -18,7 +18,7 @@ Waypoints path(const ur_ros_rtde_msgs::action::MoveC::Goal & goal)
 }  // namespace
 
 class MoveC : public Command<ur_ros_rtde_msgs::action::MoveC> {
-  Resource resource() const override { return Resource::script; }
+  CommandTraits traits() const override { return {.resource = Resource::script}; }
 
   void check(const Goal & goal, Check & check) const override
   {

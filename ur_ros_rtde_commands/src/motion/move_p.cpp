@@ -20,7 +20,7 @@ Waypoints path(const ur_ros_rtde_msgs::action::MoveP::Goal & goal)
 }  // namespace
 
 class MoveP : public Command<ur_ros_rtde_msgs::action::MoveP> {
-  Resource resource() const override { return Resource::script; }
+  CommandTraits traits() const override { return {.resource = Resource::script}; }
 
   void check(const Goal & goal, Check & check) const override
   {

@@ -6,7 +6,7 @@
 namespace ur_ros_rtde {
 
 class MovePath : public Command<ur_ros_rtde_msgs::action::MovePath> {
-  Resource resource() const override { return Resource::script; }
+  CommandTraits traits() const override { return {.resource = Resource::script}; }
 
   void check(const Goal & goal, Check & check) const override
   {

@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class Stop : public Command<ur_ros_rtde_msgs::action::Stop> {
-  bool takes_over() const override { return true; }
+  CommandTraits traits() const override { return {.preempts_all = true}; }
 
   StopOptions stop_options(const Goal & goal) const override
   {

@@ -8,7 +8,7 @@ namespace {
 constexpr double patience = 5.0;
 }  // namespace
 
-std::optional<Interruption> pass_time(Run & run, double time)
+std::optional<StopReason> pass_time(Run & run, double time)
 {
   const double begin = run.state().controller_time;
   const auto time_is_over = [&] {

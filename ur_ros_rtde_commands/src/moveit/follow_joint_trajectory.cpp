@@ -86,7 +86,7 @@ class FollowJointTrajectory : public Command<Action> {
   void start_action_server(CommandHost & host, const std::string & name) override;
 
  private:
-  bool replaces_its_own() const override { return true; }
+  CommandTraits traits() const override { return {.preempts_self = true}; }
   void check(const Goal & goal, Check & check) const override;
   Outcome run(const Goal & goal, Run & run) override;
   void tell(const Outcome & outcome, Result & result) const override;
@@ -110,7 +110,7 @@ void FollowJointTrajectory::start_action_server(CommandHost & host, const std::s
 {
   host_ = &host;
   const auto declare = [&](const char * what, double value, double low, double high, const char * text) {
-    rcl_cxx::ParameterOptions options;
+    rcl_cxx::ParameterDescriptor options;
     options.description = text;
     options.read_only = true;
     options.floating_point_range = rcl_cxx::FloatingPointRange{low, high};
@@ -123,7 +123,7 @@ void FollowJointTrajectory::start_action_server(CommandHost & host, const std::s
   servo_.max_tracking_error = declare("max_tracking_error", 0.3, 0.001, 3.14,
                                       "rad: farther behind, the goal ends and the arm stops, whatever its "
                                       "tolerances are");
-  servo_.stopped_by_another = [&host] { return host.takeover_stop().has_value(); };
+  servo_.stopped_by_another = [&host] { return host.preemption_stop().has_value(); };
   Command<Action>::start_action_server(host, name);
 }
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 

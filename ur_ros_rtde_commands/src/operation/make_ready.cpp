@@ -5,8 +5,7 @@
 namespace ur_ros_rtde {
 
 class MakeReady : public Command<ur_ros_rtde_msgs::action::MakeReady> {
-  Resource resource() const override { return Resource::none; }
-  bool any_state() const override { return true; }
+  CommandTraits traits() const override { return {.resource = Resource::none, .allowed_in_any_state = true}; }
 
   void check(const Goal & goal, Check & check) const override
   {

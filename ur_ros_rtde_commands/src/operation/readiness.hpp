@@ -5,8 +5,8 @@
 #include <string>
 #include <ur_ros_rtde_msgs/action/make_ready.hpp>
 
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 

@@ -7,8 +7,7 @@
 namespace ur_ros_rtde {
 
 class StandDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
-  bool takes_over() const override { return true; }
-  bool any_state() const override { return true; }
+  CommandTraits traits() const override { return {.preempts_all = true, .allowed_in_any_state = true}; }
 
   void check(const Goal & goal, Check & check) const override
   {

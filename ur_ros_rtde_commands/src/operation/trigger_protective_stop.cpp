@@ -6,7 +6,7 @@ namespace ur_ros_rtde {
 
 class TriggerProtectiveStop : public Command<ur_ros_rtde_msgs::action::Trigger> {
   /// Whatever moves the arm.
-  Resource resource() const override { return Resource::none; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   Outcome run(const Goal &, Run & run) override
   {

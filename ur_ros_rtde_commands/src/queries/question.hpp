@@ -16,7 +16,7 @@ namespace ur_ros_rtde {
 template <typename A>
 class Question : public Command<A> {
  public:
-  Resource resource() const override { return Resource::none; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
 };
 
 /// Has ur_rtde wait for an answer no longer than this; by default it waits for minutes.

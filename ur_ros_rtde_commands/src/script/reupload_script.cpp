@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class ReuploadScript : public Command<ur_ros_rtde_msgs::action::Trigger> {
-  Resource resource() const override { return Resource::script; }
+  CommandTraits traits() const override { return {.resource = Resource::script}; }
 
   Outcome run(const Goal &, Run & run) override
   {

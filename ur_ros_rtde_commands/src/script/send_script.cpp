@@ -3,7 +3,7 @@
 namespace ur_ros_rtde {
 
 class SendScript : public Command<SendScriptAction> {
-  Resource resource() const override { return Resource::script; }
+  CommandTraits traits() const override { return {.resource = Resource::script}; }
 
   void check(const Goal & goal, Check & check) const override { check_script(goal, check); }
 

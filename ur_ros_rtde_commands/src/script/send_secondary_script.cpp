@@ -9,7 +9,7 @@ constexpr double longest_wait = 2.0;
 }  // namespace
 
 class SendSecondaryScript : public Command<SendScriptAction> {
-  Resource resource() const override { return Resource::none; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   void check(const Goal & goal, Check & check) const override { check_script(goal, check); }
 

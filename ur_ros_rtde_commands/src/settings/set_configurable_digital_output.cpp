@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class SetConfigurableDigitalOutput : public Command<ur_ros_rtde_msgs::action::SetDigitalOutput> {
-  Resource resource() const override { return Resource::none; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   void check(const Goal & goal, Check & check) const override { check.in_range("pin", goal.pin, 0, 7); }
 

@@ -6,7 +6,7 @@
 namespace ur_ros_rtde {
 
 class SetSpeedSlider : public Command<ur_ros_rtde_msgs::action::SetSpeedSlider> {
-  Resource resource() const override { return Resource::none; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   void check(const Goal & goal, Check & check) const override
   {

@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class SetWatchdog : public Command<ur_ros_rtde_msgs::action::SetWatchdog> {
-  Resource resource() const override { return Resource::none; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   void check(const Goal & goal, Check & check) const override
   {

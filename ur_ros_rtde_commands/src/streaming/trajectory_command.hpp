@@ -53,7 +53,7 @@ Execution TrajectoryCommand<A>::execution(const Goal & goal, Run & run) const
     execution.speed_fraction = goal.speed_fraction;
   }
   execution.servo = {goal.lookahead_time, goal.gain, goal.max_tracking_error,
-                     [this] { return host_->takeover_stop().has_value(); }};
+                     [this] { return host_->preemption_stop().has_value(); }};
   execution.planned = [&run](const trajectory::Trajectory & plan) {
     run.result().duration = plan.duration();
   };

@@ -5,8 +5,8 @@
 #include <ur_ros_rtde_msgs/action/execute_cartesian_path.hpp>
 
 #include "streaming/trajectory_command.hpp"
-#include "ur_ros_rtde_trajectory/cartesian.hpp"
 #include "ur_ros_rtde/tcp_target.hpp"
+#include "ur_ros_rtde_trajectory/cartesian.hpp"
 
 namespace ur_ros_rtde {
 namespace {

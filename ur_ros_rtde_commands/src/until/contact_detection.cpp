@@ -51,7 +51,7 @@ Outcome ask_until(const std::function<bool()> & touches, double timeout, Run & r
 }  // namespace
 
 class ContactDetection : public Command<ur_ros_rtde_msgs::action::ContactDetection> {
-  Resource resource() const override { return Resource::none; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   void check(const Goal & goal, Check & check) const override
   {

@@ -7,7 +7,7 @@
 namespace ur_ros_rtde {
 
 class ToolContact : public Command<ur_ros_rtde_msgs::action::ToolContact> {
-  Resource resource() const override { return Resource::none; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   void check(const Goal & goal, Check & check) const override
   {

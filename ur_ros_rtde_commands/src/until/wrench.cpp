@@ -54,7 +54,7 @@ Vector3 MoveUntilWrench::measure(const Goal & goal, const Sample & sample) const
   return part;
 }
 
-std::optional<Interruption> MoveUntilWrench::rest(const Goal & goal, Run & run, Vector3 & mean) const
+std::optional<StopReason> MoveUntilWrench::rest(const Goal & goal, Run & run, Vector3 & mean) const
 {
   mean = {};
   Sample sample = run.state();

@@ -33,7 +33,7 @@ class MoveUntilWrench : public Command<ur_ros_rtde_msgs::action::MoveUntilForce>
   /// The components that count, in the goal's frame; the others are zero.
   Vector3 measure(const Goal & goal, const Sample & sample) const;
   /// What is measured while nothing moves: the mean of some packages.
-  std::optional<Interruption> rest(const Goal & goal, Run & run, Vector3 & mean) const;
+  std::optional<StopReason> rest(const Goal & goal, Run & run, Vector3 & mean) const;
   /// Looks at each package until the threshold; a failure when there is another reason to stop.
   Outcome watch(const Goal & goal, Run & run, const Vector3 & zero) const;
 

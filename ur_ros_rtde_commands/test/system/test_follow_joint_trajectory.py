@@ -98,7 +98,7 @@ def test_a_new_goal_replaces_the_running_one(robot, simulator):
     second = send(robot, point(2.0, HOME, [0.0] * 6))
     assert second.accepted
     status, result = first.end(10.0)
-    assert status == GoalStatus.STATUS_ABORTED and "took over" in result.error_string
+    assert status == GoalStatus.STATUS_ABORTED and "preempted by" in result.error_string
     status, result = second.end(20.0)
     assert status == GoalStatus.STATUS_SUCCEEDED, result.error_string
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")

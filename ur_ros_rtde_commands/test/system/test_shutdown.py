@@ -73,4 +73,4 @@ def test_ctrl_c_in_a_motion_warns_if_the_controller_ends_before_the_arm_has_stop
     goal = cell.client.send(MoveJ, "move_j", joint_positions=[2.5, *HOME[1:]], speed=0.5)
     wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
     warning, = looks_like_failures(cell.interrupt(with_simulator=True))
-    assert "[WARN]" in warning and "whether the arm stands still is not known" in warning
+    assert "[WARN]" in warning and "standstill is not confirmed" in warning

@@ -9,17 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "ur_ros_rtde_robot/motion/arbiter.hpp"
-#include "ur_ros_rtde_trajectory/arm_limits.hpp"
-#include "ur_ros_rtde_trajectory/error.hpp"
-#include "ur_ros_rtde_robot/program/extension_options.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
 #include "ur_ros_rtde_robot/connection/locked.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
+#include "ur_ros_rtde_robot/motion/arbiter.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
-#include "ur_ros_rtde_robot/state/sample.hpp"
+#include "ur_ros_rtde_robot/program/extension_options.hpp"
 #include "ur_ros_rtde_robot/program/script.hpp"
 #include "ur_ros_rtde_robot/program/script_extension.hpp"
+#include "ur_ros_rtde_robot/state/sample.hpp"
+#include "ur_ros_rtde_trajectory/arm_limits.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_rtde {
 class DashboardClient;

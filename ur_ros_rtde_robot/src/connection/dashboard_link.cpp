@@ -13,8 +13,8 @@
 
 #include "connection/dashboard_request.hpp"
 #include "connection/ports.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "connection/rtde_probe.hpp"
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {

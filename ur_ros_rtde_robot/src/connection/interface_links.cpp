@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "connection/ports.hpp"
-#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
-#include "program/script_check.hpp"
 #include "connection/tcp_stream.hpp"
+#include "program/script_check.hpp"
+#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "program/control_scripts.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <string>
 
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 

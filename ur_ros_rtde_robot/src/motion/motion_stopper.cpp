@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "program/condition.hpp"
 #include "connection/ports.hpp"
 #include "connection/tcp_stream.hpp"
+#include "program/condition.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "script/control_script.hpp"
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
 #include "ur_ros_rtde_robot/program/script_extension.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 

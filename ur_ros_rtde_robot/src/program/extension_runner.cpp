@@ -159,7 +159,7 @@ void ExtensionRunner::end_early(Error & why)
   };
   while (!ended()) {
     if (!state_.link().connected || Clock::now() > deadline) {
-      why.message += "; whether the arm stands still is not known";
+      why.message += "; standstill is not confirmed";
       return;
     }
     state_.wait_for_next(sample, milliseconds(20));

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "program/control_scripts.hpp"
 #include "connection/interface_links.hpp"
-#include "motion/motion_tracker.hpp"
 #include "connection/primary_link.hpp"
+#include "motion/motion_tracker.hpp"
+#include "program/control_scripts.hpp"
 #include "ur_ros_rtde_robot/program/extension_options.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 

@@ -5,8 +5,8 @@
 #include <random>
 #include <utility>
 
-#include "motion/motion_stopper.hpp"
 #include "connection/primary_link.hpp"
+#include "motion/motion_stopper.hpp"
 #include "program/script_watch.hpp"
 #include "script/program.hpp"
 
@@ -163,8 +163,7 @@ ScriptReport ScriptRunner::run_program(const script::Program & program, ScriptWa
   ScriptReport report = watch.report();
   if (watch.running() && state_.link().connected) {
     if (const auto stopped = stop(); !stopped) {
-      report.error.message +=
-          fmt::format("; whether the arm stands still is not known: {}", stopped.error().message);
+      report.error.message += fmt::format("; standstill is not confirmed: {}", stopped.error().message);
     }
   }
   return report;

@@ -8,9 +8,9 @@
 #include <string>
 #include <thread>
 
+#include "ur_ros_rtde_robot/connection/link.hpp"
 #include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
-#include "ur_ros_rtde_robot/connection/link.hpp"
 
 namespace ur_ros_rtde {
 

@@ -5,8 +5,8 @@
 
 #include <utility>
 
-#include "program/condition.hpp"
 #include "motion/motion_stopper.hpp"
+#include "program/condition.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {

@@ -8,11 +8,11 @@
 #include <string>
 #include <thread>
 
-#include "state/arm_model.hpp"
 #include "connection/interface_links.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "program/script_server.hpp"
+#include "state/arm_model.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 

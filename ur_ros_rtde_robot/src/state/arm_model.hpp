@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "ur_ros_rtde_robot/connection/link.hpp"
 #include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
-#include "ur_ros_rtde_robot/connection/link.hpp"
 
 namespace ur_ros_rtde {
 

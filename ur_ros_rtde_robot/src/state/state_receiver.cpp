@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "connection/ports.hpp"
-#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "connection/rtde_probe.hpp"
 #include "state/sample_reader.hpp"
+#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {

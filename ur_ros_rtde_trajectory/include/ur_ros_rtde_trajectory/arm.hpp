@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "ur_ros_rtde_trajectory/error.hpp"
-#include "ur_ros_rtde_trajectory/vector.hpp"
 #include "ur_ros_rtde_trajectory/limits.hpp"
+#include "ur_ros_rtde_trajectory/vector.hpp"
 
 namespace ur_ros_rtde::kinematics {
 

@@ -5,10 +5,10 @@
 #include <initializer_list>
 #include <optional>
 
+#include "path/straight.hpp"
 #include "timing/first_guess.hpp"
 #include "timing/jerk_solver.hpp"
 #include "timing/reach.hpp"
-#include "path/straight.hpp"
 #include "trajectory/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {

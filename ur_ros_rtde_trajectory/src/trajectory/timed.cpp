@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "trajectory/motion.hpp"
 #include "path/spline.hpp"
+#include "trajectory/motion.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {

@@ -5,30 +5,30 @@
 #include <string>
 #include <utility>
 
-#include "ur_ros_rtde/detail/goal_book.hpp"
-#include "ur_ros_rtde/outcome.hpp"
+#include "ur_ros_rtde/detail/active_goals.hpp"
+#include "ur_ros_rtde/detail/guarded.hpp"
 
 namespace ur_ros_rtde {
 
-/// What Command<A> and DashboardCommand<A> have in common: an action server whose goals are kept in a
-/// GoalBook, each of them with a thread and exactly one result. `A`'s result begins `bool success, uint16
-/// error_code, string message`.
+/// The part of Command<A> and DashboardCommand<A> that depends on the type of the action: an action server
+/// that executes each accepted goal in a thread of its own and sends exactly one result. The result of `A`
+/// begins with `bool success, uint16 error_code, string message`.
 template <typename A>
 class GoalServer {
  protected:
-  using Handle = rcl_cxx::GoalHandle<A>;
+  using Handle = rcl_cxx::ServerGoalHandle<A>;
 
   GoalServer() = default;
   virtual ~GoalServer() = default;
 
-  virtual tl::expected<void, std::string> admit(const rcl_cxx::GoalId & id,
-                                                const typename A::Goal & goal) = 0;
-  /// In the goal's own thread; ends with finish().
-  virtual void carry_out(Handle & handle, GoalBook::Ticket & ticket) = 0;
-  /// An accepted goal has got no thread; ends with finish().
-  virtual void give_up(Handle & handle, const Outcome & outcome) = 0;
-  /// Puts how the goal ended into its result; to be replaced for results that begin in another way.
-  virtual void tell(const Outcome & outcome, typename A::Result & result) const
+  virtual tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id,
+                                                 const typename A::Goal & goal) = 0;
+  /// Runs in the goal's thread and ends with finish().
+  virtual void execute(Handle & handle, GoalContext & context) = 0;
+  /// Called for an accepted goal for which no thread could be started. Ends with finish().
+  virtual void abort_unstarted(Handle & handle, const Outcome & outcome) = 0;
+  /// Writes the outcome into the result. Override it for results that begin with other fields.
+  virtual void fill_result(const Outcome & outcome, typename A::Result & result) const
   {
     if constexpr (requires { result.success; }) {
       result.success = static_cast<bool>(outcome);
@@ -37,73 +37,76 @@ class GoalServer {
     }
   }
 
-  /// `book` outlives the server. With `needs_client` a goal ends when the client that sent it disappears.
-  void serve(rcl_cxx::Node & node, const std::string & name, GoalBook & book, bool needs_client);
-  void end_service() { server_.reset(); }
-  /// The goal's one result: tells in it how the goal ended, and sends it.
+  /// `goals` outlives the server. If `stop_when_client_lost`, a goal is stopped when the client that sent it
+  /// disappears.
+  void start_server(rcl_cxx::Node & node, const std::string & name, ActiveGoals & goals,
+                    bool stop_when_client_lost);
+  void stop_server() { server_.reset(); }
+  /// Sends the goal's only result, with the outcome filled in.
   void finish(Handle & handle, typename A::Result & result, const Outcome & outcome);
 
  private:
-  /// tell(); what it throws is the outcome then.
-  Outcome fill(const Outcome & outcome, typename A::Result & result) const;
+  /// fill_result(). If it throws, the exception is the outcome.
+  Outcome fill_result_guarded(const Outcome & outcome, typename A::Result & result) const;
 
-  GoalBook * book_ = nullptr;
+  ActiveGoals * goals_ = nullptr;
   typename rcl_cxx::ActionServer<A>::SharedPtr server_;
 };
 
 template <typename A>
-void GoalServer<A>::serve(rcl_cxx::Node & node, const std::string & name, GoalBook & book, bool needs_client)
+void GoalServer<A>::start_server(rcl_cxx::Node & node, const std::string & name, ActiveGoals & goals,
+                                 bool stop_when_client_lost)
 {
-  book_ = &book;
-  rcl_cxx::ActionHandlers<A> handlers;
-  handlers.goal = [this](const rcl_cxx::GoalId & id, const typename A::Goal & goal) {
-    return admit(id, goal);
+  goals_ = &goals;
+  rcl_cxx::ActionServerCallbacks<A> handlers;
+  handlers.handle_goal = [this](const rcl_cxx::GoalUUID & id, const typename A::Goal & goal) {
+    return accept(id, goal);
   };
-  handlers.accepted = [this](std::shared_ptr<Handle> handle) {
-    const Status started = book_->start(
-        handle->goal_id(),
-        [this, handle](std::shared_ptr<GoalBook::Ticket> ticket) { carry_out(*handle, *ticket); });
+  handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) {
+    const Status started =
+        goals_->start(handle->get_goal_id(),
+                      [this, handle](std::shared_ptr<GoalContext> context) { execute(*handle, *context); });
     if (!started) {
-      give_up(*handle, started);
+      abort_unstarted(*handle, started);
     }
   };
-  handlers.cancel = [](Handle &) { return true; };
-  handlers.canceling = [this](Handle & handle) {
-    book_->end(handle.goal_id(), Error{ErrorCode::canceled, "canceled by a client"});
+  handlers.handle_cancel = [](Handle &) { return true; };
+  handlers.on_canceling = [this](Handle & handle) {
+    goals_->stop(handle.get_goal_id(), Error{ErrorCode::canceled, "canceled by a client"});
   };
-  handlers.discarded = [this](const rcl_cxx::GoalId & id) { book_->discard(id); };
-  if (needs_client) {
-    handlers.client_lost = [this](Handle & handle) { book_->end(handle.goal_id(), client_lost()); };
+  handlers.on_goal_discarded = [this](const rcl_cxx::GoalUUID & id) { goals_->discard(id); };
+  if (stop_when_client_lost) {
+    handlers.on_client_lost = [this](Handle & handle) { goals_->stop(handle.get_goal_id(), client_lost()); };
   }
-  handlers.missing_result = [this](rcl_cxx::GoalStatus status, typename A::Result & result) {
-    fill(missing_result(status), result);
+  handlers.fill_missing_result = [this](rcl_cxx::GoalStatus status, typename A::Result & result) {
+    fill_result_guarded(missing_result(status), result);
   };
   server_ = node.template create_action_server<A>(name, std::move(handlers));
 }
 
 template <typename A>
-Outcome GoalServer<A>::fill(const Outcome & outcome, typename A::Result & result) const
+Outcome GoalServer<A>::fill_result_guarded(const Outcome & outcome, typename A::Result & result) const
 {
-  bool told = false;
-  const Outcome end = book_->guarded(Interrupt(), [&] {
-    tell(outcome, result);
-    told = true;
+  bool filled = false;
+  const Outcome actual = guarded([&] {
+    fill_result(outcome, result);
+    filled = true;
     return outcome;
   });
-  if (!told) {
-    GoalServer<A>::tell(end, result);
+  if (!filled) {
+    GoalServer<A>::fill_result(actual, result);
   }
-  return end;
+  return actual;
 }
 
 template <typename A>
 void GoalServer<A>::finish(Handle & handle, typename A::Result & result, const Outcome & outcome)
 {
-  const Outcome end = fill(outcome, result);
-  book_->finish(handle.goal_id(), end);
-  if (end) {
+  const Outcome actual = fill_result_guarded(outcome, result);
+  goals_->finish(handle.get_goal_id(), actual);
+  if (actual) {
     handle.succeed(result);
-  } else if (end.code() == ErrorCode::canceled && handle.is_canceling()) {
+  } else if (actual.code() == ErrorCode::canceled && handle.is_canceling()) {
     handle.canceled(result);
   } else {
     handle.abort(result);

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "ur_ros_rtde/detail/interrupt.hpp"
+#include "ur_ros_rtde/detail/stop_request.hpp"
 
 namespace ur_ros_rtde {
 
@@ -30,15 +30,15 @@ class GoalThreads {
   Status can_start() const;
   /// Runs `work`, which must not throw, in a thread. `name` is for messages: "move_l 3f0c12ab". Refused after
   /// close() and beyond the limit.
-  Status start(std::string name, std::shared_ptr<Interrupt> interrupt, std::function<void()> work);
+  Status start(std::string name, std::shared_ptr<StopRequest> stop_request, std::function<void()> work);
   /// Asks all to end, takes no more, and waits up to `limit` for them. Returns the names of those that still
   /// run.
-  std::vector<std::string> close(const Interruption & why, std::chrono::milliseconds limit);
+  std::vector<std::string> close(const StopReason & why, std::chrono::milliseconds limit);
 
  private:
   struct Entry {
     std::string name;
-    std::shared_ptr<Interrupt> interrupt;
+    std::shared_ptr<StopRequest> stop_request;
     std::jthread thread;
     bool done = false;
   };

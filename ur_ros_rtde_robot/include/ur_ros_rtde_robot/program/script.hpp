@@ -38,7 +38,7 @@ struct ScriptOptions {
   /// From the sending to the end; at least 1 ms. Longest for a secondary program: 10 s.
   std::chrono::milliseconds limit = std::chrono::minutes(10);
   /// Asked every few milliseconds: why the script has to end early, if it has to. For a command:
-  /// `[&run] { return run.interruption(); }`.
+  /// `[&run] { return run.stop_reason(); }`.
   std::function<std::optional<Error>()> interrupted;
   /// Each line of `textmsg` when it comes, in the calling thread.
   std::function<void(const std::string & text)> on_text;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "ur_ros_rtde_trajectory/error.hpp"
 #include "ur_ros_rtde_robot/state/sample.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 

@@ -8,25 +8,25 @@
 #include <string>
 
 namespace rcl_cxx::detail {
-class NodeCore;
+class NodeImpl;
 
 /// Something of a node that has callbacks: its middleware side tells notify() what has arrived, the
 /// executor's thread calls serve() for each of them, the user's handle calls close().
 ///
 /// The middleware keeps raw pointers to `sources_`: a class that has registered them takes them back in
 /// stop().
-class Entity : public std::enable_shared_from_this<Entity> {
+class Waitable : public std::enable_shared_from_this<Waitable> {
  public:
   /// As many sources of events as an entity has at most (an action client: five).
   static constexpr std::size_t kSources = 5;
 
-  virtual ~Entity() = default;
-  Entity(const Entity &) = delete;
-  Entity & operator=(const Entity &) = delete;
+  virtual ~Waitable() = default;
+  Waitable(const Waitable &) = delete;
+  Waitable & operator=(const Waitable &) = delete;
 
   /// For messages: "subscription /robot/joint_states".
   const std::string & label() const noexcept { return label_; }
-  const std::shared_ptr<NodeCore> & node() const noexcept { return node_; }
+  const std::shared_ptr<NodeImpl> & node() const noexcept { return node_; }
 
   /// Handles one event. Never throws: what the user's callback throws is logged.
   void serve(std::size_t source) noexcept;
@@ -38,7 +38,7 @@ class Entity : public std::enable_shared_from_this<Entity> {
   void notify(std::size_t source, std::size_t count) noexcept;
 
  protected:
-  Entity(std::shared_ptr<NodeCore> node, std::string label);
+  Waitable(std::shared_ptr<NodeImpl> node, std::string label);
 
   /// Takes one message (request, …) from `source` and runs its callback; nothing if nothing is there, which
   /// is normal: the middleware counts what has arrived, not what its history has kept.
@@ -54,11 +54,11 @@ class Entity : public std::enable_shared_from_this<Entity> {
 
  private:
   struct Source {
-    Entity * entity = nullptr;
+    Waitable * waitable = nullptr;
     std::atomic<std::size_t> pending{0};
   };
 
-  const std::shared_ptr<NodeCore> node_;
+  const std::shared_ptr<NodeImpl> node_;
   const std::string label_;
   std::array<Source, kSources> sources_;
   std::recursive_mutex callback_;  // held while a callback runs; it may close its own entity

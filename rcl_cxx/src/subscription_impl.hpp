@@ -5,22 +5,22 @@
 #include <memory>
 #include <string>
 
-#include "entity.hpp"
 #include "qos_warning.hpp"
 #include "rcl_cxx/qos.hpp"
 #include "rcl_cxx/subscription.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
-class SubscriptionCore : public Entity {
+class SubscriptionImpl : public Waitable {
  public:
-  static std::shared_ptr<SubscriptionCore> create(std::shared_ptr<NodeCore> node, ErasedSubscription erased,
+  static std::shared_ptr<SubscriptionImpl> create(std::shared_ptr<NodeImpl> node, ErasedSubscription erased,
                                                   const std::string & topic, const QoS & qos);
-  SubscriptionCore(std::shared_ptr<NodeCore> node, ErasedSubscription erased, const std::string & topic,
+  SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscription erased, const std::string & topic,
                    const QoS & qos);
-  ~SubscriptionCore() override;
+  ~SubscriptionImpl() override;
 
-  std::size_t publisher_count() const;
-  const std::string & topic_name() const noexcept { return topic_; }
+  std::size_t get_publisher_count() const;
+  const std::string & get_topic_name() const noexcept { return topic_; }
 
  protected:
   void execute(std::size_t source) override;

@@ -8,34 +8,34 @@
 #include <mutex>
 #include <string>
 
-#include "context_core.hpp"
-#include "event_hub.hpp"
+#include "context_impl.hpp"
+#include "pending_events.hpp"
 #include "rcl_cxx/logging.hpp"
 #include "rcl_cxx/node.hpp"
 #include "ros_clock.hpp"
 
 namespace rcl_cxx::detail {
 /// Owns the rcl node, and lives as long as any of its entities.
-class NodeCore {
+class NodeImpl {
  public:
-  NodeCore(std::shared_ptr<ContextCore> context, const std::string & name, const std::string & node_namespace,
+  NodeImpl(std::shared_ptr<ContextImpl> context, const std::string & name, const std::string & node_namespace,
            const NodeOptions & options, const rcl_arguments_t & arguments);
-  ~NodeCore();
-  NodeCore(const NodeCore &) = delete;
-  NodeCore & operator=(const NodeCore &) = delete;
+  ~NodeImpl();
+  NodeImpl(const NodeImpl &) = delete;
+  NodeImpl & operator=(const NodeImpl &) = delete;
 
   rcl_node_t * handle() noexcept { return &node_; }
   /// To hold while an rcl entity of this node is initialised or finalised: rcl does not guard the node's own
   /// tables.
   std::mutex & mutex() noexcept { return mutex_; }
-  EventHub & hub() noexcept { return hub_; }
-  RosClock & clock() noexcept { return clock_; }
-  ContextCore & context() noexcept { return *context_core_; }
+  PendingEvents & pending_events() noexcept { return pending_events_; }
+  RosClock & get_clock() noexcept { return clock_; }
+  ContextImpl & get_context() noexcept { return *context_impl_; }
 
-  const Logger & logger() const noexcept { return logger_; }
-  const std::string & name() const noexcept { return name_; }
-  const std::string & node_namespace() const noexcept { return namespace_; }
-  const std::string & fully_qualified_name() const noexcept { return fully_qualified_name_; }
+  const Logger & get_logger() const noexcept { return logger_; }
+  const std::string & get_name() const noexcept { return name_; }
+  const std::string & get_namespace() const noexcept { return namespace_; }
+  const std::string & get_fully_qualified_name() const noexcept { return fully_qualified_name_; }
 
   /// Expanded and remapped. @throws Error
   std::string resolve(const std::string & name, bool is_service) const;
@@ -52,7 +52,7 @@ class NodeCore {
   void start_rosout();
   void end_rosout();
 
-  const std::shared_ptr<ContextCore> context_core_;
+  const std::shared_ptr<ContextImpl> context_impl_;
   mutable std::mutex mutex_;
   rcl_node_t node_;
   bool has_rosout_ = false;  ///< guarded by logging_mutex
@@ -62,7 +62,7 @@ class NodeCore {
   std::string namespace_;
   std::string fully_qualified_name_;
   RosClock clock_;
-  EventHub hub_;
+  PendingEvents pending_events_;
 };
 
 }  // namespace rcl_cxx::detail

@@ -1,4 +1,4 @@
-#include "context_core.hpp"
+#include "context_impl.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,7 @@
 #include <csignal>
 
 #include "arguments.hpp"
-#include "logging_core.hpp"
+#include "logging_impl.hpp"
 #include "rcl_cxx/logging.hpp"
 #include "rcl_error.hpp"
 
@@ -21,15 +21,15 @@ const Logger & context_logger()
   return logger;
 }
 
-class InitOptions {
+class RclInitOptions {
  public:
-  InitOptions()
+  RclInitOptions()
   {
     check_rcl(rcl_init_options_init(&options_, rcl_get_default_allocator()), "context", "no options");
   }
-  ~InitOptions() { ignore_rcl(rcl_init_options_fini(&options_)); }
-  InitOptions(const InitOptions &) = delete;
-  InitOptions & operator=(const InitOptions &) = delete;
+  ~RclInitOptions() { ignore_rcl(rcl_init_options_fini(&options_)); }
+  RclInitOptions(const RclInitOptions &) = delete;
+  RclInitOptions & operator=(const RclInitOptions &) = delete;
   rcl_init_options_t * get() { return &options_; }
 
  private:
@@ -37,13 +37,13 @@ class InitOptions {
 };
 }  // namespace
 
-ContextCore::ContextCore(int argc, const char * const * argv, const ContextOptions & options)
+ContextImpl::ContextImpl(int argc, const char * const * argv, const InitOptions & options)
     : context_(rcl_get_zero_initialized_context()), signal_grace_(options.signal_grace)
 {
   init(argc, argv, options);
   try {
     read_arguments(argv);
-    if (options.initialize_logging) {
+    if (options.auto_initialize_logging) {
       logging_ = configure_logging(context_.global_arguments);
     }
   } catch (...) {
@@ -53,9 +53,9 @@ ContextCore::ContextCore(int argc, const char * const * argv, const ContextOptio
   }
 }
 
-void ContextCore::init(int argc, const char * const * argv, const ContextOptions & options)
+void ContextImpl::init(int argc, const char * const * argv, const InitOptions & options)
 {
-  InitOptions init_options;
+  RclInitOptions init_options;
   if (options.domain_id) {
     check_rcl(rcl_init_options_set_domain_id(init_options.get(), *options.domain_id), "context",
               "domain id cannot be set");
@@ -72,13 +72,13 @@ void ContextCore::init(int argc, const char * const * argv, const ContextOptions
   }
 }
 
-void ContextCore::read_arguments(const char * const * argv)
+void ContextImpl::read_arguments(const char * const * argv)
 {
   refuse_unknown_ros_arguments(context_.global_arguments, argv);
   non_ros_arguments_ = without_ros_arguments(context_.global_arguments, argv);
 }
 
-ContextCore::~ContextCore()
+ContextImpl::~ContextImpl()
 {
   // A Context that was never wrapped, or whose owner is gone, has been shut down by then.
   if (rcl_context_is_valid(&context_)) {
@@ -87,18 +87,18 @@ ContextCore::~ContextCore()
   ignore_rcl(rcl_context_fini(&context_));
 }
 
-void ContextCore::watch_signals()
+void ContextImpl::watch_signals()
 {
   signals_ = SignalWatcher::instance();
   // Through a weak pointer: the watcher may call until it has been told not to.
   signal_id_ = signals_->add([weak = weak_from_this()](int signal) {
-    if (const auto core = weak.lock()) {
-      core->on_signal(signal);
+    if (const auto impl = weak.lock()) {
+      impl->on_signal(signal);
     }
   });
 }
 
-void ContextCore::join_signal_thread()
+void ContextImpl::join_signal_thread()
 {
   if (signals_) {
     signals_->remove(signal_id_);
@@ -118,7 +118,7 @@ void ContextCore::join_signal_thread()
   signals_.reset();
 }
 
-void ContextCore::on_signal(int signal)
+void ContextImpl::on_signal(int signal)
 {
   const char * const name = signal == SIGINT ? "SIGINT" : "SIGTERM";
   const auto now = std::chrono::steady_clock::now();
@@ -133,7 +133,7 @@ void ContextCore::on_signal(int signal)
   }
 }
 
-bool ContextCore::shutdown(const std::string & reason)
+bool ContextImpl::shutdown(const std::string & reason)
 {
   // A callback may let go of the Context, and spin() returns before the end of this.
   const auto self = shared_from_this();
@@ -157,13 +157,13 @@ bool ContextCore::shutdown(const std::string & reason)
   return true;
 }
 
-std::string ContextCore::shutdown_reason() const
+std::string ContextImpl::shutdown_reason() const
 {
   const std::lock_guard lock(mutex_);
   return reason_;
 }
 
-bool ContextCore::wait_for(std::chrono::nanoseconds timeout, bool complete) const
+bool ContextImpl::wait_for(std::chrono::nanoseconds timeout, bool complete) const
 {
   std::unique_lock lock(mutex_);
   return state_changed_.wait_for(lock, timeout, [&] {
@@ -172,7 +172,7 @@ bool ContextCore::wait_for(std::chrono::nanoseconds timeout, bool complete) cons
   });
 }
 
-void ContextCore::set_state(State state)
+void ContextImpl::set_state(State state)
 {
   {
     const std::lock_guard lock(mutex_);
@@ -181,7 +181,7 @@ void ContextCore::set_state(State state)
   state_changed_.notify_all();
 }
 
-std::size_t ContextCore::add_callback(Phase phase, Context::Callback callback)
+std::size_t ContextImpl::add_callback(Phase phase, Context::Callback callback)
 {
   {
     const std::lock_guard lock(mutex_);
@@ -196,7 +196,7 @@ std::size_t ContextCore::add_callback(Phase phase, Context::Callback callback)
   return 0;
 }
 
-void ContextCore::remove_callback(std::size_t id)
+void ContextImpl::remove_callback(std::size_t id)
 {
   // Not under the other mutex: a callback that is running may want that.
   const std::lock_guard wait_for_running(running_callback_);
@@ -204,7 +204,7 @@ void ContextCore::remove_callback(std::size_t id)
   std::erase_if(callbacks_, [id](const auto & entry) { return entry.first.second == id; });
 }
 
-void ContextCore::run_callbacks(Phase phase)
+void ContextImpl::run_callbacks(Phase phase)
 {
   std::size_t last = 0;
   while (true) {
@@ -224,7 +224,7 @@ void ContextCore::run_callbacks(Phase phase)
   }
 }
 
-void ContextCore::run_callback(const Context::Callback & callback) noexcept
+void ContextImpl::run_callback(const Context::Callback & callback) noexcept
 {
   try {
     callback();

@@ -11,27 +11,28 @@
 #include <vector>
 
 #include "client_watch.hpp"
-#include "rcl_cxx/goal_handle.hpp"
-#include "rcl_cxx/goal_id.hpp"
+#include "rcl_cxx/goal_uuid.hpp"
+#include "rcl_cxx/server_goal_handle.hpp"
 
 namespace rcl_cxx::detail {
-class ActionServerCore;
+class ActionServerImpl;
 
 /// A goal as the server keeps it, from its acceptance until its result expires. GoalHandles share it.
-class GoalCore {
+class ServerGoalImpl {
  public:
   /// Takes over the state that rcl_action_accept_new_goal has made: rcl keeps a list of such structs, but
   /// frees nothing that they point to.
-  GoalCore(std::weak_ptr<ActionServerCore> server, GoalId id, const rcl_action_goal_handle_t & handle);
-  ~GoalCore();
-  GoalCore(const GoalCore &) = delete;
-  GoalCore & operator=(const GoalCore &) = delete;
+  ServerGoalImpl(std::weak_ptr<ActionServerImpl> server, GoalUUID id,
+                 const rcl_action_goal_handle_t & handle);
+  ~ServerGoalImpl();
+  ServerGoalImpl(const ServerGoalImpl &) = delete;
+  ServerGoalImpl & operator=(const ServerGoalImpl &) = delete;
 
-  const GoalId & id() const noexcept { return id_; }
+  const GoalUUID & id() const noexcept { return id_; }
   std::int64_t accepted_ns() const noexcept { return accepted_ns_; }
   /// Readable without the server's lock.
-  GoalStatus status() const noexcept { return status_.load(); }
-  std::shared_ptr<ActionServerCore> server() const noexcept { return server_.lock(); }
+  GoalStatus get_status() const noexcept { return status_.load(); }
+  std::shared_ptr<ActionServerImpl> server() const noexcept { return server_.lock(); }
 
   /// Its result has been sent to someone.
   std::atomic<bool> result_sent{false};
@@ -43,7 +44,7 @@ class GoalCore {
   /// The server is gone: nothing can be done with the goal any more.
   void orphan() noexcept { status_ = GoalStatus::aborted; }
 
-  std::weak_ptr<GoalHandleBase> handle;           // the user's
+  std::weak_ptr<ServerGoalHandleBase> handle;     // the user's
   bool cancel_being_decided = false;              // its cancel handler runs
   std::shared_ptr<void> result_response;          // set with a terminal state
   std::vector<rmw_request_id_t> result_requests;  // to be answered with it
@@ -51,8 +52,8 @@ class GoalCore {
   std::optional<ClientWatch> client;  // while it is watched
 
  private:
-  const std::weak_ptr<ActionServerCore> server_;
-  const GoalId id_;
+  const std::weak_ptr<ActionServerImpl> server_;
+  const GoalUUID id_;
   rcl_action_goal_handle_t rcl_handle_;
   std::int64_t accepted_ns_ = 0;
   std::atomic<GoalStatus> status_{GoalStatus::accepted};

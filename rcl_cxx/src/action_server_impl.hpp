@@ -12,19 +12,19 @@
 #include <string>
 #include <vector>
 
-#include "entity.hpp"
-#include "goal_core.hpp"
 #include "rcl_cxx/action_server.hpp"
 #include "response_retry.hpp"
+#include "server_goal_impl.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
-class TimerCore;
+class TimerImpl;
 
 /// The timer that rcl_action wants to be given (Kilted). It never runs: the server sees to the expiry itself,
 /// because nothing waits on a wait set here; but rcl_action reads its clock from it.
 class ExpireTimer {
  public:
-  explicit ExpireTimer(NodeCore & node);
+  explicit ExpireTimer(NodeImpl & node);
   ~ExpireTimer();
   ExpireTimer(const ExpireTimer &) = delete;
   ExpireTimer & operator=(const ExpireTimer &) = delete;
@@ -35,16 +35,16 @@ class ExpireTimer {
 };
 
 /// An action server. One lock guards rcl's state and the goals; no handler of the user runs under it.
-class ActionServerCore : public Entity {
+class ActionServerImpl : public Waitable {
  public:
-  static std::shared_ptr<ActionServerCore> create(std::shared_ptr<NodeCore> node, ErasedActionServer erased,
+  static std::shared_ptr<ActionServerImpl> create(std::shared_ptr<NodeImpl> node, ErasedActionServer erased,
                                                   const std::string & name,
                                                   const ActionServerOptions & options);
-  ActionServerCore(std::shared_ptr<NodeCore> node, ErasedActionServer erased, const std::string & name,
+  ActionServerImpl(std::shared_ptr<NodeImpl> node, ErasedActionServer erased, const std::string & name,
                    const ActionServerOptions & options);
-  ~ActionServerCore() override;
+  ~ActionServerImpl() override;
 
-  const std::string & action_name() const noexcept { return name_; }
+  const std::string & get_action_name() const noexcept { return name_; }
   std::size_t active_goal_count() const;
   /// Aborts what is active, with empty results, and gives clients that were just told of the acceptance of
   /// their goals a moment to ask for the results: here if `serve`, otherwise in the executor's thread.
@@ -53,9 +53,9 @@ class ActionServerCore : public Entity {
   void retire() noexcept;
 
   // For goal handles, from any thread.
-  bool finish(GoalCore & goal, GoalStatus status, std::shared_ptr<void> result_response) noexcept;
-  bool publish_feedback(const GoalCore & goal, void * message) noexcept;
-  void on_handle_dropped(GoalCore & goal) noexcept;
+  bool finish(ServerGoalImpl & goal, GoalStatus status, std::shared_ptr<void> result_response) noexcept;
+  bool publish_feedback(const ServerGoalImpl & goal, void * message) noexcept;
+  void on_handle_dropped(ServerGoalImpl & goal) noexcept;
 
  protected:
   void execute(std::size_t source) override;
@@ -67,40 +67,40 @@ class ActionServerCore : public Entity {
   void take_cancel();
   bool take_result();
   void expire();
-  void watch_client(GoalCore & goal, const rmw_request_id_t & request);
+  void watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request);
   void check_clients();
 
-  tl::expected<void, std::string> decide_goal(const GoalId & id, const void * request) noexcept;
-  tl::expected<std::shared_ptr<GoalHandleBase>, std::string> accept(const GoalId & id,
-                                                                    const std::shared_ptr<void> & request);
-  void run_accepted(std::shared_ptr<GoalHandleBase> handle) noexcept;
-  void announce(const rmw_request_id_t & request, std::shared_ptr<GoalHandleBase> accepted);
-  void discard(const GoalId & id) noexcept;
+  tl::expected<void, std::string> decide_goal(const GoalUUID & id, const void * request) noexcept;
+  tl::expected<std::shared_ptr<ServerGoalHandleBase>, std::string> accept(
+      const GoalUUID & id, const std::shared_ptr<void> & request);
+  void run_accepted(std::shared_ptr<ServerGoalHandleBase> handle) noexcept;
+  void announce(const rmw_request_id_t & request, std::shared_ptr<ServerGoalHandleBase> accepted);
+  void discard(const GoalUUID & id) noexcept;
   void process_cancel(const action_msgs::srv::CancelGoal::Request & request,
                       action_msgs::srv::CancelGoal::Response & response);
-  bool decide_cancel(GoalCore & goal);
-  bool ask_cancel(GoalHandleBase & handle) noexcept;
+  bool decide_cancel(ServerGoalImpl & goal);
+  bool ask_cancel(ServerGoalHandleBase & handle) noexcept;
   /// Calls one of the user's handlers; what it throws is logged.
-  void call(const char * name, const GoalId & id, const std::function<void()> & handler) const noexcept;
-  std::shared_ptr<GoalCore> find(const GoalId & id) const;
+  void call(const char * name, const GoalUUID & id, const std::function<void()> & handler) const noexcept;
+  std::shared_ptr<ServerGoalImpl> find(const GoalUUID & id) const;
 
   using Send = rcl_ret_t (*)(const rcl_action_server_t *, rmw_request_id_t *, void *);
   /// `done` is told whether it was delivered; that may be seconds later. `instead` is sent when the
   /// middleware throws at `response`.
   void answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
               std::function<void(bool)> done = {}, std::shared_ptr<void> instead = {});
-  void send_result(const rmw_request_id_t & request, GoalCore & goal);
+  void send_result(const rmw_request_id_t & request, ServerGoalImpl & goal);
   /// Of a goal that has none, or none that can be sent.
   std::shared_ptr<void> missing_result(GoalStatus status) const;
 
-  void await_requests(const std::vector<std::shared_ptr<GoalCore>> & goals, bool serve);
+  void await_requests(const std::vector<std::shared_ptr<ServerGoalImpl>> & goals, bool serve);
 
   // Under the lock.
-  bool finish_locked(GoalCore & goal, GoalStatus status, std::shared_ptr<void> result_response);
-  bool transition_locked(GoalCore & goal, GoalStatus status);
+  bool finish_locked(ServerGoalImpl & goal, GoalStatus status, std::shared_ptr<void> result_response);
+  bool transition_locked(ServerGoalImpl & goal, GoalStatus status);
   void publish_status_locked();
   void schedule_expiry_locked();
-  std::vector<std::shared_ptr<GoalHandleBase>> lost_clients_locked(const ServiceClients & known);
+  std::vector<std::shared_ptr<ServerGoalHandleBase>> lost_clients_locked(const ServiceClients & known);
 
   const ErasedActionServer erased_;
   const ActionServerOps & ops_;
@@ -112,9 +112,9 @@ class ActionServerCore : public Entity {
   mutable std::mutex mutex_;
   std::unique_ptr<ExpireTimer> rcl_timer_;
   rcl_action_server_t server_;
-  std::map<GoalId, std::shared_ptr<GoalCore>> goals_;
-  std::shared_ptr<TimerCore> expiry_;
-  std::shared_ptr<TimerCore> client_check_;  // runs while clients are watched
+  std::map<GoalUUID, std::shared_ptr<ServerGoalImpl>> goals_;
+  std::shared_ptr<TimerImpl> expiry_;
+  std::shared_ptr<TimerImpl> client_check_;  // runs while clients are watched
   bool retired_ = false;
   std::size_t shutdown_callback_ = 0;
 };

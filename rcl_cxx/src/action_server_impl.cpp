@@ -1,4 +1,4 @@
-#include "action_server_core.hpp"
+#include "action_server_impl.hpp"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,11 @@
 #include <thread>
 
 #include "action_messages.hpp"
-#include "node_core.hpp"
+#include "node_impl.hpp"
 #include "qos_rmw.hpp"
 #include "rcl_compat.hpp"
 #include "rcl_error.hpp"
-#include "timer_core.hpp"
+#include "timer_impl.hpp"
 
 namespace rcl_cxx::detail {
 namespace {
@@ -45,9 +45,10 @@ rcl_action_server_options_t to_rcl(const ActionServerOptions & options)
 }
 }  // namespace
 
-ExpireTimer::ExpireTimer(NodeCore & node) : timer_(rcl_get_zero_initialized_timer())
+ExpireTimer::ExpireTimer(NodeImpl & node) : timer_(rcl_get_zero_initialized_timer())
 {
-  check_rcl(compat::timer_init_canceled(&timer_, node.clock().handle(), node.context().handle(), kCenturyNs),
+  check_rcl(compat::timer_init_canceled(&timer_, node.get_clock().handle(), node.get_context().handle(),
+                                        kCenturyNs),
             "timer", "cannot be created");
 }
 
@@ -56,7 +57,7 @@ ExpireTimer::~ExpireTimer()
   ignore_rcl(rcl_timer_fini(&timer_));
 }
 
-std::shared_ptr<ActionServerCore> ActionServerCore::create(std::shared_ptr<NodeCore> node,
+std::shared_ptr<ActionServerImpl> ActionServerImpl::create(std::shared_ptr<NodeImpl> node,
                                                            ErasedActionServer erased,
                                                            const std::string & name,
                                                            const ActionServerOptions & options)
@@ -64,14 +65,14 @@ std::shared_ptr<ActionServerCore> ActionServerCore::create(std::shared_ptr<NodeC
   if (!erased.accepted) {
     throw Error(fmt::format("action server {}: without a handler of accepted goals", name));
   }
-  auto core = std::make_shared<ActionServerCore>(std::move(node), std::move(erased), name, options);
-  core->start();
-  return core;
+  auto impl = std::make_shared<ActionServerImpl>(std::move(node), std::move(erased), name, options);
+  impl->start();
+  return impl;
 }
 
-ActionServerCore::ActionServerCore(std::shared_ptr<NodeCore> node, ErasedActionServer erased,
+ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, ErasedActionServer erased,
                                    const std::string & name, const ActionServerOptions & options)
-    : Entity(std::move(node), fmt::format("action server {}", name)),
+    : Waitable(std::move(node), fmt::format("action server {}", name)),
       erased_(std::move(erased)),
       ops_(*erased_.ops),
       answers_(std::make_shared<ResponseRetry>(this->node())),
@@ -84,22 +85,22 @@ ActionServerCore::ActionServerCore(std::shared_ptr<NodeCore> node, ErasedActionS
   const std::lock_guard lock(this->node()->mutex());
   rcl_timer_ = std::make_unique<ExpireTimer>(*this->node());
   check_rcl(compat::action_server_init(&server_, this->node()->handle(), rcl_timer_->get(),
-                                       this->node()->clock().handle(), ops_.type_support(), name.c_str(),
+                                       this->node()->get_clock().handle(), ops_.type_support(), name.c_str(),
                                        &rcl_options),
             label(), "cannot be created");
 }
 
-ActionServerCore::~ActionServerCore()
+ActionServerImpl::~ActionServerImpl()
 {
   const std::lock_guard lock(node()->mutex());
   ignore_rcl(rcl_action_server_fini(&server_, node()->handle()));
 }
 
-void ActionServerCore::start()
+void ActionServerImpl::start()
 {
-  const std::weak_ptr<ActionServerCore> weak = std::static_pointer_cast<ActionServerCore>(shared_from_this());
-  const auto create_timer = [&](std::chrono::nanoseconds period, void (ActionServerCore::*callback)()) {
-    auto timer = TimerCore::create(node(), period, [weak, callback] {
+  const std::weak_ptr<ActionServerImpl> weak = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
+  const auto create_timer = [&](std::chrono::nanoseconds period, void (ActionServerImpl::*callback)()) {
+    auto timer = TimerImpl::create(node(), period, [weak, callback] {
       if (const auto self = weak.lock()) {
         ((*self).*callback)();
       }
@@ -107,11 +108,11 @@ void ActionServerCore::start()
     timer->cancel();
     return timer;
   };
-  expiry_ = create_timer(std::chrono::hours(1), &ActionServerCore::expire);
+  expiry_ = create_timer(std::chrono::hours(1), &ActionServerImpl::expire);
   if (erased_.client_lost) {
-    client_check_ = create_timer(kClientCheckPeriod, &ActionServerCore::check_clients);
+    client_check_ = create_timer(kClientCheckPeriod, &ActionServerImpl::check_clients);
   }
-  shutdown_callback_ = node()->context().add_callback(ContextCore::Phase::library_before, [weak] {
+  shutdown_callback_ = node()->get_context().add_callback(ContextImpl::Phase::library_before, [weak] {
     if (const auto self = weak.lock()) {
       self->abort_all("shutdown", self->node()->in_own_callback());
     }
@@ -124,7 +125,7 @@ void ActionServerCore::start()
             "its middleware does not report requests for results");
 }
 
-void ActionServerCore::stop() noexcept
+void ActionServerImpl::stop() noexcept
 {
   ignore_rcl(rcl_action_server_set_goal_service_callback(&server_, nullptr, nullptr));
   ignore_rcl(rcl_action_server_set_cancel_service_callback(&server_, nullptr, nullptr));
@@ -136,7 +137,7 @@ void ActionServerCore::stop() noexcept
   }
 }
 
-void ActionServerCore::execute(std::size_t source)
+void ActionServerImpl::execute(std::size_t source)
 {
   switch (source) {
     case kGoal:
@@ -148,24 +149,24 @@ void ActionServerCore::execute(std::size_t source)
   }
 }
 
-std::size_t ActionServerCore::active_goal_count() const
+std::size_t ActionServerImpl::active_goal_count() const
 {
   const std::lock_guard lock(mutex_);
   std::size_t count = 0;
   for (const auto & [id, goal] : goals_) {
-    count += is_terminal(goal->status()) ? 0 : 1;
+    count += is_terminal(goal->get_status()) ? 0 : 1;
   }
   return count;
 }
 
-std::shared_ptr<GoalCore> ActionServerCore::find(const GoalId & id) const
+std::shared_ptr<ServerGoalImpl> ActionServerImpl::find(const GoalUUID & id) const
 {
   const std::lock_guard lock(mutex_);
   const auto found = goals_.find(id);
   return found == goals_.end() ? nullptr : found->second;
 }
 
-std::shared_ptr<void> ActionServerCore::missing_result(GoalStatus status) const
+std::shared_ptr<void> ActionServerImpl::missing_result(GoalStatus status) const
 {
   std::shared_ptr<void> response = ops_.make_result_response(status);
   if (erased_.missing_result) {
@@ -174,13 +175,13 @@ std::shared_ptr<void> ActionServerCore::missing_result(GoalStatus status) const
   return response;
 }
 
-void ActionServerCore::abort_all(const char * why, bool serve) noexcept
+void ActionServerImpl::abort_all(const char * why, bool serve) noexcept
 {
-  std::vector<std::shared_ptr<GoalCore>> aborted;
+  std::vector<std::shared_ptr<ServerGoalImpl>> aborted;
   {
     const std::lock_guard lock(mutex_);
     for (const auto & [id, goal] : goals_) {
-      if (!is_terminal(goal->status()) &&
+      if (!is_terminal(goal->get_status()) &&
           finish_locked(*goal, GoalStatus::aborted, missing_result(GoalStatus::aborted))) {
         aborted.push_back(goal);
       }
@@ -189,18 +190,19 @@ void ActionServerCore::abort_all(const char * why, bool serve) noexcept
   if (aborted.empty()) {
     return;
   }
-  RCL_CXX_WARN(node()->logger(), "{}: goals aborted that were running: {} ({})", name_, aborted.size(), why);
+  RCL_CXX_WARN(node()->get_logger(), "{}: goals aborted that were running: {} ({})", name_, aborted.size(),
+               why);
   try {
     await_requests(aborted, serve);
   } catch (const std::exception & error) {
-    RCL_CXX_WARN(node()->logger(), "{}: {}", name_, error.what());
+    RCL_CXX_WARN(node()->get_logger(), "{}: {}", name_, error.what());
   }
 }
 
-void ActionServerCore::await_requests(const std::vector<std::shared_ptr<GoalCore>> & goals, bool serve)
+void ActionServerImpl::await_requests(const std::vector<std::shared_ptr<ServerGoalImpl>> & goals, bool serve)
 {
   const auto deadline = std::chrono::steady_clock::now() + kGraceForRequests;
-  const auto sent = [](const std::shared_ptr<GoalCore> & goal) { return goal->result_sent.load(); };
+  const auto sent = [](const std::shared_ptr<ServerGoalImpl> & goal) { return goal->result_sent.load(); };
   while (!std::all_of(goals.begin(), goals.end(), sent) && std::chrono::steady_clock::now() < deadline) {
     if (!serve || !take_result()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -208,32 +210,32 @@ void ActionServerCore::await_requests(const std::vector<std::shared_ptr<GoalCore
   }
 }
 
-void ActionServerCore::retire() noexcept
+void ActionServerImpl::retire() noexcept
 {
-  node()->context().remove_callback(shutdown_callback_);
+  node()->get_context().remove_callback(shutdown_callback_);
   close();
   answers_->stop();
   abort_all("the action server was destroyed", true);
   // Handles may find this for a moment yet: the executor's thread may hold it.
   const std::lock_guard lock(mutex_);
   for (const auto & [id, goal] : goals_) {
-    if (!is_terminal(goal->status())) {
+    if (!is_terminal(goal->get_status())) {
       goal->orphan();  // its abortion has failed
     }
   }
   retired_ = true;
 }
 
-bool ActionServerCore::publish_feedback(const GoalCore & goal, void * message) noexcept
+bool ActionServerImpl::publish_feedback(const ServerGoalImpl & goal, void * message) noexcept
 {
   // Under the lock, so that no feedback follows the result.
   const std::lock_guard lock(mutex_);
-  if (retired_ || is_terminal(goal.status())) {
+  if (retired_ || is_terminal(goal.get_status())) {
     return false;
   }
   if (rcl_action_publish_feedback(&server_, message) != RCL_RET_OK) {
-    if (node()->context().ok()) {
-      RCL_CXX_ERROR(node()->logger(), "{}: goal {}: feedback cannot be published: {}", name_,
+    if (node()->get_context().ok()) {
+      RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: feedback cannot be published: {}", name_,
                     goal.id().short_string(), take_rcl_error());
     }
     rcl_reset_error();
@@ -242,17 +244,17 @@ bool ActionServerCore::publish_feedback(const GoalCore & goal, void * message) n
   return true;
 }
 
-void ActionServerCore::on_handle_dropped(GoalCore & goal) noexcept
+void ActionServerImpl::on_handle_dropped(ServerGoalImpl & goal) noexcept
 {
   const std::lock_guard lock(mutex_);
-  if (!retired_ && !is_terminal(goal.status())) {
-    RCL_CXX_ERROR(node()->logger(), "{}: goal {} was given up without a result, it is aborted", name_,
+  if (!retired_ && !is_terminal(goal.get_status())) {
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {} was given up without a result, it is aborted", name_,
                   goal.id().short_string());
     finish_locked(goal, GoalStatus::aborted, missing_result(GoalStatus::aborted));
   }
 }
 
-bool ActionServerCore::finish(GoalCore & goal, GoalStatus status,
+bool ActionServerImpl::finish(ServerGoalImpl & goal, GoalStatus status,
                               std::shared_ptr<void> result_response) noexcept
 {
   const std::lock_guard lock(mutex_);
@@ -262,12 +264,12 @@ bool ActionServerCore::finish(GoalCore & goal, GoalStatus status,
   if (finish_locked(goal, status, std::move(result_response))) {
     return true;
   }
-  RCL_CXX_WARN(node()->logger(), "{}: goal {} is {}, it cannot become {}", name_, goal.id().short_string(),
-               to_string(goal.status()), to_string(status));
+  RCL_CXX_WARN(node()->get_logger(), "{}: goal {} is {}, it cannot become {}", name_,
+               goal.id().short_string(), to_string(goal.get_status()), to_string(status));
   return false;
 }
 
-bool ActionServerCore::transition_locked(GoalCore & goal, GoalStatus status)
+bool ActionServerImpl::transition_locked(ServerGoalImpl & goal, GoalStatus status)
 {
   switch (status) {
     case GoalStatus::succeeded:
@@ -276,7 +278,7 @@ bool ActionServerCore::transition_locked(GoalCore & goal, GoalStatus status)
       return goal.update(GOAL_EVENT_ABORT);
     case GoalStatus::canceled:
       // A worker that is quick may be done before its cancel handler has returned.
-      if (goal.cancel_being_decided && goal.status() == GoalStatus::executing) {
+      if (goal.cancel_being_decided && goal.get_status() == GoalStatus::executing) {
         goal.update(GOAL_EVENT_CANCEL_GOAL);
       }
       return goal.update(GOAL_EVENT_CANCELED);
@@ -285,10 +287,10 @@ bool ActionServerCore::transition_locked(GoalCore & goal, GoalStatus status)
   }
 }
 
-bool ActionServerCore::finish_locked(GoalCore & goal, GoalStatus status,
+bool ActionServerImpl::finish_locked(ServerGoalImpl & goal, GoalStatus status,
                                      std::shared_ptr<void> result_response)
 {
-  if (is_terminal(goal.status()) || !transition_locked(goal, status)) {
+  if (is_terminal(goal.get_status()) || !transition_locked(goal, status)) {
     return false;
   }
   goal.result_response = std::move(result_response);
@@ -305,7 +307,7 @@ bool ActionServerCore::finish_locked(GoalCore & goal, GoalStatus status,
   return true;
 }
 
-void ActionServerCore::publish_status_locked()
+void ActionServerImpl::publish_status_locked()
 {
   rcl_action_goal_status_array_t status = rcl_action_get_zero_initialized_goal_status_array();
   rcl_ret_t code = rcl_action_get_goal_status_array(&server_, &status);
@@ -313,17 +315,17 @@ void ActionServerCore::publish_status_locked()
     action_msgs::msg::GoalStatusArray message = to_cpp(status.msg);
     code = rcl_action_publish_status(&server_, &message);
   }
-  if (code != RCL_RET_OK && node()->context().ok()) {
-    RCL_CXX_ERROR(node()->logger(), "{}: the status of the goals cannot be published: {}", name_,
+  if (code != RCL_RET_OK && node()->get_context().ok()) {
+    RCL_CXX_ERROR(node()->get_logger(), "{}: the status of the goals cannot be published: {}", name_,
                   take_rcl_error());
   }
   rcl_reset_error();
   ignore_rcl(rcl_action_goal_status_array_fini(&status));
 }
 
-void ActionServerCore::expire()
+void ActionServerImpl::expire()
 {
-  std::vector<std::shared_ptr<GoalCore>> expired;  // destroyed after the lock is released
+  std::vector<std::shared_ptr<ServerGoalImpl>> expired;  // destroyed after the lock is released
   const std::lock_guard lock(mutex_);
   while (true) {
     rcl_action_goal_info_t info = rcl_action_get_zero_initialized_goal_info();
@@ -332,7 +334,7 @@ void ActionServerCore::expire()
     if (count == 0) {
       break;
     }
-    GoalId id;
+    GoalUUID id;
     std::copy(std::begin(info.goal_id.uuid), std::end(info.goal_id.uuid), id.bytes.begin());
     if (auto node = goals_.extract(id)) {
       expired.push_back(std::move(node.mapped()));
@@ -344,11 +346,11 @@ void ActionServerCore::expire()
   schedule_expiry_locked();
 }
 
-void ActionServerCore::schedule_expiry_locked()
+void ActionServerImpl::schedule_expiry_locked()
 {
   auto first_end = std::chrono::steady_clock::time_point::max();
   for (const auto & [id, goal] : goals_) {
-    if (is_terminal(goal->status())) {
+    if (is_terminal(goal->get_status())) {
       first_end = std::min(first_end, goal->ended);
     }
   }

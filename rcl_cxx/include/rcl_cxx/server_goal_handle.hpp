@@ -5,24 +5,24 @@
 #include <mutex>
 #include <string>
 
-#include "rcl_cxx/goal_id.hpp"
+#include "rcl_cxx/goal_uuid.hpp"
 
 namespace rcl_cxx {
 namespace detail {
-class GoalCore;
+class ServerGoalImpl;
 }
 
 /// A goal that a server has accepted. All members are thread-safe, never throw, and may be called after the
 /// server is gone.
-class GoalHandleBase {
+class ServerGoalHandleBase {
  public:
   /// A goal that has no result yet is aborted with an empty one, and that is logged.
-  virtual ~GoalHandleBase();
-  GoalHandleBase(const GoalHandleBase &) = delete;
-  GoalHandleBase & operator=(const GoalHandleBase &) = delete;
+  virtual ~ServerGoalHandleBase();
+  ServerGoalHandleBase(const ServerGoalHandleBase &) = delete;
+  ServerGoalHandleBase & operator=(const ServerGoalHandleBase &) = delete;
 
-  const GoalId & goal_id() const noexcept;
-  GoalStatus status() const noexcept;
+  const GoalUUID & get_goal_id() const noexcept;
+  GoalStatus get_status() const noexcept;
   /// It has no result yet. Turns false also if the server or the context ends first.
   bool is_active() const noexcept;
   /// A cancel request has been granted; the goal still waits for its result.
@@ -32,34 +32,34 @@ class GoalHandleBase {
   std::int64_t accepted_ns() const noexcept;
 
  protected:
-  explicit GoalHandleBase(std::shared_ptr<detail::GoalCore> core);
+  explicit ServerGoalHandleBase(std::shared_ptr<detail::ServerGoalImpl> impl);
   bool finish(GoalStatus status, std::shared_ptr<void> result_response) noexcept;
   /// False after the goal's end: then nothing is sent.
   bool send_feedback(void * feedback_message) noexcept;
   void report_exception(const char * what) const noexcept;
 
  private:
-  std::shared_ptr<detail::GoalCore> core_;
+  std::shared_ptr<detail::ServerGoalImpl> impl_;
 };
 
-/// See GoalHandleBase. Exactly one of succeed, abort and canceled takes effect: the first. They return
+/// See ServerGoalHandleBase. Exactly one of succeed, abort and canceled takes effect: the first. They return
 /// whether it was this one; a refused one is logged.
 template <typename A>
-class GoalHandle : public GoalHandleBase {
+class ServerGoalHandle : public ServerGoalHandleBase {
  public:
-  using SharedPtr = std::shared_ptr<GoalHandle<A>>;
+  using SharedPtr = std::shared_ptr<ServerGoalHandle<A>>;
   using Goal = typename A::Goal;
   using Result = typename A::Result;
   using Feedback = typename A::Feedback;
   using GoalRequest = typename A::Impl::SendGoalService::Request;
 
-  GoalHandle(std::shared_ptr<detail::GoalCore> core, std::shared_ptr<const GoalRequest> request)
-      : GoalHandleBase(std::move(core)), request_(std::move(request))
+  ServerGoalHandle(std::shared_ptr<detail::ServerGoalImpl> impl, std::shared_ptr<const GoalRequest> request)
+      : ServerGoalHandleBase(std::move(impl)), request_(std::move(request))
   {
-    feedback_.goal_id.uuid = goal_id().bytes;
+    feedback_.goal_id.uuid = get_goal_id().bytes;
   }
 
-  const Goal & goal() const noexcept { return request_->goal; }
+  const Goal & get_goal() const noexcept { return request_->goal; }
 
   /// To every subscriber of the feedback topic. False, and nothing is sent, after the goal's end.
   bool publish_feedback(const Feedback & feedback) noexcept

@@ -1,4 +1,4 @@
-#include "node_core.hpp"
+#include "node_impl.hpp"
 
 #include <fmt/format.h>
 #include <rcl/logging.h>
@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include "logging_core.hpp"
+#include "logging_impl.hpp"
 #include "rcl_compat.hpp"
 #include "rcl_error.hpp"
 
@@ -19,10 +19,10 @@ namespace {
 constexpr std::chrono::milliseconds kGraphCheckPeriod{5};
 }  // namespace
 
-NodeCore::NodeCore(std::shared_ptr<ContextCore> context, const std::string & name,
+NodeImpl::NodeImpl(std::shared_ptr<ContextImpl> context, const std::string & name,
                    const std::string & node_namespace, const NodeOptions & options,
                    const rcl_arguments_t & arguments)
-    : context_core_(std::move(context)), node_(rcl_get_zero_initialized_node()), logger_(name)
+    : context_impl_(std::move(context)), node_(rcl_get_zero_initialized_node()), logger_(name)
 {
   rcl_node_options_t node_options = rcl_node_get_default_options();
   node_options.use_global_arguments = options.use_global_arguments;
@@ -30,7 +30,7 @@ NodeCore::NodeCore(std::shared_ptr<ContextCore> context, const std::string & nam
   node_options.arguments = arguments;  // copied by rcl
   std::unique_lock lock(logging_mutex());
   check_rcl(
-      rcl_node_init(&node_, name.c_str(), node_namespace.c_str(), context_core_->handle(), &node_options),
+      rcl_node_init(&node_, name.c_str(), node_namespace.c_str(), context_impl_->handle(), &node_options),
       fmt::format("node '{}' in namespace '{}'", name, node_namespace), "cannot be created");
   name_ = rcl_node_get_name(&node_);
   namespace_ = rcl_node_get_namespace(&node_);
@@ -40,11 +40,11 @@ NodeCore::NodeCore(std::shared_ptr<ContextCore> context, const std::string & nam
     start_rosout();
     lock.unlock();
     // Later messages go to the console and the log file: rcl would report that it cannot publish them.
-    rosout_end_ = context_core_->add_callback(ContextCore::Phase::rosout, [this] { end_rosout(); });
+    rosout_end_ = context_impl_->add_callback(ContextImpl::Phase::rosout, [this] { end_rosout(); });
   }
 }
 
-void NodeCore::start_rosout()
+void NodeImpl::start_rosout()
 {
   const rcl_ret_t code = compat::rosout_start(&node_);
   has_rosout_ = code == RCL_RET_OK;
@@ -55,7 +55,7 @@ void NodeCore::start_rosout()
   }
 }
 
-void NodeCore::end_rosout()
+void NodeImpl::end_rosout()
 {
   const std::lock_guard lock(logging_mutex());
   if (std::exchange(has_rosout_, false)) {
@@ -63,15 +63,15 @@ void NodeCore::end_rosout()
   }
 }
 
-NodeCore::~NodeCore()
+NodeImpl::~NodeImpl()
 {
-  context_core_->remove_callback(rosout_end_);
+  context_impl_->remove_callback(rosout_end_);
   end_rosout();
   const std::lock_guard lock(logging_mutex());
   ignore_rcl(rcl_node_fini(&node_));
 }
 
-std::string NodeCore::resolve(const std::string & name, bool is_service) const
+std::string NodeImpl::resolve(const std::string & name, bool is_service) const
 {
   const rcl_allocator_t allocator = rcl_get_default_allocator();
   char * resolved = nullptr;
@@ -82,16 +82,16 @@ std::string NodeCore::resolve(const std::string & name, bool is_service) const
   return result;
 }
 
-bool NodeCore::in_own_callback() const
+bool NodeImpl::in_own_callback() const
 {
-  const auto queue = hub_.queue();
+  const auto queue = pending_events_.queue();
   return queue && queue.get() == EventQueue::current();
 }
 
-bool NodeCore::wait_for(const std::function<bool()> & condition, std::chrono::nanoseconds timeout) const
+bool NodeImpl::wait_for(const std::function<bool()> & condition, std::chrono::nanoseconds timeout) const
 {
   const auto start = std::chrono::steady_clock::now();
-  while (context_core_->ok()) {
+  while (context_impl_->ok()) {
     if (condition()) {
       return true;
     }
@@ -104,9 +104,9 @@ bool NodeCore::wait_for(const std::function<bool()> & condition, std::chrono::na
   return false;
 }
 
-std::string NodeCore::executor_hint() const
+std::string NodeImpl::executor_hint() const
 {
-  return hub_.queue() ? "" : " (the node is in no executor, nothing can arrive)";
+  return pending_events_.queue() ? "" : " (the node is in no executor, nothing can arrive)";
 }
 
 }  // namespace rcl_cxx::detail

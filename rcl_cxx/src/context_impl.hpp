@@ -19,16 +19,16 @@
 
 namespace rcl_cxx::detail {
 /// Owns the rcl context, and lives as long as anything made from it.
-class ContextCore : public std::enable_shared_from_this<ContextCore> {
+class ContextImpl : public std::enable_shared_from_this<ContextImpl> {
  public:
   /// In this order, and in order of registration within one: what the user does while communication works,
   /// what action servers do after that, the end of /rosout, what is done when rcl has been shut down.
   enum class Phase { user_before, library_before, rosout, after };
 
-  ContextCore(int argc, const char * const * argv, const ContextOptions & options);
-  ~ContextCore();
-  ContextCore(const ContextCore &) = delete;
-  ContextCore & operator=(const ContextCore &) = delete;
+  ContextImpl(int argc, const char * const * argv, const InitOptions & options);
+  ~ContextImpl();
+  ContextImpl(const ContextImpl &) = delete;
+  ContextImpl & operator=(const ContextImpl &) = delete;
 
   /// Second half of construction: it needs shared_from_this.
   void watch_signals();
@@ -51,7 +51,7 @@ class ContextCore : public std::enable_shared_from_this<ContextCore> {
   enum class State { running, shutting_down, shut_down };
   using Key = std::pair<Phase, std::size_t>;
 
-  void init(int argc, const char * const * argv, const ContextOptions & options);
+  void init(int argc, const char * const * argv, const InitOptions & options);
   void read_arguments(const char * const * argv);
   void on_signal(int signal);
   void run_callbacks(Phase phase);

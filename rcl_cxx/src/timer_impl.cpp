@@ -1,9 +1,9 @@
-#include "timer_core.hpp"
+#include "timer_impl.hpp"
 
 #include <fmt/format.h>
 
-#include "event_hub.hpp"
-#include "node_core.hpp"
+#include "node_impl.hpp"
+#include "pending_events.hpp"
 #include "rcl_cxx/error.hpp"
 #include "rcl_cxx/timer.hpp"
 
@@ -19,38 +19,38 @@ std::chrono::nanoseconds checked(std::chrono::nanoseconds period)
 }
 }  // namespace
 
-std::shared_ptr<TimerCore> TimerCore::create(std::shared_ptr<NodeCore> node, std::chrono::nanoseconds period,
+std::shared_ptr<TimerImpl> TimerImpl::create(std::shared_ptr<NodeImpl> node, std::chrono::nanoseconds period,
                                              std::function<void()> callback)
 {
-  auto timer = std::make_shared<TimerCore>(std::move(node), period, std::move(callback));
-  timer->node()->hub().add_timer(timer);
+  auto timer = std::make_shared<TimerImpl>(std::move(node), period, std::move(callback));
+  timer->node()->pending_events().add_timer(timer);
   return timer;
 }
 
-TimerCore::TimerCore(std::shared_ptr<NodeCore> node, std::chrono::nanoseconds period,
+TimerImpl::TimerImpl(std::shared_ptr<NodeImpl> node, std::chrono::nanoseconds period,
                      std::function<void()> callback)
-    : Entity(std::move(node),
-             fmt::format("timer of {} ms", std::chrono::duration<double, std::milli>(period).count())),
+    : Waitable(std::move(node),
+               fmt::format("timer of {} ms", std::chrono::duration<double, std::milli>(period).count())),
       callback_(std::move(callback)),
       period_(checked(period)),
       due_(Clock::now() + period)
 {
 }
 
-std::shared_ptr<TimerCore> TimerCore::self()
+std::shared_ptr<TimerImpl> TimerImpl::self()
 {
-  return std::static_pointer_cast<TimerCore>(shared_from_this());
+  return std::static_pointer_cast<TimerImpl>(shared_from_this());
 }
 
-void TimerCore::schedule_locked()
+void TimerImpl::schedule_locked()
 {
   const std::size_t generation = ++*generation_;
   if (!canceled_) {
-    node()->hub().schedule(TimedEvent{due_, self(), generation, generation_});
+    node()->pending_events().schedule(TimedEvent{due_, self(), generation, generation_});
   }
 }
 
-void TimerCore::execute(std::size_t source)
+void TimerImpl::execute(std::size_t source)
 {
   {
     const std::lock_guard lock(mutex_);
@@ -68,25 +68,25 @@ void TimerCore::execute(std::size_t source)
   callback_();
 }
 
-void TimerCore::cancel()
+void TimerImpl::cancel()
 {
   const std::lock_guard lock(mutex_);
   canceled_ = true;
   ++*generation_;
 }
 
-bool TimerCore::is_canceled() const
+bool TimerImpl::is_canceled() const
 {
   const std::lock_guard lock(mutex_);
   return canceled_;
 }
 
-void TimerCore::reset()
+void TimerImpl::reset()
 {
   set_period(period());
 }
 
-void TimerCore::set_period(std::chrono::nanoseconds period)
+void TimerImpl::set_period(std::chrono::nanoseconds period)
 {
   const std::lock_guard lock(mutex_);
   period_ = checked(period);
@@ -96,13 +96,13 @@ void TimerCore::set_period(std::chrono::nanoseconds period)
   schedule_locked();
 }
 
-std::chrono::nanoseconds TimerCore::period() const
+std::chrono::nanoseconds TimerImpl::period() const
 {
   const std::lock_guard lock(mutex_);
   return period_;
 }
 
-void TimerCore::call_once_in(std::chrono::nanoseconds delay)
+void TimerImpl::call_once_in(std::chrono::nanoseconds delay)
 {
   const std::lock_guard lock(mutex_);
   due_ = Clock::now() + delay;
@@ -111,48 +111,48 @@ void TimerCore::call_once_in(std::chrono::nanoseconds delay)
   schedule_locked();
 }
 
-void TimerCore::arm()
+void TimerImpl::arm()
 {
   const std::lock_guard lock(mutex_);
   schedule_locked();
 }
 
-void TimerCore::disarm()
+void TimerImpl::disarm()
 {
   const std::lock_guard lock(mutex_);
   ++*generation_;
 }
 
-void TimerCore::stop() noexcept
+void TimerImpl::stop() noexcept
 {
   cancel();
 }
 }  // namespace detail
 
-Timer::Timer(std::shared_ptr<detail::TimerCore> core) : core_(std::move(core)) {}
+Timer::Timer(std::shared_ptr<detail::TimerImpl> impl) : impl_(std::move(impl)) {}
 Timer::~Timer()
 {
-  core_->close();
+  impl_->close();
 }
 void Timer::cancel()
 {
-  core_->cancel();
+  impl_->cancel();
 }
 bool Timer::is_canceled() const
 {
-  return core_->is_canceled();
+  return impl_->is_canceled();
 }
 void Timer::reset()
 {
-  core_->reset();
+  impl_->reset();
 }
 std::chrono::nanoseconds Timer::period() const
 {
-  return core_->period();
+  return impl_->period();
 }
 void Timer::set_period(std::chrono::nanoseconds period)
 {
-  core_->set_period(period);
+  impl_->set_period(period);
 }
 
 }  // namespace rcl_cxx

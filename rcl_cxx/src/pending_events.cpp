@@ -1,13 +1,13 @@
-#include "event_hub.hpp"
+#include "pending_events.hpp"
 
 #include <algorithm>
 #include <iterator>
 
-#include "entity.hpp"
-#include "timer_core.hpp"
+#include "timer_impl.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
-void EventHub::push(Event event)
+void PendingEvents::push(Event event)
 {
   const std::lock_guard lock(mutex_);
   if (queue_) {
@@ -17,7 +17,7 @@ void EventHub::push(Event event)
   }
 }
 
-void EventHub::schedule(TimedEvent event)
+void PendingEvents::schedule(TimedEvent event)
 {
   const std::lock_guard lock(mutex_);
   if (queue_) {
@@ -25,16 +25,16 @@ void EventHub::schedule(TimedEvent event)
   }
 }
 
-void EventHub::add_timer(std::weak_ptr<TimerCore> timer)
+void PendingEvents::add_timer(std::weak_ptr<TimerImpl> timer)
 {
   const std::lock_guard lock(mutex_);
   std::erase_if(timers_, [](const auto & other) { return other.expired(); });
   timers_.push_back(std::move(timer));
 }
 
-bool EventHub::attach(std::shared_ptr<EventQueue> queue)
+bool PendingEvents::attach(std::shared_ptr<EventQueue> queue)
 {
-  std::vector<std::weak_ptr<TimerCore>> timers;
+  std::vector<std::weak_ptr<TimerImpl>> timers;
   {
     const std::lock_guard lock(mutex_);
     if (queue_) {
@@ -55,9 +55,9 @@ bool EventHub::attach(std::shared_ptr<EventQueue> queue)
   return true;
 }
 
-void EventHub::detach(EventQueue & queue)
+void PendingEvents::detach(EventQueue & queue)
 {
-  std::vector<std::weak_ptr<TimerCore>> timers;
+  std::vector<std::weak_ptr<TimerImpl>> timers;
   {
     const std::lock_guard lock(mutex_);
     if (queue_.get() != &queue) {
@@ -80,7 +80,7 @@ void EventHub::detach(EventQueue & queue)
   }
 }
 
-std::shared_ptr<EventQueue> EventHub::queue() const
+std::shared_ptr<EventQueue> PendingEvents::queue() const
 {
   const std::lock_guard lock(mutex_);
   return queue_;

@@ -7,24 +7,24 @@
 #include <memory>
 #include <string>
 
-#include "entity.hpp"
 #include "qos_warning.hpp"
 #include "rcl_cxx/qos.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
-class PublisherCore : public Entity {
+class PublisherImpl : public Waitable {
  public:
-  static std::shared_ptr<PublisherCore> create(std::shared_ptr<NodeCore> node,
+  static std::shared_ptr<PublisherImpl> create(std::shared_ptr<NodeImpl> node,
                                                const rosidl_message_type_support_t * type_support,
                                                const std::string & topic, const QoS & qos);
-  PublisherCore(std::shared_ptr<NodeCore> node, const rosidl_message_type_support_t * type_support,
+  PublisherImpl(std::shared_ptr<NodeImpl> node, const rosidl_message_type_support_t * type_support,
                 const std::string & topic, const QoS & qos);
-  ~PublisherCore() override;
+  ~PublisherImpl() override;
 
   /// As Publisher::publish.
   bool publish(const void * message) noexcept;
-  std::size_t subscription_count() const;
-  const std::string & topic_name() const noexcept { return topic_; }
+  std::size_t get_subscription_count() const;
+  const std::string & get_topic_name() const noexcept { return topic_; }
 
  protected:
   void execute(std::size_t source) override;

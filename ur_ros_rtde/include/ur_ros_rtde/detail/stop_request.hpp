@@ -8,33 +8,35 @@
 
 namespace ur_ros_rtde {
 
-/// Asks a goal that runs in another thread to end, once: the first reason counts. Thread-safe.
-class Interrupt {
+/// A request to stop a goal or a teleoperation topic that runs in another thread. It is made once: the first
+/// reason is kept. Thread-safe.
+class StopRequest {
  public:
-  void request(Interruption why)
+  void request(StopReason reason)
   {
     {
       const std::lock_guard lock(mutex_);
-      if (why_) {
+      if (reason_) {
         return;
       }
-      why_ = std::move(why);
+      reason_ = std::move(reason);
     }
     source_.request_stop();
   }
 
-  std::optional<Interruption> requested() const
+  /// Empty: no stop was requested.
+  std::optional<StopReason> reason() const
   {
     const std::lock_guard lock(mutex_);
-    return why_;
+    return reason_;
   }
 
-  /// Wakes waits as soon as an end is requested.
+  /// Wakes waits when a stop is requested.
   std::stop_token token() const { return source_.get_token(); }
 
  private:
   mutable std::mutex mutex_;
-  std::optional<Interruption> why_;
+  std::optional<StopReason> reason_;
   std::stop_source source_;
 };
 

@@ -5,21 +5,21 @@
 #include <memory>
 #include <string>
 
-#include "entity.hpp"
 #include "rcl_cxx/qos.hpp"
 #include "rcl_cxx/service.hpp"
 #include "response_retry.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
-class ServiceCore : public Entity {
+class ServiceImpl : public Waitable {
  public:
-  static std::shared_ptr<ServiceCore> create(std::shared_ptr<NodeCore> node, ErasedService erased,
+  static std::shared_ptr<ServiceImpl> create(std::shared_ptr<NodeImpl> node, ErasedService erased,
                                              const std::string & name, const QoS & qos);
-  ServiceCore(std::shared_ptr<NodeCore> node, ErasedService erased, const std::string & name,
+  ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, const std::string & name,
               const QoS & qos);
-  ~ServiceCore() override;
+  ~ServiceImpl() override;
 
-  const std::string & service_name() const noexcept { return name_; }
+  const std::string & get_service_name() const noexcept { return name_; }
 
  protected:
   void execute(std::size_t source) override;

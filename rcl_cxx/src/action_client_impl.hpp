@@ -13,17 +13,17 @@
 #include <mutex>
 #include <string>
 
-#include "entity.hpp"
 #include "rcl_cxx/action_client.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
 /// A goal that was sent, until its result is here. The user's handle shares it.
-class ClientGoalCore {
+class ClientGoalImpl {
  public:
-  ClientGoalCore(std::weak_ptr<ActionClientCore> client, GoalId id) : client_(std::move(client)), id_(id) {}
+  ClientGoalImpl(std::weak_ptr<ActionClientImpl> client, GoalUUID id) : client_(std::move(client)), id_(id) {}
 
-  const GoalId & id() const noexcept { return id_; }
-  std::shared_ptr<ActionClientCore> client() const noexcept { return client_.lock(); }
+  const GoalUUID & id() const noexcept { return id_; }
+  std::shared_ptr<ActionClientImpl> client() const noexcept { return client_.lock(); }
 
   std::atomic<GoalStatus> status{GoalStatus::unknown};
 
@@ -33,25 +33,25 @@ class ClientGoalCore {
   bool abandoned = false;
 
  private:
-  const std::weak_ptr<ActionClientCore> client_;
-  const GoalId id_;
+  const std::weak_ptr<ActionClientImpl> client_;
+  const GoalUUID id_;
 };
 
-class ActionClientCore : public Entity {
+class ActionClientImpl : public Waitable {
  public:
-  static std::shared_ptr<ActionClientCore> create(std::shared_ptr<NodeCore> node, const ActionClientOps & ops,
+  static std::shared_ptr<ActionClientImpl> create(std::shared_ptr<NodeImpl> node, const ActionClientOps & ops,
                                                   const std::string & name,
                                                   const ActionClientOptions & options);
-  ActionClientCore(std::shared_ptr<NodeCore> node, const ActionClientOps & ops, const std::string & name,
+  ActionClientImpl(std::shared_ptr<NodeImpl> node, const ActionClientOps & ops, const std::string & name,
                    const ActionClientOptions & options);
-  ~ActionClientCore() override;
+  ~ActionClientImpl() override;
 
-  const std::string & action_name() const noexcept { return name_; }
-  bool server_is_ready() const;
+  const std::string & get_action_name() const noexcept { return name_; }
+  bool action_server_is_ready() const;
 
-  GoalId send(const void * goal, ErasedGoalCallbacks callbacks);
-  void abandon(const GoalId & id) noexcept;
-  std::future<CancelResponse> cancel(const GoalId & id, std::int64_t stamp_ns);
+  GoalUUID send(const void * goal, ErasedGoalCallbacks callbacks);
+  void abandon(const GoalUUID & id) noexcept;
+  std::future<CancelResponse> cancel(const GoalUUID & id, std::int64_t stamp_ns);
   /// The user's client object is destroyed: drops all that waits for an answer, and sends nothing any more.
   void retire();
 
@@ -60,7 +60,7 @@ class ActionClientCore : public Entity {
   void stop() noexcept override;
 
  private:
-  using Goal = std::shared_ptr<ClientGoalCore>;
+  using Goal = std::shared_ptr<ClientGoalImpl>;
 
   void start();
   void take_goal_response();
@@ -70,7 +70,7 @@ class ActionClientCore : public Entity {
   void take_status();
   void on_accepted(const Goal & goal);
   void on_refused(const Goal & goal);
-  Goal find(const GoalId & id) const;
+  Goal find(const GoalUUID & id) const;
 
   const ActionClientOps & ops_;
   std::string name_;
@@ -80,7 +80,7 @@ class ActionClientCore : public Entity {
   bool retired_ = false;
   std::map<std::int64_t, Goal> unanswered_;      // by sequence number of the goal request
   std::map<std::int64_t, Goal> without_result_;  // by sequence number of the result request
-  std::map<GoalId, Goal> goals_;                 // sent and not ended
+  std::map<GoalUUID, Goal> goals_;               // sent and not ended
   std::map<std::int64_t, std::promise<CancelResponse>> cancellations_;
 };
 

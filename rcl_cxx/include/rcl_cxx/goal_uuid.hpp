@@ -8,19 +8,19 @@
 
 namespace rcl_cxx {
 /// The UUID of an action goal.
-struct GoalId {
+struct GoalUUID {
   std::array<std::uint8_t, 16> bytes{};
 
   /// A random (version 4) one.
-  static GoalId random();
+  static GoalUUID random();
 
-  bool is_zero() const noexcept { return *this == GoalId{}; }
+  bool is_zero() const noexcept { return *this == GoalUUID{}; }
   /// "3f0c…-…", 36 characters.
   std::string to_string() const;
   /// The first 8 characters: enough for a log line.
   std::string short_string() const;
 
-  auto operator<=>(const GoalId &) const = default;
+  auto operator<=>(const GoalUUID &) const = default;
 };
 
 /// Numbers are those of action_msgs/msg/GoalStatus.
@@ -44,6 +44,6 @@ constexpr bool is_terminal(GoalStatus status) noexcept
 }  // namespace rcl_cxx
 
 template <>
-struct std::hash<rcl_cxx::GoalId> {
-  std::size_t operator()(const rcl_cxx::GoalId & id) const noexcept;
+struct std::hash<rcl_cxx::GoalUUID> {
+  std::size_t operator()(const rcl_cxx::GoalUUID & id) const noexcept;
 };

@@ -11,19 +11,19 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "entity.hpp"
 #include "rcl_cxx/client.hpp"
 #include "rcl_cxx/qos.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
-class ClientCore : public Entity {
+class ClientImpl : public Waitable {
  public:
   using OnResponse = std::function<void(const std::shared_ptr<void> &)>;
 
-  static std::shared_ptr<ClientCore> create(std::shared_ptr<NodeCore> node, ErasedClient erased,
+  static std::shared_ptr<ClientImpl> create(std::shared_ptr<NodeImpl> node, ErasedClient erased,
                                             const std::string & name, const QoS & qos);
-  ClientCore(std::shared_ptr<NodeCore> node, ErasedClient erased, const std::string & name, const QoS & qos);
-  ~ClientCore() override;
+  ClientImpl(std::shared_ptr<NodeImpl> node, ErasedClient erased, const std::string & name, const QoS & qos);
+  ~ClientImpl() override;
 
   bool service_is_ready() const;
   bool wait_for_service(std::chrono::nanoseconds timeout) const;
@@ -33,7 +33,7 @@ class ClientCore : public Entity {
   std::size_t pending_count() const;
   void forget_all();
 
-  const std::string & service_name() const noexcept { return name_; }
+  const std::string & get_service_name() const noexcept { return name_; }
 
  protected:
   void execute(std::size_t source) override;

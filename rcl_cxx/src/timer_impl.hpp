@@ -6,18 +6,18 @@
 #include <memory>
 #include <mutex>
 
-#include "entity.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
 /// A timer. Every change of its schedule gets a new generation number; an executor's entry of an older one is
 /// void.
-class TimerCore : public Entity {
+class TimerImpl : public Waitable {
  public:
   using Clock = std::chrono::steady_clock;
 
-  static std::shared_ptr<TimerCore> create(std::shared_ptr<NodeCore> node, std::chrono::nanoseconds period,
+  static std::shared_ptr<TimerImpl> create(std::shared_ptr<NodeImpl> node, std::chrono::nanoseconds period,
                                            std::function<void()> callback);
-  TimerCore(std::shared_ptr<NodeCore> node, std::chrono::nanoseconds period, std::function<void()> callback);
+  TimerImpl(std::shared_ptr<NodeImpl> node, std::chrono::nanoseconds period, std::function<void()> callback);
 
   void cancel();
   bool is_canceled() const;
@@ -39,7 +39,7 @@ class TimerCore : public Entity {
   void stop() noexcept override;
 
  private:
-  std::shared_ptr<TimerCore> self();
+  std::shared_ptr<TimerImpl> self();
   void schedule_locked();
 
   const std::function<void()> callback_;

@@ -1,4 +1,4 @@
-#include "action_client_core.hpp"
+#include "action_client_impl.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "node_core.hpp"
+#include "node_impl.hpp"
 #include "ns_per_second.hpp"
 #include "qos_rmw.hpp"
 #include "rcl_error.hpp"
@@ -38,19 +38,19 @@ rcl_action_client_options_t to_rcl(const ActionClientOptions & options)
 }
 }  // namespace
 
-std::shared_ptr<ActionClientCore> ActionClientCore::create(std::shared_ptr<NodeCore> node,
+std::shared_ptr<ActionClientImpl> ActionClientImpl::create(std::shared_ptr<NodeImpl> node,
                                                            const ActionClientOps & ops,
                                                            const std::string & name,
                                                            const ActionClientOptions & options)
 {
-  auto core = std::make_shared<ActionClientCore>(std::move(node), ops, name, options);
-  core->start();
-  return core;
+  auto impl = std::make_shared<ActionClientImpl>(std::move(node), ops, name, options);
+  impl->start();
+  return impl;
 }
 
-ActionClientCore::ActionClientCore(std::shared_ptr<NodeCore> node, const ActionClientOps & ops,
+ActionClientImpl::ActionClientImpl(std::shared_ptr<NodeImpl> node, const ActionClientOps & ops,
                                    const std::string & name, const ActionClientOptions & options)
-    : Entity(std::move(node), fmt::format("action client of {}", name)),
+    : Waitable(std::move(node), fmt::format("action client of {}", name)),
       ops_(ops),
       client_(rcl_action_get_zero_initialized_client())
 {
@@ -62,13 +62,13 @@ ActionClientCore::ActionClientCore(std::shared_ptr<NodeCore> node, const ActionC
             label(), "cannot be created");
 }
 
-ActionClientCore::~ActionClientCore()
+ActionClientImpl::~ActionClientImpl()
 {
   const std::lock_guard lock(node()->mutex());
   ignore_rcl(rcl_action_client_fini(&client_, node()->handle()));
 }
 
-void ActionClientCore::start()
+void ActionClientImpl::start()
 {
   const auto check = [this](rcl_ret_t code) {
     check_rcl(code, label(), "its middleware does not report new data");
@@ -80,7 +80,7 @@ void ActionClientCore::start()
   check(rcl_action_client_set_status_subscription_callback(&client_, &on_event, source(kStatus)));
 }
 
-void ActionClientCore::stop() noexcept
+void ActionClientImpl::stop() noexcept
 {
   ignore_rcl(rcl_action_client_set_goal_client_callback(&client_, nullptr, nullptr));
   ignore_rcl(rcl_action_client_set_cancel_client_callback(&client_, nullptr, nullptr));
@@ -89,12 +89,12 @@ void ActionClientCore::stop() noexcept
   ignore_rcl(rcl_action_client_set_status_subscription_callback(&client_, nullptr, nullptr));
 }
 
-void ActionClientCore::retire()
+void ActionClientImpl::retire()
 {
   // Destroyed after the lock is released: their futures break, and whoever waits for them wakes up.
   std::map<std::int64_t, Goal> unanswered;
   std::map<std::int64_t, Goal> without_result;
-  std::map<GoalId, Goal> goals;
+  std::map<GoalUUID, Goal> goals;
   std::map<std::int64_t, std::promise<CancelResponse>> cancellations;
   std::vector<ErasedGoalCallbacks> callbacks;
   const std::lock_guard lock(mutex_);
@@ -108,7 +108,7 @@ void ActionClientCore::retire()
   cancellations.swap(cancellations_);
 }
 
-bool ActionClientCore::server_is_ready() const
+bool ActionClientImpl::action_server_is_ready() const
 {
   bool ready = false;
   if (rcl_action_server_is_available(node()->handle(), &client_, &ready) != RCL_RET_OK) {
@@ -118,22 +118,22 @@ bool ActionClientCore::server_is_ready() const
   return ready;
 }
 
-GoalId ActionClientCore::send(const void * goal, ErasedGoalCallbacks callbacks)
+GoalUUID ActionClientImpl::send(const void * goal, ErasedGoalCallbacks callbacks)
 {
-  const GoalId id = GoalId::random();
+  const GoalUUID id = GoalUUID::random();
   const std::shared_ptr<void> request = ops_.make_goal_request(id, goal);
-  const auto self = std::static_pointer_cast<ActionClientCore>(shared_from_this());
-  const auto core = std::make_shared<ClientGoalCore>(self, id);
-  core->callbacks = std::move(callbacks);
+  const auto self = std::static_pointer_cast<ActionClientImpl>(shared_from_this());
+  const auto impl = std::make_shared<ClientGoalImpl>(self, id);
+  impl->callbacks = std::move(callbacks);
   std::int64_t sequence = 0;
   const std::lock_guard lock(mutex_);  // the answer may be here before the call returns
   check_rcl(rcl_action_send_goal_request(&client_, request.get(), &sequence), name_, "cannot send a goal");
-  unanswered_.emplace(sequence, core);
-  goals_.emplace(id, core);
+  unanswered_.emplace(sequence, impl);
+  goals_.emplace(id, impl);
   return id;
 }
 
-void ActionClientCore::abandon(const GoalId & id) noexcept
+void ActionClientImpl::abandon(const GoalUUID & id) noexcept
 {
   bool accepted = false;
   {
@@ -150,12 +150,12 @@ void ActionClientCore::abandon(const GoalId & id) noexcept
       cancel(id, 0);
     }
   } catch (const std::exception & error) {
-    RCL_CXX_WARN(node()->logger(), "{}: goal {} cannot be canceled: {}", name_, id.short_string(),
+    RCL_CXX_WARN(node()->get_logger(), "{}: goal {} cannot be canceled: {}", name_, id.short_string(),
                  error.what());
   }
 }
 
-std::future<CancelResponse> ActionClientCore::cancel(const GoalId & id, std::int64_t stamp_ns)
+std::future<CancelResponse> ActionClientImpl::cancel(const GoalUUID & id, std::int64_t stamp_ns)
 {
   action_msgs::srv::CancelGoal::Request request;
   request.goal_info.goal_id.uuid = id.bytes;
@@ -173,14 +173,14 @@ std::future<CancelResponse> ActionClientCore::cancel(const GoalId & id, std::int
   return future;
 }
 
-ActionClientCore::Goal ActionClientCore::find(const GoalId & id) const
+ActionClientImpl::Goal ActionClientImpl::find(const GoalUUID & id) const
 {
   const std::lock_guard lock(mutex_);
   const auto found = goals_.find(id);
   return found == goals_.end() ? nullptr : found->second;
 }
 
-void ActionClientCore::execute(std::size_t source)
+void ActionClientImpl::execute(std::size_t source)
 {
   switch (source) {
     case kGoal:
@@ -196,7 +196,7 @@ void ActionClientCore::execute(std::size_t source)
   }
 }
 
-void ActionClientCore::take_goal_response()
+void ActionClientImpl::take_goal_response()
 {
   const std::shared_ptr<void> response = ops_.make_goal_response();
   rmw_request_id_t id;
@@ -220,7 +220,7 @@ void ActionClientCore::take_goal_response()
   }
 }
 
-void ActionClientCore::on_accepted(const Goal & goal)
+void ActionClientImpl::on_accepted(const Goal & goal)
 {
   decltype(goal->callbacks.response) respond;
   bool abandoned = false;
@@ -243,7 +243,7 @@ void ActionClientCore::on_accepted(const Goal & goal)
   }
 }
 
-void ActionClientCore::on_refused(const Goal & goal)
+void ActionClientImpl::on_refused(const Goal & goal)
 {
   ErasedGoalCallbacks callbacks;
   {
@@ -256,7 +256,7 @@ void ActionClientCore::on_refused(const Goal & goal)
   }
 }
 
-void ActionClientCore::take_cancel_response()
+void ActionClientImpl::take_cancel_response()
 {
   action_msgs::srv::CancelGoal::Response response;
   rmw_request_id_t id;
@@ -267,7 +267,7 @@ void ActionClientCore::take_cancel_response()
   CancelResponse result;
   result.code = static_cast<CancelCode>(response.return_code);
   for (const auto & info : response.goals_canceling) {
-    result.goals.push_back(GoalId{info.goal_id.uuid});
+    result.goals.push_back(GoalUUID{info.goal_id.uuid});
   }
   const std::lock_guard lock(mutex_);
   if (auto node = cancellations_.extract(id.sequence_number)) {
@@ -275,7 +275,7 @@ void ActionClientCore::take_cancel_response()
   }
 }
 
-void ActionClientCore::take_result_response()
+void ActionClientImpl::take_result_response()
 {
   const std::shared_ptr<void> response = ops_.make_result_response();
   rmw_request_id_t id;
@@ -300,7 +300,7 @@ void ActionClientCore::take_result_response()
   }
 }
 
-void ActionClientCore::take_feedback()
+void ActionClientImpl::take_feedback()
 {
   const std::shared_ptr<void> message = ops_.make_feedback();
   if (!taken(rcl_action_take_feedback(&client_, message.get()), name_, "feedback")) {
@@ -320,7 +320,7 @@ void ActionClientCore::take_feedback()
   }
 }
 
-void ActionClientCore::take_status()
+void ActionClientImpl::take_status()
 {
   action_msgs::msg::GoalStatusArray message;
   if (!taken(rcl_action_take_status(&client_, &message), name_, "the status of the goals")) {
@@ -328,7 +328,7 @@ void ActionClientCore::take_status()
   }
   for (const auto & entry : message.status_list) {
     const auto status = static_cast<GoalStatus>(entry.status);
-    const Goal goal = find(GoalId{entry.goal_info.goal_id.uuid});
+    const Goal goal = find(GoalUUID{entry.goal_info.goal_id.uuid});
     if (goal && !is_terminal(status)) {  // the end comes with the result
       goal->status = status;
     }

@@ -1,4 +1,4 @@
-#include "rcl_cxx/goal_id.hpp"
+#include "rcl_cxx/goal_uuid.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <random>
 
 namespace rcl_cxx {
-GoalId GoalId::random()
+GoalUUID GoalUUID::random()
 {
   std::random_device device;
-  GoalId id;
+  GoalUUID id;
   for (std::size_t i = 0; i < id.bytes.size(); i += 4) {
     const std::uint32_t word = device();
     std::memcpy(&id.bytes[i], &word, sizeof(word));
@@ -20,7 +20,7 @@ GoalId GoalId::random()
   return id;
 }
 
-std::string GoalId::to_string() const
+std::string GoalUUID::to_string() const
 {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -30,7 +30,7 @@ std::string GoalId::to_string() const
   return text;
 }
 
-std::string GoalId::short_string() const
+std::string GoalUUID::short_string() const
 {
   return to_string().substr(0, 8);
 }
@@ -58,7 +58,7 @@ const char * to_string(GoalStatus status) noexcept
 
 }  // namespace rcl_cxx
 
-std::size_t std::hash<rcl_cxx::GoalId>::operator()(const rcl_cxx::GoalId & id) const noexcept
+std::size_t std::hash<rcl_cxx::GoalUUID>::operator()(const rcl_cxx::GoalUUID & id) const noexcept
 {
   std::size_t value = 0;  // the bytes are random, any of them will do
   std::memcpy(&value, id.bytes.data() + 8, sizeof(value));

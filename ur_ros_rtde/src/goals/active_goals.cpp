@@ -1,0 +1,134 @@
+#include "ur_ros_rtde/detail/active_goals.hpp"
+
+#include <fmt/format.h>
+
+namespace ur_ros_rtde {
+namespace {
+/// The goal was stopped by the shutdown, and nothing else went wrong (which would add to the message).
+bool stopped_by_shutdown(const Outcome & outcome, const StopRequest & stop_request)
+{
+  const auto reason = stop_request.reason();
+  return reason && reason->code == ErrorCode::shutdown && outcome.message() == reason->message;
+}
+
+/// "speed is 9 (invalid_goal 1)"
+std::string with_code(const std::string & message, ErrorCode code)
+{
+  return fmt::format("{} ({} {})", message, to_string(code), static_cast<int>(code));
+}
+}  // namespace
+
+StopReason client_lost()
+{
+  return Error{
+      ErrorCode::client_lost,
+      "the client that sent this goal has disappeared: keep its action client until the result has come, or "
+      "start command_server with on_client_lost:=continue"};
+}
+
+Outcome missing_result(rcl_cxx::GoalStatus status)
+{
+  if (status == rcl_cxx::GoalStatus::unknown) {
+    return Outcome::failure(ErrorCode::exception,
+                            "this driver has no such goal: it has expired, or another driver with the same "
+                            "names has accepted it");
+  }
+  return Outcome::failure(ErrorCode::exception,
+                          "the goal ended without a result that can be sent: the driver's log says why");
+}
+
+tl::expected<void, std::string> ActiveGoals::accept(const rcl_cxx::GoalUUID & id,
+                                                    const std::function<Status(GoalContext &)> & check)
+{
+  const auto context = std::make_shared<GoalContext>();
+  Status status = host_.goals().can_start();
+  if (status && find(id)) {
+    status = failure(
+        ErrorCode::invalid_goal,
+        fmt::format("a goal with the id {} is active: give each goal an id of its own", id.to_string()));
+  }
+  if (status) {
+    try {
+      status = check(*context);
+    } catch (const RobotError & error) {
+      status = tl::unexpected(error.error());
+    } catch (const std::exception & error) {
+      status = failure(ErrorCode::exception, fmt::format("the check of the goal threw: {}", error.what()));
+    }
+  }
+  if (!status) {
+    host_.publish_refusal(action_, id, status.error());
+    return tl::unexpected(with_code(status.error().message, status.error().code));
+  }
+  const std::lock_guard lock(mutex_);
+  contexts_[id] = context;
+  return {};
+}
+
+std::shared_ptr<GoalContext> ActiveGoals::find(const rcl_cxx::GoalUUID & id) const
+{
+  const std::lock_guard lock(mutex_);
+  const auto found = contexts_.find(id);
+  return found == contexts_.end() ? nullptr : found->second;
+}
+
+std::shared_ptr<GoalContext> ActiveGoals::remove(const rcl_cxx::GoalUUID & id)
+{
+  const std::lock_guard lock(mutex_);
+  auto node = contexts_.extract(id);
+  return node ? std::move(node.mapped()) : nullptr;
+}
+
+Status ActiveGoals::start(const rcl_cxx::GoalUUID & id,
+                          std::function<void(std::shared_ptr<GoalContext>)> work)
+{
+  const auto context = find(id);
+  if (!context) {
+    return failure(ErrorCode::exception, "this goal was never accepted");
+  }
+  context->set_started();
+  return host_.goals().start(fmt::format("{} {}", action_, id.short_string()), context->stop_request,
+                             [work = std::move(work), context] { work(context); });
+}
+
+void ActiveGoals::stop(const rcl_cxx::GoalUUID & id, const StopReason & reason)
+{
+  if (const auto context = find(id)) {
+    context->stop(reason);
+  }
+}
+
+void ActiveGoals::discard(const rcl_cxx::GoalUUID & id)
+{
+  if (const auto context = remove(id)) {
+    context->release_lease();
+  }
+}
+
+void ActiveGoals::finish(const rcl_cxx::GoalUUID & id, const Outcome & outcome)
+{
+  const auto context = remove(id);
+  if (context) {
+    context->release_lease();
+  }
+  const auto & logger = host_.node().get_logger();
+  if (outcome) {
+    RCL_CXX_INFO(logger, "{}: goal {} succeeded{}{}", action_, id.short_string(),
+                 outcome.message().empty() ? "" : ": ", outcome.message());
+    return;
+  }
+  const std::string end = fmt::format("{}: goal {} ended: {}", action_, id.short_string(),
+                                      with_code(outcome.message(), outcome.code()));
+  if (context && stopped_by_shutdown(outcome, *context->stop_request)) {
+    RCL_CXX_INFO(logger, "{}", end);
+  } else {
+    RCL_CXX_WARN(logger, "{}", end);
+  }
+}
+
+void ActiveGoals::warn(const rcl_cxx::GoalUUID & id, const std::string & text) const
+{
+  RCL_CXX_WARN(host_.node().get_logger(), "{}: goal {}: {}", action_, id.short_string(), text);
+}
+
+}  // namespace ur_ros_rtde
