@@ -14,8 +14,6 @@
 
 namespace rcl_cxx::detail {
 namespace {
-enum Source : std::size_t { kGoal, kCancel, kResult };
-
 // "For ever", and yet small enough that rcl can add it to the time of day.
 constexpr std::int64_t kCenturyNs = 100LL * 365 * 24 * 3600 * 1'000'000'000;
 
@@ -144,6 +142,8 @@ void ActionServerImpl::execute(std::size_t source)
       return take_goal();
     case kCancel:
       return take_cancel();
+    case kDeferredResponse:
+      return send_deferred_response();
     default:
       take_result();
   }
@@ -177,6 +177,7 @@ std::shared_ptr<void> ActionServerImpl::missing_result(GoalStatus status) const
 
 void ActionServerImpl::abort_all(const char * why, bool serve) noexcept
 {
+  reject_deferred_goals(why);
   std::vector<std::shared_ptr<ServerGoalImpl>> aborted;
   {
     const std::lock_guard lock(mutex_);

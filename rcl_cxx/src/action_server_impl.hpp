@@ -62,6 +62,8 @@ class ActionServerImpl : public Waitable {
   void stop() noexcept override;
 
  private:
+  enum Source : std::size_t { kGoal, kCancel, kResult, kDeferredResponse };
+
   void start();
   void take_goal();
   void take_cancel();
@@ -70,7 +72,23 @@ class ActionServerImpl : public Waitable {
   void watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request);
   void check_clients();
 
-  tl::expected<void, std::string> decide_goal(const GoalUUID & id, const void * request) noexcept;
+  /// A goal request without a response.
+  struct DeferredGoal {
+    rmw_request_id_t request_id;
+    std::shared_ptr<void> request;
+    std::optional<GoalResponse> response{};  ///< to be sent by the executor's thread
+    bool canceled = false;
+  };
+
+  bool is_known(const GoalUUID & id) const;
+  GoalDecision decide_goal(const GoalUUID & id, const void * request) noexcept;
+  void defer(const GoalUUID & id, DeferredGoal goal, const DeferredGoalResponse & response);
+  /// For SendGoalResponse, from any thread.
+  void set_response(const GoalUUID & id, GoalResponse response) noexcept;
+  void send_deferred_response();
+  void respond(const GoalUUID & id, const DeferredGoal & goal, const GoalResponse & response);
+  void reject(const GoalUUID & id, const rmw_request_id_t & request_id, const std::string & reason);
+  void reject_deferred_goals(const char * reason) noexcept;
   tl::expected<std::shared_ptr<ServerGoalHandleBase>, std::string> accept(
       const GoalUUID & id, const std::shared_ptr<void> & request);
   void run_accepted(std::shared_ptr<ServerGoalHandleBase> handle) noexcept;
@@ -113,6 +131,7 @@ class ActionServerImpl : public Waitable {
   std::unique_ptr<ExpireTimer> rcl_timer_;
   rcl_action_server_t server_;
   std::map<GoalUUID, std::shared_ptr<ServerGoalImpl>> goals_;
+  std::map<GoalUUID, DeferredGoal> deferred_goals_;
   std::shared_ptr<TimerImpl> expiry_;
   std::shared_ptr<TimerImpl> client_check_;  // runs while clients are watched
   bool retired_ = false;

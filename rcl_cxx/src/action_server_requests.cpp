@@ -29,21 +29,41 @@ void ActionServerImpl::take_goal()
   }
   check_rcl(code, name_, "cannot take a goal");
   const GoalUUID id = ops_.goal_id_of_goal_request(request.get());
-  const auto refuse = [&](const std::string & reason) {
-    RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
-    answer(&rcl_action_send_goal_response, request_id, ops_.make_goal_response(false, 0, 0));
-  };
-  if (find(id)) {
-    return refuse("there is a goal of this id already");
+  if (is_known(id)) {
+    return reject(id, request_id, "there is a goal of this id already");
   }
-  if (const auto decision = decide_goal(id, request.get()); !decision) {
-    return refuse(decision.error());
+  DeferredGoal goal{request_id, request};
+  const GoalDecision decision = decide_goal(id, request.get());
+  if (const auto * const deferred = std::get_if<DeferredGoalResponse>(&decision)) {
+    defer(id, std::move(goal), *deferred);
+  } else {
+    respond(id, goal, std::get<GoalResponse>(decision));
   }
-  if (auto accepted = accept(id, request)) {
-    announce(request_id, std::move(*accepted));
+}
+
+bool ActionServerImpl::is_known(const GoalUUID & id) const
+{
+  const std::lock_guard lock(mutex_);
+  return goals_.count(id) != 0 || deferred_goals_.count(id) != 0;
+}
+
+void ActionServerImpl::reject(const GoalUUID & id, const rmw_request_id_t & request_id,
+                              const std::string & reason)
+{
+  RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
+  answer(&rcl_action_send_goal_response, request_id, ops_.make_goal_response(false, 0, 0));
+}
+
+void ActionServerImpl::respond(const GoalUUID & id, const DeferredGoal & goal, const GoalResponse & response)
+{
+  if (!response) {
+    return reject(id, goal.request_id, response.error());
+  }
+  if (auto accepted = accept(id, goal.request)) {
+    announce(goal.request_id, std::move(*accepted));
   } else {
     discard(id);
-    refuse(accepted.error());
+    reject(id, goal.request_id, accepted.error());
   }
 }
 
@@ -81,15 +101,14 @@ void ActionServerImpl::announce(const rmw_request_id_t & request,
          });
 }
 
-tl::expected<void, std::string> ActionServerImpl::decide_goal(const GoalUUID & id,
-                                                              const void * request) noexcept
+GoalDecision ActionServerImpl::decide_goal(const GoalUUID & id, const void * request) noexcept
 {
   try {
-    return erased_.goal ? erased_.goal(id, request) : tl::expected<void, std::string>{};
+    return erased_.goal ? erased_.goal(id, request) : GoalResponse{};
   } catch (const std::exception & error) {
-    return tl::make_unexpected(std::string(error.what()));
+    return GoalResponse{tl::unexpect, error.what()};
   } catch (...) {
-    return tl::make_unexpected(std::string("the goal handler threw something that is no std::exception"));
+    return GoalResponse{tl::unexpect, "the goal handler threw something that is no std::exception"};
   }
 }
 
@@ -192,6 +211,11 @@ void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Reques
   std::vector<action_msgs::msg::GoalInfo> candidates;
   {
     const std::lock_guard lock(mutex_);
+    if (request.goal_info == action_msgs::msg::GoalInfo()) {  // all goals
+      for (auto & [id, goal] : deferred_goals_) {
+        goal.canceled = true;
+      }
+    }
     check_rcl(rcl_action_process_cancel_request(&server_, &rcl_request, &rcl_response), name_,
               "cannot cancel");
     for (std::size_t i = 0; i < rcl_response.msg.goals_canceling.size; ++i) {

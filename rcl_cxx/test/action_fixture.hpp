@@ -39,7 +39,7 @@ class Actions : public Spinning {
   {
     rcl_cxx::ActionServerCallbacks<Fibonacci> handlers;
     handlers.handle_goal = [this](const rcl_cxx::GoalUUID & id, const Fibonacci::Goal & goal) {
-      return on_goal ? on_goal(id, goal) : tl::expected<void, std::string>{};
+      return on_goal ? on_goal(id, goal) : rcl_cxx::GoalResponse{};
     };
     handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) {
       if (on_accepted) {
@@ -101,7 +101,7 @@ class Actions : public Spinning {
   std::vector<std::shared_ptr<Handle>> handles;
   std::vector<rcl_cxx::GoalUUID> without_client;
   std::vector<rcl_cxx::GoalUUID> discarded;
-  std::function<tl::expected<void, std::string>(const rcl_cxx::GoalUUID &, const Fibonacci::Goal &)> on_goal;
+  std::function<rcl_cxx::GoalDecision(const rcl_cxx::GoalUUID &, const Fibonacci::Goal &)> on_goal;
   std::function<void(std::shared_ptr<Handle>)> on_accepted;
   std::function<bool(Handle &)> on_cancel;
   std::function<void(GoalStatus, Fibonacci::Result &)> on_missing_result;

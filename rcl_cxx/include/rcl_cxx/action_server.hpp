@@ -9,6 +9,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "rcl_cxx/goal_response.hpp"
 #include "rcl_cxx/qos.hpp"
 #include "rcl_cxx/server_goal_handle.hpp"
 
@@ -30,9 +31,9 @@ template <typename A>
 struct ActionServerCallbacks {
   using Goal = typename A::Goal;
 
-  /// Refuses with a reason, which is logged as a warning with the action's name. Empty: accepts everything.
-  /// An exception refuses, with its text.
-  std::function<tl::expected<void, std::string>(const GoalUUID &, const Goal &)> handle_goal{};
+  /// Accepts or rejects a goal, or defers the response. Empty: accepts every goal. An exception rejects the
+  /// goal with its text.
+  std::function<GoalDecision(const GoalUUID &, const Goal &)> handle_goal{};
   /// Gets the goal, EXECUTING already. Whoever keeps the handle owes the goal a result. An exception aborts
   /// it.
   std::function<void(std::shared_ptr<ServerGoalHandle<A>>)> handle_accepted{};
@@ -72,7 +73,7 @@ struct ActionServerOps {
 
 struct ErasedActionServer {
   const ActionServerOps * ops;
-  std::function<tl::expected<void, std::string>(const GoalUUID &, const void * goal_request)> goal{};
+  std::function<GoalDecision(const GoalUUID &, const void * goal_request)> goal{};
   std::function<void(std::shared_ptr<ServerGoalHandleBase>)> accepted{};
   std::function<bool(ServerGoalHandleBase &)> cancel{};
   std::function<void(ServerGoalHandleBase &)> canceling{};

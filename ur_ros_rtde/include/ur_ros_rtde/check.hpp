@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <geometry_msgs/msg/pose.hpp>
 #include <geometry_msgs/msg/twist.hpp>
 #include <geometry_msgs/msg/vector3.hpp>
@@ -17,70 +18,79 @@ namespace ur_ros_rtde {
 
 class Robot;
 
-/// What a check may ask the robot; the base class of the commands provides it.
+/// Gives a check access to the robot. Implemented by the base class of the commands.
 class Preflight {
  public:
   virtual ~Preflight() = default;
-  /// The robot takes this command now, and nothing else is in its way.
+  /// Success if the robot can execute this command now and no other goal is in the way.
   virtual Status prepare() = 0;
   virtual ArmLimits limits() const = 0;
   virtual Robot & robot() = 0;
 };
 
-/// Looks at a goal before it is accepted. Each function looks at one thing; the first that is wrong becomes
-/// the error, and the functions after it do nothing. Messages name field, value and limit.
+/// A check that waits for an answer of the robot.
+using RobotQuery = std::function<Status(Robot &)>;
+
+/// Checks a goal before it is accepted. Each function checks one thing. The first failure becomes the error,
+/// and later functions do nothing. Messages name the field, the value and the limit.
 ///
 ///     check.joints("joint_positions", goal.joint_positions);
 ///     check.above_zero("speed", goal.speed, 3.14, "rad/s");
 class Check {
  public:
-  /// Without `preflight`, what concerns the robot passes.
+  /// Without `preflight`, checks that need the robot succeed.
   explicit Check(Preflight * preflight = nullptr) : preflight_(preflight) {}
 
-  /// Six finite values within the position limits of the arm. rad
+  /// Six finite values within the position limits of the arm, rad.
   Check & joints(std::string_view field, const std::vector<double> & values);
   Check & in_range(std::string_view field, double value, double low, double high, std::string_view unit = "");
   /// 0 < value <= high
   Check & above_zero(std::string_view field, double value, double high, std::string_view unit = "");
-  /// Finite; a quaternion that has a direction.
+  /// Finite position within reach, and a quaternion that can be normalized.
   Check & pose(std::string_view field, const geometry_msgs::msg::Pose & pose);
-  /// The same for one that the arm need not reach: a frame, a TCP.
+  /// As pose(), for a pose that the arm need not reach: a task frame, a TCP.
   Check & frame(std::string_view field, const geometry_msgs::msg::Pose & pose);
-  /// Each component finite and at most `limit` in size.
+  /// Each component is finite and its magnitude is at most `limit`.
   Check & vector(std::string_view field, const geometry_msgs::msg::Vector3 & vector, double limit,
                  std::string_view unit = "");
   /// |linear| <= 3 m/s, |angular| <= 3.14 rad/s, not both zero.
   Check & twist(std::string_view field, const geometry_msgs::msg::Twist & twist);
-  /// Six finite values, one a joint, each at most `limits` of its joint in size.
+  /// Six finite values, the magnitude of each at most the limit of its joint.
   Check & each_joint(std::string_view field, const std::vector<double> & values, const Vector6 & limits,
                      std::string_view unit);
-  /// The same: each at most 3.14 rad/s and what its joint can; not all zero.
+  /// As each_joint(), with the velocity limits of the arm and at most 3.14 rad/s; not all zero.
   Check & joint_velocities(std::string_view field, const std::vector<double> & values);
-  /// Not empty, one line, no control characters, at most `longest` bytes.
+  /// One line of text without control characters, 1 to `longest` bytes.
   Check & line(std::string_view field, std::string_view text, std::size_t longest);
   Check & that(bool holds, std::string message, ErrorCode code = ErrorCode::invalid_goal);
 
-  /// From here on the robot is asked: it takes this command now, and nothing else is in its way.
+  /// The robot can execute this command now, and no other goal is in the way. The checks below include it.
   Check & ready();
-  /// The controller's PolyScope is at least 5.`minor`; on a CB3 3.`cb3_minor`, none: no CB3 will do.
+  /// PolyScope 5.`minor` or later; on a CB3 controller 3.`cb3_minor` or later. Without `cb3_minor`, no CB3
+  /// controller is sufficient.
   Check & polyscope(unsigned minor, std::optional<unsigned> cb3_minor = std::nullopt);
-  /// The control program answers questions now. For what needs no resource: it may move the arm meanwhile.
+  /// The control program can answer queries. For commands without a resource: the arm may be moving.
   Check & answers();
-  /// The arm can get the TCP there from where it is, within its safety limits: the controller answers. Some
-  /// milliseconds.
+  /// The controller finds a solution for the pose within the safety limits. Skipped while the arm moves,
+  /// because the inverse kinematics would start from a moving configuration.
   Check & reachable(std::string_view field, const geometry_msgs::msg::Pose & pose);
-  /// The same for a pose of UR: position (m) and rotation vector (rad).
+  /// The same for a UR pose: position (m) and rotation vector (rad).
   Check & reachable(std::string_view field, const std::vector<double> & pose);
-  /// Where a motion that is accepted now begins: the newest package. None when something has failed, and
-  /// while the arm still moves, because another motion is being preempted.
+  /// Calls `query` after all other checks have succeeded, in a thread that may wait for the robot. The goal
+  /// is accepted or rejected when the last query has returned.
+  Check & query(RobotQuery query);
+  /// The state in which the motion will start: the newest sample. Empty after a failure, and while the arm
+  /// still moves because another motion is being preempted.
   std::optional<Sample> start();
-  /// No joint has to go faster than it can on the way to `positions` in `time`, when its highest speed is
-  /// `peak` times the mean one.
+  /// No joint exceeds its velocity limit on the way to `positions` in `time` (s), if its peak velocity is
+  /// `peak` times the mean velocity.
   Check & reachable_in(std::string_view field, const std::vector<double> & positions, double time,
                        double peak);
 
   bool ok() const { return !error_; }
   const std::optional<Error> & error() const { return error_; }
+  /// The queries in the order of their calls.
+  std::vector<RobotQuery> take_queries() { return std::move(queries_); }
 
  private:
   void fail(ErrorCode code, std::string message);
@@ -89,13 +99,14 @@ class Check {
 
   Preflight * preflight_;
   std::optional<Error> error_;
+  std::vector<RobotQuery> queries_;
 };
 
-/// A field of a goal that is a pose, for ur_rtde: position (m) and rotation vector (rad). Throws RobotError
-/// (invalid_goal) for a quaternion without a direction.
+/// Converts a pose of a goal to a UR pose: position (m) and rotation vector (rad). Throws RobotError
+/// (invalid_goal) for a quaternion that cannot be normalized.
 std::vector<double> to_ur(const geometry_msgs::msg::Pose & pose);
 std::vector<double> to_ur(const geometry_msgs::msg::Twist & twist);
-/// A pose of UR, for a field of a result or of feedback.
+/// Converts a UR pose to a pose of a result or feedback.
 geometry_msgs::msg::Pose to_ros(const Vector6 & pose);
 
 /// "shoulder_pan_joint", … in the order of ur_rtde.

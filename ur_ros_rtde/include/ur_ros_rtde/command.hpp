@@ -59,7 +59,7 @@ class Command : public CommandPlugin, private GoalServer<A> {
 
  private:
   using Handle = rcl_cxx::ServerGoalHandle<A>;
-  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
+  rcl_cxx::GoalDecision accept(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
   void execute(Handle & handle, GoalContext & context) override;
   void abort_unstarted(Handle & handle, const Outcome & outcome) override;
   void send_result(Handle & handle, Run & run, const Outcome & outcome);
@@ -78,7 +78,7 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
 }
 
 template <typename A>
-tl::expected<void, std::string> Command<A>::accept(const rcl_cxx::GoalUUID & id, const Goal & goal)
+rcl_cxx::GoalDecision Command<A>::accept(const rcl_cxx::GoalUUID & id, const Goal & goal)
 {
   return executor_->accept(id, [&](Check & result) { check(goal, result); });
 }

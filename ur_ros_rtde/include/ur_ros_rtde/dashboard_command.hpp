@@ -55,7 +55,7 @@ class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
 
  private:
   using Handle = rcl_cxx::ServerGoalHandle<A>;
-  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
+  rcl_cxx::GoalDecision accept(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
   void execute(Handle & handle, GoalContext & context) override;
   void abort_unstarted(Handle & handle, const Outcome & outcome) override;
   void send_result(Handle & handle, Run & run, const Outcome & outcome);
@@ -96,7 +96,7 @@ void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::s
 }
 
 template <typename A>
-tl::expected<void, std::string> DashboardCommand<A>::accept(const rcl_cxx::GoalUUID & id, const Goal & goal)
+rcl_cxx::GoalDecision DashboardCommand<A>::accept(const rcl_cxx::GoalUUID & id, const Goal & goal)
 {
   return goals_->accept(id, [&](GoalContext &) -> Status {
     Check result;

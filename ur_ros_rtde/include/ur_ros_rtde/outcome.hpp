@@ -29,6 +29,8 @@ class Outcome {
   explicit operator bool() const { return error_.code == ErrorCode::none; }
   ErrorCode code() const { return error_.code; }
   const std::string & message() const { return error_.message; }
+  /// Code `none` after success.
+  const Error & error() const { return error_; }
 
  private:
   Error error_;

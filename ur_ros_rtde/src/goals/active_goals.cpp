@@ -57,8 +57,7 @@ tl::expected<void, std::string> ActiveGoals::accept(const rcl_cxx::GoalUUID & id
     }
   }
   if (!status) {
-    host_.publish_refusal(action_, id, status.error());
-    return tl::unexpected(with_code(status.error().message, status.error().code));
+    return publish_refusal(id, status.error());
   }
   const std::lock_guard lock(mutex_);
   contexts_[id] = context;
@@ -77,6 +76,29 @@ std::shared_ptr<GoalContext> ActiveGoals::remove(const rcl_cxx::GoalUUID & id)
   const std::lock_guard lock(mutex_);
   auto node = contexts_.extract(id);
   return node ? std::move(node.mapped()) : nullptr;
+}
+
+tl::unexpected<std::string> ActiveGoals::reject(const rcl_cxx::GoalUUID & id, const Error & reason)
+{
+  discard(id);
+  return publish_refusal(id, reason);
+}
+
+tl::unexpected<std::string> ActiveGoals::publish_refusal(const rcl_cxx::GoalUUID & id, const Error & reason)
+{
+  host_.publish_refusal(action_, id, reason);
+  return tl::unexpected(with_code(reason.message, reason.code));
+}
+
+Status ActiveGoals::start_check(const rcl_cxx::GoalUUID & id,
+                                std::function<void(std::shared_ptr<GoalContext>)> work)
+{
+  const auto context = find(id);
+  if (!context) {
+    return failure(ErrorCode::exception, "this goal is not registered");
+  }
+  return host_.goals().start(fmt::format("check of {} {}", action_, id.short_string()), context->stop_request,
+                             [work = std::move(work), context] { work(context); });
 }
 
 Status ActiveGoals::start(const rcl_cxx::GoalUUID & id,

@@ -26,6 +26,33 @@ Expected<Vector3> rotation_vector_of(const geometry_msgs::msg::Pose & pose)
   const auto & q = pose.orientation;
   return rotation_vector(Quaternion{q.x, q.y, q.z, q.w});
 }
+
+Status check_reachable(Robot & robot, const std::string & field, const std::vector<double> & target)
+{
+  const std::string where =
+      fmt::format("{} ({:.3f}, {:.3f}, {:.3f}) m", field, target[0], target[1], target[2]);
+  try {
+    if (robot.control()->isPoseWithinSafetyLimits(target)) {
+      return {};
+    }
+    if (robot.control()->getInverseKinematicsHasSolution(target)) {
+      return failure(ErrorCode::safety_violation,
+                     fmt::format("{} is outside the robot's safety limits", where));
+    }
+    return failure(
+        ErrorCode::unreachable,
+        fmt::format("{} cannot be reached in that orientation: no joint positions lead there", where));
+  } catch (const RobotError &) {
+    throw;
+  } catch (const std::runtime_error & error) {
+    if (const Status possible = robot.motion_possible(); !possible) {
+      return possible;
+    }
+    return failure(
+        ErrorCode::rejected_by_robot,
+        fmt::format("the control program did not answer whether {} can be reached: {}", where, error.what()));
+  }
+}
 }  // namespace
 
 const std::array<std::string, 6> & joint_names()
@@ -202,28 +229,17 @@ Check & Check::reachable(std::string_view field, const geometry_msgs::msg::Pose 
 Check & Check::reachable(std::string_view field, const std::vector<double> & target)
 {
   if (!ready().ok() || preflight_ == nullptr || preflight_->robot().moving()) {
-    return *this;  // while another motion is being preempted, only the move itself can tell
+    return *this;
   }
-  const std::string where =
-      fmt::format("{} ({:.3f}, {:.3f}, {:.3f}) m", field, target[0], target[1], target[2]);
-  try {
-    auto control = preflight_->robot().control();
-    if (control->isPoseWithinSafetyLimits(target)) {
-      return *this;
-    }
-    if (control->getInverseKinematicsHasSolution(target)) {
-      fail(ErrorCode::safety_violation, fmt::format("{} is outside the robot's safety limits", where));
-    } else {
-      fail(ErrorCode::unreachable,
-           fmt::format("{} cannot be reached in that orientation: no joint positions lead there", where));
-    }
-  } catch (const RobotError &) {
-    throw;
-  } catch (const std::runtime_error & error) {
-    const Status possible = preflight_->robot().motion_possible();
-    const std::string unanswered =
-        fmt::format("the control program did not answer whether {} can be reached: {}", where, error.what());
-    error_ = possible ? Error{ErrorCode::rejected_by_robot, unanswered} : possible.error();
+  return query([pose = target, field_name = std::string(field)](Robot & robot) {
+    return check_reachable(robot, field_name, pose);
+  });
+}
+
+Check & Check::query(RobotQuery query)
+{
+  if (ok()) {
+    queries_.push_back(std::move(query));
   }
   return *this;
 }

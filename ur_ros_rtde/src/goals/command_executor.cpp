@@ -14,6 +14,13 @@ constexpr std::chrono::milliseconds preemption_timeout{6000};
 constexpr std::chrono::milliseconds shutdown_stop_timeout{1500};
 /// For the dashboard server's answer before a goal is accepted.
 constexpr std::chrono::milliseconds dashboard_timeout{500};
+
+/// The dashboard server answers.
+Status query_dashboard(Robot & robot)
+{
+  const auto mode = robot.ask_dashboard("robotmode", dashboard_timeout);
+  return mode ? Status() : tl::unexpected(mode.error());
+}
 }  // namespace
 
 /// Checks the state and acquires the resource when the first check needs the robot.
@@ -77,8 +84,7 @@ Status CommandExecutor::check_state() const
 {
   Robot & robot = host_.robot();
   if (traits_.allowed_in_any_state) {
-    const auto mode = robot.ask_dashboard("robotmode", dashboard_timeout);
-    return mode ? Status() : tl::unexpected(mode.error());
+    return {};  // query_dashboard() follows
   }
   if (!extension_.empty()) {
     if (Status available = robot.has_extension(extension_); !available) {
@@ -100,16 +106,56 @@ Status CommandExecutor::check_state() const
   return {};
 }
 
-tl::expected<void, std::string> CommandExecutor::accept(const rcl_cxx::GoalUUID & id,
-                                                        const std::function<void(Check &)> & check)
+rcl_cxx::GoalDecision CommandExecutor::accept(const rcl_cxx::GoalUUID & id,
+                                              const std::function<void(Check &)> & check)
 {
-  return goals_.accept(id, [&](GoalContext & context) -> Status {
+  std::vector<RobotQuery> queries;
+  const auto accepted = goals_.accept(id, [&](GoalContext & context) -> Status {
     RobotPreflight preflight(*this, id, context);
     Check result(&preflight);
     check(result);
     result.ready();
+    if (traits_.allowed_in_any_state) {
+      result.query(query_dashboard);
+    }
+    queries = result.take_queries();
     return result.ok() ? Status() : tl::unexpected(*result.error());
   });
+  if (!accepted || queries.empty()) {
+    return accepted;
+  }
+  return rcl_cxx::DeferredGoalResponse{
+      [this, id, asked = std::move(queries)](rcl_cxx::SendGoalResponse respond) {
+        start_queries(id, asked, std::move(respond));
+      }};
+}
+
+void CommandExecutor::start_queries(const rcl_cxx::GoalUUID & id, std::vector<RobotQuery> queries,
+                                    rcl_cxx::SendGoalResponse respond)
+{
+  const Status started = goals_.start_check(
+      id, [this, id, asked = std::move(queries), respond](const std::shared_ptr<GoalContext> & context) {
+        const Outcome outcome =
+            guarded(*context->stop_request, [&] { return run_queries(asked, *context->stop_request); });
+        respond(outcome ? rcl_cxx::GoalResponse() : goals_.reject(id, outcome.error()));
+      });
+  if (!started) {
+    respond(goals_.reject(id, started.error()));
+  }
+}
+
+Outcome CommandExecutor::run_queries(const std::vector<RobotQuery> & queries,
+                                     const StopRequest & stop_request) const
+{
+  for (const RobotQuery & query : queries) {
+    if (auto reason = stop_request.reason()) {
+      return *std::move(reason);
+    }
+    if (Status answer = query(host_.robot()); !answer) {
+      return answer;
+    }
+  }
+  return Outcome::success();
 }
 
 Status CommandExecutor::acquire(const rcl_cxx::GoalUUID & id, GoalContext & context, const StopOptions & stop)

@@ -33,6 +33,11 @@ class ActiveGoals {
   /// for the log.
   tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id,
                                          const std::function<Status(GoalContext &)> & check);
+  /// Discards a goal that accept() has registered, publishes the reason on goal_refusals and returns it for
+  /// the log.
+  tl::unexpected<std::string> reject(const rcl_cxx::GoalUUID & id, const Error & reason);
+  /// Runs `work`, which must not throw, in a thread of its own before the goal is accepted.
+  Status start_check(const rcl_cxx::GoalUUID & id, std::function<void(std::shared_ptr<GoalContext>)> work);
   /// Runs `work`, which must not throw, in a thread of its own for an accepted goal.
   Status start(const rcl_cxx::GoalUUID & id, std::function<void(std::shared_ptr<GoalContext>)> work);
   /// Asks a goal to stop. Does nothing if the goal is not active.
@@ -44,6 +49,8 @@ class ActiveGoals {
   void warn(const rcl_cxx::GoalUUID & id, const std::string & text) const;
 
  private:
+  /// Publishes the reason and returns it for the log.
+  tl::unexpected<std::string> publish_refusal(const rcl_cxx::GoalUUID & id, const Error & reason);
   std::shared_ptr<GoalContext> find(const rcl_cxx::GoalUUID & id) const;
   std::shared_ptr<GoalContext> remove(const rcl_cxx::GoalUUID & id);
 

@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <memory>
+#include <rcl_cxx/goal_response.hpp>
 #include <rcl_cxx/goal_uuid.hpp>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/command_traits.hpp"
@@ -35,8 +37,9 @@ class CommandExecutor {
     return host_.options().stop_when_client_lost && !traits_.preempts_all;
   }
 
-  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id,
-                                         const std::function<void(Check &)> & check);
+  /// Calls `check`. If it queries the robot, the response is deferred, and a thread of its own waits for the
+  /// answers.
+  rcl_cxx::GoalDecision accept(const rcl_cxx::GoalUUID & id, const std::function<void(Check &)> & check);
   /// Acquires the resource, calls `body`, and brings the arm to a standstill if `body` has not. `body` and
   /// `stop_options` may throw. If `stop_options` throws, `body` is not called and the default options apply.
   Outcome execute(const rcl_cxx::GoalUUID & id, GoalContext & context,
@@ -44,6 +47,10 @@ class CommandExecutor {
 
  private:
   class RobotPreflight;
+
+  void start_queries(const rcl_cxx::GoalUUID & id, std::vector<RobotQuery> queries,
+                     rcl_cxx::SendGoalResponse respond);
+  Outcome run_queries(const std::vector<RobotQuery> & queries, const StopRequest & stop_request) const;
 
   Claim claim(const rcl_cxx::GoalUUID & id, GoalContext & context) const;
   /// Success if the state of the robot allows a goal.

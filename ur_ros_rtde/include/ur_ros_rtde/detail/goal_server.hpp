@@ -21,8 +21,8 @@ class GoalServer {
   GoalServer() = default;
   virtual ~GoalServer() = default;
 
-  virtual tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id,
-                                                 const typename A::Goal & goal) = 0;
+  /// Runs in the executor's thread and must not wait.
+  virtual rcl_cxx::GoalDecision accept(const rcl_cxx::GoalUUID & id, const typename A::Goal & goal) = 0;
   /// Runs in the goal's thread and ends with finish().
   virtual void execute(Handle & handle, GoalContext & context) = 0;
   /// Called for an accepted goal for which no thread could be started. Ends with finish().

@@ -1,0 +1,62 @@
+"""Checks of goals that wait for the controller do not delay other goals."""
+
+import pytest
+from action_msgs.srv import CancelGoal
+from geometry_msgs.msg import Pose
+from support import wait_for
+
+from ur_ros_rtde_msgs.action import MoveL, SetDigitalOutput, SetWatchdog, Stop
+from ur_ros_rtde_msgs.msg import ErrorCode
+from ur_ros_rtde_msgs.srv import GetTcpPose
+
+
+def pose_below(robot):
+    pose = robot.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose
+    pose.position.z -= 0.05
+    return pose
+
+
+@pytest.fixture
+def silent_controller(robot, simulator):
+    """The control program gets no commands, so that queries stay without an answer until its watchdog ends it after 1 s."""
+    pose = pose_below(robot)
+    robot.send(SetWatchdog, "set_watchdog", min_frequency=1.0).succeeded()
+    simulator.control("lose_commands", which="rtde", clients="control", count=100000)
+    yield pose
+
+
+def test_another_goal_is_executed_while_a_check_waits(robot, silent_controller):
+    waiting = robot.send(MoveL, "move_l", pose=silent_controller)
+    robot.send(SetDigitalOutput, "set_standard_digital_output", pin=1, state=True).succeeded()
+    assert not waiting.answered()
+    assert not waiting.accepted
+    assert robot.refusal(waiting).error_code != ErrorCode.NONE
+
+
+def test_stop_preempts_a_goal_whose_check_waits(robot, silent_controller):
+    waiting = robot.send(MoveL, "move_l", pose=silent_controller)
+    stop = robot.send(Stop, "stop")
+    wait_for(stop.answered, 5.0, "the response to stop")
+    assert not waiting.answered()
+    assert stop.accepted
+    assert not waiting.accepted
+    assert robot.refusal(waiting).error_code == ErrorCode.PREEMPTED
+
+
+def test_a_goal_whose_check_waits_does_not_move_after_cancel_all(robot, simulator):
+    pose = pose_below(robot)
+    before = simulator.state()["actual"]["position"]
+    simulator.control("delay_links", which="rtde", clients="control", ms=300)
+    waiting = robot.send(MoveL, "move_l", pose=pose)
+    robot.call(CancelGoal, "move_l/_action/cancel_goal")
+    simulator.control("delay_links", which="rtde", clients="control", ms=0)
+    assert not waiting.accepted
+    assert simulator.state()["actual"]["position"] == pytest.approx(before, abs=1e-3)
+
+
+def test_an_unreachable_pose_is_rejected_after_the_answer(robot):
+    pose = Pose(position=robot.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose.position)
+    pose.position.z += 1.1
+    goal = robot.send(MoveL, "move_l", pose=pose)
+    assert not goal.accepted
+    assert robot.refusal(goal).error_code in (ErrorCode.UNREACHABLE, ErrorCode.SAFETY_VIOLATION)
