@@ -14,19 +14,18 @@
 
 namespace ur_ros_rtde {
 
-/// Why the dashboard server cannot be spoken to, if so.
+/// Success if the dashboard server is connected.
 Status dashboard_ready(const DashboardLink & link);
-/// `text` is one of `texts`, if there are any.
+/// Fails unless `text` is one of `texts`. Every text is allowed if `texts` is empty.
 void check_text(const std::string & text, const std::vector<std::string> & texts, Check & check);
 
-/// A command to the dashboard server as an action of type `A`, for dashboard_server; see Command<A>. For most
-/// it is enough to say what the command is:
+/// Base class of a command to the dashboard server, which is an action of type `A` of dashboard_server; see
+/// also Command<A>. Most commands only describe their request:
 ///
 ///     class PowerOff : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
 ///       Request request(const Goal &) const override
 ///       {
-///         return {.line = "power off", .reply = "Powering off", .effect = Effect{"robotmode",
-///         {"POWER_OFF"}}};
+///         return {.line = "power off", .reply = "Powering off", .expected = {"robotmode", {"POWER_OFF"}}};
 ///       }
 ///     };
 ///     UR_ROS_RTDE_EXPORT(PowerOff, "dashboard/power_off")
@@ -45,9 +44,9 @@ class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
 
   virtual Request request(const Goal &) const { return {}; }
   virtual Limits limits() const { return {}; }
-  /// By default a field `timeout` and a field `text` of the goal.
+  /// By default checks the fields `timeout` and `text` of the goal, if it has them.
   virtual void check(const Goal & goal, Check & check) const;
-  /// By default what request() says.
+  /// By default executes request().
   virtual Outcome run(const Goal & goal, Run & run);
 
   void start_action_server(DashboardHost & host, const std::string & name) override;

@@ -13,71 +13,72 @@
 
 namespace ur_ros_rtde {
 
-/// How a command shows in the robot's state: the question to the dashboard server, and the answers one of
-/// which tells that it has taken effect (as they begin, without their label: "RUNNING").
-struct Effect {
-  std::string question;
+/// The state of the robot after a command: a query to the dashboard server and the answers that confirm that
+/// the command has taken effect, without their label ("RUNNING") and without what follows.
+struct ExpectedState {
+  std::string query;
   std::vector<std::string> states;
 };
 
-/// The version of PolyScope from which on there is something.
-struct Since {
+/// The oldest version of PolyScope that supports a command.
+struct MinVersion {
   unsigned major = 0;
   unsigned minor = 0;
 };
-constexpr Since never{~0U, 0};
+constexpr MinVersion never{~0U, 0};
 
-/// A command or question to the dashboard server (UR, "Dashboard Server e-Series, port 29999", "…
-/// CB-Series").
+/// A command or query to the dashboard server (UR, "Dashboard Server e-Series, port 29999", "… CB-Series").
 struct DashboardRequest {
   std::string line;
-  /// How the answer begins when it is done. Empty: a question, any answer to which is one.
+  /// The beginning of the answer to a successful command. Empty: the line is a query, and every answer is
+  /// valid.
   std::string reply{};
-  /// With an empty question: nothing to be seen.
-  Effect effect{};
-  /// s, for answer and effect, where the goal has no field `timeout`.
+  /// Without a query, the command is finished with its answer.
+  ExpectedState expected{};
+  /// s, for the answer and the expected state together, if the goal has no field `timeout`.
   double timeout = 60.0;
 };
 
-/// What has such a command, and what may be said with it.
+/// The controllers that support a command, and the values of its text.
 struct DashboardLimits {
-  Since e_series{5, 0};
-  Since cb3{3, 0};
-  /// What the goal's field `text` may be; empty: any line.
+  MinVersion e_series{5, 0};
+  MinVersion cb3{3, 0};
+  /// Allowed values of the goal's field `text`. Empty: any line.
   std::vector<std::string> texts{};
 };
 
-/// not_supported, naming the versions, when the controller's is not within `limits`; success while it is not
-/// known.
+/// Fails (not_supported) with the supported versions if the controller is not within `limits`. Succeeds while
+/// its version is unknown.
 Status supported(const std::string & action, const DashboardLimits & limits, const DashboardLink & link);
 
-/// What a dashboard command has in hand while it carries out a goal, in the goal's own thread.
+/// Gives a dashboard command access to the dashboard server while it executes a goal, in the goal's thread.
 class DashboardRun {
  public:
   using PublishState = std::function<void(const std::string &)>;
 
   DashboardRun(DashboardLink & link, std::shared_ptr<StopRequest> stop_request, PublishState publish);
 
-  /// Sends a line to the dashboard server and returns its answer, which has to come within 2.5 s. Throws
-  /// RobotError (link_lost).
-  std::string ask(const std::string & line);
-  /// ask(), without the label that some answers have: "RUNNING" of "Robotmode: RUNNING".
-  std::string ask_value(const std::string & question);
+  /// Sends a line to the dashboard server and returns its answer. Throws RobotError (link_lost, timeout after
+  /// 5 s).
+  std::string send(const std::string & line);
+  /// The answer without its label: "RUNNING" for "Robotmode: RUNNING".
+  std::string query_value(const std::string & question);
 
-  /// Gives a command, whose answer has to begin with `reply`, and waits until the robot's state shows that it
-  /// has taken effect; with an Effect without a question, not. `timeout`: s, for both together.
-  Outcome command(const std::string & line, const std::string & reply, const Effect & effect = {},
+  /// Sends a command whose answer has to begin with `reply`, and waits for the expected state, if there is
+  /// one. `timeout`: s, for both together.
+  Outcome command(const std::string & line, const std::string & reply, const ExpectedState & expected = {},
                   double timeout = 60.0);
-  /// Asks; the answer, without its label, is the result.
+  /// Sends a query. Its answer, without the label, is the message of the outcome.
   Outcome query(const std::string & question);
-  /// Sends a line on a connection of its own; the answer, whatever it is, is the result.
+  /// Sends a line on a connection of its own. Every answer counts as success and is the message of the
+  /// outcome.
   Outcome raw(const std::string & line, double timeout = 60.0);
-  /// command() or query(), as the request is.
+  /// Executes the request with command() or query().
   Outcome execute(const DashboardRequest & request, double timeout);
 
-  /// Why the goal has to end now, if it has to.
+  /// Why the goal has to stop now. Empty: it may continue.
   std::optional<StopReason> stop_reason() const { return stop_request_->reason(); }
-  /// Returns early, with the reason, when the goal is to end.
+  /// Returns early, with the reason, when the goal has to stop.
   std::optional<StopReason> sleep_for(std::chrono::nanoseconds duration);
 
   /// The last answer to a command or query, for the result.
@@ -86,7 +87,7 @@ class DashboardRun {
  private:
   using Clock = std::chrono::steady_clock;
   Outcome rejection(const std::string & line);
-  Outcome until(const Effect & effect, Clock::time_point deadline, double timeout);
+  Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout);
 
   DashboardLink & link_;
   std::shared_ptr<StopRequest> stop_request_;
@@ -94,12 +95,13 @@ class DashboardRun {
   std::string answer_;
 };
 
-/// DashboardRun, with the result of action `A`.
+/// DashboardRun with the result of action `A`.
 template <typename A>
 class DashboardGoalRun : public DashboardRun {
  public:
   using DashboardRun::DashboardRun;
-  /// For fields of your own; success, error_code, message and answer are filled in for you.
+  /// Set the fields that are specific to the action. `success`, `error_code`, `message` and `answer` are
+  /// filled in by the base class.
   typename A::Result & result() { return result_; }
 
  private:

@@ -6,7 +6,7 @@
 
 namespace ur_ros_rtde {
 
-/// A command whose work is done on the controller, by a piece of URScript that becomes part of the control
+/// A command that is executed on the controller by a snippet of URScript, which becomes part of the control
 /// program.
 ///
 ///     class SgGetWidth : public Extension<action::SgGetWidth> {
@@ -24,9 +24,9 @@ namespace ur_ros_rtde {
 ///     };
 ///     UR_ROS_RTDE_EXPORT(SgGetWidth, "sg_get_width")
 ///
-/// What the snippet may use: script_extension.hpp. Its name is the plugin's. A snippet that cannot become
-/// part of the program (a conflict of registers, a function that the controller does not have) leaves its
-/// goals refused with the reason, and everything else as it is; one that fails or does not end ends its goal.
+/// script_extension.hpp documents what a snippet may use. If a snippet cannot become part of the program (its
+/// registers are taken, or the controller lacks a function), goals of this command are rejected with the
+/// reason; other commands are not affected. A snippet that fails or does not end fails its goal.
 template <typename A>
 class Extension : public Command<A> {
  public:

@@ -7,16 +7,17 @@
 
 namespace ur_ros_rtde {
 
-/// Why a goal has to end early: canceled, preempted, shutdown, a stop of the robot, a lost link, timeout.
+/// Why a goal has to stop early: canceled, preempted, client lost, shutdown, robot stopped, connection lost,
+/// timeout.
 using StopReason = Error;
 
-/// How a goal ended. An Error (and so an StopReason) is one, too.
+/// How a goal ended. An Error, and thus a StopReason, converts to an Outcome.
 class Outcome {
  public:
   Outcome(Error error) : error_(std::move(error)) {}
   Outcome(const Status & status) : error_(status ? Error{} : status.error()) {}
 
-  /// `message` is for people: what was done.
+  /// `message` describes what was done.
   static Outcome success(std::string message = {})
   {
     return Outcome(Error{ErrorCode::none, std::move(message)});
@@ -29,7 +30,7 @@ class Outcome {
   explicit operator bool() const { return error_.code == ErrorCode::none; }
   ErrorCode code() const { return error_.code; }
   const std::string & message() const { return error_.message; }
-  /// Code `none` after success.
+  /// The error code is `none` after success.
   const Error & error() const { return error_; }
 
  private:

@@ -12,25 +12,25 @@ namespace ur_ros_rtde {
 class CommandHost;
 class DashboardHost;
 
-/// Changes whenever a plugin built against the headers of another version could not work.
+/// Incremented when plugins that were built against older headers cannot work any more.
 constexpr std::uint32_t plugin_abi_version = 3;
 
-/// A command of command_server, at its lowest: anything that can start an action server. Command<A>
-/// (command.hpp) is what to derive from otherwise.
+/// The interface of a plugin of command_server. Derive from Command<A> (command.hpp) unless the plugin needs
+/// an action server of its own kind.
 class CommandPlugin {
  public:
   virtual ~CommandPlugin() = default;
-  /// Called once; `host` outlives the plugin. `name` is the plugin's and the action's, "move_l". An exception
-  /// is reported with the plugin's name, and the plugin left out.
+  /// Called once. `host` outlives the plugin. `name` is the name of the plugin and of its action: "move_l".
+  /// If it throws, the error is reported with the plugin's name, and the plugin is not used.
   virtual void start_action_server(CommandHost & host, const std::string & name) = 0;
-  /// Nothing of the plugin runs once this has returned. Goals have ended before.
+  /// No code of the plugin runs after this function has returned. Its goals have ended before.
   virtual void stop_action_server() = 0;
-  /// What the control program gets in addition for this plugin, if anything; Extension<A> (extension.hpp)
-  /// gives it. Asked once, before any action server is started; the name is the plugin's.
+  /// The URScript that this plugin adds to the control program, if any; see Extension<A> (extension.hpp).
+  /// Called once, before any action server is started.
   virtual std::optional<ScriptExtension> script_extension() const { return std::nullopt; }
 };
 
-/// The same for dashboard_server; DashboardCommand<A> (dashboard_command.hpp) is what to derive from.
+/// The interface of a plugin of dashboard_server. Derive from DashboardCommand<A> (dashboard_command.hpp).
 class DashboardPlugin {
  public:
   virtual ~DashboardPlugin() = default;
@@ -38,8 +38,8 @@ class DashboardPlugin {
   virtual void stop_action_server() = 0;
 };
 
-/// What a library says of one of its plugins. The host looks at nothing but `abi_version` before it knows
-/// that this is its own.
+/// How a library describes one of its plugins. The host reads only `abi_version` until it has found that the
+/// version is its own.
 struct PluginDescriptor {
   std::uint32_t abi_version;
   const char * name;
@@ -64,8 +64,8 @@ constexpr PluginDescriptor describe(const char * name)
 
 }  // namespace ur_ros_rtde
 
-/// Makes `Class` (unqualified: write this in its namespace, in a .cpp) the plugin `action_name`.
-/// plugins.xml names it: <class name="action_name" type="namespace::Class" base_class_type="…"/>.
+/// Exports `Class` as the plugin `action_name`. Use it in a .cpp file, in the namespace of `Class`. The
+/// plugin description names it: <class name="action_name" type="namespace::Class" base_class_type="…"/>.
 #define UR_ROS_RTDE_EXPORT(Class, action_name)                                              \
   extern "C" __attribute__((visibility("default")))                                         \
   const ::ur_ros_rtde::PluginDescriptor * ur_ros_rtde_plugin_##Class()                      \

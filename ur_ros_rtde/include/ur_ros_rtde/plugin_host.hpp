@@ -17,14 +17,14 @@ namespace ur_ros_rtde {
 class DashboardLink;
 class Robot;
 
-/// What the server gives to every plugin.
+/// What a server provides to its plugins.
 class PluginHost {
  public:
   explicit PluginHost(rcl_cxx::Node & node);
 
   rcl_cxx::Node & node() { return node_; }
   GoalThreads & goals() { return goals_; }
-  /// Tells everyone why a goal was not accepted, on the topic goal_refusals.
+  /// Publishes on goal_refusals why a goal was rejected.
   void publish_refusal(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why);
 
  private:
@@ -47,10 +47,11 @@ class CommandHost : public PluginHost {
 
   Robot & robot() { return robot_; }
   const Options & options() const { return options_; }
-  /// Of the robot's model: Robot::limits().
+  /// The limits of the robot's model; see Robot::limits().
   ArmLimits limits() const;
 
-  /// How a goal that gives way is to decelerate, when the one that takes over says so.
+  /// How a preempted goal has to decelerate, set while a goal with CommandTraits::preempts_all waits for the
+  /// resource. Empty: as the preempted goal says.
   void set_preemption_stop(std::optional<StopOptions> options);
   std::optional<StopOptions> preemption_stop() const;
 

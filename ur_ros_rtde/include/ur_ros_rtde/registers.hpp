@@ -6,9 +6,9 @@ namespace ur_ros_rtde {
 
 class Robot;
 
-/// The controller's general purpose registers, as an extension's parameters and results; numbers without the
-/// offset of the upper range. Throws RobotError: invalid_goal for a number that extensions may not use,
-/// link_lost.
+/// General purpose registers of the controller, which carry the parameters and results of an extension.
+/// Register numbers do not include the offset of the upper range. Functions throw RobotError: invalid_goal
+/// for a register that extensions may not use, link_lost without a connection.
 class Registers {
  public:
   explicit Registers(Robot & robot) : robot_(robot) {}
@@ -16,7 +16,7 @@ class Registers {
   /// Input registers 19 to 22.
   void set_int(int index, std::int32_t value);
   void set_double(int index, double value);
-  /// Output registers 12 to 19 (double: not 18), of the newest package.
+  /// Output registers 12 to 19 (double: without 18) of the newest sample.
   std::int32_t get_int(int index) const;
   double get_double(int index) const;
 

@@ -16,11 +16,12 @@
 
 namespace ur_ros_rtde {
 
-/// What a command has in hand while it carries out a goal, in the goal's own thread.
+/// Gives a command access to the robot while it executes a goal, in the goal's thread.
 ///
-/// The waits return early, with the reason, when the goal is to end: canceled, preempted, the node shuts
-/// down, and for a command that moves the arm also when the robot stopped or the link is lost. Then return
-/// that reason; the arm is stopped by the base class. Feedback is published from within the waits.
+/// Waits return early, with the reason, when the goal has to stop: it was canceled or preempted, or the node
+/// is shut down; for a command that moves the arm, also when the robot has stopped or the connection is lost.
+/// A command then returns that reason, and the base class stops the arm. Feedback is published during the
+/// waits.
 class Run {
  public:
   Run(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves);
@@ -28,85 +29,85 @@ class Run {
   Run(const Run &) = delete;
   Run & operator=(const Run &) = delete;
 
-  /// ur_rtde's interfaces, shared by all commands; `->` locks one for that call. Throw RobotError when one is
-  /// not connected; what a command does not catch ends its goal with that error. Call only what returns soon:
-  /// motions asynchronously.
+  /// The interfaces of ur_rtde, shared by all commands. `->` locks the interface for one call. The functions
+  /// throw RobotError if the interface is not connected; an exception that a command does not catch becomes
+  /// the outcome of its goal. Call only what returns soon: start motions asynchronously.
   Locked<ur_rtde::RTDEControlInterface> control();
   Locked<ur_rtde::RTDEReceiveInterface> receive() const { return robot_.receive(); }
   Locked<ur_rtde::RTDEIOInterface> io() const { return robot_.io(); }
   Locked<ur_rtde::DashboardClient> dashboard() const { return robot_.dashboard(); }
   Robot & robot() const { return robot_; }
 
-  /// The newest package of the controller. Throws RobotError (link_lost) before the first.
+  /// The newest sample. Throws RobotError (link_lost) before the first.
   Sample state() const;
   ur_ros_rtde_msgs::msg::ArmState arm_state() const;
-  /// What the surroundings exert on the tool: N and Nm at the TCP, in the orientation of the TCP; with the
-  /// TCP's offset not rotated, as is usual, that is the orientation of the flange: [2] is the force along the
-  /// flange's Z axis.
+  /// The force (N) and torque (Nm) that the environment exerts on the tool, at the TCP and in the orientation
+  /// of the TCP. If the TCP offset has no rotation, which is common, that is the orientation of the flange,
+  /// and [2] is the force along the flange's Z axis.
   Vector6 flange_force() const;
 
-  /// Why the goal has to end now, if it has to.
+  /// Why the goal has to stop now. Empty: it may continue.
   std::optional<StopReason> stop_reason() const;
-  /// Nothing if the time has passed.
+  /// Empty if the time has passed.
   [[nodiscard]] std::optional<StopReason> sleep_for(std::chrono::nanoseconds duration);
-  /// Looks at `condition` with each package of the controller (each 10 ms without link). Nothing if it
-  /// holds; timeout.
+  /// Evaluates `condition` for each sample (every 10 ms without a connection). Empty if it is true; `timeout`
+  /// if it was not true in time.
   [[nodiscard]] std::optional<StopReason> until(const std::function<bool()> & condition,
                                                 std::chrono::nanoseconds timeout);
 
-  /// The same for what has to come: `otherwise` is the failure when it has not come within `timeout`.
+  /// Waits for an expected condition. `otherwise` is the failure if it is not true within `timeout`.
   [[nodiscard]] Outcome expect(const std::function<bool()> & condition, std::chrono::nanoseconds timeout,
                                const std::string & otherwise, ErrorCode code = ErrorCode::rejected_by_robot);
-  /// Waits for the first package of the controller after `sample` and puts it there: for loops that follow
-  /// the controller's cycle.
+  /// Waits for the first sample newer than `sample` and stores it there. For loops at the controller's rate.
   [[nodiscard]] std::optional<StopReason> next(Sample & sample);
 
-  /// Until the asynchronous move begun by the last call through control() has ended and the arm stands still.
-  /// A failure, if the control program did not begin it, or after `limit`.
+  /// Waits until the asynchronous motion that the last call through control() has started has ended and the
+  /// arm stands still. Fails if the control program did not start it, or after `limit`.
   [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds limit = std::chrono::minutes(10));
-  /// The same, with progress, and a failure (not_reached) if it ended elsewhere. ur_rtde's values: rad; m and
-  /// rotation vector.
+  /// The same with progress, for a known target: fails (not_reached) if the motion ended elsewhere. Joint
+  /// positions in rad; a UR pose: position (m) and rotation vector (rad).
   [[nodiscard]] Outcome until_joints_reached(const std::vector<double> & positions);
   [[nodiscard]] Outcome until_pose_reached(const std::vector<double> & pose);
-  /// Until the arm is there and stands still, with progress, for motions of whose end the controller says
-  /// nothing: servo control, scripts. A failure (not_reached) when it has stood still elsewhere for two
-  /// seconds.
+  /// Waits until the arm stands still at the target, with progress. For motions whose end the controller does
+  /// not report: servo control, scripts. Fails (not_reached) when the arm has stood still elsewhere for 2 s.
   [[nodiscard]] Outcome until_at_joints(const std::vector<double> & positions);
   [[nodiscard]] Outcome until_at_pose(const std::vector<double> & pose);
-  /// The last asynchronous move has ended, or nothing of it began within a second.
+  /// The last asynchronous motion has ended, or has not started within 1 s.
   bool motion_ended() const;
-  /// The arm stands still (by its joints' velocities). Nothing if it does; timeout.
+  /// Waits for standstill, judged by actual joint velocities. Empty at standstill; otherwise `timeout`.
   [[nodiscard]] std::optional<StopReason> until_standstill(
       std::chrono::nanoseconds limit = std::chrono::seconds(5));
 
-  /// Robot::run_script, ended early when the goal has to end, with feedback meanwhile. Hold Resource::script.
+  /// Calls Robot::run_script, publishes feedback meanwhile, and stops the script when the goal has to stop.
+  /// Requires Resource::script.
   ScriptReport run_script(const std::string & script, ScriptOptions options = {});
 
-  /// Of an Extension: the registers that its snippet reads and writes; runs the snippet and waits for its
-  /// end, `timeout` s at most.
+  /// For an Extension: the registers that its snippet reads and writes, and a function that runs the snippet
+  /// and waits for its end, at most `timeout` s.
   Registers registers() const { return Registers(robot_); }
   [[nodiscard]] Outcome trigger(double timeout);
 
-  /// Logs `text` as a warning of this goal; the message of the result says it, too.
+  /// Logs a warning for this goal and appends it to the message of the result.
   void warn(const std::string & text);
   void on_warning(std::function<void(const std::string &)> log) { log_warning_ = std::move(log); }
-  /// `outcome`, with the warnings in its message.
+  /// `outcome` with the warnings in its message.
   Outcome with_warnings(const Outcome & outcome) const;
 
-  /// For the feedback; 0 to 1.
+  /// Published as feedback, 0 to 1.
   void progress(double fraction) { progress_ = fraction; }
   double progress() const { return progress_; }
   std::chrono::nanoseconds elapsed() const { return std::chrono::steady_clock::now() - begin_; }
-  /// Of a command that takes over: which goal had to end, "/move_j, goal 3f0c12ab"; empty if there was none.
+  /// The goal that this one preempted: "/move_j, goal 3f0c12ab". Empty if there was none. For commands with
+  /// CommandTraits::preempts_all.
   const std::string & preempted_goal() const { return preempted_goal_; }
   void set_preempted_goal(std::string goal) { preempted_goal_ = std::move(goal); }
   void set_plugin(std::string name) { plugin_ = std::move(name); }
 
-  /// For the feedback; nothing while no package has come.
+  /// Empty before the first sample.
   std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> motion_feedback() const;
 
  protected:
-  /// 20 times a second while the goal waits.
+  /// Called 20 times per second during waits.
   virtual void publish_feedback() {}
 
  private:
@@ -131,7 +132,7 @@ class Run {
   MotionMark mark_;
 };
 
-/// Run, with the result and the feedback of action `A`.
+/// Run with the result and the feedback of action `A`.
 template <typename A>
 class GoalRun : public Run {
  public:
@@ -142,11 +143,13 @@ class GoalRun : public Run {
   {
   }
 
-  /// For fields of your own; success, error_code, message and final_state are filled in for you.
+  /// Set the fields that are specific to the action. `success`, `error_code`, `message` and `final_state` are
+  /// filled in by the base class.
   typename A::Result & result() { return result_; }
-  /// For fields of your own; `motion` is filled in for you.
+  /// Set the fields that are specific to the action. `motion` is filled in by the base class.
   typename A::Feedback & feedback() { return feedback_; }
-  /// For feedback without a field `motion`, which is not published by itself.
+  /// Publishes the feedback. Needed only if the feedback has no field `motion`; otherwise it is published
+  /// during waits.
   void publish() { publish_(feedback_); }
 
  private:

@@ -10,22 +10,22 @@
 
 namespace ur_ros_rtde {
 
-/// The orientation is exactly (0, 0, 0, 1), as in a pose message of which only the position was set.
+/// The orientation is exactly (0, 0, 0, 1), as in a pose message in which only the position was set.
 bool has_identity_orientation(const geometry_msgs::msg::Pose & pose);
 
-/// Where a motion to a single pose leads that begins at `start`, as a pose of UR. An identity orientation
-/// keeps the orientation that the TCP has, unless `identity_orientation` says that it is meant.
+/// The target of a motion to a single pose that starts at `start`, as a UR pose. An identity orientation
+/// keeps the current orientation of the TCP unless `identity_orientation` is set.
 std::vector<double> tcp_target(const geometry_msgs::msg::Pose & pose, bool identity_orientation,
                                const Sample & start);
 
-/// The same for a goal with these two fields.
+/// The same for a goal with the fields `pose` and `identity_orientation`.
 template <typename Goal>
 std::vector<double> tcp_target(const Goal & goal, const Sample & start)
 {
   return tcp_target(goal.pose, goal.identity_orientation, start);
 }
 
-/// Check::reachable for the goal's tcp_target() from where the arm is.
+/// Check::reachable() for tcp_target() of the goal, from the current state.
 template <typename Goal>
 Check & check_tcp_target(Check & check, const Goal & goal)
 {
@@ -35,7 +35,7 @@ Check & check_tcp_target(Check & check, const Goal & goal)
   return check;
 }
 
-/// A pose of a path, with the name of its field; without a pose where joint positions are given.
+/// A pose of a path with the name of its field. Empty `pose`: the path has joint positions there.
 struct PathPose {
   std::string name;
   std::optional<geometry_msgs::msg::Pose> pose;
@@ -45,12 +45,12 @@ struct PathPose {
 std::vector<PathPose> path_poses(const std::string & field,
                                  const std::vector<geometry_msgs::msg::Pose> & poses);
 
-/// What is to be said of the first pose of a path from `start` with an identity orientation to which the tool
-/// turns by more than 90 degrees: a path cannot keep an orientation, and a user who gave positions only does
-/// not expect it. Empty if there is none.
+/// A warning about the first pose of a path from `start` that has an identity orientation and turns the tool
+/// by more than 90 degrees. Paths do not keep the orientation, which surprises users who set positions only.
+/// Empty if there is no such pose.
 std::string turn_to_identity(const Vector6 & start, const std::vector<PathPose> & path);
 
-/// Run::warn of that.
+/// Calls Run::warn() with the message of turn_to_identity().
 void warn_of_turn_to_identity(Run & run, const std::vector<PathPose> & path);
 
 }  // namespace ur_ros_rtde

@@ -13,11 +13,11 @@ namespace ur_ros_rtde {
 namespace {
 using Seconds = std::chrono::duration<double>;
 
-/// What every version of the dashboard server answers to a line that it does not know.
+/// The answer of every version of the dashboard server to an unknown line.
 constexpr std::string_view not_understood = "could not understand";
 
-/// The dashboard server tells nothing unasked, so states are asked for.
-constexpr std::chrono::milliseconds question_interval{50};
+/// The dashboard server does not report changes, so the state is polled.
+constexpr std::chrono::milliseconds polling_interval{50};
 constexpr std::chrono::milliseconds answer_limit{5000};
 
 bool begins_with(std::string_view text, std::string_view beginning)
@@ -25,11 +25,11 @@ bool begins_with(std::string_view text, std::string_view beginning)
   return text.substr(0, beginning.size()) == beginning;
 }
 
-std::string availability(const char * series, const Since & since)
+std::string availability(const char * series, const MinVersion & minimum)
 {
-  return since.major == never.major
+  return minimum.major == never.major
              ? fmt::format("{} does not have it", series)
-             : fmt::format("{} has it from PolyScope {}.{} on", series, since.major, since.minor);
+             : fmt::format("{} has it from PolyScope {}.{} on", series, minimum.major, minimum.minor);
 }
 
 bool is_one_of(const std::string & state, const std::vector<std::string> & states)
@@ -62,8 +62,8 @@ Status supported(const std::string & action, const DashboardLimits & limits, con
   if (!version) {
     return {};
   }
-  const Since & since = version->cb3() ? limits.cb3 : limits.e_series;
-  if (std::pair(version->major, version->minor) >= std::pair(since.major, since.minor)) {
+  const MinVersion & minimum = version->cb3() ? limits.cb3 : limits.e_series;
+  if (std::pair(version->major, version->minor) >= std::pair(minimum.major, minimum.minor)) {
     return {};
   }
   return failure(ErrorCode::not_supported,
@@ -78,7 +78,7 @@ DashboardRun::DashboardRun(DashboardLink & link, std::shared_ptr<StopRequest> st
 {
 }
 
-std::string DashboardRun::ask(const std::string & line)
+std::string DashboardRun::send(const std::string & line)
 {
   auto answer = link_.request(line, answer_limit, stop_request_->token());
   if (!answer) {
@@ -87,16 +87,16 @@ std::string DashboardRun::ask(const std::string & line)
   return *std::move(answer);
 }
 
-std::string DashboardRun::ask_value(const std::string & question)
+std::string DashboardRun::query_value(const std::string & question)
 {
-  const std::string answer = ask(question);
+  const std::string answer = send(question);
   const auto colon = answer.find(": ");
   return colon == std::string::npos ? answer : answer.substr(colon + 2);
 }
 
 Outcome DashboardRun::query(const std::string & question)
 {
-  answer_ = ask_value(question);
+  answer_ = query_value(question);
   return begins_with(answer_, not_understood) ? rejection(question) : Outcome::success(answer_);
 }
 
@@ -115,7 +115,7 @@ Outcome DashboardRun::raw(const std::string & line, double timeout)
   return Outcome::success(answer_);
 }
 
-Outcome DashboardRun::command(const std::string & line, const std::string & reply, const Effect & effect,
+Outcome DashboardRun::command(const std::string & line, const std::string & reply, const ExpectedState & expected,
                               double timeout)
 {
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(timeout));
@@ -125,13 +125,13 @@ Outcome DashboardRun::command(const std::string & line, const std::string & repl
   if (!begins_with(answer_, reply)) {
     return rejection(line);
   }
-  return effect.question.empty() ? Outcome::success(answer_) : until(effect, deadline, timeout);
+  return expected.query.empty() ? Outcome::success(answer_) : until(expected, deadline, timeout);
 }
 
 Outcome DashboardRun::execute(const DashboardRequest & request, double timeout)
 {
   return request.reply.empty() ? query(request.line)
-                               : command(request.line, request.reply, request.effect, timeout);
+                               : command(request.line, request.reply, request.expected, timeout);
 }
 
 Outcome DashboardRun::rejection(const std::string & line)
@@ -141,32 +141,32 @@ Outcome DashboardRun::rejection(const std::string & line)
     return Outcome::failure(ErrorCode::not_supported,
                             answer + ": this version of PolyScope does not have it");
   }
-  // Asked anew: what the heartbeat knows may be older than the command.
-  if (link_.in_remote_control() && ask("is in remote control") == "false") {
+  // Queried again: the value known from the heartbeat may be older than the command.
+  if (link_.in_remote_control() && send("is in remote control") == "false") {
     answer += ": the robot is in local control, switch it to remote on the teach pendant";
   }
   return Outcome::failure(ErrorCode::rejected_by_robot, answer);
 }
 
-Outcome DashboardRun::until(const Effect & effect, Clock::time_point deadline, double timeout)
+Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point deadline, double timeout)
 {
   std::string shown;
   while (true) {
-    const std::string state = ask_value(effect.question);
+    const std::string state = query_value(expected.query);
     if (state != shown) {
       shown = state;
       publish_(state);
     }
-    if (is_one_of(state, effect.states)) {
-      return Outcome::success(fmt::format("{} is {}", effect.question, state));
+    if (is_one_of(state, expected.states)) {
+      return Outcome::success(fmt::format("{} is {}", expected.query, state));
     }
     if (Clock::now() >= deadline) {
       return Outcome::failure(
           ErrorCode::timeout,
           fmt::format("{} is still {} after {:.1f} s, not {} (the command was answered \"{}\")",
-                      effect.question, state, timeout, fmt::join(effect.states, " or "), answer_));
+                      expected.query, state, timeout, fmt::join(expected.states, " or "), answer_));
     }
-    if (auto why = sleep_for(question_interval)) {
+    if (auto why = sleep_for(polling_interval)) {
       return *why;
     }
   }

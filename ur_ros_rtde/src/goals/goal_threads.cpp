@@ -7,7 +7,7 @@ namespace ur_ros_rtde {
 GoalThreads::~GoalThreads()
 {
   close(Error{ErrorCode::shutdown, "the node is shut down"}, std::chrono::milliseconds(0));
-  // What is left joins here, however long it takes: nothing that its code refers to may go first.
+  // Waits for the remaining threads without a limit: objects that they use must outlive them.
   std::list<Entry> entries;
   {
     const std::lock_guard lock(mutex_);

@@ -16,16 +16,16 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds feedback_period{50};
 constexpr milliseconds longest_nap{10};
-/// Within which the control program begins a move after it has acknowledged it: two cycles, with reserve.
+/// The control program starts a motion within this time after its acknowledgement: two cycles and a reserve.
 constexpr std::chrono::seconds begin_limit{1};
 constexpr std::chrono::seconds package_limit{1};
-/// Without packages for so long, the link does not do what it should.
+/// Without samples for this long, the connection is considered lost.
 constexpr milliseconds silence_limit{200};
 constexpr double joint_tolerance = 0.005;     // rad
 constexpr double position_tolerance = 0.002;  // m
 constexpr double rotation_share = 0.2;        // m/rad: what a rotation counts as, so that 0.01 rad is 2 mm
 constexpr std::chrono::minutes longest_motion{10};
-/// Of motions of which the controller does not say that they have ended; where they stand still is the end.
+/// For motions whose end the controller does not report: they end where the arm stands still.
 constexpr double servo_joint_tolerance = 0.01;      // rad
 constexpr double servo_position_tolerance = 0.004;  // m
 constexpr std::chrono::seconds settling_limit{2};
@@ -45,7 +45,7 @@ ur_ros_rtde_msgs::msg::ArmState to_arm_state(const std::optional<Sample> & sampl
   return state;
 }
 
-/// m, with rotation counted in.
+/// m, with the rotation weighted by rotation_weight.
 double pose_distance(const Vector6 & a, const Vector6 & b)
 {
   const Vector6 difference = pose_trans(pose_inverse(a), b);
@@ -63,7 +63,7 @@ Vector6 to_array(const std::vector<double> & values)
   return array;
 }
 
-/// rad, of the joint that is farthest away.
+/// rad, largest difference of all joints.
 std::function<double(const Sample &)> distance_to_joints(const std::vector<double> & positions)
 {
   return [target = to_array(positions)](const Sample & sample) {
@@ -172,7 +172,8 @@ Outcome Run::expect(const std::function<bool()> & condition, std::chrono::nanose
   if (why->code != ErrorCode::timeout) {
     return *why;
   }
-  // Commands that move nothing do not end with the link; what did not come then says nothing about the robot.
+  // A command that does not move the arm is not stopped by a lost connection. Then a missing condition says
+  // nothing about the robot.
   const auto silence = Clock::now() - state().received;
   if (silence < silence_limit) {
     return Outcome::failure(code, otherwise);

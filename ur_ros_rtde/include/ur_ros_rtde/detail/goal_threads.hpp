@@ -14,24 +14,24 @@
 
 namespace ur_ros_rtde {
 
-/// The threads that carry out goals: one each, all joined before this object is gone. Thread-safe.
+/// The threads that execute goals, one per goal. All are joined by the destructor. Thread-safe.
 class GoalThreads {
  public:
-  /// More goals at a time than any client can mean.
+  /// Largest number of threads.
   static constexpr std::size_t limit = 64;
 
   GoalThreads() = default;
-  /// Ends what still runs, as close() does, however long that takes.
+  /// Calls close() and waits for all threads without a limit.
   ~GoalThreads();
   GoalThreads(const GoalThreads &) = delete;
   GoalThreads & operator=(const GoalThreads &) = delete;
 
-  /// Whether start() would take another one.
+  /// Success if start() can start another thread.
   Status can_start() const;
-  /// Runs `work`, which must not throw, in a thread. `name` is for messages: "move_l 3f0c12ab". Refused after
-  /// close() and beyond the limit.
+  /// Runs `work`, which must not throw, in a thread. `name` is used in messages: "move_l 3f0c12ab". Fails
+  /// after close() and if `limit` threads are running.
   Status start(std::string name, std::shared_ptr<StopRequest> stop_request, std::function<void()> work);
-  /// Asks all to end, takes no more, and waits up to `limit` for them. Returns the names of those that still
+  /// Asks all goals to stop, rejects new ones, and waits up to `limit`. Returns the names of those that still
   /// run.
   std::vector<std::string> close(const StopReason & why, std::chrono::milliseconds limit);
 
