@@ -5,12 +5,14 @@
 #include <future>
 #include <rcl_cxx/executor.hpp>
 
+#include "ur_ros_rtde/detail/guarded.hpp"
+
 namespace ur_ros_rtde {
 namespace {
 using rcl_cxx::GoalUUID;
 using std::chrono::seconds;
 
-class Goals : public testing::Test {
+class ActiveGoalsTest : public testing::Test {
  protected:
   rcl_cxx::Context::SharedPtr context_ = std::make_shared<rcl_cxx::Context>(
       std::vector<std::string>{"active_goals_test"}, rcl_cxx::InitOptions{.shutdown_on_signal = false});
@@ -20,7 +22,7 @@ class Goals : public testing::Test {
   StopRequest stop_request_;
 };
 
-TEST_F(Goals, that_are_refused_give_the_reason_with_its_code)
+TEST_F(ActiveGoalsTest, RefusalHasReasonAndCode)
 {
   const auto accepted = active_goals_.accept(
       GoalUUID::random(), [](GoalContext &) { return failure(ErrorCode::invalid_goal, "speed is 9"); });
@@ -28,7 +30,7 @@ TEST_F(Goals, that_are_refused_give_the_reason_with_its_code)
   EXPECT_EQ(accepted.error(), "speed is 9 (invalid_goal 1)");
 }
 
-TEST_F(Goals, whose_check_throws_are_refused_with_its_text)
+TEST_F(ActiveGoalsTest, CheckThatThrowsRefusesWithItsText)
 {
   const auto accepted = active_goals_.accept(
       GoalUUID::random(), [](GoalContext &) -> Status { throw std::runtime_error("a fault in the check"); });
@@ -36,39 +38,37 @@ TEST_F(Goals, whose_check_throws_are_refused_with_its_text)
   EXPECT_NE(accepted.error().find("a fault in the check"), std::string::npos);
 }
 
-TEST_F(Goals, that_throw_end_with_the_text)
+TEST_F(ActiveGoalsTest, ExceptionBecomesTheOutcome)
 {
-  const Outcome outcome = active_goals_.guarded(
-      stop_request_, []() -> Outcome { throw std::out_of_range("vector::_M_range_check"); });
+  const Outcome outcome =
+      guarded(stop_request_, []() -> Outcome { throw std::out_of_range("vector::_M_range_check"); });
   EXPECT_EQ(outcome.code(), ErrorCode::exception);
   EXPECT_NE(outcome.message().find("vector::_M_range_check"), std::string::npos);
 }
 
-TEST_F(Goals, that_throw_an_error_of_the_robot_end_with_it)
+TEST_F(ActiveGoalsTest, RobotErrorBecomesTheOutcome)
 {
-  const Outcome outcome = active_goals_.guarded(
+  const Outcome outcome = guarded(
       stop_request_, []() -> Outcome { throw RobotError(Error{ErrorCode::link_lost, "the link is lost"}); });
   EXPECT_EQ(outcome.code(), ErrorCode::link_lost);
   EXPECT_EQ(outcome.message(), "the link is lost");
 }
 
-TEST_F(Goals, that_throw_no_exception_of_the_library_end_too)
+TEST_F(ActiveGoalsTest, ExceptionOfAnyTypeBecomesTheOutcome)
 {
-  const Outcome outcome = active_goals_.guarded(stop_request_, []() -> Outcome { throw 42; });
+  const Outcome outcome = guarded(stop_request_, []() -> Outcome { throw 42; });
   EXPECT_EQ(outcome.code(), ErrorCode::exception);
 }
 
-TEST_F(Goals, that_fail_after_they_were_asked_to_end_end_with_that_reason)
+TEST_F(ActiveGoalsTest, FailureAfterAStopRequestHasItsReason)
 {
   stop_request_.request(Error{ErrorCode::canceled, "canceled by a client"});
-  EXPECT_EQ(active_goals_.guarded(stop_request_, [] { return Outcome::failure(ErrorCode::not_reached, "x"); })
-                .code(),
+  EXPECT_EQ(guarded(stop_request_, [] { return Outcome::failure(ErrorCode::not_reached, "x"); }).code(),
             ErrorCode::canceled);
-  EXPECT_TRUE(active_goals_.guarded(stop_request_, [] { return Outcome::success(); }))
-      << "it was faster than the cancel";
+  EXPECT_TRUE(guarded(stop_request_, [] { return Outcome::success(); })) << "it was faster than the cancel";
 }
 
-TEST_F(Goals, get_their_cancel)
+TEST_F(ActiveGoalsTest, CancelReachesTheGoal)
 {
   const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(active_goals_.accept(id, [](GoalContext &) { return Status(); }));
@@ -81,13 +81,13 @@ TEST_F(Goals, get_their_cancel)
     const auto why = context->stop_request->reason();
     ended.set_value(why ? why->code : ErrorCode::none);
   }));
-  active_goals_.end(id, Error{ErrorCode::canceled, "canceled by a client"});
+  active_goals_.stop(id, Error{ErrorCode::canceled, "canceled by a client"});
   EXPECT_EQ(ended.get_future().get(), ErrorCode::canceled);
   host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 
-/// Goals that hold a resource from their admission on, as motions do.
-class HoldingGoals : public Goals {
+/// Goals that hold a resource from their acceptance, as motions do.
+class GoalWithLeaseTest : public ActiveGoalsTest {
  protected:
   tl::expected<void, std::string> accept(const GoalUUID & id)
   {
@@ -104,7 +104,7 @@ class HoldingGoals : public Goals {
   Arbiter arbiter_;
 };
 
-TEST_F(HoldingGoals, FreeWhatTheyHoldWhenTheyAreDiscarded)
+TEST_F(GoalWithLeaseTest, DiscardedGoalReleasesItsLease)
 {
   const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
@@ -114,7 +114,7 @@ TEST_F(HoldingGoals, FreeWhatTheyHoldWhenTheyAreDiscarded)
   EXPECT_FALSE(active_goals_.start(id, [](const std::shared_ptr<GoalContext> &) {}));
 }
 
-TEST_F(HoldingGoals, WaitForTheirAcceptanceWhileOthersAreAdmitted)
+TEST_F(GoalWithLeaseTest, KeepsItsLeaseWhileAnotherGoalIsRefused)
 {
   const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
@@ -123,27 +123,27 @@ TEST_F(HoldingGoals, WaitForTheirAcceptanceWhileOthersAreAdmitted)
   host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 
-TEST_F(HoldingGoals, FreeWhatTheyHoldWhenTheyHaveToEndBeforeTheyStart)
+TEST_F(GoalWithLeaseTest, GoalStoppedBeforeItsStartReleasesItsLease)
 {
   const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
-  active_goals_.end(id, Error{ErrorCode::preempted, "preempted by stop"});
+  active_goals_.stop(id, Error{ErrorCode::preempted, "preempted by stop"});
   EXPECT_FALSE(arbiter_.holder(Resource::motion));
 }
 
-TEST_F(HoldingGoals, KeepWhatTheyHoldWhileTheyComeToTheirEnd)
+TEST_F(GoalWithLeaseTest, StoppedGoalKeepsItsLeaseUntilItsEnd)
 {
   const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
   ASSERT_TRUE(active_goals_.start(id, [](const std::shared_ptr<GoalContext> &) {}));
-  active_goals_.end(id, client_lost());
+  active_goals_.stop(id, client_lost());
   EXPECT_TRUE(arbiter_.holder(Resource::motion));
   active_goals_.finish(id, client_lost());
   EXPECT_FALSE(arbiter_.holder(Resource::motion));
   host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 
-TEST_F(HoldingGoals, AreNotReplacedByAnotherGoalOfTheSameId)
+TEST_F(GoalWithLeaseTest, IsNotReplacedByAGoalWithTheSameId)
 {
   const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));
@@ -156,12 +156,12 @@ TEST_F(HoldingGoals, AreNotReplacedByAnotherGoalOfTheSameId)
   ASSERT_FALSE(again);
   EXPECT_NE(again.error().find(id.to_string()), std::string::npos) << again.error();
 
-  active_goals_.end(id, Error{ErrorCode::canceled, "canceled by a client"});
+  active_goals_.stop(id, Error{ErrorCode::canceled, "canceled by a client"});
   ASSERT_TRUE(context->stop_request->reason()) << "the cancel has to reach the goal that runs";
   host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 
-TEST_F(HoldingGoals, FreeWhatTheyHoldBeforeTheResultIsSent)
+TEST_F(GoalWithLeaseTest, LeaseIsReleasedBeforeTheResultIsSent)
 {
   const GoalUUID id = GoalUUID::random();
   ASSERT_TRUE(accept(id));

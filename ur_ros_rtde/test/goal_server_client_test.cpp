@@ -38,21 +38,22 @@ struct SpinningNode {
 /// Goals that go on until they have to end.
 class EndlessCommand : public GoalServer<Trigger> {
  public:
-  EndlessCommand(rcl_cxx::Node & node, bool needs_client) : host_(node), active_goals_(host_, "/endless")
+  EndlessCommand(rcl_cxx::Node & node, bool stop_when_client_lost)
+      : host_(node), active_goals_(host_, "/endless")
   {
-    serve(node, "endless", active_goals_, needs_client);
+    start_server(node, "endless", active_goals_, stop_when_client_lost);
   }
   ~EndlessCommand() override
   {
     host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
-    end_service();
+    stop_server();
   }
 
   std::promise<void> started;
   std::promise<ErrorCode> ended;
 
  private:
-  tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id, const Trigger::Goal &) override
+  rcl_cxx::GoalDecision accept(const rcl_cxx::GoalUUID & id, const Trigger::Goal &) override
   {
     return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
@@ -81,12 +82,12 @@ class EndlessCommand : public GoalServer<Trigger> {
 class GoalServerClientTest : public testing::Test {
  protected:
   /// How a goal ends whose client disappears, or the end of the node if it does not end before.
-  static ErrorCode end_without_client(bool needs_client)
+  static ErrorCode end_without_client(bool stop_when_client_lost)
   {
     auto ended = std::future<ErrorCode>();
     {
       SpinningNode server("server");
-      EndlessCommand command(server.node, needs_client);
+      EndlessCommand command(server.node, stop_when_client_lost);
       ended = command.ended.get_future();
       {
         SpinningNode other("client");
@@ -95,7 +96,7 @@ class GoalServerClientTest : public testing::Test {
         const auto response = client->async_send_goal(Trigger::Goal());
         EXPECT_EQ(command.started.get_future().wait_for(seconds(10)), std::future_status::ready);
       }
-      if (needs_client) {
+      if (stop_when_client_lost) {
         EXPECT_EQ(ended.wait_for(seconds(5)), std::future_status::ready);
       } else {
         EXPECT_EQ(ended.wait_for(seconds(2)), std::future_status::timeout);

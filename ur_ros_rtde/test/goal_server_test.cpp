@@ -27,12 +27,12 @@ class FaultyServer : public GoalServer<Trigger> {
  public:
   FaultyServer(rcl_cxx::Node & node, PluginHost & host) : active_goals_(host, "/faulty")
   {
-    serve(node, "faulty", active_goals_, false);
+    start_server(node, "faulty", active_goals_, false);
   }
-  ~FaultyServer() override { end_service(); }
+  ~FaultyServer() override { stop_server(); }
 
  private:
-  tl::expected<void, std::string> accept(const GoalUUID & id, const Trigger::Goal &) override
+  rcl_cxx::GoalDecision accept(const GoalUUID & id, const Trigger::Goal &) override
   {
     return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
@@ -73,7 +73,7 @@ TEST_F(GoalServerTest, ACommandWhoseStopOptionsThrowDoesNothingAndEndsWithTheRea
   options.address = "127.0.0.1";
   Robot robot(options, [](LogLevel, const std::string &) {});
   CommandHost host(node_, robot, {});
-  CommandExecutor goals(host, "/faulty", CommandTraits{.resource = Resource::none, .extension = {}});
+  CommandExecutor goals(host, "/faulty", CommandTraits{.resource = Resource::none}, "");
   GoalContext context;
   bool ran = false;
   const Outcome outcome = goals.execute(
