@@ -53,11 +53,11 @@ class EndlessCommand : public GoalServer<Trigger> {
   std::promise<ErrorCode> ended;
 
  private:
-  rcl_cxx::GoalDecision accept(const rcl_cxx::GoalUUID & id, const Trigger::Goal &) override
+  rcl_cxx::GoalDecision accept_goal(const rcl_cxx::GoalUUID & id, const Trigger::Goal &) override
   {
     return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
-  void execute(Handle & handle, GoalContext & context) override
+  void execute_goal(Handle & handle, GoalContext & context) override
   {
     started.set_value();
     const auto limit = std::chrono::steady_clock::now() + seconds(10);

@@ -32,11 +32,14 @@ class FaultyServer : public GoalServer<Trigger> {
   ~FaultyServer() override { stop_server(); }
 
  private:
-  rcl_cxx::GoalDecision accept(const GoalUUID & id, const Trigger::Goal &) override
+  rcl_cxx::GoalDecision accept_goal(const GoalUUID & id, const Trigger::Goal &) override
   {
     return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
-  void execute(Handle & handle, GoalContext &) override { abort_unstarted(handle, Outcome::success("done")); }
+  void execute_goal(Handle & handle, GoalContext &) override
+  {
+    abort_unstarted(handle, Outcome::success("done"));
+  }
   void abort_unstarted(Handle & handle, const Outcome & outcome) override
   {
     Trigger::Result result;

@@ -59,8 +59,8 @@ class Command : public CommandPlugin, private GoalServer<A> {
 
  private:
   using Handle = rcl_cxx::ServerGoalHandle<A>;
-  rcl_cxx::GoalDecision accept(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
-  void execute(Handle & handle, GoalContext & context) override;
+  rcl_cxx::GoalDecision accept_goal(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
+  void execute_goal(Handle & handle, GoalContext & context) override;
   void abort_unstarted(Handle & handle, const Outcome & outcome) override;
   void send_result(Handle & handle, Run & run, const Outcome & outcome);
 
@@ -78,13 +78,13 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
 }
 
 template <typename A>
-rcl_cxx::GoalDecision Command<A>::accept(const rcl_cxx::GoalUUID & id, const Goal & goal)
+rcl_cxx::GoalDecision Command<A>::accept_goal(const rcl_cxx::GoalUUID & id, const Goal & goal)
 {
   return executor_->accept(id, [&](Check & result) { check(goal, result); });
 }
 
 template <typename A>
-void Command<A>::execute(Handle & handle, GoalContext & context)
+void Command<A>::execute_goal(Handle & handle, GoalContext & context)
 {
   Run goal_run(executor_->host().robot(), context.stop_request, executor_->needs_motion(),
                [&handle](const Feedback & feedback) { handle.publish_feedback(feedback); });

@@ -54,8 +54,8 @@ class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
 
  private:
   using Handle = rcl_cxx::ServerGoalHandle<A>;
-  rcl_cxx::GoalDecision accept(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
-  void execute(Handle & handle, GoalContext & context) override;
+  rcl_cxx::GoalDecision accept_goal(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
+  void execute_goal(Handle & handle, GoalContext & context) override;
   void abort_unstarted(Handle & handle, const Outcome & outcome) override;
   void send_result(Handle & handle, Run & run, const Outcome & outcome);
 
@@ -95,7 +95,7 @@ void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::s
 }
 
 template <typename A>
-rcl_cxx::GoalDecision DashboardCommand<A>::accept(const rcl_cxx::GoalUUID & id, const Goal & goal)
+rcl_cxx::GoalDecision DashboardCommand<A>::accept_goal(const rcl_cxx::GoalUUID & id, const Goal & goal)
 {
   return goals_->accept(id, [&](GoalContext &) -> Status {
     Check result;
@@ -109,7 +109,7 @@ rcl_cxx::GoalDecision DashboardCommand<A>::accept(const rcl_cxx::GoalUUID & id, 
 }
 
 template <typename A>
-void DashboardCommand<A>::execute(Handle & handle, GoalContext & context)
+void DashboardCommand<A>::execute_goal(Handle & handle, GoalContext & context)
 {
   Run goal_run(*link_, context.stop_request, [&]([[maybe_unused]] const std::string & state) {
     if constexpr (requires(Feedback & feedback) { feedback.state; }) {

@@ -22,9 +22,9 @@ class GoalServer {
   virtual ~GoalServer() = default;
 
   /// Runs in the executor's thread and must not wait.
-  virtual rcl_cxx::GoalDecision accept(const rcl_cxx::GoalUUID & id, const typename A::Goal & goal) = 0;
+  virtual rcl_cxx::GoalDecision accept_goal(const rcl_cxx::GoalUUID & id, const typename A::Goal & goal) = 0;
   /// Runs in the goal's thread and ends with finish().
-  virtual void execute(Handle & handle, GoalContext & context) = 0;
+  virtual void execute_goal(Handle & handle, GoalContext & context) = 0;
   /// Called for an accepted goal for which no thread could be started. Ends with finish().
   virtual void abort_unstarted(Handle & handle, const Outcome & outcome) = 0;
   /// Writes the outcome into the result. Override it for results that begin with other fields.
@@ -60,12 +60,12 @@ void GoalServer<A>::start_server(rcl_cxx::Node & node, const std::string & name,
   goals_ = &goals;
   rcl_cxx::ActionServerCallbacks<A> handlers;
   handlers.handle_goal = [this](const rcl_cxx::GoalUUID & id, const typename A::Goal & goal) {
-    return accept(id, goal);
+    return accept_goal(id, goal);
   };
   handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) {
-    const Status started =
-        goals_->start(handle->get_goal_id(),
-                      [this, handle](std::shared_ptr<GoalContext> context) { execute(*handle, *context); });
+    const Status started = goals_->start(
+        handle->get_goal_id(),
+        [this, handle](std::shared_ptr<GoalContext> context) { execute_goal(*handle, *context); });
     if (!started) {
       abort_unstarted(*handle, started);
     }
