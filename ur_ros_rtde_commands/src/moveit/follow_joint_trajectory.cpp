@@ -89,7 +89,7 @@ class FollowJointTrajectory : public Command<Action> {
   CommandTraits traits() const override { return {.preempts_self = true}; }
   void check(const Goal & goal, Check & check) const override;
   Outcome run(const Goal & goal, Run & run) override;
-  void tell(const Outcome & outcome, Result & result) const override;
+  void fill_result(const Outcome & outcome, Result & result) const override;
 
   double seconds_until(const builtin_interfaces::msg::Time & stamp) const
   {
@@ -279,7 +279,7 @@ Outcome FollowJointTrajectory::arrive(const Goal & goal, Run & run, const Tolera
   return Outcome::success();
 }
 
-void FollowJointTrajectory::tell(const Outcome & outcome, Result & result) const
+void FollowJointTrajectory::fill_result(const Outcome & outcome, Result & result) const
 {
   if (outcome) {
     result.error_code = Result::SUCCESSFUL;
