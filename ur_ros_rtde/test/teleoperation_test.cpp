@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "teleoperation/follower.hpp"
-#include "teleoperation/stream_messages.hpp"
+#include "teleoperation/target_follower.hpp"
+#include "teleoperation/target_messages.hpp"
 #include "ur_ros_rtde/check.hpp"
 
 namespace ur_ros_rtde {
@@ -19,12 +19,12 @@ sensor_msgs::msg::JointState joints(double first)
   return message;
 }
 
-std::string why_not(const Expected<StreamTarget> & target)
+std::string why_not(const Expected<TeleopTarget> & target)
 {
   return target ? "" : target.error().message;
 }
 
-TEST(AJointMessage, is_read_by_name_whatever_its_order_prefix_and_company)
+TEST(JointTargetTest, IsReadByNameInAnyOrderWithPrefixAndOtherJoints)
 {
   auto message = joints(0.7);
   std::reverse(message.name.begin(), message.name.end());
@@ -39,16 +39,18 @@ TEST(AJointMessage, is_read_by_name_whatever_its_order_prefix_and_company)
   EXPECT_EQ(target->values, (Vector6{0.7, 0.1, 0.2, 0.3, 0.4, 0.5}));
 }
 
-TEST(AJointMessage, is_refused_by_the_name_of_what_is_wrong)
+TEST(JointTargetTest, RefusalNamesTheField)
 {
   auto missing = joints(0.0);
   missing.name.pop_back();
   missing.position.pop_back();
-  EXPECT_EQ(why_not(joint_target(missing, widest_arm_limits())), "it has no wrist_3_joint");
+  EXPECT_EQ(why_not(joint_target(missing, widest_arm_limits())),
+            "the message has no position of wrist_3_joint");
   auto twice = joints(0.0);
   twice.name.push_back("elbow_joint");
   twice.position.push_back(0.0);
-  EXPECT_EQ(why_not(joint_target(twice, widest_arm_limits())), "it has elbow_joint twice");
+  EXPECT_EQ(why_not(joint_target(twice, widest_arm_limits())),
+            "the message has two positions of elbow_joint");
   auto short_of_positions = joints(0.0);
   short_of_positions.position.pop_back();
   EXPECT_NE(why_not(joint_target(short_of_positions, widest_arm_limits())), "");
@@ -58,7 +60,7 @@ TEST(AJointMessage, is_refused_by_the_name_of_what_is_wrong)
   }
 }
 
-TEST(APoseMessage, has_to_be_in_the_base_frame_and_a_pose)
+TEST(PoseTargetTest, MustBeAValidPoseInTheBaseFrame)
 {
   geometry_msgs::msg::PoseStamped message;
   EXPECT_NE(why_not(pose_target(message)).find("frame_id"), std::string::npos);
@@ -71,7 +73,7 @@ TEST(APoseMessage, has_to_be_in_the_base_frame_and_a_pose)
   EXPECT_NE(why_not(pose_target(message)).find("orientation"), std::string::npos);
 }
 
-TEST(ATwistMessage, knows_two_frames_and_may_be_zero)
+TEST(TwistTargetTest, HasTwoFramesAndMayBeZero)
 {
   geometry_msgs::msg::TwistStamped message;
   message.header.frame_id = "tool0_controller";
@@ -89,45 +91,45 @@ TEST(ATwistMessage, knows_two_frames_and_may_be_zero)
   EXPECT_NE(why_not(twist_target(message)).find("camera"), std::string::npos);
 }
 
-TEST(AFollower, takes_no_target_that_is_too_far_from_where_the_arm_is)
+TEST(TargetFollowerTest, RefusesTargetFarFromTheArm)
 {
   TeleoperationOptions options;
   Sample sample{};
   sample.actual_q = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
   const auto follower = follow_joints(options);
   follower->begin(sample, 0.002, widest_arm_limits());
-  EXPECT_TRUE(follower->aim({{0.15, 0.1, 0.2, 0.3, 0.4, 0.5}}, 0.02));
-  const auto refused = follower->aim({{0.0, 0.1, 0.45, 0.3, 0.4, 0.5}}, 0.02);
+  EXPECT_TRUE(follower->set_target({{0.15, 0.1, 0.2, 0.3, 0.4, 0.5}}, 0.02));
+  const auto refused = follower->set_target({{0.0, 0.1, 0.45, 0.3, 0.4, 0.5}}, 0.02);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("elbow_joint"), std::string::npos);
-  EXPECT_FALSE(follower->aim({{nan, 0.1, 0.2, 0.3, 0.4, 0.5}}, 0.02));
+  EXPECT_FALSE(follower->set_target({{nan, 0.1, 0.2, 0.3, 0.4, 0.5}}, 0.02));
 }
 
-TEST(AFollower, of_poses_looks_at_both_way_and_turn)
+TEST(TargetFollowerTest, ChecksPositionAndRotationOfAPose)
 {
   TeleoperationOptions options;
   Sample sample{};
   sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
   const auto follower = follow_poses(options);
   follower->begin(sample, 0.002, widest_arm_limits());
-  EXPECT_TRUE(follower->aim({{0.45, 0.1, 0.3, 0.0, 3.1, 0.0}}, 0.02));
-  EXPECT_FALSE(follower->aim({{0.55, 0.1, 0.3, 0.0, 3.1, 0.0}}, 0.02));
-  EXPECT_FALSE(follower->aim({{0.4, 0.1, 0.3, 0.0, 2.8, 0.0}}, 0.02));
+  EXPECT_TRUE(follower->set_target({{0.45, 0.1, 0.3, 0.0, 3.1, 0.0}}, 0.02));
+  EXPECT_FALSE(follower->set_target({{0.55, 0.1, 0.3, 0.0, 3.1, 0.0}}, 0.02));
+  EXPECT_FALSE(follower->set_target({{0.4, 0.1, 0.3, 0.0, 2.8, 0.0}}, 0.02));
   // The same orientation, written with the opposite axis, is no turn.
-  EXPECT_TRUE(follower->aim({{0.4, 0.1, 0.3, 0.0, 3.1 - 2.0 * 3.14159265358979, 0.0}}, 0.02));
+  EXPECT_TRUE(follower->set_target({{0.4, 0.1, 0.3, 0.0, 3.1 - 2.0 * 3.14159265358979, 0.0}}, 0.02));
 }
 
-TEST(AFollower, of_poses_says_that_an_orientation_is_missing)
+TEST(TargetFollowerTest, NamesAMissingOrientation)
 {
   Sample sample{};
   sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
   const auto follower = follow_poses({});
   follower->begin(sample, 0.002, widest_arm_limits());
-  const auto refused = follower->aim({{0.4, 0.1, 0.31, 0.0, 0.0, 0.0}}, 0.02);
+  const auto refused = follower->set_target({{0.4, 0.1, 0.31, 0.0, 0.0, 0.0}}, 0.02);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("if only its position is given"), std::string::npos)
       << refused.error().message;
-  const auto turned = follower->aim({{0.4, 0.1, 0.31, 0.0, 1.0, 0.0}}, 0.02);
+  const auto turned = follower->set_target({{0.4, 0.1, 0.31, 0.0, 1.0, 0.0}}, 0.02);
   ASSERT_FALSE(turned);
   EXPECT_EQ(turned.error().message.find("only its position"), std::string::npos) << turned.error().message;
 }

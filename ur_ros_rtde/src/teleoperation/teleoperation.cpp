@@ -1,6 +1,6 @@
 #include "teleoperation/teleoperation.hpp"
 
-#include "teleoperation/stream_messages.hpp"
+#include "teleoperation/target_messages.hpp"
 
 namespace ur_ros_rtde {
 
@@ -10,17 +10,18 @@ Teleoperation::Teleoperation(CommandHost & host, const TeleoperationOptions & op
       poses_(host.node().resolve_topic_name("servo_pose"), host, options, follow_poses(options), log),
       twists_(host.node().resolve_topic_name("twist"), host, options, follow_twists(options), log)
 {
-  // One that was lost is not worth waiting for.
+  // A lost message is not worth a retransmission.
   const auto newest_only = rcl_cxx::QoS::best_effort(1);
   joint_messages_ = host.node().create_subscription<sensor_msgs::msg::JointState>(
-      "servo_joint", newest_only,
-      [this, &host](const sensor_msgs::msg::JointState & m) { joints_.put(joint_target(m, host.limits())); });
+      "servo_joint", newest_only, [this, &host](const sensor_msgs::msg::JointState & m) {
+        joints_.on_message(joint_target(m, host.limits()));
+      });
   pose_messages_ = host.node().create_subscription<geometry_msgs::msg::PoseStamped>(
       "servo_pose", newest_only,
-      [this](const geometry_msgs::msg::PoseStamped & m) { poses_.put(pose_target(m)); });
+      [this](const geometry_msgs::msg::PoseStamped & m) { poses_.on_message(pose_target(m)); });
   twist_messages_ = host.node().create_subscription<geometry_msgs::msg::TwistStamped>(
       "twist", newest_only,
-      [this](const geometry_msgs::msg::TwistStamped & m) { twists_.put(twist_target(m)); });
+      [this](const geometry_msgs::msg::TwistStamped & m) { twists_.on_message(twist_target(m)); });
 }
 
 void Teleoperation::close()

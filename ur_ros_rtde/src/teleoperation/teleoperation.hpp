@@ -6,19 +6,19 @@
 #include <rcl_cxx/node.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
 
-#include "teleoperation/stream.hpp"
+#include "teleoperation/teleop_topic.hpp"
 
 namespace ur_ros_rtde {
 
-/// The topics servo_joint, servo_pose and twist of a node.
+/// The topics servo_joint, servo_pose and twist.
 class Teleoperation {
  public:
   Teleoperation(CommandHost & host, const TeleoperationOptions & options, const LogFunction & log);
-  /// Ends what lives; no stream begins afterwards.
+  /// Ends all sessions and starts no other.
   void close();
 
  private:
-  Stream joints_, poses_, twists_;
+  TeleopTopic joints_, poses_, twists_;
   rcl_cxx::Subscription<sensor_msgs::msg::JointState>::SharedPtr joint_messages_;
   rcl_cxx::Subscription<geometry_msgs::msg::PoseStamped>::SharedPtr pose_messages_;
   rcl_cxx::Subscription<geometry_msgs::msg::TwistStamped>::SharedPtr twist_messages_;

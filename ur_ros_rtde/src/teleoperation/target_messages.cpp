@@ -1,4 +1,4 @@
-#include "teleoperation/stream_messages.hpp"
+#include "teleoperation/target_messages.hpp"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,13 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// What a check found, or the target.
-Expected<StreamTarget> checked(const Check & check, const std::vector<double> & values, bool in_tool = false)
+/// The target, or the error of the check.
+Expected<TeleopTarget> checked(const Check & check, const std::vector<double> & values, bool in_tool = false)
 {
   if (!check.ok()) {
     return tl::unexpected(*check.error());
   }
-  StreamTarget target;
+  TeleopTarget target;
   std::copy_n(values.begin(), target.values.size(), target.values.begin());
   target.in_tool_frame = in_tool;
   return target;
@@ -28,29 +28,30 @@ Status only_in(const std::string & frame_id, std::string_view frames, bool known
 }
 }  // namespace
 
-Expected<StreamTarget> joint_target(const sensor_msgs::msg::JointState & message, const ArmLimits & limits)
+Expected<TeleopTarget> joint_target(const sensor_msgs::msg::JointState & message, const ArmLimits & limits)
 {
   Check check;
   check.that(message.position.size() == message.name.size(),
-             fmt::format("it has {} names and {} positions, it needs one position a name",
+             fmt::format("the message has {} names and {} positions, it must have one position per name",
                          message.name.size(), message.position.size()));
   std::vector<double> positions(joint_names().size());
   for (std::size_t i = 0; i < positions.size() && check.ok(); ++i) {
     const auto named = [&](const std::string & name) { return name.ends_with(joint_names()[i]); };
     const auto found = std::find_if(message.name.begin(), message.name.end(), named);
-    check.that(found != message.name.end(), fmt::format("it has no {}", joint_names()[i]));
+    check.that(found != message.name.end(),
+               fmt::format("the message has no position of {}", joint_names()[i]));
     if (!check.ok()) {
       break;
     }
     positions[i] = message.position[static_cast<std::size_t>(found - message.name.begin())];
     check.that(std::find_if(found + 1, message.name.end(), named) == message.name.end(),
-               fmt::format("it has {} twice", joint_names()[i]));
+               fmt::format("the message has two positions of {}", joint_names()[i]));
   }
   check.each_joint("position", positions, limits.position, "rad");
   return checked(check, positions);
 }
 
-Expected<StreamTarget> pose_target(const geometry_msgs::msg::PoseStamped & message)
+Expected<TeleopTarget> pose_target(const geometry_msgs::msg::PoseStamped & message)
 {
   const std::string & frame = message.header.frame_id;
   if (Status known = only_in(frame, "base", frame.ends_with("base")); !known) {
@@ -61,7 +62,7 @@ Expected<StreamTarget> pose_target(const geometry_msgs::msg::PoseStamped & messa
   return checked(check, check.ok() ? to_ur(message.pose) : std::vector<double>(6));
 }
 
-Expected<StreamTarget> twist_target(const geometry_msgs::msg::TwistStamped & message)
+Expected<TeleopTarget> twist_target(const geometry_msgs::msg::TwistStamped & message)
 {
   const std::string & frame = message.header.frame_id;
   const bool in_tool = frame.ends_with("tool0_controller");

@@ -1,4 +1,4 @@
-#include "teleoperation/stream.hpp"
+#include "teleoperation/teleop_topic.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// Weight of the newest interval between messages.
+/// Weight of the newest interval in the smoothed period.
 constexpr double period_weight = 0.2;
 
 double seconds(std::chrono::steady_clock::duration duration)
@@ -19,24 +19,24 @@ double seconds(std::chrono::steady_clock::duration duration)
 }
 }  // namespace
 
-void Stream::Latency::add(Clock::duration wait)
+void TeleopTopic::Latency::add(Clock::duration wait)
 {
   ++count;
   sum += wait;
   longest = std::max(longest, wait);
 }
 
-std::string Stream::Latency::text() const
+std::string TeleopTopic::Latency::text() const
 {
   if (count == 0) {
-    return "no message was followed";
+    return "no message was executed";
   }
   return fmt::format("{} messages, {:.1f} ms from message to command, {:.1f} ms at most", count,
                      1e3 * seconds(sum) / static_cast<double>(count), 1e3 * seconds(longest));
 }
 
-Stream::Stream(std::string topic, CommandHost & host, const TeleoperationOptions & options,
-               std::unique_ptr<Follower> follower, LogFunction log)
+TeleopTopic::TeleopTopic(std::string topic, CommandHost & host, const TeleoperationOptions & options,
+                         std::unique_ptr<TargetFollower> follower, LogFunction log)
     : topic_(std::move(topic)),
       host_(host),
       options_(options),
@@ -46,12 +46,12 @@ Stream::Stream(std::string topic, CommandHost & host, const TeleoperationOptions
 {
 }
 
-Stream::~Stream()
+TeleopTopic::~TeleopTopic()
 {
   close();
 }
 
-void Stream::close()
+void TeleopTopic::close()
 {
   std::shared_ptr<StopRequest> stop_request;
   {
@@ -68,17 +68,17 @@ void Stream::close()
   }
 }
 
-void Stream::put(Expected<StreamTarget> target)
+void TeleopTopic::on_message(Expected<TeleopTarget> target)
 {
   {
     const std::lock_guard lock(mutex_);
     const auto now = Clock::now();
     const double interval = seconds(now - newest_.arrived);
     const bool first = newest_.number == 0 || interval > options_.timeout;
-    // Of the first message's period nothing is known, and of the second's little.
+    // The period is unknown at the first message and uncertain at the second.
     newest_.period =
         first ? 0.5 * options_.timeout : newest_.period + period_weight * (interval - newest_.period);
-    newest_.burst += first ? 1 : 0;
+    newest_.session += first ? 1 : 0;
     newest_.number += 1;
     newest_.arrived = now;
     newest_.target = std::move(target);
@@ -86,30 +86,30 @@ void Stream::put(Expected<StreamTarget> target)
   changed_.notify_all();
 }
 
-Stream::Message Stream::newest() const
+TeleopTopic::Message TeleopTopic::newest() const
 {
   const std::lock_guard lock(mutex_);
   return newest_;
 }
 
-void Stream::serve(const std::stop_token & stop)
+void TeleopTopic::serve(const std::stop_token & stop)
 {
   std::uint64_t served = 0;
   while (true) {
     {
       std::unique_lock lock(mutex_);
-      if (!changed_.wait(lock, stop, [&] { return newest_.burst != served; }) || closed_) {
+      if (!changed_.wait(lock, stop, [&] { return newest_.session != served; }) || closed_) {
         return;
       }
-      served = newest_.burst;
+      served = newest_.session;
       stop_request_ = std::make_shared<StopRequest>();
     }
     Latency latency;
-    log_end(live(served, latency), latency);
+    log_end(run_session(served, latency), latency);
   }
 }
 
-Outcome Stream::live(std::uint64_t burst, Latency & latency)
+Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
 {
   try {
     if (const Message first = newest(); !first.target) {
@@ -129,9 +129,9 @@ Outcome Stream::live(std::uint64_t burst, Latency & latency)
     if (!lease) {
       return lease.error();
     }
-    log_(LogLevel::info, fmt::format("{}: a stream begins", topic_));
+    log_(LogLevel::info, fmt::format("{}: teleoperation started", topic_));
     Run run(host_.robot(), stop_request, true);
-    return stop(follow(run, burst, latency));
+    return stop(follow(run, session, latency));
   } catch (const RobotError & error) {
     return error.error();
   } catch (const std::exception & error) {
@@ -139,7 +139,7 @@ Outcome Stream::live(std::uint64_t burst, Latency & latency)
   }
 }
 
-Outcome Stream::stop(const Error & why) const
+Outcome TeleopTopic::stop(const Error & why) const
 {
   StopOptions options{.joint_deceleration = options_.deceleration,
                       .linear_deceleration = options_.deceleration};
@@ -152,7 +152,7 @@ Outcome Stream::stop(const Error & why) const
                                                           stopped.error().message));
 }
 
-Error Stream::follow(Run & run, std::uint64_t burst, Latency & latency)
+Error TeleopTopic::follow(Run & run, std::uint64_t session, Latency & latency)
 {
   try {
     const RealtimePriority priority(run.robot().realtime_priority());
@@ -167,10 +167,11 @@ Error Stream::follow(Run & run, std::uint64_t burst, Latency & latency)
       }
       const Message message = newest();
       const bool is_new = message.number != std::exchange(taken, message.number);
-      if (const Status good = is_new ? aim(message, burst) : in_time(message, burst); !good) {
+      if (const Status good = is_new ? set_target(message, session) : check_timeout(message, session);
+          !good) {
         return good.error();
       }
-      // A host that was late goes on from where it was: the arm is slower then, never faster.
+      // After a delay of the host, the motion continues from the last command: slower, never faster.
       const double elapsed = std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
       if (const Status sent = follower_->advance(run, sample, elapsed); !sent) {
         return sent.error();
@@ -186,32 +187,32 @@ Error Stream::follow(Run & run, std::uint64_t burst, Latency & latency)
   }
 }
 
-Status Stream::in_time(const Message & message, std::uint64_t burst) const
+Status TeleopTopic::check_timeout(const Message & message, std::uint64_t session) const
 {
-  if (message.burst != burst || seconds(Clock::now() - message.arrived) > options_.timeout) {
-    return failure(ErrorCode::timeout, fmt::format("no message came for {:.3g} s", options_.timeout));
+  if (message.session != session || seconds(Clock::now() - message.arrived) > options_.timeout) {
+    return failure(ErrorCode::timeout, fmt::format("no message was received for {:.3g} s", options_.timeout));
   }
   return {};
 }
 
-Status Stream::aim(const Message & message, std::uint64_t burst) const
+Status TeleopTopic::set_target(const Message & message, std::uint64_t session) const
 {
-  if (const Status timely = in_time(message, burst); !timely) {
+  if (const Status timely = check_timeout(message, session); !timely) {
     return timely;
   }
-  return message.target ? follower_->aim(*message.target, message.period)
+  return message.target ? follower_->set_target(*message.target, message.period)
                         : tl::unexpected(message.target.error());
 }
 
-void Stream::log_end(const Outcome & outcome, const Latency & latency) const
+void TeleopTopic::log_end(const Outcome & outcome, const Latency & latency) const
 {
   if (outcome.code() == ErrorCode::timeout || outcome.code() == ErrorCode::shutdown) {
     log_(LogLevel::info,
-         fmt::format("{}: the stream has ended: {}; {}", topic_, outcome.message(), latency.text()));
+         fmt::format("{}: teleoperation ended: {}; {}", topic_, outcome.message(), latency.text()));
     return;
   }
   log_(LogLevel::warn,
-       fmt::format("{}: the stream moves nothing: {} ({} {}); another one may begin after {:.3g} s without "
+       fmt::format("{}: messages are ignored: {} ({} {}); teleoperation can start after {:.3g} s without "
                    "messages",
                    topic_, outcome.message(), to_string(outcome.code()), static_cast<int>(outcome.code()),
                    options_.timeout));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "teleoperation/follower.hpp"
+#include "teleoperation/target_follower.hpp"
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 #include "ur_ros_rtde_trajectory/default_speeds.hpp"
@@ -19,10 +19,10 @@ std::vector<double> to_ur(const Vector6 & values)
   return {values.begin(), values.end()};
 }
 
-/// The time of a straight line, as a share of which has passed.
-class Line {
+/// Progress along a straight line.
+class LineProgress {
  public:
-  /// Takes `duration` s.
+  /// `duration`: s.
   void begin(double duration)
   {
     duration_ = duration;
@@ -39,13 +39,14 @@ class Line {
   double passed_ = 0.0;
 };
 
-/// How long the line to a new target takes. The messages' times say how fast the arm is to be, but not on the
-/// way to where the stream begins: until the arm has caught up with the stream, the default speeds are kept.
-class LineTime {
+/// Duration of the line to a new target. The period of the messages determines the speed, except on the way
+/// to the first targets: until the arm has reached them, the default speeds apply.
+class LineDuration {
  public:
   void begin() { caught_up_ = false; }
-  /// s: the messages' `period`, and the times that the line takes at the default speeds and at the highest.
-  double duration(double period, double at_default_speed, double at_highest_speed)
+  /// s. `period`: between messages, s. The other arguments: durations at the default and at the highest
+  /// speed, s.
+  double seconds(double period, double at_default_speed, double at_highest_speed)
   {
     const double given = periods_ahead * period;
     caught_up_ = caught_up_ || at_default_speed <= given;
@@ -56,22 +57,22 @@ class LineTime {
   bool caught_up_ = false;
 };
 
-/// The controller finds the joints for a pose or a twist by itself, and close to a singularity they may have
-/// to be quick.
-Status joints_slow_enough(const Sample & sample, const ArmLimits & limits)
+/// For targets in Cartesian space, the controller computes the joint velocities. They become large close to a
+/// singularity.
+Status check_joint_velocities(const Sample & sample, const ArmLimits & limits)
 {
   for (std::size_t i = 0; i < limits.velocity.size(); ++i) {
     if (!(std::abs(sample.target_qd[i]) <= limits.velocity[i])) {
       return failure(ErrorCode::safety_violation,
-                     fmt::format("{} would turn at {:.2f} rad/s, its limit is {:.2f} rad/s: the arm is close "
-                                 "to a singularity, or the stream too fast",
+                     fmt::format("{} would move at {:.2f} rad/s, its limit is {:.2f} rad/s: the arm is close "
+                                 "to a singularity, or the target is too fast",
                                  joint_names()[i], std::abs(sample.target_qd[i]), limits.velocity[i]));
     }
   }
   return {};
 }
 
-class JointFollower : public Follower {
+class JointFollower : public TargetFollower {
  public:
   explicit JointFollower(const TeleoperationOptions & options) : options_(options) {}
 
@@ -81,10 +82,10 @@ class JointFollower : public Follower {
     limits_ = limits;
     from_ = to_ = at_ = sample.actual_q;
     line_.begin(0.0);
-    time_.begin();
+    duration_.begin();
   }
 
-  Status aim(const StreamTarget & target, double period) override
+  Status set_target(const TeleopTarget & target, double period) override
   {
     double at_default_speed = 0.0;
     double at_highest_speed = 0.0;
@@ -93,16 +94,17 @@ class JointFollower : public Follower {
       if (!(jump <= options_.max_joint_jump)) {
         return failure(
             ErrorCode::invalid_goal,
-            fmt::format("the target of {} is {:.3f} rad from where it is sent, it may be {:.3f} rad: "
-                        "begin where the arm is, and move on more slowly",
-                        joint_names()[i], jump, options_.max_joint_jump));
+            fmt::format(
+                "the target of {} is {:.3f} rad from the last command, at most {:.3f} rad are allowed: "
+                "start at the current position and move more slowly",
+                joint_names()[i], jump, options_.max_joint_jump));
       }
       at_default_speed = std::max(at_default_speed, jump / default_joint_speed);
       at_highest_speed = std::max(at_highest_speed, jump / limits_.velocity[i]);
     }
     from_ = at_;
     to_ = target.values;
-    line_.begin(time_.duration(period, at_default_speed, at_highest_speed));
+    line_.begin(duration_.seconds(period, at_default_speed, at_highest_speed));
     return {};
   }
 
@@ -121,17 +123,17 @@ class JointFollower : public Follower {
   ArmLimits limits_{};
   double cycle_ = 0.0;
   Vector6 from_{}, to_{}, at_{};
-  Line line_;
-  LineTime time_;
+  LineProgress line_;
+  LineDuration duration_;
 };
 
-/// The identity orientation, of a pose of UR.
-bool position_only(const StreamTarget & target)
+/// The orientation is the identity.
+bool position_only(const TeleopTarget & target)
 {
   return target.values[3] == 0.0 && target.values[4] == 0.0 && target.values[5] == 0.0;
 }
 
-class PoseFollower : public Follower {
+class PoseFollower : public TargetFollower {
  public:
   explicit PoseFollower(const TeleoperationOptions & options) : options_(options) {}
 
@@ -140,12 +142,12 @@ class PoseFollower : public Follower {
     cycle_ = cycle;
     limits_ = limits;
     from_ = at_ = sample.actual_tcp_pose;
-    way_ = {};
+    displacement_ = {};
     line_.begin(0.0);
-    time_.begin();
+    duration_.begin();
   }
 
-  Status aim(const StreamTarget & target, double period) override
+  Status set_target(const TeleopTarget & target, double period) override
   {
     const Vector6 way = pose_trans(pose_inverse(at_), target.values);
     const double distance = std::hypot(way[0], way[1], way[2]);
@@ -153,28 +155,28 @@ class PoseFollower : public Follower {
     if (!(distance <= options_.max_linear_jump && angle <= options_.max_joint_jump)) {
       return failure(
           ErrorCode::invalid_goal,
-          fmt::format("the target is {:.3f} m and {:.3f} rad from where the TCP is sent, it may be "
-                      "{:.3f} m and {:.3f} rad: begin where the arm is, and move on more slowly{}",
+          fmt::format("the target is {:.3f} m and {:.3f} rad from the last command, at most "
+                      "{:.3f} m and {:.3f} rad are allowed: start at the current pose and move more slowly{}",
                       distance, angle, options_.max_linear_jump, options_.max_joint_jump,
                       position_only(target) && angle > options_.max_joint_jump
-                          ? "; its orientation is (0, 0, 0, 1), which a pose has if only its position is "
-                            "given: a stream has to give the orientation, too"
+                          ? "; its orientation is (0, 0, 0, 1), as in a pose of which only the position was "
+                            "set: set the orientation in each message"
                           : ""));
     }
     from_ = at_;
-    way_ = way;
-    line_.begin(time_.duration(period,
-                               std::max(distance / default_linear_speed, angle / default_angular_speed),
-                               std::max(distance / highest_linear_speed, angle / highest_angular_speed)));
+    displacement_ = way;
+    line_.begin(duration_.seconds(period,
+                                  std::max(distance / default_linear_speed, angle / default_angular_speed),
+                                  std::max(distance / highest_linear_speed, angle / highest_angular_speed)));
     return {};
   }
 
   Status advance(Run & run, const Sample & sample, double elapsed) override
   {
-    if (Status slow = joints_slow_enough(sample, limits_); !slow) {
+    if (Status slow = check_joint_velocities(sample, limits_); !slow) {
       return slow;
     }
-    Vector6 part = way_;
+    Vector6 part = displacement_;
     const double share = line_.advance(elapsed);
     for (double & value : part) {
       value *= share;
@@ -189,12 +191,12 @@ class PoseFollower : public Follower {
   ArmLimits limits_{};
   double cycle_ = 0.0;
   Vector6 from_{}, at_{};
-  Vector6 way_{};  ///< in the frame of from_
-  Line line_;
-  LineTime time_;
+  Vector6 displacement_{};  ///< in the frame of from_
+  LineProgress line_;
+  LineDuration duration_;
 };
 
-class TwistFollower : public Follower {
+class TwistFollower : public TargetFollower {
  public:
   explicit TwistFollower(const TeleoperationOptions & options) : options_(options) {}
 
@@ -204,7 +206,7 @@ class TwistFollower : public Follower {
     target_ = {};
   }
 
-  Status aim(const StreamTarget & target, double) override
+  Status set_target(const TeleopTarget & target, double) override
   {
     target_ = target;
     return {};
@@ -212,7 +214,7 @@ class TwistFollower : public Follower {
 
   Status advance(Run & run, const Sample & sample, double) override
   {
-    if (Status slow = joints_slow_enough(sample, limits_); !slow) {
+    if (Status slow = check_joint_velocities(sample, limits_); !slow) {
       return slow;
     }
     Vector6 twist = target_.values;
@@ -229,21 +231,21 @@ class TwistFollower : public Follower {
  private:
   const TeleoperationOptions options_;
   ArmLimits limits_{};
-  StreamTarget target_{};
+  TeleopTarget target_{};
 };
 }  // namespace
 
-std::unique_ptr<Follower> follow_joints(const TeleoperationOptions & options)
+std::unique_ptr<TargetFollower> follow_joints(const TeleoperationOptions & options)
 {
   return std::make_unique<JointFollower>(options);
 }
 
-std::unique_ptr<Follower> follow_poses(const TeleoperationOptions & options)
+std::unique_ptr<TargetFollower> follow_poses(const TeleoperationOptions & options)
 {
   return std::make_unique<PoseFollower>(options);
 }
 
-std::unique_ptr<Follower> follow_twists(const TeleoperationOptions & options)
+std::unique_ptr<TargetFollower> follow_twists(const TeleoperationOptions & options)
 {
   return std::make_unique<TwistFollower>(options);
 }

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "teleoperation/target_follower.hpp"
+#include "ur_ros_rtde/detail/stop_request.hpp"
+#include "ur_ros_rtde/plugin_host.hpp"
+#include "ur_ros_rtde_robot/connection/log.hpp"
+
+namespace ur_ros_rtde {
+
+/// A topic that moves the arm, with a thread of its own. A session starts with the first message after a
+/// pause of `timeout` and acquires Resource::motion; it is refused if another goal or topic holds it. The
+/// session ends without messages for `timeout`, with an invalid message, when it is preempted, and when the
+/// robot stops. Then the arm decelerates to standstill, and messages are ignored until there has been a pause
+/// of `timeout`. The start and the end of each session are logged once.
+class TeleopTopic {
+ public:
+  /// `topic` is the resolved name: "/servo_joint". `host` outlives this object.
+  TeleopTopic(std::string topic, CommandHost & host, const TeleoperationOptions & options,
+              std::unique_ptr<TargetFollower> follower, LogFunction log);
+  /// Ends the session and joins the thread.
+  ~TeleopTopic();
+  TeleopTopic(const TeleopTopic &) = delete;
+  TeleopTopic & operator=(const TeleopTopic &) = delete;
+
+  /// Called with the target of each message, or with the reason why it is invalid. Does not wait.
+  void on_message(Expected<TeleopTarget> target);
+  /// Ends the session, if there is one, and starts no other.
+  void close();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  struct Message {
+    Expected<TeleopTarget> target = TeleopTarget{};
+    Clock::time_point arrived{};
+    std::uint64_t number = 0;
+    std::uint64_t session = 0;  ///< number of the session that the message belongs to
+    double period = 0.0;        ///< s between messages, smoothed
+  };
+
+  /// Time from a message to its first command.
+  struct Latency {
+    void add(Clock::duration wait);
+    std::string text() const;
+    std::uint64_t count = 0;
+    Clock::duration sum{}, longest{};
+  };
+
+  void serve(const std::stop_token & stop);
+  Outcome run_session(std::uint64_t session, Latency & latency);
+  /// Sends commands until there is a reason to end the session, which it returns.
+  Error follow(Run & run, std::uint64_t session, Latency & latency);
+  Status check_timeout(const Message & message, std::uint64_t session) const;
+  Status set_target(const Message & message, std::uint64_t session) const;
+  /// Stops the arm. The outcome has the reason, and whether standstill is confirmed.
+  Outcome stop(const Error & why) const;
+  Message newest() const;
+  void log_end(const Outcome & outcome, const Latency & latency) const;
+
+  const std::string topic_;
+  CommandHost & host_;
+  const TeleoperationOptions options_;
+  const std::unique_ptr<TargetFollower> follower_;
+  const LogFunction log_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  Message newest_;
+  std::shared_ptr<StopRequest> stop_request_;  ///< of the current session
+  bool closed_ = false;
+  std::jthread thread_;
+};
+
+}  // namespace ur_ros_rtde
