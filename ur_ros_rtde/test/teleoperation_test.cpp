@@ -127,7 +127,7 @@ TEST(TargetFollowerTest, NamesAMissingOrientation)
   follower->begin(sample, 0.002, widest_arm_limits());
   const auto refused = follower->set_target({{0.4, 0.1, 0.31, 0.0, 0.0, 0.0}}, 0.02);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("if only its position is given"), std::string::npos)
+  EXPECT_NE(refused.error().message.find("set the orientation in each message"), std::string::npos)
       << refused.error().message;
   const auto turned = follower->set_target({{0.4, 0.1, 0.31, 0.0, 1.0, 0.0}}, 0.02);
   ASSERT_FALSE(turned);
