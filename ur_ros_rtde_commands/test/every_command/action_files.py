@@ -1,4 +1,8 @@
-"""What the comments of .action and .msg files say of their fields: lengths, ranges, texts."""
+"""Reads the comments of .action and .msg files, which state the size, unit and range of each field.
+
+A comment precedes its field or follows it on the same line. It is read as plain text with these fixed forms:
+"Size: exactly 6", "Size: exactly 6, or empty", "Size: 1 to 1000", "0.03 to 0.2", "above 0, at most 3.14", "within +-2 pi".
+"""
 
 import math
 import os
@@ -27,18 +31,18 @@ class Field:
 
     @property
     def length(self):
-        """Of an array that has to have one: "exactly 6"."""
+        """The required number of elements of an array: "exactly 6"."""
         found = re.search(r"exactly (\d+)", self.comment)
         return int(found.group(1)) if found else None
 
     @property
     def may_be_empty(self):
-        return bool(re.search(r"\bnone\b", self.comment)) or self.counts is None and self.length is None
+        return "or empty" in self.comment or self.counts is None and self.length is None
 
     @property
     def counts(self):
-        """The number of elements of an array of messages: "1 to 1000"."""
-        found = re.match(r"\W*(\d+) to (\d+)", self.comment)
+        """The allowed numbers of elements of an array of messages: "Size: 1 to 1000"."""
+        found = re.search(r"Size: (\d+) to (\d+)", self.comment)
         return (int(found.group(1)), int(found.group(2))) if found and "[]" in self.type else None
 
     def too_low(self):
@@ -81,22 +85,25 @@ def paths(packages):
 
 
 def parse(file):
-    """The sections of an interface file, each a list of Fields. Comments that go on in lines of their own are joined."""
+    """The sections of an interface file, each a list of Fields."""
     parts = [[]]
+    above = []  # the comment lines directly above a field
     for line in file.read_text().splitlines():
+        found = re.match(r"([\w/]+(?:\[[^\]]*\])?)\s+(\w+)\b(?!\s*=)[^#]*(?:#\s*(.*))?$", line)
+        if line.startswith("#"):
+            above.append(line.strip("# "))
+            continue
         if line.strip() == "---":
             parts.append([])
-            continue
-        found = re.match(r"([\w/]+(?:\[[^\]]*\])?)\s+(\w+)\b(?!\s*=)[^#]*(?:#\s*(.*))?$", line)
-        if found:
-            parts[-1].append(Field(found.group(1), found.group(2), (found.group(3) or "").strip()))
-        elif re.match(r"\s+#", line) and parts[-1]:
-            parts[-1][-1].comment += " " + line.strip("# \t")
+        elif found:
+            comment = " ".join(filter(None, [*above, (found.group(3) or "").strip()]))
+            parts[-1].append(Field(found.group(1), found.group(2), comment))
+        above = []
     return parts
 
 
 def fields(name, part=0):
-    """By name, of "ur_ros_rtde_msgs/action/MoveJ" or a message; of others than ours nothing is known."""
+    """The fields of "ur_ros_rtde_msgs/action/MoveJ" or a message by name. Empty for packages of others."""
     kind = name if name.count("/") == 2 else name.replace("/", "/msg/")
     try:
         return {field.name: field for field in parse(_file(kind))[part]}

@@ -151,17 +151,14 @@ def _of_texts(good, kind):
 
 
 def _longest(comment):
-    words = comment.replace(";", " ").split()
-    for number, unit in zip(words, words[1:]):
-        if number.isdigit() and unit in ("characters", "MB"):
-            return int(number) * (2**20 if unit == "MB" else 1)
-    return None
+    found = re.search(r"\b(\d+) (characters|MB)\b", comment)
+    return int(found.group(1)) * (2**20 if found.group(2) == "MB" else 1) if found else None
 
 
 def _of_quaternions(good, kind):
     for path in messages.messages_of(good, QUATERNION):
         field = action_files.field(path[0], kind)
-        if field is None or "a zero quaternion:" not in field.comment:
+        if field is None or "A zero quaternion:" not in field.comment:
             zero = messages.load(QUATERNION)(x=0.0, y=0.0, z=0.0, w=0.0)
             yield _bad(good, path, zero, "zero")
 

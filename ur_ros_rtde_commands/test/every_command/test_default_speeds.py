@@ -10,8 +10,8 @@ import pytest
 HIGHEST = {"rad/s": 1.05, "rad/s^2": 1.4, "m/s": 0.25, "m/s^2": 1.2}
 UNIT = re.compile(r"\b(?:rad|m)/s(?:\^2)?(?![\w^])")
 # What an empty list of limits means where the goal chooses the speed by its times.
-BY_TIMES = {("ExecuteParametrizedTrajectory", "max_velocity"): "none: the model's",
-            ("ExecuteParametrizedTrajectory", "max_acceleration"): "none: 5 each"}
+BY_TIMES = {("ExecuteParametrizedTrajectory", "max_velocity"): "Empty: the speed limits of the arm model",
+            ("ExecuteParametrizedTrajectory", "max_acceleration"): "Empty: 5 for each joint"}
 
 ACTIONS = sorted({f"{file.parents[1].name}/action/{file.stem}" for file in action_files.paths(
     {"ur_ros_rtde_msgs", *(plugin.package for plugin in plugins.find().values())})})
@@ -58,7 +58,7 @@ def test_no_default_is_faster_than_universal_robots_own(kind):
 def test_no_limits_mean_slow_ones(kind):
     for field, default in speeds(messages.load(kind).Goal(), kind):
         if field.name.startswith("max_") and field.type.endswith("[]"):
-            expected = BY_TIMES.get((kind.split("/")[-1], field.name), f"none: {limit_of(field)} each")
+            expected = BY_TIMES.get((kind.split("/")[-1], field.name), f"Empty: {limit_of(field)} for each joint")
             assert len(default) == 0 and expected in field.comment, f"{field.name}: {field.comment}"
 
 
@@ -75,8 +75,9 @@ def test_speeds_are_found():
     assert not [name for _, name in found if "deceleration" in name]
 
 
-@pytest.mark.parametrize("comment, limit", [("m/s of the TCP, above 0, at most 3", 0.25), ("rad/s^2 of the leading joint", 1.4),
-                                            ("MOVE_J: rad/s, at most 3.14; else m/s, at most 3", 0.25), ("m, 0 to 2", None),
-                                            ("rad/s^3, exactly 6", None)])
+@pytest.mark.parametrize("comment, limit", [("Speed of the TCP. Unit: m/s. Range: above 0, at most 3.", 0.25),
+                                            ("Acceleration of the leading joint. Unit: rad/s^2.", 1.4),
+                                            ("MOVE_J: Unit: rad/s. Range: at most 3.14. Other types: Unit: m/s.", 0.25),
+                                            ("Unit: m. Range: 0 to 2.", None), ("Unit: rad/s^3. Size: exactly 6.", None)])
 def test_units_are_read(comment, limit):
     assert limit_of(action_files.Field("float64", "speed", comment)) == limit
