@@ -1,5 +1,5 @@
 import pathlib
 import sys
 
-# The tests of the driver's nodes have what is needed here, too.
+# The helpers of the driver's node tests are used here, too.
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde_commands" / "test" / "system"))

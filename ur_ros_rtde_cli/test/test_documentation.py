@@ -1,4 +1,4 @@
-"""The examples of docs/commands: `ur call` and `ros2 action send_goal` send the same goal, which fits the action."""
+"""Checks that `ur call` and `ros2 action send_goal` in docs/commands send the same goal, and that it fits the action."""
 
 import importlib.util
 import pathlib
@@ -13,7 +13,7 @@ FOLDER = pathlib.Path(__file__).resolve().parents[2] / "docs" / "commands"
 
 
 def examples():
-    """The commands of each block that has one of ros2."""
+    """Yields the commands of each code block with a ros2 command."""
     for file in sorted(FOLDER.glob("*.md")):
         for block in re.findall(r"^```bash\n(.*?)^```", file.read_text(), re.S | re.M):
             if "send_goal" in block:
@@ -22,7 +22,7 @@ def examples():
 
 
 @pytest.mark.parametrize("commands", examples())
-def test_both_lines_send_the_same_goal(commands):
+def test_ur_call_and_ros2_send_the_same_goal(commands):
     (_, call, name, *goal), (_, _, _, *ros2) = commands
     full_name, kind, ros2_goal = (word for word in ros2 if word != "--feedback")
     assert call == "call" and full_name == f"/{name}" and len(goal) <= 1
@@ -34,5 +34,5 @@ def test_both_lines_send_the_same_goal(commands):
     fields.Document(goal[0] if goal else "{}").fill(action.Goal())
 
 
-def test_there_are_examples():
+def test_examples_are_found():
     assert len(list(examples())) > 100

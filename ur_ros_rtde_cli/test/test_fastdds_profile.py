@@ -1,4 +1,4 @@
-"""Which Fast DDS profile `ur` uses."""
+"""Checks which Fast DDS profile `ur` uses."""
 
 import os
 import pathlib
@@ -11,20 +11,20 @@ LOCAL_FILES = [local_file for _, local_file, _ in fastdds_profile.SOURCES]
 
 
 @pytest.fixture(autouse=True)
-def nothing_chosen(monkeypatch, tmp_path):
+def no_profile(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     for variable in VARIABLES:
-        monkeypatch.setenv(variable, "")  # so that it is restored afterwards
+        monkeypatch.setenv(variable, "")  # restored after the test
         monkeypatch.delenv(variable)
 
 
-def chosen():
+def selected_profiles():
     return {variable: os.environ[variable] for variable in VARIABLES if variable in os.environ}
 
 
 def test_the_profile_of_the_package_is_used():
     fastdds_profile.use()
-    file, = chosen().values()
+    file, = selected_profiles().values()
     assert "leaseDuration" in pathlib.Path(file).read_text()
 
 
@@ -32,17 +32,17 @@ def test_the_profile_of_the_package_is_used():
 def test_a_profile_in_the_environment_is_kept(monkeypatch, variable):
     monkeypatch.setenv(variable, "mine.xml")
     fastdds_profile.use()
-    assert chosen() == {variable: "mine.xml"}
+    assert selected_profiles() == {variable: "mine.xml"}
 
 
 @pytest.mark.parametrize("name", LOCAL_FILES)
 def test_a_profile_in_the_working_directory_is_kept(name):
     pathlib.Path(name).touch()
     fastdds_profile.use()
-    assert chosen() == {}
+    assert selected_profiles() == {}
 
 
-def test_without_the_driver_on_this_machine_nothing_is_set(monkeypatch):
+def test_no_profile_is_set_without_an_installed_driver(monkeypatch):
     monkeypatch.setenv("AMENT_PREFIX_PATH", "/nowhere")
     fastdds_profile.use()
-    assert chosen() == {}
+    assert selected_profiles() == {}

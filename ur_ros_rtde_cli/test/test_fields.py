@@ -1,4 +1,4 @@
-"""Messages from YAML: what is read, and what an error says."""
+"""Checks messages from YAML and the error messages."""
 
 import math
 import pathlib
@@ -7,7 +7,7 @@ import pytest
 from geometry_msgs.msg import Inertia
 from std_msgs.msg import Int8, UInt8MultiArray
 from ur_ros_rtde_cli import fields
-from ur_ros_rtde_cli.problem import Problem
+from ur_ros_rtde_cli.errors import CliError
 
 from ur_ros_rtde_msgs.action import DashboardText, ExecuteParametrizedTrajectory, ExecuteTrajectory, ForceMode, MoveJ, SetDigitalOutput
 
@@ -18,7 +18,7 @@ def read(text, message):
 
 @pytest.mark.parametrize("text, value", [("1", 1.0), ("1e-3", 0.001), ("-2E3", -2000.0), ("inf", math.inf), ("-inf", -math.inf),
                                          (".inf", math.inf), ("+.5", 0.5), ("-Infinity", -math.inf)])
-def test_numbers_are_read_as_people_write_them(text, value):
+def test_common_notations_of_numbers_are_accepted(text, value):
     assert read(f"speed: {text}", MoveJ.Goal()).speed == value
     assert list(read(f"joint_positions: [{text}]", MoveJ.Goal()).joint_positions) == [value]
 
@@ -28,7 +28,7 @@ def test_nan_is_a_number(text):
     assert math.isnan(read(f"speed: {text}", MoveJ.Goal()).speed)
 
 
-def test_fields_that_are_not_named_keep_their_values():
+def test_fields_that_are_not_given_keep_their_values():
     goal = read("", MoveJ.Goal(acceleration=3.0))
     assert (goal.speed, goal.acceleration) == (0.5, 3.0)
 
@@ -70,10 +70,10 @@ def test_nested_messages_and_lists_of_them_are_read():
     (MoveJ.Goal, "{speed: [", "not YAML: line "),
     (MoveJ.Goal, "speed: \x00", "not YAML"),
 ])
-def test_an_error_names_field_value_and_what_is_expected(message, text, expected):
-    with pytest.raises(Problem) as problem:
+def test_an_error_names_field_value_and_expected_type(message, text, expected):
+    with pytest.raises(CliError) as error:
         read(text, message())
-    assert expected in str(problem.value)
+    assert expected in str(error.value)
 
 
 @pytest.mark.parametrize("text, line, expected", [
@@ -89,9 +89,9 @@ def test_an_error_names_field_value_and_what_is_expected(message, text, expected
 def test_an_error_in_a_file_names_file_and_line(tmp_path, text, line, expected):
     file = tmp_path / "goal.yaml"
     file.write_text(text)
-    with pytest.raises(Problem) as problem:
+    with pytest.raises(CliError) as error:
         fields.read_file(file, ExecuteTrajectory.Goal())
-    assert str(problem.value).startswith(f"{file}:{line}: ") and expected in str(problem.value)
+    assert str(error.value).startswith(f"{file}:{line}: ") and expected in str(error.value)
 
 
 @pytest.mark.parametrize("content, expected", [(None, "No such file"), (b"\xff\xfe", "is not a text file")])
@@ -99,12 +99,12 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path, content, expected):
     file = pathlib.Path(tmp_path, "goal.yaml")
     if content is not None:
         file.write_bytes(content)
-    with pytest.raises(Problem) as problem:
+    with pytest.raises(CliError) as error:
         fields.read_file(file, MoveJ.Goal())
-    assert str(file) in str(problem.value) and expected in str(problem.value)
+    assert str(file) in str(error.value) and expected in str(error.value)
 
 
-def test_what_is_shown_can_be_read():
+def test_shown_messages_can_be_read_again():
     goal = ForceMode.Goal(compliant=[True, False, True, False, False, False])
     assert read(fields.show(goal), ForceMode.Goal()) == goal
     assert "\n" not in fields.show_in_one_line(goal) and read(fields.show_in_one_line(goal), ForceMode.Goal()) == goal

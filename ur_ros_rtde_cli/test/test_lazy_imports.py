@@ -1,4 +1,4 @@
-"""The types that `ur` uses are imported, not all of them."""
+"""Checks that `ur` imports only the message types that it uses."""
 
 import subprocess
 import sys
@@ -52,5 +52,5 @@ def test_a_call_imports_its_own_action(modules):
 
 
 @pytest.mark.parametrize("module", ["ur_ros_rtde_msgs.action._move_l", "ur_ros_rtde_msgs.msg._robot_state", "sensor_msgs.msg", "lark", "em"])
-def test_a_call_does_not_import_what_it_does_not_need(modules, module):
+def test_a_call_does_not_import_unused_modules(modules, module):
     assert module not in modules

@@ -2,5 +2,5 @@
 
 import os
 
-# Messages look at what is put into them only if they are asked to before they are imported.
+# Messages check the values of their fields only if this is set before they are imported.
 os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")

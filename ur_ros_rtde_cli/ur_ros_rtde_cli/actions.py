@@ -1,4 +1,4 @@
-"""The actions of installed plugins and of the ROS graph."""
+"""Finds actions by name: in installed plugins and in the ROS graph."""
 
 import difflib
 import importlib
@@ -6,21 +6,24 @@ from typing import Any, Dict, Iterable, List, Optional
 
 from rclpy.action.graph import get_action_names_and_types
 
+from .errors import CliError
 from .plugins import action_type, installed
-from .problem import Problem
 
 
 def load(name: str, kind: str) -> Any:
-    """The class of an action, whose type is "ur_ros_rtde_msgs/action/MoveJ"."""
+    """Returns the class of an action type such as "ur_ros_rtde_msgs/action/MoveJ", with its type support loaded."""
     package, _, short = kind.partition("/action/")
     try:
-        return getattr(importlib.import_module(f"{package}.action"), short)
+        action = getattr(importlib.import_module(f"{package}.action"), short)
     except (ImportError, AttributeError):
-        raise Problem(f"{name} has the type {kind}, which is not installed here: source the workspace that contains it") from None
+        raise CliError(f"{name} has the type {kind}, which is not installed on this machine: source the workspace that "
+                       "contains it") from None
+    type(action).__import_type_support__()  # the action client would load it later, when the server is already discovered
+    return action
 
 
 def type_of_plugin(name: str) -> Optional[str]:
-    """The type of an installed plugin that is known before a server is discovered, because it has the plugin's name."""
+    """Returns the action type that has the name of an installed plugin, for which no server is needed. None if there is none."""
     package = next((package for plugin, package, _ in installed() if plugin == name), None)
     found = None if package is None else action_type(name, package)
     return None if found is None else "/action/".join(found)
@@ -31,11 +34,11 @@ def plugin_names() -> List[str]:
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """"; did you mean move_j or move_l?" or an empty string."""
+    """Returns "; did you mean move_j or move_l?", or an empty string if no known name is similar."""
     close = difflib.get_close_matches(name, sorted(known), 3)
     return f"; did you mean {' or '.join(close)}?" if close else ""
 
 
 def served(node: Any) -> Dict[str, str]:
-    """Type by name of all actions in the ROS graph."""
+    """Returns the types of all actions in the ROS graph by action name."""
     return {name: types[0] for name, types in get_action_names_and_types(node)}

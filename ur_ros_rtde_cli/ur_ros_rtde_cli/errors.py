@@ -1,5 +1,5 @@
-"""What is wrong with a request, in words for whoever made it."""
+"""Errors that are reported to the user."""
 
 
-class Problem(Exception):
-    pass
+class CliError(Exception):
+    """A command that cannot be carried out. The text states the cause and the remedy."""

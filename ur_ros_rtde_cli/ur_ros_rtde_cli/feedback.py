@@ -1,4 +1,4 @@
-"""Shows the feedback of a goal on stderr: rewritten in place on a terminal, otherwise one line a second."""
+"""Prints the feedback of a goal to stderr: in place on a terminal, otherwise one line per second."""
 
 import contextlib
 import shutil
@@ -14,7 +14,7 @@ BAR_WIDTH = 30
 
 
 def write(text: str) -> None:
-    """To stderr, which may be closed."""
+    """Writes to stderr, and ignores a closed stderr."""
     with contextlib.suppress(OSError):
         sys.stderr.write(text)
         sys.stderr.flush()
@@ -29,7 +29,7 @@ class FeedbackDisplay:
         self._shown_lines = 0
 
     def __call__(self, message: Any) -> None:
-        """The feedback callback of a goal."""
+        """Feedback callback of an action client."""
         now = time.monotonic()
         period = REFRESH_PERIOD if self._terminal else LINE_PERIOD
         if self._quiet or (self._shown_at is not None and now - self._shown_at < period):
@@ -51,7 +51,7 @@ class FeedbackDisplay:
 
     @staticmethod
     def _screen(feedback: Any, elapsed: float) -> List[str]:
-        """The lines that fit the terminal."""
+        """Returns the lines of the feedback, cut to the size of the terminal."""
         size = shutil.get_terminal_size()
         header = f"{elapsed:6.1f} s"
         progress = getattr(getattr(feedback, "motion", None), "progress", None)

@@ -1,6 +1,6 @@
-"""Goals and other messages from YAML and to YAML.
+"""Converts messages from YAML and to YAML.
 
-A file of goal fields, for `ur call --file`, `./ur plan` and Python clients:
+A goal file, as `ur call --file`, `./ur plan` and Python clients use it:
 
     goal = fields.read_file("goal.yaml", MoveJ.Goal())
 """
@@ -16,22 +16,22 @@ import numpy
 import yaml
 from rosidl_parser import definition as idl
 
-from .problem import Problem
+from .errors import CliError
 
 Path = Tuple[Any, ...]  # ("waypoints", 0, "positions")
 
-# What float() reads and YAML 1.1 takes for text: 1e-3, nan, inf.
+# Numbers that float() accepts and YAML 1.1 reads as text: 1e-3, nan, inf.
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|[-+]?\.?(nan|inf|infinity)", re.I)
 
 
-class FieldError(Problem):
+class FieldError(CliError):
     def __init__(self, path: Path, text: str):
         super().__init__(text)
         self.path = path
 
 
 class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
-    """YAML keeps the last of two equal keys and does not report the first."""
+    """Reports duplicate keys, of which YAML silently keeps the last."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> Any:
         seen = set()
@@ -43,48 +43,48 @@ class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[mi
 
 
 class Document:
-    """A YAML document with the fields of a message. The name of its file precedes error messages, with the line."""
+    """A YAML document with the fields of a message. Error messages begin with the name of its file and the line."""
 
     def __init__(self, text: str, source: str = ""):
         self._source = source
         self._node, values = _load(text, source)
         self._values = {} if values is None else values
         if not isinstance(self._values, dict):
-            raise Problem(f"{self._where(())}{_not_a_mapping((), values)}, as in {{speed: 0.5}}")
+            raise CliError(f"{self._location(())}{_not_a_mapping((), values)}, as in {{speed: 0.5}}")
 
     @classmethod
     def of_file(cls, file: pathlib.Path) -> "Document":
         try:
             return cls(pathlib.Path(file).read_text(encoding="utf-8"), str(file))
         except OSError as error:
-            raise Problem(f"{file}: {error.strerror}") from None
+            raise CliError(f"{file}: {error.strerror}") from None
         except UnicodeDecodeError:
-            raise Problem(f"{file} is not a text file") from None
+            raise CliError(f"{file} is not a text file") from None
 
     @property
     def names(self) -> Tuple[Any, ...]:
-        """Of the outermost fields."""
+        """Names of the outermost fields."""
         return tuple(self._values)
 
     def fill(self, message: Any) -> Any:
-        """Sets the named fields of `message`. The others keep their values."""
+        """Sets the fields of `message` that the document contains. The others keep their values."""
         try:
             fill(message, self._values)
         except FieldError as error:
-            raise Problem(f"{self._where(error.path)}{error}") from None
+            raise CliError(f"{self._location(error.path)}{error}") from None
         return message
 
-    def _where(self, path: Path) -> str:
+    def _location(self, path: Path) -> str:
         return f"{self._source}:{_line(self._node, path)}: " if self._source else ""
 
 
 def read_file(file: pathlib.Path, message: Any) -> Any:
-    """Sets the fields of `message` that a YAML file names."""
+    """Sets the fields of `message` that a YAML file contains."""
     return Document.of_file(file).fill(message)
 
 
 def _load(text: str, source: str) -> Tuple[Any, Any]:
-    """The node, which knows lines, and the value of the only document."""
+    """Returns the YAML node, which has line numbers, and the value of the only document."""
     try:
         loader = _Loader(text)
         try:
@@ -98,13 +98,13 @@ def _load(text: str, source: str) -> Tuple[Any, Any]:
         if source:
             where = f"{source}:{mark.line + 1}: " if mark else f"{source}: "
         what = ", ".join(filter(None, (error.context, error.problem)))
-        raise Problem(f"{where}not YAML: {what}" if source else f"the goal is not YAML: {where}{what}") from None
+        raise CliError(f"{where}not YAML: {what}" if source else f"the goal is not YAML: {where}{what}") from None
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise Problem(f"{source or 'the goal'}: not YAML: {' '.join(str(error).split())}") from None
+        raise CliError(f"{source or 'the goal'}: not YAML: {' '.join(str(error).split())}") from None
 
 
 def _line(node: Any, path: Path) -> int:
-    """Of the field, or of the innermost enclosing one that is there."""
+    """Returns the line of a field, or of the innermost enclosing field that exists."""
     line = node.start_mark.line if node is not None else 0
     for part in path:
         if isinstance(node, yaml.SequenceNode) and isinstance(part, int) and part < len(node.value):
@@ -121,44 +121,44 @@ def _line(node: Any, path: Path) -> int:
 
 
 def _name(path: Path) -> str:
-    """("waypoints", 0, "speed") as "waypoints[0].speed"."""
+    """Returns "waypoints[0].speed" for ("waypoints", 0, "speed")."""
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
     return text.lstrip(".") or "the goal"
 
 
 def _not_a_mapping(path: Path, values: Any) -> str:
-    return f"{_name(path)} is {_shown(values)}: expected a mapping of fields"
+    return f"{_name(path)} is {_abbreviated(values)}: expected a mapping of fields"
 
 
 def fill(message: Any, values: Any, path: Path = ()) -> None:
     """Sets the fields of `message` from a mapping."""
     types = dict(zip(message.get_fields_and_field_types(), message.SLOT_TYPES))
     if not isinstance(values, dict):
-        raise FieldError(path, f"{_not_a_mapping(path, values)}: {_listed(types)}")
+        raise FieldError(path, f"{_not_a_mapping(path, values)}: {_joined(types)}")
     for name, value in values.items():
         own = (*path, name)
         if name not in types:
             close = difflib.get_close_matches(str(name), types, 1)
             hint = f"; did you mean {close[0]}?" if close else "."
-            raise FieldError(own, f"there is no field {_name(own)}{hint} The fields are: {_listed(types)}")
+            raise FieldError(own, f"there is no field {_name(own)}{hint} The fields are: {_joined(types)}")
         try:
             setattr(message, name, _value(types[name], getattr(message, name), value, own))
         except (AssertionError, TypeError, ValueError, OverflowError) as error:
-            raise FieldError(own, f"{_name(own)} is {_shown(value)}: expected {_expected(types[name])} "
+            raise FieldError(own, f"{_name(own)} is {_abbreviated(value)}: expected {_expected(types[name])} "
                              f"({' '.join(str(error).split())})") from None
 
 
-def _listed(names: Any) -> str:
+def _joined(names: Any) -> str:
     return ", ".join(names) or "none"
 
 
-def _shown(value: Any) -> str:
+def _abbreviated(value: Any) -> str:
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _expected(kind: Any) -> str:
-    """The type in the words of an error message."""
+    """Describes a type for an error message."""
     if isinstance(kind, idl.NamespacedType):
         return f"a mapping of the fields of {kind.namespaces[0]}/{kind.name}"
     if isinstance(kind, idl.AbstractNestedType):
@@ -197,7 +197,7 @@ def _integer_bounds(kind: Any) -> Any:
 
 
 def _value(kind: Any, old: Any, value: Any, path: Path) -> Any:
-    """What to assign to a field of the type `kind` with the value `old`."""
+    """Converts a YAML value for a field of the type `kind` whose current value is `old`."""
     if isinstance(kind, idl.NamespacedType):
         fill(old, value, path)
         return old
@@ -212,21 +212,21 @@ def _value(kind: Any, old: Any, value: Any, path: Path) -> Any:
         if isinstance(value, str) and (limit is None or len(value) <= limit):
             return value
         if isinstance(value, (bool, int, float)):
-            raise FieldError(path, f"{_name(path)} is {_shown(value)}: expected {_expected(kind)}; put it in quotes")
+            raise FieldError(path, f"{_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}; put it in quotes")
     elif kind.typename == idl.BOOLEAN_TYPE:
         if isinstance(value, bool):
             return value
     else:
         bounds = _integer_bounds(kind)
         if bounds is None:
-            return value  # checked when it is assigned
+            return value  # checked by the message on assignment
         if isinstance(value, int) and not isinstance(value, bool) and bounds[0] <= value <= bounds[1]:
             return bytes([value]) if kind.typename == idl.OCTET_TYPE else value
-    raise FieldError(path, f"{_name(path)} is {_shown(value)}: expected {_expected(kind)}")
+    raise FieldError(path, f"{_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}")
 
 
 def _float(value: Any) -> Any:
-    """None if it is no number."""
+    """Returns None if the value is not a number."""
     if isinstance(value, str) and _NUMBER.fullmatch(value):
         return float(value.replace(".nan", "nan").replace(".inf", "inf"))
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
@@ -239,7 +239,7 @@ def _sequence(kind: Any, value: Any, path: Path) -> Any:
     elif not wrong and isinstance(kind, idl.BoundedSequence):
         wrong = len(value) > kind.maximum_size
     if wrong:
-        found = f"has {len(value)} values" if isinstance(value, list) else f"is {_shown(value)}"
+        found = f"has {len(value)} values" if isinstance(value, list) else f"is {_abbreviated(value)}"
         raise FieldError(path, f"{_name(path)} {found}: expected {_expected(kind)}")
     inner = kind.value_type
     if isinstance(inner, idl.NamespacedType):
@@ -255,7 +255,7 @@ def _message(kind: Any, values: Any, path: Path) -> Any:
 
 
 def plain(value: Any) -> Any:
-    """A message as mappings, lists and scalars."""
+    """Converts a message to mappings, lists and scalars."""
     if hasattr(value, "get_fields_and_field_types"):
         return {name: plain(getattr(value, name)) for name in value.get_fields_and_field_types()}
     if isinstance(value, (list, tuple, numpy.ndarray, array.array)):
@@ -272,10 +272,10 @@ def _rounded(value: Any) -> Any:
 
 
 def show(message: Any, width: int = 120) -> str:
-    """YAML with six decimals."""
+    """Returns a message as YAML with six decimals."""
     return yaml.safe_dump(_rounded(plain(message)), sort_keys=False, default_flow_style=None, width=width).rstrip("\n")
 
 
 def show_in_one_line(message: Any) -> str:
-    """YAML with six decimals, as a flow mapping."""
+    """Returns a message as YAML in one line with six decimals."""
     return yaml.safe_dump(_rounded(plain(message)), sort_keys=False, default_flow_style=True, width=float("inf")).rstrip("\n")

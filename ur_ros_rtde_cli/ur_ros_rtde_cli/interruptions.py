@@ -1,4 +1,4 @@
-"""Signals and closed outputs that ask the program to end."""
+"""Handles signals and closed outputs as requests to end the program."""
 
 import select
 import signal
@@ -6,12 +6,12 @@ import sys
 import time
 from typing import Dict, Optional
 
-# `timeout` sends its signal twice, to the process and to its group: signals within this time count as one.
+# `timeout` signals both the process and its process group. Signals within this time count as one.
 SECOND_SIGNAL_AFTER = 1.0  # s
 
 
 class Interrupted(Exception):
-    """The program is asked to end by a signal. SIGPIPE stands for a closed output."""
+    """Raised after a signal that ends the program. SIGPIPE stands for a closed output."""
 
     def __init__(self, number: int):
         super().__init__(signal.Signals(number).name)
@@ -23,7 +23,7 @@ class Interrupted(Exception):
 
 
 class PendingInterruption:
-    """Keeps a signal or a closed output until take() is called: rclpy does not survive an exception within a callback."""
+    """Stores a signal or a closed output until take() is called. An exception within a callback would break rclpy."""
 
     def __init__(self) -> None:
         self._pending: Optional[int] = None
@@ -46,7 +46,8 @@ class PendingInterruption:
             signal.signal(number, handler)  # type: ignore[arg-type]
 
     def take(self) -> Optional[Interrupted]:
-        # A closed output stays closed. It is reported once, and only if no signal came before.
+        """Returns the stored interruption and clears it."""
+        # A closed output stays closed, so it is reported only once, and only if there was no signal before.
         if self._last is None and any(event & (select.POLLERR | select.POLLHUP) for _, event in self._outputs.poll(0)):
             self._add(signal.SIGPIPE)
         number, self._pending = self._pending, None

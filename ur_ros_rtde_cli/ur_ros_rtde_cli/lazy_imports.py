@@ -1,6 +1,6 @@
-"""Shorter imports, for a program that uses few of the message types.
+"""Imports message types on demand, which shortens the start of a program that uses few of them.
 
-The generated packages import all of their types, and rosidl_generator_py imports the generator with its parser.
+The generated packages import all of their types, and rosidl_generator_py imports the code generator with its parser.
 """
 
 import importlib
@@ -10,11 +10,11 @@ import sys
 from typing import Any
 
 TYPE_PACKAGES = ("ur_ros_rtde_msgs.action", "ur_ros_rtde_msgs.msg")
-GENERATOR = "rosidl_generator_py.generate_py_impl"  # rosidl_generator_py does without it if its import fails
+GENERATOR = "rosidl_generator_py.generate_py_impl"  # rosidl_generator_py works without it
 
 
 def enable() -> None:
-    """For this process, before any message type is imported."""
+    """Applies to this process. Must be called before any message type is imported."""
     sys.modules.setdefault(GENERATOR, None)  # type: ignore[arg-type]
     for package in TYPE_PACKAGES:
         if package not in sys.modules:
@@ -28,7 +28,7 @@ def _import_types_on_demand(package: str) -> None:
         return
     if spec is None:
         return
-    module = importlib.util.module_from_spec(spec)  # not executed: that would import all types
+    module = importlib.util.module_from_spec(spec)  # not executed, because that would import all types
 
     def get_type(name: str) -> Any:
         if not name[:1].isupper():
@@ -45,6 +45,6 @@ def _import_types_on_demand(package: str) -> None:
 
 
 def _module_of(name: str) -> str:
-    """As rosidl names the module of a type: MoveJIK is in _move_jik."""
+    """Returns the name that rosidl gives the module of a type: _move_jik for MoveJIK."""
     partly = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
     return "_" + re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", partly).lower()

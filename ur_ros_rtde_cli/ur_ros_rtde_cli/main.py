@@ -1,4 +1,4 @@
-"""Arguments of `ur`."""
+"""Entry point and arguments of `ur`."""
 
 import argparse
 import difflib
@@ -9,32 +9,33 @@ import signal
 import sys
 from typing import List, Optional
 
+from .errors import CliError
 from .interruptions import Interrupted
-from .problem import Problem
 
 COMMANDS = {"call": "send a goal, show its feedback and print its result",
             "state": "show the state of the robot, once or continuously",
-            "plugins": "list the installed plugins: name, package, description",
-            "record": "record fields of the robot's state into a CSV file"}
+            "plugins": "list the installed plugins with package and description",
+            "record": "record RTDE outputs of the robot to a CSV file"}
 
-# Those of the script `ur` of a checkout, which are not installed.
+# Commands of the script `ur` in a checkout. They are not installed.
 CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "shell", "new", "format", "lint", "doctor", "clean")
 
-# Set in the shell of a checkout: its folder.
+# Environment variable with the folder of the checkout, set in its shell.
 CHECKOUT_VARIABLE = "UR_CHECKOUT"
 
 DESCRIPTION = """\
-Calls the actions of ur_ros_rtde, shows the robot's state, lists the plugins, records. Exit code: 0 done, 1 failed, 2 refused
-or not understood, 128 plus the number of the signal that ended it.
+Calls actions of ur_ros_rtde, shows and records the state of the robot, and lists the plugins.
+
+Exit code: 0 success, 1 failure, 2 goal refused or wrong arguments, 128 plus the signal number after a signal.
 """
 EPILOG = f"""\
-{', '.join(CHECKOUT_COMMANDS)} need the sources: they are commands of ./ur in a checkout of ur_ros_rtde, and of ur in its
-`./ur shell`.
+{', '.join(CHECKOUT_COMMANDS)} need the sources. Run them with `./ur` in a checkout of
+ur_ros_rtde, or with `ur` in its `./ur shell`.
 """
 
 
 def _parser() -> argparse.ArgumentParser:
-    """For `ur --help`."""
+    """Returns the parser for `ur --help`."""
     parser = argparse.ArgumentParser(prog="ur", description=DESCRIPTION, epilog=EPILOG,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(metavar="command", required=True)
@@ -44,28 +45,28 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _parse(command: str, arguments: List[str]) -> argparse.Namespace:
-    """Imports only the module of the command: the others would delay its start."""
+    """Parses the arguments of a command. Imports only its module, because other modules would delay the start."""
     module = importlib.import_module(f"{__package__}.{command}")
     parser = argparse.ArgumentParser(prog=f"ur {command}", description=module.__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     if command != "plugins":
-        parser.add_argument("--namespace", default="", metavar="NS", help="of the robot's nodes (default: none)")
+        parser.add_argument("--namespace", default="", metavar="NS", help="namespace of the nodes of the robot (default: none)")
     module.add_arguments(parser)
     parser.set_defaults(run=module.run)
     return parser.parse_intermixed_args(arguments)
 
 
-def _unknown(command: str) -> Problem:
+def _unknown(command: str) -> CliError:
     if command in CHECKOUT_COMMANDS:
-        return Problem(f"`ur {command}` needs the sources: run `./ur {command}` in a checkout of ur_ros_rtde, or "
-                       f"`ur {command}` in its `./ur shell`")
+        return CliError(f"`ur {command}` needs the sources: run `./ur {command}` in a checkout of ur_ros_rtde, or "
+                        f"`ur {command}` in its `./ur shell`")
     close = difflib.get_close_matches(command, (*COMMANDS, *CHECKOUT_COMMANDS), 1)
-    return Problem(f"there is no command {command}" + (f"; did you mean {close[0]}?" if close else "")
-                   + f" The commands are: {', '.join(COMMANDS)}")
+    return CliError(f"there is no command {command}" + (f"; did you mean {close[0]}?" if close else "")
+                    + f" The commands are: {', '.join(COMMANDS)}")
 
 
 def _checkout() -> Optional[pathlib.Path]:
-    """The script `ur` of the checkout whose shell this is."""
+    """Returns the script `ur` of the checkout if this is its shell."""
     folder = os.environ.get(CHECKOUT_VARIABLE)
     return pathlib.Path(folder, "ur") if folder and pathlib.Path(folder, "ur").is_file() else None
 
@@ -85,12 +86,12 @@ def main(arguments: Optional[List[str]] = None) -> int:
             raise _unknown(command)
         options = _parse(command, arguments[1:])
         if command != "plugins":
-            from . import fastdds_profile, lazy_imports  # only here: --help needs no ROS
+            from . import fastdds_profile, lazy_imports  # imported here because --help does not need ROS
             lazy_imports.enable()
             fastdds_profile.use()
         return options.run(options)
-    except Problem as problem:
-        print(problem, file=sys.stderr)
+    except CliError as error:
+        print(error, file=sys.stderr)
         return 2
     except Interrupted as interrupted:
         return interrupted.exit_code
@@ -103,7 +104,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
 
 
 def _drop_unwritable_output() -> None:
-    """Otherwise Python writes it again at exit and reports the failure."""
+    """Discards output that cannot be written. Python would write it again at exit and report the failure."""
     for stream in filter(None, (sys.stdout, sys.stderr)):
         try:
             stream.flush()

@@ -1,7 +1,7 @@
-"""Lists the installed plugins: name, package, description.
+"""Lists the installed plugins with name, package and description.
 
-The description of a plugin is that of its plugins.xml, else the first sentence of its .action file, else the description of its
-package.
+The description of a plugin is the <description> in its plugins.xml. If there is none, it is the first sentence of its .action
+file. If the plugin has no action of its own, it is the description of its package.
 """
 
 import argparse
@@ -14,12 +14,12 @@ RESOURCE = "ur_ros_rtde__pluginlib__plugin"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("pattern", nargs="?", default="", help="only plugins whose name contains this")
+    parser.add_argument("pattern", nargs="?", default="", help="list only plugins whose name contains this text")
 
 
 def installed() -> Iterator[Tuple[str, str, str]]:
-    """Name, package and description from plugins.xml."""
-    from ament_index_python import get_resource, get_resources  # only here: --help needs no ROS
+    """Yields name, package and description of each plugin in plugins.xml."""
+    from ament_index_python import get_resource, get_resources  # imported here because --help does not need ROS
     for package in get_resources(RESOURCE):
         content, prefix = get_resource(RESOURCE, package)
         for file in filter(None, map(str.strip, content.splitlines())):
@@ -33,9 +33,10 @@ def installed() -> Iterator[Tuple[str, str, str]]:
 
 
 def action_type(name: str, package: str) -> Optional[Tuple[str, str]]:
-    """Package and name of the action that is called as the plugin, in its package or the one of its interfaces.
+    """Returns package and name of the action type with the name of the plugin, in its package or its _msgs package.
 
-    "move_j" of ur_ros_rtde is MoveJ of ur_ros_rtde_msgs. None for plugins that share an action type with others.
+    For example, ("ur_ros_rtde_msgs", "MoveJ") for the plugin "move_j" of ur_ros_rtde. Returns None for a plugin that shares
+    its action type with others.
     """
     wanted = re.sub("[_/]", "", name).lower()
     for candidate in (package, f"{package}_msgs"):
@@ -55,7 +56,7 @@ def _actions(package: str) -> List[str]:
 
 
 def _description(name: str, package: str) -> str:
-    """From the files that a plugin has in any case."""
+    """Returns the description of a plugin without one in plugins.xml."""
     from ament_index_python import get_package_share_directory
     action = action_type(name, package)
     try:
@@ -75,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
     found = sorted((name, package, description or _description(name, package)) for name, package, description in installed()
                    if options.pattern in name)
     width = max((len(name) for name, _, _ in found), default=0)
-    origin = max((len(package) for _, package, _ in found), default=0)
+    package_width = max((len(package) for _, package, _ in found), default=0)
     for name, package, description in found:
-        print(f"{name:{width}}  {package:{origin}}  {description}")
+        print(f"{name:{width}}  {package:{package_width}}  {description}")
     return 0 if found else 1

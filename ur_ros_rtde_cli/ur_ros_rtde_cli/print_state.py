@@ -1,4 +1,4 @@
-"""Prints the state of the robot."""
+"""Prints the state of the robot to stdout."""
 
 import argparse
 import math
@@ -11,20 +11,22 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from ur_ros_rtde_msgs.msg import DriverState, RobotMode, SafetyMode
 
+from .errors import CliError
 from .interruptions import Interrupted
-from .problem import Problem
 from .session import Session
+
+TOPIC_COUNT = 7  # of _subscribe()
 
 
 def _subscribe(session: Session) -> Dict[str, Any]:
-    """The newest message of each topic, by topic."""
+    """Subscribes to all topics. Returns a dictionary that holds the latest message of each topic."""
     latest: Dict[str, Any] = {}
-    stream = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    for topic, kind, qos in (("joint_states", JointState, stream), ("tcp_pose", PoseStamped, stream),
-                             ("wrench", WrenchStamped, stream), ("robot_mode", RobotMode, latched),
-                             ("safety_mode", SafetyMode, latched), ("speed_scaling", Float64, latched),
-                             ("driver_state", DriverState, latched)):
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    transient_local = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    for topic, kind, qos in (("joint_states", JointState, best_effort), ("tcp_pose", PoseStamped, best_effort),
+                             ("wrench", WrenchStamped, best_effort), ("robot_mode", RobotMode, transient_local),
+                             ("safety_mode", SafetyMode, transient_local), ("speed_scaling", Float64, transient_local),
+                             ("driver_state", DriverState, transient_local)):
         session.node.create_subscription(kind, topic, lambda message, topic=topic: latest.__setitem__(topic, message), qos)
     return latest
 
@@ -42,8 +44,8 @@ def _lines(latest: Dict[str, Any]) -> Iterator[str]:
     if "tcp_pose" in latest:
         pose = latest["tcp_pose"].pose
         yield f"{'tcp position':22} {pose.position.x:9.4f} {pose.position.y:9.4f} {pose.position.z:9.4f} m"
-        turn = pose.orientation
-        yield f"{'tcp orientation':22} {turn.x:9.4f} {turn.y:9.4f} {turn.z:9.4f} {turn.w:9.4f}"
+        q = pose.orientation
+        yield f"{'tcp orientation':22} {q.x:9.4f} {q.y:9.4f} {q.z:9.4f} {q.w:9.4f}"
     if "wrench" in latest:
         force, torque = latest["wrench"].wrench.force, latest["wrench"].wrench.torque
         yield f"{'force':22} {force.x:9.2f} {force.y:9.2f} {force.z:9.2f} N"
@@ -52,11 +54,10 @@ def _lines(latest: Dict[str, Any]) -> Iterator[str]:
 
 def print_state(session: Session, options: argparse.Namespace) -> int:
     latest = _subscribe(session)
-    everything = 7
     if not session.wait(lambda: "joint_states" in latest, options.wait):
-        raise Problem(f"no joint_states within {options.wait:g} s. Does robot_state_receiver run, in this ROS_DOMAIN_ID, and "
-                      "is the robot on?")
-    session.wait(lambda: len(latest) == everything, 0.5)
+        raise CliError(f"no joint_states within {options.wait:g} s. Does robot_state_receiver run with this ROS_DOMAIN_ID? Is "
+                       "the robot on?")
+    session.wait(lambda: len(latest) == TOPIC_COUNT, 0.5)
     shown = list(_lines(latest))
     print("\n".join(shown))
     try:

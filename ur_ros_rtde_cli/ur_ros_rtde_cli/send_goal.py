@@ -1,4 +1,4 @@
-"""Sends one goal, until its result or its cancellation."""
+"""Sends one goal and waits for its result."""
 
 import argparse
 import sys
@@ -10,29 +10,29 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from ur_ros_rtde_msgs.msg import GoalRefused
 
 from . import actions, fields
+from .errors import CliError
 from .feedback import FeedbackDisplay, write
 from .interruptions import Interrupted
-from .problem import Problem
 from .session import GRAPH_POLL_PERIOD, Session
 
-CANCEL_LIMIT = 10.0  # s, for the result after the goal was canceled
+CANCEL_LIMIT = 10.0  # s, to wait for the result of a canceled goal
 
 
 def _read_goal(options: argparse.Namespace) -> fields.Document:
     return fields.Document.of_file(options.file) if options.file is not None else fields.Document(options.goal or "{}")
 
 
-def _nobody_serves(session: Session, name: str, requested: str) -> Problem:
+def _server_not_found(session: Session, name: str, requested: str) -> CliError:
     served = actions.served(session.node)
     hint = actions.suggestion(requested, {full.lstrip("/") for full in served} | set(actions.plugin_names()))
     if not served:
-        return Problem(f"no server of {name}{hint or '.'} No node with actions was found. Does command_server run, in this "
-                       "ROS_DOMAIN_ID?")
-    return Problem(f"no server of {name}{hint}" if hint else f"no server of {name}; there are: {', '.join(sorted(served))}")
+        return CliError(f"no server of {name}{hint or '.'} No action server was found. Does command_server run with "
+                        "this ROS_DOMAIN_ID?")
+    return CliError(f"no server of {name}{hint or '; the available actions are: ' + ', '.join(sorted(served))}")
 
 
-class _Server:
-    """Of one action. Its goal is checked as soon as the action's type is known."""
+class _ActionConnection:
+    """Connects to the server of one action. The goal is checked as soon as the type of the action is known."""
 
     def __init__(self, session: Session, options: argparse.Namespace):
         self._session, self._options = session, options
@@ -41,25 +41,25 @@ class _Server:
         self._document = _read_goal(options)
 
     def connect(self) -> Tuple[Optional[ActionClient], Any]:
-        """The client and the goal; no client with --show, which needs no server if a plugin tells the type."""
+        """Returns the client and the goal. With --show, the client is None and a server is needed only for unknown types."""
         expected = actions.type_of_plugin(self._options.action.lstrip("/"))
         if expected is not None:
             action, goal = self._checked(expected)
             if self._options.show:
                 return None, goal
         else:
-            self._hint_at_names()
+            self._suggest_names()
         kind = self._session.wait(self._served_type, self._options.wait, GRAPH_POLL_PERIOD)
         if kind is None:
-            raise _nobody_serves(self._session, self.name, self._options.action)
+            raise _server_not_found(self._session, self.name, self._options.action)
         if kind != expected:
             action, goal = self._checked(kind)
         if self._options.show:
             return None, goal
-        # Not earlier: the client would be discovered in parts, while the server's announcements still arrive.
+        # A client that is created while the announcements of the server still arrive would be discovered in parts.
         client = ActionClient(self._session.node, action, self.name)
         if not self._session.wait(client.server_is_ready, self._options.wait, GRAPH_POLL_PERIOD):
-            raise Problem(f"the server of {self.name} does not answer")
+            raise CliError(f"the server of {self.name} does not respond")
         return client, goal
 
     def _served_type(self) -> Optional[str]:
@@ -69,16 +69,19 @@ class _Server:
         action = actions.load(self.name, kind)
         return action, self._document.fill(action.Goal())
 
-    def _hint_at_names(self) -> None:
+    def _suggest_names(self) -> None:
         requested, plugins = self._options.action, actions.plugin_names()
         hint = actions.suggestion(requested, plugins)
         if hint and not requested.startswith("/") and requested not in plugins and self._served_type() is None:
-            write(f"no plugin is called {requested}{hint} Waiting {self._options.wait:g} s for a server\n")
+            write(f"no plugin is named {requested}{hint} Waiting {self._options.wait:g} s for a server\n")
 
 
-class _Canceling:
-    """The first interruption after the goal was sent cancels it; the result is still awaited. A second interruption, or a
-    result that does not arrive in time, ends the program: the driver stops the arm when it finds the client gone."""
+class _CancelOnInterruption:
+    """Cancels the goal at the first interruption and continues to wait for the result.
+
+    A second interruption, or a result that does not arrive in time, ends the program. The driver then stops the arm because
+    the client has disappeared.
+    """
 
     def __init__(self, session: Session, display: Any):
         self._session, self._display = session, display
@@ -95,7 +98,7 @@ class _Canceling:
                     raise
                 self.reason = interrupted
                 self._display.clear()
-                write(f"canceling ({interrupted}), again to go without the result\n")
+                write(f"canceling ({interrupted}), interrupt again to quit without the result\n")
                 self._cancel()
             else:
                 write(f"no result within {CANCEL_LIMIT:g} s after the goal was canceled\n")
@@ -112,7 +115,7 @@ class _Canceling:
 
 
 class _Refusals:
-    """What the driver publishes on goal_refusals."""
+    """Receives the reasons of refused goals on the topic goal_refusals."""
 
     def __init__(self, session: Session):
         self._session = session
@@ -122,24 +125,24 @@ class _Refusals:
 
     def reason(self, goal_id: bytes) -> str:
         own = self._session.wait(lambda: next((r for r in self._received if bytes(r.goal_id.uuid) == goal_id), None), 2.0)
-        return own.message if own else "without a reason on goal_refusals"
+        return own.message if own else "no reason was received on goal_refusals"
 
 
 def send_goal(session: Session, options: argparse.Namespace) -> int:
-    client, goal = _Server(session, options).connect()
+    client, goal = _ActionConnection(session, options).connect()
     if client is None:
         print(fields.show(goal))
         return 0
     refusals = _Refusals(session)
     display = FeedbackDisplay(options.quiet)
-    canceling = _Canceling(session, display)
+    canceling = _CancelOnInterruption(session, display)
     handle = canceling.wait(client.send_goal_async(goal, feedback_callback=display))
     if not handle.accepted:
-        raise Problem(f"refused: {refusals.reason(bytes(handle.goal_id.uuid))}")
+        raise CliError(f"refused: {refusals.reason(bytes(handle.goal_id.uuid))}")
     canceling.accepted(handle)
-    answer = canceling.wait(handle.get_result_async())
+    response = canceling.wait(handle.get_result_async())
     display.clear()
-    sys.stdout.write(f"{fields.show(answer.result)}\n")  # in one piece: its reader may close the pipe after the first line
+    sys.stdout.write(f"{fields.show(response.result)}\n")  # one write: the reader may close the pipe
     if canceling.reason:
         return canceling.reason.exit_code
-    return 0 if answer.status == GoalStatus.STATUS_SUCCEEDED else 1
+    return 0 if response.status == GoalStatus.STATUS_SUCCEEDED else 1

@@ -4,12 +4,12 @@ import argparse
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--watch", action="store_true", help="repeat until Ctrl-C")
-    parser.add_argument("--wait", type=float, default=5.0, metavar="S", help="for the first sample (default: 5 s)")
+    parser.add_argument("--watch", action="store_true", help="update until Ctrl-C")
+    parser.add_argument("--wait", type=float, default=5.0, metavar="S", help="time to wait for the first message (default: 5 s)")
 
 
 def run(options: argparse.Namespace) -> int:
-    from .session import session  # only here: --help needs no ROS
+    from .session import session  # imported here because --help does not need ROS
     with session(options.namespace) as created:
-        from .print_state import print_state  # only now: meanwhile the node discovers the publishers
+        from .print_state import print_state  # imported here because the node discovers the publishers meanwhile
         return print_state(created, options)
