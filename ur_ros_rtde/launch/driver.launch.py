@@ -1,4 +1,4 @@
-"""Starts the driver of one robot: robot_state_receiver, command_server and dashboard_server, in one process or in three."""
+"""Starts the driver of one robot: robot_state_receiver, command_server and dashboard_server, in one or three processes."""
 
 import os
 import pathlib
@@ -9,7 +9,7 @@ from launch.events import matches_action
 from launch.events.process import ShutdownProcess
 from launch_ros.actions import Node
 from launch_ros.substitutions import ExecutableInPackage
-from ur_ros_rtde.launch_arguments import DRIVER, NODES, PARAMETERS, SIMULATED_MODEL, ArgumentError, write_parameters
+from ur_ros_rtde.launch_arguments import DRIVER, NODES, PARAMETERS, DEFAULT_SIMULATED_MODEL, ArgumentError, write_parameters
 from ur_ros_rtde.launch_support import describe
 
 DEFAULTS = {argument.name: argument.default for argument in DRIVER}
@@ -25,35 +25,36 @@ def start(_context, given):
     if options["sim"]:
         parameters["robot_ip"] = options["sim_ip"]
     elif not options["robot_ip"] and not options["params_file"]:
-        raise ArgumentError("the robot's address is missing: give robot_ip:=<address>, or sim:=true for a simulated robot")
+        raise ArgumentError("the address of the robot is missing: set robot_ip:=<address>, or sim:=true for a simulated robot")
     if options["params_file"] and not os.path.isfile(options["params_file"]):
-        raise ArgumentError(f"params_file is \"{options['params_file']}\", and there is no such file")
+        raise ArgumentError(f"params_file is \"{options['params_file']}\": the file does not exist")
 
     nodes = driver(options, parameters)
     return [*(simulator(options, nodes) if options["sim"] else []), *nodes]
 
 
 def driver(options, parameters):
-    written = [write_parameters(parameters)] if parameters else []
+    temporary_files = [write_parameters(parameters)] if parameters else []
     given = [options["params_file"]] if options["params_file"] else []
-    common = {"package": "ur_ros_rtde", "namespace": options["namespace"], "output": "screen", "parameters": [*given, *written]}
+    common = {"package": "ur_ros_rtde", "namespace": options["namespace"], "output": "screen",
+              "parameters": [*given, *temporary_files]}
     if options["one_process"]:
-        nodes = [Node(executable="driver", **common)]  # without a name: it would be given to all three nodes
+        nodes = [Node(executable="driver", **common)]  # no name: it would rename all three nodes
     else:
         nodes = [Node(executable=name, name=name, **common) for name in NODES]
 
     def remove(_context):
-        for file in written:
+        for file in temporary_files:
             pathlib.Path(file).unlink(missing_ok=True)
 
     return [*nodes, RegisterEventHandler(OnShutdown(on_shutdown=[OpaqueFunction(function=remove)]))]
 
 
 def simulator(options, nodes):
-    """It ends with the node that commands it."""
-    # No Node, which adds --ros-args: it knows nothing of ROS.
+    """Returns the process of the simulated robot, which ends together with the node that commands it."""
+    # ExecuteProcess instead of Node, because the simulator does not accept --ros-args.
     process = ExecuteProcess(cmd=[ExecutableInPackage(package="ur_simulator", executable="ur_simulator"), "--address",
-                                  options["sim_ip"], "--model", options["ur_type"] or SIMULATED_MODEL], output="screen")
+                                  options["sim_ip"], "--model", options["ur_type"] or DEFAULT_SIMULATED_MODEL], output="screen")
     commander = nodes[0] if options["one_process"] else nodes[NODES.index("command_server")]
     end = EmitEvent(event=ShutdownProcess(process_matcher=matches_action(process)))
     return [process, RegisterEventHandler(OnProcessExit(target_action=commander, on_exit=[end]))]

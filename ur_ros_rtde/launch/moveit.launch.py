@@ -1,7 +1,7 @@
 """Starts the driver and MoveIt for one robot, on top of the launch file of ur_moveit_config.
 
-ur_moveit_config sends trajectories to a controller of ros2_control. Its action is remapped to follow_joint_trajectory of the driver,
-so that its files serve every model unchanged.
+ur_moveit_config sends trajectories to a controller of ros2_control. The action of the controller is remapped to the action
+follow_joint_trajectory of the driver, so the files of ur_moveit_config are used unchanged for every model.
 """
 
 import pathlib
@@ -13,25 +13,25 @@ from launch.substitutions import Command, PathJoinSubstitution
 from launch_ros.actions import Node, SetRemap
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
-from ur_ros_rtde.launch_arguments import MOVEIT, NOT_WITH_MOVEIT, ArgumentError
+from ur_ros_rtde.launch_arguments import MOVEIT, UNSUPPORTED_BY_MOVEIT, ArgumentError
 from ur_ros_rtde.launch_support import describe
 
-# What the launch files of ur_moveit_config start, besides RViz; xacro makes the robot_description.
+# Packages that the launch files of ur_moveit_config need besides RViz. xacro generates the robot_description.
 PACKAGES = ("moveit_ros_move_group", "moveit_simple_controller_manager", "robot_state_publisher", "ur_description",
             "ur_moveit_config", "ur_robot_driver", "xacro")
-CONTROLLERS = ("joint_trajectory_controller", "scaled_joint_trajectory_controller")  # the latter in Humble
-OF_AN_ACTION = ("cancel_goal", "feedback", "get_result", "send_goal", "status")
+CONTROLLERS = ("joint_trajectory_controller", "scaled_joint_trajectory_controller")  # the second in Humble
+ACTION_INTERFACES = ("cancel_goal", "feedback", "get_result", "send_goal", "status")
 
 
 def generate_launch_description():
-    return describe("moveit.launch.py", MOVEIT, start, [included("ur_ros_rtde", "driver.launch.py")], NOT_WITH_MOVEIT)
+    return describe("moveit.launch.py", MOVEIT, start, [included("ur_ros_rtde", "driver.launch.py")], UNSUPPORTED_BY_MOVEIT)
 
 
 def start(_context, given):
     missing = [package for package in PACKAGES if not installed(package)]
     if missing:
         raise ArgumentError(f"moveit.launch.py needs packages that are not installed: {', '.join(missing)}. "
-                            "Install them with `sudo apt install ros-$ROS_DISTRO-ur`, and source the workspace again")
+                            "Install them with `sudo apt install ros-$ROS_DISTRO-ur` and source the workspace again")
     check_model(given["ur_type"])
     arguments = {"ur_type": given["ur_type"], "launch_rviz": str(given.get("launch_rviz", True)).lower()}
     return [robot_state_publisher(given["ur_type"], given.get("kinematics_params_file")),
@@ -42,7 +42,8 @@ def check_model(model):
     config = pathlib.Path(get_package_share_directory("ur_description"), "config")
     if not (config / model).is_dir():
         models = ", ".join(sorted(path.name for path in config.iterdir() if path.is_dir()))
-        raise ArgumentError(f"the installed ur_description has no {model}; it has {models}. A newer version may have it")
+        raise ArgumentError(f"the installed ur_description does not contain the model {model}. It contains {models}. Install "
+                            "a newer version")
 
 
 def installed(package):
@@ -62,10 +63,10 @@ def robot_state_publisher(model, kinematics_params_file):
 
 
 def remappings():
-    """Not in a group: ur_moveit.launch.py starts move_group later, when a group would have ended."""
+    """Yields remappings for all following nodes. A group would end before ur_moveit.launch.py starts move_group."""
     for controller in CONTROLLERS:
-        for part in OF_AN_ACTION:
-            name = f"follow_joint_trajectory/_action/{part}"
+        for interface in ACTION_INTERFACES:
+            name = f"follow_joint_trajectory/_action/{interface}"
             yield SetRemap(f"/{controller}/{name}", f"/{name}")
 
 

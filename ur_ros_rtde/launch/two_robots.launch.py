@@ -1,32 +1,32 @@
-"""Starts the drivers of two robots: each has a namespace, a prefix of its joints and frames, and a port for the URCap."""
+"""Starts the drivers of two robots. Each has its own namespace, prefix of joints and frames, and port for the URCap."""
 
 from launch.actions import GroupAction, IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
-from ur_ros_rtde.launch_arguments import DIFFERENT, OF_EACH_ROBOT, SIDES, TWO_ROBOTS, ArgumentError
+from ur_ros_rtde.launch_arguments import PER_ROBOT, SIDES, TWO_ROBOTS, UNIQUE, ArgumentError
 from ur_ros_rtde.launch_support import describe
 
 
 def generate_launch_description():
-    return describe("two_robots.launch.py", TWO_ROBOTS, check, [robot(side) for side in SIDES], OF_EACH_ROBOT)
+    return describe("two_robots.launch.py", TWO_ROBOTS, check, [robot(side) for side in SIDES], PER_ROBOT)
 
 
 def check(context, given):
     values = {**{argument.name: argument.default for argument in TWO_ROBOTS}, **given}
-    for name in DIFFERENT:
+    for name in UNIQUE:
         if values[f"left_{name}"] == values[f"right_{name}"]:
             raise ArgumentError(f"left_{name} and right_{name} are both \"{values[f'left_{name}']}\", they must differ")
     others = context.launch_configurations
     if others.get("sim") != "true" and not others.get("params_file"):
         for side in SIDES:
             if not values[f"{side}_robot_ip"]:
-                raise ArgumentError(f"the {side} robot's address is missing: give {side}_robot_ip:=<address>, or sim:=true for "
-                                    "simulated robots")
+                raise ArgumentError(f"the address of the {side} robot is missing: set {side}_robot_ip:=<address>, or sim:=true "
+                                    "for simulated robots")
     return []
 
 
 def robot(side):
     driver = PathJoinSubstitution([FindPackageShare("ur_ros_rtde"), "launch", "driver.launch.py"])
-    arguments = {name: LaunchConfiguration(f"{side}_{name}") for name in OF_EACH_ROBOT}
+    arguments = {name: LaunchConfiguration(f"{side}_{name}") for name in PER_ROBOT}
     return GroupAction([IncludeLaunchDescription(PythonLaunchDescriptionSource(driver), launch_arguments=arguments.items())])

@@ -1,4 +1,4 @@
-"""Launch descriptions that refuse unknown arguments and wrong values before anything is started."""
+"""Launch descriptions that reject unknown arguments and invalid values before anything is started."""
 
 from typing import Any, Callable, Collection, Dict, Iterable, List, Sequence
 
@@ -10,15 +10,16 @@ from .launch_arguments import Argument, check_name, to_values
 
 Start = Callable[[LaunchContext, Dict[str, Any]], Sequence[LaunchDescriptionEntity]]
 
-# Arguments that `ros2 launch` adds for launch itself.
-OF_LAUNCH = {"launch-prefix", "launch-prefix-filter"}
+# Arguments that `ros2 launch` adds itself.
+LAUNCH_OWN = {"launch-prefix", "launch-prefix-filter"}
 
 
 def describe(launch_file: str, arguments: Sequence[Argument], start: Start, entities: Iterable[LaunchDescriptionEntity] = (),
              replaced: Collection[str] = ()) -> LaunchDescription:
-    """Checks and declares the arguments, then visits what `start` returns for the values that were given, then `entities`.
+    """Returns a description that checks and declares the arguments, and then executes the entities.
 
-    `replaced` are arguments of included launch files that this one sets itself.
+    `start` receives the values of the given arguments and returns further entities, which are executed before `entities`.
+    `replaced` are arguments of included launch files that this launch file sets itself.
     """
     given: Dict[str, str] = {}
 
@@ -26,7 +27,7 @@ def describe(launch_file: str, arguments: Sequence[Argument], start: Start, enti
         declared = {argument.name for argument in description.get_launch_arguments()}
         passed = _passed_names(context, description)
         for name in passed:
-            check_name(name, (declared - set(replaced)) | OF_LAUNCH, launch_file)
+            check_name(name, (declared - set(replaced)) | LAUNCH_OWN, launch_file)
         passed += [argument.split(":=")[0] for argument in context.argv or ()]
         given.clear()
         given.update(_given(context, arguments, passed))
@@ -46,16 +47,16 @@ def _declaration(argument: Argument) -> DeclareLaunchArgument:
 
 
 def _given(context: LaunchContext, arguments: Sequence[Argument], passed: Collection[str]) -> Dict[str, str]:
-    """The arguments with a value that somebody chose. A default is not: a launch file that was included before may have left it."""
+    """Returns the arguments whose value was given. A default value may remain from a launch file that was included before."""
     texts = context.launch_configurations
     return {argument.name: texts[argument.name] for argument in arguments
             if texts.get(argument.name) and (argument.name in passed or texts[argument.name] != argument.default_text)}
 
 
 def _passed_names(context: LaunchContext, description: LaunchDescription) -> List[str]:
-    """The arguments passed to this description, on the command line or by the launch file that includes it.
+    """Returns the arguments that the including launch file passes to this description.
 
-    Launch configurations do not tell: they also hold the arguments of every launch file around this one.
+    Launch configurations cannot be used, because they also contain the arguments of all including launch files.
     """
     root = getattr(context.get_locals_as_dict().get("event"), "launch_description", None)
     return [perform_substitutions(context, normalize_to_list_of_substitutions(name))

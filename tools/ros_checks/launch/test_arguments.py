@@ -2,7 +2,7 @@
 
 import pytest
 from ros2 import ROOT, parameter, ready, ros2
-from ur_ros_rtde.launch_arguments import DRIVER, MOVEIT, OF_EACH_ROBOT, TWO_ROBOTS
+from ur_ros_rtde.launch_arguments import DRIVER, MOVEIT, PER_ROBOT, TWO_ROBOTS
 
 DRIVER_FILE = ("launch", "ur_ros_rtde", "driver.launch.py")
 FOREIGN = '''
@@ -44,8 +44,8 @@ def test_show_args_lists_all_with_description_and_default(launch_file, arguments
     ("on_busy:=maybe", 'launch argument on_busy is "maybe", it must be one of: refuse, preempt'),
     ("rtde_frequency:=1000", 'launch argument rtde_frequency is "1000", it must be a number from 1 to 500'),
     ("plugins:=move_j", 'launch argument plugins is "move_j", it must be a list of names'),
-    ("params_file:=/nowhere.yaml", 'params_file is "/nowhere.yaml", and there is no such file'),
-    ("on_busy:=refuse", "the robot's address is missing: give robot_ip:=<address>, or sim:=true"),
+    ("params_file:=/nowhere.yaml", 'params_file is "/nowhere.yaml": the file does not exist'),
+    ("on_busy:=refuse", "the address of the robot is missing: set robot_ip:=<address>, or sim:=true"),
 ])
 def test_a_wrong_argument_is_refused_with_one_message_and_nothing_is_started(given, said_to_be):
     code, said = ros2(*DRIVER_FILE, given)
@@ -57,7 +57,7 @@ def test_a_wrong_argument_is_refused_with_one_message_and_nothing_is_started(giv
 @pytest.mark.parametrize("given, said_to_be", [
     ("robot_ip:=192.168.0.10", "two_robots.launch.py has no launch argument robot_ip; did you mean "),
     ("right_urcap_port:=50002", 'left_urcap_port and right_urcap_port are both "50002", they must differ'),
-    ("left_robot_ip:=192.168.0.10", "the right robot's address is missing: give right_robot_ip:=<address>"),
+    ("left_robot_ip:=192.168.0.10", "the address of the right robot is missing: set right_robot_ip:=<address>"),
     ("on_bussy:=preempt", "did you mean on_busy?"),
 ])
 def test_a_wrong_argument_of_two_robots_is_refused_with_one_message(given, said_to_be):
@@ -126,7 +126,7 @@ def test_two_robots_have_names_and_ports_of_their_own_and_share_the_rest(launch)
                           "{joint_positions: [0.1, -1.57, 1.57, -1.57, -1.57, 0.0]}")
         assert code == 0 and "success: true" in said, said
     assert parameter("/right/command_server", "ur_type") == "ur5e"
-    assert set(OF_EACH_ROBOT) >= {"namespace", "tf_prefix", "urcap_port"}
+    assert set(PER_ROBOT) >= {"namespace", "tf_prefix", "urcap_port"}
 
 
 def test_a_driver_that_cannot_start_ends_the_launch_with_its_reason(launch):
