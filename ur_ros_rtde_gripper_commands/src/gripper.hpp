@@ -7,13 +7,13 @@
 
 namespace ur_ros_rtde_gripper_commands {
 
-// "OnRobot Soft Gripper, user guide": what the largest fingers can do. The URCap's functions take
-// millimetres.
-constexpr double narrowest = 0.011;  // m
-constexpr double widest = 0.075;     // m
-constexpr int last_tool = 3;
+// Range of the largest fingers: "OnRobot Soft Gripper, user guide".
+constexpr double min_width = 0.011;  // m
+constexpr double max_width = 0.075;  // m
+constexpr int max_tool_index = 3;
+constexpr double millimeters = 1000.0;  // per meter: the functions of the URCap take millimeters
 
-inline ur_ros_rtde::ScriptExtension gripper_script(std::string snippet)
+inline ur_ros_rtde::ScriptExtension make_extension(std::string snippet)
 {
   return {.snippet = std::move(snippet),
           .urcap = "the OnRobot URCap",
@@ -22,12 +22,12 @@ inline ur_ros_rtde::ScriptExtension gripper_script(std::string snippet)
 
 inline void check_width(ur_ros_rtde::Check & check, double width)
 {
-  check.in_range("target_width", width, narrowest, widest, "m");
+  check.in_range("target_width", width, min_width, max_width, "m");
 }
 
-inline void check_tool(ur_ros_rtde::Check & check, int index)
+inline void check_tool_index(ur_ros_rtde::Check & check, int index)
 {
-  check.in_range("tool_index", index, 0, last_tool);
+  check.in_range("tool_index", index, 0, max_tool_index);
 }
 
 }  // namespace ur_ros_rtde_gripper_commands

@@ -8,19 +8,19 @@ namespace ur_ros_rtde_gripper_commands {
 class SgGetWidth : public ur_ros_rtde::Extension<action::SgGetWidth> {
   ur_ros_rtde::ScriptExtension script() const override
   {
-    return gripper_script("$out19f(get_sg_Width($in19i))");
+    return make_extension("$out19f(get_sg_Width($in19i))");
   }
 
   void check(const Goal & goal, ur_ros_rtde::Check & check) const override
   {
-    check_tool(check, goal.tool_index);
+    check_tool_index(check, goal.tool_index);
   }
 
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
     run.registers().set_int(19, goal.tool_index);
     auto outcome = run.trigger(2.0);
-    run.result().width = run.registers().get_double(19) / 1000.0;
+    run.result().width = run.registers().get_double(19) / millimeters;
     return outcome;
   }
 };

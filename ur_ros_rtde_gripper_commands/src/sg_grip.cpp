@@ -8,7 +8,7 @@ namespace ur_ros_rtde_gripper_commands {
 class SgGrip : public ur_ros_rtde::Extension<action::SgGrip> {
   ur_ros_rtde::ScriptExtension script() const override
   {
-    return gripper_script(R"(
+    return make_extension(R"(
       sg_grip($in19f, $in19i == 1, $in20i, True, $in21i == 1)
       $out19f(get_sg_Width($in20i))
     )");
@@ -17,18 +17,18 @@ class SgGrip : public ur_ros_rtde::Extension<action::SgGrip> {
   void check(const Goal & goal, ur_ros_rtde::Check & check) const override
   {
     check_width(check, goal.target_width);
-    check_tool(check, goal.tool_index);
+    check_tool_index(check, goal.tool_index);
     check.above_zero("timeout", goal.timeout, 60.0, "s");
   }
 
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
-    run.registers().set_double(19, 1000.0 * goal.target_width);
+    run.registers().set_double(19, millimeters * goal.target_width);
     run.registers().set_int(19, goal.gentle);
     run.registers().set_int(20, goal.tool_index);
     run.registers().set_int(21, goal.depth_compensation);
     auto outcome = run.trigger(goal.timeout);
-    run.result().width = run.registers().get_double(19) / 1000.0;
+    run.result().width = run.registers().get_double(19) / millimeters;
     return outcome;
   }
 };

@@ -1,4 +1,4 @@
-"""The soft gripper, by the functions of its URCap, on the simulator's stand-in for it."""
+"""Tests the soft gripper commands with the simulated URCap."""
 
 import pytest
 from robot_fixtures import make_ready
@@ -10,7 +10,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 
 @pytest.fixture
 def gripper(simulator, robot):
-    """Open, with nothing between its fingers."""
+    """The client of a robot whose gripper is open and holds nothing."""
     simulator.control("gripper", stuck=False, object=0.0)
     robot.send(SgRelease, "sg_release", target_width=0.075).succeeded()
     return robot
@@ -20,18 +20,18 @@ def width(simulator):
     return simulator.control("gripper")["width"] / 1000.0
 
 
-def test_it_closes_to_the_width_it_is_told(gripper, simulator):
+def test_closes_to_the_target_width(gripper, simulator):
     result = gripper.send(SgGrip, "sg_grip", target_width=0.03).succeeded()
     assert result.width == pytest.approx(0.03, abs=0.0005) and width(simulator) == pytest.approx(0.03, abs=0.0005)
 
 
-def test_it_stops_at_what_it_holds(gripper, simulator):
+def test_stops_at_the_held_object(gripper, simulator):
     simulator.control("gripper", object=42.0)
     result = gripper.send(SgGrip, "sg_grip", target_width=0.02, gentle=True).succeeded()
     assert result.width == pytest.approx(0.042, abs=0.0005)
 
 
-def test_it_opens_and_says_how_wide(gripper):
+def test_opens_and_reports_the_width(gripper):
     gripper.send(SgGrip, "sg_grip", target_width=0.02).succeeded()
     assert gripper.send(SgRelease, "sg_release", target_width=0.05).succeeded().width == pytest.approx(0.05, abs=0.0005)
     assert gripper.send(SgGetWidth, "sg_get_width").succeeded().width == pytest.approx(0.05, abs=0.0005)
@@ -44,14 +44,14 @@ def test_it_opens_and_says_how_wide(gripper):
     ({"target_width": 0.03, "tool_index": 4}, ["tool_index is 4", "3"]),
     ({"target_width": 0.03, "timeout": 0.0}, ["timeout is 0"]),
 ])
-def test_what_it_cannot_do_is_refused_with_the_limit(gripper, fields, mentions):
+def test_a_value_out_of_range_is_refused_with_the_limit(gripper, fields, mentions):
     goal = gripper.send(SgGrip, "sg_grip", **fields)
     assert not goal.accepted
     refusal = gripper.refusal(goal)
     assert refusal.error_code == ErrorCode.INVALID_GOAL and all(part in refusal.message for part in mentions), refusal.message
 
 
-def test_a_gripper_that_never_finishes_ends_the_goal_and_leaves_the_driver_working(gripper, simulator):
+def test_a_stuck_gripper_times_out_and_the_driver_stays_ready(gripper, simulator):
     simulator.control("gripper", stuck=True)
     result = gripper.send(SgGrip, "sg_grip", target_width=0.02, timeout=1.0).result()
     assert not result.success and result.error_code == ErrorCode.TIMEOUT, result.message
@@ -60,7 +60,7 @@ def test_a_gripper_that_never_finishes_ends_the_goal_and_leaves_the_driver_worki
     gripper.send(SgRelease, "sg_release", target_width=0.06).succeeded()
 
 
-def test_cancel_ends_the_goal_and_leaves_the_driver_working(gripper, simulator):
+def test_cancel_ends_the_goal_and_the_driver_stays_ready(gripper, simulator):
     simulator.control("gripper", stuck=True)
     goal = gripper.send(SgGrip, "sg_grip", target_width=0.02, timeout=30.0)
     wait_for(lambda: simulator.control("gripper")["busy"], 10.0, "the gripper to begin")
@@ -70,7 +70,7 @@ def test_cancel_ends_the_goal_and_leaves_the_driver_working(gripper, simulator):
     make_ready(gripper, 10.0)
 
 
-def test_a_robot_without_the_urcap_says_so_and_goes_on_without_the_gripper(client, addresses):
+def test_a_robot_without_the_urcap_refuses_gripper_commands_and_stays_ready(client, addresses):
     bare = Simulator(addresses[1], urcap=None)
     driver = node("driver", bare.address, "ur_type:=ur10e", namespace="bare")
     other = Client("bare")
@@ -82,10 +82,10 @@ def test_a_robot_without_the_urcap_says_so_and_goes_on_without_the_gripper(clien
         refusal = other.refusal(goal)
         assert refusal.error_code == ErrorCode.NOT_SUPPORTED, refusal.message
         assert "get_sg_Width" in refusal.message and "install the OnRobot URCap" in refusal.message, refusal.message
-        told = [line for line in start if "OnRobot" in line]
-        assert len(told) == 1 and "INFO" in told[0], driver.output()
-        assert all(name in told[0] for name in ("sg_get_width", "sg_grip", "sg_release")), told
-        # A goal of make_ready() may come before the robot is ready, and be refused.
+        reported = [line for line in start if "OnRobot" in line]
+        assert len(reported) == 1 and "INFO" in reported[0], driver.output()
+        assert all(name in reported[0] for name in ("sg_get_width", "sg_grip", "sg_release")), reported
+        # Goals of make_ready() may be refused because the robot is not ready yet.
         assert not [line for line in start if "ERROR" in line or ("WARN" in line and "refused: starting" not in line)], start
     finally:
         other.close()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""t02: read the robot's state from its topics: height of the tool and force along its axis, once a second, ten times.
+"""t02: reads the state of the robot from its topics. Prints the height of the tool and the force along its axis ten times.
 
 ros2 run ur_ros_rtde_tutorials t02_read_the_state.py
 """
@@ -13,7 +13,7 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 
 
-class Watch(Node):
+class StateListener(Node):
     def __init__(self):
         super().__init__("t02_read_the_state")
         self.height = self.force = None
@@ -31,10 +31,10 @@ class Watch(Node):
 
 def main():
     rclpy.init()
-    node = Watch()
+    node = StateListener()
     lines = 0
-    next_line, give_up = time.monotonic() + 1.0, time.monotonic() + 20.0
-    while lines < 10 and time.monotonic() < give_up:
+    next_line, deadline = time.monotonic() + 1.0, time.monotonic() + 20.0
+    while lines < 10 and time.monotonic() < deadline:
         rclpy.spin_once(node, timeout_sec=0.1)
         if time.monotonic() >= next_line and None not in (node.height, node.force):
             next_line += 1.0
@@ -44,7 +44,7 @@ def main():
     node.destroy_node()
     rclpy.try_shutdown()
     if lines == 0:
-        print("nothing was published: does robot_state_receiver run, and has it a robot?")
+        print("no messages received: check that robot_state_receiver is running and connected to a robot")
     return 0 if lines == 10 else 1
 
 

@@ -26,7 +26,7 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
   Outcome run(const Goal & goal, Run & run) override
   {
     run.control()->zeroFtSensor();
-    if (auto why = run.sleep_for(20ms)) {  // the next packages tell the force since then
+    if (auto why = run.sleep_for(20ms)) {  // until RTDE packages contain the zeroed force
       return *why;
     }
     auto goal_pose = run.receive()->getActualTCPPose();
@@ -35,23 +35,23 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
     run.control()->moveL(goal_pose, goal.speed, goal.acceleration, true);
     while (true) {
       auto f = run.flange_force();
-      tell(goal, run, f[2], start);
+      report(goal, run, f[2], start);
       if (std::abs(f[2]) > goal.force) {
         run.control()->stopJ(goal.deceleration, true);
         break;
       }
       if (run.motion_ended()) {
-        return missed(goal, run);
+        return end_of_motion(goal, run);
       }
       if (auto why = run.sleep_for(2ms)) {
         return *why;
       }
     }
-    return standstill(goal, run, start);
+    return wait_for_standstill(goal, run, start);
   }
 
-  /// Feedback, and what the result says if the goal ends here.
-  static void tell(const Goal & goal, Run & run, double force, double start)
+  /// Publishes the feedback and stores the same values in the result.
+  static void report(const Goal & goal, Run & run, double force, double start)
   {
     const double distance = start - run.state().actual_tcp_pose[2];
     run.feedback().force = run.result().force = force;
@@ -59,23 +59,23 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
     run.progress(std::clamp(distance / goal.distance, 0.0, 1.0));
   }
 
-  static Outcome missed(const Goal & goal, Run & run)
+  static Outcome end_of_motion(const Goal & goal, Run & run)
   {
     if (Outcome ended = run.until_motion_ends(); !ended) {
-      return ended;  // it had not even begun
+      return ended;  // the motion failed, or never started
     }
     return Outcome::failure(ErrorCode::not_reached,
-                            fmt::format("no force above {} N on {} m downwards", goal.force, goal.distance));
+                            fmt::format("no force above {} N within {} m downwards", goal.force, goal.distance));
   }
 
-  static Outcome standstill(const Goal & goal, Run & run, double start)
+  static Outcome wait_for_standstill(const Goal & goal, Run & run, double start)
   {
     const double force = run.result().force;
     const double stop = run.state().controller_time;
     if (auto why = run.until_standstill()) {
       return *why;
     }
-    tell(goal, run, force, start);
+    report(goal, run, force, start);
     run.result().stopping_time = run.state().controller_time - stop;
     return Outcome::success(
         fmt::format("stopped by {:.1f} N along the flange's Z axis, {:.3f} m further down", force,

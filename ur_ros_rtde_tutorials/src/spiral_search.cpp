@@ -6,8 +6,8 @@
 namespace ur_ros_rtde_tutorials {
 
 class SpiralSearch : public ur_ros_rtde::Extension<action::SpiralSearch> {
-  // Runs on the controller. Where it is on the spiral grows by the way of one cycle; the speed is that along
-  // the spiral, reached in the first second.
+  // Runs on the controller. The angle grows in each control cycle by the distance along the spiral. The speed
+  // increases linearly in the first second.
   ur_ros_rtde::ScriptExtension script() const override
   {
     return {.snippet = R"(
@@ -16,26 +16,26 @@ class SpiralSearch : public ur_ros_rtde::Extension<action::SpiralSearch> {
       speed = $in21f
       force = $in22f
       start = get_target_tcp_pose()
-      at_rest = get_tcp_force()
+      initial_force = get_tcp_force()
       cycle = get_steptime()
       angle = 0.0
       time = 0.0
-      felt = 0.0
-      while pitch * angle < radius and felt < force:
+      contact_force = 0.0
+      while pitch * angle < radius and contact_force < force:
         time = time + cycle
         if time < 1.0:
-          way = speed * time * cycle
+          distance = speed * time * cycle
         else:
-          way = speed * cycle
+          distance = speed * cycle
         end
-        angle = angle + way / (pitch * sqrt(1 + angle * angle))
+        angle = angle + distance / (pitch * sqrt(1 + angle * angle))
         offset = p[pitch * angle * cos(angle), pitch * angle * sin(angle), 0, 0, 0, 0]
         servoj(get_inverse_kin(pose_trans(start, offset)), 0, 0, cycle, 0.05, 300)
         now = get_tcp_force()
-        felt = norm([now[0] - at_rest[0], now[1] - at_rest[1], now[2] - at_rest[2]])
+        contact_force = norm([now[0] - initial_force[0], now[1] - initial_force[1], now[2] - initial_force[2]])
       end
       stopj(2)
-      $out19i(felt >= force)
+      $out19i(contact_force >= force)
       $out19f(pitch * angle)
     )"};
   }
@@ -63,7 +63,7 @@ class SpiralSearch : public ur_ros_rtde::Extension<action::SpiralSearch> {
                ? ur_ros_rtde::Outcome::success()
                : ur_ros_rtde::Outcome::failure(
                      ur_ros_rtde::ErrorCode::not_reached,
-                     "nothing was met: search in another place, or further (radius)");
+                     "no contact within radius: start at another place, or increase radius");
   }
 };
 

@@ -1,4 +1,4 @@
-"""The examples do what they say."""
+"""Runs the examples."""
 
 import os
 import signal
@@ -29,7 +29,7 @@ def running():
     ("t02_read_the_state.py", 60.0, "force along the tool"),
     ("t03_cancel_a_goal.py", 60.0, "canceled: "),
 ])
-def test_the_example_does_what_it_says(running, name, limit, text):
+def test_the_example_succeeds(running, name, limit, text):
     example = Process([program("ur_ros_rtde_tutorials", name)])
     assert example.wait(limit) == 0, example.output()
     assert text in example.output()
@@ -46,7 +46,7 @@ def test_a_signal_cancels_the_goal_of_the_example(running, name, number):
     assert "Traceback" not in example.output()
 
 
-def test_the_example_cancels_its_goal_when_nobody_reads_its_output(running, tmp_path):
+def test_a_closed_output_cancels_the_goal_of_the_example(running, tmp_path):
     errors = tmp_path / "errors"
     with errors.open("w") as file:
         example = subprocess.Popen([program("ur_ros_rtde_tutorials", "t01_send_a_goal.py")], stdout=subprocess.PIPE, stderr=file)

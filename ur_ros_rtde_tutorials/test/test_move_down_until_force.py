@@ -1,4 +1,4 @@
-"""The plugin of this package, loaded by the driver from its own package, on the simulator."""
+"""Tests move_down_until_force, which the driver loads from this package, on the simulated robot."""
 
 import pytest
 from action_msgs.msg import GoalStatus
@@ -17,7 +17,7 @@ def down(client, **fields):
     return client.send(MoveDownUntilForce, "move_down_until_force", **fields)
 
 
-def test_a_surface_stops_it(robot, simulator):
+def test_a_surface_stops_the_motion(robot, simulator):
     start = height(simulator)
     simulator.control("place_surface", z=start - 0.1, stiffness=15000.0, damping=80.0)
     goal = down(robot)
@@ -36,7 +36,7 @@ def test_a_surface_stops_it(robot, simulator):
 
 
 @pytest.mark.parametrize("axis", ["x", "y"])
-def test_pushes_from_the_side_are_ignored(robot, simulator, axis):
+def test_lateral_forces_are_ignored(robot, simulator, axis):
     wrenches = robot.listen(WrenchStamped, "wrench")
     goal = down(robot, distance=0.1)
     wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.01, 10.0, "the arm to go down")
@@ -49,7 +49,7 @@ def test_pushes_from_the_side_are_ignored(robot, simulator, axis):
     assert result.distance == pytest.approx(0.1, abs=0.003)
 
 
-def test_a_push_along_the_axis_stops_it(robot, simulator):
+def test_a_force_along_the_axis_stops_the_motion(robot, simulator):
     goal = down(robot, distance=0.3)
     wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.01, 10.0, "the arm to go down")
     simulator.control("push", wrench=[0.0, 0.0, -30.0, 0.0, 0.0, 0.0], duration=0.4, frame="tool")
@@ -57,14 +57,14 @@ def test_a_push_along_the_axis_stops_it(robot, simulator):
     assert result.force < -20.0 and result.distance < 0.2
 
 
-def test_without_contact_it_ends_as_not_reached(robot, simulator):
+def test_fails_with_not_reached_without_contact(robot, simulator):
     status, result = down(robot, distance=0.05).end()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED
     assert "20 N" in result.message and "0.05 m" in result.message
     assert simulator.stands_still()
 
 
-def test_a_force_that_is_there_at_the_start_is_zeroed(robot, simulator):
+def test_the_sensor_is_zeroed_at_the_start(robot, simulator):
     simulator.control("attach_load", mass=3.0)
     try:
         wait_for(lambda: abs(simulator.state()["actual_tcp_force"][2]) > 20.0, 5.0, "the load to be felt")
@@ -73,7 +73,7 @@ def test_a_force_that_is_there_at_the_start_is_zeroed(robot, simulator):
         simulator.control("attach_load", mass=0.0)
 
 
-def test_cancel_decelerates(robot, simulator):
+def test_cancel_decelerates_to_standstill(robot, simulator):
     goal = down(robot, distance=0.3)
     wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.02, 10.0, "the arm to go down")
     goal.cancel()
@@ -84,7 +84,7 @@ def test_cancel_decelerates(robot, simulator):
 
 @pytest.mark.parametrize("field, value", [("force", 0.0), ("distance", 0.0), ("speed", 2.0), ("acceleration", float("nan")),
                                           ("deceleration", 0.0)])
-def test_a_bad_goal_is_refused(robot, field, value):
+def test_an_invalid_goal_is_refused(robot, field, value):
     goal = down(robot, **{field: value})
     assert not goal.accepted
     refusal = robot.refusal(goal)

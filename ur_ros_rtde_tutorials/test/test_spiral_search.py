@@ -1,4 +1,4 @@
-"""The extension of this package: a loop on the controller, on the simulator."""
+"""Tests spiral_search, an extension of the control script, on the simulated robot."""
 
 import math
 
@@ -19,7 +19,7 @@ def position(simulator):
     return simulator.state()["actual_tcp_pose"][:3]
 
 
-def test_it_stops_at_the_wall_it_meets(robot, simulator):
+def test_a_wall_stops_the_search(robot, simulator):
     start = position(simulator)
     simulator.control("place_surface", point=[start[0] - 0.008, 0.0, 0.0], normal=[1, 0, 0])
     result = search(robot).succeeded(60.0)
@@ -28,14 +28,14 @@ def test_it_stops_at_the_wall_it_meets(robot, simulator):
     assert result.distance == pytest.approx(math.dist(start, end), abs=0.004)
 
 
-def test_it_says_that_nothing_was_met_and_has_gone_no_further_than_the_radius(robot, simulator):
+def test_fails_with_not_reached_within_the_radius_without_contact(robot, simulator):
     start = position(simulator)
     result = search(robot, radius=0.01).result(60.0)
     assert not result.success and result.error_code == ErrorCode.NOT_REACHED, result.message
     assert math.dist(start, position(simulator)) < 0.013
 
 
-def test_cancel_ends_the_loop_on_the_controller_and_the_arm_stands_still(robot, simulator):
+def test_cancel_ends_the_loop_on_the_controller_and_stops_the_arm(robot, simulator):
     goal = search(robot, radius=0.05)
     wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the search to begin")
     goal.cancel()
@@ -45,7 +45,7 @@ def test_cancel_ends_the_loop_on_the_controller_and_the_arm_stands_still(robot, 
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0).succeeded()
 
 
-def test_a_protective_stop_ends_it_with_its_own_code(robot, simulator):
+def test_a_protective_stop_aborts_with_its_error_code(robot, simulator):
     goal = search(robot, radius=0.05)
     wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the search to begin")
     simulator.control("protective_stop", reason="of the test")
