@@ -61,7 +61,7 @@ def _unknown(command: str) -> CliError:
         return CliError(f"`ur {command}` needs the sources: run `./ur {command}` in a checkout of ur_ros_rtde, or "
                         f"`ur {command}` in its `./ur shell`")
     close = difflib.get_close_matches(command, (*COMMANDS, *CHECKOUT_COMMANDS), 1)
-    return CliError(f"there is no command {command}" + (f"; did you mean {close[0]}?" if close else "")
+    return CliError(f"there is no command {command}" + (f"; did you mean {close[0]}?" if close else ".")
                     + f" The commands are: {', '.join(COMMANDS)}")
 
 

@@ -11,7 +11,7 @@ namespace ur_ros_rtde_gripper_commands {
 constexpr double min_width = 0.011;  // m
 constexpr double max_width = 0.075;  // m
 constexpr int max_tool_index = 3;
-constexpr double millimeters = 1000.0;  // per meter: the functions of the URCap take millimeters
+constexpr double millimeters_per_meter = 1000.0;  // the functions of the URCap take millimeters
 
 inline ur_ros_rtde::ScriptExtension make_extension(std::string snippet)
 {

@@ -20,7 +20,7 @@ class SgGetWidth : public ur_ros_rtde::Extension<action::SgGetWidth> {
   {
     run.registers().set_int(19, goal.tool_index);
     auto outcome = run.trigger(2.0);
-    run.result().width = run.registers().get_double(19) / millimeters;
+    run.result().width = run.registers().get_double(19) / millimeters_per_meter;
     return outcome;
   }
 };

@@ -23,11 +23,11 @@ class SgRelease : public ur_ros_rtde::Extension<action::SgRelease> {
 
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
-    run.registers().set_double(19, millimeters * goal.target_width);
+    run.registers().set_double(19, millimeters_per_meter * goal.target_width);
     run.registers().set_int(19, goal.tool_index);
     run.registers().set_int(20, goal.depth_compensation);
     auto outcome = run.trigger(goal.timeout);
-    run.result().width = run.registers().get_double(19) / millimeters;
+    run.result().width = run.registers().get_double(19) / millimeters_per_meter;
     return outcome;
   }
 };

@@ -37,7 +37,7 @@ def cancel_on_signals():
 
 
 def wait_for_result(node, handle, seconds):
-    """Waits for the result. Cancels the goal after a signal or after `seconds`; the arm then decelerates before the result arrives."""
+    """Waits for the result. Cancels the goal after a signal or after `seconds`. The result then arrives at standstill."""
     result = handle.get_result_async()
     end = time.monotonic() + seconds
     while not result.done() and not signals and time.monotonic() < end:

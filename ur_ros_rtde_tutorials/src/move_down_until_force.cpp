@@ -64,8 +64,8 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
     if (Outcome ended = run.until_motion_ends(); !ended) {
       return ended;  // the motion failed, or never started
     }
-    return Outcome::failure(ErrorCode::not_reached,
-                            fmt::format("no force above {} N within {} m downwards", goal.force, goal.distance));
+    return Outcome::failure(ErrorCode::not_reached, fmt::format("no force above {} N within {} m downwards",
+                                                                goal.force, goal.distance));
   }
 
   static Outcome wait_for_standstill(const Goal & goal, Run & run, double start)
