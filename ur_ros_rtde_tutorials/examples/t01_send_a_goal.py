@@ -10,9 +10,9 @@ import math
 import os
 import signal
 import sys
-import time
 
 import rclpy
+from goal_client import cancel_on_signals, received_signals, wait_for, wait_for_result
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -21,40 +21,11 @@ from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.srv import GetJointState
 
 
-signals = []  # received signals that end this program
-
-
-def wait(node, future, seconds, what):
-    rclpy.spin_until_future_complete(node, future, timeout_sec=seconds)
-    if not future.done():
-        raise SystemExit(f"no {what} within {seconds} s: check that the nodes are running")
-    return future.result()
-
-
-def cancel_on_signals():
-    """Stores signals in `signals`. The handlers of rclpy would close the connection to the driver instead."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, lambda number, _: signals.append(number))
-
-
-def wait_for_result(node, handle, seconds):
-    """Waits for the result. Cancels the goal after a signal or after `seconds`. The result then arrives at standstill."""
-    result = handle.get_result_async()
-    end = time.monotonic() + seconds
-    while not result.done() and not signals and time.monotonic() < end:
-        rclpy.spin_once(node, timeout_sec=0.05)
-    if not result.done():
-        for number in signals:
-            signal.signal(number, signal.SIG_DFL)  # a second signal ends the program at once
-        handle.cancel_goal_async()
-    return wait(node, result, 10.0, "result of the canceled goal")
-
-
 def show_progress(message):
     try:
         print(f"\r{100 * message.feedback.motion.progress:5.1f} %", end="", flush=True)
     except BrokenPipeError:  # the output was closed
-        signals.append(signal.SIGPIPE)
+        received_signals.append(signal.SIGPIPE)
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -66,7 +37,7 @@ def main():
     state = node.create_client(GetJointState, "get_joint_state")
     if not state.wait_for_service(timeout_sec=10.0):
         raise SystemExit("robot_state_receiver is not running: start the driver first")
-    response = wait(node, state.call_async(GetJointState.Request()), 5.0, "response of get_joint_state")
+    response = wait_for(node, state.call_async(GetJointState.Request()), 5.0, "response of get_joint_state")
     if not response.success:
         raise SystemExit(response.message)
 
@@ -77,7 +48,7 @@ def main():
     if not client.wait_for_server(timeout_sec=10.0):
         raise SystemExit("command_server is not running: start the driver first")
     cancel_on_signals()
-    handle = wait(node, client.send_goal_async(goal, feedback_callback=show_progress), 10.0, "response to the goal")
+    handle = wait_for(node, client.send_goal_async(goal, feedback_callback=show_progress), 10.0, "response to the goal")
     if not handle.accepted:
         raise SystemExit("refused: see the log of command_server or the topic goal_refusals for the reason")
     result = wait_for_result(node, handle, 60.0).result
@@ -85,7 +56,7 @@ def main():
 
     node.destroy_node()
     rclpy.try_shutdown()
-    return 128 + signals[0] if signals else 0 if result.success else 1
+    return 128 + received_signals[0] if received_signals else 0 if result.success else 1
 
 
 if __name__ == "__main__":
