@@ -10,13 +10,13 @@ from launch.events.process import ShutdownProcess
 from launch_ros.actions import Node
 from launch_ros.substitutions import ExecutableInPackage
 from ur_ros_rtde.launch_arguments import DRIVER, NODES, PARAMETERS, DEFAULT_SIMULATED_MODEL, ArgumentError, write_parameters
-from ur_ros_rtde.launch_support import describe
+from ur_ros_rtde.launch_support import make_launch_description
 
 DEFAULTS = {argument.name: argument.default for argument in DRIVER}
 
 
 def generate_launch_description():
-    return describe("driver.launch.py", DRIVER, start)
+    return make_launch_description("driver.launch.py", DRIVER, start)
 
 
 def start(_context, given):

@@ -14,7 +14,7 @@ from launch_ros.actions import Node, SetRemap
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 from ur_ros_rtde.launch_arguments import MOVEIT, UNSUPPORTED_BY_MOVEIT, ArgumentError
-from ur_ros_rtde.launch_support import describe
+from ur_ros_rtde.launch_support import make_launch_description
 
 # Packages that the launch files of ur_moveit_config need besides RViz. xacro generates the robot_description.
 PACKAGES = ("moveit_ros_move_group", "moveit_simple_controller_manager", "robot_state_publisher", "ur_description",
@@ -24,7 +24,8 @@ ACTION_INTERFACES = ("cancel_goal", "feedback", "get_result", "send_goal", "stat
 
 
 def generate_launch_description():
-    return describe("moveit.launch.py", MOVEIT, start, [included("ur_ros_rtde", "driver.launch.py")], UNSUPPORTED_BY_MOVEIT)
+    driver = included("ur_ros_rtde", "driver.launch.py")
+    return make_launch_description("moveit.launch.py", MOVEIT, start, [driver], UNSUPPORTED_BY_MOVEIT)
 
 
 def start(_context, given):

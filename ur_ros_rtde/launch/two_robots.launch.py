@@ -5,11 +5,11 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
 from ur_ros_rtde.launch_arguments import PER_ROBOT, SIDES, TWO_ROBOTS, UNIQUE, ArgumentError
-from ur_ros_rtde.launch_support import describe
+from ur_ros_rtde.launch_support import make_launch_description
 
 
 def generate_launch_description():
-    return describe("two_robots.launch.py", TWO_ROBOTS, check, [robot(side) for side in SIDES], PER_ROBOT)
+    return make_launch_description("two_robots.launch.py", TWO_ROBOTS, check, [robot(side) for side in SIDES], PER_ROBOT)
 
 
 def check(context, given):

@@ -14,8 +14,8 @@ Start = Callable[[LaunchContext, Dict[str, Any]], Sequence[LaunchDescriptionEnti
 LAUNCH_OWN = {"launch-prefix", "launch-prefix-filter"}
 
 
-def describe(launch_file: str, arguments: Sequence[Argument], start: Start, entities: Iterable[LaunchDescriptionEntity] = (),
-             replaced: Collection[str] = ()) -> LaunchDescription:
+def make_launch_description(launch_file: str, arguments: Sequence[Argument], start: Start,
+                            entities: Iterable[LaunchDescriptionEntity] = (), replaced: Collection[str] = ()) -> LaunchDescription:
     """Returns a description that checks and declares the arguments, and then executes the entities.
 
     `start` receives the values of the given arguments and returns further entities, which are executed before `entities`.

@@ -106,5 +106,5 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path, content, expected):
 
 def test_shown_messages_can_be_read_again():
     goal = ForceMode.Goal(compliant=[True, False, True, False, False, False])
-    assert read(fields.show(goal), ForceMode.Goal()) == goal
-    assert "\n" not in fields.show_in_one_line(goal) and read(fields.show_in_one_line(goal), ForceMode.Goal()) == goal
+    assert read(fields.to_yaml(goal), ForceMode.Goal()) == goal
+    assert "\n" not in fields.to_yaml_line(goal) and read(fields.to_yaml_line(goal), ForceMode.Goal()) == goal

@@ -38,7 +38,7 @@ class FeedbackDisplay:
         if self._terminal:
             self._rewrite(self._screen(message.feedback, now - self._start))
         else:
-            write(f"{now - self._start:.1f} s  {fields.show_in_one_line(message.feedback)}\n")
+            write(f"{now - self._start:.1f} s  {fields.to_yaml_line(message.feedback)}\n")
 
     def clear(self) -> None:
         self._rewrite([])
@@ -60,5 +60,5 @@ class FeedbackDisplay:
             header = f"[{'#' * filled}{'.' * (BAR_WIDTH - filled)}] {100 * progress:3.0f} % {header}"
         lines = [header]
         if feedback.get_fields_and_field_types():
-            lines += fields.show(feedback, width=size.columns).splitlines()
+            lines += fields.to_yaml(feedback, width=size.columns).splitlines()
         return [line[:size.columns - 1] for line in lines[:max(size.lines - 1, 1)]]

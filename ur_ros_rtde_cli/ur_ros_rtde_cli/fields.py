@@ -120,14 +120,14 @@ def _line(node: Any, path: Path) -> int:
     return line + 1
 
 
-def _name(path: Path) -> str:
+def _field_name(path: Path) -> str:
     """Returns "waypoints[0].speed" for ("waypoints", 0, "speed")."""
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
     return text.lstrip(".") or "the goal"
 
 
 def _not_a_mapping(path: Path, values: Any) -> str:
-    return f"{_name(path)} is {_abbreviated(values)}: expected a mapping of fields"
+    return f"{_field_name(path)} is {_abbreviated(values)}: expected a mapping of fields"
 
 
 def fill(message: Any, values: Any, path: Path = ()) -> None:
@@ -140,11 +140,11 @@ def fill(message: Any, values: Any, path: Path = ()) -> None:
         if name not in types:
             close = difflib.get_close_matches(str(name), types, 1)
             hint = f"; did you mean {close[0]}?" if close else "."
-            raise FieldError(own, f"there is no field {_name(own)}{hint} The fields are: {_joined(types)}")
+            raise FieldError(own, f"there is no field {_field_name(own)}{hint} The fields are: {_joined(types)}")
         try:
-            setattr(message, name, _value(types[name], getattr(message, name), value, own))
+            setattr(message, name, _convert(types[name], getattr(message, name), value, own))
         except (AssertionError, TypeError, ValueError, OverflowError) as error:
-            raise FieldError(own, f"{_name(own)} is {_abbreviated(value)}: expected {_expected(types[name])} "
+            raise FieldError(own, f"{_field_name(own)} is {_abbreviated(value)}: expected {_expected(types[name])} "
                              f"({' '.join(str(error).split())})") from None
 
 
@@ -196,15 +196,15 @@ def _integer_bounds(kind: Any) -> Any:
     return (0, 2**bits - 1) if match.group(1) else (-2**(bits - 1), 2**(bits - 1) - 1)
 
 
-def _value(kind: Any, old: Any, value: Any, path: Path) -> Any:
+def _convert(kind: Any, old: Any, value: Any, path: Path) -> Any:
     """Converts a YAML value for a field of the type `kind` whose current value is `old`."""
     if isinstance(kind, idl.NamespacedType):
         fill(old, value, path)
         return old
     if isinstance(kind, idl.AbstractNestedType):
-        return _sequence(kind, value, path)
+        return _convert_sequence(kind, value, path)
     if _is_float(kind):
-        number = _float(value)
+        number = _to_float(value)
         if number is not None:
             return number
     elif isinstance(kind, idl.AbstractGenericString):
@@ -212,7 +212,7 @@ def _value(kind: Any, old: Any, value: Any, path: Path) -> Any:
         if isinstance(value, str) and (limit is None or len(value) <= limit):
             return value
         if isinstance(value, (bool, int, float)):
-            raise FieldError(path, f"{_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}; put it in quotes")
+            raise FieldError(path, f"{_field_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}; put it in quotes")
     elif kind.typename == idl.BOOLEAN_TYPE:
         if isinstance(value, bool):
             return value
@@ -222,17 +222,17 @@ def _value(kind: Any, old: Any, value: Any, path: Path) -> Any:
             return value  # checked by the message on assignment
         if isinstance(value, int) and not isinstance(value, bool) and bounds[0] <= value <= bounds[1]:
             return bytes([value]) if kind.typename == idl.OCTET_TYPE else value
-    raise FieldError(path, f"{_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}")
+    raise FieldError(path, f"{_field_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}")
 
 
-def _float(value: Any) -> Any:
+def _to_float(value: Any) -> Any:
     """Returns None if the value is not a number."""
     if isinstance(value, str) and _NUMBER.fullmatch(value):
         return float(value.replace(".nan", "nan").replace(".inf", "inf"))
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
 
 
-def _sequence(kind: Any, value: Any, path: Path) -> Any:
+def _convert_sequence(kind: Any, value: Any, path: Path) -> Any:
     wrong = not isinstance(value, list)
     if not wrong and isinstance(kind, idl.Array):
         wrong = len(value) != kind.size
@@ -240,26 +240,26 @@ def _sequence(kind: Any, value: Any, path: Path) -> Any:
         wrong = len(value) > kind.maximum_size
     if wrong:
         found = f"has {len(value)} values" if isinstance(value, list) else f"is {_abbreviated(value)}"
-        raise FieldError(path, f"{_name(path)} {found}: expected {_expected(kind)}")
+        raise FieldError(path, f"{_field_name(path)} {found}: expected {_expected(kind)}")
     inner = kind.value_type
     if isinstance(inner, idl.NamespacedType):
-        return [_message(inner, item, (*path, index)) for index, item in enumerate(value)]
-    return [_value(inner, None, item, (*path, index)) for index, item in enumerate(value)]
+        return [_convert_message(inner, item, (*path, index)) for index, item in enumerate(value)]
+    return [_convert(inner, None, item, (*path, index)) for index, item in enumerate(value)]
 
 
-def _message(kind: Any, values: Any, path: Path) -> Any:
+def _convert_message(kind: Any, values: Any, path: Path) -> Any:
     module = importlib.import_module(".".join(kind.namespaces))
     message = getattr(module, kind.name)()
     fill(message, values, path)
     return message
 
 
-def plain(value: Any) -> Any:
+def to_plain(value: Any) -> Any:
     """Converts a message to mappings, lists and scalars."""
     if hasattr(value, "get_fields_and_field_types"):
-        return {name: plain(getattr(value, name)) for name in value.get_fields_and_field_types()}
+        return {name: to_plain(getattr(value, name)) for name in value.get_fields_and_field_types()}
     if isinstance(value, (list, tuple, numpy.ndarray, array.array)):
-        return [plain(item) for item in value]
+        return [to_plain(item) for item in value]
     return value.item() if isinstance(value, numpy.generic) else value
 
 
@@ -271,11 +271,11 @@ def _rounded(value: Any) -> Any:
     return round(value, 6) + 0.0 if isinstance(value, float) else value
 
 
-def show(message: Any, width: int = 120) -> str:
+def to_yaml(message: Any, width: int = 120) -> str:
     """Returns a message as YAML with six decimals."""
-    return yaml.safe_dump(_rounded(plain(message)), sort_keys=False, default_flow_style=None, width=width).rstrip("\n")
+    return yaml.safe_dump(_rounded(to_plain(message)), sort_keys=False, default_flow_style=None, width=width).rstrip("\n")
 
 
-def show_in_one_line(message: Any) -> str:
+def to_yaml_line(message: Any) -> str:
     """Returns a message as YAML in one line with six decimals."""
-    return yaml.safe_dump(_rounded(plain(message)), sort_keys=False, default_flow_style=True, width=float("inf")).rstrip("\n")
+    return yaml.safe_dump(_rounded(to_plain(message)), sort_keys=False, default_flow_style=True, width=float("inf")).rstrip("\n")

@@ -34,7 +34,7 @@ ur_ros_rtde, or with `ur` in its `./ur shell`.
 """
 
 
-def _parser() -> argparse.ArgumentParser:
+def _make_parser() -> argparse.ArgumentParser:
     """Returns the parser for `ur --help`."""
     parser = argparse.ArgumentParser(prog="ur", description=DESCRIPTION, epilog=EPILOG,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -44,7 +44,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _parse(command: str, arguments: List[str]) -> argparse.Namespace:
+def _parse_arguments(command: str, arguments: List[str]) -> argparse.Namespace:
     """Parses the arguments of a command. Imports only its module, because other modules would delay the start."""
     module = importlib.import_module(f"{__package__}.{command}")
     parser = argparse.ArgumentParser(prog=f"ur {command}", description=module.__doc__,
@@ -56,7 +56,7 @@ def _parse(command: str, arguments: List[str]) -> argparse.Namespace:
     return parser.parse_intermixed_args(arguments)
 
 
-def _unknown(command: str) -> CliError:
+def _unknown_command(command: str) -> CliError:
     if command in CHECKOUT_COMMANDS:
         return CliError(f"`ur {command}` needs the sources: run `./ur {command}` in a checkout of ur_ros_rtde, or "
                         f"`ur {command}` in its `./ur shell`")
@@ -65,7 +65,7 @@ def _unknown(command: str) -> CliError:
                     + f" The commands are: {', '.join(COMMANDS)}")
 
 
-def _checkout() -> Optional[pathlib.Path]:
+def _checkout_script() -> Optional[pathlib.Path]:
     """Returns the script `ur` of the checkout if this is its shell."""
     folder = os.environ.get(CHECKOUT_VARIABLE)
     return pathlib.Path(folder, "ur") if folder and pathlib.Path(folder, "ur").is_file() else None
@@ -74,17 +74,17 @@ def _checkout() -> Optional[pathlib.Path]:
 def main(arguments: Optional[List[str]] = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     command = arguments[0] if arguments else ""
-    if command not in COMMANDS and _checkout() is not None:
-        os.execv(str(_checkout()), [str(_checkout()), *arguments])
+    if command not in COMMANDS and _checkout_script() is not None:
+        os.execv(str(_checkout_script()), [str(_checkout_script()), *arguments])
     try:
         if not arguments:
-            _parser().print_help()
+            _make_parser().print_help()
             return 2
         if command.startswith("-"):
-            _parser().parse_args(arguments)
+            _make_parser().parse_args(arguments)
         if command not in COMMANDS:
-            raise _unknown(command)
-        options = _parse(command, arguments[1:])
+            raise _unknown_command(command)
+        options = _parse_arguments(command, arguments[1:])
         if command != "plugins":
             from . import fastdds_profile, lazy_imports  # imported here because --help does not need ROS
             lazy_imports.enable()

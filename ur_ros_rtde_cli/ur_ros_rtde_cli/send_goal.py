@@ -44,7 +44,7 @@ class _ActionConnection:
         """Returns the client and the goal. With --show, the client is None and a server is needed only for unknown types."""
         expected = actions.type_of_plugin(self._options.action.lstrip("/"))
         if expected is not None:
-            action, goal = self._checked(expected)
+            action, goal = self._load_and_fill(expected)
             if self._options.show:
                 return None, goal
         else:
@@ -53,7 +53,7 @@ class _ActionConnection:
         if kind is None:
             raise _server_not_found(self._session, self.name, self._options.action)
         if kind != expected:
-            action, goal = self._checked(kind)
+            action, goal = self._load_and_fill(kind)
         if self._options.show:
             return None, goal
         # A client that is created while the announcements of the server still arrive would be discovered in parts.
@@ -65,7 +65,7 @@ class _ActionConnection:
     def _served_type(self) -> Optional[str]:
         return actions.served(self._session.node).get(self.name)
 
-    def _checked(self, kind: str) -> Tuple[Any, Any]:
+    def _load_and_fill(self, kind: str) -> Tuple[Any, Any]:
         action = actions.load(self.name, kind)
         return action, self._document.fill(action.Goal())
 
@@ -131,7 +131,7 @@ class _Refusals:
 def send_goal(session: Session, options: argparse.Namespace) -> int:
     client, goal = _ActionConnection(session, options).connect()
     if client is None:
-        print(fields.show(goal))
+        print(fields.to_yaml(goal))
         return 0
     refusals = _Refusals(session)
     display = FeedbackDisplay(options.quiet)
@@ -142,7 +142,7 @@ def send_goal(session: Session, options: argparse.Namespace) -> int:
     canceling.accepted(handle)
     response = canceling.wait(handle.get_result_async())
     display.clear()
-    sys.stdout.write(f"{fields.show(response.result)}\n")  # one write: the reader may close the pipe
+    sys.stdout.write(f"{fields.to_yaml(response.result)}\n")  # one write: the reader may close the pipe
     if canceling.reason:
         return canceling.reason.exit_code
     return 0 if response.status == GoalStatus.STATUS_SUCCEEDED else 1
