@@ -66,7 +66,7 @@ std::string in_use(const RobotOptions & options, const std::vector<std::string> 
 
 Error InterfaceLinks::refused(std::string_view what, const std::exception & error) const
 {
-  if (const auto * used = dynamic_cast<const ur_rtde::InputsInUse *>(&error)) {
+  if (const auto * used = dynamic_cast<const ur_rtde::InputsInUseError *>(&error)) {
     return {ErrorCode::robot_in_use, in_use(options_, used->names())};
   }
   return {ErrorCode::not_ready, fmt::format("{}: {}", what, printable(error.what()))};
@@ -297,7 +297,7 @@ bool InterfaceLinks::control_silent() const
 {
   constexpr std::chrono::milliseconds patience(50);
   const auto control = control_pointer();
-  return control && control->getSilence() > patience;
+  return control && control->getTimeSinceHeartbeat() > patience;
 }
 
 void InterfaceLinks::kick_watchdog()

@@ -108,8 +108,9 @@ bool MotionStopper::under_way() const
   const auto started = control->getStartedMotions();
   // A move that was sent but of which nothing has been heard yet is under way, too; one that has ended is
   // not.
-  const bool move_pending = (started & moves) != 0 &&
-                            view.async.word == static_cast<std::uint32_t>(control->getAsyncOperationBefore());
+  const bool move_pending =
+      (started & moves) != 0 &&
+      view.async.word == static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove());
   return move_pending || (started & ~moves) != 0;
 }
 

@@ -45,7 +45,7 @@ std::string missing_function(const ScriptExtension & extension, const std::strin
 std::vector<std::string> ControlScripts::set(const std::vector<ScriptExtension> & extensions)
 {
   const std::lock_guard lock(mutex_);
-  const std::string base = ur_rtde::ScriptClient::controlScript();
+  const std::string base = ur_rtde::ScriptClient::getDefaultScript();
   std::vector<std::string> problems;
   extensions_.clear();
   left_out_.clear();
@@ -86,7 +86,7 @@ std::string ControlScripts::text(const ControllerVersion & version) const
 std::string ControlScripts::program(const ControllerVersion & version) const
 {
   const std::lock_guard lock(mutex_);
-  const auto base = script::compose(ur_rtde::ScriptClient::controlScript(), extensions_);
+  const auto base = script::compose(ur_rtde::ScriptClient::getDefaultScript(), extensions_);
   const auto script = base ? script::for_controller(*base, version.major, version.minor, upper_range_) : base;
   if (!script) {
     throw std::runtime_error(fmt::format("line {}: {}", script.error().line, script.error().message));
@@ -137,7 +137,7 @@ std::optional<ControlScripts::LeftOut> ControlScripts::leave_out(const Controlle
   }
   left_out_[left_out.name] = left_out;
   extensions_.erase(culprit);
-  script_ = script::compose(ur_rtde::ScriptClient::controlScript(), extensions_).value();
+  script_ = script::compose(ur_rtde::ScriptClient::getDefaultScript(), extensions_).value();
   return left_out;
 }
 

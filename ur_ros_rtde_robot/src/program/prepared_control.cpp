@@ -52,7 +52,7 @@ bool InterfaceLinks::prepared_program_lives(std::chrono::milliseconds limit) con
     if (states < states_in_patience) {
       continue;
     }
-    if (control->getSilence() < patience) {
+    if (control->getTimeSinceHeartbeat() < patience) {
       return true;
     }
     if (Clock::now() > deadline) {

@@ -45,7 +45,7 @@ class Binder {
   template <class T, std::size_t N>
   void vector(const char * name, std::array<T, N> Sample::* field)
   {
-    if (const auto * entry = state_.entry(name)) {
+    if (const auto * entry = state_.getEntry(name)) {
       copies_.push_back([entry, field](Sample & sample) {
         const auto * value = boost::get<std::vector<T>>(entry);
         if (value != nullptr && value->size() == N) {
@@ -58,7 +58,7 @@ class Binder {
   template <class Source, class Target>
   void scalar(const std::string & name, Target && target)
   {
-    if (const auto * entry = state_.entry(name)) {
+    if (const auto * entry = state_.getEntry(name)) {
       copies_.push_back([entry, target = std::forward<Target>(target)](Sample & sample) {
         if (const auto * value = boost::get<Source>(entry)) {
           target(sample, *value);

@@ -171,7 +171,7 @@ Clock::time_point StateReceiver::Impl::silent_since(ur_rtde::RobotState & state)
 /// Until the link ends, or it shall.
 Error StateReceiver::Impl::watch(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface)
 {
-  const auto state = interface.robotState();
+  const auto state = interface.getRobotState();
   const auto silence_limit =
       std::max(options_.silence_limit,
                std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
@@ -214,14 +214,14 @@ std::optional<std::string> StateReceiver::Impl::take_failure()
 Error StateReceiver::Impl::follow(const std::stop_token & stop)
 {
   const auto interface = interface_;
-  const auto state = interface->robotState();
+  const auto state = interface->getRobotState();
   const SampleReader reader(state, options_.upper_range_registers ? 24 : 0);
   Sample sample = latest_;
   ++sample.link;
   take(sample, reader);
-  state->onPackage([&] { take(sample, reader); });
+  state->setPackageCallback([&] { take(sample, reader); });
   const Error end = watch(stop, *interface);
-  state->onPackage({});
+  state->setPackageCallback({});
   return end;
 }
 
