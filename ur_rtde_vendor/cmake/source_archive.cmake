@@ -1,7 +1,7 @@
-# source_archive(<url> <out>): path of the archive with ur_rtde's sources.
+# source_archive(<url> <out>)
 #
-# UR_RTDE_ARCHIVE, a CMake or environment variable, names an archive on this machine; nothing is downloaded then. Otherwise the
-# archive is downloaded into the build folder, once. What is in it is verified by patched_source().
+# Returns the path of the archive with ur_rtde's sources: that of the CMake or environment variable UR_RTDE_ARCHIVE if it is
+# set, otherwise that of a file which is downloaded to the build folder once. patched_source() verifies the contents.
 
 function(_download url archive)
   set(part "${archive}.part")
@@ -18,7 +18,7 @@ function(_download url archive)
   endforeach()
   list(GET result 1 reason)
   message(FATAL_ERROR "ur_rtde's sources cannot be downloaded from\n  ${url}\n${reason}.\n"
-    "Without access to it, get this archive on another machine, or ur_rtde's source archive from the Python registry "
+    "Download this archive on another machine, or ur_rtde's source archive from the Python registry "
     "(`pip download --no-deps --no-binary ur-rtde ur-rtde==1.6.5`), and build again with -DUR_RTDE_ARCHIVE=<path>, or with "
     "UR_RTDE_ARCHIVE=<path> in the environment.")
 endfunction()

@@ -18,7 +18,7 @@ _CODE = re.compile(r"`([\w/]+)(?:\(\))?`")
 
 def _header(name):
     for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep):
-        file = pathlib.Path(prefix, "include", "ur_rtde", name)
+        file = pathlib.Path(prefix, "include", "ur_rtde_vendor", "ur_rtde", name)
         if file.is_file():
             return file.read_text()
     raise FileNotFoundError(f"ur_rtde/{name} is in no prefix of AMENT_PREFIX_PATH")
