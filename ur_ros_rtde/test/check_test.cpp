@@ -15,14 +15,14 @@ std::string message(const Check & check)
   return check.error() ? check.error()->message : "";
 }
 
-TEST(Check, passes_what_is_in_range_bounds_included)
+TEST(CheckTest, AcceptsValuesInRangeIncludingTheBounds)
 {
   Check check;
   check.in_range("a", 0.0, 0.0, 1.0).in_range("b", 1.0, 0.0, 1.0).above_zero("c", 3.0, 3.0);
   EXPECT_TRUE(check.ok()) << message(check);
 }
 
-TEST(Check, names_field_value_and_limits_with_their_unit)
+TEST(CheckTest, NamesFieldValueLimitsAndUnit)
 {
   Check check;
   check.in_range("lookahead_time", 0.5, 0.03, 0.2, "s");
@@ -30,14 +30,14 @@ TEST(Check, names_field_value_and_limits_with_their_unit)
   EXPECT_EQ(check.error()->code, ErrorCode::invalid_goal);
 }
 
-TEST(Check, keeps_the_first_error)
+TEST(CheckTest, KeepsTheFirstError)
 {
   Check check;
   check.above_zero("speed", -1.0, 3.0).in_range("time", 9.0, 0.0, 1.0);
   EXPECT_NE(message(check).find("speed"), std::string::npos);
 }
 
-TEST(Check, refuses_nan_and_infinity_everywhere)
+TEST(CheckTest, RefusesNanAndInfinity)
 {
   for (const double value : {nan, infinity, -infinity}) {
     EXPECT_FALSE(Check().in_range("x", value, -1e300, 1e300).ok());
@@ -58,7 +58,7 @@ TEST(Check, refuses_nan_and_infinity_everywhere)
   }
 }
 
-TEST(Check, wants_six_joints_and_says_which)
+TEST(CheckTest, RequiresSixJointsAndNamesThem)
 {
   Check check;
   check.joints("joint_positions", {1.0, 2.0, 3.0});
@@ -67,7 +67,7 @@ TEST(Check, wants_six_joints_and_says_which)
       << message(check);
 }
 
-TEST(Check, names_the_joint_that_is_out_of_its_limits)
+TEST(CheckTest, NamesTheJointOutsideItsLimits)
 {
   Check check;
   check.joints("joint_positions", {0.0, 0.0, -7.0, 0.0, 0.0, 0.0});
@@ -75,7 +75,7 @@ TEST(Check, names_the_joint_that_is_out_of_its_limits)
       << message(check);
 }
 
-TEST(Check, refuses_a_quaternion_without_direction_but_not_one_of_another_length)
+TEST(CheckTest, RefusesAZeroQuaternionButNotAnUnnormalizedOne)
 {
   geometry_msgs::msg::Pose pose;
   pose.orientation.w = 0.0;
@@ -84,7 +84,7 @@ TEST(Check, refuses_a_quaternion_without_direction_but_not_one_of_another_length
   EXPECT_TRUE(Check().pose("pose", pose).ok());
 }
 
-TEST(Check, refuses_a_pose_that_no_arm_can_reach)
+TEST(CheckTest, RefusesAPoseOutOfReachOfAllModels)
 {
   geometry_msgs::msg::Pose pose;
   pose.position.x = 5.0;
@@ -94,12 +94,12 @@ TEST(Check, refuses_a_pose_that_no_arm_can_reach)
   EXPECT_EQ(check.error()->code, ErrorCode::unreachable);
 }
 
-TEST(Check, refuses_a_twist_that_moves_nothing)
+TEST(CheckTest, RefusesAZeroTwist)
 {
   EXPECT_FALSE(Check().twist("twist", geometry_msgs::msg::Twist()).ok());
 }
 
-TEST(Check, takes_one_line_of_text_and_no_more)
+TEST(CheckTest, AcceptsOneLineOfText)
 {
   EXPECT_TRUE(Check().line("text", "Grüße, 20 °C", 100).ok());
   EXPECT_FALSE(Check().line("text", "", 100).ok());
@@ -108,7 +108,7 @@ TEST(Check, takes_one_line_of_text_and_no_more)
   EXPECT_FALSE(Check().line("text", "too long", 7).ok());
 }
 
-TEST(ToUr, turns_a_quaternion_into_a_rotation_vector)
+TEST(ToUrTest, ConvertsAQuaternionToARotationVector)
 {
   geometry_msgs::msg::Pose pose;
   pose.position.x = 0.1;

@@ -26,7 +26,7 @@ JointState message(std::vector<std::string> names, std::vector<double> positions
   return state;
 }
 
-TEST(FakeJoints, show_nothing_before_they_begin_and_after_they_end)
+TEST(FakeJointsTest, AreInactiveBeforeBeginAndAfterEnd)
 {
   FakeJoints fake;
   JointState shown = real();
@@ -38,7 +38,7 @@ TEST(FakeJoints, show_nothing_before_they_begin_and_after_they_end)
   EXPECT_FALSE(fake.apply(shown));
 }
 
-TEST(FakeJoints, keep_the_positions_of_their_beginning_at_rest)
+TEST(FakeJointsTest, KeepThePositionsOfTheStartAtRest)
 {
   FakeJoints fake;
   fake.begin(real());
@@ -50,7 +50,7 @@ TEST(FakeJoints, keep_the_positions_of_their_beginning_at_rest)
   EXPECT_EQ(shown.effort, std::vector<double>(3, 0.0));
 }
 
-TEST(FakeJoints, take_positions_by_name_in_any_order)
+TEST(FakeJointsTest, TakePositionsByNameInAnyOrder)
 {
   FakeJoints fake;
   fake.begin(real());
@@ -60,7 +60,7 @@ TEST(FakeJoints, take_positions_by_name_in_any_order)
   EXPECT_EQ(shown.position, (std::vector<double>{-1.0, 2.0, -3.0}));
 }
 
-TEST(FakeJoints, take_nothing_of_a_message_that_is_wrong_and_say_what)
+TEST(FakeJointsTest, IgnoreAnInvalidMessageAndNameTheCause)
 {
   FakeJoints fake;
   fake.begin(real());

@@ -106,12 +106,12 @@ class GoalServerClientTest : public testing::Test {
   }
 };
 
-TEST_F(GoalServerClientTest, EndsGoalThatNeedsItsClient)
+TEST_F(GoalServerClientTest, StopsTheGoalOfALostClient)
 {
   EXPECT_EQ(end_without_client(true), ErrorCode::client_lost);
 }
 
-TEST_F(GoalServerClientTest, LetsGoalGoOnThatDoesNot)
+TEST_F(GoalServerClientTest, ContinuesWithoutTheClientIfConfigured)
 {
   EXPECT_EQ(end_without_client(false), ErrorCode::shutdown);
 }

@@ -53,7 +53,7 @@ class FaultyServer : public GoalServer<Trigger> {
   ActiveGoals active_goals_;
 };
 
-TEST_F(GoalServerTest, AGoalWhoseResultCannotBeFilledInIsAbortedWithTheReason)
+TEST_F(GoalServerTest, ExceptionInFillResultAbortsTheGoal)
 {
   PluginHost host(node_);
   FaultyServer server(node_, host);
@@ -70,7 +70,7 @@ TEST_F(GoalServerTest, AGoalWhoseResultCannotBeFilledInIsAbortedWithTheReason)
   EXPECT_NE(end->result.message.find("a fault in tell"), std::string::npos) << end->result.message;
 }
 
-TEST_F(GoalServerTest, ACommandWhoseStopOptionsThrowDoesNothingAndEndsWithTheReason)
+TEST_F(GoalServerTest, ExceptionInStopOptionsFailsTheGoalBeforeRun)
 {
   RobotOptions options;
   options.address = "127.0.0.1";

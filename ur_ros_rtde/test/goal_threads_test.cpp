@@ -42,7 +42,7 @@ void wait_for(const StopRequest & stop_request)
   wake.wait(lock, stop_request.token(), [] { return false; });
 }
 
-TEST(GoalThreads, run_their_work_at_the_same_time)
+TEST(GoalThreadsTest, RunConcurrently)
 {
   GoalThreads threads;
   std::promise<void> first_runs;
@@ -59,7 +59,7 @@ TEST(GoalThreads, run_their_work_at_the_same_time)
   EXPECT_TRUE(met);
 }
 
-TEST(GoalThreads, ask_everything_to_end_with_the_reason_and_wait_for_it)
+TEST(GoalThreadsTest, CloseRequestsAStopWithTheReasonAndWaits)
 {
   GoalThreads threads;
   auto stop_request = std::make_shared<StopRequest>();
@@ -74,7 +74,7 @@ TEST(GoalThreads, ask_everything_to_end_with_the_reason_and_wait_for_it)
   EXPECT_EQ(stop_request->reason()->code, ErrorCode::shutdown);
 }
 
-TEST(GoalThreads, take_nothing_after_they_were_closed)
+TEST(GoalThreadsTest, RefuseAfterClose)
 {
   GoalThreads threads;
   threads.close(shutdown, milliseconds(0));
@@ -83,7 +83,7 @@ TEST(GoalThreads, take_nothing_after_they_were_closed)
   EXPECT_EQ(status.error().code, ErrorCode::shutdown);
 }
 
-TEST(GoalThreads, take_nothing_when_they_are_closed_while_a_finished_thread_is_joined)
+TEST(GoalThreadsTest, RefuseWhenClosedDuringAJoin)
 {
   GoalThreads threads;
   std::promise<void> release;
@@ -110,7 +110,7 @@ TEST(GoalThreads, take_nothing_when_they_are_closed_while_a_finished_thread_is_j
   EXPECT_EQ(status.error().code, ErrorCode::shutdown);
 }
 
-TEST(GoalThreads, name_what_does_not_end_in_time)
+TEST(GoalThreadsTest, CloseNamesThreadsThatDoNotEnd)
 {
   GoalThreads threads;
   std::promise<void> release;
@@ -120,7 +120,7 @@ TEST(GoalThreads, name_what_does_not_end_in_time)
   release.set_value();
 }
 
-TEST(GoalThreads, refuse_more_than_their_limit_and_take_more_when_some_have_ended)
+TEST(GoalThreadsTest, RefuseAboveTheLimitUntilSomeHaveEnded)
 {
   GoalThreads threads;
   auto stop_request = std::make_shared<StopRequest>();
@@ -138,7 +138,7 @@ TEST(GoalThreads, refuse_more_than_their_limit_and_take_more_when_some_have_ende
   EXPECT_TRUE(threads.can_start());
 }
 
-TEST(StopRequest, keeps_the_first_reason)
+TEST(StopRequestTest, KeepsTheFirstReason)
 {
   StopRequest stop_request;
   EXPECT_FALSE(stop_request.reason());

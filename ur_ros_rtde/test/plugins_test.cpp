@@ -33,10 +33,10 @@ PluginEntry entry(const std::string & name, const std::string & type)
 }
 
 /// A package in a prefix of its own.
-class PluginFile : public testing::Test {
+class PluginDescriptionTest : public testing::Test {
  protected:
-  PluginFile() { fs::create_directories(folder_ / "lib"); }
-  ~PluginFile() override { fs::remove_all(folder_); }
+  PluginDescriptionTest() { fs::create_directories(folder_ / "lib"); }
+  ~PluginDescriptionTest() override { fs::remove_all(folder_); }
 
   std::vector<PluginEntry> read(const std::string & text)
   {
@@ -51,7 +51,7 @@ class PluginFile : public testing::Test {
   Problems problems_;
 };
 
-TEST_F(PluginFile, lists_the_plugins_of_all_its_libraries)
+TEST_F(PluginDescriptionTest, ListsThePluginsOfAllLibraries)
 {
   const auto entries = read(R"(<class_libraries>
     <library path="one"><class name="a" type="x::A" base_class_type="ur_ros_rtde::CommandPlugin">
@@ -66,21 +66,21 @@ TEST_F(PluginFile, lists_the_plugins_of_all_its_libraries)
   EXPECT_TRUE(problems_.empty());
 }
 
-TEST_F(PluginFile, that_is_torn_is_reported_with_its_name_and_line)
+TEST_F(PluginDescriptionTest, ReportsIncompleteXmlWithNameAndLine)
 {
   EXPECT_TRUE(read("<library path='x'>\n<class name=").empty());
   ASSERT_EQ(problems_.size(), 1U);
   EXPECT_TRUE(mentions(problems_[0], {"plugins.xml", "some_package", "line"})) << problems_[0];
 }
 
-TEST_F(PluginFile, of_something_else_is_reported)
+TEST_F(PluginDescriptionTest, ReportsAnotherRootElement)
 {
   EXPECT_TRUE(read("<package/>").empty());
   ASSERT_EQ(problems_.size(), 1U);
   EXPECT_TRUE(mentions(problems_[0], {"<package>", "<library>"})) << problems_[0];
 }
 
-TEST_F(PluginFile, leaves_out_and_reports_a_class_without_name_and_one_with_another_base)
+TEST_F(PluginDescriptionTest, SkipsAndReportsInvalidClasses)
 {
   const auto entries =
       read(R"(<library path="one"><class type="x::A" base_class_type="ur_ros_rtde::CommandPlugin"/>
@@ -92,14 +92,14 @@ TEST_F(PluginFile, leaves_out_and_reports_a_class_without_name_and_one_with_anot
   EXPECT_TRUE(mentions(problems_[1], {"plugin b", "nav2_core::Behavior", command_base})) << problems_[1];
 }
 
-TEST_F(PluginFile, that_is_not_there_is_reported)
+TEST_F(PluginDescriptionTest, ReportsAMissingFile)
 {
   read_plugins_file((folder_ / "none.xml").string(), "some_package", folder_.string(), into(problems_));
   ASSERT_EQ(problems_.size(), 1U);
   EXPECT_TRUE(mentions(problems_[0], {"none.xml", "some_package"})) << problems_[0];
 }
 
-TEST(AmentIndex, gives_the_plugins_of_every_package_in_every_prefix)
+TEST(AmentIndexTest, FindsThePluginsOfAllPackagesInAllPrefixes)
 {
   const fs::path prefix = fs::temp_directory_path() / ("ament_index_test_" + std::to_string(::getpid()));
   const fs::path index = prefix / "share/ament_index/resource_index/ur_ros_rtde__pluginlib__plugin";
@@ -119,7 +119,7 @@ TEST(AmentIndex, gives_the_plugins_of_every_package_in_every_prefix)
   EXPECT_TRUE(mentions(problems[0], {"share/two/plugins.xml", "two"})) << problems[0];
 }
 
-class Selection : public testing::Test {
+class PluginSelectionTest : public testing::Test {
  protected:
   std::vector<std::string> select(const std::vector<std::string> & chosen,
                                   const std::vector<std::string> & blacklist)
@@ -137,21 +137,21 @@ class Selection : public testing::Test {
 
 using Names = std::vector<std::string>;
 
-TEST_F(Selection, takes_all_unless_told_otherwise)
+TEST_F(PluginSelectionTest, SelectsAllByDefault)
 {
   EXPECT_EQ(select({}, {}), (Names{"a", "b", "c"}));
   EXPECT_EQ(select({""}, {""}), (Names{"a", "b", "c"}));  // as YAML files write an empty list
   EXPECT_TRUE(problems_.empty());
 }
 
-TEST_F(Selection, takes_the_chosen_ones_without_the_blacklisted_ones)
+TEST_F(PluginSelectionTest, SelectsChosenPluginsWithoutTheBlacklist)
 {
   EXPECT_EQ(select({"c", "a"}, {}), (Names{"a", "c"}));
   EXPECT_EQ(select({}, {"b"}), (Names{"a", "c"}));
   EXPECT_EQ(select({"a", "b"}, {"b"}), (Names{"a"}));
 }
 
-TEST_F(Selection, names_unknown_plugins_and_the_nearest_one)
+TEST_F(PluginSelectionTest, ReportsUnknownNamesAndTheMostSimilarOne)
 {
   all_.push_back(entry("move_joint", "MoveJoint"));
   EXPECT_EQ(select({"a", "mov_joints"}, {"cd"}), (Names{"a"}));
@@ -161,7 +161,7 @@ TEST_F(Selection, names_unknown_plugins_and_the_nearest_one)
   EXPECT_TRUE(mentions(problems_[1], {"plugins_blacklist", "\"cd\"", "nearest is \"c\""})) << problems_[1];
 }
 
-TEST_F(Selection, says_nothing_of_names_that_plugins_of_the_other_server_have)
+TEST_F(PluginSelectionTest, AcceptsNamesOfTheOtherServer)
 {
   all_[1].base = dashboard_base;
   EXPECT_EQ(select({"a", "b"}, {"b"}), (Names{"a"}));
@@ -169,14 +169,14 @@ TEST_F(Selection, says_nothing_of_names_that_plugins_of_the_other_server_have)
   EXPECT_TRUE(problems_.empty()) << problems_[0];
 }
 
-TEST_F(Selection, of_nothing_at_all_names_what_is_unknown)
+TEST_F(PluginSelectionTest, ReportsUnknownNamesWithoutAnyPlugin)
 {
   all_.clear();
   EXPECT_EQ(select({"a"}, {}), (Names{}));
   ASSERT_EQ(problems_.size(), 1U);
 }
 
-TEST_F(Selection, keeps_the_first_of_two_with_the_same_name)
+TEST_F(PluginSelectionTest, KeepsTheFirstOfTwoWithTheSameName)
 {
   all_.push_back(entry("a", "Other"));
   all_.back().package = "zz";
@@ -185,7 +185,7 @@ TEST_F(Selection, keeps_the_first_of_two_with_the_same_name)
   EXPECT_TRUE(mentions(problems_[0], {"plugin a of package zz", "test_package"})) << problems_[0];
 }
 
-TEST_F(Selection, leaves_plugins_of_the_other_server_alone)
+TEST_F(PluginSelectionTest, IgnoresPluginsOfTheOtherServer)
 {
   all_[1].base = dashboard_base;
   EXPECT_EQ(select({}, {}), (Names{"a", "c"}));
@@ -199,7 +199,7 @@ std::string refusal(const std::string & name, const std::string & type)
   return descriptor ? "" : descriptor.error().message;
 }
 
-TEST(PluginLibrary, that_is_right_gives_its_plugin)
+TEST(PluginLibraryTest, CreatesItsPlugin)
 {
   PluginLibraries libraries;
   const auto descriptor = libraries.describe(entry("good", "Good"));
@@ -209,29 +209,29 @@ TEST(PluginLibrary, that_is_right_gives_its_plugin)
   EXPECT_NE(plugin, nullptr);
 }
 
-TEST(PluginLibrary, of_another_version_is_refused_with_both_versions)
+TEST(PluginLibraryTest, RefusesAnotherAbiVersionAndNamesBoth)
 {
   EXPECT_TRUE(mentions(refusal("wrong_abi", "WrongAbi"),
                        {"libplugin_wrong_abi.so", "version " + std::to_string(plugin_abi_version + 1),
                         "version " + std::to_string(plugin_abi_version)}));
 }
 
-TEST(PluginLibrary, without_the_export_is_refused_with_the_line_that_is_missing)
+TEST(PluginLibraryTest, RefusesAMissingExportAndNamesIt)
 {
   EXPECT_TRUE(mentions(refusal("no_symbol", "NoSymbol"), {"UR_ROS_RTDE_EXPORT(NoSymbol, \"no_symbol\")"}));
 }
 
-TEST(PluginLibrary, with_another_name_than_its_description_is_refused_with_both)
+TEST(PluginLibraryTest, RefusesAnotherNameThanInTheDescription)
 {
   EXPECT_TRUE(mentions(refusal("wrong_name", "WrongName"), {"\"another_name\"", "\"wrong_name\""}));
 }
 
-TEST(PluginLibrary, with_another_base_than_its_description_is_refused)
+TEST(PluginLibraryTest, RefusesAnotherBaseClassThanInTheDescription)
 {
   EXPECT_TRUE(mentions(refusal("wrong_base", "WrongBase"), {"test::WrongBase", command_base}));
 }
 
-TEST(PluginLibrary, that_does_not_exist_or_is_no_library_is_refused)
+TEST(PluginLibraryTest, RefusesAMissingOrInvalidFile)
 {
   EXPECT_TRUE(mentions(refusal("nowhere", "Nowhere"), {"libplugin_nowhere.so"}));
   PluginEntry text = entry("good", "Good");
@@ -242,25 +242,25 @@ TEST(PluginLibrary, that_does_not_exist_or_is_no_library_is_refused)
   EXPECT_TRUE(mentions(descriptor.error().message, {"cannot be loaded"})) << descriptor.error().message;
 }
 
-TEST(PluginLibrary, that_lacks_a_symbol_is_refused_with_the_symbol)
+TEST(PluginLibraryTest, RefusesAnUndefinedSymbolAndNamesIt)
 {
   EXPECT_TRUE(mentions(refusal("undefined_symbol", "UndefinedSymbol"), {"data_defined_nowhere"}))
       << refusal("undefined_symbol", "UndefinedSymbol");
 }
 
-TEST(PluginLibrary, whose_plugin_throws_later_is_left_out_too)
+TEST(PluginLibraryTest, RemovesAPluginThatThrowsLater)
 {
   PluginSet<CommandPlugin, CommandHost> set;
   Problems problems;
   set.load({entry("good", "Good")}, into(problems));
-  set.with_each("it threw when it was asked", into(problems),
+  set.with_each("the query threw", into(problems),
                 [](const PluginEntry &, CommandPlugin &) { throw std::runtime_error("no answer"); });
   EXPECT_EQ(set.names(), Names{});
   ASSERT_EQ(problems.size(), 1U);
-  EXPECT_TRUE(mentions(problems[0], {"plugin good", "it threw when it was asked: no answer"})) << problems[0];
+  EXPECT_TRUE(mentions(problems[0], {"plugin good", "the query threw: no answer"})) << problems[0];
 }
 
-TEST(PluginLibrary, whose_constructor_throws_is_left_out_with_the_text_and_the_rest_goes_on)
+TEST(PluginLibraryTest, SkipsAPluginWhoseConstructorThrows)
 {
   PluginSet<CommandPlugin, CommandHost> set;
   Problems problems;
@@ -269,6 +269,16 @@ TEST(PluginLibrary, whose_constructor_throws_is_left_out_with_the_text_and_the_r
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_TRUE(mentions(problems[0], {"plugin throws of package test_package", "the gripper is not there"}))
       << problems[0];
+}
+
+TEST(PluginLibraryTest, DestroysAPluginThatThrowsWhenItIsStopped)
+{
+  PluginSet<CommandPlugin, CommandHost> set;
+  Problems problems;
+  set.load({entry("throws_at_stop", "ThrowsAtStop"), entry("good", "Good")}, into(problems));
+  ASSERT_EQ(set.names(), (Names{"throws_at_stop", "good"}));
+  EXPECT_NO_THROW(set.stop());
+  EXPECT_EQ(set.names(), Names{});
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ struct ACsvFile : testing::Test {
   }
 };
 
-TEST_F(ACsvFile, has_a_head_line_and_rows)
+TEST_F(CsvFileTest, HasAHeaderAndRows)
 {
   const std::string path = folder + "/run.csv";
   auto file = CsvFile::create(path, {"timestamp", "robot_mode"});
@@ -44,7 +44,7 @@ TEST_F(ACsvFile, has_a_head_line_and_rows)
   EXPECT_EQ(text(path), "timestamp,robot_mode\n0.5,7\n-1e-300,-1\n");
 }
 
-TEST_F(ACsvFile, gives_every_double_back)
+TEST_F(CsvFileTest, HasFullRoundTripPrecision)
 {
   const std::array numbers{0.1 + 0.2,
                            1.0 / 3.0,
@@ -67,7 +67,7 @@ TEST_F(ACsvFile, gives_every_double_back)
   }
 }
 
-TEST_F(ACsvFile, is_new_and_has_an_absolute_path)
+TEST_F(CsvFileTest, RequiresANewFileWithAnAbsolutePath)
 {
   const std::string path = folder + "/run.csv";
   ASSERT_TRUE(CsvFile::create(path, {"a"}));
@@ -78,7 +78,7 @@ TEST_F(ACsvFile, is_new_and_has_an_absolute_path)
   }
 }
 
-TEST(ARowQueue, keeps_the_order_and_refuses_what_is_too_much)
+TEST(RowQueueTest, KeepsTheOrderAndRefusesRowsWhenFull)
 {
   RowQueue queue(2, 3);
   for (int i = 0; i < 3; ++i) {
@@ -95,7 +95,7 @@ TEST(ARowQueue, keeps_the_order_and_refuses_what_is_too_much)
   EXPECT_FALSE(queue.take(rows));
 }
 
-TEST(ARowQueue, wakes_who_waits_when_it_is_closed)
+TEST(RowQueueTest, CloseWakesTheWaitingThread)
 {
   RowQueue queue(1, 1);
   std::jthread closer([&] { queue.close(); });
@@ -112,7 +112,7 @@ Sample sample(double controller_time, std::chrono::steady_clock::time_point rece
   return made;
 }
 
-TEST(PackageStatistics, tell_intervals_and_cycles_without_a_package)
+TEST(PackageStatisticsTest, ReportIntervalsAndMissingCycles)
 {
   PackageStatistics statistics;
   const auto begin = std::chrono::steady_clock::now();
@@ -130,7 +130,7 @@ TEST(PackageStatistics, tell_intervals_and_cycles_without_a_package)
   EXPECT_EQ(statistics.report().lost_ever, 3U);
 }
 
-TEST(PackageStatistics, begin_anew_with_a_new_link)
+TEST(PackageStatisticsTest, RestartWithANewConnection)
 {
   PackageStatistics statistics;
   const auto begin = std::chrono::steady_clock::now();

@@ -27,7 +27,7 @@ Sample sample()
   return made;
 }
 
-TEST(StateMessages, are_all_of_one_stamp)
+TEST(StateMessagesTest, HaveTheSameStamp)
 {
   StateMessages messages("");
   messages.fill(sample());
@@ -40,7 +40,7 @@ TEST(StateMessages, are_all_of_one_stamp)
   EXPECT_EQ(messages.target_joint_state.header.stamp, messages.joint_state.header.stamp);
 }
 
-TEST(StateMessages, name_joints_and_frames_with_the_prefix)
+TEST(StateMessagesTest, HaveThePrefixInJointsAndFrames)
 {
   StateMessages messages("left_");
   ASSERT_EQ(messages.joint_state.name.size(), 6U);
@@ -50,7 +50,7 @@ TEST(StateMessages, name_joints_and_frames_with_the_prefix)
   EXPECT_EQ(messages.wrench.header.frame_id, "left_tool0_controller");
 }
 
-TEST(StateMessages, turn_the_rotation_vector_into_a_quaternion)
+TEST(StateMessagesTest, ConvertTheRotationVectorToAQuaternion)
 {
   StateMessages messages("");
   messages.fill(sample());
@@ -60,7 +60,7 @@ TEST(StateMessages, turn_the_rotation_vector_into_a_quaternion)
   EXPECT_DOUBLE_EQ(messages.tcp_pose.pose.position.x, 0.4);
 }
 
-TEST(StateMessages, give_the_wrench_in_the_orientation_of_the_tool)
+TEST(StateMessagesTest, HaveTheWrenchInTheOrientationOfTheTool)
 {
   StateMessages messages("");
   messages.fill(sample());
@@ -71,7 +71,7 @@ TEST(StateMessages, give_the_wrench_in_the_orientation_of_the_tool)
   EXPECT_NEAR(wrench.torque.z, -0.5, 1e-12);
 }
 
-TEST(StateMessages, tell_the_speed_of_the_tcp_in_the_base_frame_and_what_is_aimed_at)
+TEST(StateMessagesTest, HaveTheTcpSpeedInTheBaseFrameAndTheSetpoints)
 {
   StateMessages messages("left_");
   messages.fill(sample());
@@ -83,7 +83,7 @@ TEST(StateMessages, tell_the_speed_of_the_tcp_in_the_base_frame_and_what_is_aime
   EXPECT_EQ(messages.target_joint_state.effort, (std::vector<double>{1, 2, 3, 4, 5, 6}));
 }
 
-TEST(StateMessages, show_each_pin_by_its_number)
+TEST(StateMessagesTest, HaveEachPinAtItsNumber)
 {
   StateMessages messages("");
   messages.fill(sample());
@@ -94,7 +94,7 @@ TEST(StateMessages, show_each_pin_by_its_number)
   EXPECT_DOUBLE_EQ(messages.io_state.analog_inputs[1], 5.0);
 }
 
-TEST(StateMessages, are_filled_without_reallocation)
+TEST(StateMessagesTest, AreFilledWithoutReallocation)
 {
   StateMessages messages("");
   messages.fill(sample());
@@ -103,12 +103,12 @@ TEST(StateMessages, are_filled_without_reallocation)
   EXPECT_EQ(messages.joint_state.position.data(), positions);
 }
 
-TEST(Effort, is_what_the_controller_reports_where_it_does)
+TEST(EffortEstimatorTest, UsesTheReportedTorque)
 {
   EXPECT_EQ(EffortEstimator().update(sample()), (Vector6{10, 20, 30, 40, 50, 60}));
 }
 
-TEST(Effort, is_learnt_from_the_targets_where_the_controller_does_not_report_it)
+TEST(EffortEstimatorTest, FitsTheTargetsWithoutAReportedTorque)
 {
   Sample made = sample();
   made.actual_current_as_torque.fill(std::numeric_limits<double>::quiet_NaN());
@@ -123,7 +123,7 @@ TEST(Effort, is_learnt_from_the_targets_where_the_controller_does_not_report_it)
   EXPECT_NEAR(efforts[0], 24.0, 1e-9);
 }
 
-TEST(Effort, is_the_target_until_a_current_has_told_anything)
+TEST(EffortEstimatorTest, UsesTheTargetBeforeTheFirstCurrent)
 {
   Sample made = sample();
   made.actual_current_as_torque.fill(std::numeric_limits<double>::quiet_NaN());

@@ -34,19 +34,19 @@ Sample looking_down()
   return sample;
 }
 
-TEST(TcpTargetTest, APositionAloneKeepsTheOrientation)
+TEST(TcpTargetTest, PositionOnlyKeepsTheOrientation)
 {
   EXPECT_EQ(tcp_target(pose(0.5, 0.1, 0.4), false, looking_down()),
             (std::vector<double>{0.5, 0.1, 0.4, pi, 0.0, 0.0}));
 }
 
-TEST(TcpTargetTest, AnIdentityOrientationThatIsMeantIsTaken)
+TEST(TcpTargetTest, UsesAnExplicitIdentityOrientation)
 {
   EXPECT_EQ(tcp_target(pose(0.5, 0.1, 0.4), true, looking_down()),
             (std::vector<double>{0.5, 0.1, 0.4, 0.0, 0.0, 0.0}));
 }
 
-TEST(TcpTargetTest, AnyOtherOrientationIsTaken)
+TEST(TcpTargetTest, UsesAnyOtherOrientation)
 {
   const auto nearly = turned(1e-7);
   EXPECT_FALSE(has_identity_orientation(nearly));
@@ -56,7 +56,7 @@ TEST(TcpTargetTest, AnyOtherOrientationIsTaken)
   EXPECT_NEAR(tcp_target(negative, false, looking_down())[3], 0.0, 1e-12);
 }
 
-TEST(TurnToIdentityTest, NamesTheFirstPoseThatTurnsTheToolToTheIdentity)
+TEST(TurnToIdentityTest, NamesTheFirstPoseWithAnIdentityOrientation)
 {
   const Vector6 start = looking_down().target_tcp_pose;
   const auto text = turn_to_identity(
@@ -64,7 +64,7 @@ TEST(TurnToIdentityTest, NamesTheFirstPoseThatTurnsTheToolToTheIdentity)
   EXPECT_EQ(text.find("poses[2] turns the tool by 162 degrees"), 0U) << text;
 }
 
-TEST(TurnToIdentityTest, SaysNothingOfOtherTurnsAndOfSmallOnes)
+TEST(TurnToIdentityTest, IgnoresOtherAndSmallRotations)
 {
   const Vector6 start = looking_down().target_tcp_pose;
   EXPECT_EQ(turn_to_identity(start, path_poses("poses", {turned(0.1)})), "") << "an orientation of its own";
@@ -73,7 +73,7 @@ TEST(TurnToIdentityTest, SaysNothingOfOtherTurnsAndOfSmallOnes)
   EXPECT_NE(turn_to_identity(start, path_poses("poses", {turned(0.6 * pi), pose(1, 0, 0)})), "");
 }
 
-TEST(TurnToIdentityTest, KnowsNoOrientationAfterJointPositions)
+TEST(TurnToIdentityTest, IsUnknownAfterJointPositions)
 {
   const Vector6 start = looking_down().target_tcp_pose;
   EXPECT_EQ(turn_to_identity(start, {{"waypoints[0]", std::nullopt}, {"waypoints[1].pose", pose(1, 0, 0)}}),

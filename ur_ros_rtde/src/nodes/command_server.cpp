@@ -21,7 +21,7 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
                                                [this] { return diagnose_driver(*robot_); });
   host_ = std::make_unique<CommandHost>(*node_, *robot_, parameters.goals);
   teleoperation_ =
-      std::make_unique<Teleoperation>(*host_, parameters.teleoperation, log_into(node_->get_logger()));
+      std::make_unique<Teleoperation>(*host_, parameters.teleoperation, log_to(node_->get_logger()));
 }
 
 CommandServer::~CommandServer()
@@ -50,7 +50,7 @@ void CommandServer::add_extensions(const ReportProblem & report)
       extensions.push_back(std::move(*extension));
     }
   };
-  plugins_.with_each("it threw when it was asked for its script", report, add);
+  plugins_.with_each("script_extension() threw", report, add);
   for (const std::string & problem : robot_->set_extensions(extensions)) {
     report(problem);
   }

@@ -13,7 +13,7 @@
 
 namespace ur_ros_rtde {
 
-/// The node command_server: the robot, the command plugins, and the streams.
+/// The node command_server: the robot, the command plugins, and the teleoperation topics.
 class CommandServer : public Server {
  public:
   explicit CommandServer(const rcl_cxx::Context::SharedPtr & context);
@@ -27,7 +27,7 @@ class CommandServer : public Server {
  private:
   void add_extensions(const ReportProblem & report);
 
-  PluginSet<CommandPlugin, CommandHost> plugins_;  // its libraries go last
+  PluginSet<CommandPlugin, CommandHost> plugins_;  // destroyed last, because it unloads the libraries
   rcl_cxx::Node::SharedPtr node_;
   std::unique_ptr<DriverStateTopic> driver_state_;  // outlives the robot, which calls it
   std::unique_ptr<Robot> robot_;

@@ -21,7 +21,7 @@ class DashboardServer : public Server {
   std::vector<std::string> close() override;
 
  private:
-  PluginSet<DashboardPlugin, DashboardHost> plugins_;  // its libraries go last
+  PluginSet<DashboardPlugin, DashboardHost> plugins_;  // destroyed last, because it unloads the libraries
   rcl_cxx::Node::SharedPtr node_;
   std::unique_ptr<DashboardLink> link_;
   std::unique_ptr<DashboardHost> host_;

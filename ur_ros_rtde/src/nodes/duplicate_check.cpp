@@ -9,7 +9,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// As long as discovery may take; after that, ending this process would be worse than what it prevents.
+/// Longest time for discovery. After that, this process is in use and must not exit.
 constexpr std::chrono::seconds start_phase{10};
 
 std_msgs::msg::Header this_process()
@@ -36,24 +36,25 @@ DuplicateCheck::DuplicateCheck(rcl_cxx::Node & node, std::function<void(const st
       refuse_(std::move(refuse)),
       own_(this_process()),
       publisher_(node.create_publisher<Instance>("~/_instance", rcl_cxx::QoS::transient_local())),
-      subscription_(node.create_subscription<Instance>("~/_instance", rcl_cxx::QoS::transient_local(8),
-                                                       [this](const Instance & other) { hear(other); }))
+      subscription_(
+          node.create_subscription<Instance>("~/_instance", rcl_cxx::QoS::transient_local(8),
+                                             [this](const Instance & other) { on_instance(other); }))
 {
   publisher_->publish(own_);
 }
 
-void DuplicateCheck::hear(const Instance & other)
+void DuplicateCheck::on_instance(const Instance & other)
 {
   if (age(other) == age(own_)) {
     return;
   }
-  const std::string what = fmt::format("another node with the name {} runs already ({})",
+  const std::string what = fmt::format("another node with the name {} is already running ({})",
                                        node_.get_fully_qualified_name(), other.frame_id);
-  const std::string remedy = "end one of them, or give one a namespace of its own (--ros-args -r __ns:=/…)";
+  const std::string remedy = "stop one of them, or use a different namespace (--ros-args -r __ns:=/…)";
   if (std::chrono::steady_clock::now() - begin_ > start_phase) {
-    RCL_CXX_ERROR(node_.get_logger(), "{}: both answer the same clients: {}", what, remedy);
+    RCL_CXX_ERROR(node_.get_logger(), "{}; both answer the same clients: {}", what, remedy);
   } else if (age(other) < age(own_)) {
-    refuse_(fmt::format("{}, so this process ends: {}", what, remedy));
+    refuse_(fmt::format("{}, so this process exits: {}", what, remedy));
   }
 }
 

@@ -8,19 +8,18 @@
 
 namespace ur_ros_rtde {
 
-/// Notices another process whose node has the same name: two servers of the same actions would both answer a
-/// client. Each process tells on the hidden topic `~/_instance` since when it runs (the stamp) and which it
-/// is (the frame_id), to late subscribers too. A process that was killed tells nothing any more, even while
-/// its node is still listed.
+/// Detects another process with a node of the same name: two servers of the same actions would both answer a
+/// client. Each process publishes its start time (stamp) and identity (frame_id) on the hidden transient
+/// local topic `~/_instance`. A killed process stops publishing, even while its node is still listed.
 class DuplicateCheck {
  public:
-  /// `refuse` gets the reason why this process has to end: an older one is there, and this one has only just
-  /// started. Later, the log says so. Runs in the executor's thread.
+  /// Calls `refuse` with the reason if an older process is found shortly after the start; later, an error is
+  /// logged. Runs in the executor's thread.
   DuplicateCheck(rcl_cxx::Node & node, std::function<void(const std::string & why)> refuse);
 
  private:
   using Instance = std_msgs::msg::Header;
-  void hear(const Instance & other);
+  void on_instance(const Instance & other);
 
   rcl_cxx::Node & node_;
   const std::function<void(const std::string &)> refuse_;

@@ -15,8 +15,8 @@ namespace ur_ros_rtde {
 namespace {
 namespace fs = std::filesystem;
 
-/// Where a version of Fast DDS looks for profiles: in the file that a variable names, and in the working
-/// directory. Only the package_file for the installed version is installed.
+/// Where a version of Fast DDS looks for profiles: the file that an environment variable names, and the
+/// working directory. Only the package_file for the installed version is installed.
 struct ProfileSource {
   const char * variable;
   const char * local_file;
@@ -58,7 +58,7 @@ std::optional<fs::path> config_folder()
   try {
     return ament_index::share_folder("ur_ros_rtde") / "config";
   } catch (const std::exception &) {
-    return std::nullopt;  // without an ament index there are no plugins either, and the nodes say so
+    return std::nullopt;  // without an ament index there are no plugins either, which the nodes report
   }
 }
 }  // namespace
@@ -85,7 +85,7 @@ void report_fastdds_profile(const rcl_cxx::Logger & logger)
   if (needed && profile && is_present(*profile) && !mentions(*profile, property)) {
     RCL_CXX_INFO(logger,
                  "the Fast DDS profile {} leaves {} enabled: after a client was killed, new clients may not "
-                 "find the actions for a minute. See docs/discovery.md",
+                 "discover the actions for a minute, see docs/discovery.md",
                  profile->string(), property);
   }
 }

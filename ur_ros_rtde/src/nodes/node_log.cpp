@@ -4,14 +4,14 @@ namespace ur_ros_rtde {
 
 LogFunction log_connection(const rcl_cxx::Node & node)
 {
-  return [log = log_into(node.get_logger()), context = node.get_context()](LogLevel level,
-                                                                           const std::string & text) {
+  return [log = log_to(node.get_logger()), context = node.get_context()](LogLevel level,
+                                                                         const std::string & text) {
     const bool problem = level == LogLevel::warn || level == LogLevel::error;
     log(problem && !context->ok() ? LogLevel::debug : level, text);
   };
 }
 
-LogFunction log_into(const rcl_cxx::Logger & logger)
+LogFunction log_to(const rcl_cxx::Logger & logger)
 {
   return [logger](LogLevel level, const std::string & text) {
     switch (level) {

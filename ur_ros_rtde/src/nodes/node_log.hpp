@@ -6,11 +6,11 @@
 
 namespace ur_ros_rtde {
 
-/// What the robot side says, in the node's log.
-LogFunction log_into(const rcl_cxx::Logger & logger);
+/// Writes the messages of the robot package to the log of a node.
+LogFunction log_to(const rcl_cxx::Logger & logger);
 
-/// The same for what reports the state of a connection: in a shutdown a lost one is no problem, and goes to
-/// the debug level.
+/// The same for the state of connections. During a shutdown a lost connection is expected, so problems are
+/// logged at the debug level.
 LogFunction log_connection(const rcl_cxx::Node & node);
 
 }  // namespace ur_ros_rtde

@@ -12,15 +12,15 @@
 
 namespace ur_ros_rtde {
 
-/// Parameters are read once, at the start, and read-only from then on. These functions declare and check
-/// them; they throw rcl_cxx::ParameterError with name, value and what it may be.
+/// Functions that declare and check parameters. Parameters are read at the start and are read-only
+/// afterwards. The functions throw rcl_cxx::ParameterError with the name, the value and the allowed values.
 
 std::string declare_robot_ip(rcl_cxx::Node & node);
 
-/// After which silence of the controller the link counts as lost.
+/// Time without data after which the connection to the controller is considered lost.
 std::chrono::milliseconds declare_silence_limit(rcl_cxx::Node & node);
 
-/// SCHED_FIFO of the threads on which a control cycle waits; 0: none.
+/// SCHED_FIFO priority of the threads that run once per control cycle. 0: no real-time scheduling.
 int declare_realtime_priority(rcl_cxx::Node & node);
 
 struct PluginChoice {

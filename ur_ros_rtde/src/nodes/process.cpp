@@ -17,10 +17,10 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// In which an older process with a node of the same name is found, unless the machine is busy.
+/// Time to discover an older process with a node of the same name on an idle machine.
 constexpr std::chrono::milliseconds discovery_time{300};
 
-void end_goals(const Servers & servers)
+void close_servers(const Servers & servers)
 {
   std::vector<std::string> left;
   for (auto server = servers.rbegin(); server != servers.rend(); ++server) {
@@ -32,18 +32,17 @@ void end_goals(const Servers & servers)
     return;
   }
   for (const std::string & name : left) {
-    RCL_CXX_FATAL(servers.front()->node().get_logger(), "goal {} does not end, the process ends without it",
+    RCL_CXX_FATAL(servers.front()->node().get_logger(), "goal {} did not end, the process exits without it",
                   name);
   }
-  // Its thread cannot be joined, and what it uses cannot be destroyed under it. The robot's watchdog stops
-  // the arm.
+  // The thread cannot be joined, and objects that it uses must not be destroyed. The watchdog of the control
+  // program stops the arm.
   std::_Exit(1);
 }
 
-/// Sets `refused` and shuts down when a node of one of these names runs in another process.
-std::vector<std::unique_ptr<DuplicateCheck>> look_for_duplicates(const rcl_cxx::Context::SharedPtr & context,
-                                                                 const Servers & servers,
-                                                                 std::atomic<bool> & refused)
+/// Sets `refused` and shuts down if another process has a node with one of these names.
+std::vector<std::unique_ptr<DuplicateCheck>> start_duplicate_checks(
+    const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & refused)
 {
   std::vector<std::unique_ptr<DuplicateCheck>> checks;
   for (const auto & server : servers) {
@@ -60,19 +59,19 @@ std::vector<std::unique_ptr<DuplicateCheck>> look_for_duplicates(const rcl_cxx::
 
 void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & refused)
 {
-  const auto checks = look_for_duplicates(context, servers, refused);
-  const auto callback = context->add_pre_shutdown_callback([&servers] { end_goals(servers); });
+  const auto checks = start_duplicate_checks(context, servers, refused);
+  const auto callback = context->add_pre_shutdown_callback([&servers] { close_servers(servers); });
   {
     std::vector<std::unique_ptr<rcl_cxx::Executor>> executors;
     std::vector<std::jthread> threads;
     for (const auto & server : servers) {
-      // One each: a check that waits for the robot must not keep the other nodes.
+      // One executor per node, so that nodes do not delay each other.
       rcl_cxx::Executor & executor = *executors.emplace_back(std::make_unique<rcl_cxx::Executor>(context));
       executor.add_node(server->node());
       threads.emplace_back([&executor] { executor.spin(); });
     }
     try {
-      // Before clients see the actions of a node that is not to start.
+      // Before clients can discover the actions of a node that must not start.
       if (!context->wait_for_shutdown_begin(discovery_time)) {
         for (const auto & server : servers) {
           server->start();
@@ -104,7 +103,7 @@ int run_process(int argc, char ** argv, const MakeServers & make)
     return refused ? wrong_arguments : 0;
   } catch (const std::exception & error) {
     if (context && !context->ok()) {
-      // It was to end while it was starting, and what was being made then could not be.
+      // The process was stopped during its start, so the start failed.
       return refused ? wrong_arguments : 0;
     }
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());

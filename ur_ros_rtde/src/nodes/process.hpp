@@ -9,12 +9,12 @@
 
 namespace ur_ros_rtde {
 
-/// In the order in which they are started; destroyed in the opposite one.
+/// In the order of their start. Destroyed in reverse order.
 using Servers = std::vector<std::unique_ptr<Server>>;
 using MakeServers = std::function<Servers(const rcl_cxx::Context::SharedPtr &)>;
 
-/// The main function of a node's program: until SIGINT or SIGTERM. Returns the exit code: 0; 1 if something
-/// could not be ended; 2 for a wrong argument or parameter, or a node whose name another process has.
+/// Runs servers until SIGINT or SIGTERM. Returns the exit code: 0 on success; 1 if a goal did not end; 2 for
+/// an invalid argument or parameter, or if another process has a node of the same name.
 int run_process(int argc, char ** argv, const MakeServers & make);
 
 }  // namespace ur_ros_rtde

@@ -16,7 +16,7 @@ constexpr double missing_periods = 5.0;
 constexpr double least_age = 0.5;  // s
 
 template <typename M>
-void publish_if_heard(rcl_cxx::Publisher<M> & publisher, const M & message)
+void publish_if_subscribed(rcl_cxx::Publisher<M> & publisher, const M & message)
 {
   if (publisher.get_subscription_count() > 0) {
     publisher.publish(message);
@@ -29,8 +29,8 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
       options_(std::move(options)),
       source_(std::move(source)),
       newest_(options_.tf_prefix),
-      shown_(newest_.joint_state),
-      latched_(node),
+      published_joint_state_(newest_.joint_state),
+      status_topics_(node),
       field_topics_(node,
                     {options_.address, options_.tf_prefix, options_.qos, options_.frequency, options_.fields},
                     log_connection(node)),
@@ -60,10 +60,10 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
 
   publish_fake_ = node_.create_service<std_srvs::srv::SetBool>(
       "publish_fake_joint_states",
-      [this](const auto & request, auto & response) { set_faking(request, response); });
+      [this](const auto & request, auto & response) { enable_fake_joints(request, response); });
   fake_joint_states_ = node_.create_subscription<sensor_msgs::msg::JointState>(
       "fake_joint_states", rcl_cxx::QoS::reliable(10),
-      [this](const sensor_msgs::msg::JointState & message) { take_fake(message); });
+      [this](const sensor_msgs::msg::JointState & message) { set_fake_joints(message); });
 }
 
 template <typename S, typename M>
@@ -118,7 +118,7 @@ void RobotStateReceiver::publish(const Sample & sample)
 {
   const bool due = is_due(sample);
   packages_.add(sample, agreed_frequency_);
-  latched_.publish(sample);
+  status_topics_.publish(sample);
   {
     const std::lock_guard lock(mutex_);
     newest_.fill(sample);
@@ -128,18 +128,18 @@ void RobotStateReceiver::publish(const Sample & sample)
     return;
   }
   // Only this thread writes newest_, so it may be read here without the lock.
-  shown_.header.stamp = newest_.joint_state.header.stamp;
-  if (fake_.apply(shown_)) {
-    joint_states_->publish(shown_);
+  published_joint_state_.header.stamp = newest_.joint_state.header.stamp;
+  if (fake_.apply(published_joint_state_)) {
+    joint_states_->publish(published_joint_state_);
   } else {
     joint_states_->publish(newest_.joint_state);
   }
   tcp_pose_->publish(newest_.tcp_pose);
   wrench_->publish(newest_.wrench);
   io_state_->publish(newest_.io_state);
-  publish_if_heard(*tcp_speed_, newest_.tcp_speed);
-  publish_if_heard(*target_joint_states_, newest_.target_joint_state);
-  publish_if_heard(*actual_joint_states_, newest_.joint_state);
+  publish_if_subscribed(*tcp_speed_, newest_.tcp_speed);
+  publish_if_subscribed(*target_joint_states_, newest_.target_joint_state);
+  publish_if_subscribed(*actual_joint_states_, newest_.joint_state);
   if (tool_transform_) {
     tool_transform_->publish(newest_.tcp_pose);
   }
@@ -149,7 +149,7 @@ std::vector<Diagnosis> RobotStateReceiver::diagnose()
 {
   const StateSource source = source_();
   if (!source.link.connected) {
-    latched_.publish_no_controller();
+    status_topics_.publish_no_controller();
   }
   std::optional<Sample> sample;
   {
@@ -160,8 +160,8 @@ std::vector<Diagnosis> RobotStateReceiver::diagnose()
           diagnose_robot(source, sample)};
 }
 
-void RobotStateReceiver::set_faking(const std_srvs::srv::SetBool::Request & request,
-                                    std_srvs::srv::SetBool::Response & response)
+void RobotStateReceiver::enable_fake_joints(const std_srvs::srv::SetBool::Request & request,
+                                            std_srvs::srv::SetBool::Response & response)
 {
   if (request.data) {
     const std::lock_guard lock(mutex_);
@@ -175,7 +175,7 @@ void RobotStateReceiver::set_faking(const std_srvs::srv::SetBool::Request & requ
   RCL_CXX_INFO(node_.get_logger(), "{}", response.message);
 }
 
-void RobotStateReceiver::take_fake(const sensor_msgs::msg::JointState & message)
+void RobotStateReceiver::set_fake_joints(const sensor_msgs::msg::JointState & message)
 {
   if (const auto taken = fake_.set(message); !taken) {
     RCL_CXX_WARN_THROTTLE(node_.get_logger(), std::chrono::seconds(1),

@@ -17,18 +17,17 @@
 #include "recording/recording_services.hpp"
 #include "state/fake_joints.hpp"
 #include "state/field_topics.hpp"
-#include "state/latched_state.hpp"
 #include "state/state_diagnostics.hpp"
 #include "state/state_messages.hpp"
+#include "state/status_topics.hpp"
 #include "state/tool_transform.hpp"
 #include "ur_ros_rtde_robot/state/sample.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 
-/// The node robot_state_receiver: publishes each package of the controller, and answers from the newest.
-/// Where the packages come from is its owner's business: a StateReceiver, or the Robot of a command_server in
-/// the same process.
+/// Publishes the state from each sample and answers services from the newest one. The samples come from a
+/// StateReceiver, or from the Robot of a command_server in the same process.
 class RobotStateReceiver {
  public:
   struct Options {
@@ -38,7 +37,7 @@ class RobotStateReceiver {
     bool publish_tf = true;
     /// Hz
     double frequency = 500.0;
-    /// RTDE outputs for robot_state.
+    /// RTDE outputs that are published on robot_state.
     std::vector<std::string> fields;
     std::string address;
   };
@@ -46,7 +45,7 @@ class RobotStateReceiver {
 
   RobotStateReceiver(rcl_cxx::Node & node, Options options, Source source);
 
-  /// In the thread that receives; allocates nothing.
+  /// Runs on the receiving thread and does not allocate.
   void publish(const Sample & sample);
 
  private:
@@ -55,22 +54,22 @@ class RobotStateReceiver {
                                                 M S::Response::* destination);
   Status freshness() const;
   bool is_due(const Sample & sample);
-  void set_faking(const std_srvs::srv::SetBool::Request & request,
-                  std_srvs::srv::SetBool::Response & response);
-  void take_fake(const sensor_msgs::msg::JointState & message);
+  void enable_fake_joints(const std_srvs::srv::SetBool::Request & request,
+                          std_srvs::srv::SetBool::Response & response);
+  void set_fake_joints(const sensor_msgs::msg::JointState & message);
   std::vector<Diagnosis> diagnose();
 
   rcl_cxx::Node & node_;
   const Options options_;
   const Source source_;
   mutable std::mutex mutex_;
-  StateMessages newest_;  ///< always the real state
+  StateMessages newest_;  ///< never the fake joint states
   std::optional<Sample> received_;
   std::uint32_t link_ = 0;
   double next_due_ = 0.0;
   FakeJoints fake_;
-  sensor_msgs::msg::JointState shown_;
-  LatchedState latched_;
+  sensor_msgs::msg::JointState published_joint_state_;
+  StatusTopics status_topics_;
   PackageStatistics packages_;
   double agreed_frequency_ = 0.0;  ///< of link_
 
@@ -81,7 +80,8 @@ class RobotStateReceiver {
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::IOState>::SharedPtr io_state_;
   rcl_cxx::Publisher<geometry_msgs::msg::TwistStamped>::SharedPtr tcp_speed_;
   rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr target_joint_states_;
-  std::unique_ptr<ToolTransform> tool_transform_;  ///< null: publish_tf is false, or not available
+  std::unique_ptr<ToolTransform>
+      tool_transform_;  ///< null if publish_tf is false or tf2_msgs is not available
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetJointState>::SharedPtr get_joint_state_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetTcpPose>::SharedPtr get_tcp_pose_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetWrench>::SharedPtr get_wrench_;

@@ -9,18 +9,18 @@
 
 namespace ur_ros_rtde {
 
-/// A node as run_process() runs it.
+/// A node that run_process() runs.
 class Server {
  public:
   virtual ~Server() = default;
   virtual rcl_cxx::Node & node() = 0;
   virtual void start() = 0;
-  /// When the process is to end, communication still working: ends what runs, within some seconds. Returns
-  /// what could not be ended.
+  /// Called at shutdown while communication still works. Stops all goals within close_limit. Returns the
+  /// names of those that did not end.
   virtual std::vector<std::string> close() { return {}; }
 };
 
-/// How long the goals have to end when the process is to: a stop, and its last means.
+/// Time for the goals to end at shutdown: a stop, including its fallbacks.
 constexpr std::chrono::milliseconds close_limit{5000};
 
 }  // namespace ur_ros_rtde

@@ -11,7 +11,7 @@ namespace ur_ros_rtde {
 
 class Robot;
 
-/// The node robot_state_receiver, with a connection of its own.
+/// The node robot_state_receiver with its own connection to the controller.
 class StateServer : public Server {
  public:
   explicit StateServer(const rcl_cxx::Context::SharedPtr & context);
@@ -24,7 +24,8 @@ class StateServer : public Server {
   std::unique_ptr<StateReceiver> source_;
 };
 
-/// The same, with the packages of a Robot in the same process; construct before the robot is started.
+/// The node robot_state_receiver with the samples of a Robot in the same process. Construct it before the
+/// robot is started.
 class SharedStateServer : public Server {
  public:
   SharedStateServer(const rcl_cxx::Context::SharedPtr & context, Robot & robot);

@@ -12,7 +12,7 @@ namespace ur_ros_rtde {
 namespace {
 namespace fs = std::filesystem;
 
-/// What pluginlib_export_plugin_description_file(ur_ros_rtde plugins.xml) registers under.
+/// Resource type of pluginlib_export_plugin_description_file(ur_ros_rtde plugins.xml).
 constexpr const char * resource_type = "ur_ros_rtde__pluginlib__plugin";
 
 std::string attribute(const tinyxml2::XMLElement & element, const char * name)
@@ -21,7 +21,7 @@ std::string attribute(const tinyxml2::XMLElement & element, const char * name)
   return value != nullptr ? value : "";
 }
 
-/// As pluginlib looks for it: <library path="name"/> without prefix and suffix.
+/// Searches for the library as pluginlib does: <library path="name"/> without prefix and suffix.
 std::string library_file(const std::string & path, const std::string & package, const std::string & prefix)
 {
   const fs::path given(path);

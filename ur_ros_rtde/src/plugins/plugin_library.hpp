@@ -11,12 +11,12 @@
 
 namespace ur_ros_rtde {
 
-/// Plugin libraries, each loaded once, and unloaded with this object: after the plugins made from them and
+/// Plugin libraries, each loaded once and unloaded by the destructor. Destroy it after all plugins and
 /// everything that may run their code.
 class PluginLibraries {
  public:
-  /// The plugin's descriptor, after checking that it is one for this driver. The error says what is wrong
-  /// with the library.
+  /// Loads the library of a plugin and returns the descriptor if it is compatible with this driver. The error
+  /// describes what is wrong with the library.
   Expected<const PluginDescriptor *> describe(const PluginEntry & entry);
 
  private:

@@ -12,7 +12,7 @@ namespace ur_ros_rtde {
 namespace {
 using ByName = std::map<std::string, PluginEntry>;
 
-/// The number of letters to insert, to delete or to replace (Levenshtein).
+/// Levenshtein distance.
 std::size_t edit_distance(const std::string & a, const std::string & b)
 {
   std::vector<std::size_t> row(b.size() + 1);
@@ -36,7 +36,8 @@ std::string nearest(const std::string & name, const std::set<std::string> & know
   });
 }
 
-/// Names that no plugin has; those of the other server's plugins are right, if the lists are for both.
+/// Reports names that no plugin has. Names of the other server's plugins are valid, because both servers may
+/// have the same parameters.
 void report_unknown(const char * parameter, const std::vector<std::string> & names,
                     const std::vector<PluginEntry> & all, const ReportProblem & report)
 {

@@ -7,9 +7,9 @@
 
 namespace ur_ros_rtde {
 
-/// What the parameters `plugins` (empty: all) and `plugins_blacklist` leave of the plugins with this base, in
-/// the order of their names. Reported and left out: names in the lists that no plugin of any base has, with
-/// the nearest one; a name that a package before has already.
+/// Selects the plugins with the given base class by the parameters `plugins` (empty: all) and
+/// `plugins_blacklist`, ordered by name. Reports names that no plugin of any base class has, with the most
+/// similar name, and plugins whose name is already taken by another package.
 std::vector<PluginEntry> select_plugins(const std::vector<PluginEntry> & all, const std::string & base,
                                         const std::vector<std::string> & chosen,
                                         const std::vector<std::string> & blacklist,

@@ -12,7 +12,7 @@
 
 namespace ur_ros_rtde {
 
-/// The plugins of one server: made, started, and in the end stopped before their libraries are unloaded.
+/// Creates, starts and stops the plugins of one server, and unloads their libraries at the end.
 template <typename Plugin, typename Host>
 class PluginSet {
  public:
@@ -21,11 +21,11 @@ class PluginSet {
   PluginSet(const PluginSet &) = delete;
   PluginSet & operator=(const PluginSet &) = delete;
 
-  /// Makes what can be made; what cannot is reported with plugin, package and cause.
+  /// Creates plugins. A plugin that fails is reported with its name, its package and the cause, and left out.
   void load(const std::vector<PluginEntry> & entries, const ReportProblem & report)
   {
     for (const PluginEntry & entry : entries) {
-      guarded(entry, "it threw when it was made", report, [&]() -> Status {
+      guarded(entry, "its constructor threw", report, [&]() -> Status {
         const auto descriptor = libraries_.describe(entry);
         if (!descriptor) {
           return tl::unexpected(descriptor.error());
@@ -36,15 +36,16 @@ class PluginSet {
     }
   }
 
-  /// Starts their action servers, in the same way.
+  /// Starts the action servers, with the same handling of errors.
   void start(Host & host, const ReportProblem & report)
   {
-    with_each("it threw when it was started", report, [&host](const PluginEntry & entry, Plugin & plugin) {
+    with_each("start_action_server() threw", report, [&host](const PluginEntry & entry, Plugin & plugin) {
       plugin.start_action_server(host, entry.name);
     });
   }
 
-  /// Asks all for something, by name; one that throws is reported with `thrown` and left out.
+  /// Calls `step` for each plugin, in the order of their names. A plugin whose call throws is reported with
+  /// `thrown` and removed.
   void with_each(const char * thrown, const ReportProblem & report,
                  const std::function<void(const PluginEntry &, Plugin &)> & step)
   {
@@ -56,11 +57,15 @@ class PluginSet {
     });
   }
 
-  /// No plugin's code runs once this has returned, if their goals have ended.
+  /// Stops the action servers and destroys the plugins. No code of a plugin runs afterwards, provided that
+  /// its goals have ended. A plugin that throws is destroyed nevertheless.
   void stop()
   {
     for (auto & loaded : plugins_) {
-      loaded.plugin->stop_action_server();
+      try {
+        loaded.plugin->stop_action_server();
+      } catch (...) {  // the destructor of the plugin ends the server in any case
+      }
     }
     plugins_.clear();
   }
@@ -91,7 +96,7 @@ class PluginSet {
     } catch (const std::exception & error) {
       why = fmt::format("{}: {}", thrown, error.what());
     } catch (...) {
-      why = fmt::format("{}: something unknown", thrown);
+      why = fmt::format("{} an exception of an unknown type", thrown);
     }
     if (why) {
       report(fmt::format("plugin {} of package {} is left out: {}", entry.name, entry.package, *why));

@@ -9,25 +9,25 @@
 
 namespace ur_ros_rtde {
 
-/// A file of comma-separated numbers with a head line (RFC 4180). Numbers are written with as many digits as
-/// it takes to read the same double again.
+/// A CSV file with a header line (RFC 4180). Numbers are written with full round-trip precision.
 class CsvFile {
  public:
-  /// Refused (invalid_goal) for a relative path, a file that exists, a folder that cannot be written.
+  /// Fails (invalid_goal) for a relative path, an existing file, and a directory that is not writable.
   static Expected<CsvFile> create(const std::string & path, const std::vector<std::string> & columns);
   CsvFile(CsvFile && other) noexcept;
   CsvFile & operator=(CsvFile && other) noexcept;
   ~CsvFile();
 
   const std::string & path() const { return path_; }
-  /// In the file, without the head line.
+  /// Rows in the file, without the header.
   std::uint64_t rows() const { return rows_; }
 
-  /// Kept until flush().
+  /// Buffers a row until flush().
   void append(std::span<const double> row);
-  /// After an error (a full disk) the file ends with the last whole row, and takes no more.
+  /// Writes the buffered rows. After an error, for example a full disk, the file ends with the last complete
+  /// row, and nothing more is written.
   Status flush();
-  /// flush(), and the file is closed.
+  /// Calls flush() and closes the file.
   Status close();
 
  private:

@@ -16,29 +16,29 @@ class RecordingSession;
 struct RecordingReport {
   std::string file;
   std::uint64_t rows = 0;
-  /// Packages that should have become rows and did not: by the controller's clock, so that those count, too,
-  /// that came while the link was down, but not what went by while the controller was.
+  /// Rows that are missing, by controller time. Includes cycles while the connection was lost, but not the
+  /// time while the controller was off.
   std::uint64_t lost = 0;
-  /// What kept it from writing on, if anything did: a full disk.
+  /// The error that ended writing, for example a full disk.
   Status state;
 };
 
-/// Writes RTDE fields into files, on a connection and threads of its own, so that neither the disk nor the
-/// number of fields concerns anybody else. One recording at a time. Thread-safe.
+/// Records RTDE fields to CSV files. Uses its own connection and threads, so that neither the disk nor the
+/// number of fields affects the driver. One recording at a time. Thread-safe.
 class Recorder {
  public:
   Recorder(std::string address, LogFunction log);
-  /// Ends a recording as stop() does.
+  /// Calls stop().
   ~Recorder();
   Recorder(const Recorder &) = delete;
   Recorder & operator=(const Recorder &) = delete;
 
-  /// Returns the columns: "timestamp", "actual_q_0", … `fields`: none: timestamp, actual_q, actual_qd,
-  /// actual_TCP_pose. `frequency`: Hz; 0: the controller's. Takes some 10 ms. Errors: busy, invalid_goal,
-  /// not_supported (fields that this controller does not have), link_lost.
+  /// Starts a recording and returns its columns: "timestamp", "actual_q_0", … Empty `fields`: timestamp,
+  /// actual_q, actual_qd, actual_TCP_pose. `frequency`: Hz; 0: rate of the controller. Takes about 10 ms.
+  /// Errors: busy, invalid_goal, not_supported (the controller does not have a field), link_lost.
   Expected<std::vector<std::string>> start(const std::string & file, std::vector<std::string> fields,
                                            double frequency);
-  /// Errors: not_ready, when there is no recording.
+  /// Error: not_ready if there is no recording.
   Expected<RecordingReport> stop();
 
  private:

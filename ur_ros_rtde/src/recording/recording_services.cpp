@@ -8,7 +8,7 @@ namespace ur_ros_rtde {
 
 RecordingServices::RecordingServices(rcl_cxx::Node & node, const std::string & address)
     : node_(node),
-      recorder_(address, log_into(node.get_logger())),
+      recorder_(address, log_to(node.get_logger())),
       start_recording_(node.create_service<Start>(
           "start_recording", [this](const auto & request, auto & response) { start(request, response); })),
       stop_recording_(node.create_service<Stop>("stop_recording",

@@ -9,7 +9,7 @@
 
 namespace ur_ros_rtde {
 
-/// start_recording and stop_recording. A recording that runs is ended with this object.
+/// The services start_recording and stop_recording. The destructor ends an active recording.
 class RecordingServices {
  public:
   RecordingServices(rcl_cxx::Node & node, const std::string & address);

@@ -14,22 +14,22 @@
 
 namespace ur_ros_rtde {
 
-/// A recording under way: one thread takes packages, and connects again when the link was lost; another one
-/// writes.
+/// An active recording: one thread receives packages and reconnects after a lost connection, another one
+/// writes the file.
 class RecordingSession {
  public:
   struct Plan {
     std::string address;
     std::vector<std::string> fields;  ///< "timestamp" is one of them
     double frequency;                 ///< Hz, agreed
-    std::size_t columns;    ///< of the numbers of a package so many, from the first on, become a row
-    std::size_t timestamp;  ///< where it is among them
+    std::size_t columns;              ///< number of values of a package that are written to a row
+    std::size_t timestamp;            ///< its index in a row
   };
 
   RecordingSession(Plan plan, RtdeStream stream, CsvFile file, const LogFunction & log);
   ~RecordingSession();
   const std::string & path() const { return file_.path(); }
-  /// Writes what has come and closes the file. Once.
+  /// Writes the remaining rows and closes the file. Call it once.
   RecordingReport end();
 
  private:
@@ -42,7 +42,7 @@ class RecordingSession {
   Reporter report_;
   RtdeStream stream_;
   CsvFile file_;
-  Status state_;  ///< the writer's, until it has ended
+  Status state_;  ///< used by the writer thread until it has ended
   RowQueue queue_;
   double last_ = 0.0;  ///< timestamp
   bool began_ = false;

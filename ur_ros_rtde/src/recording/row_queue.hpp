@@ -8,13 +8,13 @@
 
 namespace ur_ros_rtde {
 
-/// Rows of numbers from one thread to another, which may fall behind by so many. Neither allocates once both
-/// have taken turns. Thread-safe.
+/// A bounded queue of rows from one thread to another. Does not allocate after both buffers have been used.
+/// Thread-safe.
 class RowQueue {
  public:
   RowQueue(std::size_t width, std::size_t most) : width_(width), most_(most) { rows_.reserve(width * most); }
 
-  /// False when the queue is full: the row is lost.
+  /// False if the queue is full; the row is lost.
   bool push(std::span<const double> row)
   {
     {
@@ -28,8 +28,8 @@ class RowQueue {
     return true;
   }
 
-  /// Waits for rows and moves all there are into `rows`, one after the other; false when the queue has been
-  /// closed and is empty.
+  /// Waits for rows and moves all of them to `rows`, concatenated. False if the queue was closed and is
+  /// empty.
   bool take(std::vector<double> & rows)
   {
     rows.clear();
@@ -39,7 +39,7 @@ class RowQueue {
     return !rows.empty();
   }
 
-  /// take() gives what is left, and then ends.
+  /// Ends take() after the remaining rows.
   void close()
   {
     {

@@ -5,7 +5,7 @@
 
 namespace ur_ros_rtde {
 
-Diagnosis & Diagnosis::say(std::uint8_t level, std::string message)
+Diagnosis & Diagnosis::add(std::uint8_t level, std::string message)
 {
   if (status_.message.empty() || level > status_.level) {
     status_.level = level;
@@ -16,12 +16,12 @@ Diagnosis & Diagnosis::say(std::uint8_t level, std::string message)
 
 Diagnosis & Diagnosis::warn_if(bool holds, std::string message)
 {
-  return holds ? say(Status::WARN, std::move(message)) : *this;
+  return holds ? add(Status::WARN, std::move(message)) : *this;
 }
 
 Diagnosis & Diagnosis::error_if(bool holds, std::string message)
 {
-  return holds ? say(Status::ERROR, std::move(message)) : *this;
+  return holds ? add(Status::ERROR, std::move(message)) : *this;
 }
 
 Diagnostics::Diagnostics(rcl_cxx::Node & node, std::string hardware_id, Examine examine)

@@ -10,16 +10,16 @@
 
 namespace ur_ros_rtde {
 
-/// One entry of /diagnostics in the making.
+/// Collects one entry of /diagnostics.
 class Diagnosis {
  public:
   using Status = diagnostic_msgs::msg::DiagnosticStatus;
 
   explicit Diagnosis(std::string name) { status_.name = std::move(name); }
 
-  /// The worst that is said counts; of equal ones the first.
-  Diagnosis & say(std::uint8_t level, std::string message);
-  Diagnosis & ok(std::string message) { return say(Status::OK, std::move(message)); }
+  /// Adds a finding. The entry has the highest level, and the message of the first finding with that level.
+  Diagnosis & add(std::uint8_t level, std::string message);
+  Diagnosis & ok(std::string message) { return add(Status::OK, std::move(message)); }
   Diagnosis & warn_if(bool holds, std::string message);
   Diagnosis & error_if(bool holds, std::string message);
   template <typename T>
@@ -36,13 +36,13 @@ class Diagnosis {
   Status status_;
 };
 
-/// Publishes what a node finds on /diagnostics, once a second: the entries are called `<node>: <name>`, the
-/// node with its namespace.
+/// Publishes the findings of a node on /diagnostics once per second. The entries are named `<node>: <name>`,
+/// with the namespace of the node.
 class Diagnostics {
  public:
   using Examine = std::function<std::vector<Diagnosis>()>;
 
-  /// `examine` is called in the executor's thread. `hardware_id`: the robot's address.
+  /// `examine` is called in the executor's thread. `hardware_id`: address of the robot.
   Diagnostics(rcl_cxx::Node & node, std::string hardware_id, Examine examine);
 
  private:
@@ -52,7 +52,7 @@ class Diagnostics {
   const std::string hardware_id_;
   const Examine examine_;
   rcl_cxx::Publisher<diagnostic_msgs::msg::DiagnosticArray>::SharedPtr publisher_;
-  rcl_cxx::Timer::SharedPtr timer_;  ///< goes first: nothing is examined any more
+  rcl_cxx::Timer::SharedPtr timer_;  ///< destroyed first, so that `examine` is not called any more
 };
 
 }  // namespace ur_ros_rtde

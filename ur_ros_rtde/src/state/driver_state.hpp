@@ -9,7 +9,7 @@
 
 namespace ur_ros_rtde {
 
-/// driver_state: what the driver makes of the robot, on each change; who comes later gets the last.
+/// Publishes driver_state on each change. Transient local: late subscribers receive the last value.
 class DriverStateTopic {
  public:
   explicit DriverStateTopic(rcl_cxx::Node & node);
@@ -21,8 +21,8 @@ class DriverStateTopic {
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::DriverState>::SharedPtr publisher_;
 };
 
-/// The same for /diagnostics, with the goals that have the robot. ERROR when it cannot be reached or is
-/// stopped for its safety, WARN when it cannot move for another reason.
+/// The state of the driver for /diagnostics, with the active goals. ERROR if the robot cannot be reached or
+/// is in a safety stop, WARN if it cannot move for another reason.
 std::vector<Diagnosis> diagnose_driver(Robot & robot);
 
 }  // namespace ur_ros_rtde

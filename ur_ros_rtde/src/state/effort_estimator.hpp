@@ -6,13 +6,13 @@
 
 namespace ur_ros_rtde {
 
-/// Joint torques, Nm, from the motor currents.
+/// Estimates joint torques (Nm) from motor currents.
 ///
-/// From PolyScope 5.23 on the controller reports them itself (actual_current_as_torque). Before, the ratio of
-/// torque to current of each joint is learnt from the controller's own target values, which follow its model
-/// of the arm: least squares through zero of target_moment over target_current, older samples fading; the
-/// estimate is that ratio times the actual current. Friction and the gear's efficiency are in it as the
-/// model has them.
+/// From PolyScope 5.23 on, the controller reports them (actual_current_as_torque). For older versions, the
+/// ratio of torque to current of each joint is fitted to the controller's target values, which follow its
+/// model of the arm: least squares through the origin of target_moment over target_current, with exponential
+/// forgetting. The estimate is this ratio times the actual current. It contains friction and gear efficiency
+/// as modelled by the controller.
 class EffortEstimator {
  public:
   Vector6 update(const Sample & sample);

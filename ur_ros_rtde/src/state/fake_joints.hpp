@@ -8,18 +8,18 @@
 
 namespace ur_ros_rtde {
 
-/// What joint_states shows while publish_fake_joint_states is on: the positions at that moment, and then what
-/// fake_joint_states gives for each joint that it names. Thread-safe.
+/// The joint positions that are published on joint_states while publish_fake_joint_states is on: the
+/// positions at that moment, then the values received on fake_joint_states for each joint. Thread-safe.
 class FakeJoints {
  public:
-  /// `real` is what joint_states shows now; its names are the joints that can be faked.
+  /// `real`: the current joint states. Its names are the joints that can be faked.
   void begin(const sensor_msgs::msg::JointState & real);
   void end();
   bool active() const;
-  /// Takes the positions of the joints that `message` names. The error names what is wrong with it, and
-  /// nothing of it is taken.
+  /// Sets the positions of the joints named in `message`. If the message is invalid, nothing changes, and the
+  /// error names the cause.
   tl::expected<void, std::string> set(const sensor_msgs::msg::JointState & message);
-  /// The positions now shown, at rest and without effort; stamp as in `shown`. False if not active.
+  /// Writes the fake positions, with zero velocity and effort, and keeps the stamp. False if not active.
   bool apply(sensor_msgs::msg::JointState & shown) const;
 
  private:

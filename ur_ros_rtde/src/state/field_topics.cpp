@@ -97,7 +97,7 @@ void FieldTopics::run(const std::stop_token & stop)
 /// Until somebody else wants it, or there is something the matter.
 Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_token & stop)
 {
-  lay_out(stream);
+  set_up_fields(stream);
   std::vector<double> numbers(stream.width());
   auto last = Clock::now();
   auto look = last + fields_look_interval;
@@ -128,7 +128,7 @@ Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_
   return {};
 }
 
-void FieldTopics::lay_out(const RtdeStream & stream)
+void FieldTopics::set_up_fields(const RtdeStream & stream)
 {
   state_.fields.clear();
   begins_.clear();

@@ -15,9 +15,9 @@
 
 namespace ur_ros_rtde {
 
-/// tool_data, and robot_state with the RTDE fields that somebody wants: what a Sample does not hold, on a
-/// connection of its own with a thread of its own. There is none while nobody listens to tool_data and no
-/// fields are wanted.
+/// Publishes tool_data, and robot_state with the configured RTDE fields, which a Sample does not contain.
+/// Uses its own connection and thread, which exist only while tool_data has subscribers or fields are
+/// configured.
 class FieldTopics {
  public:
   struct Options {
@@ -25,11 +25,11 @@ class FieldTopics {
     std::string tf_prefix;
     std::string qos;
     double frequency = 0.0;           ///< Hz
-    std::vector<std::string> fields;  ///< of robot_state; none: no such topic
+    std::vector<std::string> fields;  ///< of robot_state; empty: the topic is not created
   };
 
   FieldTopics(rcl_cxx::Node & node, Options options, LogFunction log);
-  /// Ends the thread; takes as long as a step of connecting at most.
+  /// Ends the thread. Takes at most as long as one step of connecting.
   ~FieldTopics() = default;
   FieldTopics(const FieldTopics &) = delete;
   FieldTopics & operator=(const FieldTopics &) = delete;
@@ -38,14 +38,14 @@ class FieldTopics {
   void run(const std::stop_token & stop);
   bool tool_wanted() const { return tool_data_->get_subscription_count() > 0; }
   Status follow(RtdeStream & stream, bool with_tool, const std::stop_token & stop);
-  /// Gives robot_state its fields, and remembers where their numbers are.
-  void lay_out(const RtdeStream & stream);
+  /// Sets up the fields of robot_state and stores the positions of their values.
+  void set_up_fields(const RtdeStream & stream);
   void publish_tool(std::span<const double> numbers);
   void publish_state(std::span<const double> numbers);
 
   const Options options_;
   Reporter report_;
-  std::vector<std::size_t> begins_;  ///< of the fields of robot_state in a package
+  std::vector<std::size_t> begins_;  ///< position of each field of robot_state in a package
   ur_ros_rtde_msgs::msg::ToolData tool_;
   ur_ros_rtde_msgs::msg::RobotState state_;
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::ToolData>::SharedPtr tool_data_;

@@ -9,24 +9,23 @@
 
 namespace ur_ros_rtde {
 
-/// How the controller's packages came during the last second. Thread-safe.
+/// Statistics of the received packages over the last second. Thread-safe.
 class PackageStatistics {
  public:
   struct Report {
     double rate = 0.0;           ///< Hz
     double mean_interval = 0.0;  ///< s
-    double p99_interval = 0.0;   ///< s: 99 of 100 intervals are shorter, or as long
+    double p99_interval = 0.0;   ///< s, 99th percentile
     double longest = 0.0;        ///< s
-    std::uint64_t lost =
-        0;  ///< of the last second: cycles that no package came for, by the controller's clock
+    std::uint64_t lost = 0;      ///< control cycles without a package in the last second, by controller time
     std::uint64_t lost_ever = 0;
     std::uint64_t received_ever = 0;
   };
 
   PackageStatistics();
-  /// Allocates nothing. `frequency`: Hz, at which the controller sends.
+  /// Does not allocate. `frequency`: rate at which the controller sends, Hz.
   void add(const Sample & sample, double frequency);
-  /// Since the report before.
+  /// Returns the statistics since the previous report.
   Report report();
 
  private:

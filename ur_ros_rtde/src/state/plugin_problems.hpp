@@ -7,8 +7,8 @@
 
 namespace ur_ros_rtde {
 
-/// Logs problems of plugins as errors of the node; not while it is shut down, when everything fails. Nodes of
-/// one process look at the same plugins and may be given the same parameters: each problem is logged once.
+/// Logs problems of plugins as errors of the node, except during shutdown. The nodes of one process load the
+/// same plugin descriptions and may have the same parameters, so each problem is logged once per process.
 ReportProblem log_plugin_problems(std::shared_ptr<rcl_cxx::Node> node);
 
 }  // namespace ur_ros_rtde

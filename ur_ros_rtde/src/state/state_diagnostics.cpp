@@ -41,7 +41,7 @@ Diagnosis diagnose_link(const StateSource & source, const std::string & address)
   if (source.link.connected) {
     diagnosis.ok("connected");
   } else {
-    diagnosis.say(source.version ? Level::ERROR : Level::STALE,
+    diagnosis.add(source.version ? Level::ERROR : Level::STALE,
                   source.link.error.message.empty() ? "not connected" : source.link.error.message);
   }
   return diagnosis.value("connected", source.link.connected)
@@ -53,7 +53,7 @@ Diagnosis diagnose_packages(const StateSource & source, const PackageStatistics:
 {
   Diagnosis diagnosis("packages");
   if (!source.link.connected) {
-    diagnosis.say(Level::STALE, "no connection");
+    diagnosis.add(Level::STALE, "no connection");
   } else {
     const std::string rate = fmt::format("{:.1f} of {:.0f} packages/s", packages.rate, source.frequency);
     diagnosis.ok(rate)
@@ -75,14 +75,14 @@ Diagnosis diagnose_robot(const StateSource & source, const std::optional<Sample>
 {
   Diagnosis diagnosis("robot");
   if (!source.link.connected || !sample) {
-    diagnosis.say(Level::STALE, "no connection");
+    diagnosis.add(Level::STALE, "no connection");
   }
   if (!sample) {
     return diagnosis;
   }
   const double hottest = *std::ranges::max_element(sample->joint_temperatures);
   if (source.link.connected) {
-    diagnosis.say(level(sample->safety_mode), fmt::format("safety mode {}", to_string(sample->safety_mode)))
+    diagnosis.add(level(sample->safety_mode), fmt::format("safety mode {}", to_string(sample->safety_mode)))
         .warn_if(sample->robot_mode != RobotMode::running,
                  fmt::format("robot mode {}", to_string(sample->robot_mode)))
         .warn_if(hottest > hot, fmt::format("a joint has {:.1f} degrees Celsius", hottest));

@@ -10,19 +10,19 @@
 
 namespace ur_ros_rtde {
 
-/// Where the packages come from, as it is now.
+/// The source of the samples and its current state.
 struct StateSource {
   LinkStatus link;
   std::optional<ControllerVersion> version;
   double frequency = 0.0;  ///< Hz, agreed with the controller; 0: not yet
 };
 
-/// STALE before the first connection, ERROR when it is lost.
+/// STALE before the first connection, ERROR after the connection was lost.
 Diagnosis diagnose_link(const StateSource & source, const std::string & address);
-/// WARN below 95 % of the agreed rate or when packages were lost, ERROR below half of it.
+/// WARN below 95 % of the agreed rate or if packages were lost, ERROR below 50 %.
 Diagnosis diagnose_packages(const StateSource & source, const PackageStatistics::Report & packages);
-/// WARN when the robot cannot move or a joint is hot, ERROR for what needs more than a button: emergency
-/// stop, violation, fault. STALE without a connection, with what was last.
+/// WARN if the robot cannot move or a joint is hot. ERROR for states that need more than an acknowledgement:
+/// emergency stop, violation, fault. STALE without a connection, with the last values.
 Diagnosis diagnose_robot(const StateSource & source, const std::optional<Sample> & sample);
 
 }  // namespace ur_ros_rtde

@@ -12,11 +12,11 @@ namespace ur_ros_rtde {
 class ToolTransform {
  public:
   virtual ~ToolTransform() = default;
-  /// Sends nothing while /tf has no subscriber. Allocates nothing.
+  /// Publishes only while /tf has subscribers. Does not allocate.
   virtual void publish(const geometry_msgs::msg::PoseStamped & tcp_pose) = 0;
 };
 
-/// Null, and a line in the log, in a build without the package tf2_msgs.
+/// Returns null and logs a message if the package tf2_msgs was not available at build time.
 std::unique_ptr<ToolTransform> make_tool_transform(rcl_cxx::Node & node, const std::string & tf_prefix);
 
 }  // namespace ur_ros_rtde

@@ -54,7 +54,7 @@ def test_a_second_driver_with_the_same_names_refuses_to_start_and_the_first_move
     assert goal.accepted
     second = node("driver", simulator.address, namespace="first")
     assert second.wait(30.0) == 2
-    refusal = [line for line in second.lines if "runs already" in line]
+    refusal = [line for line in second.lines if "is already running" in line]
     assert len(refusal) == 1, second.output()
     assert "/first/" in refusal[0] and f"process {first.pid} on " in refusal[0] and "__ns" in refusal[0]
     assert goal.succeeded().final_state.joint_positions[0] == pytest.approx(AWAY[0], abs=0.01)
@@ -64,14 +64,14 @@ def test_a_second_driver_with_the_same_names_refuses_to_start_and_the_first_move
 def test_each_node_whose_name_another_process_has_refuses_to_start(name, first, simulator):
     second = node(name, simulator.address, namespace="first")
     assert second.wait(30.0) == 2
-    assert f"/first/{name} runs already" in second.output()
+    assert f"/first/{name} is already running" in second.output()
 
 
 def test_a_driver_starts_again_at_once_after_it_was_killed(first, simulator, processes):
     first.kill()
     second = processes(node("driver", simulator.address, namespace="first"))
     second.wait_for_output("the robot is ready")
-    assert second.running() and "runs already" not in second.output()
+    assert second.running() and "is already running" not in second.output()
 
 
 def test_a_driver_in_another_namespace_says_who_has_the_robot_and_gets_it_when_it_is_free(

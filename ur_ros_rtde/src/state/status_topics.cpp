@@ -1,4 +1,4 @@
-#include "state/latched_state.hpp"
+#include "state/status_topics.hpp"
 
 #include <cmath>
 #include <utility>
@@ -13,7 +13,7 @@ bool changes(std::optional<T> & shown, const T & value)
 }
 }  // namespace
 
-LatchedState::LatchedState(rcl_cxx::Node & node)
+StatusTopics::StatusTopics(rcl_cxx::Node & node)
     : robot_mode_(node.create_publisher<ur_ros_rtde_msgs::msg::RobotMode>("robot_mode",
                                                                           rcl_cxx::QoS::transient_local())),
       safety_mode_(node.create_publisher<ur_ros_rtde_msgs::msg::SafetyMode>("safety_mode",
@@ -26,36 +26,36 @@ LatchedState::LatchedState(rcl_cxx::Node & node)
   publish_no_controller();
 }
 
-void LatchedState::publish(const Sample & sample)
+void StatusTopics::publish(const Sample & sample)
 {
   const std::lock_guard lock(mutex_);
-  if (changes(robot_mode_shown_, sample.robot_mode)) {
+  if (changes(published_robot_mode_, sample.robot_mode)) {
     publish(sample.robot_mode);
   }
-  if (changes(safety_mode_shown_, sample.safety_mode)) {
+  if (changes(published_safety_mode_, sample.safety_mode)) {
     publish(sample.safety_mode);
   }
-  if (changes(program_running_shown_, sample.program_running())) {
+  if (changes(published_program_running_, sample.program_running())) {
     std_msgs::msg::Bool message;
     message.data = sample.program_running();
     program_running_->publish(message);
   }
-  if (changes(speed_scaling_shown_, std::lround(1000.0 * sample.speed_scaling))) {
+  if (changes(published_speed_scaling_, std::lround(1000.0 * sample.speed_scaling))) {
     std_msgs::msg::Float64 message;
     message.data = sample.speed_scaling;
     speed_scaling_->publish(message);
   }
 }
 
-void LatchedState::publish_no_controller()
+void StatusTopics::publish_no_controller()
 {
   const std::lock_guard lock(mutex_);
-  if (changes(robot_mode_shown_, RobotMode::no_controller)) {
+  if (changes(published_robot_mode_, RobotMode::no_controller)) {
     publish(RobotMode::no_controller);
   }
 }
 
-void LatchedState::publish(RobotMode mode)
+void StatusTopics::publish(RobotMode mode)
 {
   ur_ros_rtde_msgs::msg::RobotMode message;
   message.mode = static_cast<std::int8_t>(mode);
@@ -63,7 +63,7 @@ void LatchedState::publish(RobotMode mode)
   robot_mode_->publish(message);
 }
 
-void LatchedState::publish(SafetyMode mode)
+void StatusTopics::publish(SafetyMode mode)
 {
   ur_ros_rtde_msgs::msg::SafetyMode message;
   message.mode = static_cast<std::uint8_t>(mode);

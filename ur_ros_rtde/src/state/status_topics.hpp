@@ -12,14 +12,14 @@
 
 namespace ur_ros_rtde {
 
-/// robot_mode, safety_mode, program_running, speed_scaling: published when they change; who comes later gets
-/// the last. Thread-safe.
-class LatchedState {
+/// Publishes robot_mode, safety_mode, program_running and speed_scaling when they change. Transient local:
+/// late subscribers receive the last value. Thread-safe.
+class StatusTopics {
  public:
-  explicit LatchedState(rcl_cxx::Node & node);
+  explicit StatusTopics(rcl_cxx::Node & node);
 
   void publish(const Sample & sample);
-  /// There is no controller any more, or not yet: robot_mode says so, the others say what was last.
+  /// Publishes that there is no controller on robot_mode. The other topics keep their last value.
   void publish_no_controller();
 
  private:
@@ -32,10 +32,10 @@ class LatchedState {
   rcl_cxx::Publisher<std_msgs::msg::Float64>::SharedPtr speed_scaling_;
 
   std::mutex mutex_;
-  std::optional<RobotMode> robot_mode_shown_;
-  std::optional<SafetyMode> safety_mode_shown_;
-  std::optional<bool> program_running_shown_;
-  std::optional<long> speed_scaling_shown_;  ///< thousandths: a change that is less is none
+  std::optional<RobotMode> published_robot_mode_;
+  std::optional<SafetyMode> published_safety_mode_;
+  std::optional<bool> published_program_running_;
+  std::optional<long> published_speed_scaling_;  ///< thousandths; smaller changes are ignored
 };
 
 }  // namespace ur_ros_rtde
