@@ -17,11 +17,11 @@
 namespace ur_ros_rtde {
 namespace {
 
-struct ACsvFile : testing::Test {
+struct CsvFileTest : testing::Test {
   std::string folder = (std::filesystem::temp_directory_path() / "csv_file_XXXXXX").string();
 
-  ACsvFile() { EXPECT_NE(::mkdtemp(folder.data()), nullptr); }
-  ~ACsvFile() override { std::filesystem::remove_all(folder); }
+  CsvFileTest() { EXPECT_NE(::mkdtemp(folder.data()), nullptr); }
+  ~CsvFileTest() override { std::filesystem::remove_all(folder); }
 
   static std::string text(const std::string & path)
   {
