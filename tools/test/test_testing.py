@@ -1,7 +1,11 @@
+"""./ur test: a failure fails the run, whatever its repetition alone says; and which options go to which program."""
+
 import pathlib
+import sys
 
 import pytest
-from ur_tools import main, testing
+from ur_tools import main, runner, testing
+from ur_tools.layout import Layout
 
 REPORT = """<testsuites><testsuite>
 <testcase name="good"/><testcase name="good_too" status="run"/>
@@ -10,39 +14,88 @@ REPORT = """<testsuites><testsuite>
 </testsuite></testsuites>"""
 
 
-def test_cases_of_a_report_are_counted_and_skipped_ones_are_not(tmp_path):
+def test_passed_cases_of_a_report_are_counted_without_skipped_ones(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text(REPORT)
-    assert testing._cases(report, False) == (2, ["Suite.bad", "Suite.broken"])
+    assert runner.read_cases(report, False) == (2, ["Suite.bad", "Suite.broken"])
 
 
 @pytest.mark.parametrize("succeeded, expected", [(True, (1, [])), (False, (0, [""]))])
 def test_a_program_without_a_report_is_one_case(tmp_path, succeeded, expected):
-    assert testing._cases(tmp_path / "none.xml", succeeded) == expected
+    assert runner.read_cases(tmp_path / "none.xml", succeeded) == expected
 
 
 def test_a_crash_after_passed_cases_is_a_failure(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text("<testsuite><testcase name='good'/></testsuite>")
-    assert testing._cases(report, False) == (1, ["ended badly after its last case"])
+    assert runner.read_cases(report, False) == (1, ["failed after its last case"])
 
 
 def result(command, failures):
-    return testing.Result(testing.Test("a test", command, pathlib.Path(), 1.0), 3, failures, 1.0, "")
+    return runner.Result(runner.Test("a: test", command, pathlib.Path(), 1.0), 3, failures, 1.0, 0.1, "")
 
 
-def test_of_a_file_only_what_failed_is_run_again():
-    part = testing._failed_part(result(["python", "-m", "pytest", "-q", "a/test_x.py"], ["test_x.test_y[a.b]", "test_x.test_z"]))
+def test_only_the_failed_cases_of_a_file_are_repeated():
+    part = testing._only_failed_cases(result(["python", "-m", "pytest", "-q", "a/test_x.py"],
+                                             ["test_x.test_y[a.b]", "test_x.test_z"]))
     assert part.command == ["python", "-m", "pytest", "-q", "a/test_x.py::test_y[a.b]", "a/test_x.py::test_z"]
 
 
 @pytest.mark.parametrize("command, failures", [
-    (["python", "-m", "pytest", "a/test_x.py"], ["ended badly after its last case"]),
+    (["python", "-m", "pytest", "a/test_x.py"], ["failed after its last case"]),
     (["a/program"], ["Suite.bad"]),
 ])
-def test_what_cannot_be_taken_apart_is_run_again_whole(command, failures):
+def test_a_test_whose_failed_cases_have_no_names_is_repeated_as_a_whole(command, failures):
     whole = result(command, failures)
-    assert testing._failed_part(whole) is whole.test
+    assert testing._only_failed_cases(whole) is whole.test
+
+
+class FakeRunner:
+    """Lets each case fail, or not, when it is repeated."""
+
+    def __init__(self, fails_alone):
+        self._failures = ["Suite.bad"] if fails_alone else []
+
+    def run(self, test):
+        return runner.Result(test, 1 - len(self._failures), self._failures, 1.0, 0.1, "")
+
+
+@pytest.mark.parametrize("fails_alone, verdict", [(True, "fails alone too"),
+                                                  (False, "passes alone: depends on load or on other tests")])
+def test_a_failed_case_fails_the_run_even_if_it_passes_alone(capsys, fails_alone, verdict):
+    results = [result(["a/program"], ["Suite.bad"])]
+    verdicts = testing._diagnose(FakeRunner(fails_alone), results)
+    assert testing._summary(results, [], verdicts, 1.0) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert f"    a: test Suite.bad ({verdict})" in lines
+    assert lines[-1] == "3 passed, 1 failed"
+
+
+def test_results_without_failures_are_not_repeated():
+    assert testing._diagnose(None, [result(["a/program"], [])]) == {}
+
+
+def run_program(tmp_path, monkeypatch, program, limit=20.0):
+    monkeypatch.setattr(runner, "ROOT", tmp_path)  # log files are named relative to it
+    test = runner.Test("a: test", [sys.executable, "-c", program], tmp_path, limit)
+    return runner.Runner(Layout.of_environment(), tmp_path).run(test)
+
+
+def test_the_processor_time_of_a_test_includes_its_child_processes(tmp_path, monkeypatch):
+    busy = "import time\nwhile time.process_time() < 0.3: pass"
+    found = run_program(tmp_path, monkeypatch, f"import subprocess, sys; subprocess.run([sys.executable, '-c', {busy!r}])")
+    assert (found.passed, found.failures) == (1, [])
+    assert 0.25 < found.processor_seconds < found.seconds + 0.1
+
+
+@pytest.mark.parametrize("program, limit, explanation", [
+    ("import time; time.sleep(60)", 0.3, "stopped at its time limit of 0.3 s"),
+    ("import os, signal; os.kill(os.getpid(), signal.SIGABRT)", 20.0, "ended by signal 6"),
+    ("print('the reason'); raise SystemExit(3)", 20.0, "the reason"),
+])
+def test_a_program_that_does_not_succeed_is_a_failure(tmp_path, monkeypatch, program, limit, explanation):
+    found = run_program(tmp_path, monkeypatch, program, limit)
+    assert (found.passed, found.failures) == (0, [""]) and explanation in found.output
 
 
 @pytest.mark.parametrize("arguments, ros, debug, forwarded", [
@@ -53,6 +106,6 @@ def test_what_cannot_be_taken_apart_is_run_again_whole(command, failures):
     (["sim", "--", "--help"], "kilted", False, ["--help"]),
     (["sim", "--model", "ur3e"], "kilted", False, ["--model", "ur3e"]),
 ])
-def test_options_a_command_does_not_know_go_to_its_program(arguments, ros, debug, forwarded):
+def test_options_that_a_command_does_not_know_go_to_its_program(arguments, ros, debug, forwarded):
     options = main._parse(arguments)
     assert (options.ros, options.debug, main._forwarded(options)) == (ros, debug, forwarded)

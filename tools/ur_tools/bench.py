@@ -9,7 +9,7 @@ import sys
 import time
 from typing import Dict, List, Optional, Tuple
 
-from . import bench_discovery, bench_trajectory, boilerplate, cell, ports, say, scheduling
+from . import bench_discovery, bench_trajectory, boilerplate, cell, ports, say, realtime
 from .environment import program, run_environment
 from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
@@ -92,7 +92,7 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace, env:
     simulator = cell.start_simulator(programs, layout, env, options.address, options.model, "--real-time-factor",
                                      str(options.real_time_factor))
     if priority:  # a robot's controller takes no time from its driver's host
-        scheduling.make_realtime(simulator.process.pid, max(1, priority - 1))
+        realtime.make_realtime(simulator.process.pid, max(1, priority - 1))
     pids = {"simulator": simulator.process.pid}
     ready = 0.0
     for node, parameters in _nodes(options, priority).items():
@@ -126,7 +126,7 @@ def _session(layout: Layout, options: argparse.Namespace, priority: int = 0) -> 
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
     with Programs(layout.log / "bench") as programs:
         if priority and not options.let_sleep:
-            scheduling.keep_awake(programs)
+            realtime.keep_awake(programs)
         pids, ready = _start(programs, layout, options, env, priority)
         figures = _measure(programs, layout, options, pids, env)
         programs.check()
@@ -157,7 +157,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     stream = argparse.Namespace(**{**vars(options), "stream": True})
     say.step(f"Measuring the servo stream, for about {2 * (12.0 + options.seconds / options.real_time_factor):.0f} s")
     figures["servo stream"] = _session(layout, stream)["servo stream"]
-    if scheduling.may_be_realtime(options.realtime_priority):
+    if realtime.may_be_realtime(options.realtime_priority):
         figures["servo stream, real-time"] = _session(layout, stream, options.realtime_priority)["servo stream"]
     else:
         say.line(f"Nothing is measured with real-time priority {options.realtime_priority}: this user may not have it")

@@ -1,0 +1,85 @@
+"""Which tests run at the same time."""
+
+import json
+
+import pytest
+from ur_tools import schedule
+from ur_tools.schedule import Cost, Job, Schedule, Times
+
+
+class Simulation:
+    """Runs a schedule in simulated time: each job takes what its cost says."""
+
+    def __init__(self, jobs, cores=2, most=0):
+        self.now = 0.0
+        self.begins = {}
+        self.peak = 0.0
+        running = []
+        timetable = Schedule(jobs, cores, most, lambda: self.now)
+        while timetable:
+            job = timetable.take()
+            if job is not None:
+                self.begins[job.what] = self.now
+                running.append((self.now + job.cost.seconds, job))
+                self.peak = max(self.peak, sum(one.cost.load for _, one in running))
+                continue
+            self.now, job = min(running, key=lambda entry: entry[0])
+            running.remove((self.now, job))
+            timetable.end(job)
+
+
+def jobs(*costs, exclusive=()):
+    return [Job(number, Cost(*cost), number in exclusive) for number, cost in enumerate(costs)]
+
+
+def test_the_longest_test_starts_first():
+    assert Simulation(jobs((1.0, 1.0), (9.0, 1.0), (5.0, 1.0)), cores=1).begins == {1: 0.0, 2: 9.0, 0: 14.0}
+
+
+def test_tests_that_mostly_wait_run_together():
+    simulation = Simulation(jobs(*[(10.0, 0.2)] * 8))
+    assert simulation.now == 10.0
+
+
+def test_the_cores_are_never_promised_twice():
+    simulation = Simulation(jobs(*[(10.0, 0.5)] * 9, (3.0, 1.0), (2.0, 0.7)))
+    assert simulation.peak <= 2 * schedule.BUSY
+
+
+def test_a_test_with_more_load_than_the_machine_has_runs_alone():
+    simulation = Simulation(jobs((5.0, 4.0), (9.0, 0.1)))
+    assert sorted(simulation.begins.values()) == [0.0, 9.0]
+
+
+def test_an_exclusive_test_runs_alone():
+    simulation = Simulation(jobs((5.0, 0.1), (4.0, 0.1), (3.0, 0.1), exclusive=[1]))
+    begin = simulation.begins[1]
+    assert simulation.begins[0] + 5.0 <= begin and simulation.begins[2] in (0.0, begin + 4.0)
+
+
+def test_short_tests_fill_in_without_delaying_a_long_one_that_waits_for_room():
+    # The second needs the room of the first. Beside the first there is room for tests that end before it does.
+    simulation = Simulation(jobs((10.0, 1.0), (9.0, 1.2), (4.0, 0.6), (7.0, 0.6)))
+    assert simulation.begins[1] == 10.0
+    assert simulation.begins[3] == 0.0 and simulation.begins[2] >= 10.0
+
+
+def test_the_number_of_tests_at_a_time_can_be_limited():
+    assert Simulation(jobs(*[(1.0, 0.1)] * 6), most=1).now == pytest.approx(6.0)
+
+
+def test_measured_times_are_kept_and_known_ones_are_the_default(tmp_path, monkeypatch):
+    monkeypatch.setattr(schedule, "REFERENCE", {"known": (7.0, 0.3)})
+    file = tmp_path / "durations.json"
+    times = Times(file)
+    assert times.cost("known", True) == Cost(7.0, 0.3) and times.cost("unknown", False) == schedule.UNKNOWN_PROGRAM
+    times.record("known", 4.0, 2.0)
+    times.write()
+    assert Times(file).cost("known", True) == Cost(4.0, 0.5)
+
+
+@pytest.mark.parametrize("text", ["", "{", json.dumps({"known": 3.0})])
+def test_a_file_of_times_that_cannot_be_read_is_ignored(tmp_path, monkeypatch, text):
+    monkeypatch.setattr(schedule, "REFERENCE", {"known": (7.0, 0.3)})
+    (tmp_path / "durations.json").write_text(text)
+    assert Times(tmp_path / "durations.json").cost("known", True) == Cost(7.0, 0.3)

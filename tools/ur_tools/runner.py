@@ -1,0 +1,181 @@
+"""Runs one test at a time, in a ROS domain of its own, and reads which of its cases passed."""
+
+import os
+import pathlib
+import re
+import subprocess
+import threading
+import time
+import xml.etree.ElementTree as xml
+from dataclasses import dataclass, field
+from typing import Dict, List, Optional, Set, Tuple
+
+from . import isolation
+from .environment import run_environment
+from .layout import ROOT, SANITIZERS, Layout
+from .processes import end_group
+
+SANITIZED_PATIENCE = 4.0  # programs with a sanitizer are slower by about this factor
+SANITIZED_REAL_TIME_FACTOR = 0.5  # lets the simulated robot's time pass at half speed, so that its cycles are not late
+
+
+@dataclass
+class Test:
+    """A pytest file, a GoogleTest case or a program."""
+
+    name: str
+    command: List[str]
+    folder: pathlib.Path
+    limit: float  # s
+    env: Dict[str, str] = field(default_factory=dict)
+    exclusive: bool = False  # runs while no other test does
+
+    @property
+    def package(self) -> str:
+        return self.name.split(":")[0]
+
+    @property
+    def is_pytest(self) -> bool:
+        return "pytest" in self.command
+
+    @property
+    def path(self) -> pathlib.Path:
+        """The pytest file or the program."""
+        return pathlib.Path(self.command[-1] if self.is_pytest else self.command[0])
+
+
+@dataclass
+class Result:
+    test: Test
+    passed: int  # cases
+    failures: List[str]  # names of cases
+    seconds: float
+    processor_seconds: float  # of all its processes
+    output: str
+
+
+def read_cases(report: pathlib.Path, succeeded: bool) -> Tuple[int, List[str]]:
+    """Returns the number of passed cases in a JUnit report (GoogleTest's or pytest's), and the names of the failed ones.
+
+    A program without a report counts as one case, without a name.
+    """
+    try:
+        tree = xml.parse(report).getroot()
+    except (OSError, xml.ParseError):
+        return (1, []) if succeeded else (0, [""])
+    passed, failures = 0, []
+    for case in tree.iter("testcase"):
+        if case.find("failure") is not None or case.find("error") is not None:
+            failures.append(f"{case.get('classname', '').split('.')[-1]}.{case.get('name')}")
+        elif case.find("skipped") is None and case.get("status") != "notrun":
+            passed += 1
+    if not succeeded and not failures:
+        failures.append("failed after its last case")
+    return passed, failures
+
+
+def _report_of(test: Test, base: pathlib.Path) -> pathlib.Path:
+    """Returns where the test writes its report: where its own command says, else where we ask for it."""
+    for part in test.command:
+        if part.startswith("--gtest_output=xml:"):
+            return pathlib.Path(part.split(":", 1)[1])
+    return base.with_suffix(".xml")
+
+
+def _sanitizer_environment() -> Dict[str, str]:
+    suppressions = ROOT / "tools" / "sanitizers" / "thread.txt"
+    return {"ASAN_OPTIONS": "detect_leaks=0:strict_string_checks=1:detect_stack_use_after_return=1",
+            "UBSAN_OPTIONS": "print_stacktrace=1",
+            "TSAN_OPTIONS": f"halt_on_error=1:second_deadlock_stack=1:suppressions={suppressions}"}
+
+
+def _wait(process: "subprocess.Popen[bytes]", limit: float) -> bool:
+    """Returns whether the process exits within the limit, s. It remains a zombie, so that its times can be read."""
+    deadline, pause = time.monotonic() + limit, 0.001
+    try:
+        while os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(pause)
+            pause = min(2.0 * pause, 0.02)
+    except ChildProcessError:
+        pass  # cancel() has waited for it
+    return True
+
+
+def _processor_seconds(pid: int) -> float:
+    """Returns the processor time of a process, and of the children that it has waited for, in s."""
+    try:
+        fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
+
+
+class Runner:
+    """Runs tests of one build. `run` may be called from several threads."""
+
+    def __init__(self, layout: Layout, folder: pathlib.Path, limit: float = 0.0):
+        """`folder` receives the logs. `limit` replaces the limits of the tests, s; 0: none."""
+        self._folder, self._limit = folder, limit
+        self._env = run_environment(layout)
+        self._env.update(_sanitizer_environment())
+        self._patience = 1.0
+        if layout.variant in SANITIZERS:
+            self._patience = SANITIZED_PATIENCE
+            self._env["UR_TEST_CELLS"] = "1"
+            self._env["UR_TEST_REAL_TIME_FACTOR"] = str(SANITIZED_REAL_TIME_FACTOR)
+        self._env["UR_TEST_PATIENCE"] = str(self._patience)
+        self._env["ROS_LOG_DIR"] = str(folder / "ros")
+        self._env["PYTHONDONTWRITEBYTECODE"] = "1"
+        self._env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
+        self._env[isolation.MARK] = str(os.getpid())
+        self._lock = threading.Lock()
+        self._count = 0
+        self._running: "Set[subprocess.Popen[bytes]]" = set()
+        self._cancelled = False
+
+    def run(self, test: Test) -> Optional[Result]:
+        """Returns None after cancel()."""
+        with self._lock:
+            if self._cancelled:
+                return None
+            self._count += 1
+            base = self._folder / f"{self._count:04d}-{re.sub(r'[^A-Za-z0-9_.]+', '-', test.name)[:80]}"
+        with isolation.Domain() as domain:
+            return self._run(test, base, domain)
+
+    def _run(self, test: Test, base: pathlib.Path, domain: isolation.Domain) -> Result:
+        report, log = _report_of(test, base), base.with_suffix(".log")
+        if report.exists():
+            report.unlink()  # from an earlier run
+        env = {**self._env, **domain.environment(), **test.env, "GTEST_OUTPUT": f"xml:{report}", "GTEST_COLOR": "no"}
+        command = test.command + ([f"--junitxml={report}"] if test.is_pytest else [])
+        limit = self._limit or self._patience * test.limit
+        start = time.monotonic()
+        with log.open("wb") as output:
+            process = subprocess.Popen(command, cwd=test.folder, env=env, stdin=subprocess.DEVNULL, stdout=output,
+                                       stderr=subprocess.STDOUT, start_new_session=True)
+        with self._lock:
+            self._running.add(process)
+        in_time = _wait(process, limit)
+        processor_seconds = _processor_seconds(process.pid)
+        end_group(process)
+        with self._lock:
+            self._running.discard(process)
+        passed, failures = read_cases(report, process.returncode == 0 and in_time)
+        text = log.read_text(errors="replace")
+        if not in_time:
+            text += f"\nstopped at its time limit of {limit:g} s\n"
+        elif process.returncode < 0:
+            text += f"\nended by signal {-process.returncode}\n"
+        return Result(test, passed, failures, time.monotonic() - start, processor_seconds,
+                      text + f"(log: {log.relative_to(ROOT)})\n")
+
+    def cancel(self) -> None:
+        """Stops the running tests; later ones are not started."""
+        with self._lock:
+            self._cancelled = True
+            running = list(self._running)
+        for process in running:
+            end_group(process)
