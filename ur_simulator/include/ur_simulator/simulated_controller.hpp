@@ -40,6 +40,9 @@ struct SimulatorOptions {
   /// Seconds of the robot for each of the host's, 0.01 to 10. Below 1 for a host that is too slow for the
   /// controller's rate, such as one that runs programs with a sanitizer.
   double real_time_factor = 1.0;
+  /// Scales how long power on, brake release, the unlock delay of a protective stop and a restart of the
+  /// safety system take, 0.01 to 10. Below 1 for tests that recover often.
+  double recovery_time_factor = 1.0;
   bool realtime_priority =
       false;  ///< try SCHED_FIFO for the controller's thread; goes on without when not permitted
 };

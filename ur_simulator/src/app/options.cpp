@@ -81,6 +81,11 @@ void declare(CLI::App & app, AppOptions & options)
   app.add_option("--real-time-factor", simulator.real_time_factor,
                  "seconds of the robot for each of the host's (0.01 to 10): below 1 for a slow host")
       ->capture_default_str();
+  app.add_option(
+         "--recovery-time-factor", simulator.recovery_time_factor,
+         "scales how long power on, brake release, the unlock delay of a protective stop and a restart of "
+         "the safety system take (0.01 to 10)")
+      ->capture_default_str();
   app.add_flag("--powered-off", options.powered_off, "start as after boot, powered off");
   app.add_flag("--local-control", options.local_control, "start in local control");
   app.add_flag("--realtime-priority", simulator.realtime_priority, "try SCHED_FIFO");

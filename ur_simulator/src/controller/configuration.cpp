@@ -4,8 +4,24 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace ur_simulator {
+namespace {
+
+/// Returns the factor; throws unless it is in the range that the options allow.
+double checked_factor(double factor, std::string_view what, std::string_view option)
+{
+  constexpr double smallest = 0.01;
+  constexpr double largest = 10.0;
+  if (!(factor >= smallest && factor <= largest)) {
+    throw std::runtime_error(
+        fmt::format("{} {} ({}) is out of range: give {} to {}", what, factor, option, smallest, largest));
+  }
+  return factor;
+}
+
+}  // namespace
 
 const RobotModel & model_of(const SimulatorOptions & options)
 {
@@ -54,15 +70,21 @@ Vector6 joints_of(const SimulatorOptions & options, const RobotModel & model)
 std::chrono::steady_clock::duration period_of(const SimulatorOptions & options,
                                               const PolyscopeVersion & version)
 {
-  constexpr double slowest = 0.01;
-  constexpr double fastest = 10.0;
-  const double factor = options.real_time_factor;
-  if (!(factor >= slowest && factor <= fastest)) {
-    throw std::runtime_error(fmt::format(
-        "real-time factor {} (--real-time-factor) is out of range: give {} to {}", factor, slowest, fastest));
-  }
+  const double factor = checked_factor(options.real_time_factor, "real-time factor", "--real-time-factor");
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
       std::chrono::duration<double>(version.cycle_time() / factor));
+}
+
+SafetyTimes safety_times(const SimulatorOptions & options)
+{
+  const double factor =
+      checked_factor(options.recovery_time_factor, "recovery time factor", "--recovery-time-factor");
+  SafetyTimes times;
+  for (double SafetyTimes::* time : {&SafetyTimes::power_on, &SafetyTimes::brake_release,
+                                     &SafetyTimes::unlock_delay, &SafetyTimes::restart}) {
+    times.*time *= factor;
+  }
+  return times;
 }
 
 PendantOptions pendant_options(const SimulatorOptions & options, const PolyscopeVersion & version)

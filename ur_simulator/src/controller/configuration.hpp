@@ -4,6 +4,7 @@
 
 #include "kinematics/robot_model.hpp"
 #include "polyscope/pendant.hpp"
+#include "safety/limits.hpp"
 #include "ur_simulator/simulated_controller.hpp"
 #include "version/polyscope_version.hpp"
 #include "world/world.hpp"
@@ -19,6 +20,7 @@ Vector6 joints_of(const SimulatorOptions & options, const RobotModel & model);
 /// Of the host's time, for one control cycle.
 std::chrono::steady_clock::duration period_of(const SimulatorOptions & options,
                                               const PolyscopeVersion & version);
+SafetyTimes safety_times(const SimulatorOptions & options);
 PendantOptions pendant_options(const SimulatorOptions & options, const PolyscopeVersion & version);
 World world_of(const SimulatorOptions & options, double cycle_time);
 

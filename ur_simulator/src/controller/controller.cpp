@@ -50,7 +50,7 @@ Controller::Controller(const SimulatorOptions & options)
       initial_joints_(joints_of(options, model_)),
       arm_(std::in_place, model_, version_.cycle_time(), initial_joints_),
       world_(world_of(options, version_.cycle_time())),
-      safety_(std::in_place, model_, version_.cycle_time()),
+      safety_(std::in_place, model_, version_.cycle_time(), SafetyLimits{}, safety_times(options)),
       runner_(std::in_place, program_access()),
       pendant_(std::in_place, model_, pendant_options(options, version_), state_, *safety_, *runner_, log_),
       primary_(io_, options.address, options.ports.primary, *pendant_, primary::version_message(version_)),
@@ -324,7 +324,7 @@ void Controller::reboot(double duration)
   // In place: everything that refers to these goes on referring to the new ones.
   arm_.emplace(model_, version_.cycle_time(), where);
   arm_->teleport(where, state_);
-  safety_.emplace(model_, version_.cycle_time());
+  safety_.emplace(model_, version_.cycle_time(), SafetyLimits{}, safety_times(options_));
   safety_->step(state_);
   boots_at_ = duration;
 }

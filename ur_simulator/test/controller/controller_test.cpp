@@ -41,12 +41,30 @@ TEST(Controller, explains_options_that_make_no_sense)
     options = on_own_address();
     options.real_time_factor = factor;
     EXPECT_NE(message_of(options).find("give 0.01 to 10"), std::string::npos) << factor;
+    options = on_own_address();
+    options.recovery_time_factor = factor;
+    EXPECT_NE(message_of(options).find("(--recovery-time-factor)"), std::string::npos) << factor;
   }
   options = {};
   options.address = "not an address";
   EXPECT_NE(message_of(options).find("'not an address'"), std::string::npos);
   options.address = "192.0.2.1";
   EXPECT_NE(message_of(options).find("no network interface"), std::string::npos) << message_of(options);
+}
+
+TEST(Controller, UnlocksSoonerWithARecoveryTimeFactor)
+{
+  SimulatorOptions options = on_own_address();
+  options.recovery_time_factor = 0.02;
+  SimulatedController controller(options);
+  controller.control({{"command", "protective_stop"}, {"reason", "a test"}});
+  ASSERT_TRUE(controller.wait_until(
+      [](const json & state) { return state["safety_mode"] == "PROTECTIVE_STOP"; }, seconds(5)));
+  const auto begin = std::chrono::steady_clock::now();
+  while (!controller.control({{"command", "unlock_protective_stop"}})["ok"].get<bool>()) {
+    ASSERT_LT(std::chrono::steady_clock::now() - begin, seconds(3)) << "0.02 of 5 s, and reserve";
+    std::this_thread::sleep_for(milliseconds(5));
+  }
 }
 
 TEST(Controller, has_time_pass_slower_than_the_hosts_when_asked)
