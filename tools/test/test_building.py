@@ -203,7 +203,7 @@ def test_the_space_of_a_folder_that_does_not_exist_is_that_of_its_parent(tmp_pat
     assert disk.free(tmp_path / "not" / "there") == pytest.approx(disk.free(tmp_path), rel=0.5)
 
 
-@pytest.mark.parametrize("number, text", [(errno.ENOSPC, "is full"), (errno.EROFS, "./ur writes into its checkout"),
+@pytest.mark.parametrize("number, text", [(errno.ENOSPC, "is full"), (errno.EROFS, "./ur writes its files to"),
                                           (errno.ENOENT, "No such file")])
 def test_errors_of_the_file_system_are_explained(monkeypatch, capsys, number, text):
     def fail(_options):

@@ -58,7 +58,7 @@ def test_the_first_motions_of_the_readme_work_on_what_the_demo_leaves(tmp_path):
     shell = {**os.environ, **workspace_environment(Layout.of_environment())}
     running = Process([*COMMAND, "--address", address, "--keep-running", "--output", tmp_path], environment())
     try:
-        running.wait_for_output("go on until Ctrl-C", 120.0)
+        running.wait_for_output("run until Ctrl-C", 120.0)
         lines = first_motions()
         assert len(lines) == 5
         for line in lines:

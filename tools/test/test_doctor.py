@@ -145,7 +145,7 @@ def test_the_jitter_is_judged(late, stolen, state, text):
     assert found.state == state and text in found.text
 
 
-def test_lateness_is_measured_against_the_clock(monkeypatch):
+def test_wake_up_latencies_are_measured_against_the_clock(monkeypatch):
     """With a clock that is 3 ms late in the third cycle."""
     now = [0.0]
 
@@ -157,7 +157,7 @@ def test_lateness_is_measured_against_the_clock(monkeypatch):
     monkeypatch.setattr(doctor.time, "monotonic", lambda: now[0])
     monkeypatch.setattr(doctor.time, "sleep", sleep)
     monkeypatch.setattr(doctor, "CYCLES", 6)
-    late = doctor.lateness()
+    late = doctor.wake_up_latencies()
     assert late[2] == pytest.approx(3.0) and late[:2] == pytest.approx([0.0, 0.0]) and late[4:] == pytest.approx([0.0, 0.0])
 
 

@@ -28,7 +28,7 @@ def test_a_domain_in_use_by_another_process_is_not_given_out():
 
 def test_clean_up_removes_unused_shared_memory_of_the_run_and_nothing_older(tmp_path, monkeypatch):
     monkeypatch.setattr(isolation, "_SHARED_MEMORY", tmp_path)
-    monkeypatch.setattr(isolation, "_end_strays", lambda: None)
+    monkeypatch.setattr(isolation, "_kill_stray_processes", lambda: None)
     (tmp_path / "fastrtps_old").write_text("")
     with isolation.CleanUp():
         (tmp_path / "fastrtps_orphan").write_text("")

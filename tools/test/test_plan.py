@@ -79,7 +79,7 @@ def test_a_path_without_limits_is_slow_and_given_times_are_a_choice(tmp_path):
     ("waypoints: [{positions: [0, 0, 0]}]", "plan.yaml: waypoint 0 has 3 values"),
     ("waypoint: []", "plan.yaml:1: there is no field waypoint; did you mean waypoints?"),
     (f"waypoints:\n  - {HOME}", "plan.yaml:2: waypoints[0] is [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]: expected a mapping of fields: positions"),
-    ("model: ur10e", "plan.yaml: there is no field model: the model is given by --model"),
+    ("model: ur10e", "plan.yaml: there is no field model: use the option --model"),
     ("", "plan.yaml: "),
     (PATH + "max_velocity: [1, 1, 0, 1, 1, 1]", "velocity limit of elbow_joint is 0"),
     (PATH + "max_velocity: [1, 1, x, 1, 1, 1]", "plan.yaml:7: max_velocity[2] is 'x': expected a number"),

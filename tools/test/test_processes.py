@@ -60,7 +60,7 @@ def test_waiting_ends_at_once_when_a_program_dies_and_shows_its_last_words(tmp_p
 def test_waiting_for_a_condition_that_never_comes_ends_at_its_limit(tmp_path):
     with Programs(tmp_path) as programs:
         programs.start("sleeper", python("import time; time.sleep(60)"))
-        with pytest.raises(Failure, match="Waited 0.1 s for the dashboard"):
+        with pytest.raises(Failure, match="waited 0.1 s for the dashboard"):
             programs.wait_until(lambda: False, 0.1, "the dashboard")
 
 

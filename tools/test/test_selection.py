@@ -229,4 +229,4 @@ def test_names_and_changed_exclude_each_other(capsys):
 def test_a_collected_test_is_chosen_by_its_program_or_its_file():
     program = testing.Test("driver: robot.StopTest.x", ["build/test_stop", "--gtest_filter=StopTest.x"], pathlib.Path(), 1.0)
     file = testing.Test("driver: test_node", ["python", "-m", "pytest", "driver/test/test_node.py"], pathlib.Path(), 1.0)
-    assert testing._path_of(program).stem == "test_stop" and testing._path_of(file).name == "test_node.py"
+    assert program.path.stem == "test_stop" and file.path.name == "test_node.py"

@@ -94,4 +94,4 @@ def test_a_package_that_is_there_is_left_alone(tmp_path):
         result = subprocess.run([str(ROOT / "ur"), "new", "command", "wag"], cwd=tmp_path, capture_output=True, text=True,
                                 timeout=60)
         assert result.returncode == expected, result.stderr
-    assert "is there already" in result.stderr
+    assert "exists already" in result.stderr

@@ -1,6 +1,6 @@
-"""./ur bench: latency, load and start-up of the driver on the simulated controller, each beside its aim, as a ratio.
+"""./ur bench: measures latency, load and start-up of the driver on the simulated controller, and compares them with targets.
 
-A ratio below 1 is better than the aim. Figures of a busy machine say more about the machine.
+A ratio below 1 is better than the target. Measure on an idle machine.
 """
 
 import argparse
@@ -14,18 +14,18 @@ from .environment import program, run_environment
 from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
 
-# Of the servo stream: the part, the aim, the unit.
+# Figures of the servo stream: part, target, unit.
 STREAM: Tuple[Tuple[str, float, str], ...] = (
     ("answer p50", 0.3, "ms from a package to its target"),
     ("answer p99.9", 0.5, "ms from a package to its target"),
-    ("off package", 0.1, "% of its intervals more than 0.2 ms off those of the packages that they answer"),
-    ("off 2 ms", 0.1, "% of its intervals more than 0.2 ms off 2 ms by the host's clock"),
-    ("cycles off 2 ms", 0.1, "% of the simulated controller's own intervals meanwhile"),
-    ("not once a cycle", 0.1, "% of the cycles that got no target, or two"),
+    ("off package", 0.1, "% of the intervals differ by more than 0.2 ms from those of the packages that they answer"),
+    ("off 2 ms", 0.1, "% of the intervals differ by more than 0.2 ms from 2 ms"),
+    ("cycles off 2 ms", 0.1, "% of the simulated controller's cycles differ by more than 0.2 ms from 2 ms"),
+    ("not once a cycle", 0.1, "% of the cycles received no target, or several"),
     ("tracking error", 0.02, "rad"),
 )
-# Name of a figure, its part, the aim, the unit.
-AIMS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
+# Figure, part, target, unit.
+TARGETS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
     ("package to C++ subscriber", "p50", 0.3, "ms"),
     ("package to C++ subscriber", "p99", 1.0, "ms"),
     ("package to rclpy subscriber", "p50", 0.3, "ms"),
@@ -42,7 +42,7 @@ AIMS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
     ("new client finds all actions", "p50", 0.5, "s, after clients were killed"),
     ("new client finds all actions", "max", 1.0, "s, after clients were killed"),
 )
-# How many clients are killed, and how many then look for the actions.
+# Clients that are killed, and clients that then search for the actions.
 KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 
 
@@ -52,21 +52,21 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
     parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")
     parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals and cancels to measure (default: 40)")
-    parser.add_argument("--stream", action="store_true", help="measure the servo stream alone")
+    parser.add_argument("--stream", action="store_true", help="measure only the servo stream")
     parser.add_argument("--real-time-factor", type=float, default=1.0, metavar="F",
-                        help="with --stream: the robot's time passes F times as fast, so that F below 1 takes out of the figures "
-                             "what the host is late by; those of the stream are in the robot's time (default: 1)")
-    parser.add_argument("--seconds", type=float, default=10.0, metavar="S", help="of the servo stream (default: 10)")
+                        help="with --stream: let the robot's time pass F times as fast. The figures of the stream are in the robot's time; "
+                             "F below 1 reduces the influence of the host's latency (default: 1)")
+    parser.add_argument("--seconds", type=float, default=10.0, metavar="S", help="duration of the servo stream (default: 10)")
     parser.add_argument("--let-sleep", action="store_true",
-                        help="do not keep the cores awake while the servo stream is measured with real-time priority: on a machine "
-                             "whose processor time is rationed that costs more than it brings")
+                        help="let the cores sleep while the servo stream is measured with real-time priority; use this on a virtual "
+                             "machine with steal time, where busy loops cost more than they gain")
     parser.add_argument("--realtime-priority", type=int, default=40, metavar="P",
-                        help="the servo stream is measured once more with the node's parameter realtime_priority, and the simulator "
-                             "under SCHED_FIFO, too; the host has to allow it (default: 40)")
+                        help="measure the servo stream a second time with the node's parameter realtime_priority set to P and the "
+                             "simulator under SCHED_FIFO, if the host permits it (default: 40)")
     bench_trajectory.add_options(parser)
     options = parser.parse_args(arguments)
     if options.real_time_factor != 1.0 and not options.stream:
-        parser.error("--real-time-factor needs --stream: everything else is in the host's time")
+        parser.error("--real-time-factor needs --stream: all other figures are in the host's time")
     return options
 
 
@@ -76,22 +76,22 @@ def check(options: argparse.Namespace) -> None:
 
 
 def _nodes(options: argparse.Namespace, priority: int) -> Dict[str, Tuple[str, ...]]:
-    """Those to start, with their parameters."""
-    # A host that stops for some 100 ms shall show in the figures, not end the stream; a slowed robot's packages come seldom.
+    """Returns the nodes to start, with their parameters."""
+    # A delay of 100 ms must appear in the figures instead of ending the stream. A slowed robot sends packages less often.
     silence = min(10.0, max(1.0, 0.1 / options.real_time_factor))
-    follows = (f"realtime_priority:={priority}", f"silence_limit:={silence}")
-    parameters: Dict[str, Tuple[str, ...]] = {"robot_state_receiver": follows, "dashboard_server": (),
-                                              "command_server": (*follows, "watchdog_frequency:=2.0")}
+    link = (f"realtime_priority:={priority}", f"silence_limit:={silence}")
+    parameters: Dict[str, Tuple[str, ...]] = {"robot_state_receiver": link, "dashboard_server": (),
+                                              "command_server": (*link, "watchdog_frequency:=2.0")}
     names = ("command_server",) if options.stream else cell.NODES
     return {name: parameters[name] for name in names}
 
 
 def _start(programs: Programs, layout: Layout, options: argparse.Namespace, env: Dict[str, str],
            priority: int) -> "tuple[Dict[str, int], float]":
-    """The process ids by name, and how long the command server took to be ready."""
+    """Returns the process ids by name, and the time in s until the command server was ready."""
     simulator = cell.start_simulator(programs, layout, env, options.address, options.model, "--real-time-factor",
                                      str(options.real_time_factor))
-    if priority:  # a robot's controller takes no time from its driver's host
+    if priority:  # the controller must not compete with the driver, as on a real robot
         realtime.make_realtime(simulator.process.pid, max(1, priority - 1))
     pids = {"simulator": simulator.process.pid}
     ready = 0.0
@@ -117,12 +117,12 @@ def _measure(programs: Programs, layout: Layout, options: argparse.Namespace, pi
     for name, pid in pids.items():
         command += ["--pid", f"{name}={pid}"]
     if programs.run(command, env, 300.0 + 2.0 * options.seconds / options.real_time_factor) != 0:
-        raise say.Failure("the measurement ended early, see above")
+        raise say.Failure("the measurement failed, see above")
     return json.loads(output.read_text())
 
 
 def _session(layout: Layout, options: argparse.Namespace, priority: int = 0) -> dict:
-    """The figures of programs that are started for it: of the stream, or of all else."""
+    """Starts the programs, and measures either the stream or everything else."""
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
     with Programs(layout.log / "bench") as programs:
         if priority and not options.let_sleep:
@@ -134,13 +134,13 @@ def _session(layout: Layout, options: argparse.Namespace, priority: int = 0) -> 
 
 
 def _print(figures: dict) -> None:
-    say.line(f"{'':30} {'':16} {'measured':>10} {'aim':>8}  ratio")
-    for name, part, aim, unit in AIMS:
+    say.line(f"{'':30} {'':16} {'measured':>10} {'target':>8}  ratio")
+    for name, part, target, unit in TARGETS:
         value = figures.get(name)
         if part is not None and value is not None:
             value = value.get(part)
         if value is not None:
-            say.line(f"{name:30} {part or '':16} {value:10.3f} {aim:8g}  {value / aim:5.2f}  {unit}")
+            say.line(f"{name:30} {part or '':16} {value:10.3f} {target:8g}  {value / target:5.2f}  {unit}")
         elif name in figures:
             say.line(f"{name:30} {part or '':16} nothing measured")
 
@@ -157,10 +157,10 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     stream = argparse.Namespace(**{**vars(options), "stream": True})
     say.step(f"Measuring the servo stream, for about {2 * (12.0 + options.seconds / options.real_time_factor):.0f} s")
     figures["servo stream"] = _session(layout, stream)["servo stream"]
-    if realtime.may_be_realtime(options.realtime_priority):
+    if realtime.realtime_allowed(options.realtime_priority):
         figures["servo stream, real-time"] = _session(layout, stream, options.realtime_priority)["servo stream"]
     else:
-        say.line(f"Nothing is measured with real-time priority {options.realtime_priority}: this user may not have it")
+        say.line(f"Not measured with real-time priority {options.realtime_priority}: this user may not have it")
     _print(figures)
     if not options.stream:
         say.line("\n" + boilerplate.table())

@@ -1,4 +1,4 @@
-"""How soon new clients find all actions of the driver, after other clients were killed (docs/discovery.md)."""
+"""Measures how long new clients take to find all actions of the driver after other clients were killed (docs/discovery.md)."""
 
 import json
 import subprocess
@@ -15,12 +15,12 @@ TIME_LIMIT = 600.0  # s
 
 
 def actions(driver: Program) -> str:
-    """All that the driver serves, by its log, with commas between."""
+    """Returns the actions that the driver serves according to its log, separated by commas."""
     return ",".join(line.partition(text)[2] for text in LISTS for line in driver.output.splitlines() if text in line).replace(" ", "")
 
 
 def measure(layout: Layout, address: str, killed: int, clients: int) -> Dict[str, float]:
-    """Needs no robot. The clients have no Fast DDS profile, as those of most users."""
+    """Returns median and maximum, s. No robot is needed. As with most users, the clients have no Fast DDS profile."""
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
     for variable in ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE"):
         env.pop(variable, None)

@@ -1,5 +1,5 @@
-"""./ur bench --trajectory: the planner's proof. Random paths: are all limits kept, how long does planning take? And the
-durations beside independent solvers: copp-py with jerk limits, toppra without.
+"""./ur bench --trajectory: checks on random paths that the planner keeps all limits, measures the planning time, and compares
+the durations with independent solvers: copp-py with jerk limits, toppra without.
 """
 
 import argparse
@@ -13,29 +13,29 @@ from . import say
 from .environment import run_environment
 from .layout import ROOT, Layout
 
-# Oracles only: nothing of the project needs them.
+# Only for the comparison.
 ORACLES = ("numpy==2.2.6", "scipy==1.15.3", "copp-py==0.2.3", "toppra==0.6.10")
-# What, jerk limits or not, s between the oracle's stations. A solver that looks too seldom exceeds the limits between.
+# Name, jerk limits (0 or 1), s between the solver's grid points. On a coarse grid a solver exceeds the limits in between.
 COMPARISONS = (("with jerk limits, against copp-py", "1", "0.006"), ("without, against toppra", "0", "0.003"))
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group("the planner of trajectories")
-    group.add_argument("--trajectory", action="store_true", help="prove and measure the planner; nothing else is run")
+    group = parser.add_argument_group("trajectory planner")
+    group.add_argument("--trajectory", action="store_true", help="only check and measure the planner")
     group.add_argument("--paths", type=int, default=1000, metavar="N",
-                       help="random paths, with jerk limits and again without (default: 1000; the whole proof: 10000)")
+                       help="number of random paths, planned with and without jerk limits (default: 1000; for a thorough check: 10000)")
     group.add_argument("--oracle", type=int, default=50, metavar="N",
-                       help="paths whose duration is compared; copp-py takes some seconds each (default: 50; 0: none)")
+                       help="number of paths whose duration is compared; copp-py takes several seconds for each (default: 50; 0: none)")
 
 
 def _oracle_python(layout: Layout) -> pathlib.Path:
-    """Of an environment of the oracles' own."""
+    """Returns the Python of a virtual environment with the solvers, which is created if necessary."""
     folder = layout.base / "oracle"
     python = folder / "bin" / "python"
     stamp = folder / "ur_stamp.txt"
     if stamp.is_file() and stamp.read_text() == " ".join(ORACLES):
         return python
-    say.step("Installing the oracles")
+    say.step("Installing the solvers")
     for command in ([str(layout.python), "-m", "venv", "--clear", str(folder)],
                     [str(python), "-m", "pip", "install", "--disable-pip-version-check", "-q", *ORACLES]):
         result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
@@ -47,7 +47,7 @@ def _oracle_python(layout: Layout) -> pathlib.Path:
 
 def _run(command: List[str], env) -> None:
     if subprocess.run(command, env=env).returncode != 0:
-        raise say.Failure(f"{pathlib.Path(command[0]).name} ended early, see above")
+        raise say.Failure(f"{pathlib.Path(command[0]).name} failed, see above")
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         return 0
     python = _oracle_python(layout)
     for what, jerk, step in COMPARISONS:
-        say.step(f"Durations of {options.oracle} paths {what}: ours by the oracle's, below 1 is shorter")
+        say.step(f"Durations of {options.oracle} paths {what}: ratio to the solver's, below 1 is shorter")
         sys.stdout.flush()
         paths = layout.log / "trajectory_paths.bin"
         paths.parent.mkdir(parents=True, exist_ok=True)

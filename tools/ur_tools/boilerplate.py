@@ -1,4 +1,4 @@
-"""How many lines a command takes: from its class to UR_ROS_RTDE_EXPORT, without comments and empty lines."""
+"""Counts the lines of each command, from its class to UR_ROS_RTDE_EXPORT, without comments and empty lines."""
 
 import pathlib
 import re
@@ -8,9 +8,9 @@ from typing import Dict, List
 
 from .layout import ROOT
 
-SOURCES = ROOT / "ur_ros_rtde_commands" / "src"
-COMMAND_AIM = 25
-DASHBOARD_AIM = 8
+SOURCES = ROOT / "ur_ros_rtde" / "src"
+COMMAND_TARGET = 25
+DASHBOARD_TARGET = 8
 
 _CLASS = re.compile(r"^(?:template\b.*|class \w+)", re.M)
 _EXPORT = re.compile(r"^UR_ROS_RTDE_EXPORT\(\w+, \"([^\"]+)\"\)$", re.M)
@@ -21,11 +21,11 @@ class Command:
     name: str
     lines: float
     group: str
-    aim: int
+    target: int
 
 
 def measure(text: str) -> "Dict[str, float]":
-    """Lines of each command that a source file exports; several share what they have in common evenly."""
+    """Returns the lines of each command that a source file exports. Several commands share the lines of a file evenly."""
     exports = list(_EXPORT.finditer(text))
     begin = _CLASS.search(text)
     if not exports or not begin:
@@ -39,26 +39,26 @@ def commands(sources: pathlib.Path = SOURCES) -> List[Command]:
     found = []
     for file in sorted([*sources.glob("commands/*/*.cpp"), *sources.glob("dashboard/*.cpp")]):
         group = file.parent.name
-        aim = DASHBOARD_AIM if group == "dashboard" else COMMAND_AIM
-        found += [Command(name, lines, group, aim) for name, lines in measure(file.read_text()).items()]
+        target = DASHBOARD_TARGET if group == "dashboard" else COMMAND_TARGET
+        found += [Command(name, lines, group, target) for name, lines in measure(file.read_text()).items()]
     return found
 
 
-def _row(group: str, members: List[Command], aim: int) -> str:
+def _row(group: str, members: List[Command], target: int) -> str:
     lines = [command.lines for command in members]
     longest = max(members, key=lambda command: command.lines)
     return (f"    {group:12} {len(members):4} {statistics.median(lines):7.0f} {max(lines):8.0f}  {longest.name:32}"
-            f" {sum(1 for value in lines if value > aim):4} above {aim}")
+            f" {sum(1 for value in lines if value > target):4} above {target}")
 
 
 def table() -> str:
     found = commands()
-    rows = ["lines a command takes, from class to UR_ROS_RTDE_EXPORT:", "    group        count median  longest"]
+    rows = ["lines of a command, from class to UR_ROS_RTDE_EXPORT:", "    group        count median  longest"]
     groups = sorted({command.group for command in found}, key=lambda group: (group == "dashboard", group))
     for group in groups:
         members = [command for command in found if command.group == group]
-        rows.append(_row(group, members, members[0].aim))
+        rows.append(_row(group, members, members[0].target))
     others = [command for command in found if command.group != "dashboard"]
     if others:
-        rows.append(_row("all but the dashboard's", others, COMMAND_AIM))
+        rows.append(_row("without dashboard", others, COMMAND_TARGET))
     return "\n".join(rows)

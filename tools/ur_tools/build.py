@@ -1,4 +1,4 @@
-"""colcon build of the packages that changed, with progress."""
+"""Builds the packages that changed with colcon, and shows the progress."""
 
 import hashlib
 import os
@@ -18,15 +18,13 @@ from .packages import Package, discover, state, with_dependencies
 from .processes import end_group
 
 STAMP = "ur_stamp.txt"
-MEMORY_OF_A_JOB = 1.0e9  # bytes, for the largest translation units
+MEMORY_PER_JOB = 1.0e9  # bytes, of the largest translation units
 WORKERS = 2  # packages at a time, each with all jobs
-
-
 _NOT_IN_PATHS = ":;$\\\"'"
 
 
 def check_path(root: pathlib.Path) -> None:
-    """Raises Failure for characters that separate entries in PATH or CMake lists, or that need quoting. Spaces are allowed."""
+    """Raises Failure if the path has characters that separate entries in PATH or CMake lists, or that need quoting. Spaces are allowed."""
     wrong = [character for character in _NOT_IN_PATHS if character in str(root)]
     if wrong:
         raise say.Failure(f"The checkout's path {root} contains {' '.join(wrong)}, which cannot be in a search path or a CMake "
@@ -36,7 +34,7 @@ def check_path(root: pathlib.Path) -> None:
 def default_jobs() -> int:
     """One job per core, limited by memory."""
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    return max(1, min(len(os.sched_getaffinity(0)), int(memory / MEMORY_OF_A_JOB)))
+    return max(1, min(len(os.sched_getaffinity(0)), int(memory / MEMORY_PER_JOB)))
 
 
 @dataclass
@@ -62,23 +60,23 @@ def cmake_arguments(options: Options, tests: bool) -> List[str]:
         includes.append(ROOT / "tools" / "cmake" / "sanitize.cmake")
         arguments.append(f"-DUR_SANITIZE={layout.variant}")
     return ["-GNinja", f"-DCMAKE_BUILD_TYPE={build_type}", f"-DROS_WHEELS_PREFIX={layout.venv}",
-            # -O3, CMake's own choice, takes longer to compile; the trajectory library, which gains by it, asks for it.
+            # CMake's default, -O3, compiles more slowly. The trajectory library benefits from it and sets it itself.
             "-DCMAKE_C_FLAGS_RELEASE=-O2 -DNDEBUG", "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -DNDEBUG",
             "-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=" + ";".join(map(str, includes)), "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
             "-DBUILD_TESTING=" + ("ON" if tests else "OFF"), "-Wno-unused-cli", *arguments]
 
 
 class Stamps:
-    """What each package was last built from: its files, its dependencies' and the way it is built."""
+    """Records what each package was last built from: its files, those of its dependencies, and the build options."""
 
     def __init__(self, options: Options, packages: Dict[str, Package]):
         self._layout = options.layout
-        how = hashlib.sha256("\0".join(cmake_arguments(options, False)[:-1]).encode())
+        options_digest = hashlib.sha256("\0".join(cmake_arguments(options, False)[:-1]).encode())
         for file in (*options.layout.requirements, options.layout.provider):
-            how.update(file.read_bytes())
+            options_digest.update(file.read_bytes())
         self._states: Dict[str, str] = {}
         for name, package in packages.items():
-            digest = how.copy()
+            digest = options_digest.copy()
             digest.update(state(package).encode())
             for dependency in sorted(package.depends & self._states.keys()):
                 digest.update(self._states[dependency].encode())
@@ -102,7 +100,7 @@ class Stamps:
 
 
 class Progress:
-    """Follows colcon's output and the logs of the packages it is working on."""
+    """Follows colcon's output and the logs of the packages that it builds."""
 
     _EVENT = re.compile(r"^(Starting >>>|Finished <<<|Failed\s+<<<|Aborted\s+<<<)\s+(\S+)")
     _STEP = re.compile(r"^\[(\d+)/(\d+)\] ")  # step 0 checks the build files
@@ -175,24 +173,24 @@ def _colcon(options: Options, names: List[str], folders: List[pathlib.Path], tes
             "--cmake-force-configure", "--cmake-args", *cmake_arguments(options, tests)]
 
 
-def _explain(layout: Layout, progress: Progress, output: pathlib.Path) -> say.Failure:
+def _failure(layout: Layout, progress: Progress, output: pathlib.Path) -> say.Failure:
     parts = []
     for name in progress.failed:
         log = layout.log / "latest_build" / name / "stdout_stderr.log"
         text = log.read_text(errors="replace") if log.is_file() else ""
-        # What comes before the first failure are other files' warnings.
+        # Only warnings of other files precede the first failure.
         at = next((at for at in (text.find("FAILED: "), text.find("CMake Error")) if at >= 0), -1)
         shown = "\n".join(text[at:].splitlines()[:40]) if at >= 0 else say.tail(text)
         parts.append(f"{name} did not build ({log}):\n{shown}")
     if any("No space left on device" in part for part in parts):
-        parts.append(disk.full(layout.build))
+        parts.append(disk.full_message(layout.build))
     if not parts:
         parts.append(f"colcon failed ({output}):\n{say.tail(output.read_text(errors='replace'), 20)}")
     return say.Failure("\n\n".join(parts))
 
 
 def _forget(layout: Layout, names: List[str]) -> None:
-    """A build that is cut short must not look current."""
+    """Removes the stamps, so that an interrupted build does not look current."""
     for name in names:
         stamp = layout.build / name / STAMP
         if stamp.exists():
@@ -219,7 +217,7 @@ def _run_colcon(options: Options, packages: Dict[str, Package], outdated: List[s
         progress.end()
         times.write()
     if process.returncode != 0 or not set(outdated) <= progress.done:
-        raise _explain(layout, progress, output)
+        raise _failure(layout, progress, output)
 
 
 def _times(options: Options) -> BuildTimes:
@@ -228,13 +226,13 @@ def _times(options: Options) -> BuildTimes:
 
 
 def _firsts(layout: Layout, names: List[str]) -> Dict[str, bool]:
-    """Maps each package to whether it is built from nothing."""
+    """Returns for each package whether this is its first build."""
     return {name: not (layout.build / name / ".ninja_log").is_file() for name in names}
 
 
 @dataclass
 class Pending:
-    """The work that is left before everything is built."""
+    """The work that is left until everything is built."""
 
     system: List[str]  # packages of the operating system
     venv: bool
@@ -282,7 +280,7 @@ def _setup(layout: Layout, pending: Pending) -> None:
 
 
 def setup(layout: Layout) -> None:
-    """System packages, the virtual environment and the sources of ur_rtde."""
+    """Installs the system packages, the virtual environment and the sources of ur_rtde, as far as they are missing."""
     if not _pending_setup(layout):
         return
     with Lock("build"):
@@ -306,13 +304,13 @@ def _pending(options: Options, packages: Dict[str, Package]) -> Tuple[Pending, S
     stamps = Stamps(options, packages)
     pending = _pending_setup(options.layout)
     pending.outdated = [name for name in packages if not stamps.is_current(name, options.tests)]
-    # A package once built with its tests keeps them, or building and testing in turn would configure it each time.
+    # A package that was built with its tests keeps them; otherwise building and testing in turn would configure it each time.
     pending.tests = options.tests or any(stamps.has_tests(name) for name in pending.outdated)
     return pending, stamps
 
 
 def build(options: Options) -> Dict[str, Package]:
-    """Sets up what is missing, builds what changed; the packages that were asked for and those they need."""
+    """Sets up what is missing and builds what changed. Returns the requested packages and their dependencies."""
     packages = _chosen(options)
     if not _pending(options, packages)[0]:
         return packages

@@ -1,4 +1,4 @@
-"""How long builds take: measured times of each package, and the remaining time while one runs."""
+"""Measures how long the packages take to build, and estimates the remaining time of a build."""
 
 import json
 import math
@@ -7,8 +7,8 @@ import time
 from typing import Dict, Iterable, List, Optional, Tuple
 
 REFERENCE_CORES = 2
-# Seconds of a first build on REFERENCE_CORES without a compiler cache, if no other package is built at the same time: without and
-# with tests. Source: "first" in .ur/<distribution>/build_times.json after `./ur build` and `./ur build --tests` from nothing.
+# Seconds of a first build without and with tests, on REFERENCE_CORES, without a compiler cache and with no other package built at the
+# same time. Source: "first" in .ur/<distribution>/build_times.json after a first `./ur build` and `./ur build --tests`.
 REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_rtde_vendor": (14.0, 14.0),
     "rcl_cxx": (16.0, 60.0),
@@ -28,14 +28,14 @@ PRIOR = 60.0  # s of build time after which measured speed and estimate have equ
 
 
 def rounded(seconds: float) -> str:
-    """A duration in steps of 5 s or 1 min."""
+    """Returns a duration rounded to 5 s or 1 min, as text."""
     if seconds <= 55.0:
         return f"{max(5, 5 * math.ceil(seconds / 5))} s"
     return f"{round(seconds / 60.0)} min"
 
 
 class BuildTimes:
-    """Measured times of this checkout: per package its last build, and its last build from nothing ("first")."""
+    """Measured times of this checkout: of each package the last build, and the last build from scratch ("first")."""
 
     def __init__(self, file: pathlib.Path, jobs: int):
         self._file, self._jobs = file, jobs
@@ -49,7 +49,7 @@ class BuildTimes:
         return entry if entry and entry["jobs"] == self._jobs else None
 
     def first(self, name: str, tests: bool) -> Tuple[float, int]:
-        """Seconds and steps of a first build; 0 steps: unknown."""
+        """Returns seconds and steps of a first build; 0 steps: unknown."""
         entry = self._entry("first", name, tests)
         if entry:
             return entry["seconds"], entry["steps"]
@@ -71,7 +71,7 @@ class BuildTimes:
 
 
 class _Work:
-    """One package. `seconds` is its share of the total build time."""
+    """The work on one package. `seconds` is its share of the total build time."""
 
     def __init__(self, times: BuildTimes, name: str, tests: bool, is_first: bool):
         self.is_first = is_first
@@ -101,7 +101,7 @@ class _Work:
 
 
 class Forecast:
-    """Files and remaining time over all packages of a build."""
+    """Estimates files and remaining time of a build over all its packages."""
 
     def __init__(self, times: BuildTimes, firsts: Dict[str, bool], tests: bool, clock=time.monotonic):
         self._times, self._tests, self._clock = times, tests, clock

@@ -1,4 +1,4 @@
-"""What demo and bench share: a simulated controller, the three nodes, and how such a command starts and ends."""
+"""Shared by demo, bench, chaos and plan: starts a simulated controller and nodes, and runs such a command."""
 
 import argparse
 import sys
@@ -15,7 +15,7 @@ MODELS = ("ur3", "ur5", "ur10", "ur3e", "ur5e", "ur7e", "ur10e", "ur12e", "ur16e
 
 def start_simulator(programs: Programs, layout: Layout, env: Dict[str, str], address: str, model: str,
                     *arguments: str) -> Program:
-    """Returns when it reports that its ports listen. A connection would not tell it from another simulator on the address."""
+    """Returns when the simulator reports that its ports listen. A connection attempt could reach another simulator."""
     simulator = programs.start("simulator", [program(layout, "ur_simulator", "ur_simulator"), "--address", address,
                                              "--model", model, *arguments], env)
     programs.wait_until(lambda: "ready: " in simulator.output, 10.0, "the simulator's ports")

@@ -1,8 +1,8 @@
-"""./ur chaos: random goals from several clients while random faults happen to a simulated robot, its links and its people.
+"""./ur chaos: sends random goals from several clients while random faults happen to a simulated robot, its links and its operators.
 
-What has to hold all the time: every goal that is accepted has exactly one result, the arm moves only while a goal does, the
-driver does not end, its descriptors, threads and memory stay as they were after the first quarter, and after each fault it takes
-motions again. The same seed gives the same goals and faults in the same order. With --faults 0 it is a soak: goals only.
+These invariants are checked: every accepted goal has exactly one result; the arm moves only while a goal is executed; the driver
+does not exit; its descriptors, threads and memory do not grow after the first quarter of the run; after each fault it accepts
+motions again. The same seed gives the same goals and faults in the same order. --faults 0 is a soak test: goals only.
 """
 
 import argparse
@@ -17,20 +17,20 @@ from .layout import PROGRAM, ROOT, SANITIZERS, Layout
 from .processes import Programs
 
 SOAK_MINUTES = 30.0
-FAULT_SECONDS = 60.0  # more than the longest fault takes, its goals and their ends included
+FAULT_SECONDS = 60.0  # upper bound of one fault with its recovery and the results of its goals
 
 
 def parse(arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=f"{PROGRAM} chaos", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--faults", type=int, default=100, metavar="N", help="how many; 0: a soak (default: 100)")
-    parser.add_argument("--seed", type=int, metavar="S", help="of the goals and faults (default: a new one)")
+    parser.add_argument("--faults", type=int, default=100, metavar="N", help="number of faults; 0: a soak test (default: 100)")
+    parser.add_argument("--seed", type=int, metavar="S", help="seed of the goals and faults (default: a random one)")
     parser.add_argument("--minutes", type=float, default=0.0, metavar="M",
-                        help=f"ends after this time at the latest (default: no limit; of a soak {SOAK_MINUTES:g})")
-    parser.add_argument("--clients", type=int, default=3, metavar="N", help="nodes that send goals, 1 to 20 (default: 3)")
+                        help=f"time limit of the run (default: none; {SOAK_MINUTES:g} for a soak test)")
+    parser.add_argument("--clients", type=int, default=3, metavar="N", help="number of nodes that send goals, 1 to 20 (default: 3)")
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
     parser.add_argument("--log", type=pathlib.Path, metavar="FOLDER",
-                        help="where the logs go (default: a folder of the seed's name in .ur)")
+                        help="folder for the logs (default: a folder in .ur, named after the seed)")
     options = parser.parse_args(arguments)
     if options.faults < 0 or options.minutes < 0.0 or not 1 <= options.clients <= 20:
         parser.error("--faults and --minutes cannot be negative, --clients is 1 to 20")
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     with Programs(log) as programs:
         code = programs.run(command, env, limit)
     if code != 0:
-        say.line(f"The same goals and faults again: ./ur chaos --faults {options.faults} --seed {options.seed} "
+        say.line(f"To repeat these goals and faults: ./ur chaos --faults {options.faults} --seed {options.seed} "
                  f"--minutes {options.minutes:g} --clients {options.clients}")
     return code
 

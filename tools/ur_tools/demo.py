@@ -1,7 +1,7 @@
-"""./ur demo: the simulated controller of an arm above a table, the three nodes, and a motion that stops on force.
+"""./ur demo: starts the simulated controller of an arm above a table and the three nodes, and runs a motion that stops on force.
 
-Leaves demo/force_experiment.csv and demo/force_experiment.png: forces above, joint velocities below, the pushes that were
-ignored marked blue, the stop red.
+Writes demo/force_experiment.csv and demo/force_experiment.png: forces (top) and joint velocities (bottom), with ignored pushes in
+blue and the stop in red.
 """
 
 import argparse
@@ -16,12 +16,12 @@ from .environment import run_environment
 from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
 
-# The packages that it needs, with those that they depend on.
-PACKAGES = ["ur_ros_rtde_commands", "ur_ros_rtde_tutorials", "ur_simulator"]
-# m between the tool and the table: what each size of arm can go down from its start pose.
+# Built with their dependencies.
+PACKAGES = ["ur_ros_rtde", "ur_ros_rtde_tutorials", "ur_simulator"]
+# Distance of the tool above the table, m: how far each size of arm can move down from its start pose.
 DROP = {"ur3": 0.15, "ur3e": 0.15}
 DEFAULT_DROP = 0.3
-# The figure needs no more, and three topics at 500 Hz are more than Python can follow on a busy machine.
+# This rate suffices for the figure. On a busy machine Python cannot receive three topics at 500 Hz.
 PARAMETERS = {"robot_state_receiver": ("rtde_frequency:=125.0",)}
 
 
@@ -33,14 +33,14 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--threshold", type=float, default=20.0, metavar="N",
                         help="force along the flange Z axis that stops the arm, newtons, 5 to 100 (default: 20)")
     parser.add_argument("--speed", type=float, default=0.1, metavar="M/S",
-                        help="of the tool on its way down, m/s, 0.01 to 0.25 (default: 0.1)")
+                        help="speed of the tool, m/s, 0.01 to 0.25 (default: 0.1)")
     parser.add_argument("--drop", type=float, metavar="M",
-                        help="distance of the table below the tool, m (default: by the size of the arm)")
+                        help="distance of the table below the tool, m (default: depends on the size of the arm)")
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "demo", metavar="FOLDER",
-                        help="where the CSV and the picture go (default: demo)")
+                        help="folder for the CSV file and the figure (default: demo)")
     parser.add_argument("--keep-running", action="store_true",
-                        help="leave simulator and nodes running afterwards, until Ctrl-C")
+                        help="keep the simulator and the nodes running until Ctrl-C")
     options = parser.parse_args(arguments)
     for name, low, high in (("threshold", 5.0, 100.0), ("speed", 0.01, 0.25)):
         value = getattr(options, name)
@@ -56,9 +56,9 @@ def parse(arguments: List[str]) -> argparse.Namespace:
 def check(options: argparse.Namespace) -> None:
     """Raises Failure if the output folder cannot be written or the address is in use."""
     if not options.output.is_dir():
-        raise say.Failure(f"--output {options.output}: there is no such folder. `mkdir -p {options.output}` makes it.")
+        raise say.Failure(f"--output {options.output}: there is no such folder. Create it: `mkdir -p {options.output}`")
     try:
-        tempfile.TemporaryFile(dir=options.output).close()  # permissions say too little: root may, a full disk may not
+        tempfile.TemporaryFile(dir=options.output).close()  # a permission check would miss a read-only or full disk
     except OSError as error:
         raise say.Failure(f"--output {options.output}: the folder cannot be written: {error.strerror}") from None
     ports.check(options.address)
@@ -82,7 +82,7 @@ def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace)
 
 
 def _keep_running(programs: Programs, options: argparse.Namespace) -> None:
-    say.line(f"Simulator ({options.address}) and nodes go on until Ctrl-C. In another terminal: ./ur shell")
+    say.line(f"The simulator ({options.address}) and the nodes run until Ctrl-C. To use them, open another terminal: ./ur shell")
     while True:
         programs.check()
         time.sleep(0.2)
@@ -94,7 +94,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         _start(programs, layout, options)
         code = _experiment(programs, layout, options)
         if code != 0:
-            say.line(f"The demo failed. What simulator and nodes said: {logs}")
+            say.line(f"The demo failed. Logs of the simulator and the nodes: {logs}")
         elif options.keep_running:
             _keep_running(programs, options)
     return code

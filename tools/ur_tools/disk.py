@@ -5,20 +5,20 @@ import shutil
 
 from . import say
 
-FIRST_RUN = 2.5e9  # bytes: virtual environment, what pip keeps, a build with tests
+FIRST_RUN = 2.5e9  # bytes: virtual environment, pip's cache, a build with tests
 LATER = 0.3e9
 
 
 def free(path: pathlib.Path) -> int:
-    """Returns the free bytes of the file system that holds the path, or will hold it."""
+    """Returns the free bytes of the file system that holds the path. The path need not exist."""
     while not path.exists():
         path = path.parent
     return shutil.disk_usage(path).free
 
 
-def full(path: pathlib.Path) -> str:
+def full_message(path: pathlib.Path) -> str:
     return (f"The disk that holds {path} is full ({free(path) / 1e9:.1f} GB free). Free some space and run ./ur again: "
-            "it continues where it ended.")
+            "it continues where it stopped.")
 
 
 def check(path: pathlib.Path, needed: float) -> None:

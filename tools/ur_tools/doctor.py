@@ -17,10 +17,10 @@ from .layout import ROOT, STATE, Layout
 OK, NOTE, FAILED = "ok", "note", "FAILED"
 DEMO_ADDRESS = "127.0.0.1"
 TEST_ADDRESSES = ("127.0.0.2", "127.0.1.1", "127.0.1.101")
-CYCLE = 0.002  # s, cycle time of a controller
+CYCLE = 0.002  # s, of a controller
 CYCLES = 500
-LATE = (0.5, 5.0)  # ms, limits of p99 and maximum
-RATIONED = 0.01  # steal time: share of processor time given to other virtual machines
+LATENCY_LIMITS = (0.5, 5.0)  # ms, of p99 and maximum
+STEAL_LIMIT = 0.01  # share of the processor time that goes to other virtual machines
 LITTLE_MEMORY = 2.0e9
 _CPP = "#include <concepts>\n#include <span>\nint main() { static_assert(__cplusplus >= 202002L); }\n"
 
@@ -44,7 +44,7 @@ def _may_install() -> bool:
 def compiler() -> Finding:
     name = os.environ.get("CXX") or shutil.which("c++") or shutil.which("g++") or ""
     if not name:
-        advice = "./ur installs it" if _may_install() else "sudo apt-get install -y g++"
+        advice = "./ur installs it." if _may_install() else "sudo apt-get install -y g++"
         return Finding("compiler", NOTE if _may_install() else FAILED, "no C++ compiler found", advice)
     try:
         version = subprocess.run([*name.split(), "--version"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -56,14 +56,14 @@ def compiler() -> Finding:
     text = version[0] if version else name
     if result.returncode != 0:
         return Finding("compiler", FAILED, f"{text}: does not compile C++20",
-                       "g++ 11 or clang 14 and newer do: install one and name it, CXX=g++-12 ./ur ...")
+                       "Install g++ 11 or clang 14, or a newer version, and select it: CXX=g++-12 ./ur ...")
     return Finding("compiler", OK, text)
 
 
 def system() -> Finding:
     absent = system_packages.absent()
     if not shutil.which("dpkg-query"):
-        return Finding("system packages", NOTE, "no dpkg here, so they are not checked",
+        return Finding("system packages", NOTE, "not checked: this machine has no dpkg",
                        "Install the equivalents of these Debian packages: " + " ".join(system_packages.needed()))
     if not absent:
         return Finding("system packages", OK, "all installed")
@@ -132,12 +132,12 @@ def loopback() -> Finding:
 
 
 def _processor_time() -> Tuple[int, int]:
-    """Returns total and steal time since boot, in ticks."""
+    """Returns the total time and the steal time since boot, in ticks."""
     fields = [int(value) for value in pathlib.Path("/proc/stat").read_text().splitlines()[0].split()[1:9]]
     return sum(fields), fields[7]
 
 
-def lateness() -> List[float]:
+def wake_up_latencies() -> List[float]:
     """Returns the wake-up latency of each cycle, ms."""
     late = []
     due = time.monotonic()
@@ -153,19 +153,19 @@ def judge_jitter(late: List[float], stolen: float) -> Finding:
     p99, latest = statistics.quantiles(late, n=100)[98], max(late)
     text = (f"wake-up latency of a 2 ms cycle: {statistics.median(late):.2f} ms (median), {p99:.2f} ms (p99), "
             f"{latest:.2f} ms (max)")
-    if stolen > RATIONED:
+    if stolen > STEAL_LIMIT:
         return Finding("time jitter", NOTE, f"{text}; {100 * stolen:.0f} % of the processor time goes to other virtual machines",
-                       "Demo and tests work. Results of ./ur bench are not meaningful; servo motions at 500 Hz may be uneven.")
-    if p99 > LATE[0] or latest > LATE[1]:
+                       "Demo and tests work. Results of ./ur bench are not meaningful, and servo motions at 500 Hz may be uneven.")
+    if p99 > LATENCY_LIMITS[0] or latest > LATENCY_LIMITS[1]:
         return Finding("time jitter", NOTE, text,
-                       "Demo and tests work. Servo motions at 500 Hz may be uneven: close other programs. For a real robot use a "
+                       "Demo and tests work. Servo motions at 500 Hz may be uneven: close other programs. For a real robot, use a "
                        "PREEMPT_RT kernel, the CPU governor \"performance\" and the parameter realtime_priority.")
     return Finding("time jitter", OK, text)
 
 
 def jitter() -> Finding:
     total, stolen = _processor_time()
-    late = lateness()
+    late = wake_up_latencies()
     total_after, stolen_after = _processor_time()
     return judge_jitter(late, (stolen_after - stolen) / max(1, total_after - total))
 

@@ -1,4 +1,4 @@
-"""The source archive of ur_rtde, from where pip finds packages; on a machine with ROS 2, ur_rtde_vendor downloads it itself."""
+"""Downloads the source archive of ur_rtde with pip. With an installed ROS 2, ur_rtde_vendor downloads it itself."""
 
 import hashlib
 import pathlib
@@ -15,7 +15,7 @@ PIN = ROOT / "wheels" / "ur_rtde.txt"
 
 
 def _pinned() -> Tuple[str, str]:
-    """Name and SHA-256 of the archive that the pin file names."""
+    """Returns name and SHA-256 of the archive that is pinned in wheels/ur_rtde.txt."""
     name, version, digest = re.search(r"^([a-z-]+)==([0-9.]+) --hash=sha256:([0-9a-f]+)$", PIN.read_text(), re.M).groups()
     return f"{name.replace('-', '_')}-{version}.tar.gz", digest
 
@@ -24,32 +24,32 @@ def ur_rtde_archive() -> pathlib.Path:
     return DOWNLOADS / _pinned()[0]
 
 
-def _is_good(archive: pathlib.Path) -> bool:
+def _is_valid(archive: pathlib.Path) -> bool:
     return archive.is_file() and hashlib.sha256(archive.read_bytes()).hexdigest() == _pinned()[1]
 
 
 def is_current() -> bool:
-    return _is_good(ur_rtde_archive())
+    return _is_valid(ur_rtde_archive())
 
 
 def ensure(layout: Layout) -> None:
     archive = ur_rtde_archive()
-    if _is_good(archive):
+    if _is_valid(archive):
         return
     if archive.exists():
         say.line(f"    {archive.relative_to(ROOT)} is damaged; downloading it again")
         archive.unlink()
     say.step("Downloading the sources of ur_rtde")
-    # Only this package must be a source archive: pip prepares its metadata with build tools, which may be wheels.
+    # --no-binary for this package only: pip prepares its metadata with build tools, which may be wheels.
     command = [str(layout.python), "-I", "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps",
                "--no-binary", "ur-rtde", "--require-hashes", "--requirement", str(PIN), "--dest", str(DOWNLOADS)]
     for attempt in range(1, 4):
         result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
                                 universal_newlines=True)
-        if result.returncode == 0 and _is_good(archive):
+        if result.returncode == 0 and _is_valid(archive):
             return
         if attempt < 3:
             time.sleep(3.0 * attempt)
-    raise say.Failure(f"The sources of ur_rtde could not be downloaded, three times over:\n{say.tail(result.stdout, 12)}\n"
-                      "Is there a network? Behind a proxy or with a mirror, pip's own settings say where packages are "
-                      f"(`pip config list`). On a machine without a network, put the archive at {archive}.")
+    raise say.Failure(f"The sources of ur_rtde could not be downloaded in three attempts:\n{say.tail(result.stdout, 12)}\n"
+                      "Check the network connection. pip's settings (`pip config list`) select a proxy or a mirror. "
+                      f"On a machine without a network, copy the archive to {archive}.")

@@ -1,4 +1,4 @@
-"""The environment in which our programs, rclpy and our interfaces are found."""
+"""Environment variables with which our programs, rclpy and our interfaces are found."""
 
 import json
 import os
@@ -9,8 +9,8 @@ from typing import Dict, Iterable
 from .downloads import ur_rtde_archive
 from .layout import ROOT, Layout
 
-# What another ROS installation may have left in the user's environment. rcl of the wheels ends with 102 if
-# RMW_IMPLEMENTATION names anything else than the middleware it is linked with.
+# Variables that another ROS installation may have set. The wheels' rcl exits with status 102 if RMW_IMPLEMENTATION names
+# another middleware than the one it is linked with.
 FOREIGN = ("RMW_IMPLEMENTATION", "ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "ROS_LOCALHOST_ONLY", "PYTHONHOME",
            "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "COLCON_DEFAULTS_FILE", "PYTHONPATH", "LD_LIBRARY_PATH",
            "_ROS_WHEELS_BOOTSTRAP_COMPLETE", "UR_CHECKOUT")
@@ -30,13 +30,13 @@ def _base(layout: Layout) -> Dict[str, str]:
 
 
 def build_environment(layout: Layout, jobs: int) -> Dict[str, str]:
-    """For colcon and CMake: the wheels as the underlay."""
+    """Returns the environment for colcon and CMake, with the wheels as the underlay."""
     env = _base(layout)
     env["ROS_DISTRO"] = layout.ros
-    env["PYTHONPATH"] = str(layout.provider.parent / "generators")  # makes them fast
+    env["PYTHONPATH"] = str(layout.provider.parent / "generators")  # faster interface generators
     env["UR_RTDE_ARCHIVE"] = str(ur_rtde_archive())
     env["CMAKE_BUILD_PARALLEL_LEVEL"] = str(jobs)
-    env["MAKEFLAGS"] = f"-j{jobs}"  # keeps colcon from giving ninja a -j and a load limit of its own
+    env["MAKEFLAGS"] = f"-j{jobs}"  # otherwise colcon passes its own -j and load limit to ninja
     if shutil.which("ccache"):
         env.setdefault("CMAKE_CXX_COMPILER_LAUNCHER", "ccache")
         env.setdefault("CMAKE_C_COMPILER_LAUNCHER", "ccache")
@@ -48,10 +48,10 @@ def bundled_libraries(layout: Layout) -> Iterable[pathlib.Path]:
 
 
 def run_environment(layout: Layout) -> Dict[str, str]:
-    """For programs and rclpy: our installation over the wheels.
+    """Returns the environment for programs and rclpy, with our installation as an overlay of the wheels.
 
-    The wheels set LD_LIBRARY_PATH by starting Python a second time, in no certain order; it is all set here, and the
-    guard variable keeps them from it.
+    The wheels would set LD_LIBRARY_PATH, in an undefined order, and start Python again. It is set here instead, and
+    _ROS_WHEELS_BOOTSTRAP_COMPLETE disables their bootstrap.
     """
     env = _base(layout)
     env["ROS_DISTRO"] = layout.ros
@@ -60,14 +60,14 @@ def run_environment(layout: Layout) -> Dict[str, str]:
     env["PYTHONPATH"] = str(layout.site_packages(layout.install))
     env["LD_LIBRARY_PATH"] = _path(layout.install / "lib", layout.venv / "lib", *bundled_libraries(layout))
     env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
-    # Everything runs on this machine; nothing is announced to the network unless the user asks for it.
+    # Participants are announced to the network only if the user asks for it.
     env.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     _set_fastdds_profile(env, layout)
     return env
 
 
 def _set_fastdds_profile(env: Dict[str, str], layout: Layout) -> None:
-    """For the user's programs: our own set it themselves. Only the profile for the installed version of Fast DDS is there."""
+    """Sets the Fast DDS profile for the user's programs; ours set it themselves. Only the installed version's profile exists."""
     profiles = {"FASTDDS_DEFAULT_PROFILES_FILE": "fastdds.xml", "FASTRTPS_DEFAULT_PROFILES_FILE": "fastrtps.xml"}
     if not any(variable in env for variable in profiles):
         for variable, name in profiles.items():
@@ -77,9 +77,9 @@ def _set_fastdds_profile(env: Dict[str, str], layout: Layout) -> None:
 
 
 def workspace_environment(layout: Layout) -> Dict[str, str]:
-    """As run_environment(), with `ur` on PATH and the arguments that `colcon build` of a user's own workspace needs."""
+    """Returns run_environment() with `ur` on PATH and the arguments for `colcon build` in a user's own workspace."""
     env = run_environment(layout)
-    # For `ur` of ur_ros_rtde_cli, which hands the commands of the checkout to ./ur, and for that: with the same build.
+    # `ur` of ur_ros_rtde_cli passes the commands of the checkout to ./ur, which uses the same build.
     env["UR_CHECKOUT"] = str(ROOT)
     env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
     env["CMAKE_PREFIX_PATH"] = str(layout.install)
@@ -95,7 +95,7 @@ def workspace_environment(layout: Layout) -> Dict[str, str]:
 
 
 def program(layout: Layout, package: str, name: str) -> pathlib.Path:
-    """An installed executable: lib/<package>/<name> as ROS has it, or bin/<name>."""
+    """Returns the path of an installed executable: lib/<package>/<name>, or bin/<name>."""
     for candidate in (layout.install / "lib" / package / name, layout.install / "bin" / name):
         if candidate.is_file():
             return candidate

@@ -1,4 +1,4 @@
-"""Keeps tests that run at the same time apart, and removes what they leave behind."""
+"""Isolates tests that run in parallel, and removes the processes and shared memory that they leave behind."""
 
 import fcntl
 import os
@@ -11,14 +11,14 @@ from typing import Dict, IO, Optional, Set
 
 from .say import Failure
 
-MARK = "UR_TEST_RUN"  # in the environment of every process a test run starts
-LAST_DOMAIN = 101  # above it, ports may lie in the range the system gives out itself
+MARK = "UR_TEST_RUN"  # environment variable of every process that a test run starts
+LAST_DOMAIN = 101  # the ports of higher domains may be ephemeral ports
 _SHARED_MEMORY = pathlib.Path("/dev/shm")
 _lock = threading.Lock()
 
 
 class Domain:
-    """A ROS domain, and a loopback address, that no other test on this machine has meanwhile."""
+    """Reserves a ROS domain and a loopback address on this machine."""
 
     def __init__(self) -> None:
         self.number = 0
@@ -54,7 +54,7 @@ def fresh_folder(folder: pathlib.Path) -> pathlib.Path:
     return folder
 
 
-def _own_segments() -> Set[pathlib.Path]:
+def _shared_memory_of_user() -> Set[pathlib.Path]:
     found = set()
     for pattern in ("fastrtps_*", "sem.fastrtps_*", "fastdds_*", "sem.fastdds_*"):
         for path in _SHARED_MEMORY.glob(pattern):
@@ -66,7 +66,7 @@ def _own_segments() -> Set[pathlib.Path]:
     return found
 
 
-def _segments_in_use() -> Set[str]:
+def _shared_memory_in_use() -> Set[str]:
     used: Set[str] = set()
     for maps in pathlib.Path("/proc").glob("[0-9]*/maps"):
         try:
@@ -81,7 +81,7 @@ def _segments_in_use() -> Set[str]:
 
 
 def _files_open() -> Set[str]:
-    """Lock files are open without being mapped."""
+    """Returns the open files of /dev/shm: lock files are not mapped."""
     used: Set[str] = set()
     for link in pathlib.Path("/proc").glob("[0-9]*/fd/*"):
         try:
@@ -93,8 +93,8 @@ def _files_open() -> Set[str]:
     return used
 
 
-def _end_strays() -> None:
-    """Processes of this run that left their session."""
+def _kill_stray_processes() -> None:
+    """Kills processes of this run that have left their session."""
     mark = f"{MARK}={os.getpid()}".encode()
     for environ in pathlib.Path("/proc").glob("[0-9]*/environ"):
         try:
@@ -109,16 +109,16 @@ def _end_strays() -> None:
 
 
 class CleanUp:
-    """Ends the processes of a run that are left at its end, and removes the shared memory no process uses any more."""
+    """At its end, kills the remaining processes of a run and removes shared memory that is no longer used."""
 
     def __enter__(self) -> "CleanUp":
-        self._before = _own_segments()
+        self._before = _shared_memory_of_user()
         return self
 
     def __exit__(self, *_unused: object) -> None:
-        _end_strays()
-        new = _own_segments() - self._before
-        used = _segments_in_use()
+        _kill_stray_processes()
+        new = _shared_memory_of_user() - self._before
+        used = _shared_memory_in_use()
         for path in new:
             if str(path) not in used:
                 try:

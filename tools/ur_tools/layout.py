@@ -1,4 +1,4 @@
-"""Where things lie: sources in the checkout, everything that is made in .ur/."""
+"""Paths: sources in the checkout, generated files in .ur/."""
 
 import os
 import pathlib
@@ -9,21 +9,21 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 STATE = ROOT / ".ur"
 DOWNLOADS = STATE / "downloads"
 DISTRIBUTIONS = ("kilted", "jazzy")
-# What the user types: in `./ur shell` the program is called `ur`.
+# The command that the user types: in `./ur shell` it is `ur`.
 PROGRAM = "ur" if os.environ.get("UR_CHECKOUT") == str(ROOT) else "./ur"
 SANITIZERS = ("address", "undefined", "thread")
 
 
 @dataclass(frozen=True)
 class Layout:
-    """One build: a ROS distribution and a variant ("", "debug", or a sanitizer's name)."""
+    """The paths of one build: of a ROS distribution and a variant ("", "debug", or the name of a sanitizer)."""
 
     ros: str = "kilted"
     variant: str = ""
 
     @staticmethod
     def of_environment() -> "Layout":
-        """The one that UR_LAYOUT names, as our commands tell those they start: kilted:address."""
+        """Returns the layout in UR_LAYOUT, which our commands set for the programs they start, as in kilted:address."""
         ros, _, variant = os.environ.get("UR_LAYOUT", "kilted:").partition(":")
         return Layout(ros, variant)
 
@@ -63,7 +63,7 @@ class Layout:
         return ROOT / "wheels" / "provider.cmake"
 
     def site_packages(self, prefix: pathlib.Path) -> pathlib.Path:
-        """The site-packages folder of an installation prefix, for the Python of the virtual environment."""
+        """Returns the site-packages folder of an installation prefix for the Python of the virtual environment."""
         found = sorted(self.venv.glob("lib/python3.*"))
         version = found[0].name if found else "python3"
         return prefix / "lib" / version / "site-packages"

@@ -1,4 +1,4 @@
-"""Checks of the sources: formatting, traces of one machine, clang-tidy."""
+"""Checks the sources: formatting, machine-specific paths, clang-tidy."""
 
 import pathlib
 import re
@@ -13,8 +13,8 @@ from .environment import build_environment
 from .layout import ROOT, Layout
 
 CPP = (".cpp", ".hpp", ".h", ".c")
-# Folders of one machine, and addresses of package registries, which pip and apt know by themselves.
-_TRACES = re.compile(r"(?<![\w.])/(?:work|root|tmp|home/[a-z]\w*)/[\w.-]|files\.pythonhosted|pypi\.org/simple")
+# Paths of one machine, and addresses of package registries, which pip and apt are configured with.
+_MACHINE_SPECIFIC = re.compile(r"(?<![\w.])/(?:work|root|tmp|home/[a-z]\w*)/[\w.-]|files\.pythonhosted|pypi\.org/simple")
 
 
 @dataclass
@@ -25,7 +25,7 @@ class Check:
 
 
 def tracked_files() -> List[pathlib.Path]:
-    """Files git has or would add; deleted ones are left out."""
+    """Returns the files that git tracks or would add, without deleted ones."""
     listing = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"], cwd=ROOT, check=True,
                              stdout=subprocess.PIPE, universal_newlines=True).stdout
     return [path for path in (ROOT / name for name in sorted(set(listing.split("\0"))) if name) if path.is_file()]
@@ -46,10 +46,10 @@ def check_format(layout: Layout) -> Check:
     result = _clang_format(layout, "--dry-run", "--Werror")
     wrong = sorted({line.split(":")[0] for line in result.stdout.splitlines() if "clang-format-violations" in line})
     text = "\n".join("    " + name for name in wrong) or say.tail(result.stdout, 10)
-    return Check("sources: formatting", result.returncode == 0, f"{text}\n    `./ur format` formats them")
+    return Check("sources: formatting", result.returncode == 0, f"{text}\n    Run `./ur format`.")
 
 
-def check_traces() -> Check:
+def check_paths() -> Check:
     found = []
     for path in tracked_files():
         if path == pathlib.Path(__file__) or path.suffix in (".png", ".patch"):
@@ -59,13 +59,13 @@ def check_traces() -> Check:
         except UnicodeDecodeError:
             continue
         for number, line in enumerate(lines, 1):
-            if _TRACES.search(line) and not line.startswith("#!"):
+            if _MACHINE_SPECIFIC.search(line) and not line.startswith("#!"):
                 found.append(f"    {path.relative_to(ROOT)}:{number}: {line.strip()[:100]}")
-    return Check("sources: no path of one machine, no address of a registry", not found, "\n".join(found))
+    return Check("sources: machine-specific paths and registry addresses", not found, "\n".join(found))
 
 
 def checks(layout: Layout) -> List[Check]:
-    return [check_format(layout), check_traces()]
+    return [check_format(layout), check_paths()]
 
 
 def format_sources(layout: Layout) -> int:
@@ -77,11 +77,11 @@ def format_sources(layout: Layout) -> int:
 
 
 def _databases(layout: Layout) -> List[pathlib.Path]:
-    """How each file is compiled by itself; the build compiles several at a time."""
+    """Returns compilation databases without unity builds, so that each file has an entry."""
     databases = []
     for name, package in build(Options(layout, tests=True)).items():
         if not (package.folder / "src").is_dir():
-            continue  # interfaces, Python
+            continue  # interfaces or Python
         folder = layout.base / "tidy" / name
         command = ["cmake", "-S", package.folder, "-B", folder, *cmake_arguments(Options(layout), True), "-DCMAKE_UNITY_BUILD=OFF",
                    f"-DCMAKE_PREFIX_PATH={layout.install}"]

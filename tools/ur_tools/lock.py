@@ -1,4 +1,4 @@
-"""Only one ./ur at a time builds, or tests, in a checkout. Others wait."""
+"""Locks: one ./ur at a time builds, and one tests, in a checkout; others wait."""
 
 import errno
 import fcntl
@@ -63,7 +63,7 @@ class Lock:
             fcntl.flock(file, fcntl.LOCK_EX)
 
     def _is_current(self, file: IO[str]) -> bool:
-        """False if `./ur clean --all` removed the file in the meantime."""
+        """Returns False if `./ur clean --all` has removed the file in the meantime."""
         try:
             return os.path.samestat(os.fstat(file.fileno()), os.stat(self._path))
         except FileNotFoundError:

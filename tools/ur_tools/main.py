@@ -19,17 +19,17 @@ from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
 
 DESCRIPTION = """\
-Builds, tests and shows the ROS 2 driver for Universal Robots arms and its simulated controller, on a machine with or
-without ROS 2. The first run sets everything up (a virtual environment with ROS 2 as wheels, a build), later runs
-only what changed. All of it lies in .ur/; `./ur clean` removes it.
+Builds, tests and demonstrates the ROS 2 driver for Universal Robots arms and its simulated controller. ROS 2 need not
+be installed: the first run creates a virtual environment with ROS 2 as wheels and builds everything; later runs build
+only what changed. All files are written to .ur/; `./ur clean` removes them.
 """
 
 
-# Commands of `ur` in ur_ros_rtde_cli, which runs them.
+# Commands that the program `ur` of ur_ros_rtde_cli runs.
 CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0]}\"",
        "state": "show the state of the robot", "plugins": "list the installed plugins",
        "record": "record fields of the robot's state into a CSV file"}
-FORWARDED = ("demo", "bench", "chaos", "plan", "sim", *CLI)  # all but our own options are for the program that does it
+FORWARDED = ("demo", "bench", "chaos", "plan", "sim", *CLI)  # to a program, with all options that are not ours
 
 
 def _add_build_options(parser: argparse.ArgumentParser) -> None:
@@ -37,12 +37,12 @@ def _add_build_options(parser: argparse.ArgumentParser) -> None:
                         help="ROS 2 distribution (default: %(default)s)")
     parser.add_argument("-j", "--jobs", type=int, default=0, metavar="N", help="parallel jobs (default: all cores)")
     variant = parser.add_mutually_exclusive_group()
-    variant.add_argument("--debug", action="store_true", help="a debug build, beside the release build")
-    variant.add_argument("--sanitize", choices=SANITIZERS, help="a build with a sanitizer, beside the release build")
+    variant.add_argument("--debug", action="store_true", help="use a debug build, which is kept beside the release build")
+    variant.add_argument("--sanitize", choices=SANITIZERS, help="use a build with a sanitizer, which is kept beside the release build")
 
 
 def _layout(options: argparse.Namespace) -> Layout:
-    current = Layout.of_environment()  # in `./ur shell` that of the shell
+    current = Layout.of_environment()  # in `./ur shell`: the build of that shell
     inherited = current.variant if options.ros == current.ros else ""
     return Layout(options.ros, "debug" if options.debug else options.sanitize or inherited)
 
@@ -79,8 +79,8 @@ def command_shell(options: argparse.Namespace) -> int:
     if command:
         return subprocess.run(command, env=env).returncode
     shell = env.get("SHELL", "/bin/sh")
-    say.line(f"A shell with ROS 2 {layout.ros.capitalize()} and this project's packages; `exit` leaves it. `ur` has the commands of "
-             "./ur, `ur --help` lists them. The wheels do not contain the program `ros2`.")
+    say.line(f"This shell has ROS 2 {layout.ros.capitalize()} and this project's packages; `exit` leaves it. `ur` has the commands of "
+             "./ur; `ur --help` lists them. The wheels do not contain the program `ros2`.")
     if os.path.basename(shell) == "bash":
         env["PS1"] = "(ur) \\w\\$ "
         return subprocess.run([shell, "--norc"], env=env).returncode
@@ -88,7 +88,7 @@ def command_shell(options: argparse.Namespace) -> int:
 
 
 def _python_command(name: str, options: argparse.Namespace) -> int:
-    """demo, bench, chaos and plan, as modules of their own: help and wrong arguments need no build."""
+    """Runs demo, bench, chaos or plan as a module of its own. `--help` and wrong arguments are handled without a build."""
     arguments = _forwarded(options)
     layout = _layout(options)
     module = importlib.import_module(f"ur_tools.{name}")
@@ -118,7 +118,7 @@ def command_chaos(options: argparse.Namespace) -> int:
 
 
 def command_cli(options: argparse.Namespace) -> int:
-    """`./ur call …` is `ur call …` of ur_ros_rtde_cli. Nothing is built that is there: the driver may be running."""
+    """Runs `ur call …` of ur_ros_rtde_cli for `./ur call …`. Builds only if it is missing: the driver may be running."""
     arguments = [options.command, *_forwarded(options)]
     if any(argument in ("-h", "--help") for argument in arguments):
         source = ROOT / "ur_ros_rtde_cli"
@@ -176,7 +176,7 @@ def _forwarded(options: argparse.Namespace) -> List[str]:
 
 
 def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
-    """The parser and the names of the commands."""
+    """Returns the parser and the names of the commands."""
     parser = argparse.ArgumentParser(prog=PROGRAM, description=DESCRIPTION,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", metavar="command")
@@ -187,82 +187,82 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
         return sub
 
     def add_forwarding(name: str, function, text: str) -> None:
-        # Its own options go to the program; only those before them are ours.
+        # The program's options follow ours.
         sub = add(name, function, text, add_help=name in ("sim", "shell"))
         _add_build_options(sub)
-        sub.add_argument("arguments", nargs=argparse.REMAINDER, help="handed on as they are")
+        sub.add_argument("arguments", nargs=argparse.REMAINDER, help="passed on unchanged")
 
-    add_forwarding("demo", command_demo, "the main job: simulator, nodes, a motion that stops on force, the figure")
+    add_forwarding("demo", command_demo, "simulate a robot, run the nodes, stop a motion on force and draw a figure")
 
-    test = add("test", command_test, "build and run tests; the last line says `N passed, N failed`")
+    test = add("test", command_test, "build and run tests; the last line is `N passed, N failed`")
     _add_build_options(test)
     test.add_argument("names", nargs="*", metavar="NAME",
-                      help="only tests with this in their name: of a package, a test file or a GoogleTest case "
+                      help="run only tests whose package, file or GoogleTest case has NAME in its name "
                            "(default: all tests)")
     test.add_argument("--changed", action="store_true",
-                      help="only tests that the changed files can affect, and the checks of the sources")
+                      help="run only the tests that the changed files can affect, and the checks of the sources")
     test.add_argument("--base", default="", metavar="COMMIT",
-                      help="--changed since this commit or branch (default: origin/main where there is one, else HEAD)")
+                      help="compare with this commit or branch; implies --changed (default: origin/main if it exists, else HEAD)")
     test.add_argument("--timeout", type=float, default=0.0, metavar="S",
-                      help="limit of one test in seconds (default: what its package says, else 120)")
+                      help="time limit of one test in seconds (default: the limit that its package sets, else 120)")
     test.add_argument("--repeat", type=int, default=1, metavar="N", help="run each test N times (default: 1)")
 
-    build = add("build", command_build, "set up and build what changed")
+    build = add("build", command_build, "set up the environment and build what changed")
     _add_build_options(build)
-    build.add_argument("--package", action="append", metavar="NAME", help="only this package and those it needs")
-    build.add_argument("--tests", action="store_true", help="build the tests as well")
+    build.add_argument("--package", action="append", metavar="NAME", help="build only this package and its dependencies")
+    build.add_argument("--tests", action="store_true", help="also build the tests")
 
     add_forwarding("sim", command_sim, "run the simulated controller; options go to ur_simulator (`sim -- --help`)")
     add_forwarding("bench", command_bench, "measure latency and load")
-    add_forwarding("plan", command_plan, "plan a trajectory without a robot, draw it against its limits")
-    add_forwarding("chaos", command_chaos, "random goals while random faults happen; with --faults 0 a soak")
-    add_forwarding("shell", command_shell, "a shell, or one command, in which everything is found")
+    add_forwarding("plan", command_plan, "plan a trajectory without a robot and draw it against its limits")
+    add_forwarding("chaos", command_chaos, "send random goals during random faults; with --faults 0 a soak test")
+    add_forwarding("shell", command_shell, "open a shell, or run one command, with the environment of the build")
 
     for name, text in CLI.items():
         add_forwarding(name, command_cli, text)
-    sub = add("new", command_new, "write a package with a plugin of your own: a command, a dashboard command or an extension")
+    sub = add("new", command_new, "create a package with a plugin: a command, a dashboard command or an extension")
     sub.add_argument("kind", choices=new.KINDS)
-    sub.add_argument("name", help="of the plugin and its action: pick_part")
-    sub.add_argument("--package", default="", metavar="NAME", help="of the package (default: the plugin's name and kind)")
+    sub.add_argument("name", help="name of the plugin and its action, such as pick_part")
+    sub.add_argument("--package", default="", metavar="NAME", help="name of the package (default: NAME_KIND)")
     sub.add_argument("--directory", type=pathlib.Path, default=pathlib.Path("."), metavar="DIR",
-                     help="where the package is written (default: here)")
+                     help="folder in which the package is created (default: the current folder)")
 
     for name, function, text in (("format", command_format, "format all C++ files"),
-                                 ("lint", command_lint, "check formatting, paths and, with --tidy, clang-tidy")):
+                                 ("lint", command_lint, "check formatting and paths; with --tidy also run clang-tidy")):
         sub = add(name, function, text)
         sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
         if name == "lint":
             sub.add_argument("--tidy", action="store_true", help="also run clang-tidy (minutes)")
 
     sub = add("doctor", command_doctor,
-              "check this machine (compiler, Python, disk, memory, ports, timing) and say what to do; status 1 where it cannot work")
+              "check this machine (compiler, Python, disk, memory, ports, timing) and give advice; status 1 if it cannot work")
     sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
 
-    clean = add("clean", command_clean, "remove what was built")
-    clean.add_argument("--all", action="store_true", help="also the virtual environments and downloads")
+    clean = add("clean", command_clean, "remove the build")
+    clean.add_argument("--all", action="store_true", help="also remove the virtual environments and downloads")
     return parser, list(commands.choices)
 
 
 def _parse(arguments: List[str]) -> argparse.Namespace:
-    """argparse, except that options of forwarded commands may have any order."""
+    """Parses the arguments. The options of forwarded commands may have any order."""
     parser, names = _parser()
     if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
-        _explain_unknown(parser, arguments[0], names)
+        _fail_on_unknown_command(parser, arguments[0], names)
     if not arguments or arguments[0] not in FORWARDED:
         return parser.parse_args(arguments)
-    options, unknown = parser.parse_known_args(arguments[:1] + _ours_first(arguments[1:]))
+    options, unknown = parser.parse_known_args(arguments[:1] + _own_options_first(arguments[1:]))
     options.arguments = unknown + list(options.arguments)
     return options
 
 
-def _explain_unknown(parser: argparse.ArgumentParser, command: str, names: List[str]) -> None:
+def _fail_on_unknown_command(parser: argparse.ArgumentParser, command: str, names: List[str]) -> None:
     close = difflib.get_close_matches(command, names, 1)
     parser.error(f"there is no command {command}; " + (f"did you mean {close[0]}?" if close else f"there are: {', '.join(names)}"))
 
 
-def _ours_first(arguments: List[str]) -> List[str]:
-    """Puts our options in front, so that `./ur demo --model ur5e --debug` may have any order."""
-    ours: List[str] = []
+def _own_options_first(arguments: List[str]) -> List[str]:
+    """Moves our options to the front, so that `./ur demo --model ur5e --debug` works in any order."""
+    own: List[str] = []
     rest: List[str] = []
     index = 0
     while index < len(arguments):
@@ -271,20 +271,20 @@ def _ours_first(arguments: List[str]) -> List[str]:
             rest += arguments[index + 1:]
             break
         if argument in ("--ros", "--sanitize", "-j", "--jobs") and index + 1 < len(arguments):
-            ours += arguments[index:index + 2]
+            own += arguments[index:index + 2]
             index += 2
             continue
-        (ours if argument == "--debug" or argument.startswith(("--ros=", "--sanitize=", "--jobs=")) else rest).append(
+        (own if argument == "--debug" or argument.startswith(("--ros=", "--sanitize=", "--jobs=")) else rest).append(
             argument)
         index += 1
-    return ours + (["--", *rest] if rest else [])
+    return own + (["--", *rest] if rest else [])
 
 
-def _explain(error: OSError) -> str:
+def _message_of(error: OSError) -> str:
     if error.errno == errno.ENOSPC:
-        return disk.full(STATE)
+        return disk.full_message(STATE)
     if error.errno in (errno.EACCES, errno.EPERM, errno.EROFS):
-        return f"{error.filename}: {error.strerror}. ./ur writes into its checkout, below {STATE}."
+        return f"{error.filename}: {error.strerror}. ./ur writes its files to {STATE}."
     return str(error)
 
 
@@ -293,7 +293,7 @@ def _interrupt(_number: int, _frame: object) -> None:
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    # What ends us, a closing terminal or `timeout`, must let us end what we started.
+    # A closing terminal and `timeout` must let us end the programs that we started.
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
     arguments = sys.argv[1:] if arguments is None else arguments
@@ -310,7 +310,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141
     except OSError as error:
-        print(f"\n{_explain(error)}", file=sys.stderr)
+        print(f"\n{_message_of(error)}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("\ninterrupted", file=sys.stderr)

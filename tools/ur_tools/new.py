@@ -1,4 +1,4 @@
-"""./ur new: writes a package with a plugin that builds, loads and does something."""
+"""./ur new: creates a package with a working plugin from a template."""
 
 import pathlib
 import re
@@ -20,19 +20,19 @@ def _checked(what: str, name: str) -> str:
 
 
 def _snake(pascal: str) -> str:
-    """As rosidl names the header of an interface."""
+    """Returns the name that rosidl gives the header of an interface."""
     return re.sub("([a-z0-9])([A-Z])", r"\1_\2", re.sub("(.)([A-Z][a-z]+)", r"\1_\2", pascal)).lower()
 
 
 def _pascal(name: str) -> str:
     pascal = "".join(part.capitalize() for part in name.split("_"))
     if _snake(pascal) != name:
-        raise say.Failure(f"the name is \"{name}\": ROS would take its interface {pascal} for {_snake(pascal)}; use that")
+        raise say.Failure(f"the name is \"{name}\": rosidl names the header of its interface {pascal} {_snake(pascal)}; use that name")
     return pascal
 
 
 def _words(name: str, package: str) -> Dict[str, str]:
-    """What stands in the templates, and what takes its place."""
+    """Returns the placeholders of the templates with their replacements."""
     return {"my_package": package, "my_command": name, "MyCommand": _pascal(name)}
 
 
@@ -41,13 +41,13 @@ def _filled(text: str, words: Dict[str, str]) -> str:
 
 
 def create(kind: str, name: str, package: str, folder: pathlib.Path) -> pathlib.Path:
-    """Writes the package into `folder`, which exists; gives its path."""
+    """Creates the package in the existing `folder`. Returns its path."""
     words = _words(_checked("the name", name), _checked("the package", package or f"{name}_{kind}"))
     target = folder / words["my_package"]
     if not folder.is_dir():
-        raise say.Failure(f"there is no folder {folder}; make it first, or name another with --directory")
+        raise say.Failure(f"there is no folder {folder}; create it, or choose another with --directory")
     if target.exists():
-        raise say.Failure(f"{target} is there already; remove it, or choose another name with --package")
+        raise say.Failure(f"{target} exists already; remove it, or choose another name with --package")
     for source in sorted(path for path in (TEMPLATES / kind).rglob("*") if path.is_file()):
         file = target / _filled(str(source.relative_to(TEMPLATES / kind)), words)
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -56,7 +56,7 @@ def create(kind: str, name: str, package: str, folder: pathlib.Path) -> pathlib.
 
 
 def _purpose(file: pathlib.Path, kind: str) -> str:
-    """What its author changes in a file; empty for files that need no change."""
+    """Returns what the author changes in a file; empty for files that need no change."""
     if file.suffix == ".action":
         return "what it does, and its fields; `ur plugins` shows the first sentence"
     if file.suffix == ".cpp":

@@ -21,7 +21,7 @@ class Package:
 
 
 def discover(root: pathlib.Path = ROOT) -> Dict[str, Package]:
-    """Every folder of the root with a package.xml, and a build file to go with it, in the order they build in."""
+    """Returns each folder of the root with a package.xml and a build file, in build order."""
     found: Dict[str, Package] = {}
     for manifest in sorted(root.glob("*/package.xml")):
         folder = manifest.parent
@@ -41,7 +41,7 @@ def _in_order(found: Dict[str, Package]) -> Dict[str, Package]:
         if name in ordered:
             return
         if name in path:
-            raise ValueError("packages depend on each other in a circle: " + " -> ".join(path + [name]))
+            raise ValueError("circular dependency between packages: " + " -> ".join(path + [name]))
         for dependency in sorted(found[name].depends & found.keys()):
             visit(dependency, path + [name])
         ordered[name] = found[name]
@@ -52,7 +52,7 @@ def _in_order(found: Dict[str, Package]) -> Dict[str, Package]:
 
 
 def with_dependencies(all_packages: Dict[str, Package], names: List[str]) -> Dict[str, Package]:
-    """The named packages and those of ours they need, in the order they build in."""
+    """Returns the named packages and their dependencies in this repository, in build order."""
     wanted = set()
 
     def add(name: str) -> None:
@@ -70,7 +70,7 @@ def with_dependencies(all_packages: Dict[str, Package], names: List[str]) -> Dic
 
 
 def state(package: Package) -> str:
-    """A digest that changes when a file of the package is added, removed or written."""
+    """Returns a digest that changes when a file of the package is added, removed or written."""
     digest = hashlib.sha256()
     for folder, subfolders, files in os.walk(package.folder):
         subfolders[:] = sorted(name for name in subfolders if name not in SKIPPED)

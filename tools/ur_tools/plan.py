@@ -1,7 +1,8 @@
-"""./ur plan FILE: plans a trajectory without a robot, and prints its duration and how much of the limits it uses.
+"""./ur plan FILE: plans a trajectory without a robot and prints its duration and the largest use of each limit.
 
-FILE is the YAML of a goal, as `ur call ACTION --file FILE` sends it: of execute_trajectory, or, with the field trajectory, of
-execute_parametrized_trajectory. Fields that concern only the motion of an arm (start_tolerance, gain, ...) have no effect.
+FILE is a goal as YAML, as for `ur call ACTION --file FILE`. With the field trajectory it is a goal of
+execute_parametrized_trajectory, otherwise of execute_trajectory. Fields that only affect the execution (start_tolerance,
+gain, ...) are ignored.
 
     blend_tolerance: 0.05                                       |    trajectory:
     waypoints:                                                  |      points:
@@ -10,7 +11,7 @@ execute_parametrized_trajectory. Fields that concern only the motion of an arm (
                                                                 |        - positions: [1.0, -1.20, 1.30, -1.57, -1.57, 0.0]
                                                                 |          time_from_start: {sec: 2, nanosec: 500000000}
 
-A plan that would exceed a limit is refused with the first one.
+If the trajectory would exceed limits, it is refused, and the first exceeded limit is printed.
 """
 
 import argparse
@@ -28,7 +29,7 @@ from .layout import PROGRAM, ROOT, Layout
 def parse(arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=f"{PROGRAM} plan", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", type=pathlib.Path, help="the goal as YAML")
+    parser.add_argument("file", type=pathlib.Path, help="goal as YAML")
     parser.add_argument("--model", default="", metavar="MODEL",
                         help="model of the arm: ur3e, ur5e, ur10e, ... (default: the widest limits of all models)")
     parser.add_argument("--plot", type=pathlib.Path, metavar="PNG",
@@ -46,7 +47,7 @@ def _run(command: List[str], text: str, env: Mapping[str, str]) -> str:
 
 
 def _goal_as_json(layout: Layout, options: argparse.Namespace, env: Mapping[str, str]) -> str:
-    """By the Python of the build: the one that runs this need not have YAML and the messages."""
+    """Converts the goal with the Python of the build: the Python that runs ./ur may lack YAML and the messages."""
     return _run([str(layout.python), str(ROOT / "tools" / "ur_tools" / "plan_goal.py"), str(options.file), options.model], "", env)
 
 

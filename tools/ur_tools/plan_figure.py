@@ -11,8 +11,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
 JOINTS = ("shoulder pan", "shoulder lift", "elbow", "wrist 1", "wrist 2", "wrist 3")
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
 QUANTITIES = (("position", "rad"), ("velocity", "rad/s"), ("acceleration", "rad/s²"), ("jerk", "rad/s³"))
-# Lines at so many waypoints say nothing any more.
-MOST_MARKS = 60
+MOST_MARKS = 60  # more waypoints are not marked
 
 
 def _limits(limits, quantity, joint):
@@ -23,7 +22,7 @@ def _limits(limits, quantity, joint):
 
 
 def _draw(axes, plan, quantity, unit):
-    """One quantity; dashed: the limits near what is drawn, or they would make it flat."""
+    """Draws one quantity. Limits are drawn, dashed, only near the curves: distant ones would flatten the plot."""
     time, values = plan["samples"]["time"], plan["samples"][quantity]
     for joint, (name, colour) in enumerate(zip(JOINTS, COLOURS)):
         axes.plot(time, [row[joint] for row in values], color=colour, linewidth=1.1, label=name)

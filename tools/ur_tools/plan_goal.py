@@ -1,11 +1,11 @@
-"""Reads the goal of `./ur plan` and writes it as JSON for plan_trajectory. Runs with the Python of the build, which has ROS."""
+"""Converts the goal of `./ur plan` to JSON for plan_trajectory. Runs with the Python of the build, which has ROS."""
 
 import json
 import sys
 from typing import Any, Dict, List
 
-from ur_ros_rtde_cli.errors import CliError
 from ur_ros_rtde_cli.fields import Document
+from ur_ros_rtde_cli.problem import Problem
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
 
@@ -14,7 +14,7 @@ LIMITS = ("max_velocity", "max_acceleration", "max_jerk")
 
 
 def _limits(goal: Any) -> Dict[str, Any]:
-    """Those that are given: an empty list stands for the default."""
+    """Returns the given limits: an empty list stands for the default."""
     return {name: list(getattr(goal, name)) for name in LIMITS if getattr(goal, name)}
 
 
@@ -24,14 +24,14 @@ def _path(goal: Any) -> Dict[str, Any]:
 
 
 def _joint_order(names: List[str]) -> List[int]:
-    """Index in `names` of each joint. As in the driver: any order, one common prefix, or no names."""
+    """Returns the index of each joint in `names`. As in the driver: any order and one common prefix, or no names."""
     if not names:
         return list(range(len(JOINTS)))
     order = [next((index for index, name in enumerate(names) if name.endswith(joint)), None) for joint in JOINTS]
     prefixes = {names[index][:-len(joint)] for index, joint in zip(order, JOINTS) if index is not None}
     if len(names) != len(JOINTS) or None in order or len(prefixes) != 1:
-        raise CliError(f"trajectory.joint_names is {', '.join(names)}: expected {', '.join(JOINTS)} in any order, with one common "
-                       "prefix or none")
+        raise Problem(f"trajectory.joint_names is {', '.join(names)}: expected {', '.join(JOINTS)} in any order, with one common "
+                      "prefix or none")
     return order  # type: ignore[return-value]
 
 
@@ -49,21 +49,21 @@ def _timed(goal: Any) -> Dict[str, Any]:
             if field != "positions" and not values:
                 continue
             if len(values) != len(JOINTS):
-                raise CliError(f"trajectory.points[{index}].{field} has {len(values)} values: expected {len(JOINTS)}")
+                raise Problem(f"trajectory.points[{index}].{field} has {len(values)} values: expected {len(JOINTS)}")
             point[field] = [values[joint] for joint in order]
         points.append(point)
     if not points:
-        raise CliError("trajectory.points is empty: expected 2 points or more")
+        raise Problem("trajectory.points is empty: expected 2 points or more")
     if points[0]["time"] > 0.0:
-        raise CliError(f"trajectory.points[0].time_from_start is {points[0]['time']:g} s: expected 0, because a plan "
-                       "without a robot starts at the first point")
+        raise Problem(f"trajectory.points[0].time_from_start is {points[0]['time']:g} s: expected 0, because a plan "
+                      "without a robot starts at the first point")
     return {"points": points, **_limits(goal)}
 
 
 def convert(document: Document) -> Dict[str, Any]:
-    """The goal of execute_parametrized_trajectory if it has a trajectory, otherwise that of execute_trajectory."""
+    """Converts a goal of execute_parametrized_trajectory if it has a trajectory, otherwise of execute_trajectory."""
     if "model" in document.names:
-        raise CliError("there is no field model: the model is given by --model")
+        raise Problem("there is no field model: use the option --model")
     if "trajectory" in document.names:
         return _timed(document.fill(ExecuteParametrizedTrajectory.Goal()))
     return _path(document.fill(ExecuteTrajectory.Goal()))
@@ -72,8 +72,8 @@ def convert(document: Document) -> Dict[str, Any]:
 def main(file: str, model: str) -> int:
     try:
         goal = convert(Document.of_file(file))
-    except CliError as error:
-        text = str(error)
+    except Problem as problem:
+        text = str(problem)
         print(text if text.startswith(file) else f"{file}: {text}", file=sys.stderr)
         return 1
     json.dump({"model": model, **goal}, sys.stdout)

@@ -1,4 +1,4 @@
-"""The TCP ports of a simulated controller, and the processes that use them."""
+"""TCP ports of a simulated controller, and the processes that use them."""
 
 import errno
 import os
@@ -15,7 +15,7 @@ _LISTEN = "0A"
 
 
 def in_use(address: str, ports: "List[int]") -> List[int]:
-    """Returns the ports that are in use. Raises Failure for an address that this machine does not have."""
+    """Returns the ports that are in use. Raises Failure if the machine does not have the address."""
     try:
         socket.inet_aton(address)
     except OSError:
@@ -26,7 +26,7 @@ def in_use(address: str, ports: "List[int]") -> List[int]:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
                 probe.bind((address, port))
-                probe.listen(1)  # bind() succeeds beside a listener with SO_REUSEADDR
+                probe.listen(1)  # bind() succeeds next to a listener that has SO_REUSEADDR
             except OSError as error:
                 if error.errno == errno.EADDRNOTAVAIL:
                     raise say.Failure(f"--address {address}: no network interface of this machine has that address. "
@@ -38,7 +38,7 @@ def in_use(address: str, ports: "List[int]") -> List[int]:
 
 
 def _hex(address: str) -> str:
-    """The format of /proc/net/tcp."""
+    """Returns the address in the format of /proc/net/tcp."""
     return f"{struct.unpack('=I', socket.inet_aton(address))[0]:08X}"
 
 
@@ -60,7 +60,7 @@ def _listeners(address: str, port: int) -> List[str]:
 
 
 def holder(address: str, port: int) -> Optional[Tuple[int, str]]:
-    """Returns id and command of the process that listens on the port; None without permission to see it."""
+    """Returns id and command of the process that listens on the port; None if its descriptors cannot be read."""
     sockets = {f"socket:[{inode}]" for inode in _listeners(address, port)}
     if not sockets:
         return None
@@ -87,7 +87,7 @@ def another_address(address: str) -> str:
 
 
 def explain(address: str, taken: List[int]) -> str:
-    """Returns one line per process."""
+    """Returns one line for each process that uses some of the ports."""
     names = {number: name for name, number in PORTS.items()}
     by_holder: Dict[Optional[Tuple[int, str]], List[str]] = {}
     for port in taken:

@@ -1,13 +1,13 @@
-"""Starting and stopping programs so that none is left behind.
+"""Starts programs, and stops all of them at the end.
 
     with Programs(log_folder) as programs:
         simulator = programs.start("simulator", ["ur_simulator", "--model", "ur10e"], env)
         programs.wait_until(lambda: port_answers(), 10.0, "the simulator's dashboard")
         ...
-    # everything that was started has ended here, also after an exception or Ctrl-C
+    # all programs have ended here, also after an exception or Ctrl-C
 
-Each program runs in a session of its own, so that Ctrl-C reaches it only through us, in order, and its children can be
-signalled with it. Its output goes to <log_folder>/<name>.log.
+Each program runs in its own session: Ctrl-C does not reach it directly, so that programs are stopped in order, and a signal
+reaches its children too. Its output is written to <log_folder>/<name>.log.
 """
 
 import os
@@ -19,12 +19,12 @@ from typing import Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from .say import Failure, tail
 
-# Signal and the seconds a program gets to follow it.
+# Signals, each with the time in s that a program has to exit.
 GENTLY: Tuple[Tuple[int, float], ...] = ((signal.SIGINT, 5.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))
 
 
 def group_is_alive(group: int) -> bool:
-    """Whether a process of the group still runs; one that ended and waits for its parent does not count."""
+    """Returns whether a process of the group is running. Zombies do not count."""
     for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
             fields = stat.read_text().rpartition(")")[2].split()
@@ -43,7 +43,7 @@ def signal_group(group: int, number: int) -> None:
 
 
 def end_group(process: "subprocess.Popen[bytes]", how: Sequence[Tuple[int, float]] = GENTLY) -> Optional[int]:
-    """Ends a program and its children, each signal with its time limit. The return code, None if it would not end."""
+    """Stops a program and its children with signals of rising severity. Returns the exit code; None if it still runs."""
     for number, limit in how:
         if process.poll() is not None and not group_is_alive(process.pid):
             break
@@ -75,11 +75,11 @@ class Program:
 
     def failure(self) -> Failure:
         return Failure(
-            f"{self.name} ended with {self.process.returncode}. Its last lines ({self.log}):\n{tail(self.output)}")
+            f"{self.name} exited with status {self.process.returncode}. Its last lines ({self.log}):\n{tail(self.output)}")
 
 
 class Programs:
-    """The programs of one run, ended in the reverse order of their start."""
+    """The programs of one run. They are stopped in reverse order."""
 
     def __init__(self, log_folder: pathlib.Path):
         self._folder = log_folder
@@ -87,13 +87,13 @@ class Programs:
         self._handlers: Dict[int, object] = {}
 
     def __enter__(self) -> "Programs":
-        # A terminal that closes, or `kill`, must end what was started as Ctrl-C does.
+        # A closing terminal and `kill` stop the programs like Ctrl-C.
         for number in (signal.SIGTERM, signal.SIGHUP):
             self._handlers[number] = signal.signal(number, _interrupt)
         return self
 
     def __exit__(self, *_unused: object) -> None:
-        # A second Ctrl-C must not keep the rest from being ended.
+        # A second Ctrl-C must not prevent the remaining programs from being stopped.
         previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
         try:
             self.stop_all()
@@ -112,13 +112,13 @@ class Programs:
                                            stderr=subprocess.STDOUT, env=None if env is None else dict(env), cwd=cwd,
                                            start_new_session=True)
         except OSError as error:
-            raise Failure(f"{name} cannot be started: {error}. The command was: {' '.join(map(str, command))}")
+            raise Failure(f"{name} cannot be started: {error}. Command: {' '.join(map(str, command))}")
         program = Program(name, process, log)
         self._programs.append(program)
         return program
 
     def run(self, command: Sequence[str], env: Mapping[str, str], limit: float) -> int:
-        """A command in the foreground: its output is shown, its return code given. Ended with the others, or at `limit`."""
+        """Runs a command in the foreground and returns its exit code. Raises Failure at `limit`, s, or if a program exits."""
         process = subprocess.Popen(command, env=dict(env), stdin=subprocess.DEVNULL, start_new_session=True)
         deadline = time.monotonic() + limit
         try:
@@ -132,19 +132,19 @@ class Programs:
             end_group(process)
 
     def check(self) -> None:
-        """Raises Failure, with the end of its log, for a program that ended by itself."""
+        """Raises Failure, with the end of its log, if a program has exited."""
         for program in self._programs:
             if not program.running:
                 raise program.failure()
 
     def wait_until(self, condition: Callable[[], bool], limit: float, what: str) -> None:
-        """Waits at most `limit` seconds; a program that ends meanwhile is a Failure at once."""
+        """Waits for the condition. Raises Failure after `limit` s, or as soon as a program exits."""
         deadline = time.monotonic() + limit
         while not condition():
             self.check()
             if time.monotonic() > deadline:
                 logs = ", ".join(str(program.log) for program in self._programs)
-                raise Failure(f"Waited {limit:g} s for {what}. Logs: {logs}")
+                raise Failure(f"waited {limit:g} s for {what}. Logs: {logs}")
             time.sleep(0.02)
 
     def stop_all(self) -> None:

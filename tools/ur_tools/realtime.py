@@ -1,4 +1,4 @@
-"""What the kernel does with the programs of a measurement: cores that stay awake, priorities."""
+"""Scheduling of the programs of a measurement: real-time priorities, and cores that do not sleep."""
 
 import os
 import pathlib
@@ -6,8 +6,8 @@ import sys
 
 from .processes import Programs
 
-# Gives way to everything at once, so that it costs the measured programs nothing. A kernel with autogroups (sched(7)) gives
-# a session its share, whatever its policy.
+# SCHED_IDLE yields to every other program at once. A kernel with autogroups (sched(7)) nevertheless gives the session its
+# share, hence the nice value of the group.
 _SPIN = """
 import os, pathlib
 os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
@@ -20,15 +20,18 @@ while True:
 
 
 def keep_awake(programs: Programs) -> None:
-    """One loop a core, until `programs` end: waking an idle core takes longer than what is measured, and on a virtual machine
-    up to tens of milliseconds. Controllers' hosts are set up so that they do not sleep. For programs with real-time priority:
-    a kernel with lazy preemption lets others wait for the loop until the next tick."""
+    """Runs a busy loop on each core until `programs` are stopped, so that no core sleeps.
+
+    Waking an idle core takes longer than the measured times, on a virtual machine up to tens of milliseconds; hosts of real
+    robots are configured not to sleep. Use it with programs that have real-time priority: with lazy preemption, others wait
+    for the loop until the next tick.
+    """
     for core in sorted(os.sched_getaffinity(0)):
         programs.start(f"awake_{core}", [sys.executable, "-c", _SPIN])
 
 
-def may_be_realtime(priority: int) -> bool:
-    """Whether the programs that this one starts may ask for SCHED_FIFO with that priority."""
+def realtime_allowed(priority: int) -> bool:
+    """Returns whether child processes may use SCHED_FIFO with this priority."""
     child = os.fork()
     if child == 0:
         try:
@@ -40,6 +43,6 @@ def may_be_realtime(priority: int) -> bool:
 
 
 def make_realtime(pid: int, priority: int) -> None:
-    """All threads of the process."""
+    """Sets SCHED_FIFO for all threads of the process."""
     for thread in (pathlib.Path("/proc") / str(pid) / "task").iterdir():
         os.sched_setscheduler(int(thread.name), os.SCHED_FIFO, os.sched_param(priority))

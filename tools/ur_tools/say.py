@@ -1,4 +1,4 @@
-"""What the user reads: steps, progress, failures."""
+"""Output for the user: steps, progress, failures."""
 
 import shutil
 import sys
@@ -6,7 +6,7 @@ import time
 
 
 class Failure(Exception):
-    """A step that cannot go on; its text tells the user what happened and what to do."""
+    """A step cannot continue. The text says what happened and what to do."""
 
 
 def line(text: str) -> None:
@@ -22,7 +22,7 @@ def tail(text: str, count: int = 40) -> str:
 
 
 class Status:
-    """One line that is rewritten on a terminal, and repeated every few seconds elsewhere."""
+    """A status line: rewritten in place on a terminal, printed every few seconds otherwise."""
 
     def __init__(self, quiet_interval: float = 20.0):
         self._terminal = sys.stdout.isatty()
@@ -40,7 +40,7 @@ class Status:
             self._last = time.monotonic()
 
     def keep(self, text: str) -> None:
-        """Prints a line that stays, above the status line."""
+        """Prints a permanent line above the status line."""
         self.clear()
         line(text)
         self._last = time.monotonic()

@@ -17,8 +17,8 @@ _CASE = re.compile(r"^\s*(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)", re.M)
 _TARGET = re.compile(r"\b(?:add_executable|ament_add_gtest)\((\w+)[\s)]")
 _CPP = (".cpp", ".hpp", ".h", ".c")
 # A change below these folders affects all packages.
-_EVERYTHING = ("wheels/", "tools/cmake/")
-_NOTHING = ("LICENSE", ".")
+_ALL_PACKAGES = ("wheels/", "tools/cmake/")
+_NO_TESTS = ("LICENSE", ".")
 # Folders that belong to a module of ur_tools.
 _FOLDERS_OF_MODULES = {"tools/templates/": "new", "bench/": "bench", "chaos/": "chaos", "demo/": "demo",
                        "tools/sanitizers/": "testing", "tools/system_packages.txt": "system_packages"}
@@ -55,7 +55,7 @@ def sources(packages: Dict[str, Package], root: pathlib.Path = ROOT) -> List[Sou
 
 
 class Selection:
-    """A choice of tests, and the packages to build for them (None: all)."""
+    """Selected tests, and the packages to build for them (None: all)."""
 
     def __init__(self, chooses: Callable[..., bool], packages: Optional[Set[str]]):
         self._chooses = chooses
@@ -74,7 +74,7 @@ def everything() -> Selection:
 
 
 def _as_name(word: str) -> str:
-    """A path stands for its file name."""
+    """Returns the file name of a path, and other words unchanged."""
     return pathlib.PurePath(word).stem if "/" in word and re.search(r"\.(py|cpp)$", word) else word
 
 
@@ -82,7 +82,7 @@ def _names(source: Source) -> List[str]:
     return [source.path.stem, *source.cases]
 
 
-def _is_meant(word: str, source: Source, packages: Iterable[str]) -> bool:
+def _matches(word: str, source: Source, packages: Iterable[str]) -> bool:
     if word in packages:
         return source.package == word
     suites = {case.split(".")[0] for case in source.cases}
@@ -96,8 +96,8 @@ def by_name(words: List[str], packages: Dict[str, Package], root: pathlib.Path =
     known = sources(packages, root)
     words = [_as_name(word) for word in words]
     folders = test_folders(packages, root)
-    meant: Dict[str, List[Source]] = {word: [one for one in known if _is_meant(word, one, folders)] for word in words}
-    for word, found in meant.items():
+    matching: Dict[str, List[Source]] = {word: [one for one in known if _matches(word, one, folders)] for word in words}
+    for word, found in matching.items():
         if not found:
             raise say.Failure(_unknown(word, known, folders))
 
@@ -110,7 +110,7 @@ def by_name(words: List[str], packages: Dict[str, Package], root: pathlib.Path =
                 return True
         return False
 
-    return Selection(chooses, {source.package for found in meant.values() for source in found})
+    return Selection(chooses, {source.package for found in matching.values() for source in found})
 
 
 def _unknown(word: str, known: List[Source], packages: Iterable[str]) -> str:
@@ -173,12 +173,12 @@ class Affected:
         self._pytests = [source for source in sources(packages, root) if source.is_pytest]
         self.everything = False
         self.all_of: Set[str] = set()  # packages
-        self.programs_of: Set[str] = set()  # packages of which the GoogleTest programs run
+        self.programs_of: Set[str] = set()  # packages whose GoogleTest programs run
         self.files: Set[pathlib.Path] = set()  # of pytest
 
     def add(self, name: str) -> None:
         folder = self._folders.get(name.split("/")[0])
-        if name.startswith(_EVERYTHING):
+        if name.startswith(_ALL_PACKAGES):
             self.everything = True
         elif name.endswith(".md"):
             self._add_document(name)
@@ -195,12 +195,12 @@ class Affected:
             self._add_mentions(f'"{name.split("/")[0]}"')
         elif name.startswith("tools/"):
             self._add_mentions(pathlib.PurePath(name).stem)
-        elif not name.startswith(_NOTHING) and not name.endswith(".png"):
+        elif not name.startswith(_NO_TESTS) and not name.endswith(".png"):
             self.everything = True
 
     def _dependents(self, name: str) -> Set[str]:
         found = {name}
-        for other, package in self._packages.items():  # in the order they build in
+        for other, package in self._packages.items():  # in build order
             if package.depends & found:
                 found.add(other)
         return found
@@ -217,7 +217,7 @@ class Affected:
             self.files.add(path)
         elif path.suffix in _CPP or path.name == "CMakeLists.txt":
             self.programs_of.add(package)
-        else:  # a helper of this package's tests; other tests may import it
+        else:  # a helper module of the tests, which other tests may import
             self.all_of.add(package)
             self._add_mentions(pathlib.PurePath(name).parent.as_posix())
 
@@ -233,7 +233,7 @@ class Affected:
         graph = {path.stem: _imports(path) for path in (self._root / "tools" / "ur_tools").glob("*.py")}
         users = {module}
         while True:
-            # main imports all modules. The commands have their own tests.
+            # main imports all modules; its commands have their own tests.
             more = {name for name, used in graph.items() if used & users and name != "main"} - users
             if not more:
                 break
@@ -250,7 +250,7 @@ class Affected:
     def selection(self) -> Selection:
         if self.everything:
             return everything()
-        files = {path for path in self.files if path.is_file()}  # the others were deleted
+        files = {path for path in self.files if path.is_file()}  # without deleted files
         packages = self.all_of | self.programs_of | {source.package for source in self._pytests if source.path in files}
 
         def chooses(package: str, _name: str, path: Optional[pathlib.Path]) -> bool:

@@ -1,4 +1,4 @@
-"""The packages of the operating system that the build needs."""
+"""Packages of the operating system that the build needs."""
 
 import os
 import pathlib
@@ -25,7 +25,7 @@ def missing(names: List[str]) -> List[str]:
 
 
 def _prefix() -> List[str]:
-    """What makes a command run as root without asking anything; Failure when nothing does."""
+    """Returns the prefix that runs a command as root without a prompt. Raises PermissionError if there is none."""
     if os.geteuid() == 0:
         return []
     if shutil.which("sudo") and subprocess.run(["sudo", "-n", "true"], stderr=subprocess.DEVNULL).returncode == 0:
@@ -40,7 +40,7 @@ def absent() -> List[str]:
 
 def ensure() -> None:
     if not shutil.which("dpkg-query"):
-        say.line("    no dpkg here: what Debian calls " + " ".join(needed()) + " must be installed already")
+        say.line("    this machine has no dpkg: the equivalents of these Debian packages must be installed: " + " ".join(needed()))
         return
     names = absent()
     if not names:
@@ -59,4 +59,4 @@ def ensure() -> None:
                                 universal_newlines=True)
     if result.returncode != 0:
         raise say.Failure(f"`{command}` failed:\n{say.tail(result.stdout, 15)}\n"
-                          "Is there a network, and are the package sources of this machine in order?")
+                          "Check the network connection and the package sources of this machine.")

@@ -12,7 +12,7 @@ from typing import Iterable, List, Optional
 from . import say
 from .layout import ROOT, Layout
 
-WANTED = ((3, 10), (3, 12))
+SUPPORTED = ((3, 10), (3, 12))
 STAMP = "ur_stamp.txt"
 MEGABYTES = 300  # to download
 SECONDS = 50.0
@@ -47,13 +47,13 @@ def _why_unusable(python: str) -> Optional[str]:
         return "has no venv and pip (python3-venv)" if "ensurepip" in result.stderr else say.tail(result.stderr, 1)
     version, header = result.stdout.split()
     major_minor = tuple(int(part) for part in version.split("."))
-    if not WANTED[0] <= major_minor <= WANTED[1]:
+    if not SUPPORTED[0] <= major_minor <= SUPPORTED[1]:
         return f"is {version}"
     return None if header == "1" else "has no headers (python3-dev)"
 
 
 def find_python() -> str:
-    """A Python 3.10 to 3.12 with venv, pip and headers: the versions the ROS 2 wheels are made for."""
+    """Returns a Python 3.10 to 3.12 with venv, pip and headers. ROS 2 wheels exist for these versions."""
     refused: List[str] = []
     for python in _candidates():
         why = _why_unusable(python)
@@ -61,19 +61,19 @@ def find_python() -> str:
             return os.path.realpath(python)
         refused.append(f"    {python} {why}")
     raise say.Failure("The ROS 2 wheels need Python 3.10, 3.11 or 3.12. Found:\n" + "\n".join(dict.fromkeys(refused)) +
-                      "\nInstall one, with its venv module and headers, or name it: UR_PYTHON=/path/to/python3.11 ./ur ...")
+                      "\nInstall one with its venv module and headers, or select it: UR_PYTHON=/path/to/python3.11 ./ur ...")
 
 
 def _stamp(layout: Layout) -> str:
-    # A virtual environment holds its own path: one that was moved must be made anew.
+    # A virtual environment contains its own path: it must be created again after a move.
     digest = hashlib.sha256(str(layout.venv).encode())
     for file in layout.requirements:
         digest.update(file.read_bytes())
     return digest.hexdigest()
 
 
-def _is_ours(layout: Layout) -> bool:
-    """Whether a usable environment lies there, which new requirements may be installed into."""
+def _is_usable(layout: Layout) -> bool:
+    """Returns whether a usable environment exists, into which new requirements can be installed."""
     config = layout.venv / "pyvenv.cfg"
     script = layout.venv / "bin" / "pip"
     if not (config.is_file() and script.is_file() and str(layout.venv) in script.read_text(errors="replace")):
@@ -86,20 +86,20 @@ def _pip_install(layout: Layout) -> None:
     for file in layout.requirements:
         command += ["--requirement", str(file)]
     log = layout.base / "pip.log"
-    # One that is set belongs to another environment (PYTHONPATH) or keeps pip from installing here (PIP_USER).
+    # PYTHONPATH and PYTHONHOME belong to another environment; PIP_USER would prevent an installation into this one.
     env = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONHOME", "PIP_USER")}
     env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     for attempt in range(1, 4):
         if _run_pip(command, env, log) == 0:
             return
         if attempt < 3:
-            say.line(f"    that failed ({log}); trying again")
+            say.line(f"    the installation failed ({log}); trying again")
             time.sleep(3.0 * attempt)
     text = log.read_text(errors="replace")
-    raise say.Failure(f"The Python packages could not be installed, three times over. The end of {log}:\n"
+    raise say.Failure(f"The Python packages could not be installed in three attempts. The end of {log}:\n"
                       f"{say.tail(text, 12)}\n"
-                      "Is there a network? Behind a proxy or with a mirror, pip's own settings say where packages are "
-                      "(`pip config list`). Then run ./ur again: what was downloaded is kept.")
+                      "Check the network connection. pip's settings (`pip config list`) select a proxy or a mirror. Then run ./ur "
+                      "again: downloaded packages are kept.")
 
 
 def _run_pip(command: List[str], env: dict, log: pathlib.Path) -> int:
@@ -129,15 +129,15 @@ def ensure(layout: Layout) -> None:
     if is_current(layout):
         return
     start = time.monotonic()
-    if not _is_ours(layout):
+    if not _is_usable(layout):
         python = find_python()
-        say.step(f"Making a virtual environment in {layout.venv.relative_to(ROOT)} with {python}")
+        say.step(f"Creating a virtual environment in {layout.venv.relative_to(ROOT)} with {python}")
         layout.base.mkdir(parents=True, exist_ok=True)
         result = subprocess.run([python, "-m", "venv", "--clear", str(layout.venv)], stdout=subprocess.PIPE,
                                 stderr=subprocess.STDOUT, universal_newlines=True)
         if result.returncode != 0:
             raise say.Failure(f"`{python} -m venv` failed:\n{say.tail(result.stdout, 10)}\n"
-                              "On Debian and Ubuntu the package python3-venv has what it needs.")
+                              "On Debian and Ubuntu, install the package python3-venv.")
     say.step(f"Installing ROS 2 {layout.ros.capitalize()} and the build tools as wheels")
     _pip_install(layout)
     (layout.venv / STAMP).write_text(_stamp(layout))
