@@ -1,4 +1,4 @@
-"""Runs `ur` as a user types it."""
+"""`ur` as its user types it."""
 
 import contextlib
 import csv
@@ -22,7 +22,8 @@ from support import HOME, PATIENCE, Client, Process, Simulator, node, program, w
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, MoveJ
 
-EMPTY_DOMAIN = "102"  # unused: the domains of tests are below 102
+DISCOVERY = str(4.0 * PATIENCE)  # s, in which all actions are found
+EMPTY_DOMAIN = "102"  # nothing runs there: domains of tests are below 102
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +41,7 @@ def running():
 
 
 def ur(*arguments, limit=60.0, domain=None):
-    """Runs `ur` and returns its exit code and output."""
+    """Return code and output."""
     process = Process([program("ur_ros_rtde_cli", "ur"), *arguments], {} if domain is None else {"ROS_DOMAIN_ID": domain})
     return process.wait(limit), process.output()
 
@@ -69,7 +70,7 @@ def test_a_refused_goal_ends_with_2_and_the_reason(running):
     ("7", ["expected a mapping"]),
     ("{joint_positions: 1.0}", ["joint_positions is 1.0", "expected a list of numbers"]),
 ])
-def test_an_invalid_field_is_reported_without_a_server(text, mentions):
+def test_a_wrong_field_is_named_without_a_server(text, mentions):
     code, output = ur("call", "move_j", text, domain=EMPTY_DOMAIN)
     assert code == 2 and all(part in output for part in mentions), output
 
@@ -80,20 +81,20 @@ def test_a_goal_of_a_shared_type_is_checked_when_the_server_is_found(running):
 
 
 @pytest.mark.parametrize("number", ["nan", ".nan", "inf", "-.inf"])
-def test_the_driver_refuses_nan_and_infinity(running, number):
+def test_nan_and_infinity_reach_the_driver_which_refuses_them(running, number):
     code, output = ur("call", "move_j", f"{{joint_positions: {HOME}, speed: {number}}}")
     assert code == 2 and "refused: speed is" in output, output
 
 
-def test_an_unknown_name_suggests_similar_names(running):
-    code, output = ur("call", "movej", "--wait", "10")
+def test_the_nearest_names_are_suggested(running):
+    code, output = ur("call", "movej", "--wait", DISCOVERY)
     hint, error = output.splitlines()
-    assert code == 2 and hint.startswith("no plugin is named movej; did you mean move_j "), output
+    assert code == 2 and hint.startswith("no plugin is called movej; did you mean move_j "), output
     assert error.startswith("no server of /movej; did you mean move_j "), output
 
 
-def test_an_unknown_name_lists_the_available_actions(running):
-    code, output = ur("call", "qqq", "--wait", "10")
+def test_a_name_that_resembles_none_is_answered_with_those_there_are(running):
+    code, output = ur("call", "qqq", "--wait", DISCOVERY)
     assert code == 2 and "/move_l" in output and "/dashboard/power_on" in output, output
 
 
@@ -110,7 +111,7 @@ def test_a_goal_is_read_from_a_file(running, tmp_path):
 
 
 def feedback_lines(output):
-    """Returns time and feedback of each line."""
+    """Time and feedback of each line."""
     found = (re.fullmatch(r"(\d+\.\d) s  (\{.*\})", line) for line in output.splitlines())
     return [(float(match.group(1)), yaml.safe_load(match.group(2))) for match in found if match]
 
@@ -136,7 +137,7 @@ def test_all_feedback_is_shown_on_a_terminal(at_home):
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=end)
     os.close(end)
     shown = b""
-    with contextlib.suppress(OSError):  # EIO: all ends of the terminal are closed
+    with contextlib.suppress(OSError):  # EIO: all its ends are closed
         while True:
             shown += os.read(terminal, 65536)
     os.close(terminal)
@@ -165,7 +166,7 @@ def slow_motion():
 
 @pytest.fixture
 def at_home(running):
-    code, output = ur("call", "move_j", goal(joint_positions=HOME, speed=2.0, acceleration=5.0))
+    code, output = ur("call", "move_j", goal(joint_positions=HOME, speed=3.0, acceleration=15.0))
     assert code == 0, output
     return running
 
@@ -175,7 +176,7 @@ def wait_until_moving(simulator):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_cancels_the_goal_and_prints_the_result(at_home, number):
+def test_a_signal_cancels_the_goal_and_shows_where_the_arm_stands(at_home, number):
     process = Process(slow_motion())
     wait_until_moving(at_home)
     process.signal(number)
@@ -192,7 +193,7 @@ def test_timeout_cancels_the_goal(at_home):
     assert "error_code: 4" in process.output(), process.output()
 
 
-def test_a_closed_output_cancels_the_goal(at_home, tmp_path):
+def test_the_arm_stops_when_nobody_reads_the_output_any_more(at_home, tmp_path):
     errors = tmp_path / "errors"
     with errors.open("w") as file:
         process = subprocess.Popen(slow_motion(), stdout=subprocess.PIPE, stderr=file)
@@ -200,7 +201,7 @@ def test_a_closed_output_cancels_the_goal(at_home, tmp_path):
     process.stdout.close()
     assert process.wait(PATIENCE * 20.0) == 128 + signal.SIGPIPE, errors.read_text()
     assert at_home.state()["at_rest"]
-    assert errors.read_text().splitlines() == ["canceling (SIGPIPE), interrupt again to quit without the result"]
+    assert errors.read_text().splitlines() == ["canceling (SIGPIPE), again to go without the result"]
 
 
 def test_the_result_can_be_piped_into_head(at_home):
@@ -213,7 +214,7 @@ def test_the_result_can_be_piped_into_head(at_home):
 
 @pytest.fixture
 def stubborn():
-    """Goals of a move_j server in the namespace `stubborn` that neither cancels nor finishes them."""
+    """The goals of a server of move_j that neither cancels nor ends them, in the namespace of that name."""
     client = Client("stubborn", name="stubborn_server")
     goals = []
     end = Future()
@@ -237,10 +238,10 @@ def test_a_second_signal_ends_the_wait_for_the_result(stubborn):
     process.signal(signal.SIGTERM)
     begin = time.monotonic()
     process.wait_for_output("canceling (SIGTERM)")
-    time.sleep(1.1)  # signals within 1 s count as one
+    time.sleep(1.1)  # what comes earlier belongs to the first one
     process.signal(signal.SIGTERM)
     assert process.wait(10.0) == 128 + signal.SIGTERM, process.output()
-    assert time.monotonic() - begin < 8.0, "it waited for its limit of 10 s"
+    assert time.monotonic() - begin < 8.0, "it has waited for its limit of 10 s"
 
 
 def test_the_state_is_shown(running):
@@ -248,7 +249,7 @@ def test_the_state_is_shown(running):
     assert code == 0 and "elbow_joint" in output and "tcp position" in output, output
 
 
-def test_state_fails_without_a_driver_after_the_wait():
+def test_no_driver_is_said_after_the_wait():
     process = Process([program("ur_ros_rtde_cli", "ur"), "state", "--wait", "0.5", "--namespace", "nobody"])
     assert process.wait(20.0) == 2 and "Does robot_state_receiver run" in process.output()
 
@@ -260,7 +261,7 @@ def test_plugins_are_listed_with_package_and_description():
 
 @pytest.fixture
 def own_plugin(tmp_path, monkeypatch):
-    """Share folder of a package with the plugin `wag`, in a prefix of its own."""
+    """A package with the plugin `wag` in a prefix of its own; gives its share folder."""
     share = tmp_path / "share" / "my_commands"
     index = tmp_path / "share" / "ament_index" / "resource_index"
     for resource, content in (("packages", ""), ("ur_ros_rtde__pluginlib__plugin", "share/my_commands/plugins.xml\n"),
@@ -281,18 +282,18 @@ def listed_description():
     return " ".join(output.split()[2:])
 
 
-def test_the_description_comes_from_the_action_file_or_the_package(own_plugin):
+def test_a_plugin_without_description_has_that_of_its_action_file_or_package(own_plugin):
     assert listed_description() == "Turns wrist 3 and back"
     (own_plugin / "action" / "Wag.action").write_text("float64 angle\n---\n---\n")
     assert listed_description() == "What it is about"
 
 
-def test_a_description_in_plugins_xml_has_priority(own_plugin):
+def test_a_description_in_plugins_xml_comes_first(own_plugin):
     (own_plugin / "plugins.xml").write_text('<library path="x"><class name="wag" type="x::Wag"><description>Wags</description></class></library>')
     assert listed_description() == "Wags"
 
 
-def test_record_writes_the_reported_number_of_rows(running, tmp_path):
+def test_a_recording_has_the_rows_it_says(running, tmp_path):
     file = tmp_path / "run.csv"
     code, output = ur("record", str(file), "timestamp", "actual_q", "--time", "1")
     assert code == 0, output
@@ -303,7 +304,7 @@ def test_record_writes_the_reported_number_of_rows(running, tmp_path):
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_help_of_every_command_works_without_ros(command):
+def test_every_command_explains_itself_without_ros(command):
     code = f"""
 import sys
 for missing in ("rclpy", "ament_index_python", "numpy", "yaml", "ur_ros_rtde_msgs"):
@@ -315,7 +316,7 @@ main(["{command}", "--help"])
     assert result.returncode == 0 and f"usage: ur {command}" in result.stdout, result.stderr
 
 
-def test_help_lists_all_commands_and_those_of_the_checkout(monkeypatch):
+def test_the_help_lists_all_commands_and_where_the_others_are(monkeypatch):
     monkeypatch.delenv(CHECKOUT_VARIABLE, raising=False)
     for arguments, expected in (((), 2), (("--help",), 0)):
         code, output = ur(*arguments)
@@ -331,7 +332,7 @@ def test_a_command_that_is_not_installed_is_explained(monkeypatch, command, ment
     assert code == 2 and mentions in output, output
 
 
-def test_commands_of_a_checkout_are_passed_to_its_script(monkeypatch, tmp_path):
+def test_the_commands_of_a_checkout_are_handed_to_its_script(monkeypatch, tmp_path):
     script = tmp_path / "ur"
     script.write_text('#!/bin/sh\necho "checkout: $@"\nexit 7\n')
     script.chmod(0o755)

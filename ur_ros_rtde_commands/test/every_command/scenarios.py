@@ -29,8 +29,10 @@ class Disturbance:
 
 
 def moves_arm(example):
-    """A command that the base class stops: its feedback tells of a motion."""
-    return "motion" in messages.load(example.type).Feedback.get_fields_and_field_types()
+    """Whether the command moves the arm: its feedback has the progress of a motion, and it does not stop one."""
+    action = messages.load(example.type)
+    return ("motion" in action.Feedback.get_fields_and_field_types()
+            and "time_to_standstill" not in action.Result.get_fields_and_field_types())
 
 
 def may_last(example):
@@ -44,7 +46,7 @@ def cancel_counts_as_success(example):
 
 
 def begin(cell, example):
-    """The example's goal in the middle of being carried out; None if its command ends at once."""
+    """Returns the example's goal while it is executed; None if its command ends at once, which a motion must not."""
     cell.prepare(example)
     goal = cell.send(example)
     assert goal.accepted, f"refused: {cell.refusal(goal)}"
@@ -57,8 +59,7 @@ def begin(cell, example):
         time.sleep(0.01)
     status, result = goal.end()
     assert result.success, f"before anything happened: {described(status, result)}"
-    if moves:
-        cell.stop()
+    assert not moves, f"the motion ended after {time.monotonic() - start:.2f} s, before it could be disturbed: make the example longer"
     return None
 
 

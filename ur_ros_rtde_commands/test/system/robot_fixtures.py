@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from support import HOME, Client, Simulator, node, wait_for
+from support import HOME, RECOVERY_TIME_FACTOR, Client, Simulator, node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -20,8 +20,10 @@ def addresses():
 
 
 @pytest.fixture(scope="module")
-def simulator(addresses):
-    simulator = Simulator(addresses[0])
+def simulator(addresses, request):
+    """A module that tests recoveries may ask for their real durations: RECOVERY_TIME_FACTOR = 1.0."""
+    simulator = Simulator(addresses[0],
+                          recovery_time_factor=getattr(request.module, "RECOVERY_TIME_FACTOR", RECOVERY_TIME_FACTOR))
     yield simulator
     simulator.end()
 
@@ -62,7 +64,7 @@ def make_ready(client, limit=30.0):
     """Home, by the driver's own means: true when it takes motions."""
 
     def home():
-        goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0)
+        goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
         if goal.accepted and goal.result().success:
             return True
         reasons.append(client.refusal(goal).message if not goal.accepted else goal.result().message)

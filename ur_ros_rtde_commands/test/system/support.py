@@ -21,6 +21,7 @@ from ur_ros_rtde_msgs.srv import GetJointState
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 PATIENCE = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # with a sanitizer everything takes longer
 REAL_TIME_FACTOR = float(os.environ.get("UR_TEST_REAL_TIME_FACTOR", "1"))  # and the robot is slower, as the driver is
+RECOVERY_TIME_FACTOR = 0.2  # of the simulated robot's power on, brake release, unlock delay and safety restart
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 
@@ -113,9 +114,11 @@ class Process:
 
 
 class Simulator:
-    def __init__(self, address, *arguments, model="ur10e", urcap="onrobot_soft_gripper"):
+    def __init__(self, address, *arguments, model="ur10e", urcap="onrobot_soft_gripper",
+                 recovery_time_factor=RECOVERY_TIME_FACTOR):
         self.address = address
-        self._arguments = ["--model", model, *(["--urcap", urcap] if urcap else []), *arguments]
+        self._arguments = ["--model", model, "--recovery-time-factor", str(recovery_time_factor),
+                           *(["--urcap", urcap] if urcap else []), *arguments]
         self.process = None
         self.start()
 
@@ -143,6 +146,14 @@ class Simulator:
 
     def state(self):
         return self.control("state")["state"]
+
+    def unlock_protective_stop(self):
+        """Returns whether the controller does; it refuses during the first seconds of a protective stop."""
+        try:
+            self.control("unlock_protective_stop")
+            return True
+        except AssertionError:
+            return False
 
     def stands_still(self):
         """No joint turns faster than 0.01 rad/s."""

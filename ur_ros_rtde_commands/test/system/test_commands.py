@@ -255,17 +255,9 @@ def test_a_protective_stop_ends_the_goal_and_the_next_one_works_after_unlocking(
     assert "not known" not in result.message
     refused = robot.send(MoveJ, "move_j", joint_positions=HOME)
     assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.PROTECTIVE_STOP
-    wait_for(lambda: _unlocked(simulator), 10.0, "the protective stop to be unlocked")
+    wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
     home = wait_for(lambda: _accepted(robot), 20.0, "a motion to be taken again")
     home.succeeded()
-
-
-def _unlocked(simulator):
-    try:
-        simulator.control("unlock_protective_stop")
-        return True
-    except AssertionError:
-        return False
 
 
 def _accepted(client):

@@ -7,6 +7,8 @@ from support import Client, Simulator, node, wait_for
 from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, DashboardText
 from ur_ros_rtde_msgs.msg import ErrorCode
 
+RECOVERY_TIME_FACTOR = 1.0  # real durations
+
 
 @pytest.fixture(scope="module")
 def server(simulator):

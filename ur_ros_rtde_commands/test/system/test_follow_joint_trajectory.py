@@ -13,7 +13,7 @@ from control_msgs.action import FollowJointTrajectory
 from control_msgs.msg import JointComponentTolerance, JointTolerance
 from interfaces_or_ours import type_hashes
 from support import HOME, JOINTS, node, wait_for
-from trajectories import point, timed, turned, unlocked
+from trajectories import point, timed, turned
 
 Result = FollowJointTrajectory.Result
 CONFIG = pathlib.Path(__file__).parents[3] / "ur_ros_rtde" / "config" / "moveit"
@@ -190,7 +190,7 @@ def test_a_protective_stop_ends_it(robot, simulator):
     status, result = goal.end(10.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == Result.INVALID_GOAL
     assert "protective stop" in result.error_string
-    wait_for(lambda: unlocked(simulator), 10.0, "the protective stop to be unlocked")
+    wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
 
 
 def test_the_example_configuration_is_for_this_action():

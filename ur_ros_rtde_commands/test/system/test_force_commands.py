@@ -63,15 +63,7 @@ def test_force_mode_ends_with_a_stop_of_the_robot(robot, simulator):
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.PROTECTIVE_STOP)
     assert not simulator.state()["force_mode"]
     simulator.control("clear_surfaces")
-    wait_for(lambda: unlocked(simulator), 15.0, "the protective stop to be unlocked")
-
-
-def unlocked(simulator):
-    try:
-        simulator.control("unlock_protective_stop")
-        return True
-    except AssertionError:
-        return False
+    wait_for(simulator.unlock_protective_stop, 15.0, "the protective stop to be unlocked")
 
 
 def test_a_motion_goes_along_a_surface_in_force_mode_that_was_started_and_is_changed_meanwhile(robot, simulator):

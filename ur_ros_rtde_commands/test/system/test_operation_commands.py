@@ -8,6 +8,8 @@ from test_commands import turned, wait_until_moving
 from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
 
+RECOVERY_TIME_FACTOR = 1.0  # real durations
+
 
 def make_ready(robot, **fields):
     goal = robot.send(MakeReady, "make_ready", **fields)

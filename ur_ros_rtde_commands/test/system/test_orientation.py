@@ -12,6 +12,7 @@ from ur_ros_rtde_msgs.msg import PathWaypoint
 from ur_ros_rtde_msgs.srv import GetTcpPose
 
 TO_A_POSE = [(MoveL, "move_l"), (MoveJIK, "move_j_ik"), (ServoL, "servo_l"), (ServoC, "servo_c")]
+FAST = {"speed": 1.0, "acceleration": 4.0}  # of the TCP, m/s and m/s^2
 QUARTER = math.pi / 2.0
 IDENTITY = [0.0, -QUARTER, QUARTER, -QUARTER, QUARTER, QUARTER]  # joints with which the tool's axes are the base's
 
@@ -35,12 +36,12 @@ def position_only(robot, x=0.0, y=0.0, z=0.0):
 def turn_tool(robot, angle):
     """To where the tool is turned by `angle` about the base's z."""
     joints = [*IDENTITY[:5], IDENTITY[5] + angle]
-    robot.send(MoveJ, "move_j", joint_positions=joints, speed=2.0, acceleration=5.0).succeeded()
+    robot.send(MoveJ, "move_j", joint_positions=joints, speed=3.0, acceleration=15.0).succeeded()
 
 
 @pytest.mark.parametrize("action, name", TO_A_POSE, ids=[name for _, name in TO_A_POSE])
 def test_a_position_only_keeps_the_orientation(robot, simulator, action, name):
-    robot.send(MoveLRelative, "move_l_relative", rotation=Vector3(z=0.4, x=0.2), speed=0.4, acceleration=1.0).succeeded()
+    robot.send(MoveLRelative, "move_l_relative", rotation=Vector3(z=0.4, x=0.2), **FAST).succeeded()
     target = position_only(robot, y=0.1, z=-0.05)
     _, before = arm(simulator)
     result = robot.send(action, name, pose=target).succeeded()
@@ -68,11 +69,12 @@ def test_any_other_orientation_is_taken_as_before(robot, simulator, action, name
 
 
 PATHS = [
-    ("move_p", MoveP, "poses[0]", lambda pose, via: {"poses": [pose]}),
-    ("move_c", MoveC, "pose", lambda pose, via: {"via": via, "pose": pose}),
+    ("move_p", MoveP, "poses[0]", lambda pose, via: {"poses": [pose], **FAST}),
+    ("move_c", MoveC, "pose", lambda pose, via: {"via": via, "pose": pose, **FAST}),
     ("move_path", MovePath, "waypoints[0].pose",
-     lambda pose, via: {"waypoints": [PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, speed=0.1)]}),
-    ("execute_cartesian_path", ExecuteCartesianPath, "poses[0]", lambda pose, via: {"poses": [pose]}),
+     lambda pose, via: {"waypoints": [PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, **FAST)]}),
+    ("execute_cartesian_path", ExecuteCartesianPath, "poses[0]",
+     lambda pose, via: {"poses": [pose], "rotation_speed": 2.0, "max_velocity": [2.0] * 6, "max_acceleration": [10.0] * 6}),
 ]
 
 

@@ -279,18 +279,10 @@ def test_a_protective_stop_ends_a_stream_which_does_not_go_on_by_itself(robot, s
         wait_for(lambda: speed_now(robot) > 0.03, 10.0, "the arm to move")
         simulator.control("protective_stop", reason="a test")
         wait_for(lambda: speed_now(robot) < 0.01, 5.0, "the arm to stand still")
-        wait_for(lambda: _unlocked(simulator), 10.0, "the protective stop to be unlocked")
+        wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
         wait_for(lambda: simulator.state()["program"]["state"] == "PLAYING", 10.0, "the control program to be back")
         time.sleep(0.5)
         assert speed_now(robot) < 0.01
-
-
-def _unlocked(simulator):
-    try:
-        simulator.control("unlock_protective_stop")
-        return True
-    except AssertionError:
-        return False
 
 
 def test_a_message_becomes_a_command_within_some_cycles(robot, driver):

@@ -7,7 +7,7 @@ from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
 from support import HOME, JOINTS, robot_seconds, wait_for
-from trajectories import Watcher, cycles_without_target, distance_to_line, point, timed, turned, unlocked, wave, waypoints
+from trajectories import Watcher, cycles_without_target, distance_to_line, point, timed, turned, wave, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -195,7 +195,7 @@ def test_a_protective_stop_ends_it(robot, simulator):
     simulator.control("protective_stop")
     _, result = goal.end(10.0)
     assert result.error_code == ErrorCode.PROTECTIVE_STOP
-    wait_for(lambda: unlocked(simulator), 10.0, "the protective stop to be unlocked")
+    wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
     make_ready(robot)
 
 

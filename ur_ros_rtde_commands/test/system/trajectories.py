@@ -41,15 +41,6 @@ def distance_to_line(point_, start, end):
     return max(abs(p - a - part * d) for p, a, d in zip(point_, start, along))
 
 
-def unlocked(simulator):
-    """A controller does not unlock it in the first seconds."""
-    try:
-        simulator.control("unlock_protective_stop")
-        return True
-    except AssertionError:
-        return False
-
-
 def cycles_without_target(simulator, after):
     """Of the controller, from its cycle `after` on, between the first target of a stream and the last: it remembers two seconds."""
     targets = {cycle for cycle, _, _ in simulator.control("trace", after=after)["repeats"]}
