@@ -83,6 +83,18 @@ def test_the_description_is_in_one_file(tmp_path, kind):
     assert [file for file in tmp_path.rglob("*") if file.is_file() and words in file.read_text()] == [tmp_path / shown]
 
 
+@pytest.mark.parametrize("kind, to_change", [("command", {".action", ".cpp"}), ("dashboard", {".cpp"}),
+                                             ("extension", {".action", ".cpp"})])
+def test_a_given_description_needs_no_change_of_a_file(tmp_path, kind, to_change):
+    result = subprocess.run([str(ROOT / "ur"), "new", kind, "wag", "--description", "Wags & more."], cwd=tmp_path, capture_output=True,
+                            text=True, timeout=60)
+    assert result.returncode == 0, result.stderr
+    assert {pathlib.Path(name).suffix for name in re.findall(r"^    (\S+)  +\S", result.stdout, re.M)} == to_change
+    assert "`ur plugins` shows" not in result.stdout
+    written = "".join(file.read_text() for file in tmp_path.rglob("*") if file.suffix in (".xml", ".action"))
+    assert ("<description>Wags &amp; more.</description>" if kind == "dashboard" else "# Wags & more.") in written
+
+
 @pytest.mark.parametrize("name, mentions", [("Bad", "lower case"), ("a__b", "single underscores"), ("part_2", "part2")])
 def test_a_name_that_ros_would_not_take_is_refused_with_the_reason(tmp_path, name, mentions):
     result = subprocess.run([str(ROOT / "ur"), "new", "command", name], cwd=tmp_path, capture_output=True, text=True, timeout=60)

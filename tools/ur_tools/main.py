@@ -133,7 +133,7 @@ def command_cli(options: argparse.Namespace) -> int:
 
 
 def command_new(options: argparse.Namespace) -> int:
-    return new.run(options.kind, options.name, options.package, options.directory)
+    return new.run(options.kind, options.name, options.package, options.directory, options.description)
 
 
 def command_format(options: argparse.Namespace) -> int:
@@ -224,6 +224,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     sub.add_argument("kind", choices=new.KINDS)
     sub.add_argument("name", help="name of the plugin and its action, such as pick_part")
     sub.add_argument("--package", default="", metavar="NAME", help="name of the package (default: NAME_KIND)")
+    sub.add_argument("--description", default="", metavar="TEXT", help="one sentence that `ur plugins` shows (default: an example)")
     sub.add_argument("--directory", type=pathlib.Path, default=pathlib.Path("."), metavar="DIR",
                      help="folder in which the package is created (default: the current folder)")
 

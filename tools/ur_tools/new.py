@@ -3,12 +3,17 @@
 import pathlib
 import re
 from typing import Dict
+from xml.sax.saxutils import escape
 
 from . import say
 from .layout import ROOT
 
 TEMPLATES = ROOT / "tools" / "templates"
-KINDS = tuple(sorted(path.name for path in TEMPLATES.iterdir() if path.is_dir()))
+# Folders of templates of each kind of plugin, and the default description.
+KINDS = {"command": ("own_action", "command"), "dashboard": ("dashboard",), "extension": ("own_action", "extension")}
+DESCRIPTIONS = {"command": "Turns wrist 3 by an angle and back",
+                "dashboard": "Shows a text on the teach pendant and asks for the robot mode",
+                "extension": "Turns wrist 3 by an angle, by a program on the controller"}
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
@@ -31,47 +36,45 @@ def _pascal(name: str) -> str:
     return pascal
 
 
-def _words(name: str, package: str) -> Dict[str, str]:
-    """Returns the placeholders of the templates with their replacements."""
-    return {"my_package": package, "my_command": name, "MyCommand": _pascal(name)}
-
-
 def _filled(text: str, words: Dict[str, str]) -> str:
     return re.sub("|".join(words), lambda match: words[match.group()], text)
 
 
-def create(kind: str, name: str, package: str, folder: pathlib.Path) -> pathlib.Path:
+def create(kind: str, name: str, package: str, folder: pathlib.Path, description: str = "") -> pathlib.Path:
     """Creates the package in the existing `folder`. Returns its path."""
-    words = _words(_checked("the name", name), _checked("the package", package or f"{name}_{kind}"))
+    words = {"my_package": _checked("the package", package or f"{name}_{kind}"), "my_command": _checked("the name", name),
+             "MyCommand": _pascal(name), "my_kind": kind, "my_description": description.rstrip(".") or DESCRIPTIONS[kind]}
+    escaped = {placeholder: escape(word) for placeholder, word in words.items()}
     target = folder / words["my_package"]
     if not folder.is_dir():
         raise say.Failure(f"there is no folder {folder}; create it, or choose another with --directory")
     if target.exists():
         raise say.Failure(f"{target} exists already; remove it, or choose another name with --package")
-    for source in sorted(path for path in (TEMPLATES / kind).rglob("*") if path.is_file()):
-        file = target / _filled(str(source.relative_to(TEMPLATES / kind)), words)
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(_filled(source.read_text(), words))
+    for templates in (TEMPLATES / part for part in KINDS[kind]):
+        for source in sorted(path for path in templates.rglob("*") if path.is_file()):
+            file = target / _filled(str(source.relative_to(templates)), words)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(_filled(source.read_text(), escaped if source.suffix == ".xml" else words))
     return target
 
 
-def _purpose(file: pathlib.Path, kind: str) -> str:
+def _purpose(file: pathlib.Path, kind: str, described: bool) -> str:
     """Returns what the author changes in a file; empty for files that need no change."""
     if file.suffix == ".action":
-        return "what it does, and its fields; `ur plugins` shows the first sentence"
+        return "the fields" if described else "what it does, and its fields; `ur plugins` shows the first sentence"
     if file.suffix == ".cpp":
         return "the code"
-    if kind == "dashboard" and file.name == "package.xml":
+    if kind == "dashboard" and file.name == "package.xml" and not described:
         return "<description>: what it does; `ur plugins` shows it"
     return ""
 
 
-def run(kind: str, name: str, package: str, folder: pathlib.Path) -> int:
-    target = create(kind, name, package, folder)
-    files = sorted((path for path in target.rglob("*") if path.is_file()), key=lambda path: not _purpose(path, kind))
-    width = max(len(str(file.relative_to(folder))) for file in files)
-    for file in files:
-        say.line(f"    {str(file.relative_to(folder)):{width}}  {_purpose(file, kind)}".rstrip())
-    say.line("Only the files with a remark need changes. `colcon build` in the workspace builds the package (in `./ur shell` where no ROS is "
+def run(kind: str, name: str, package: str, folder: pathlib.Path, description: str) -> int:
+    target = create(kind, name, package, folder, description)
+    purposes = {path: _purpose(path, kind, bool(description)) for path in target.rglob("*") if path.is_file()}
+    width = max(len(str(file.relative_to(folder))) for file in purposes)
+    for file in sorted(purposes, key=lambda path: (not purposes[path], path)):
+        say.line(f"    {str(file.relative_to(folder)):{width}}  {purposes[file]}".rstrip())
+    say.line("Change the files with a remark. Then build the package with `colcon build` in the workspace (in `./ur shell` if ROS is not "
              "installed); docs/writing_a_plugin.md continues from there.")
     return 0
