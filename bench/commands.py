@@ -1,4 +1,7 @@
-"""Goal -> first RTDE command, and cancel -> deceleration begins, seen by a Python client and by the simulator's trace."""
+"""Latency from a goal to its first RTDE command, and from a cancel request to the begin of the deceleration.
+
+The goal is sent by a Python client; the effect is taken from the simulator's trace.
+"""
 
 import time
 
@@ -7,7 +10,6 @@ from rclpy.action import ActionClient
 from rclpy.node import Node
 from ur_ros_rtde_msgs.action import MoveJ, SetPayload
 
-CONTROL_CYCLE = 2.0  # ms
 
 
 class Commands:
@@ -18,7 +20,7 @@ class Commands:
         self.set_payload = ActionClient(self.node, SetPayload, "set_payload")
         for client in (self.move_j, self.set_payload):
             if not client.wait_for_server(timeout_sec=15.0):
-                raise SystemExit("bench: the command server's actions do not appear")
+                raise SystemExit("bench: the actions of the command server were not found")
 
     def close(self):
         self.node.destroy_node()
@@ -39,7 +41,7 @@ class Commands:
         return self.control.request("state")["state"]["cycle"]
 
     def goal_to_command(self, count):
-        """ms from sending the goal (in Python) to the arrival of its command at the controller."""
+        """Returns the times in ms from sending a goal to the arrival of its command at the controller."""
         result = []
         for index in range(count):
             before = self._cycle()
@@ -53,14 +55,14 @@ class Commands:
         return result
 
     def cancel_to_deceleration(self, count):
-        """ms from sending the cancel request to the first cycle whose target is slower."""
+        """Returns the times in ms from sending a cancel request to the first cycle with a lower target speed."""
         result = []
         for index in range(count):
             joints = list(self.control.request("state")["state"]["actual"]["position"])
             joints[0] += 1.0 if index % 2 == 0 else -1.0
             handle = self._accepted(self.move_j, MoveJ.Goal(joint_positions=joints, speed=0.4, acceleration=4.0))
             outcome = handle.get_result_async()
-            self._until_speed(0.399)
+            self._wait_for_speed(0.399)
             before = self._cycle()
             sent = time.time_ns()
             self._finish(handle.cancel_goal_async())
@@ -71,7 +73,7 @@ class Commands:
                 result.append((slower[0] - sent) * 1e-6)
         return result
 
-    def _until_speed(self, speed, limit=5.0):
+    def _wait_for_speed(self, speed, limit=5.0):
         deadline = time.monotonic() + limit
         while max(map(abs, self.control.request("state")["state"]["target"]["velocity"])) < speed:
             if time.monotonic() > deadline:

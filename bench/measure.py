@@ -1,4 +1,4 @@
-"""Measures a running simulator and driver, and writes JSON. Started by `./ur bench`, which starts both."""
+"""Measures a running simulator and driver, and writes the figures as JSON. Started by `./ur bench`, which starts both."""
 
 import argparse
 import json
@@ -39,7 +39,7 @@ def resident_megabytes(pid):
 
 
 def cpu_percent(pids, seconds):
-    """Of one core, by name, over an interval in which nothing but the stream runs."""
+    """Returns the load of each process in % of one core while the robot is idle."""
     before, begin = {name: cpu_seconds(pid) for name, pid in pids.items()}, time.monotonic()
     time.sleep(seconds)
     elapsed = time.monotonic() - begin
@@ -68,13 +68,13 @@ def goal_figures(options, control):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--address", required=True)
-    parser.add_argument("--subscriber", required=True, help="the C++ subscriber")
-    parser.add_argument("--pid", action="append", default=[], metavar="NAME=PID", help="a process whose load is measured")
-    parser.add_argument("--output", required=True, type=Path, metavar="FILE", help="where the JSON goes")
-    parser.add_argument("--repeat", type=int, default=40, help="goals and cancels")
-    parser.add_argument("--stream", action="store_true", help="the servo stream instead of everything else")
-    parser.add_argument("--seconds", type=float, default=10.0, help="that the stream takes, of the robot")
-    parser.add_argument("--real-time-factor", type=float, default=1.0, help="the simulator's")
+    parser.add_argument("--subscriber", required=True, help="path of the C++ subscriber")
+    parser.add_argument("--pid", action="append", default=[], metavar="NAME=PID", help="process whose load is measured")
+    parser.add_argument("--output", required=True, type=Path, metavar="FILE", help="file for the figures")
+    parser.add_argument("--repeat", type=int, default=40, help="number of goals and cancel requests")
+    parser.add_argument("--stream", action="store_true", help="measure only the servo stream")
+    parser.add_argument("--seconds", type=float, default=10.0, help="duration of the servo stream, in the robot's time")
+    parser.add_argument("--real-time-factor", type=float, default=1.0, help="real-time factor of the simulator")
     options = parser.parse_args()
     rclpy.init()
     with ControlPort(options.address) as control:

@@ -1,6 +1,6 @@
-"""Controller package -> subscriber: joins what subscribers received with the simulator's trace of what was sent when.
+"""Latency from a package of the controller to a subscriber, from received messages and the simulator's trace.
 
-A message's stamp is when the driver had the package, so the package is the last one sent before the stamp.
+The stamp of a message is the time at which the driver received the package: the package is the last one sent before it.
 """
 
 import bisect
@@ -11,7 +11,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
-# The stamp is computed from a monotonic clock; the two clocks are read one after the other.
+# The stamp is derived from a monotonic clock; the two clocks are read one after the other.
 CLOCK_TOLERANCE = 20_000  # ns
 
 
@@ -21,7 +21,7 @@ def percentile(values, fraction):
 
 
 def latencies(received, trace):
-    """ms from sending to receiving, for [(stamp, received)] in ns."""
+    """Returns the latencies in ms of messages [(stamp, time of reception)] in ns."""
     sent = [published for _, published, _ in trace["cycles"]]
     result = []
     for stamp, when in received:
@@ -32,7 +32,7 @@ def latencies(received, trace):
 
 
 def receive_in_python(seconds):
-    """[(stamp, received)] in ns of joint_states."""
+    """Returns [(stamp, time of reception)] in ns of joint_states."""
     received = []
 
     def take(message):

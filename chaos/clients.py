@@ -1,4 +1,4 @@
-"""Clients that send goal after goal, each a node of its own, and what becomes of the goals."""
+"""Clients that send one goal after another, each from its own node, and check the results."""
 
 import contextlib
 import threading
@@ -9,14 +9,14 @@ import messages
 from cell import CODES, WatchingClient
 from goals import Mix
 
-ANSWER_LIMIT = 15.0  # s from a goal to its acceptance or refusal
-RESULT_LIMIT = 45.0  # s from acceptance to the result: the longest example and the longest fault included
-BETWEEN = 0.02  # s between two goals
-AFTER_REFUSAL = 0.2  # s
+ANSWER_LIMIT = 15.0  # s, from sending a goal to its acceptance or refusal
+RESULT_LIMIT = 45.0  # s, from acceptance to the result, with the longest example and the longest fault
+PAUSE = 0.02  # s, between two goals
+PAUSE_AFTER_REFUSAL = 0.2  # s
 
 
 class Gate:
-    """Lets goals begin, or not, and counts those that have begun and not ended."""
+    """Allows or blocks new goals, and counts the active ones."""
 
     def __init__(self):
         self._changed = threading.Condition()
@@ -30,7 +30,7 @@ class Gate:
             self._changed.notify_all()
 
     def enter(self, stop):
-        """False when the run is over."""
+        """Waits until goals are allowed. Returns False when the run is over."""
         with self._changed:
             self._changed.wait_for(lambda: self._open or stop.is_set())
             if stop.is_set():
@@ -39,8 +39,8 @@ class Gate:
             return True
 
     @contextlib.contextmanager
-    def passed(self):
-        """For goals that are part of the run itself."""
+    def bypass(self):
+        """Counts a goal of the run itself, which is never blocked."""
         with self._changed:
             self._live += 1
         try:
@@ -54,13 +54,13 @@ class Gate:
             self._idle_since = time.monotonic()
             self._changed.notify_all()
 
-    def touch(self):
-        """What went on without a goal has an excuse until now."""
+    def restart_idle_time(self):
+        """Motions without a goal up to now are not violations."""
         with self._changed:
             self._idle_since = time.monotonic()
 
     def idle_for(self):
-        """s since the last goal ended; 0 while one is carried out."""
+        """Returns the time since the last goal ended, s; 0 while one is active."""
         with self._changed:
             return 0.0 if self._live else time.monotonic() - self._idle_since
 
@@ -69,8 +69,8 @@ class Gate:
             return self._changed.wait_for(lambda: self._live == 0, limit)
 
 
-class Goals:
-    """One client."""
+class GoalSender:
+    """A client that sends goals in its own thread."""
 
     def __init__(self, name, random, gate, journal):
         self._name, self._mix, self._gate, self._journal = name, Mix(random), gate, journal
@@ -89,23 +89,23 @@ class Goals:
     def join(self):
         self._thread.join(ANSWER_LIMIT + RESULT_LIMIT)
         if self._thread.is_alive():
-            self._journal.violate(self._name, "the client does not end")
+            self._journal.violate(self._name, "the client thread does not end")
         self._client.close()
 
     def _run(self):
         while self._gate.enter(self._stop):
             outcome = "refused"
             try:
-                outcome = self._carry_out(self._mix.next())
+                outcome = self._execute(self._mix.next())
             except AssertionError as error:
                 self._journal.violate(self._name, str(error))
                 return
             finally:
                 self._gate.leave()
             self.outcomes[outcome] += 1
-            self._stop.wait(AFTER_REFUSAL if outcome.startswith("refused") else BETWEEN)
+            self._stop.wait(PAUSE_AFTER_REFUSAL if outcome.startswith("refused") else PAUSE)
 
-    def _carry_out(self, plan):
+    def _execute(self, plan):
         self._journal.write(self._name, plan.text())
         goal = self._client.send_goal(messages.load(plan.type), plan.name, plan.message())
         if not goal.accepted:
@@ -127,6 +127,6 @@ class Goals:
         code = CODES[result.error_code]
         self._journal.write(self._name, f"  {plan.name} {goal.id.hex()[:8]}: {code}: {result.message}")
         endings = self._client.endings(goal)
-        assert endings == {status}, f"{plan.name}, goal {goal.id.hex()}, has more than one end: {endings}, result {status}"
+        assert endings == {status}, f"{plan.name}, goal {goal.id.hex()}, has several final states: {endings}, result {status}"
         self._client.forget(goal)
         return "succeeded" if result.success else f"failed, {code}"

@@ -1,4 +1,4 @@
-"""Random faults of controller, links, people and host; each with how long it lasts."""
+"""Random faults of the controller, its links, its operators and the host, each with a random duration."""
 
 from dataclasses import dataclass
 from typing import Callable
@@ -10,7 +10,7 @@ LINKS = ("rtde", "dashboard", "script", "realtime", "all")
 class Kind:
     name: str
     weight: float
-    longest: float  # s that it lasts at most; what has no duration of its own is over at once
+    longest: float  # s, maximum duration; 0: an event without a duration
     happen: Callable  # of the robot and of random
 
 
@@ -27,7 +27,7 @@ def _stall(robot, random):
 
 
 def _half_open(robot, random):
-    """Silent first; what is at the other end has forgotten the connections when they speak again."""
+    """The links are silent first. When they work again, the controller has dropped the connections."""
     robot.simulator.control("stall_links", which="all")
     robot.after_fault(lambda: robot.simulator.control("drop_links", which="all", reset=True))
 
@@ -90,17 +90,17 @@ KINDS = (
 @dataclass(frozen=True)
 class Fault:
     kind: Kind
-    after: float  # s of undisturbed work before it
-    lasts: float  # s
-    quiet: bool  # no new goals until it is over: what has ended must stand still
-    seed: int  # of what its kind draws
+    after: float  # s, without a fault before it
+    lasts: float  # s, duration
+    quiet: bool  # no new goals until the fault is over, so that the arm must come to rest
+    seed: int  # of the random values of its kind
 
     def text(self):
         return f"{self.kind.name} for {self.lasts:.2f} s{', no new goals' if self.quiet else ''}"
 
 
 def sequence(random):
-    """Without end; the same for the same seed."""
+    """Yields faults without end. The same seed gives the same faults."""
     while True:
         kind = random.choices(KINDS, [kind.weight for kind in KINDS])[0]
         shortest = min(0.05, kind.longest)

@@ -1,4 +1,4 @@
-"""Random goals: mostly motions about the home position, some of the documentation's examples, a few that are wrong."""
+"""Random goals: mostly motions near the home position, some examples of the documentation, a few invalid ones."""
 
 import math
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ import messages
 import plugins
 from support import HOME
 
-LONGEST_WAIT = 1.5  # s from acceptance to cancel
-# What would end the controller or take it from the driver, and what goes on after its goal has ended.
-LEFT_OUT = ("dashboard/shutdown", "dashboard/quit", "dashboard/power_off", "dashboard/load", "dashboard/set_user_role",
+LONGEST_WAIT = 1.5  # s, from acceptance to cancel
+# Commands that shut the controller down or take control from the driver, or whose effect outlasts the goal.
+EXCLUDED = ("dashboard/shutdown", "dashboard/quit", "dashboard/power_off", "dashboard/load", "dashboard/set_user_role",
             "dashboard/set_operational_mode", "force_mode_start", "freedrive_start", "set_watchdog", "set_tcp", "set_gravity",
             "set_payload", "set_target_payload", "trigger_protective_stop", "set_speed_slider")
 
@@ -21,7 +21,7 @@ class Plan:
     name: str
     type: str
     fields: dict
-    cancel_after: Optional[float]  # s; None: not at all
+    cancel_after: Optional[float]  # s; None: no cancel request
 
     def message(self):
         return messages.fill(messages.load(self.type).Goal(), self.fields)
@@ -32,7 +32,7 @@ class Plan:
 
 
 def _near_home(random, spread):
-    # Shoulder and elbow less: the arm is to stay above its base, clear of itself.
+    # A smaller range for shoulder and elbow keeps the arm above its base and free of self-collision.
     return [angle + random.uniform(-1.0, 1.0) * spread * (0.3 if joint in (1, 2) else 1.0) for joint, angle in enumerate(HOME)]
 
 
@@ -54,32 +54,32 @@ MOTIONS = {
     "jog": ("Jog", lambda r: {"twist": {"linear": _vector(r, 0.1)}, "frame": r.randrange(2), "time": r.uniform(0.2, 1.0)}),
     "stop": ("Stop", lambda r: {"joint_deceleration": r.uniform(1.0, 10.0)}),
 }
-# The arm is powered up again at once after a fault: a stand_down that does not see it off in between waits for its timeout.
-SHORTER = {"stand_down": {"timeout": 20.0}}
-HOMEWARD = ("move_j", "servo_j")  # more often, so that the relative ones do not lead the arm away
-WRONG = {"joint_positions": [math.nan] * 6}
+# After a fault the arm is powered on at once. A stand_down that misses the power-off state waits until its timeout.
+OVERRIDES = {"stand_down": {"timeout": 20.0}}
+HOMEWARD = ("move_j", "servo_j")  # drawn more often, so that relative motions do not lead the arm away
+INVALID = {"joint_positions": [math.nan] * 6}
 
 
 class Mix:
-    """A client's goals: the same for the same seed and number of the client."""
+    """Draws the goals of a client. The same seed and client number give the same goals."""
 
     def __init__(self, random):
         self._random = random
-        there = plugins.find()
-        self._motions = [name for name in (*MOTIONS, *HOMEWARD, *HOMEWARD) if name in there]
+        installed = plugins.find()
+        self._motions = [name for name in (*MOTIONS, *HOMEWARD, *HOMEWARD) if name in installed]
         self._examples = [section.example() for section in documentation.sections()
-                          if section.name in there and section.name not in LEFT_OUT and not section.scene()
+                          if section.name in installed and section.name not in EXCLUDED and not section.scene()
                           and section.setup() == documentation.Setup()]
 
     def next(self):
-        # Everything is drawn for every goal, so that one of another kind does not shift those that follow.
+        # All values are drawn for every goal, so that the kind of a goal does not change the following ones.
         kind, cancel, wait = (self._random.random() for _ in range(3))
         name = self._random.choice(self._motions)
         fields = MOTIONS[name][1](self._random)
         example = self._random.choice(self._examples) if self._examples else None
         cancel_after = LONGEST_WAIT * wait if cancel < 0.3 else None
         if kind < 0.05:
-            return Plan("move_j", "ur_ros_rtde_msgs/action/MoveJ", WRONG, None)
+            return Plan("move_j", "ur_ros_rtde_msgs/action/MoveJ", INVALID, None)
         if kind < 0.3 and example:
-            return Plan(example.action, example.type, {**example.goal, **SHORTER.get(example.action, {})}, cancel_after)
+            return Plan(example.action, example.type, {**example.goal, **OVERRIDES.get(example.action, {})}, cancel_after)
         return Plan(name, f"ur_ros_rtde_msgs/action/{MOTIONS[name][0]}", fields, cancel_after)

@@ -1,11 +1,11 @@
-"""What happened, in order, with the time since the start; and the first thing that must not have happened."""
+"""Log of a run in chronological order, with the time since the start, and its first violation."""
 
 import threading
 import time
 
 
 class Violation(Exception):
-    """An invariant does not hold."""
+    """An invariant is violated."""
 
 
 class Journal:
@@ -22,7 +22,7 @@ class Journal:
                 self._file.flush()
 
     def violate(self, who, text):
-        """The first counts; those that follow from it are written down."""
+        """Records a violation. The first one is the result of the run; the later ones are only logged."""
         self.write(who, f"VIOLATION: {text}")
         with self._lock:
             self.violation = self.violation or f"{who}: {text}"

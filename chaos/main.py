@@ -1,4 +1,4 @@
-"""Random goals and random faults on a simulated robot. Started by `./ur chaos`."""
+"""Sends random goals to a simulated robot during random faults. Started by `./ur chaos`."""
 
 import argparse
 import itertools
@@ -15,7 +15,7 @@ for folder in ("ur_ros_rtde_commands/test/system", "ur_ros_rtde_commands/test/ev
 import faults  # noqa: E402
 import report  # noqa: E402
 from cell import WatchingClient  # noqa: E402
-from clients import RESULT_LIMIT, Gate, Goals  # noqa: E402
+from clients import RESULT_LIMIT, Gate, GoalSender  # noqa: E402
 from journal import Journal, Violation  # noqa: E402
 from robot import Robot  # noqa: E402
 from support import HOME, wait_for  # noqa: E402
@@ -25,9 +25,9 @@ from watch import Loads, Watch  # noqa: E402
 from ur_ros_rtde_msgs.action import MoveJ  # noqa: E402
 from ur_ros_rtde_msgs.msg import ErrorCode  # noqa: E402
 
-READY_LIMIT = 10.0  # s from the end of a fault's cause to the first motion that is taken
+READY_LIMIT = 10.0  # s, from the end of a fault to the first accepted motion
 REST_LIMIT = 1.0  # s
-SOAK_PERIOD = 10.0  # s between two looks at the driver's load without faults
+SOAK_PERIOD = 10.0  # s, between two measurements of the driver's load without faults
 
 
 class Chaos:
@@ -37,20 +37,20 @@ class Chaos:
         self._watch = Watch(robot, self._gate, journal)
         self._loads = Loads(robot.driver.pid, journal, options.sanitizer)
         self._probe = WatchingClient(name="probe")
-        self._clients = [Goals(f"client {number}", random.Random(f"{options.seed}/{number}"), self._gate, journal)
+        self._clients = [GoalSender(f"client {number}", random.Random(f"{options.seed}/{number}"), self._gate, journal)
                          for number in range(options.clients)]
         self._status = say.Status(10.0)
         self._recoveries = defaultdict(list)
         self._begin = time.monotonic()
 
     def run(self):
-        self._until_ready(30.0)
+        self._wait_until_ready(30.0)
         self._watch.start()
         for client in self._clients:
             client.start()
         try:
             self._soak() if self._options.faults == 0 else self._faults()
-            self._end_quietly()
+            self._check_final_state()
         finally:
             for client in self._clients:
                 client.stop()
@@ -60,7 +60,7 @@ class Chaos:
             self._probe.close()
             self._status.clear()
 
-    # --- The two kinds of run ---
+    # --- Kinds of runs ---
 
     def _faults(self):
         sequence = faults.sequence(random.Random(f"{self._options.seed}/faults"))
@@ -75,8 +75,8 @@ class Chaos:
             self._show("no faults")
             self._wait(min(SOAK_PERIOD, 0.02 * 60.0 * self._options.minutes))
             self._gate.set(False)
-            self._robot.clear()  # a random motion may have led to a protective stop
-            self._quiet()
+            self._robot.clear()  # a random motion may have caused a protective stop
+            self._check_standstill()
             self._gate.set(True)
 
     def _over(self):
@@ -94,59 +94,62 @@ class Chaos:
         fault.kind.happen(self._robot, random.Random(fault.seed))
         self._wait(fault.lasts)
         self._robot.clear()
-        self._journal.write("fault", "its cause is gone")
-        self._gate.touch()
+        self._journal.write("fault", "cleared")
+        self._gate.restart_idle_time()
         cleared = time.monotonic()
-        with self._gate.passed():
-            ready = self._until_ready()
+        with self._gate.bypass():
+            ready = self._wait_until_ready()
         self._recoveries[fault.kind.name].append(ready - cleared if ready else None)
         self._watch.excused.clear()
         if fault.quiet:
-            self._quiet()
+            self._check_standstill()
         self._gate.set(True)
 
-    def _quiet(self):
-        """No goal any more: the arm stands still, and the driver holds what it always holds."""
+    def _check_standstill(self):
+        """Checks that the arm comes to rest after the last goal, and samples the load of the driver."""
         if not self._gate.wait_until_idle(RESULT_LIMIT):
             raise Violation(f"a goal has no result {RESULT_LIMIT:g} s after the last fault")
         self._journal.check()
         wait_for(lambda: self._robot.joint_speed() < 0.02, REST_LIMIT, "the arm to stand still after the last goal")
         self._loads.sample()
 
-    def _until_ready(self, limit=READY_LIMIT):
-        """Until a motion is taken, or another one is in its way. The time of that; None if the other one was at once."""
+    def _wait_until_ready(self, limit=READY_LIMIT):
+        """Waits until a motion is accepted, or refused because another one runs.
+
+        Returns the time of the answer; None if the first attempt was refused because of another motion.
+        """
         reasons = []
 
-        def taken():
+        def answered():
             self._journal.check()
             goal = self._probe.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
             if goal.accepted:
                 return goal, time.monotonic()
             refusal = self._probe.refusal(goal)
             reasons.append(refusal.message)
-            self._robot.power_up()  # a stand_down of before has come through meanwhile
+            self._robot.power_up()  # an earlier stand_down may have powered the arm off in the meantime
             return (None, time.monotonic()) if refusal.error_code == ErrorCode.BUSY else None
 
         try:
-            goal, when = wait_for(taken, limit, "a motion to be taken again")
+            goal, when = wait_for(answered, limit, "a motion to be accepted again")
         except AssertionError as error:
             raise Violation(f"{error}; the last reason: {reasons[-1:]}") from None
         if goal is not None:
             goal.end(RESULT_LIMIT)
         return when if goal is not None or len(reasons) > 1 else None
 
-    def _end_quietly(self):
+    def _check_final_state(self):
         self._gate.set(False)
         self._robot.clear()
-        self._quiet()
-        with self._gate.passed():
-            self._until_ready()
+        self._check_standstill()
+        with self._gate.bypass():
+            self._wait_until_ready()
             self._probe.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
         grown = self._loads.verdict()
         if grown:
             raise Violation("the driver's " + "; ".join(grown))
 
-    # --- What the user sees ---
+    # --- Output ---
 
     def _wait(self, seconds):
         end = time.monotonic() + seconds
@@ -165,7 +168,7 @@ class Chaos:
 
 
 def _run(options, journal):
-    """What was violated first; None if nothing."""
+    """Returns the first violation; None if there is none."""
     robot = Robot(options.address)
     chaos = None
     try:
@@ -192,16 +195,17 @@ def main():
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--clients", type=int, required=True)
     parser.add_argument("--log", type=pathlib.Path, required=True)
-    parser.add_argument("--sanitizer", action="store_true", help="the driver was built with one")
+    parser.add_argument("--sanitizer", action="store_true", help="the driver was built with a sanitizer")
     options = parser.parse_args()
     options.log.mkdir(parents=True, exist_ok=True)
     journal = Journal(options.log / "journal.log")
     violated = _run(options, journal)
     journal.close()
     if violated:
-        print(f"\nVIOLATED: {violated}\nseed {options.seed}; what happened: {options.log}/journal.log, driver.log, simulator.log", flush=True)
+        print(f"\nVIOLATED: {violated}\nseed {options.seed}; logs: {options.log}/journal.log, driver.log, simulator.log",
+              flush=True)
         return 1
-    print("    every goal had one result, the arm stood still after the last, nothing grew, nothing was stuck")
+    print("    every goal had one result, the arm came to rest after the last one, the driver's resources did not grow")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""The tables at the end of a run."""
+"""Tables at the end of a run."""
 
 from collections import Counter
 
@@ -9,14 +9,14 @@ def _percentile(values, fraction):
 
 
 def faults(recoveries):
-    """`recoveries`: by the fault's name, s from the end of its cause until a motion was taken again; None where a motion went on."""
+    """Formats the recoveries by fault: s from the end of the fault until a motion was accepted; None if a motion continued."""
     if not recoveries:
         return []
     rows = [f"    {'fault':24} {'count':>5} {'recovery p50':>13} {'max':>9}"]
-    for name, all_of_them in sorted(recoveries.items()):
-        seconds = [value for value in all_of_them if value is not None]
+    for name, recovery_times in sorted(recoveries.items()):
+        seconds = [value for value in recovery_times if value is not None]
         figures = f"{_percentile(seconds, 0.5):11.3f} s {max(seconds):7.3f} s" if seconds else f"{'-':>13} {'-':>9}"
-        rows.append(f"    {name:24} {len(all_of_them):5} {figures}")
+        rows.append(f"    {name:24} {len(recovery_times):5} {figures}")
     return rows
 
 

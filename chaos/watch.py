@@ -1,4 +1,4 @@
-"""Watches the arm and the driver while all the rest goes on."""
+"""Monitors the arm and the driver during a run."""
 
 import math
 import threading
@@ -8,17 +8,17 @@ from control_port import ControlPort, ControlPortError
 from robot import load_of
 
 PERIOD = 0.1  # s
-REST_AFTER = 1.0  # s after the last goal has ended
+REST_AFTER = 1.0  # s, after the end of the last goal
 AT_REST = 0.02  # rad/s
 
 
 class Watch:
-    """No goal: no motion. And the driver runs."""
+    """Checks that the arm moves only while a goal is active, and that the driver runs."""
 
     def __init__(self, robot, gate, journal):
         self._robot, self._gate, self._journal = robot, gate, journal
         self._stop = threading.Event()
-        self.excused = threading.Event()  # somebody pushes the arm, or it has no power
+        self.excused = threading.Event()  # the arm is pushed, or has no power
         self._thread = threading.Thread(target=self._run, name="watch")
 
     def start(self):
@@ -32,15 +32,15 @@ class Watch:
         port = None
         while not self._stop.wait(PERIOD):
             if not self._robot.driver.running():
-                self._journal.violate("driver", "the process has ended")
+                self._journal.violate("driver", "the process has exited")
                 return
             try:
                 port = port or ControlPort(self._robot.simulator.address, timeout=2.0)
-                self._look(port.request("state")["state"])
+                self._check_state(port.request("state")["state"])
             except (OSError, ValueError, ControlPortError):
-                port = None  # a fault of the simulator
+                port = None  # the simulator has a fault
 
-    def _look(self, state):
+    def _check_state(self, state):
         speed = max(map(abs, state["actual"]["velocity"]))
         idle = self._gate.idle_for()
         if speed > AT_REST and idle > REST_AFTER and not self.excused.is_set():
@@ -48,14 +48,14 @@ class Watch:
 
 
 class Loads:
-    """Descriptors, threads and memory of the driver, after warm-up and at the end."""
+    """Compares descriptors, threads and memory of the driver after the warm-up with those at the end."""
 
     EXTRA_DESCRIPTORS = 6
     EXTRA_THREADS = 3
-    EXTRA_MEMORY = 12.0  # MB: what the allocator keeps varies
+    EXTRA_MEMORY = 12.0  # MB; the memory that the allocator keeps varies
 
     def __init__(self, pid, journal=None, keeps_freed_memory=False):
-        """`keeps_freed_memory`: as a sanitizer does, so that its growth tells nothing."""
+        """`keeps_freed_memory`: a sanitizer does, so that the memory is not compared."""
         self._pid, self._journal = pid, journal
         self._limits = (self.EXTRA_DESCRIPTORS, self.EXTRA_THREADS, math.inf if keeps_freed_memory else self.EXTRA_MEMORY)
         self.samples = []
@@ -66,16 +66,16 @@ class Loads:
             self._journal.write("driver", "{} descriptors, {} threads, {:.1f} MB".format(*self.samples[-1][1:]))
 
     def verdict(self):
-        """What has grown from the second quarter, after the warm-up, to the last; empty if nothing."""
+        """Returns what has grown from the second quarter, after the warm-up, to the last quarter."""
         if len(self.samples) < 8:
             return []
         quarter = len(self.samples) // 4
-        before, after = self._least(quarter, 2 * quarter), self._least(len(self.samples) - quarter, len(self.samples))
+        before, after = self._minimum(quarter, 2 * quarter), self._minimum(len(self.samples) - quarter, len(self.samples))
         return [f"{name} grew from {b:g} to {a:g}" for name, b, a, limit in
                 zip(("descriptors", "threads", "memory (MB)"), before, after, self._limits) if a > b + limit]
 
-    def _least(self, begin, end):
-        """The least of each: what is in use for a moment does not count."""
+    def _minimum(self, begin, end):
+        """Returns the minimum of each value, so that peaks do not count."""
         return [min(sample[column] for sample in self.samples[begin:end]) for column in (1, 2, 3)]
 
     def text(self):

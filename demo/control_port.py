@@ -1,4 +1,4 @@
-"""The simulator's control port: one JSON object a line, one answer a line (docs/simulator.md)."""
+"""Client of the simulator's control port: one JSON object per line, one answer per line (docs/simulator.md)."""
 
 import json
 import socket

@@ -1,6 +1,6 @@
-"""The force experiment: the arm goes down, two pushes by hand are ignored, the contact stops it.
+"""Force experiment: the arm moves down, ignores two lateral pushes and stops on contact.
 
-Needs a running simulator and the nodes (`./ur demo` starts both); leaves a CSV and a picture.
+Requires a running simulator and the nodes (`./ur demo` starts both). Writes a CSV file and a figure.
 """
 
 import argparse
@@ -21,12 +21,12 @@ from ur_ros_rtde_tutorials.action import MoveDownUntilForce
 from control_port import ControlPort
 
 DISCOVERY_LIMIT = 20.0  # s
-READY_LIMIT = 15.0  # s from the first refusal until the robot is ready
+READY_LIMIT = 15.0  # s, from the first refusal until the robot is ready
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 NOT_YET = (ErrorCode.NOT_READY, ErrorCode.LINK_LOST)  # the driver may still be connecting
 STANDSTILL = 0.002  # rad/s
-NEW_LINE = "\n" if sys.stdout.isatty() else ""  # after the progress line, which only a terminal gets
-AFTERWARDS = 0.8  # s recorded after the standstill
+NEW_LINE = "\n" if sys.stdout.isatty() else ""  # after the progress line, which is shown on a terminal only
+AFTERWARDS = 0.8  # s, recorded after standstill
 
 
 class Experiment:
@@ -40,7 +40,7 @@ class Experiment:
         self.pushes = []
 
     def wait(self, condition, limit, what):
-        """Serves the node until the condition holds."""
+        """Spins the node until the condition holds."""
         deadline = time.monotonic() + limit
         while not condition():
             if time.monotonic() > deadline:
@@ -75,7 +75,7 @@ class Experiment:
         self.wait(sent.done, 10.0, "the answer to the goal")
         self.goal_handle = sent.result()
         goal_id = bytes(self.goal_handle.goal_id.uuid)
-        self.wait(lambda: self.goal_handle.accepted or goal_id in self.refusals, 10.0, "the reason of the refusal")
+        self.wait(lambda: self.goal_handle.accepted or goal_id in self.refusals, 10.0, "the reason for the refusal")
         return self.goal_handle.accepted
 
     def on_refusal(self, refusal):
@@ -87,11 +87,11 @@ class Experiment:
         done = max(0.0, min(1.0, (self.start_height - self.recorder.height) / self.options.drop))
         bar = "#" * round(30 * done)
         force = self.recorder.force()
-        print(f"\r  going down [{bar:<30}] {self.start_height - self.recorder.height:5.3f} m, "
+        print(f"\r  moving down [{bar:<30}] {self.start_height - self.recorder.height:5.3f} m, "
               f"force x {force[0]:6.1f} y {force[1]:6.1f} z {force[2]:6.1f} N ", end="", flush=True)
 
     def push(self, axis):
-        """By hand, along one axis of the flange, half as strong again as the threshold."""
+        """Pushes the flange along one of its axes with 1.5 times the threshold."""
         wrench = [0.0] * 6
         wrench["xyz".index(axis)] = 1.5 * self.options.threshold
         self.control.request("push", wrench=wrench, duration=0.4, frame="tool")
@@ -103,7 +103,7 @@ class Experiment:
         limit = 10.0 + 2.0 * self.options.drop / self.options.speed
         for axis, fraction in (("x", 0.3), ("y", 0.6)):
             height = self.start_height - fraction * self.options.drop
-            self.wait(lambda h=height: self.recorder.height < h or self.result.done(), limit, "the arm to go down")
+            self.wait(lambda h=height: self.recorder.height < h or self.result.done(), limit, "the arm to move down")
             if self.result.done():
                 break
             self.push(axis)
@@ -134,12 +134,12 @@ class Experiment:
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--address", default="127.0.0.1", help="of the simulator")
-    parser.add_argument("--model", default="UR10e", help="for the title")
-    parser.add_argument("--threshold", type=float, default=20.0, help="N along the flange Z axis")
-    parser.add_argument("--speed", type=float, default=0.1, help="m/s")
-    parser.add_argument("--drop", type=float, default=0.3, help="m between the tool and the table")
-    parser.add_argument("--output", type=Path, default=Path("."), help="folder of the CSV and the picture")
+    parser.add_argument("--address", default="127.0.0.1", help="address of the simulator")
+    parser.add_argument("--model", default="UR10e", help="model in the title")
+    parser.add_argument("--threshold", type=float, default=20.0, help="force threshold along the flange Z axis, N")
+    parser.add_argument("--speed", type=float, default=0.1, help="speed of the tool, m/s")
+    parser.add_argument("--drop", type=float, default=0.3, help="distance of the tool above the table, m")
+    parser.add_argument("--output", type=Path, default=Path("."), help="folder for the CSV file and the figure")
     return parser.parse_args()
 
 

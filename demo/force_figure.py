@@ -1,4 +1,4 @@
-"""Draws the force experiment from its CSV: forces above, joint velocities below, ignored pushes blue, the stop red."""
+"""Draws the force experiment from its CSV file: forces (top), joint velocities (bottom), ignored pushes in blue, the stop in red."""
 
 import argparse
 import csv
@@ -29,11 +29,11 @@ class Event:
 
 
 def read(path):
-    """Columns by name as lists of floats, and the events that the rows carry."""
+    """Returns the columns by name as lists of floats, and the events."""
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
     if not rows:
-        raise SystemExit(f"{path} holds no samples: run the experiment again")
+        raise SystemExit(f"{path} contains no samples: run the experiment again")
     columns = {name: [float(row[name]) for row in rows] for name in rows[0] if name != "event"}
     events = []
     for row in rows:
@@ -77,7 +77,7 @@ def _draw_velocities(axes, columns, events):
 
 
 def _label(axes, events):
-    """Above the plot, where no curve runs."""
+    """Writes the labels of the events above the plot."""
     for event in events:
         ignored = event.kind == "ignored"
         text = f"{abs(event.force):.0f} N along {event.axis.upper()}: " + ("ignored" if ignored else "stop")
@@ -101,8 +101,8 @@ def draw(csv_path, png_path, threshold, title):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("csv", help="what the experiment recorded")
-    parser.add_argument("png", help="the picture to write")
+    parser.add_argument("csv", help="CSV file of the experiment")
+    parser.add_argument("png", help="figure to write")
     parser.add_argument("--threshold", type=float, default=20.0, help="force threshold of the goal, N")
     parser.add_argument("--title", default="MoveDownUntilForce")
     arguments = parser.parse_args()

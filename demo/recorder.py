@@ -1,4 +1,4 @@
-"""Joins the samples of joint_states, wrench and tcp_pose, which carry the same stamp within a cycle, into rows."""
+"""Joins samples of joint_states, wrench and tcp_pose into rows. Messages of one cycle have the same stamp."""
 
 import csv
 
@@ -30,7 +30,7 @@ class Recorder:
         ]
 
     def complete(self):
-        """Has every topic spoken?"""
+        """Returns whether a message of each topic has been received."""
         return None not in (self.height, self._latest_force, self._stamp)
 
     def start(self):
@@ -39,7 +39,7 @@ class Recorder:
         self._origin = self._stamp
 
     def now(self):
-        """Seconds since start() by the stamps of the samples."""
+        """Returns the time since start() according to the stamps, s."""
         return (self._stamp - self._origin) * 1e-9
 
     def force(self):
@@ -69,7 +69,7 @@ class Recorder:
 
 
 def mark_events(rows, pushes, threshold):
-    """(row index, "ignored x") where a push first exceeds the threshold, (row index, "stop z") where the contact does."""
+    """Returns (row index, "ignored x") where a push first exceeds the threshold, and (row index, "stop z") where the contact does."""
     events = []
     for pushed_at, axis in pushes:
         events += _first_above(rows, pushed_at, axis, threshold, f"ignored {axis}")

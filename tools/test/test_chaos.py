@@ -109,6 +109,6 @@ def test_a_motion_without_a_goal_is_a_violation(tmp_path, monkeypatch, speed, li
     gate, log = clients.Gate(), journal.Journal(tmp_path / "journal.log")
     monkeypatch.setattr(gate, "idle_for", lambda: 0.0 if live else 5.0)
     watcher = watch.Watch(None, gate, log)
-    watcher._look({"actual": {"velocity": [0.0, -speed, 0.0, 0.0, 0.0, 0.0]}})
+    watcher._check_state({"actual": {"velocity": [0.0, -speed, 0.0, 0.0, 0.0, 0.0]}})
     assert bool(log.violation) == violated
     log.close()
