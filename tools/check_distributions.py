@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Compiles our sources with another compiler, or against the headers of another ROS distribution.
 
-Without SOURCES the ROS headers are those of the build. With SOURCES, a folder of ROS packages of one distribution as
-they come from their repositories (docs/testing.md lists them), the interface headers are generated with that
-distribution's own rosidl first. Files are compiled with -fsyntax-only -Werror and the options of the build.
+By default the ROS headers of the build are used. SOURCES is a folder with the ROS packages of another distribution
+(docs/testing.md lists them): their headers are used, and the interface headers are first generated with that
+distribution's rosidl. Files are compiled with -fsyntax-only -Werror and the options of the build.
 """
 
 import argparse
@@ -30,12 +30,12 @@ class Package:
         self.depends = {element.text for element in document if element.tag.endswith("depend")}
 
     def interfaces(self):
-        """msg/Pose.msg, srv/SetBool.srv, …"""
+        """Returns the interface files, such as msg/Pose.msg."""
         return sorted(str(file.relative_to(self.folder)) for kind in INTERFACES for file in (self.folder / kind).glob(f"*.{kind}"))
 
 
 def find_packages(folder):
-    """{name: package}, those with interfaces after the packages that they use."""
+    """Returns {name: package}; packages with interfaces come after those whose interfaces they use."""
     found = {package.name: package for package in map(Package, sorted(path.parent for path in folder.glob("*/package.xml")))}
     ordered = {}
 
@@ -51,7 +51,7 @@ def find_packages(folder):
 
 
 class Headers:
-    """The headers of a distribution: those in the repositories, and those that its build generates."""
+    """The headers of a distribution: those in its repositories and the generated ones."""
 
     def __init__(self, sources, output):
         self.ros = find_packages(sources)
@@ -81,7 +81,7 @@ class Headers:
         return [*own, self.output / "include"]
 
     def replaces(self, folder):
-        """Whether `folder` of the build has interfaces that are generated here: installed, or in the build of their package."""
+        """Returns whether an include folder of the build contains interface headers that are generated here."""
         return pathlib.Path(folder).name in (*self._ours, "rosidl_generator_cpp")
 
     def _run(self, *command):
@@ -93,7 +93,7 @@ class Headers:
         file.write_text(text)
 
     def _write_version(self, package):
-        """As ament_generate_version_header() does."""
+        """Writes version.h as ament_generate_version_header() does."""
         cmake = package.folder / "CMakeLists.txt"
         if cmake.exists() and "ament_generate_version_header" in cmake.read_text():
             parts = zip(("MAJOR", "MINOR", "PATCH"), package.version.split("."))
@@ -101,7 +101,7 @@ class Headers:
                 f"#define {package.name.upper()}_VERSION_{part} ({number})\n" for part, number in parts))
 
     def _write_logging_macros(self):
-        """rcutils/logging_macros.h is a template up to Kilted, an ordinary header later."""
+        """Writes rcutils/logging_macros.h, which is a template up to Kilted and an ordinary header later."""
         folder = self.ros["rcutils"].folder
         template = folder / "resource" / "logging_macros.h.em"
         if template.exists():
@@ -129,7 +129,7 @@ class Headers:
             self._write(f"{package.name}/msg/{name}", text.replace("@PROJECT_NAME_UPPER@", package.name.upper()))
 
     def _call(self, generator, package, output, **arguments):
-        """A generator takes its arguments from a file, as CMake writes it."""
+        """Runs a generator with an argument file like the one that CMake writes."""
         output.mkdir(parents=True, exist_ok=True)
         file = self.output / f"{generator}.json"
         file.write_text(json.dumps({"package_name": package.name, "output_dir": str(output), **arguments}))
@@ -141,7 +141,7 @@ class Headers:
 
 
 def rewrite(command, compiler, prefix, headers):
-    """The build's command with another compiler, and with `headers` in place of those of the ROS `prefix`."""
+    """Returns the build's command with another compiler, and with `headers` instead of those of the ROS `prefix`."""
     words = iter(shlex.split(command)[1:])
     result = [compiler, "-fsyntax-only", "-Werror"]
     for word in words:
@@ -161,7 +161,7 @@ def rewrite(command, compiler, prefix, headers):
 
 
 def commands(build, pattern):
-    """(file, folder, command) of each of our files that the build compiles, once each."""
+    """Returns (file, folder, command) for each of our files that the build compiles."""
     found = {}
     for database in sorted(build.glob("*/compile_commands.json")):
         for entry in json.loads(database.read_text()):
@@ -172,7 +172,7 @@ def commands(build, pattern):
 
 
 def check(compiler, options, headers):
-    """How many files do not compile."""
+    """Returns the number of files that do not compile."""
 
     def compile_file(job):
         file, folder, command = job
@@ -193,14 +193,15 @@ def check(compiler, options, headers):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sources", nargs="?", type=pathlib.Path, help="folder with the ROS packages of a distribution")
-    parser.add_argument("--compiler", action="append", help="may be given several times; default: g++")
+    parser.add_argument("--compiler", action="append", help="compiler; may be repeated (default: g++)")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / ".ur" / "kilted" / "build",
                         help="build folder of colcon with compile_commands.json files (default: %(default)s)")
     parser.add_argument("--prefix", type=pathlib.Path, default=ROOT / ".ur" / "kilted" / "venv",
                         help="prefix of the ROS headers of that build (default: %(default)s)")
-    parser.add_argument("--files", default="", help="regular expression: compile only these")
-    parser.add_argument("--output", type=pathlib.Path, help="folder for generated headers, kept (default: SOURCES-generated)")
-    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
+    parser.add_argument("--files", default="", help="regular expression of the files to compile (default: all)")
+    parser.add_argument("--output", type=pathlib.Path, help="folder for the generated headers, which are kept (default: SOURCES-generated)")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)),
+                        help="parallel jobs (default: all cores)")
     options = parser.parse_args()
     headers = None
     if options.sources:

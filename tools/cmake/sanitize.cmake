@@ -1,10 +1,10 @@
-# Builds our code with a sanitizer: UR_SANITIZE is address (with undefined), undefined or thread. Not the generated interfaces, which
-# are also loaded by an uninstrumented Python; packages of interfaces are compiled as fast as can be.
+# Builds our code with a sanitizer: UR_SANITIZE is address (with undefined), undefined or thread. The generated interfaces are not
+# instrumented, because an uninstrumented Python loads them too; interface packages are optimised for compile time.
 
 if(UR_SANITIZE)
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "_msgs$")
     set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O0 -DNDEBUG")
-    set(CMAKE_C_FLAGS_RELWITHDEBINFO "-O1 -DNDEBUG")  # drops what refers to Python, which programs are linked without
+    set(CMAKE_C_FLAGS_RELWITHDEBINFO "-O1 -DNDEBUG")  # removes references to Python, which programs are not linked with
   else()
     string(REPLACE "address" "address,undefined" ur_sanitizers "${UR_SANITIZE}")
     set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1 -DNDEBUG")

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the checks of the launch files and of the `ros2` lines of the documentation, with the launch and ros2cli of a ROS 2
-installation. The packages of this repository have to be built and sourced; docs/testing.md says how.
+"""Checks the launch files and the `ros2` commands of the documentation with the launch and ros2cli of a ROS 2 installation.
+The packages of this repository must be built and sourced; see docs/testing.md.
 
-    tools/ros_checks/launch_checks.py                        # launch and ros2cli are those of the sourced ROS 2
-    tools/ros_checks/launch_checks.py --prefix <folder>      # they are installed in another prefix, as with the wheels
-    tools/ros_checks/launch_checks.py -k two_robots          # further arguments are pytest's
+    tools/ros_checks/launch_checks.py                        # uses launch and ros2cli of the sourced ROS 2
+    tools/ros_checks/launch_checks.py --prefix <folder>      # uses those of another prefix, as with the wheels
+    tools/ros_checks/launch_checks.py -k two_robots          # passes other arguments to pytest
 """
 
 import argparse
@@ -20,7 +20,7 @@ LAYOUT = {"PATH": "bin", "LD_LIBRARY_PATH": "lib", "AMENT_PREFIX_PATH": "",
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[], help="an installation that is not sourced")
+    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[], help="an installation that is not sourced; may be repeated")
     options, for_pytest = parser.parse_known_args()
     for prefix in options.prefix:
         if not prefix.is_dir():
@@ -29,7 +29,7 @@ def main():
             os.environ[variable] = os.pathsep.join(filter(None, [str(prefix.resolve() / folder).rstrip("/"),
                                                                  os.environ.get(variable, "")]))
     if not shutil.which("ros2"):
-        parser.error("there is no ros2 in PATH: source a ROS 2 installation, or name one with --prefix")
+        parser.error("ros2 is not in PATH: source a ROS 2 installation, or give one with --prefix")
     os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
     os.execvp(sys.executable, [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-v", str(HERE / "launch"), *for_pytest])
 

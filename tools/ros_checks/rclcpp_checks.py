@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Builds the checks in rclcpp/ against an installed ROS 2 and runs them on the installed driver and simulator.
 
-The environment is that of the installation (`source install/setup.bash`); --prefix puts further installations on top of it. What comes
-after `--` goes to the checks, which are GoogleTest's: `-- --gtest_filter=ActionCheck.*`.
+Source the installation first (`source install/setup.bash`); --prefix adds installations on top of it. Arguments after `--` are
+passed to the checks, which use GoogleTest: `-- --gtest_filter=ActionCheck.*`.
 """
 
 import argparse
@@ -21,7 +21,7 @@ PACKAGES = {"rclcpp_action": "share/rclcpp_action", "ur_ros_rtde": "share/ur_ros
 
 
 def overlay(prefixes: List[pathlib.Path]) -> None:
-    """Puts the installations before those of the environment."""
+    """Adds the installations to the environment, before those that are sourced."""
     for prefix in reversed(prefixes):
         python = f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
         for name, folder in (("AMENT_PREFIX_PATH", ""), ("CMAKE_PREFIX_PATH", ""), ("LD_LIBRARY_PATH", "lib"), ("PYTHONPATH", python)):
@@ -62,14 +62,14 @@ def run(checks: pathlib.Path, arguments: List[str], driver_parameters: List[str]
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[], help="installation on top of the environment's")
-    parser.add_argument("--build", type=pathlib.Path, help="build folder to keep (the driver's log goes there, too); default: a temporary one")
+    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[], help="an installation that is not sourced; may be repeated")
+    parser.add_argument("--build", type=pathlib.Path, help="build folder, which is kept and receives the driver's log (default: a temporary folder)")
     parser.add_argument("--driver", metavar="PARAMETER:=VALUE", action="append", default=[], help="parameter of the driver")
     parser.add_argument("checks", nargs="*", help="arguments of the checks")
     options = parser.parse_args()
     overlay([prefix.resolve() for prefix in options.prefix])
     if missing := missing_packages():
-        parser.error(f"not in AMENT_PREFIX_PATH: {', '.join(missing)}; source the installation's setup.bash, or name it with --prefix")
+        parser.error(f"not in AMENT_PREFIX_PATH: {', '.join(missing)}; source the installation's setup.bash, or give it with --prefix")
     with tempfile.TemporaryDirectory() as temporary:
         checks = build(options.build or pathlib.Path(temporary))
         return run(checks, options.checks, options.driver)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that every dependency in a package.xml is a package of a ROS 2 distribution, or a rosdep key with a package for its Ubuntu.
+"""Checks that rosdep resolves every dependency in our package.xml files, for each ROS 2 distribution and its Ubuntu version.
 
     git clone --depth 1 https://github.com/ros/rosdistro
     tools/ros_checks/rosdep_keys.py rosdistro
@@ -39,7 +39,7 @@ def ros_packages(distribution):
 
 
 def ubuntu_package(rule, codename):
-    """The Debian package that a rule names for an Ubuntu; none: there is no such key, or not for this Ubuntu."""
+    """Returns the Debian package of a rosdep rule for an Ubuntu version; None if there is none."""
     found = (rule or {}).get("ubuntu")
     if isinstance(found, dict):
         found = found.get(codename, found.get("*"))

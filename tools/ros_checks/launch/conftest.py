@@ -13,7 +13,7 @@ os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 @pytest.fixture
 def launch():
-    """Starts `ros2 launch`; ends with Ctrl-C."""
+    """Returns a function that starts `ros2 launch`. Each launch is ended with Ctrl-C."""
     launches = []
 
     def start(*arguments):
@@ -27,7 +27,7 @@ def launch():
 
 @pytest.fixture(scope="module")
 def driver():
-    """As in the README."""
+    """The driver, started as in the README."""
     launch = Launch("ur_ros_rtde", "driver.launch.py", "sim:=true")
     ready(launch)
     yield launch

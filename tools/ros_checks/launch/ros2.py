@@ -1,4 +1,4 @@
-"""`ros2` as a user types it."""
+"""Runs `ros2` as a user does."""
 
 import os
 import pathlib
@@ -11,14 +11,14 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 
 
 def ros2(*arguments, limit=60.0):
-    """Exit code and output of a command that ends by itself."""
+    """Runs a command. Returns its exit code and output."""
     result = subprocess.run(["ros2", *map(str, arguments)], capture_output=True, text=True, timeout=limit,
                             env={**os.environ, "PYTHONUNBUFFERED": "1"})
     return result.returncode, result.stdout + result.stderr
 
 
 class Launch:
-    """A `ros2 launch`, and Ctrl-C."""
+    """A running `ros2 launch`. end() sends Ctrl-C."""
 
     def __init__(self, *arguments):
         self.lines = []
@@ -66,7 +66,7 @@ def wait_for(condition, limit, what):
 
 
 def ready(launch, namespace=""):
-    """Waits until the driver takes motion commands."""
+    """Waits until the driver accepts motion commands."""
 
     def state():
         assert launch.running(), launch.output()

@@ -1,4 +1,4 @@
-"""Arguments of the launch files: all are there, wrong ones are refused with one message, given ones reach the nodes."""
+"""Arguments of the launch files: all are declared, wrong ones are refused with one message, given ones reach the nodes."""
 
 import pytest
 from ros2 import ROOT, parameter, ready, ros2
@@ -37,7 +37,7 @@ def test_show_args_lists_all_with_description_and_default(launch_file, arguments
         assert argument.help in said and f"(default: '{argument.default_text}')" in said
 
 
-@pytest.mark.parametrize("given, said_to_be", [
+@pytest.mark.parametrize("given, message", [
     ("tf_prefx:=left_", "driver.launch.py has no launch argument tf_prefx; did you mean tf_prefix?"),
     ("realtime_prio:=40", "did you mean realtime_priority?"),
     ("ur_type:=ur11", 'launch argument ur_type is "ur11", it must be one of: '),
@@ -47,26 +47,26 @@ def test_show_args_lists_all_with_description_and_default(launch_file, arguments
     ("params_file:=/nowhere.yaml", 'params_file is "/nowhere.yaml": the file does not exist'),
     ("on_busy:=refuse", "the address of the robot is missing: set robot_ip:=<address>, or sim:=true"),
 ])
-def test_a_wrong_argument_is_refused_with_one_message_and_nothing_is_started(given, said_to_be):
+def test_a_wrong_argument_is_refused_with_one_message_and_nothing_is_started(given, message):
     code, said = ros2(*DRIVER_FILE, given)
     assert code != 0
-    assert len(errors(said)) == 1 and said_to_be in errors(said)[0], said
+    assert len(errors(said)) == 1 and message in errors(said)[0], said
     assert "process started" not in said
 
 
-@pytest.mark.parametrize("given, said_to_be", [
+@pytest.mark.parametrize("given, message", [
     ("robot_ip:=192.168.0.10", "two_robots.launch.py has no launch argument robot_ip; did you mean "),
     ("right_urcap_port:=50002", 'left_urcap_port and right_urcap_port are both "50002", they must differ'),
     ("left_robot_ip:=192.168.0.10", "the address of the right robot is missing: set right_robot_ip:=<address>"),
     ("on_bussy:=preempt", "did you mean on_busy?"),
 ])
-def test_a_wrong_argument_of_two_robots_is_refused_with_one_message(given, said_to_be):
+def test_a_wrong_argument_of_two_robots_is_refused_with_one_message(given, message):
     code, said = ros2("launch", "ur_ros_rtde", "two_robots.launch.py", given)
     assert code != 0
-    assert len(errors(said)) == 1 and said_to_be in errors(said)[0], said
+    assert len(errors(said)) == 1 and message in errors(said)[0], said
 
 
-def test_moveit_says_what_is_not_installed():
+def test_moveit_names_the_missing_packages():
     code, said = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "sim:=true")
     if "needs packages that are not installed" not in said:
         pytest.skip("MoveIt is installed")
@@ -75,12 +75,12 @@ def test_moveit_says_what_is_not_installed():
     assert "process started" not in said
 
 
-def test_moveit_refuses_what_its_configuration_does_not_have():
+def test_moveit_refuses_arguments_that_its_configuration_does_not_support():
     code, said = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "tf_prefix:=left_")
     assert code != 0 and "moveit.launch.py has no launch argument tf_prefix" in said
 
 
-def test_arguments_of_a_launch_file_around_it_are_not_refused(launch, tmp_path):
+def test_arguments_of_an_including_launch_file_are_not_refused(launch, tmp_path):
     file = tmp_path / "cell.launch.py"
     file.write_text(FOREIGN.replace("ARGUMENTS", "{'sim': 'true', 'sim_ip': '127.0.0.41', 'on_busy': 'preempt'}"))
     started = launch(file, "cell:=two", "rviz:=true", "tf_prefix:=cell_")
@@ -89,7 +89,7 @@ def test_arguments_of_a_launch_file_around_it_are_not_refused(launch, tmp_path):
     assert parameter("/robot_state_receiver", "tf_prefix") == "cell_"
 
 
-def test_a_wrong_argument_passed_by_a_launch_file_around_it_is_refused(tmp_path):
+def test_a_wrong_argument_passed_by_an_including_launch_file_is_refused(tmp_path):
     file = tmp_path / "cell.launch.py"
     file.write_text(FOREIGN.replace("ARGUMENTS", "{'sim': 'true', 'on_bussy': 'preempt'}"))
     code, said = ros2("launch", file, "cell:=two")
@@ -113,7 +113,7 @@ def test_arguments_reach_the_nodes_and_have_priority_over_a_file(launch, tmp_pat
     assert code == 0 and "left_shoulder_pan_joint" in said
 
 
-def test_two_robots_have_names_and_ports_of_their_own_and_share_the_rest(launch):
+def test_two_robots_have_their_own_names_and_ports_and_share_the_other_arguments(launch):
     started = launch("ur_ros_rtde", "two_robots.launch.py", "sim:=true", "left_sim_ip:=127.0.0.43", "right_sim_ip:=127.0.0.44",
                      "on_busy:=preempt", "right_ur_type:=ur5e")
     for side, port, address in (("left", "50002", "127.0.0.43"), ("right", "50003", "127.0.0.44")):
@@ -135,7 +135,7 @@ def test_a_driver_that_cannot_start_ends_the_launch_with_its_reason(launch):
     assert sum("no_such_field" in line for line in started.lines) == 1, started.output()
 
 
-def test_an_occupied_port_for_the_urcap_is_said_with_a_remedy(launch):
+def test_an_occupied_urcap_port_is_reported_with_a_remedy(launch):
     first = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.46", "control_mode:=control_urcap", "urcap_port:=50046")
     first.wait_for("dashboard commands:")
     second = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.47", "control_mode:=control_urcap", "urcap_port:=50046",
@@ -153,7 +153,7 @@ def test_ctrl_c_ends_driver_and_simulator(launch):
     assert "process has died" not in started.output()
 
 
-def test_the_parameter_file_to_copy_is_installed_and_understood(launch, tmp_path):
+def test_a_copy_of_the_parameter_file_is_accepted(launch, tmp_path):
     text = (ROOT / "ur_ros_rtde" / "config" / "driver.yaml").read_text()
     file = tmp_path / "copy.yaml"
     file.write_text(text.replace('robot_ip: ""', 'robot_ip: "127.0.0.49"').replace("stream_gain: 300.0", "stream_gain: 400.0"))

@@ -1,4 +1,4 @@
-"""Every line of the README and of the documentation that begins with `ros2` is understood by the ros2cli that is installed."""
+"""The installed ros2cli accepts every line of the README and the documentation that begins with `ros2`."""
 
 import pathlib
 import re
@@ -11,13 +11,13 @@ from ros2 import ROOT, ros2
 from ur_ros_rtde.launch_arguments import NODES
 
 README = ROOT / "README.md"
-# Dashboard commands switch the robot off: they come last.
+# Dashboard commands power the robot off, so they come last.
 DOCUMENTS = [README, *sorted((ROOT / "docs").glob("*.md")),
              *sorted((ROOT / "docs" / "commands").glob("*.md"), key=lambda file: file.name == "dashboard.md")]
 
 
 def lines(document, verb):
-    """`ros2 <verb> …` of its code without comments; what is quoted may have several lines."""
+    """Returns the commands `ros2 <verb> …` of a document without comments. Quoted arguments may span several lines."""
     text = document.read_text().replace("\\\n", " ")
     found = re.findall(rf'^(ros2 {verb} (?:"[^"]*"|[^"\n])*)$', text, re.M) + re.findall(rf"`(ros2 {verb} [^`]*)`", text)
     return [re.sub(r"\s{2,}#.*", "", line).strip() for line in found]
@@ -75,10 +75,10 @@ def test_services_answer(driver, line, tmp_path):
 
 
 @pytest.mark.parametrize("line", cases("action send_goal"))
-def test_goals_are_understood(driver, line, tmp_path):
-    """Whether they succeed is shown by ur_ros_rtde_commands/test/every_command; here that types and fields are those of the line."""
+def test_goals_are_accepted_or_refused_by_their_server(driver, line, tmp_path):
+    """Checks types and fields of the goals. The tests in ur_ros_rtde_commands/test/every_command check that they succeed."""
     try:
         said = ros2(*arguments(line, tmp_path), limit=20.0)[1]
-    except subprocess.TimeoutExpired as expired:  # a long motion: its client is gone, and the arm stops
+    except subprocess.TimeoutExpired as expired:  # a long motion: the arm stops because its client has exited
         said = (expired.stdout or b"").decode()
     assert "Goal accepted" in said or "Goal was rejected" in said or "control_msgs" in line, said

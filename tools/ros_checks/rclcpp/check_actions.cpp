@@ -20,7 +20,7 @@ namespace {
 
 class ActionCheck : public MotionTest {
  protected:
-  /// The newest refusal of an action, from the latched topic.
+  /// Returns the message of the newest refusal of an action, from the latched topic.
   std::string refusal(const std::string & action)
   {
     std::string message;
@@ -34,7 +34,7 @@ class ActionCheck : public MotionTest {
   }
 
  private:
-  Heard<GoalRefused> refusals_{*node, "goal_refusals", rclcpp::QoS(100).transient_local()};
+  MessageCollector<GoalRefused> refusals_{*node, "goal_refusals", rclcpp::QoS(100).transient_local()};
 };
 
 TEST_F(ActionCheck, GoalSucceedsWithFeedback)

@@ -18,7 +18,7 @@ class FollowJointTrajectoryCheck : public MotionTest {
     follow = action_client<FollowJointTrajectory>(node, "follow_joint_trajectory");
   }
 
-  /// From home, with the base turned by `angle` at the end.
+  /// Returns a trajectory from home that turns the base joint by `angle`.
   FollowJointTrajectory::Goal turn(double angle, int seconds)
   {
     FollowJointTrajectory::Goal goal;

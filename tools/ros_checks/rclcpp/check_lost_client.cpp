@@ -11,7 +11,7 @@ using action_msgs::msg::GoalStatus;
 
 namespace {
 
-/// The program moving_client, which has the arm moving when the constructor is done.
+/// Runs the program moving_client. The arm moves when the constructor returns.
 class MovingClient {
  public:
   MovingClient()
@@ -58,7 +58,7 @@ class LostClientCheck : public MotionTest {
                                                   : GoalStatus::STATUS_UNKNOWN;
   }
 
-  /// s from the end of the client to standstill.
+  /// Returns the time from the end of the client to standstill, s.
   double time_to_standstill(int signal)
   {
     MovingClient client;
@@ -67,17 +67,17 @@ class LostClientCheck : public MotionTest {
     const auto begin = std::chrono::steady_clock::now();
     client.end(signal);
     EXPECT_TRUE(eventually([&] { return arm.at_rest(); }, motion_limit))
-        << "the arm moves on without its client";
+        << "the arm continues to move without its client";
     const double time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     RecordProperty("standstill_after_s", std::to_string(time));
     std::printf("standstill %.2f s after signal %d\n", time, signal);
-    EXPECT_FALSE(arm.at({3.0, -1.57, 1.57, -1.57, -1.57, 0.0})) << "the goal ran to its end";
+    EXPECT_FALSE(arm.at({3.0, -1.57, 1.57, -1.57, -1.57, 0.0})) << "the goal was completed";
     EXPECT_TRUE(eventually([&] { return newest_status() == GoalStatus::STATUS_ABORTED; }));
     return time;
   }
 
-  Heard<action_msgs::msg::GoalStatusArray> statuses{*node, "move_j/_action/status",
-                                                    rclcpp::QoS(1).transient_local()};
+  MessageCollector<action_msgs::msg::GoalStatusArray> statuses{*node, "move_j/_action/status",
+                                                               rclcpp::QoS(1).transient_local()};
 };
 
 TEST_F(LostClientCheck, TerminatedClientLeavesTheArmAtRest)

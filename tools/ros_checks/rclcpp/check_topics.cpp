@@ -19,21 +19,21 @@ namespace {
 
 class TopicCheck : public ClientTest {
  protected:
-  /// What a subscription gets that is made long after the message was sent.
+  /// Returns the message that a late subscription receives.
   template <typename Message>
   Message latched(const std::string & topic)
   {
-    const Heard<Message> heard(*node, topic, rclcpp::QoS(1).transient_local());
+    const MessageCollector<Message> heard(*node, topic, rclcpp::QoS(1).transient_local());
     if (!eventually([&] { return heard.count() > 0; })) {
-      throw std::runtime_error("nothing heard on " + topic);
+      throw std::runtime_error("no message on " + topic);
     }
     return *heard.newest();
   }
 
-  /// Subscribes to joint_states and returns whether more than 100 messages come.
-  bool gets_joint_states(const rclcpp::QoS & qos)
+  /// Subscribes to joint_states. Returns whether more than 100 messages are received.
+  bool receives_joint_states(const rclcpp::QoS & qos)
   {
-    const Heard<JointState> heard(*node, "joint_states", qos);
+    const MessageCollector<JointState> heard(*node, "joint_states", qos);
     if (!eventually([&] { return heard.count() > 100; })) {
       return false;
     }
@@ -48,15 +48,15 @@ class TopicCheck : public ClientTest {
 
 TEST_F(TopicCheck, JointStatesReachAReliableSubscription)
 {
-  EXPECT_TRUE(gets_joint_states(rclcpp::QoS(10)));
+  EXPECT_TRUE(receives_joint_states(rclcpp::QoS(10)));
 }
 
 TEST_F(TopicCheck, JointStatesReachABestEffortSubscription)
 {
-  EXPECT_TRUE(gets_joint_states(rclcpp::SensorDataQoS()));
+  EXPECT_TRUE(receives_joint_states(rclcpp::SensorDataQoS()));
 }
 
-TEST_F(TopicCheck, SubscriptionThatWantsLatchedJointStatesIsToldThatItGetsNone)
+TEST_F(TopicCheck, TransientLocalSubscriptionToJointStatesIsReportedAsIncompatible)
 {
   const auto incompatible = std::make_shared<std::atomic<int>>(RMW_QOS_POLICY_INVALID);
   rclcpp::SubscriptionOptions options;

@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 constexpr auto reply_limit = 10s;
 constexpr auto motion_limit = 30s;
 
-/// Waits for a condition that another thread brings about.
+/// Waits for a condition that another thread changes. Returns false after the limit.
 inline bool eventually(const std::function<bool()> & condition, std::chrono::nanoseconds limit = reply_limit)
 {
   const auto deadline = std::chrono::steady_clock::now() + limit;
@@ -43,11 +43,11 @@ auto value_of(Future future, std::chrono::nanoseconds limit = reply_limit)
   return future.get();
 }
 
-/// What a subscription has heard. May be destroyed while the executor spins.
+/// Keeps the messages of a subscription. May be destroyed while the executor spins.
 template <typename Message>
-class Heard {
+class MessageCollector {
  public:
-  Heard(rclcpp::Node & node, const std::string & topic, const rclcpp::QoS & qos)
+  MessageCollector(rclcpp::Node & node, const std::string & topic, const rclcpp::QoS & qos)
       : subscription_(node.create_subscription<Message>(
             topic, qos, [state = state_](typename Message::ConstSharedPtr message) {
               const std::lock_guard lock(state->mutex);
@@ -81,13 +81,13 @@ class Heard {
   typename rclcpp::Subscription<Message>::SharedPtr subscription_;
 };
 
-/// The arm as `joint_states` shows it.
+/// The state of the arm according to `joint_states`.
 class Arm {
  public:
   explicit Arm(rclcpp::Node & node) : states_(node, "joint_states", rclcpp::SensorDataQoS()) {}
 
   sensor_msgs::msg::JointState::ConstSharedPtr newest() const { return states_.newest(); }
-  /// rad/s, of the fastest joint.
+  /// Returns the speed of the fastest joint, rad/s.
   double speed() const
   {
     double fastest = 0.0;
@@ -107,10 +107,10 @@ class Arm {
   }
 
  private:
-  Heard<sensor_msgs::msg::JointState> states_;
+  MessageCollector<sensor_msgs::msg::JointState> states_;
 };
 
-/// A node whose executor spins in a thread.
+/// A node with an executor that spins in a thread.
 class ClientTest : public ::testing::Test {
  protected:
   ClientTest()
@@ -130,7 +130,7 @@ class ClientTest : public ::testing::Test {
   std::thread thread;
 };
 
-/// One goal of an action, from its request to its result.
+/// A goal of an action, from its request to its result.
 template <typename Action>
 class SentGoal {
  public:

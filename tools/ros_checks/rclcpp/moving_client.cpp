@@ -1,4 +1,4 @@
-// Sends a long motion and waits for its end: a client to be killed. Says "moving" when the arm moves.
+// A client to be killed: sends a long motion and waits for its end. Prints "moving" when the arm moves.
 
 #include <cstdio>
 #include <rclcpp/rclcpp.hpp>
@@ -21,9 +21,9 @@ int main(int argc, char ** argv)
   goal.speed = 0.1;
   goal.acceleration = 1.0;
   Client::SendGoalOptions options;
-  options.feedback_callback = [said = false](auto, auto feedback) mutable {
-    if (!said && feedback->motion.progress > 0.01) {
-      said = true;
+  options.feedback_callback = [printed = false](auto, auto feedback) mutable {
+    if (!printed && feedback->motion.progress > 0.01) {
+      printed = true;
       std::puts("moving");
       std::fflush(stdout);
     }
