@@ -1,4 +1,4 @@
-"""./ur bench: what its figures of a stream say, and a short run."""
+"""./ur bench: the figures of a stream, and a short run."""
 
 import os
 import re
@@ -17,23 +17,23 @@ CYCLES = {number: 2 * MS * number for number in range(1000)}
 
 
 def answered(late=lambda number: 0.0):
-    """A target 0.3 ms after each package, and as many ms later."""
+    """Returns a target 0.3 ms after each package, delayed by `late` ms."""
     return [(number, int(when + (0.3 + late(number)) * MS)) for number, when in CYCLES.items()]
 
 
-def test_a_stream_that_answers_each_package_is_off_nothing():
+def test_a_stream_that_answers_each_package_has_no_deviations():
     found = figures(answered(), CYCLES, 1.0)
     assert found["answer p50"] == found["answer p99.9"] == pytest.approx(0.3)
     assert [found[name] for name in ("off package", "off 2 ms", "cycles off 2 ms", "not once a cycle")] == [0.0] * 4
 
 
-def test_a_late_target_is_the_drivers():
+def test_a_late_target_is_attributed_to_the_driver():
     found = figures(answered(lambda number: 0.5 if number % 100 == 50 else 0.0), CYCLES, 1.0)
     assert found["off package"] == found["off 2 ms"] == pytest.approx(2.0, abs=0.01)  # the intervals on both sides of 1 %
     assert found["cycles off 2 ms"] == 0.0 and found["answer p99.9"] == pytest.approx(0.8)
 
 
-def test_a_late_package_is_the_controllers():
+def test_a_late_package_is_attributed_to_the_controller():
     late = {number: when + (MS if number % 100 == 50 else 0) for number, when in CYCLES.items()}
     found = figures([(number, when + 300_000) for number, when in late.items()], late, 1.0)
     assert found["cycles off 2 ms"] == found["off 2 ms"] == pytest.approx(2.0, abs=0.01)
@@ -57,7 +57,7 @@ def bench(*arguments):
 
 
 def test_a_short_stream_is_measured():
-    # Ten times slower, so that other tests beside this one do not look like a dead link.
+    # At a tenth of the speed, so that parallel tests do not cause the loss of a link.
     result = bench("--stream", "--seconds", "1", "--real-time-factor", "0.1", "--let-sleep", "--address",
                    os.environ.get("UR_TEST_ADDRESS", "127.0.1.203"))
     assert result.returncode == 0, result.stdout + result.stderr
@@ -67,6 +67,6 @@ def test_a_short_stream_is_measured():
     assert "servo stream, real-time" in result.stdout or "this user may not have it" in result.stdout
 
 
-def test_the_robots_time_is_for_the_stream_alone():
+def test_a_real_time_factor_is_for_the_stream_only():
     result = bench("--real-time-factor", "0.5")
     assert result.returncode == 2 and "--real-time-factor needs --stream" in result.stderr

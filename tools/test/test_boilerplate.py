@@ -1,4 +1,4 @@
-"""Commands stay short. A command that may be longer stands here with its limit, which may only become lower."""
+"""Limits the length of commands. Longer commands have their own limits, which may only be lowered."""
 
 import statistics
 
@@ -7,11 +7,11 @@ from ur_tools import boilerplate
 
 LONG = {
     "execute_cartesian_path": 45,  # plans in two steps: path, then its timing
-    "execute_parametrized_trajectory": 40,  # looks at a message of another package
+    "execute_parametrized_trajectory": 40,  # checks a message of another package
     "execute_trajectory": 28,
-    "follow_joint_trajectory": 245,  # MoveIt's action has other results and tolerances: it does without the base class
+    "follow_joint_trajectory": 245,  # has other results and tolerances, and does not use the base class
 }
-SLACK = 10  # lines, within which an entry of LONG need not follow
+SLACK = 10  # lines that an entry of LONG may exceed the length of its command by
 
 COMMANDS = boilerplate.commands()
 
@@ -42,14 +42,14 @@ def test_the_typical_command_is_short(dashboard, target):
     assert statistics.median(lines) <= target
 
 
-def test_a_long_command_is_one_that_is_known():
+def test_only_known_commands_are_long():
     too_long = [f"{command.name}: {command.lines:g} lines, {LONG.get(command.name, command.target)} at most"
                 for command in COMMANDS if command.lines > LONG.get(command.name, command.target)]
     assert not too_long, "\n".join(too_long)
 
 
-def test_the_list_of_long_commands_is_as_short_as_it_can_be():
+def test_the_limits_of_long_commands_are_tight():
     lines = {command.name: command for command in COMMANDS}
     needless = [name for name, most in LONG.items() if name not in lines or lines[name].lines <= lines[name].target
                 or lines[name].lines < most - SLACK]
-    assert not needless, "take out, or lower: " + ", ".join(needless)
+    assert not needless, "remove or lower: " + ", ".join(needless)

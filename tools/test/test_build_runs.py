@@ -1,4 +1,4 @@
-"""`./ur build` with a program in place of colcon: in a path with spaces, interrupted and run again, failing."""
+"""./ur build with a fake colcon: in a path with spaces, interrupted and repeated, failing."""
 
 import sys
 
@@ -36,7 +36,7 @@ for name in names:
 
 @pytest.fixture
 def state(tmp_path, monkeypatch):
-    """The .ur of a checkout in a path with spaces."""
+    """The folder .ur of a checkout in a path with spaces."""
     state = tmp_path / "a path with spaces" / ".ur"
     monkeypatch.setattr("ur_tools.layout.STATE", state)
     monkeypatch.setattr(build, "STATE", state)
@@ -45,7 +45,7 @@ def state(tmp_path, monkeypatch):
 
 @pytest.fixture
 def layout(state, monkeypatch):
-    """A checkout with everything but a build."""
+    """A checkout in which everything is set up and nothing is built."""
     monkeypatch.setattr(build, "Lock", lambda name: lock.Lock(name, state))
     monkeypatch.setattr(system_packages, "absent", list)
     monkeypatch.setattr(venv, "is_current", lambda _: True)
@@ -85,7 +85,7 @@ def test_the_times_of_a_build_are_kept_for_the_next_forecast(layout):
     assert steps == 4 and seconds < 30.0
 
 
-def test_an_interrupted_build_goes_on_where_it_was(layout, monkeypatch):
+def test_an_interrupted_build_is_continued(layout, monkeypatch):
     trouble(layout, "hangs")
     update = build.Progress.update
 
@@ -103,7 +103,7 @@ def test_an_interrupted_build_goes_on_where_it_was(layout, monkeypatch):
     assert calls(layout) == [names, names[2:]]
 
 
-def test_a_failure_shows_what_failed_and_the_next_run_goes_on_there(layout):
+def test_a_failure_shows_its_reason_and_the_next_build_continues_there(layout):
     trouble(layout, "a.cpp:1: error: oh no")
     with pytest.raises(say.Failure, match="did not build(.|\n)*FAILED: a.o\na.cpp:1: error: oh no"):
         build.build(build.Options(layout))
@@ -118,7 +118,7 @@ def test_a_disk_that_is_full_is_named(layout):
         build.build(build.Options(layout))
 
 
-def test_an_interrupted_installation_of_the_wheels_goes_on_in_the_same_environment(state, monkeypatch):
+def test_an_interrupted_installation_of_the_wheels_is_continued_in_the_same_environment(state, monkeypatch):
     layout = Layout("kilted")
     python = layout.venv / "bin" / "python"
     assert state in python.parents

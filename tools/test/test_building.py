@@ -1,4 +1,4 @@
-"""What `./ur build` says before and while it builds, and what it makes of a disk that is full or not writable."""
+"""./ur build: forecast, progress, locks, and a disk that is full or not writable."""
 
 import errno
 import subprocess
@@ -137,7 +137,7 @@ def test_a_rebuild_says_how_long_at_most_and_how_long_last_time(layout):
     assert text == "Builds 1 package, at most 1 min on 2 cores (last time 15 s)"
 
 
-def test_nothing_is_said_when_everything_is_built(layout, monkeypatch, capsys):
+def test_there_is_no_output_when_everything_is_built(layout, monkeypatch, capsys):
     monkeypatch.setattr(build, "_pending", lambda *_: (build.Pending([], False, False, []), None))
     build.build(build.Options(layout))
     assert capsys.readouterr().out == ""
@@ -150,7 +150,7 @@ def test_an_unknown_package_is_refused_before_anything_is_set_up(layout, monkeyp
 
 
 @pytest.mark.parametrize("cores, gigabytes, jobs", [(2, 8, 2), (8, 4, 4), (1, 2, 1), (4, 0.5, 1)])
-def test_there_are_no_more_jobs_than_the_memory_is_enough_for(monkeypatch, cores, gigabytes, jobs):
+def test_the_memory_limits_the_number_of_jobs(monkeypatch, cores, gigabytes, jobs):
     monkeypatch.setattr(build.os, "sched_getaffinity", lambda _: set(range(cores)))
     monkeypatch.setattr(build.os, "sysconf", lambda name: 4096 if name == "SC_PAGE_SIZE" else int(gigabytes * 1e9 / 4096) + 1)
     assert build.default_jobs() == jobs
@@ -227,7 +227,7 @@ with Lock("build", pathlib.Path({folder!r})):
 """
 
 
-def test_the_second_waits_and_names_the_first(tmp_path, monkeypatch):
+def test_a_second_build_waits_and_names_the_first(tmp_path, monkeypatch):
     code = HOLDER.format(path=sys.path, folder=str(tmp_path))
     first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     said = []
@@ -256,7 +256,7 @@ def test_a_lock_is_free_after_its_holder_was_killed(tmp_path, monkeypatch):
         pass
 
 
-def test_a_lock_whose_file_was_removed_meanwhile_is_taken_anew(tmp_path, monkeypatch):
+def test_a_lock_whose_file_was_removed_in_the_meantime_is_acquired_again(tmp_path, monkeypatch):
     taken = lock.Lock("build", tmp_path)
     lock_file = lock.Lock._lock
 

@@ -1,4 +1,4 @@
-"""./ur chaos: a short run, and that it notices what must not be."""
+"""./ur chaos: a short run, and the detection of violations."""
 
 import itertools
 import os
@@ -39,7 +39,7 @@ def test_a_short_run_finds_nothing():
 
 
 def driver_of(process, log):
-    """The process id of the driver, as the journal tells it."""
+    """Returns the process id of the driver from the journal."""
     deadline = time.monotonic() + 60.0
     while True:
         found = re.search(r"the driver is process (\d+)", log.read_text() if log.exists() else "")
@@ -88,7 +88,7 @@ def test_goals_that_are_drawn_fit_their_actions():
         mix.next().message()
 
 
-def test_what_grows_after_the_warm_up_is_named():
+def test_resources_that_grow_after_the_warm_up_are_named():
     loads = watch.Loads(os.getpid())
     loads.samples = [(0.0, 50 + 2 * number, 20, 60.0) for number in range(40)]
     assert loads.verdict() == ["descriptors grew from 70 to 110"]
@@ -96,7 +96,7 @@ def test_what_grows_after_the_warm_up_is_named():
     assert loads.verdict() == []
 
 
-def test_memory_tells_nothing_with_a_sanitizer():
+def test_memory_is_not_compared_with_a_sanitizer():
     samples = [(0.0, 50, 20, 60.0 + 5.0 * number) for number in range(40)]
     for sanitizer, grown in ((False, ["memory (MB) grew from 110 to 210"]), (True, [])):
         loads = watch.Loads(os.getpid(), keeps_freed_memory=sanitizer)

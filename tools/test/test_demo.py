@@ -1,4 +1,4 @@
-"""The demo as its user runs it, but for the build: pushes ignored, contact stops, both files written."""
+"""./ur demo without the build: pushes are ignored, the contact stops the arm, and both files are written."""
 
 import csv
 import os
@@ -53,7 +53,7 @@ def test_two_pushes_are_ignored_and_the_contact_stops_the_arm(tmp_path):
     assert max(abs(float(rows[-1][joint])) for joint in ("shoulder_lift", "elbow", "wrist_1")) < 0.01
 
 
-def test_the_first_motions_of_the_readme_work_on_what_the_demo_leaves(tmp_path):
+def test_the_first_motions_of_the_readme_work_while_the_demo_keeps_running(tmp_path):
     address = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
     shell = {**os.environ, **workspace_environment(Layout.of_environment())}
     running = Process([*COMMAND, "--address", address, "--keep-running", "--output", tmp_path], environment())
@@ -84,7 +84,7 @@ def test_another_simulator_on_the_address_is_left_alone(tmp_path):
         simulator.wait(20.0)
 
 
-def test_what_the_demo_imports_is_built_for_it():
+def test_the_packages_that_the_demo_imports_are_built():
     built = packages.with_dependencies(packages.discover(), PACKAGES)
     used = set()
     for file in (ROOT / "demo").glob("*.py"):

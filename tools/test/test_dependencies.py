@@ -1,4 +1,4 @@
-"""package.xml declares what the build files look for and what the Python files import."""
+"""package.xml declares the packages that build files find and Python files import."""
 
 import ast
 import pathlib
@@ -20,7 +20,7 @@ KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "
         "Git": "git", "nlohmann_json": "nlohmann-json-dev", "tl-expected": "libexpected-dev", "numpy": "python3-numpy",
         "pytest": "python3-pytest", "yaml": "python3-yaml"}
 NOT_DECLARED = {"Threads",  # part of CMake
-                "copp_py", "toppra"}  # solvers that oracle.py compares with, from the Python registry
+                "copp_py", "toppra"}  # solvers that oracle.py compares with
 
 
 def declared(name, kinds):
@@ -40,7 +40,7 @@ def is_test(path):
 
 
 def looked_for(text):
-    """What find_package() looks for, also in a loop over a list, and gmock, which comes with GTest's package file."""
+    """Returns the packages of find_package(), also in a loop over a list, and gmock, which GTest's package file includes."""
     names = set(re.findall(r"find_package\(([\w-]+)", text))
     for variable in re.findall(r"foreach\(dependency IN LISTS (\w+)\)", text):
         names.update(re.search(rf"set\({variable}\s([^)]*)\)", text).group(1).split())
@@ -69,7 +69,7 @@ def test_cmake_packages_are_declared(name):
 @pytest.mark.parametrize("name", PACKAGES)
 def test_imported_python_modules_are_declared(name):
     local = {path.stem for path in files(name, "*.py")} | {path.parent.name for path in files(name, "__init__.py")}
-    local |= {"support", "robot_fixtures"}  # the tests of ur_ros_rtde lend them
+    local |= {"support", "robot_fixtures"}  # modules of the tests of ur_ros_rtde
     for path in files(name, "*.py"):
         known = declared(name, ANY if is_test(path) else RUN)
         assert not undeclared(set(imported(path)) - local - set(sys.stdlib_module_names), known), path

@@ -1,4 +1,4 @@
-"""`./ur doctor`: what it finds, what it says to do, and its status."""
+"""./ur doctor: its findings, advice and exit status."""
 
 import os
 import pathlib

@@ -6,11 +6,11 @@ import subprocess
 import sys
 
 import pytest
-from ur_tools.environment import run_environment
+from ur_tools.environment import FASTDDS_PROFILES, run_environment
 from ur_tools.layout import Layout
 
 PARTICIPANT = "import rclpy; rclpy.init(); rclpy.create_node('reader_of_profiles'); rclpy.shutdown()"
-VARIABLES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
+VARIABLES = tuple(FASTDDS_PROFILES)
 HEARTBEAT = {"FASTDDS_DEFAULT_PROFILES_FILE": "heartbeat_period", "FASTRTPS_DEFAULT_PROFILES_FILE": "heartbeatPeriod"}
 
 

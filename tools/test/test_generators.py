@@ -1,4 +1,4 @@
-"""The interface generators write the same files with wheels/generators, which makes them fast, as without."""
+"""The interface generators write the same files with and without wheels/generators, which makes them fast."""
 
 import json
 import os
@@ -11,13 +11,13 @@ from ur_tools.layout import ROOT
 
 PREFIX = pathlib.Path(sys.prefix)
 FAST = ROOT / "wheels" / "generators"
-BUILD = next(PREFIX.parent.glob("build*/ur_ros_rtde_msgs"))  # which variant's does not matter
+BUILD = next(PREFIX.parent.glob("build*/ur_ros_rtde_msgs"))  # of any variant
 INTERFACES = ["action/MoveL.action", "action/ExecuteTrajectory.action", "msg/ArmState.msg", "srv/GetTcpPose.srv"]
 
 
 @pytest.fixture
 def folder(tmp_path):
-    """The .idl files of some interfaces, in a folder of the test's own."""
+    """A folder with the .idl files of some interfaces."""
     source = BUILD / "rosidl_adapter" / "ur_ros_rtde_msgs"
     for name in INTERFACES:
         idl = pathlib.Path(name).with_suffix(".idl")
@@ -27,7 +27,7 @@ def folder(tmp_path):
 
 
 def generate(folder, generator, output, fast):
-    """All that a generator writes, by name."""
+    """Returns the files that a generator writes: {name: text}."""
     arguments = json.loads((BUILD / f"{generator}__arguments.json").read_text())
     idls = [pathlib.Path(name).with_suffix(".idl") for name in INTERFACES]
     arguments["idl_tuples"] = [f"{folder / 'idl'}:{idl}" for idl in idls]
@@ -55,7 +55,7 @@ def test_the_generated_files_are_the_same(folder, generator):
 
 
 @pytest.mark.parametrize("damage", [b"", b"not a pickle", b"\x80\x04."])
-def test_a_damaged_file_of_what_was_parsed_does_not_matter(folder, damage):
+def test_a_damaged_cache_file_is_ignored(folder, damage):
     plain = generate(folder, "rosidl_generator_cpp", "plain", fast=False)
     for name in INTERFACES:
         (folder / "idl" / name).with_suffix(".parsed").write_bytes(damage)

@@ -1,4 +1,4 @@
-"""`./ur plan`: a plan without a robot, its figure, and what it says to a bad file."""
+"""./ur plan: a plan without a robot, its figure, and the errors of a wrong file."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Ports of a controller on this machine: whether they are free, and which process has them."""
+"""Ports of a simulated controller: whether they are free, and which process uses them."""
 
 import os
 import socket
@@ -25,7 +25,7 @@ sys.stdin.readline()
 
 @pytest.fixture
 def listening():
-    """Starts a process that listens: listening(address, port) is its id."""
+    """Returns a function that starts a process which listens on a port, and returns its id."""
     started = []
 
     def start(address, port):
@@ -59,7 +59,7 @@ def test_a_port_in_use_is_named_with_its_process_and_another_address(listening):
 
 
 def test_a_listener_on_all_addresses_has_the_port_as_well(listening):
-    port = 30098  # none of a controller's: simulators of other tests are running
+    port = 30098  # not used by a controller: simulators of other tests are running
     pid = listening("0.0.0.0", port)
     assert ports.in_use(ADDRESS, [port]) == [port]
     assert ports.holder(ADDRESS, port)[0] == pid
@@ -71,7 +71,7 @@ def test_a_listener_on_another_address_does_not_matter(listening):
 
 
 def test_a_connection_that_is_closing_does_not_matter():
-    """Its port is in TIME_WAIT, which the simulator may reuse."""
+    """Its port is in TIME_WAIT, and the simulator may reuse it."""
     listener = socket.create_server((ADDRESS, 30001), reuse_port=False)
     client = socket.create_connection((ADDRESS, 30001))
     server, _ = listener.accept()
@@ -108,7 +108,7 @@ def test_a_simulator_that_does_not_start_is_not_taken_for_another_on_the_address
 
 
 def refused(*arguments):
-    """What `./ur` says and its status, where setting up or building anything is an error of its own."""
+    """Runs `./ur` with a build that fails the test. Returns its status and stderr."""
     code = (f"import sys; sys.path.insert(0, {str(ROOT / 'tools')!r})\n"
             "from ur_tools import build, main\n"
             "build.build = lambda *_: sys.exit('it builds')\n"

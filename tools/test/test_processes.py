@@ -8,7 +8,7 @@ import pytest
 from ur_tools.processes import Programs, group_is_alive
 from ur_tools.say import Failure
 
-# Ignores the first, polite signals, and has a child that does so too.
+# Ignores SIGINT and SIGTERM, and has a child that also does.
 STUBBORN = """
 import signal, subprocess, sys, time
 for number in (signal.SIGINT, signal.SIGTERM):
@@ -48,7 +48,7 @@ def test_a_program_that_ignores_signals_is_killed_with_its_children(tmp_path):
         assert not group_is_alive(stubborn.process.pid)
 
 
-def test_waiting_ends_at_once_when_a_program_dies_and_shows_its_last_words(tmp_path):
+def test_waiting_fails_at_once_with_the_log_if_a_program_exits(tmp_path):
     with Programs(tmp_path) as programs:
         programs.start("broken", python("import sys; sys.exit('port 30004 is in use')"))
         start = time.monotonic()
@@ -57,7 +57,7 @@ def test_waiting_ends_at_once_when_a_program_dies_and_shows_its_last_words(tmp_p
         assert time.monotonic() - start < 30.0
 
 
-def test_waiting_for_a_condition_that_never_comes_ends_at_its_limit(tmp_path):
+def test_waiting_fails_at_its_limit(tmp_path):
     with Programs(tmp_path) as programs:
         programs.start("sleeper", python("import time; time.sleep(60)"))
         with pytest.raises(Failure, match="waited 0.1 s for the dashboard"):

@@ -1,4 +1,4 @@
-"""`./ur` outside and `ur` inside of `./ur shell` are one program with the same commands."""
+"""`./ur` and, in `./ur shell`, `ur` have the same commands."""
 
 import os
 import pathlib
@@ -13,13 +13,13 @@ from ur_tools.layout import ROOT, Layout
 
 
 def outside(*arguments, cwd=ROOT):
-    """./ur as in a terminal, in which no ROS is found."""
+    """Runs ./ur in an environment without ROS."""
     env = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "AMENT_PREFIX_PATH", CHECKOUT_VARIABLE)}
     return subprocess.run([sys.executable, str(ROOT / "ur"), *arguments], cwd=cwd, env=env, capture_output=True, text=True, timeout=60)
 
 
 def inside(*arguments, cwd=ROOT):
-    """ur in ./ur shell."""
+    """Runs ur in the environment of ./ur shell."""
     return subprocess.run(["ur", *arguments], cwd=cwd, env=workspace_environment(Layout.of_environment()), capture_output=True,
                           text=True, timeout=60)
 
@@ -64,7 +64,7 @@ def test_an_unknown_command_is_explained(command, mentions):
 
 
 def test_the_shell_keeps_its_build(monkeypatch):
-    """Inside `./ur shell --debug`, commands use the debug build."""
+    """In `./ur shell --debug`, commands use the debug build."""
     monkeypatch.setenv("UR_LAYOUT", "jazzy:debug")
     code = "from ur_tools import main; options = main._parse(['build']); print(main._layout(options))"
     env = {**os.environ, "PYTHONPATH": str(pathlib.Path(ROOT, "tools"))}

@@ -1,4 +1,4 @@
-"""What the README names exists, and its commands are understood. The examples it runs are run by ur_ros_rtde_tutorials' tests."""
+"""Files and commands in README.md and CONTRIBUTING.md exist. The tests of ur_ros_rtde_tutorials run the examples."""
 
 import pathlib
 import re
@@ -38,7 +38,7 @@ def test_every_file_in_a_command_exists():
 
 @pytest.mark.parametrize("document", [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))], ids=lambda file: file.stem)
 def test_every_command_of_ur_is_known(document):
-    """`./ur …` anywhere, `ur …` at the beginning of a line or of code."""
+    """Finds `./ur …` anywhere, and `ur …` at the begin of a line or of code."""
     for command in set(re.findall(r"(?:\./ur |^ur |`ur )([a-z]+)\b", document.read_text(), re.M)):
         result = subprocess.run([sys.executable, str(ROOT / "ur"), command, "--help"], capture_output=True, text=True,
                                 timeout=60)

@@ -1,4 +1,4 @@
-"""`./ur test NAME…` and `./ur test --changed`: which tests run."""
+"""./ur test NAME… and ./ur test --changed: the selection of tests."""
 
 import pathlib
 import subprocess
@@ -63,7 +63,7 @@ def repository(root):
 
 
 def collected(root):
-    """Name and file of every test, as collected after a build."""
+    """Returns name and file of every test, as collected after a build."""
     found = {name: root / path for name, path in ALL.items()}
     for package, folder in selection.test_folders(packages.discover(root), root).items():
         found.update({f"{package}: {path.stem}": path for path in folder.rglob("test_*.py")})
@@ -102,11 +102,11 @@ def affected(root, *names):
     ("goal_test", ["driver: goals"]),
     ("tools", ["tools: test_demo", "tools: test_readme", "tools: test_say"]),
 ])
-def test_a_name_chooses_packages_files_and_cases(root, word, expected):
+def test_a_name_selects_packages_files_and_cases(root, word, expected):
     assert chosen(root, named(root, word)) == expected
 
 
-def test_several_names_choose_what_any_of_them_chooses(root):
+def test_several_names_select_the_union(root):
     assert chosen(root, named(root, "test_node", "StopTest")) == ["driver: robot.StopTest.KeepsItsLine", "driver: test_node"]
 
 
@@ -150,13 +150,13 @@ def test_the_tests_of_this_checkout_have_names():
     ("LICENSE", []),
     (".gitignore", []),
 ])
-def test_a_changed_file_chooses_what_it_can_affect(root, changed, expected):
+def test_a_changed_file_selects_the_tests_that_it_can_affect(root, changed, expected):
     assert chosen(root, affected(root, changed)) == expected
 
 
 @pytest.mark.parametrize("changed", ["messages/action/Move.action", "wheels/kilted.txt", "tools/cmake/sanitize.cmake",
                                      "a_new_folder/file"])
-def test_what_everything_depends_on_chooses_everything(root, changed):
+def test_a_file_that_everything_depends_on_selects_all_tests(root, changed):
     assert chosen(root, affected(root, changed)) == sorted(collected(root))
 
 
@@ -165,7 +165,7 @@ def test_a_removed_test_is_not_run(root):
     assert affected(root, "tools/test/test_say.py").packages == []
 
 
-def test_changes_are_those_since_the_common_commit_and_what_is_not_committed(repository):
+def test_changes_are_counted_from_the_merge_base_with_uncommitted_ones(repository):
     root, git = repository
     git("checkout", "-qb", "work")
     (root / "driver/src/stop.cpp").write_text("// committed\n")
@@ -187,7 +187,7 @@ def test_a_renamed_file_counts_with_both_names(repository):
     assert selection.changed_files("HEAD", root) == ["driver_cli/test/test_call.py", "driver_cli/test/test_cli.py"]
 
 
-def test_the_default_base_is_origin_main_where_there_is_one(repository):
+def test_the_default_base_is_origin_main_if_it_exists(repository):
     root, git = repository
     assert selection.default_base(root) == "HEAD"
     git("update-ref", "refs/remotes/origin/main", "HEAD")
@@ -226,7 +226,7 @@ def test_names_and_changed_exclude_each_other(capsys):
     assert "names or --changed, not both" in capsys.readouterr().err
 
 
-def test_a_collected_test_is_chosen_by_its_program_or_its_file():
+def test_a_test_has_the_path_of_its_program_or_file():
     program = testing.Test("driver: robot.StopTest.x", ["build/test_stop", "--gtest_filter=StopTest.x"], pathlib.Path(), 1.0)
     file = testing.Test("driver: test_node", ["python", "-m", "pytest", "driver/test/test_node.py"], pathlib.Path(), 1.0)
     assert program.path.stem == "test_stop" and file.path.name == "test_node.py"

@@ -1,4 +1,4 @@
-"""Where ur_rtde_vendor takes the sources of ur_rtde from, how it verifies them, and what it says when that fails."""
+"""ur_rtde_vendor: the source archive of ur_rtde, its verification and the error messages."""
 
 import pathlib
 import subprocess
@@ -46,7 +46,7 @@ def pack(unpacked: pathlib.Path, archive: pathlib.Path, root: str, leave_out=())
     return archive
 
 
-def test_an_archive_packed_in_another_way_is_taken(configure, unpacked, tmp_path):
+def test_an_archive_with_another_layout_is_accepted(configure, unpacked, tmp_path):
     code, said = configure(pack(unpacked, tmp_path / "ur_rtde-v1.6.5.tar.xz", "ur_rtde-v1.6.5", ("tcp_socket.cpp",)))
     assert code == 0, said
     sources = tmp_path / "build" / "source" / "ur_rtde"

@@ -1,4 +1,4 @@
-"""What colcon and rosdep find when this checkout lies in a workspace: the packages, and nothing else."""
+"""In a workspace, colcon and rosdep find exactly the packages of this checkout."""
 
 import argparse
 import pathlib
@@ -13,7 +13,7 @@ from ur_tools.layout import ROOT
 
 
 def checkout(folder: pathlib.Path) -> pathlib.Path:
-    """What `git clone` would write: tracked and new files, without what is built here."""
+    """Copies tracked and new files, as `git clone` would, without build results."""
     files = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True,
                            text=True, check=True).stdout.split("\n")
     for name in filter(None, files):
@@ -32,7 +32,7 @@ def workspace(tmp_path_factory):
 
 
 def colcon_list(folder):
-    """The names of the packages that `colcon build` finds from there."""
+    """Returns the names of the packages that `colcon build` finds in a folder."""
     parser = argparse.ArgumentParser()
     package_discovery.add_package_discovery_arguments(parser)
     found = package_discovery.discover_packages(parser.parse_args(["--base-paths", str(folder)]),
@@ -50,8 +50,8 @@ def test_rosdep_finds_exactly_the_packages(workspace):
 
 
 @pytest.mark.parametrize("name", sorted(packages.discover(ROOT)))
-def test_ros2_finds_the_package_also_where_each_is_installed_by_itself(name):
-    """`source install/setup.bash` of a workspace that was built without --merge-install."""
+def test_ros2_finds_the_package_in_an_isolated_installation(name):
+    """A workspace that was built without --merge-install."""
     share = pathlib.Path(get_package_share_directory(name))
     hooks = [share / "environment" / "ament_prefix_path.dsv", share / "hook" / "ament_prefix_path.dsv"]
     assert any(hook.is_file() for hook in hooks), f"nothing in {share} adds the package to AMENT_PREFIX_PATH"

@@ -1,4 +1,4 @@
-"""docs/writing_a_plugin.md, done as it says, in a folder of its own."""
+"""Follows docs/writing_a_plugin.md step by step in a temporary workspace."""
 
 import os
 import pathlib
@@ -22,9 +22,9 @@ def environment():
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
-    """The folder, and what the blocks printed."""
+    """Returns the folder and the output of each block."""
     folder = tmp_path_factory.mktemp("reader")
-    # As in a terminal: job control, and each block begins when the one before has had its effect.
+    # As in a terminal, with job control. The next block begins when the driver is ready.
     script = "set -em\ntrap 'kill %1 %2 2> /dev/null || true' EXIT\n"
     for number, block in enumerate(BLOCKS):
         script += f"echo '=== {number}'\n{block}" + (READY if "driver --ros-args" in block else "")
@@ -36,7 +36,7 @@ def done(tmp_path_factory):
 
 
 def output(done, command):
-    """What the block with this command printed."""
+    """Returns the output of the block with this command."""
     return next(text for block, text in zip(BLOCKS, done[1]) if command in block)
 
 
@@ -96,12 +96,12 @@ def test_a_given_description_needs_no_change_of_a_file(tmp_path, kind, to_change
 
 
 @pytest.mark.parametrize("name, mentions", [("Bad", "lower case"), ("a__b", "single underscores"), ("part_2", "part2")])
-def test_a_name_that_ros_would_not_take_is_refused_with_the_reason(tmp_path, name, mentions):
+def test_an_invalid_name_is_refused_with_the_reason(tmp_path, name, mentions):
     result = subprocess.run([str(ROOT / "ur"), "new", "command", name], cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert result.returncode == 1 and mentions in result.stderr and not list(tmp_path.iterdir())
 
 
-def test_a_package_that_is_there_is_left_alone(tmp_path):
+def test_an_existing_package_is_not_overwritten(tmp_path):
     for expected in (0, 1):
         result = subprocess.run([str(ROOT / "ur"), "new", "command", "wag"], cwd=tmp_path, capture_output=True, text=True,
                                 timeout=60)

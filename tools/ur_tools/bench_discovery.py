@@ -5,7 +5,7 @@ import subprocess
 from typing import Dict
 
 from . import cell, say
-from .environment import run_environment
+from .environment import FASTDDS_PROFILES, run_environment
 from .layout import ROOT, Layout
 from .processes import Program, Programs
 
@@ -22,7 +22,7 @@ def actions(driver: Program) -> str:
 def measure(layout: Layout, address: str, killed: int, clients: int) -> Dict[str, float]:
     """Returns median and maximum, s. No robot is needed. As with most users, the clients have no Fast DDS profile."""
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
-    for variable in ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE"):
+    for variable in FASTDDS_PROFILES:
         env.pop(variable, None)
     with Programs(layout.log / "bench") as programs:
         driver = cell.start_node(programs, layout, env, "driver", address)

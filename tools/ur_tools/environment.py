@@ -15,6 +15,9 @@ FOREIGN = ("RMW_IMPLEMENTATION", "ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSIO
            "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "COLCON_DEFAULTS_FILE", "PYTHONPATH", "LD_LIBRARY_PATH",
            "_ROS_WHEELS_BOOTSTRAP_COMPLETE", "UR_CHECKOUT")
 
+# The variable that selects a profile, with our profile, for Fast DDS 3 and Fast DDS 2.
+FASTDDS_PROFILES = {"FASTDDS_DEFAULT_PROFILES_FILE": "fastdds.xml", "FASTRTPS_DEFAULT_PROFILES_FILE": "fastrtps.xml"}
+
 
 def _path(*parts: object) -> str:
     return os.pathsep.join(str(part) for part in parts if part)
@@ -68,9 +71,8 @@ def run_environment(layout: Layout) -> Dict[str, str]:
 
 def _set_fastdds_profile(env: Dict[str, str], layout: Layout) -> None:
     """Sets the Fast DDS profile for the user's programs; ours set it themselves. Only the installed version's profile exists."""
-    profiles = {"FASTDDS_DEFAULT_PROFILES_FILE": "fastdds.xml", "FASTRTPS_DEFAULT_PROFILES_FILE": "fastrtps.xml"}
-    if not any(variable in env for variable in profiles):
-        for variable, name in profiles.items():
+    if not any(variable in env for variable in FASTDDS_PROFILES):
+        for variable, name in FASTDDS_PROFILES.items():
             file = layout.install / "share" / "ur_ros_rtde" / "config" / name
             if file.is_file():
                 env[variable] = str(file)
