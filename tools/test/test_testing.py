@@ -31,6 +31,14 @@ def test_a_crash_after_passed_cases_is_a_failure(tmp_path):
     assert runner.read_cases(report, False) == (1, ["failed after its last case"])
 
 
+def test_files_of_the_same_name_have_different_test_names(tmp_path):
+    for folder in ("typed", "nodes"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "test_shutdown.py").write_text("")
+    found = testing._pytest(Layout.of_environment(), "driver", tmp_path)
+    assert [test.name for test in found] == ["driver: nodes/test_shutdown", "driver: typed/test_shutdown"]
+
+
 def result(command, failures):
     return runner.Result(runner.Test("a: test", command, pathlib.Path(), 1.0), 3, failures, 1.0, 0.1, "")
 

@@ -64,7 +64,7 @@ def _ctest(layout: Layout, package: Package) -> List[Test]:
 def _pytest(layout: Layout, name: str, folder: pathlib.Path) -> List[Test]:
     # Without the cache provider, which writes into the sources.
     command = [str(layout.python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "--color=no", "-ra", "--disable-warnings"]
-    return [Test(f"{name}: {file.stem}", [*command, str(file)], ROOT, PYTEST_LIMIT)
+    return [Test(f"{name}: {file.relative_to(folder).with_suffix('')}", [*command, str(file)], ROOT, PYTEST_LIMIT)
             for file in sorted(folder.rglob("test_*.py"))]
 
 
