@@ -12,7 +12,7 @@ from documentation import Setup
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from support import HOME, Client, Simulator, node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, EnableExternalFtSensor, MoveJ
+from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, EnableExternalFtSensor, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 LAST_DOMAIN = 101  # above it, ports may lie in the range the system gives out itself
@@ -187,6 +187,12 @@ class Cell:
             wait_for(there, limit, "the driver to take a motion")
         except AssertionError as error:
             raise AssertionError(f"{error}; the last reason: {reasons[-1]}") from None
+
+    def stop(self):
+        """Ends a mode that a goal has left active: force mode or freedrive."""
+        goal = self.client.send(Stop, "stop")
+        if goal.accepted:
+            goal.end()
 
     def settings(self):
         """What an example may leave changed for the next one."""

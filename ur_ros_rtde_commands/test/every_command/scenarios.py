@@ -28,11 +28,16 @@ class Disturbance:
     again: bool = False  # the same example once more, afterwards
 
 
+def switches_mode_on(example):
+    """Whether the goal ends at once and leaves a mode active, such as force mode."""
+    return example.action.endswith("_start")
+
+
 def moves_arm(example):
-    """Whether the command moves the arm: its feedback has the progress of a motion, and it does not stop one."""
+    """Whether the command moves the arm: its feedback has the progress of a motion, and it neither stops one nor starts a mode."""
     action = messages.load(example.type)
     return ("motion" in action.Feedback.get_fields_and_field_types()
-            and "time_to_standstill" not in action.Result.get_fields_and_field_types())
+            and "time_to_standstill" not in action.Result.get_fields_and_field_types() and not switches_mode_on(example))
 
 
 def may_last(example):
@@ -60,6 +65,8 @@ def begin(cell, example):
     status, result = goal.end()
     assert result.success, f"before anything happened: {described(status, result)}"
     assert not moves, f"the motion ended after {time.monotonic() - start:.2f} s, before it could be disturbed: make the example longer"
+    if switches_mode_on(example):
+        cell.stop()
     return None
 
 
