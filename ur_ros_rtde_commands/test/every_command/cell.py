@@ -57,16 +57,22 @@ class WatchingClient(Client):
     """Also keeps how goals ended by the status topics, on which an end that follows another would be seen."""
 
     def __init__(self, domain=None, name="test_client"):
-        self._endings, self._watched = {}, set()
+        self._endings, self._status_subscriptions = {}, {}
         super().__init__(domain=domain, name=name)
 
     def send_goal(self, action, name, message):
-        if name not in self._watched:
-            self._watched.add(name)
-            self.node.create_subscription(GoalStatusArray, f"{name}/_action/status", self._see, STATUS)
+        if name not in self._status_subscriptions:
+            self._status_subscriptions[name] = self.node.create_subscription(GoalStatusArray, f"{name}/_action/status", self._see,
+                                                                             STATUS)
         goal = super().send_goal(action, name, message)
         goal.ask_for_result_when_accepted()
         return goal
+
+    def destroy_action_client(self, name):
+        super().destroy_action_client(name)
+        subscription = self._status_subscriptions.pop(name, None)
+        if subscription is not None:
+            self.in_executor(lambda: self.node.destroy_subscription(subscription))
 
     def _see(self, message):
         for entry in message.status_list:

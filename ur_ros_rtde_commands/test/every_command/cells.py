@@ -25,7 +25,10 @@ class Cells:
         place = self._places.get()
         try:
             place = self._cell_for(getattr(arguments[0], "setup", Setup()), place)
-            return self._carry_out(scenario, place, arguments)
+            outcome = self._carry_out(scenario, place, arguments)
+            if hasattr(arguments[0], "action"):
+                place.client.destroy_action_client(arguments[0].action)
+            return outcome
         except Exception:
             # A cell in which something went wrong is not used again: it must not spoil the next plugin's outcome.
             if isinstance(place, Cell):

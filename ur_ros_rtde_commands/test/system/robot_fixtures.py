@@ -1,11 +1,14 @@
 """The fixtures of the tests on a simulated robot: the simulator, a driver that is linked to it, and a client."""
 
 import os
+import time
 
 import pytest
 from support import HOME, RECOVERY_TIME_FACTOR, Client, Simulator, node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
+
+RETRY = 0.05  # s
 
 
 def _address(number):
@@ -68,6 +71,7 @@ def make_ready(client, limit=30.0):
         if goal.accepted and goal.result().success:
             return True
         reasons.append(client.refusal(goal).message if not goal.accepted else goal.result().message)
+        time.sleep(RETRY)
         return False
 
     reasons = []

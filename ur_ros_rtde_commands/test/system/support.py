@@ -279,6 +279,12 @@ class Client:
             message, feedback_callback=lambda message: goal.feedback.append(message.feedback)))
         return goal
 
+    def destroy_action_client(self, name):
+        """Saves processor time: the executor handles every action client each time it wakes up."""
+        client = self._actions.pop(name, None)
+        if client is not None:
+            self.in_executor(lambda: client.destroy() or True)
+
     def _wait_for_server(self, client, name):
         try:
             wait_for(client.server_is_ready, 20.0, f"the action {name}")

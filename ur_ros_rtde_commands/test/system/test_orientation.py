@@ -12,7 +12,6 @@ from ur_ros_rtde_msgs.msg import PathWaypoint
 from ur_ros_rtde_msgs.srv import GetTcpPose
 
 TO_A_POSE = [(MoveL, "move_l"), (MoveJIK, "move_j_ik"), (ServoL, "servo_l"), (ServoC, "servo_c")]
-FAST = {"speed": 1.0, "acceleration": 4.0}  # of the TCP, m/s and m/s^2
 QUARTER = math.pi / 2.0
 IDENTITY = [0.0, -QUARTER, QUARTER, -QUARTER, QUARTER, QUARTER]  # joints with which the tool's axes are the base's
 
@@ -41,7 +40,7 @@ def turn_tool(robot, angle):
 
 @pytest.mark.parametrize("action, name", TO_A_POSE, ids=[name for _, name in TO_A_POSE])
 def test_a_position_only_keeps_the_orientation(robot, simulator, action, name):
-    robot.send(MoveLRelative, "move_l_relative", rotation=Vector3(z=0.4, x=0.2), **FAST).succeeded()
+    robot.send(MoveLRelative, "move_l_relative", rotation=Vector3(z=0.4, x=0.2), speed=0.4, acceleration=1.0).succeeded()
     target = position_only(robot, y=0.1, z=-0.05)
     _, before = arm(simulator)
     result = robot.send(action, name, pose=target).succeeded()
@@ -69,10 +68,10 @@ def test_any_other_orientation_is_taken_as_before(robot, simulator, action, name
 
 
 PATHS = [
-    ("move_p", MoveP, "poses[0]", lambda pose, via: {"poses": [pose], **FAST}),
-    ("move_c", MoveC, "pose", lambda pose, via: {"via": via, "pose": pose, **FAST}),
+    ("move_p", MoveP, "poses[0]", lambda pose, via: {"poses": [pose]}),
+    ("move_c", MoveC, "pose", lambda pose, via: {"via": via, "pose": pose}),
     ("move_path", MovePath, "waypoints[0].pose",
-     lambda pose, via: {"waypoints": [PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, **FAST)]}),
+     lambda pose, via: {"waypoints": [PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, speed=0.1)]}),
     ("execute_cartesian_path", ExecuteCartesianPath, "poses[0]",
      lambda pose, via: {"poses": [pose], "rotation_speed": 2.0, "max_velocity": [2.0] * 6, "max_acceleration": [10.0] * 6}),
 ]
