@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The one script of this project: ./ur --help says what it does."""
+"""Builds, tests and runs this project: see ./ur --help."""
 import os
 import sys
 

@@ -13,6 +13,7 @@ from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajec
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 NAN = math.nan
+FAST = {"max_velocity": [1.8] * 6, "max_acceleration": [5.0] * 6}
 LAG = 0.03  # lookahead_time: as stiff as it gets
 
 
@@ -60,8 +61,8 @@ def test_it_takes_as_long_as_planned_and_says_where_it_is(robot, simulator):
 
 
 def test_a_speed_fraction_slows_it_down(robot):
-    fast = send(robot, [HOME, turned(0.3), HOME]).succeeded()
-    slow = send(robot, [HOME, turned(0.3), HOME], speed_fraction=0.5).succeeded()
+    fast = send(robot, [HOME, turned(0.3), HOME], **FAST).succeeded()
+    slow = send(robot, [HOME, turned(0.3), HOME], speed_fraction=0.5, **FAST).succeeded()
     assert slow.duration == pytest.approx(2.0 * fast.duration, rel=1e-6)
 
 
@@ -159,7 +160,7 @@ def test_a_cancel_decelerates_along_the_path(robot, simulator, slider):
 def test_the_speed_slider_slows_the_time_axis(robot, simulator):
     simulator.control("speed_slider", fraction=0.4)
     begin = simulator.state()["timestamp"]
-    result = send(robot, [HOME, turned(0.5), HOME], lookahead_time=LAG).succeeded(60.0)
+    result = send(robot, [HOME, turned(0.5), HOME], lookahead_time=LAG, **FAST).succeeded(60.0)
     assert simulator.state()["timestamp"] - begin > result.duration / 0.4
     simulator.control("speed_slider", fraction=1.0)
 
