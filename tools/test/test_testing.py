@@ -1,4 +1,4 @@
-"""./ur test: a failure fails the run, whatever its repetition alone says; and which options go to which program."""
+"""./ur test: a failure fails the run even if it does not recur alone; options are passed to the right program."""
 
 import pathlib
 import sys

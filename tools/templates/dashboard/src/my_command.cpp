@@ -2,15 +2,15 @@
 
 namespace my_package {
 
-// DashboardText has a line of text as its goal. DashboardCommand and DashboardQuery need none; an action of
-// your own does, too.
+// The goal of DashboardText is a line of text; DashboardCommand and DashboardQuery have none. You can also
+// use your own action.
 class MyCommand : public ur_ros_rtde::DashboardCommand<ur_ros_rtde_msgs::action::DashboardText> {
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
     if (auto shown = run.command("popup " + goal.text, "showing popup"); !shown) {
       return shown;
     }
-    return run.query("robotmode");  // the answer is the result's
+    return run.query("robotmode");  // returns its answer in the result
   }
 };
 
