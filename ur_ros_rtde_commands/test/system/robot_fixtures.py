@@ -63,11 +63,11 @@ def processes():
         print(getattr(process, "process", process).output())
 
 
-def make_ready(client, limit=30.0):
-    """Home, by the driver's own means: true when it takes motions."""
+def make_ready(client, limit=30.0, joint_positions=HOME):
+    """Waits until the driver accepts a motion to these joint positions and the motion has succeeded."""
 
-    def home():
-        goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
+    def arrived():
+        goal = client.send(MoveJ, "move_j", joint_positions=joint_positions, speed=3.0, acceleration=15.0)
         if goal.accepted and goal.result().success:
             return True
         reasons.append(client.refusal(goal).message if not goal.accepted else goal.result().message)
@@ -76,7 +76,7 @@ def make_ready(client, limit=30.0):
 
     reasons = []
     try:
-        wait_for(home, limit, "the driver to take a motion")
+        wait_for(arrived, limit, "the driver to take a motion")
     except AssertionError as error:
         raise AssertionError(f"{error}; the last reason: {reasons[-1:]}") from None
 

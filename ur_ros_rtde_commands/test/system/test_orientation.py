@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from robot_fixtures import make_ready
 from ur10e import flange, matrix
 
-from ur_ros_rtde_msgs.action import ExecuteCartesianPath, MoveC, MoveJ, MoveJIK, MoveL, MoveLRelative, MoveP, MovePath, ServoC, ServoL
+from ur_ros_rtde_msgs.action import ExecuteCartesianPath, MoveC, MoveJIK, MoveL, MoveLRelative, MoveP, MovePath, ServoC, ServoL
 from ur_ros_rtde_msgs.msg import PathWaypoint
 from ur_ros_rtde_msgs.srv import GetTcpPose
 
@@ -32,10 +33,14 @@ def position_only(robot, x=0.0, y=0.0, z=0.0):
     return Pose(position=Point(x=p.x + x, y=p.y + y, z=p.z + z))
 
 
-def turn_tool(robot, angle):
-    """To where the tool is turned by `angle` about the base's z."""
-    joints = [*IDENTITY[:5], IDENTITY[5] + angle]
-    robot.send(MoveJ, "move_j", joint_positions=joints, speed=3.0, acceleration=15.0).succeeded()
+@pytest.fixture
+def turn_tool(client, driver):
+    """Returns a function that turns the tool by an angle about the z axis of the base, from the orientation of the base."""
+
+    def turn(angle):
+        make_ready(client, joint_positions=[*IDENTITY[:5], IDENTITY[5] + angle])
+
+    return turn
 
 
 @pytest.mark.parametrize("action, name", TO_A_POSE, ids=[name for _, name in TO_A_POSE])
@@ -52,10 +57,10 @@ def test_a_position_only_keeps_the_orientation(robot, simulator, action, name):
 
 @pytest.mark.parametrize("meant", [True, False])
 @pytest.mark.parametrize("action, name", TO_A_POSE, ids=[name for _, name in TO_A_POSE])
-def test_an_identity_orientation_is_taken_if_it_is_meant(robot, simulator, action, name, meant):
-    turn_tool(robot, 0.3)
-    target = position_only(robot, y=0.05)
-    robot.send(action, name, pose=target, identity_orientation=meant).succeeded()
+def test_an_identity_orientation_is_taken_if_it_is_meant(client, turn_tool, simulator, action, name, meant):
+    turn_tool(0.3)
+    target = position_only(client, y=0.05)
+    client.send(action, name, pose=target, identity_orientation=meant).succeeded()
     assert angle(arm(simulator)[1], np.eye(3)) == pytest.approx(0.0 if meant else 0.3, abs=0.01)
 
 
@@ -67,30 +72,31 @@ def test_any_other_orientation_is_taken_as_before(robot, simulator, action, name
     assert angle(arm(simulator)[1], matrix(target)[:3, :3]) < 0.01
 
 
+QUICKLY = {"speed": 0.25, "acceleration": 1.2}  # m/s and m/s^2: no faster, or the turn exceeds the speed of a joint
 PATHS = [
-    ("move_p", MoveP, "poses[0]", lambda pose, via: {"poses": [pose]}),
-    ("move_c", MoveC, "pose", lambda pose, via: {"via": via, "pose": pose}),
+    ("move_p", MoveP, "poses[0]", lambda pose, via: {"poses": [pose], **QUICKLY}),
+    ("move_c", MoveC, "pose", lambda pose, via: {"via": via, "pose": pose, **QUICKLY}),
     ("move_path", MovePath, "waypoints[0].pose",
-     lambda pose, via: {"waypoints": [PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, speed=0.1)]}),
+     lambda pose, via: {"waypoints": [PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, **QUICKLY)]}),
     ("execute_cartesian_path", ExecuteCartesianPath, "poses[0]",
      lambda pose, via: {"poses": [pose], "rotation_speed": 2.0, "max_velocity": [2.0] * 6, "max_acceleration": [10.0] * 6}),
 ]
 
 
 @pytest.mark.parametrize("name, action, field, goal", PATHS, ids=[path[0] for path in PATHS])
-def test_a_path_that_turns_the_tool_to_the_identity_is_warned_of(robot, driver, name, action, field, goal):
-    turn_tool(robot, 2.0)
-    fields = goal(position_only(robot, y=0.05), position_only(robot, y=0.025, x=0.025))
-    message = robot.send(action, name, **fields).succeeded().message
+def test_a_path_that_turns_the_tool_to_the_identity_is_warned_of(client, turn_tool, driver, name, action, field, goal):
+    turn_tool(2.0)
+    fields = goal(position_only(client, y=0.05), position_only(client, y=0.025, x=0.025))
+    message = client.send(action, name, **fields).succeeded().message
     assert f"{field} turns the tool by 115 degrees" in message and "only its position is given" in message, message
     warnings = [line for line in list(driver.lines) if "WARN" in line and f"/{name}: goal" in line and message in line]
     assert len(warnings) == 1, driver.output()
 
 
 @pytest.mark.parametrize("name, action, field, goal", PATHS, ids=[path[0] for path in PATHS])
-def test_a_path_with_orientations_is_not(robot, name, action, field, goal):
-    turn_tool(robot, 0.3)
-    poses = [position_only(robot, y=0.05), position_only(robot, y=0.025, x=0.025)]
+def test_a_path_with_orientations_is_not(client, turn_tool, name, action, field, goal):
+    turn_tool(0.3)
+    poses = [position_only(client, y=0.05), position_only(client, y=0.025, x=0.025)]
     for pose in poses:
-        pose.orientation = robot.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose.orientation
-    assert "turns the tool" not in robot.send(action, name, **goal(*poses)).succeeded().message
+        pose.orientation = client.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose.orientation
+    assert "turns the tool" not in client.send(action, name, **goal(*poses)).succeeded().message
