@@ -221,8 +221,7 @@ def _run_colcon(options: Options, packages: Dict[str, Package], outdated: List[s
 
 
 def _times(options: Options) -> BuildTimes:
-    variant = f"_{options.layout.variant}" if options.layout.variant else ""
-    return BuildTimes(options.layout.base / f"build_times{variant}.json", options.jobs)
+    return BuildTimes(options.layout.build_times, options.jobs)
 
 
 def _firsts(layout: Layout, names: List[str]) -> Dict[str, bool]:

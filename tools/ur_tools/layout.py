@@ -39,8 +39,8 @@ class Layout:
     def python(self) -> pathlib.Path:
         return self.venv / "bin" / "python"
 
-    def _variant(self, name: str) -> pathlib.Path:
-        return self.base / (f"{name}-{self.variant}" if self.variant else name)
+    def _variant(self, name: str, suffix: str = "") -> pathlib.Path:
+        return self.base / (f"{name}-{self.variant}{suffix}" if self.variant else name + suffix)
 
     @property
     def build(self) -> pathlib.Path:
@@ -53,6 +53,15 @@ class Layout:
     @property
     def log(self) -> pathlib.Path:
         return self._variant("log")
+
+    @property
+    def build_times(self) -> pathlib.Path:
+        return self._variant("build_times", ".json")
+
+    @property
+    def durations(self) -> pathlib.Path:
+        """Of the tests."""
+        return self._variant("durations", ".json")
 
     @property
     def requirements(self) -> Tuple[pathlib.Path, ...]:

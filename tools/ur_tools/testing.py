@@ -90,7 +90,7 @@ def _select(options: Options) -> selection.Selection:
 
 
 def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result]:
-    times = Times(options.layout.base / "durations.json")
+    times = Times(options.layout.durations)
     schedule = Schedule([Job(test, times.cost(test.name, test.is_pytest), test.exclusive) for test in tests],
                         len(os.sched_getaffinity(0)), options.jobs)
     results: List[Result] = []
