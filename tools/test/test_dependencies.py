@@ -1,7 +1,6 @@
 """package.xml declares the packages that build files find and Python files import."""
 
 import ast
-import pathlib
 import re
 import sys
 import xml.etree.ElementTree as xml

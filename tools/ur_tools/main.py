@@ -35,7 +35,7 @@ FORWARDED = ("demo", "bench", "chaos", "plan", "sim", *CLI)  # to a program, wit
 def _add_build_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--ros", choices=DISTRIBUTIONS, default=Layout.of_environment().ros,
                         help="ROS 2 distribution (default: %(default)s)")
-    parser.add_argument("-j", "--jobs", type=int, default=0, metavar="N", help="parallel jobs (default: all cores)")
+    parser.add_argument("-j", "--jobs", type=int, default=0, metavar="N", help="jobs of the build and limit of parallel tests (default: depends on cores and memory)")
     variant = parser.add_mutually_exclusive_group()
     variant.add_argument("--debug", action="store_true", help="use a debug build, which is kept beside the release build")
     variant.add_argument("--sanitize", choices=SANITIZERS, help="use a build with a sanitizer, which is kept beside the release build")
