@@ -1,6 +1,7 @@
 """Monitors the arm and the driver during a run."""
 
 import math
+import statistics
 import threading
 import time
 
@@ -70,13 +71,15 @@ class Loads:
         if len(self.samples) < 8:
             return []
         quarter = len(self.samples) // 4
-        before, after = self._minimum(quarter, 2 * quarter), self._minimum(len(self.samples) - quarter, len(self.samples))
+        # A sample during a reconnection is low, and one during a goal is high: neither may count as growth.
+        before = self._reduce(statistics.median_high, self.samples[quarter:2 * quarter])
+        after = self._reduce(min, self.samples[-quarter:])
         return [f"{name} grew from {b:g} to {a:g}" for name, b, a, limit in
                 zip(("descriptors", "threads", "memory (MB)"), before, after, self._limits) if a > b + limit]
 
-    def _minimum(self, begin, end):
-        """Returns the minimum of each value, so that peaks do not count."""
-        return [min(sample[column] for sample in self.samples[begin:end]) for column in (1, 2, 3)]
+    @staticmethod
+    def _reduce(function, samples):
+        return [function([sample[column] for sample in samples]) for column in (1, 2, 3)]
 
     def text(self):
         if not self.samples:
