@@ -4,6 +4,8 @@ import json
 
 import pytest
 from ur_tools import schedule
+from ur_tools.layout import ROOT
+from ur_tools.reference_times import REFERENCE
 from ur_tools.schedule import Cost, Job, Schedule, Times
 
 
@@ -83,3 +85,9 @@ def test_a_file_of_times_that_cannot_be_read_is_ignored(tmp_path, monkeypatch, t
     monkeypatch.setattr(schedule, "REFERENCE", {"known": (7.0, 0.3)})
     (tmp_path / "durations.json").write_text(text)
     assert Times(tmp_path / "durations.json").cost("known", True) == Cost(7.0, 0.3)
+
+
+def test_every_reference_time_is_of_a_test_file():
+    for name in REFERENCE:
+        package, _, file = name.partition(": ")
+        assert (ROOT / package / "test" / f"{file}.py").is_file(), name
