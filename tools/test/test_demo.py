@@ -17,6 +17,7 @@ for folder in ("demo", "ur_ros_rtde_commands/test/system"):
 from control_port import ControlPort  # noqa: E402
 from support import Process  # noqa: E402
 
+MEASURES_TIME = True
 PNG = b"\x89PNG\r\n\x1a\n"
 COMMAND = [sys.executable, "-u", "-m", "ur_tools.demo"]
 

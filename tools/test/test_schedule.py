@@ -61,7 +61,7 @@ def test_an_exclusive_test_runs_alone():
 
 def test_short_tests_fill_in_without_delaying_a_long_one_that_waits_for_room():
     # The second needs the room of the first. Beside the first there is room for tests that end before it does.
-    simulation = Simulation(jobs((10.0, 1.0), (9.0, 1.2), (4.0, 0.6), (7.0, 0.6)))
+    simulation = Simulation(jobs((10.0, 1.0), (9.0, 1.2), (4.0, 0.7), (7.0, 0.6)))
     assert simulation.begins[1] == 10.0
     assert simulation.begins[3] == 0.0 and simulation.begins[2] >= 10.0
 

@@ -4,7 +4,7 @@ import pathlib
 import sys
 
 import pytest
-from ur_tools import main, runner, testing
+from ur_tools import main, runner, schedule, testing
 from ur_tools.layout import Layout
 
 REPORT = """<testsuites><testsuite>
@@ -37,6 +37,16 @@ def test_files_of_the_same_name_have_different_test_names(tmp_path):
         (tmp_path / folder / "test_shutdown.py").write_text("")
     found = testing._pytest(Layout.of_environment(), "driver", tmp_path)
     assert [test.name for test in found] == ["driver: nodes/test_shutdown", "driver: typed/test_shutdown"]
+
+
+def test_a_file_that_measures_time_is_given_a_core(tmp_path):
+    (tmp_path / "test_a.py").write_text("MEASURES_TIME = True\n")
+    (tmp_path / "test_b.py").write_text("")
+    tests = testing._pytest(Layout.of_environment(), "driver", tmp_path)
+    times = schedule.Times(tmp_path / "durations.json")
+    times.record("driver: test_a", 10.0, 1.0)
+    times.record("driver: test_b", 10.0, 1.0)
+    assert [testing._job(test, times).cost.load for test in tests] == [1.0, 0.1]
 
 
 def result(command, failures):

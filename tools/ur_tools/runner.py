@@ -29,6 +29,7 @@ class Test:
     limit: float  # s
     env: Dict[str, str] = field(default_factory=dict)
     exclusive: bool = False  # runs while no other test does
+    least_load: float = 0.0  # cores that it is given, even if it uses less
 
     @property
     def package(self) -> str:

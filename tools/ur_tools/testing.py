@@ -20,6 +20,7 @@ from .schedule import Job, Schedule, Times
 
 DEFAULT_LIMIT = 120.0
 PYTEST_LIMIT = 600.0
+MEASURES_TIME = "MEASURES_TIME = True"  # a line of a pytest file that needs a core for itself
 SHOWN_LINES = 60  # of a failed test's output
 FAILS_ALONE, PASSES_ALONE = "fails alone too", "passes alone: depends on load or on other tests"
 
@@ -64,7 +65,8 @@ def _ctest(layout: Layout, package: Package) -> List[Test]:
 def _pytest(layout: Layout, name: str, folder: pathlib.Path) -> List[Test]:
     # Without the cache provider, which writes into the sources.
     command = [str(layout.python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "--color=no", "-ra", "--disable-warnings"]
-    return [Test(f"{name}: {file.relative_to(folder).with_suffix('')}", [*command, str(file)], ROOT, PYTEST_LIMIT)
+    return [Test(f"{name}: {file.relative_to(folder).with_suffix('')}", [*command, str(file)], ROOT, PYTEST_LIMIT,
+                 least_load=float(MEASURES_TIME in file.read_text().splitlines()))
             for file in sorted(folder.rglob("test_*.py"))]
 
 
@@ -89,10 +91,14 @@ def _select(options: Options) -> selection.Selection:
 # --- Running ----------------------------------------------------------------------------------------------------------
 
 
+def _job(test: Test, times: Times) -> Job:
+    cost = times.cost(test.name, test.is_pytest)
+    return Job(test, replace(cost, load=max(cost.load, test.least_load)), test.exclusive)
+
+
 def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result]:
     times = Times(options.layout.durations)
-    schedule = Schedule([Job(test, times.cost(test.name, test.is_pytest), test.exclusive) for test in tests],
-                        len(os.sched_getaffinity(0)), options.jobs)
+    schedule = Schedule([_job(test, times) for test in tests], len(os.sched_getaffinity(0)), options.jobs)
     results: List[Result] = []
     status = say.Status()
     with ThreadPoolExecutor(schedule.most) as pool:

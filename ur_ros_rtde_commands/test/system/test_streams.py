@@ -16,6 +16,7 @@ from ur_ros_rtde_msgs.action import MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose, StartRecording, StopRecording
 
+MEASURES_TIME = True
 TIMEOUT = 0.5  # s; other tests beside this one make its publisher late
 
 
