@@ -1,18 +1,17 @@
-# What the ROS 2 wheels of the Python registry need, and an installed ROS 2 does not. Given to every package of a build
-# on wheels by -DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=<this file>; the packages know nothing of it. Needs CMake >= 3.24.
+# Adapts a build to the ROS 2 wheels; an installed ROS 2 does not need it. Every package is configured with
+# -DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=<this file>; the packages themselves do not refer to it. Requires CMake >= 3.24.
 #
-# The prefix of the wheels (their virtual environment) is ROS_WHEELS_PREFIX, a CMake or environment variable.
+# The CMake or environment variable ROS_WHEELS_PREFIX is the prefix of the wheels, their virtual environment.
 
 if(NOT ROS_WHEELS_PREFIX)
   set(ROS_WHEELS_PREFIX "$ENV{ROS_WHEELS_PREFIX}")
 endif()
 if(NOT EXISTS "${ROS_WHEELS_PREFIX}/share/rcl/cmake/rclConfig.cmake")
-  message(FATAL_ERROR "ROS_WHEELS_PREFIX must name the virtual environment that holds the ROS 2 wheels, "
-    "it is `${ROS_WHEELS_PREFIX}`")
+  message(FATAL_ERROR "ROS_WHEELS_PREFIX is `${ROS_WHEELS_PREFIX}`: it must be the virtual environment with the ROS 2 wheels")
 endif()
-set(ROS_WHEELS_PREFIX "${ROS_WHEELS_PREFIX}" CACHE PATH "Virtual environment that holds the ROS 2 wheels")
+set(ROS_WHEELS_PREFIX "${ROS_WHEELS_PREFIX}" CACHE PATH "Virtual environment with the ROS 2 wheels")
 
-# --- 1. Imported targets that carry paths of the machine the wheels were built on -----------------------------------
+# --- 1. Imported targets with paths of the machine on which the wheels were built -----------------------------------
 
 function(_ros_wheels_without target)
   get_target_property(libraries ${target} INTERFACE_LINK_LIBRARIES)
@@ -26,24 +25,24 @@ function(_ros_wheels_repair_targets)
   get_property(targets DIRECTORY PROPERTY IMPORTED_TARGETS)
   foreach(target IN LISTS targets)
     if(target MATCHES "__rosidl_generator_py$")
-      # The include folders of that machine's Python and numpy.
+      # Include folders of Python and numpy on that machine.
       set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "")
     elseif(target MATCHES "^fast(dds|rtps)$")
       _ros_wheels_without(${target} /usr/lib64/libtinyxml2.so)
     elseif(target STREQUAL "tracetools::tracetools")
-      # Bundled with the wheels under a mangled name; libtracetools.so names it itself.
+      # The wheels bundle lttng-ust under a mangled name, which libtracetools.so refers to.
       _ros_wheels_without(${target} lttng-ust lttng-ust::lttng-ust)
     endif()
   endforeach()
 endfunction()
 
-# A macro takes the policies of the place it is written at. Boost brings its own package file; FindBoost is no more.
+# A macro uses the policies of its definition. CMP0167: use the package file of Boost, as FindBoost is removed.
 cmake_policy(PUSH)
 if(POLICY CMP0167)
   cmake_policy(SET CMP0167 NEW)
 endif()
 
-# A macro, so that what find_package() sets reaches its caller.
+# A macro, so that the variables that find_package() sets are visible to its caller.
 macro(_ros_wheels_find_package _ros_wheels_method _ros_wheels_package)
   find_package(${_ros_wheels_package} ${ARGN} BYPASS_PROVIDER)
   _ros_wheels_repair_targets()
@@ -54,9 +53,9 @@ cmake_policy(POP)
 cmake_language(SET_DEPENDENCY_PROVIDER _ros_wheels_find_package SUPPORTED_METHODS FIND_PACKAGE)
 
 # --- 2. Python's symbols in C++ programs ----------------------------------------------------------------------------
-# librcl.so depends on the *__rosidl_generator_py.so, which refer to the Python interpreter and name no library that
-# has it. Nothing calls into them in a C++ program, so one library of zeros under those names, in every program and
-# in no shared library, lets it link and load. (In a Python process the interpreter's own symbols are there.)
+# librcl.so depends on the *__rosidl_generator_py.so, which use symbols of the Python interpreter without linking it. C++
+# programs never call them: linking a library that defines these symbols as zeros lets the programs link and load.
+# Shared libraries are not linked with it, so that a Python process uses the symbols of the interpreter.
 
 function(_ros_wheels_build_python_symbols library)
   find_program(ROS_WHEELS_NM nm REQUIRED)
@@ -76,7 +75,7 @@ function(_ros_wheels_build_python_symbols library)
     COMMAND "${ROS_WHEELS_CC}" -shared -fPIC -Wl,-soname,libros_wheels_python_symbols.so
       -o "${CMAKE_BINARY_DIR}/ros_wheels/python_symbols.so" "${CMAKE_BINARY_DIR}/ros_wheels/python_symbols.c"
     COMMAND_ERROR_IS_FATAL ANY)
-  # Renamed into place: builds of several packages may get here at the same time.
+  # An atomic rename: several packages may be configured at the same time.
   string(RANDOM LENGTH 8 suffix)
   file(COPY_FILE "${CMAKE_BINARY_DIR}/ros_wheels/python_symbols.so" "${library}.${suffix}")
   file(RENAME "${library}.${suffix}" "${library}")
@@ -90,9 +89,9 @@ set(_ros_wheels_is_program "$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>")
 add_link_options(
   "$<${_ros_wheels_is_program}:-Wl,--push-state,--no-as-needed,${_ros_wheels_python_symbols},--pop-state>")
 
-# --- 3. Finding the wheels' libraries, when linking and when running ------------------------------------------------
-# DT_RPATH, not RUNPATH: it holds for libraries of libraries and for those opened at run time, so that a program
-# needs no environment variable.
+# --- 3. Search paths of the wheels' libraries at link time and run time ------------------------------------------------
+# DT_RPATH, unlike RUNPATH, also applies to indirect dependencies and to libraries that are opened at run time. Programs
+# then need no environment variable.
 
 file(GLOB _ros_wheels_bundled LIST_DIRECTORIES true "${ROS_WHEELS_PREFIX}/lib/python3.*/site-packages/ros_*.libs")
 set(_ros_wheels_folders "${ROS_WHEELS_PREFIX}/lib" ${_ros_wheels_bundled})
