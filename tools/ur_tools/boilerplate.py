@@ -8,7 +8,7 @@ from typing import Dict, List
 
 from .layout import ROOT
 
-SOURCES = ROOT / "ur_ros_rtde" / "src"
+SOURCES = ROOT / "ur_ros_rtde_commands" / "src"
 COMMAND_TARGET = 25
 DASHBOARD_TARGET = 8
 

@@ -17,7 +17,7 @@ from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
 
 # Built with their dependencies.
-PACKAGES = ["ur_ros_rtde", "ur_ros_rtde_tutorials", "ur_simulator"]
+PACKAGES = ["ur_ros_rtde_commands", "ur_ros_rtde_tutorials", "ur_simulator"]
 # Distance of the tool above the table, m: how far each size of arm can move down from its start pose.
 DROP = {"ur3": 0.15, "ur3e": 0.15}
 DEFAULT_DROP = 0.3

@@ -5,7 +5,7 @@ import sys
 from typing import Any, Dict, List
 
 from ur_ros_rtde_cli.fields import Document
-from ur_ros_rtde_cli.problem import Problem
+from ur_ros_rtde_cli.errors import CliError
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
 
@@ -30,7 +30,7 @@ def _joint_order(names: List[str]) -> List[int]:
     order = [next((index for index, name in enumerate(names) if name.endswith(joint)), None) for joint in JOINTS]
     prefixes = {names[index][:-len(joint)] for index, joint in zip(order, JOINTS) if index is not None}
     if len(names) != len(JOINTS) or None in order or len(prefixes) != 1:
-        raise Problem(f"trajectory.joint_names is {', '.join(names)}: expected {', '.join(JOINTS)} in any order, with one common "
+        raise CliError(f"trajectory.joint_names is {', '.join(names)}: expected {', '.join(JOINTS)} in any order, with one common "
                       "prefix or none")
     return order  # type: ignore[return-value]
 
@@ -49,13 +49,13 @@ def _timed(goal: Any) -> Dict[str, Any]:
             if field != "positions" and not values:
                 continue
             if len(values) != len(JOINTS):
-                raise Problem(f"trajectory.points[{index}].{field} has {len(values)} values: expected {len(JOINTS)}")
+                raise CliError(f"trajectory.points[{index}].{field} has {len(values)} values: expected {len(JOINTS)}")
             point[field] = [values[joint] for joint in order]
         points.append(point)
     if not points:
-        raise Problem("trajectory.points is empty: expected 2 points or more")
+        raise CliError("trajectory.points is empty: expected 2 points or more")
     if points[0]["time"] > 0.0:
-        raise Problem(f"trajectory.points[0].time_from_start is {points[0]['time']:g} s: expected 0, because a plan "
+        raise CliError(f"trajectory.points[0].time_from_start is {points[0]['time']:g} s: expected 0, because a plan "
                       "without a robot starts at the first point")
     return {"points": points, **_limits(goal)}
 
@@ -63,7 +63,7 @@ def _timed(goal: Any) -> Dict[str, Any]:
 def convert(document: Document) -> Dict[str, Any]:
     """Converts a goal of execute_parametrized_trajectory if it has a trajectory, otherwise of execute_trajectory."""
     if "model" in document.names:
-        raise Problem("there is no field model: use the option --model")
+        raise CliError("there is no field model: use the option --model")
     if "trajectory" in document.names:
         return _timed(document.fill(ExecuteParametrizedTrajectory.Goal()))
     return _path(document.fill(ExecuteTrajectory.Goal()))
@@ -72,8 +72,8 @@ def convert(document: Document) -> Dict[str, Any]:
 def main(file: str, model: str) -> int:
     try:
         goal = convert(Document.of_file(file))
-    except Problem as problem:
-        text = str(problem)
+    except CliError as error:
+        text = str(error)
         print(text if text.startswith(file) else f"{file}: {text}", file=sys.stderr)
         return 1
     json.dump({"model": model, **goal}, sys.stdout)
