@@ -1,4 +1,4 @@
-# How other packages find this one: in a ROS workspace as an ament package, elsewhere by a package file of CMake.
+# Exports the targets: as an ament package if ament_cmake is available, as a plain CMake package otherwise.
 find_package(ament_cmake QUIET)
 if(ament_cmake_FOUND)
   ament_export_targets(ur_simulatorTargets HAS_LIBRARY_TARGET NAMESPACE ur_simulator::)

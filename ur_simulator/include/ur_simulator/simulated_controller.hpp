@@ -12,46 +12,45 @@
 
 namespace ur_simulator {
 
-/// The ports of a UR controller; 0 takes a free one (read back with SimulatedController::ports()).
+/// TCP ports of a UR controller. 0 selects a free port; SimulatedController::ports() returns it.
 struct Ports {
   std::uint16_t primary = 30001;
   std::uint16_t secondary = 30002;
   std::uint16_t realtime = 30003;
   std::uint16_t rtde = 30004;
   std::uint16_t dashboard = 29999;
-  std::uint16_t control = 30099;  ///< ours: JSON lines, see docs/simulator.md
+  std::uint16_t control = 30099;  ///< control port of the simulator: JSON lines, see docs/simulator.md
 };
 
 struct SimulatorOptions {
   std::string address = "127.0.0.1";
   std::string model = "ur10e";  ///< ur3 ur5 ur10 ur3e ur5e ur7e ur10e ur12e ur15 ur16e ur18 ur20 ur30 …
-  /// "3.15.8" for a CB3 controller (125 Hz), 5.x for the others (500 Hz); empty: 5.25.1, or 3.15.8 for CB3
-  /// models.
+  /// Version 3.x for CB3 models (125 Hz), 5.x for all others (500 Hz). Empty: 3.15.8 or 5.25.1.
   std::string polyscope_version;
   Ports ports;
-  /// Where the joints stand at first, rad; nothing: tool down above the table in front of the robot.
+  /// Initial joint positions, rad. Default: tool pointing down in front of the robot.
   std::optional<std::array<double, 6>> initial_joints;
-  std::vector<std::string> urcaps;  ///< what is installed: "onrobot_soft_gripper"
-  /// Where the dashboard's reports and support files are written too; empty: they stay on the simulated disk.
+  std::vector<std::string> urcaps;  ///< installed URCaps: "onrobot_soft_gripper"
+  /// Folder to which the reports and support files of the dashboard are also written. Empty: none.
   std::string reports_folder;
-  bool start_running = true;  ///< powered on, brakes released; false: power off, as after boot
+  bool start_running = true;  ///< start powered on with released brakes; false: powered off, as after boot
   bool remote_control = true;
-  std::uint64_t seed = 1;  ///< of the sensor noise
-  /// Seconds of the robot for each of the host's, 0.01 to 10. Below 1 for a host that is too slow for the
-  /// controller's rate, such as one that runs programs with a sanitizer.
+  std::uint64_t seed = 1;  ///< seed of the sensor noise
+  /// Simulated seconds per second of the host, 0.01 to 10. Use values below 1 if the host is too slow for the
+  /// control rate, for example with a sanitizer.
   double real_time_factor = 1.0;
-  /// Scales how long power on, brake release, the unlock delay of a protective stop and a restart of the
-  /// safety system take, 0.01 to 10. Below 1 for tests that recover often.
+  /// Scales the time of power on, brake release, the unlock delay of a protective stop and a restart of the
+  /// safety system, 0.01 to 10. Use values below 1 for tests that recover often.
   double recovery_time_factor = 1.0;
-  bool realtime_priority =
-      false;  ///< try SCHED_FIFO for the controller's thread; goes on without when not permitted
+  /// Run the controller's thread with SCHED_FIFO if permitted, otherwise with normal priority.
+  bool realtime_priority = false;
 };
 
-/// A simulated controller that runs in a thread of its own, from construction to destruction. All methods are
-/// thread-safe and must not be called from a condition of wait_until().
+/// A simulated controller that runs in its own thread from construction to destruction. All functions are
+/// thread-safe. They must not be called from a condition of wait_until().
 ///
-/// The constructor throws std::runtime_error: address and port when a port cannot be bound, the known ones
-/// when model or version are unknown, value and limit when joints or the real-time factor are out of range.
+/// The constructor throws std::runtime_error if a port cannot be bound or an option is invalid. The text
+/// states address and port, or the option, its value and the valid values.
 class SimulatedController {
  public:
   explicit SimulatedController(const SimulatorOptions & options = {});
@@ -61,16 +60,16 @@ class SimulatedController {
 
   const std::string & address() const;
   Ports ports() const;
-  /// One request of the control port ({"command": "push", …}), answered in the same JSON: {"ok": true, …} or
-  /// {"ok": false, "error": …}. Carried out between two cycles.
+  /// Executes a request of the control port ({"command": "push", …}) between two control cycles. Returns
+  /// {"ok": true, …} or {"ok": false, "error": …}.
   nlohmann::json control(const nlohmann::json & request);
-  /// The state after the last cycle, as the control port's "state" reports it.
+  /// Returns the state after the last control cycle, as the control port's command "state" reports it.
   nlohmann::json state();
-  /// Evaluates the condition on the state now and after every further control cycle, on the controller's
-  /// thread; true as soon as it holds, false when it has not become true within `limit` of wall-clock time.
-  /// What it throws is thrown here.
+  /// Evaluates the condition immediately and after each control cycle, on the controller's thread. Returns
+  /// true as soon as the condition is met, false if it is not met within `timeout` of wall-clock time.
+  /// Rethrows exceptions of the condition.
   bool wait_until(const std::function<bool(const nlohmann::json & state)> & condition,
-                  std::chrono::milliseconds limit);
+                  std::chrono::milliseconds timeout);
 
  private:
   struct Impl;

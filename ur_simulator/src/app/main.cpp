@@ -28,10 +28,9 @@ void print_ready(const ur_simulator::AppOptions & options, const ur_simulator::P
   std::fflush(stdout);
 }
 
-void print(const LogEntry & entry)
+void print_log_entry(const LogEntry & entry)
 {
-  fmt::print("{:10.3f} {:7} {:10} {}\n", entry.timestamp, ur_simulator::name(entry.level), entry.source,
-             entry.text);
+  fmt::print("{}\n", ur_simulator::to_string(entry));
   std::fflush(stdout);
 }
 
@@ -45,44 +44,45 @@ void place_surfaces(Controller & controller, const std::vector<double> & heights
   }
 }
 
-/// Ctrl-C and termination, taken between two control cycles: no handler that could interrupt anything.
-class Signals {
+/// Blocks SIGINT and SIGTERM, so that they are polled between control cycles instead of interrupting the
+/// thread.
+class TerminationSignals {
  public:
-  Signals()
+  TerminationSignals()
   {
     sigemptyset(&set_);
     sigaddset(&set_, SIGINT);
     sigaddset(&set_, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);
   }
-  bool arrived() const
+  /// Returns whether a signal has been received since the last call.
+  bool take_pending() const
   {
-    constexpr timespec at_once{0, 0};
-    return sigtimedwait(&set_, nullptr, &at_once) > 0;
+    constexpr timespec no_wait{0, 0};
+    return sigtimedwait(&set_, nullptr, &no_wait) > 0;
   }
 
  private:
   sigset_t set_;
 };
 
-int simulate(const ur_simulator::AppOptions & options)
+void run_simulator(const ur_simulator::AppOptions & options)
 {
-  const Signals signals;
+  const TerminationSignals signals;
   Controller controller(options.simulator);
-  place_surfaces(controller, options.surfaces);
-  if (options.log) {
-    controller.log().add_listener(print);
+  place_surfaces(controller, options.surface_heights);
+  if (options.print_log) {
+    controller.log().add_listener(print_log_entry);
   }
-  constexpr int cycles_between_looks = 10;
-  controller.observe([&controller, &signals, cycle = 0]() mutable {
-    if (++cycle % cycles_between_looks == 0 && signals.arrived()) {
+  constexpr int cycles_per_signal_poll = 10;
+  controller.add_observer([&controller, &signals, cycle = 0]() mutable {
+    if (++cycle % cycles_per_signal_poll == 0 && signals.take_pending()) {
       controller.stop();
     }
     return false;
   });
   print_ready(options, controller.ports());
   controller.run();
-  return 0;
 }
 
 }  // namespace
@@ -91,11 +91,12 @@ int main(int argc, char ** argv)
 {
   ur_simulator::AppOptions options;
   CLI::App app;
-  ur_simulator::declare(app, options);
+  ur_simulator::add_options(app, options);
   CLI11_PARSE(app, argc, argv);
   try {
-    ur_simulator::complete(options);
-    return simulate(options);
+    ur_simulator::parse_values(options);
+    run_simulator(options);
+    return 0;
   } catch (const std::exception & error) {
     fmt::print(stderr, "ur_simulator: {}\n", error.what());
     return 1;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,20 +11,24 @@ class App;
 
 namespace ur_simulator {
 
+/// The options of the command line.
 struct AppOptions {
   SimulatorOptions simulator;
-  std::vector<double> surfaces;  ///< heights of horizontal surfaces, m
+  std::vector<double> surface_heights;  ///< horizontal surfaces, m
+  bool quiet = false;
+  bool print_log = false;
+
+  // Unparsed values, evaluated by parse_values().
   std::vector<std::string> surface_texts;
   std::vector<std::string> port_texts;
   std::vector<double> joints;
   bool powered_off = false;
   bool local_control = false;
-  bool quiet = false;
-  bool log = false;
 };
 
-void declare(CLI::App & app, AppOptions & options);
-/// Turns what was given as text into values; throws std::runtime_error that names option and value.
-void complete(AppOptions & options);
+/// Adds description and options to the command line.
+void add_options(CLI::App & app, AppOptions & options);
+/// Evaluates the unparsed values. Throws std::runtime_error with option and value if one is invalid.
+void parse_values(AppOptions & options);
 
 }  // namespace ur_simulator

@@ -4,7 +4,7 @@
 
 namespace ur_simulator {
 
-Eigen::Matrix3d to_rotation(const Vector3 & rotation_vector)
+Eigen::Matrix3d to_rotation_matrix(const Vector3 & rotation_vector)
 {
   const double angle = rotation_vector.norm();
   if (angle < 1e-300) {
@@ -15,7 +15,7 @@ Eigen::Matrix3d to_rotation(const Vector3 & rotation_vector)
 
 Vector3 to_rotation_vector(const Eigen::Matrix3d & rotation)
 {
-  // By the quaternion, because the angle from the trace alone loses all digits near 0 and pi.
+  // Via the quaternion: the angle computed from the trace is inaccurate near 0 and pi.
   const Eigen::Quaterniond quaternion = Eigen::Quaterniond(rotation).normalized();
   const double sign = quaternion.w() < 0.0 ? -1.0 : 1.0;
   const Vector3 vector = sign * quaternion.vec();
@@ -29,7 +29,7 @@ Vector3 to_rotation_vector(const Eigen::Matrix3d & rotation)
 Transform to_transform(const Vector6 & pose)
 {
   Transform transform = Transform::Identity();
-  transform.linear() = to_rotation(pose.tail<3>());
+  transform.linear() = to_rotation_matrix(pose.tail<3>());
   transform.translation() = pose.head<3>();
   return transform;
 }
@@ -53,11 +53,11 @@ Vector6 pose_inv(const Vector6 & pose)
 
 Vector6 interpolate_pose(const Vector6 & from, const Vector6 & to, double alpha)
 {
-  const Eigen::Matrix3d start = to_rotation(from.tail<3>());
-  const Vector3 turn = to_rotation_vector(start.transpose() * to_rotation(to.tail<3>()));
+  const Eigen::Matrix3d start = to_rotation_matrix(from.tail<3>());
+  const Vector3 turn = to_rotation_vector(start.transpose() * to_rotation_matrix(to.tail<3>()));
   Vector6 pose;
   pose << from.head<3>() + alpha * (to.head<3>() - from.head<3>()),
-      to_rotation_vector(start * to_rotation(alpha * turn));
+      to_rotation_vector(start * to_rotation_matrix(alpha * turn));
   return pose;
 }
 
@@ -68,7 +68,7 @@ Vector6 shift_wrench(const Vector6 & wrench, const Vector3 & lever)
   return shifted;
 }
 
-Vector6 rotate_pair(const Eigen::Matrix3d & rotation, const Vector6 & pair)
+Vector6 rotate_spatial_vector(const Eigen::Matrix3d & rotation, const Vector6 & pair)
 {
   Vector6 rotated;
   rotated << rotation * pair.head<3>(), rotation * pair.tail<3>();

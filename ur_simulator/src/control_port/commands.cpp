@@ -5,25 +5,22 @@
 #include <array>
 #include <exception>
 
+#include "control_port/reply.hpp"
+
 namespace ur_simulator::control_port {
 namespace {
 
 using nlohmann::json;
 
-std::array<std::span<const Command>, 4> all_commands()
+std::array<std::span<const Command>, 4> command_groups()
 {
-  return {world_commands(), robot_commands(), link_commands(), inquiry_commands()};
-}
-
-json refusal(const std::string & error)
-{
-  return {{"ok", false}, {"error", error}};
+  return {world_commands(), robot_commands(), connection_commands(), query_commands()};
 }
 
 json help()
 {
   json list = json::array();
-  for (const auto group : all_commands()) {
+  for (const auto group : command_groups()) {
     for (const Command & command : group) {
       list.push_back({{"command", command.name}, {"fields", command.fields}, {"help", command.help}});
     }
@@ -31,9 +28,9 @@ json help()
   return {{"ok", true}, {"commands", std::move(list)}};
 }
 
-const Command * find(std::string_view name)
+const Command * find_command(std::string_view name)
 {
-  for (const auto group : all_commands()) {
+  for (const auto group : command_groups()) {
     for (const Command & command : group) {
       if (command.name == name) {
         return &command;
@@ -45,26 +42,26 @@ const Command * find(std::string_view name)
 
 }  // namespace
 
-json handle(Bench & bench, const json & request)
+json execute_request(ControlPortContext & context, const json & request)
 {
   if (!request.is_object()) {
-    return refusal(R"(a request is a JSON object with a field "command": try {"command": "help"})");
+    return error_reply(R"(a request is a JSON object with a field "command": try {"command": "help"})");
   }
   try {
-    Fields fields(request);
-    const std::string name = fields.text("command");
+    RequestFields fields(request);
+    const std::string name = fields.string("command");
     if (name == "help") {
       return help();
     }
-    const Command * command = find(name);
+    const Command * command = find_command(name);
     if (command == nullptr) {
-      return refusal(fmt::format("command '{}' is not known: \"help\" lists all commands", name));
+      return error_reply(fmt::format("command '{}' is not known: \"help\" lists all commands", name));
     }
     json reply{{"ok", true}};
-    reply.update(command->run(bench, fields));
+    reply.update(command->execute(context, fields));
     return reply;
   } catch (const std::exception & error) {
-    return refusal(error.what());
+    return error_reply(error.what());
   }
 }
 

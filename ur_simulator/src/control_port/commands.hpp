@@ -4,26 +4,30 @@
 #include <span>
 #include <string_view>
 
-#include "control_port/bench.hpp"
-#include "control_port/fields.hpp"
+#include "control_port/control_port_context.hpp"
+#include "control_port/request_fields.hpp"
 
 namespace ur_simulator::control_port {
 
-/// One command of the control port.
+/// A command of the control port.
 struct Command {
   std::string_view name;
   std::string_view fields;  ///< for help: names, units, ranges, defaults
   std::string_view help;    ///< one sentence
-  /// Reads its fields, calls Fields::finish(), then acts. The object returned is merged into the reply.
-  nlohmann::json (*run)(Bench & bench, Fields & fields);
+  /// Reads the fields, calls RequestFields::reject_unknown() and executes the command. Returns the fields of
+  /// the reply.
+  nlohmann::json (*execute)(ControlPortContext & context, RequestFields & fields);
 };
 
-std::span<const Command> world_commands();    ///< surfaces, pushes, loads, teleport, inputs
-std::span<const Command> robot_commands();    ///< power, safety, programs, pendant
-std::span<const Command> link_commands();     ///< faults of the connections
-std::span<const Command> inquiry_commands();  ///< state, log
+std::span<const Command> world_commands();       ///< surfaces, pushes, loads, joint positions, inputs
+std::span<const Command> robot_commands();       ///< power, safety, programs, pendant
+std::span<const Command> connection_commands();  ///< connection faults, reboot
+std::span<const Command> query_commands();       ///< state, registers, log, trace
 
-/// Carries out one request. Always an object with "ok"; when false, "error" names field, value and limit.
-nlohmann::json handle(Bench & bench, const nlohmann::json & request);
+/// Executes a request. The reply has the field "ok"; if it is false, "error" states field, value and limit.
+nlohmann::json execute_request(ControlPortContext & context, const nlohmann::json & request);
+
+/// The state as the command "state" reports it.
+nlohmann::json state_to_json(const ControlPortContext & context);
 
 }  // namespace ur_simulator::control_port

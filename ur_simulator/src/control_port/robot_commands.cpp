@@ -1,4 +1,5 @@
 #include <array>
+#include <memory>
 
 #include "control_port/commands.hpp"
 
@@ -7,225 +8,211 @@ namespace {
 
 using nlohmann::json;
 
-json done(const Pendant::Answer & answer)
+json require_success(const Pendant::Result & result)
 {
-  if (!answer) {
-    throw RequestError(answer.error());
+  if (!result) {
+    throw RequestError(result.error());
   }
   return json::object();
 }
 
-json protective_stop(Bench & bench, Fields & fields)
+/// Executes a function of the pendant that has no arguments.
+template <Pendant::Result (Pendant::*function)()>
+json call_pendant(ControlPortContext & context, RequestFields & fields)
 {
-  const std::string reason = fields.text("reason", "tripped through the control port");
-  fields.finish();
-  bench.safety.trip(reason);
+  fields.reject_unknown();
+  return require_success((context.pendant.*function)());
+}
+
+json protective_stop(ControlPortContext & context, RequestFields & fields)
+{
+  const std::string reason = fields.string("reason", "requested through the control port");
+  fields.reject_unknown();
+  context.safety.trigger_protective_stop(reason);
   return json::object();
 }
 
-json unlock_protective_stop(Bench & bench, Fields & fields)
-{
-  fields.finish();
-  return done(bench.pendant.unlock_protective_stop());
-}
-
-json emergency_stop(Bench & bench, Fields & fields)
+json emergency_stop(ControlPortContext & context, RequestFields & fields)
 {
   const bool pressed = fields.boolean("pressed", true);
   const bool system = fields.boolean("system", false);
-  fields.finish();
+  fields.reject_unknown();
   if (!pressed) {
-    return done(bench.safety.release_emergency_stop());
+    return require_success(context.safety.release_emergency_stop());
   }
-  bench.safety.press_emergency_stop(system);
+  context.safety.press_emergency_stop(system);
   return json::object();
 }
 
-json safeguard(Bench & bench, Fields & fields)
+json safeguard(ControlPortContext & context, RequestFields & fields)
 {
   const bool open = fields.boolean("open", true);
-  fields.finish();
+  fields.reject_unknown();
   if (!open) {
-    return done(bench.safety.reset_safeguard());
+    return require_success(context.safety.reset_safeguard());
   }
-  bench.safety.open_safeguard();
+  context.safety.open_safeguard();
   return json::object();
 }
 
-json reduced_mode(Bench & bench, Fields & fields)
+json reduced_mode(ControlPortContext & context, RequestFields & fields)
 {
   const bool on = fields.boolean("on", true);
-  fields.finish();
-  return done(bench.safety.set_reduced(on));
+  fields.reject_unknown();
+  return require_success(context.safety.set_reduced(on));
 }
 
-json violation(Bench & bench, Fields & fields)
+json violation(ControlPortContext & context, RequestFields & fields)
 {
-  const std::string reason = fields.text("reason", "caused through the control port");
-  fields.finish();
-  bench.safety.violate(reason);
+  const std::string reason = fields.string("reason", "caused through the control port");
+  fields.reject_unknown();
+  context.safety.trigger_violation(reason);
   return json::object();
 }
 
-json fault(Bench & bench, Fields & fields)
+json fault(ControlPortContext & context, RequestFields & fields)
 {
-  const std::string reason = fields.text("reason", "caused through the control port");
-  fields.finish();
-  bench.safety.fail(reason);
+  const std::string reason = fields.string("reason", "caused through the control port");
+  fields.reject_unknown();
+  context.safety.trigger_fault(reason);
   return json::object();
 }
 
-json restart_safety(Bench & bench, Fields & fields)
-{
-  fields.finish();
-  return done(bench.pendant.restart_safety());
-}
-
-json power(Bench & bench, Fields & fields)
+json power(ControlPortContext & context, RequestFields & fields)
 {
   constexpr std::array<std::string_view, 4> targets{"off", "on", "release_brakes", "running"};
   const std::string to = fields.choice("to", targets);
-  fields.finish();
+  fields.reject_unknown();
   if (to == "running") {
-    bench.safety.start_running(bench.state);
+    context.safety.start_running(context.state);
     return json::object();
   }
-  return done(to == "off"  ? bench.pendant.power_off()
-              : to == "on" ? bench.pendant.power_on()
-                           : bench.pendant.release_brakes());
+  return require_success(to == "off"  ? context.pendant.power_off()
+                         : to == "on" ? context.pendant.power_on()
+                                      : context.pendant.release_brakes());
 }
 
-json remote_control(Bench & bench, Fields & fields)
+json remote_control(ControlPortContext & context, RequestFields & fields)
 {
   const bool on = fields.boolean("on", true);
-  fields.finish();
-  bench.pendant.set_remote_control(on);
+  fields.reject_unknown();
+  context.pendant.set_remote_control(on);
   return json::object();
 }
 
-json store_program(Bench & bench, Fields & fields)
+json store_program(ControlPortContext & context, RequestFields & fields)
 {
-  const std::string name = fields.text("name");
-  const std::string script = fields.text("script");
+  const std::string name = fields.string("name");
+  const std::string script = fields.string("script");
   const bool load = fields.boolean("load", false);
-  fields.finish();
+  fields.reject_unknown();
   if (name.empty()) {
     throw RequestError("field 'name' is empty: it must be a file name such as 'pick.urp'");
   }
-  bench.pendant.store_program(name, script);
-  if (load && !bench.pendant.load_program(name)) {
-    throw RequestError("field 'script' is not a program: see the log");
+  context.pendant.store_program(name, script);
+  if (load && !context.pendant.load_program(name)) {
+    throw RequestError("field 'script' does not compile: the log contains the error");
   }
   return json::object();
 }
 
-json run_script(Bench & bench, Fields & fields)
+json run_script(ControlPortContext & context, RequestFields & fields)
 {
-  const std::string script = fields.text("script");
-  fields.finish();
-  return done(bench.pendant.run_script(script));
+  const std::string script = fields.string("script");
+  fields.reject_unknown();
+  return require_success(context.pendant.run_script(script));
 }
 
-json play(Bench & bench, Fields & fields)
+json play(ControlPortContext & context, RequestFields & fields)
 {
-  fields.finish();
-  Pendant::Answer answer;
-  // A program that is fetched starts later, or leaves its reason in the log.
-  auto waiting = std::make_shared<Pendant::Answer *>(&answer);
-  bench.pendant.play([waiting](const Pendant::Answer & result) {
-    if (*waiting != nullptr) {
-      **waiting = result;
-    }
-  });
-  *waiting = nullptr;
-  return done(answer);
+  fields.reject_unknown();
+  // If the program is requested from a host, it starts later and errors are only logged.
+  auto result = std::make_shared<Pendant::Result>();
+  context.pendant.play([result](const Pendant::Result & play_result) { *result = play_result; });
+  return require_success(*result);
 }
 
-json store_external_control(Bench & bench, Fields & fields)
+json store_external_control(ControlPortContext & context, RequestFields & fields)
 {
-  const std::string name = fields.text("name", "external_control.urp");
+  const std::string name = fields.string("name", "external_control.urp");
   ProgramHost host;
-  host.address = fields.text("host");
+  host.address = fields.string("host");
   host.port = static_cast<std::uint16_t>(fields.integer("port", 1, 65535, host.port));
   const bool load = fields.boolean("load", true);
-  fields.finish();
-  bench.pendant.store_external_control(name, host);
-  if (load && !bench.pendant.load_program(name)) {
+  fields.reject_unknown();
+  context.pendant.store_external_control(name, host);
+  if (load && !context.pendant.load_program(name)) {
     throw RequestError("field 'name' is '" + name + "': it cannot be loaded");
   }
   return json::object();
 }
 
-json pause_program(Bench & bench, Fields & fields)
+json stop_program(ControlPortContext & context, RequestFields & fields)
 {
-  fields.finish();
-  return done(bench.pendant.pause());
-}
-
-json stop_program(Bench & bench, Fields & fields)
-{
-  fields.finish();
-  bench.pendant.stop();
+  fields.reject_unknown();
+  context.pendant.stop();
   return json::object();
 }
 
-json kill_program(Bench & bench, Fields & fields)
+json kill_program(ControlPortContext & context, RequestFields & fields)
 {
-  fields.finish();
-  if (!bench.pendant.runner().kill()) {
+  fields.reject_unknown();
+  if (!context.pendant.runner().kill()) {
     throw RequestError("no program is running");
   }
   return json::object();
 }
 
-json speed_slider(Bench & bench, Fields & fields)
+json speed_slider(ControlPortContext & context, RequestFields & fields)
 {
   const double fraction = fields.number("fraction", {0.0, 1.0});
-  fields.finish();
-  bench.state.speed_slider = fraction;
+  fields.reject_unknown();
+  context.state.speed_slider = fraction;
   return json::object();
 }
 
-json close_popup(Bench & bench, Fields & fields)
+json close_popup(ControlPortContext & context, RequestFields & fields)
 {
-  fields.finish();
-  if (!bench.pendant.runner().popup()) {
+  fields.reject_unknown();
+  if (!context.pendant.runner().popup()) {
     throw RequestError("no popup is open");
   }
-  bench.pendant.runner().close_popup();
+  context.pendant.runner().close_popup();
   return json::object();
 }
 
 constexpr std::array robot_command_table{
-    Command{"protective_stop", "reason", "Trips a protective stop.", protective_stop},
-    Command{"unlock_protective_stop", "", "As the pendant's button, 5 s after the stop at the earliest.",
-            unlock_protective_stop},
+    Command{"protective_stop", "reason", "Triggers a protective stop.", protective_stop},
+    Command{"unlock_protective_stop", "",
+            "Unlocks a protective stop like the button on the pendant, 5 s after the stop at the earliest.",
+            call_pendant<&Pendant::unlock_protective_stop>},
     Command{"emergency_stop", "pressed true|false (true); system true|false (false)",
             "Presses or releases the emergency stop button.", emergency_stop},
     Command{"safeguard", "open true|false (true)", "Opens the safeguard, or closes and resets it.",
             safeguard},
-    Command{"reduced_mode", "on true|false (true)", "Switches reduced mode.", reduced_mode},
-    Command{"violation", "reason", "Causes a safety violation.", violation},
-    Command{"fault", "reason", "Causes a safety fault.", fault},
-    Command{"restart_safety", "", "Leads out of violation and fault.", restart_safety},
+    Command{"reduced_mode", "on true|false (true)", "Switches reduced mode on or off.", reduced_mode},
+    Command{"violation", "reason", "Triggers a safety violation.", violation},
+    Command{"fault", "reason", "Triggers a safety fault.", fault},
+    Command{"restart_safety", "", "Restarts the safety system after a violation or fault.",
+            call_pendant<&Pendant::restart_safety>},
     Command{"power", "to off|on|release_brakes|running",
-            "Powers the arm; 'running' skips the delays of a real robot.", power},
-    Command{"remote_control", "on true|false (true)", "Remote or local control.", remote_control},
+            "Switches the power of the arm; 'running' skips the delays of a real robot.", power},
+    Command{"remote_control", "on true|false (true)", "Selects remote or local control.", remote_control},
     Command{"store_program", "name; script; load true|false (false)",
-            "Puts a program on the controller's disk.", store_program},
-    Command{
-        "store_external_control", "name (external_control.urp); host; port (50002); load true|false (true)",
-        "Puts a program of the External Control URCap on the disk, which asks that host for what it runs.",
-        store_external_control},
-    Command{"run_script", "script", "Runs a script as if it came through a script port.", run_script},
-    Command{"play", "", "The pendant's play button.", play},
-    Command{"pause_program", "", "The pendant's pause button.", pause_program},
-    Command{"stop_program", "", "The pendant's stop button.", stop_program},
-    Command{"kill_program", "",
-            "The program is gone from one cycle to the next; neither the log nor any message says so.",
+            "Stores a program on the controller's disk.", store_program},
+    Command{"store_external_control",
+            "name (external_control.urp); host; port (50002); load true|false (true)",
+            "Stores a program of the External Control URCap, which requests its script from the host.",
+            store_external_control},
+    Command{"run_script", "script", "Runs a script as if it had been sent to a client interface.",
+            run_script},
+    Command{"play", "", "Presses the play button of the pendant.", play},
+    Command{"pause_program", "", "Presses the pause button of the pendant.", call_pendant<&Pendant::pause>},
+    Command{"stop_program", "", "Presses the stop button of the pendant.", stop_program},
+    Command{"kill_program", "", "Ends the program within one control cycle, without a log entry or message.",
             kill_program},
-    Command{"speed_slider", "fraction 0..1", "Moves the pendant's speed slider.", speed_slider},
-    Command{"close_popup", "", "Answers the popup that is open.", close_popup},
+    Command{"speed_slider", "fraction 0..1", "Sets the speed slider of the pendant.", speed_slider},
+    Command{"close_popup", "", "Closes the open popup.", close_popup},
 };
 
 }  // namespace

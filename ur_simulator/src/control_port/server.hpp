@@ -12,12 +12,13 @@
 
 namespace ur_simulator::control_port {
 
-/// JSON over TCP: one request a line, one reply a line, in order.
+/// JSON over TCP: one request per line, one reply per line, in order.
 class Server {
  public:
-  using Handler = std::function<nlohmann::json(const nlohmann::json & request)>;
+  using RequestHandler = std::function<nlohmann::json(const nlohmann::json & request)>;
 
-  Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, Handler handler);
+  Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
+         RequestHandler handle_request);
   ~Server();
   Listener & listener() { return listener_; }
   const Listener & listener() const { return listener_; }
@@ -29,9 +30,9 @@ class Server {
   };
   void accept(const std::shared_ptr<Connection> & connection);
   void receive(Client & client, std::string_view bytes);
-  std::string answer(std::string_view line) const;
+  std::string reply_to(std::string_view line) const;
 
-  Handler handler_;
+  RequestHandler handle_request_;
   std::map<std::uint64_t, std::shared_ptr<Client>> clients_;
   Listener listener_;
 };

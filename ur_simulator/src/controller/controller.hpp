@@ -9,9 +9,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
-#include "control_port/bench.hpp"
+#include "control_port/commands.hpp"
 #include "control_port/server.hpp"
 #include "dashboard/server.hpp"
 #include "kinematics/robot_model.hpp"
@@ -19,8 +20,8 @@
 #include "motion/arm.hpp"
 #include "polyscope/pendant.hpp"
 #include "polyscope/program_runner.hpp"
+#include "primary/client_interface_server.hpp"
 #include "primary/realtime_packet.hpp"
-#include "primary/script_server.hpp"
 #include "rtde/server.hpp"
 #include "safety/safety.hpp"
 #include "script_api/robot_library.hpp"
@@ -30,58 +31,74 @@
 
 namespace ur_simulator {
 
-/// The whole controller. Everything happens on the thread that calls run(): between two control cycles the
-/// sockets are served, so nothing in here needs a lock.
+/// The simulated controller: the robot, its software and its servers. All work is done on the thread that
+/// calls run(): it executes the control cycles and serves the connections in between, so that no locks are
+/// required.
 class Controller {
  public:
-  /// Called after a cycle; removed when it returns true.
+  /// Called after each control cycle until it returns true.
   using Observer = std::function<bool()>;
 
+  /// Opens the ports. Throws std::runtime_error for invalid options and ports that cannot be bound.
   explicit Controller(const SimulatorOptions & options);
   Controller(const Controller &) = delete;
   Controller & operator=(const Controller &) = delete;
 
-  /// Returns after stop().
+  /// Runs the controller until stop() is called.
   void run();
-  /// From any thread.
+  /// Thread-safe.
   void stop();
 
   boost::asio::io_context & io() { return io_; }
   Ports ports() const;
+
+  // The functions below must be called on the controller's thread, or while run() is not running.
+
   EventLog & log() { return log_; }
-  /// On the controller's thread only.
+  /// Executes a request of the control port.
   nlohmann::json control(const nlohmann::json & request);
-  nlohmann::json state() const { return control_port::to_json(bench_); }
-  void observe(Observer observer) { observers_.push_back(std::move(observer)); }
+  nlohmann::json state() const { return control_port::state_to_json(control_port_context_); }
+  void add_observer(Observer observer) { observers_.push_back(std::move(observer)); }
 
  private:
-  void wait_for_next_cycle();
-  void keep_pace();
-  void cycle();
-  void step_robot();
-  void obey(const SafetyOrders & orders);
-  void take_safety_events();
-  void act_on_requests();
-  void publish();
-  void reboot(double duration);
-  void power_switch(bool on);
+  /// Requests of the program, handled after its cycle.
+  struct ScriptRequestFlags {
+    bool power_down = false;
+    bool protective_stop = false;
+  };
 
-  RobotAccess access();
-  std::shared_ptr<const urscript::Library> library();
-  ProgramAccess program_access();
+  RobotAccess robot_access();
+  std::shared_ptr<const urscript::Library> script_library();
+  ProgramContext program_context();
+  control_port::ControlPortContext control_port_context();
+
+  void schedule_next_cycle();
+  void run_due_cycles();
+  void run_cycle();
+  void run_robot_cycle();
+  void check_watchdog();
+  void handle_script_requests();
+  void apply_safety_actions(const SafetyActions & actions);
+  void log_safety_events();
+  void publish_state();
+  void handle_data_package(std::span<const rtde::InputField * const> fields);
+
+  void switch_on();
+  void switch_off();
+  void reboot(double duration);
 
   const RobotModel & model_;
   PolyscopeVersion version_;
   SimulatorOptions options_;
-  std::chrono::steady_clock::duration period_;
+  std::chrono::steady_clock::duration period_;  ///< duration of a control cycle on the host's clock
   Vector6 initial_joints_;
 
   boost::asio::io_context io_{1};
   boost::asio::steady_timer timer_{io_};
-  std::chrono::steady_clock::time_point deadline_;
+  std::chrono::steady_clock::time_point next_cycle_;
   std::uint64_t missed_cycles_ = 0;
   bool stopping_ = false;
-  std::optional<double> boots_at_;  ///< while switched off: timestamp at which it comes back
+  std::optional<double> switch_on_time_;  ///< set while switched off, s of simulated time
 
   EventLog log_;
   ControllerState state_;
@@ -91,21 +108,18 @@ class Controller {
   std::optional<Safety> safety_;
   Watchdog watchdog_;
   JointHistory joint_history_;
-  struct Requests {
-    bool power_down = false;
-    bool protective_stop = false;
-  } requests_;
+  ScriptRequestFlags script_requests_;
   std::optional<ProgramRunner> runner_;
   std::optional<Pendant> pendant_;
 
-  primary::ScriptServer primary_;
-  primary::ScriptServer secondary_;
-  primary::ScriptServer realtime_;
+  primary::ClientInterfaceServer primary_;
+  primary::ClientInterfaceServer secondary_;
+  primary::ClientInterfaceServer realtime_;
   primary::RealtimePacket realtime_packet_;
   rtde::Server rtde_;
   dashboard::Server dashboard_;
-  control_port::Bench bench_;
-  control_port::Server control_;
+  control_port::ControlPortContext control_port_context_;
+  control_port::Server control_port_;
   std::list<Observer> observers_;
 };
 

@@ -9,21 +9,19 @@
 namespace ur_simulator::dashboard {
 namespace {
 
-using Text = std::string_view;
-
 constexpr PolyscopeVersion v(std::uint32_t major, std::uint32_t minor)
 {
   return {major, minor, 0, 0};
 }
 
-std::string failed(Text command)
+std::string failed_reply(std::string_view command)
 {
   return fmt::format("Failed to execute: {}", command);
 }
 
-std::string either(const Pendant::Answer & answer, Text done, Text command)
+std::string reply_to(const Pendant::Result & result, std::string_view done, std::string_view command)
 {
-  return answer ? std::string(done) : failed(command);
+  return result ? std::string(done) : failed_reply(command);
 }
 
 std::string program_name(const Pendant & pendant)
@@ -33,9 +31,9 @@ std::string program_name(const Pendant & pendant)
 
 // ---- programs
 
-std::string load(Pendant & p, Text file)
+std::string load(Pendant & pendant, std::string_view file)
 {
-  const auto loaded = p.load_program(std::string(file));
+  const auto loaded = pendant.load_program(std::string(file));
   if (loaded) {
     return fmt::format("Loading program: {}", file);
   }
@@ -43,120 +41,124 @@ std::string load(Pendant & p, Text file)
   return fmt::format("{}: {}", missing ? "File not found" : "Error while loading program", file);
 }
 
-std::string stop(Pendant & p, Text)
+std::string stop(Pendant & pendant, std::string_view)
 {
-  p.stop();
+  pendant.stop();
   return "Stopped";
 }
 
-std::string pause(Pendant & p, Text)
+std::string pause(Pendant & pendant, std::string_view)
 {
-  return either(p.pause(), "Pausing program", "pause");
+  return reply_to(pendant.pause(), "Pausing program", "pause");
 }
 
-std::string running(Pendant & p, Text)
+std::string running(Pendant & pendant, std::string_view)
 {
-  return fmt::format("Program running: {}", p.runner().running() && !p.runner().paused());
+  return fmt::format("Program running: {}", pendant.runner().running() && !pendant.runner().paused());
 }
 
-std::string get_loaded_program(Pendant & p, Text)
+std::string get_loaded_program(Pendant & pendant, std::string_view)
 {
-  return p.loaded_program().empty() ? "No program loaded" : "Loaded program: /programs/" + p.loaded_program();
+  return pendant.loaded_program().empty() ? "No program loaded"
+                                          : "Loaded program: /programs/" + pendant.loaded_program();
 }
 
-std::string is_program_saved(Pendant & p, Text)
+std::string is_program_saved(Pendant & pendant, std::string_view)
 {
-  return "True " + program_name(p);
+  return "True " + program_name(pendant);
 }
 
-std::string program_state(Pendant & p, Text)
+std::string program_state(Pendant & pendant, std::string_view)
 {
-  const Text state = !p.runner().running() ? "STOPPED" : p.runner().paused() ? "PAUSED" : "PLAYING";
-  return fmt::format("{} {}", state, program_name(p));
+  const std::string_view state = !pendant.runner().running() ? "STOPPED"
+                                 : pendant.runner().paused() ? "PAUSED"
+                                                             : "PLAYING";
+  return fmt::format("{} {}", state, program_name(pendant));
 }
 
-std::string load_installation(Pendant & p, Text file)
+std::string load_installation(Pendant & pendant, std::string_view file)
 {
-  return fmt::format(
-      "{}: {}", p.load_installation(std::string(file)) ? "Loading installation" : "File not found", file);
+  return fmt::format("{}: {}",
+                     pendant.load_installation(std::string(file)) ? "Loading installation" : "File not found",
+                     file);
 }
 
 // ---- power and safety
 
-std::string power_on(Pendant & p, Text)
+std::string power_on(Pendant & pendant, std::string_view)
 {
-  return either(p.power_on(), "Powering on", "power on");
+  return reply_to(pendant.power_on(), "Powering on", "power on");
 }
-std::string power_off(Pendant & p, Text)
+std::string power_off(Pendant & pendant, std::string_view)
 {
-  return either(p.power_off(), "Powering off", "power off");
+  return reply_to(pendant.power_off(), "Powering off", "power off");
 }
-std::string brake_release(Pendant & p, Text)
+std::string brake_release(Pendant & pendant, std::string_view)
 {
-  return either(p.release_brakes(), "Brake releasing", "brake release");
+  return reply_to(pendant.release_brakes(), "Brake releasing", "brake release");
 }
 
-std::string unlock_protective_stop(Pendant & p, Text)
+std::string unlock_protective_stop(Pendant & pendant, std::string_view)
 {
-  if (p.unlock_protective_stop()) {
+  if (pendant.unlock_protective_stop()) {
     return "Protective stop releasing";
   }
-  return p.state().safety_mode == SafetyMode::protective_stop
+  return pendant.state().safety_mode == SafetyMode::protective_stop
              ? "Cannot unlock protective stop until 5s after occurrence. Always inspect cause of protective "
                "stop before "
                "unlocking"
-             : failed("unlock protective stop");
+             : failed_reply("unlock protective stop");
 }
 
-std::string close_safety_popup(Pendant & p, Text)
+std::string close_safety_popup(Pendant & pendant, std::string_view)
 {
-  p.close_safety_popup();
+  pendant.close_safety_popup();
   return "closing safety popup";
 }
 
-std::string restart_safety(Pendant & p, Text)
+std::string restart_safety(Pendant & pendant, std::string_view)
 {
-  return either(p.restart_safety(), "Restarting safety", "restart safety");
+  return reply_to(pendant.restart_safety(), "Restarting safety", "restart safety");
 }
-std::string robotmode(Pendant & p, Text)
+std::string robotmode(Pendant & pendant, std::string_view)
 {
-  return fmt::format("Robotmode: {}", to_string(p.state().robot_mode));
+  return fmt::format("Robotmode: {}", to_string(pendant.state().robot_mode));
 }
-std::string safetymode(Pendant & p, Text)
+std::string safetymode(Pendant & pendant, std::string_view)
 {
-  return fmt::format("Safetymode: {}", to_string(p.state().safety_mode));
+  return fmt::format("Safetymode: {}", to_string(pendant.state().safety_mode));
 }
-std::string safetystatus(Pendant & p, Text)
+std::string safetystatus(Pendant & pendant, std::string_view)
 {
-  return fmt::format("Safetystatus: {}", to_string(p.state().safety_mode));
+  return fmt::format("Safetystatus: {}", to_string(pendant.state().safety_mode));
 }
 
 // ---- the pendant's screen
 
-std::string popup(Pendant & p, Text text)
+std::string popup(Pendant & pendant, std::string_view text)
 {
   urscript::Popup shown;
   shown.message = text;
-  p.runner().show_popup(shown);
+  pendant.runner().show_popup(shown);
   return "showing popup";
 }
 
-std::string close_popup(Pendant & p, Text)
+std::string close_popup(Pendant & pendant, std::string_view)
 {
-  p.runner().close_popup();
+  pendant.runner().close_popup();
   return "closing popup";
 }
 
-std::string add_to_log(Pendant & p, Text text)
+std::string add_to_log(Pendant & pendant, std::string_view text)
 {
   if (text.empty()) {
     return "No log message to add";
   }
-  p.log().info("dashboard", std::string(text));
+  pendant.log().info("dashboard", std::string(text));
   return "Added log message";
 }
 
-std::string upper(Text text)
+std::string upper(std::string_view text)
 {
   std::string result(text);
   std::ranges::transform(result, result.begin(),
@@ -164,86 +166,86 @@ std::string upper(Text text)
   return result;
 }
 
-std::string set_operational_mode(Pendant & p, Text mode)
+std::string set_operational_mode(Pendant & pendant, std::string_view mode)
 {
   const std::string wanted = upper(mode);
   if (wanted != "MANUAL" && wanted != "AUTOMATIC") {
     return fmt::format("Failed setting operational mode: {}", mode);
   }
-  p.operational_mode = wanted;
+  pendant.operational_mode = wanted;
   return fmt::format("Operational mode '{}' is set", mode);
 }
 
-std::string get_operational_mode(Pendant & p, Text)
+std::string get_operational_mode(Pendant & pendant, std::string_view)
 {
-  return p.operational_mode.value_or("NONE");
+  return pendant.operational_mode.value_or("NONE");
 }
 
-std::string clear_operational_mode(Pendant & p, Text)
+std::string clear_operational_mode(Pendant & pendant, std::string_view)
 {
-  const std::string mode = p.operational_mode.value_or("NONE");
-  p.operational_mode.reset();
+  const std::string mode = pendant.operational_mode.value_or("NONE");
+  pendant.operational_mode.reset();
   return fmt::format("No longer controlling the operational mode. Current operational mode: '{}'.", mode);
 }
 
-std::string set_user_role(Pendant & p, Text role)
+std::string set_user_role(Pendant & pendant, std::string_view role)
 {
-  constexpr std::array<Text, 5> roles{"PROGRAMMER", "OPERATOR", "NONE", "LOCKED", "RESTRICTED"};
+  constexpr std::array<std::string_view, 5> roles{"PROGRAMMER", "OPERATOR", "NONE", "LOCKED", "RESTRICTED"};
   const std::string wanted = upper(role);
   if (std::ranges::find(roles, wanted) == roles.end()) {
     return fmt::format("Failed setting user role: {}", role);
   }
-  p.user_role = wanted;
+  pendant.user_role = wanted;
   return fmt::format("Setting user role: {}", role);
 }
 
-std::string get_user_role(Pendant & p, Text)
+std::string get_user_role(Pendant & pendant, std::string_view)
 {
-  return p.user_role;
+  return pendant.user_role;
 }
 
 // ---- about the robot
 
-std::string polyscope_version(Pendant & p, Text)
+std::string polyscope_version(Pendant & pendant, std::string_view)
 {
-  return fmt::format("URSoftware {} (simulated)", p.options().version.text());
+  return fmt::format("URSoftware {} (simulated)", pendant.options().version.to_string());
 }
 
-std::string version(Pendant & p, Text)
+std::string version(Pendant & pendant, std::string_view)
 {
-  return p.options().version.text();
+  return pendant.options().version.to_string();
 }
-std::string is_in_remote_control(Pendant & p, Text)
+std::string is_in_remote_control(Pendant & pendant, std::string_view)
 {
-  return p.remote_control() ? "true" : "false";
+  return pendant.remote_control() ? "true" : "false";
 }
-std::string get_serial_number(Pendant & p, Text)
+std::string get_serial_number(Pendant & pendant, std::string_view)
 {
-  return p.options().serial_number;
+  return pendant.options().serial_number;
 }
-std::string get_robot_model(Pendant & p, Text)
+std::string get_robot_model(Pendant & pendant, std::string_view)
 {
-  return p.model().dashboard_name;
+  return pendant.model().dashboard_name;
 }
 
-std::string shutdown(Pendant & p, Text)
+std::string shutdown(Pendant & pendant, std::string_view)
 {
-  p.request_shutdown(true);
+  pendant.request_shutdown();
   return "Shutting down";
 }
 
-std::string quit(Pendant &, Text)
+std::string quit(Pendant &, std::string_view)
 {
   return "Disconnected";
 }
 
-std::string save_log(Pendant & p, Text)
+std::string save_log(Pendant & pendant, std::string_view)
 {
-  return p.reports().save_log();
+  return pendant.reports().save_log();
 }
 
-constexpr auto never = Since::never;
-constexpr std::array table{
+constexpr auto never = MinVersion::never;
+constexpr std::array command_table{
     Command{"load", {}, true, load},
     Command{"play", {}, true, nullptr, play},
     Command{"stop", {}, true, stop},
@@ -282,41 +284,37 @@ constexpr std::array table{
     Command{"saveLog", {v(5, 8), v(3, 13)}, false, save_log},
 };
 
-bool begins_with(Text line, Text name)
+bool starts_with_command(std::string_view line, std::string_view name)
 {
   const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
   const bool prefix = line.size() >= name.size() && std::equal(name.begin(), name.end(), line.begin(), same);
   return prefix && (line.size() == name.size() || line[name.size()] == ' ');
 }
 
-Text trim(Text text)
+std::string_view trim(std::string_view text)
 {
   const std::size_t first = text.find_first_not_of(" \t");
   const std::size_t last = text.find_last_not_of(" \t");
-  return first == Text::npos ? Text() : text.substr(first, last - first + 1);
+  return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
 }
 
 }  // namespace
 
-std::span<const Command> commands()
-{
-  return table;
-}
-
-const Command * find_command(Text line, const PolyscopeVersion & version, Text & argument)
+const Command * find_command(std::string_view line, const PolyscopeVersion & version,
+                             std::string_view & argument)
 {
   line = trim(line);
-  const Command * best = nullptr;
-  for (const Command & command : table) {
-    const bool longer = best == nullptr || command.name.size() > best->name.size();
-    if (longer && command.since.holds_for(version) && begins_with(line, command.name)) {
-      best = &command;
+  const Command * longest = nullptr;
+  for (const Command & command : command_table) {
+    const bool longer = longest == nullptr || command.name.size() > longest->name.size();
+    if (longer && command.min_version.is_met_by(version) && starts_with_command(line, command.name)) {
+      longest = &command;
     }
   }
-  if (best != nullptr) {
-    argument = trim(line.substr(best->name.size()));
+  if (longest != nullptr) {
+    argument = trim(line.substr(longest->name.size()));
   }
-  return best;
+  return longest;
 }
 
 }  // namespace ur_simulator::dashboard

@@ -7,7 +7,7 @@
 namespace ur_simulator::dashboard {
 namespace {
 
-constexpr std::size_t longest_line = 16 * 1024;
+constexpr std::size_t max_line_size = 16 * 1024;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ Server::Server(boost::asio::io_context & io, const std::string & address, std::u
 
 Server::~Server()
 {
-  listener_.close_all();
+  listener_.close_connections();
 }
 
 void Server::accept(const std::shared_ptr<Connection> & connection)
@@ -38,28 +38,30 @@ void Server::accept(const std::shared_ptr<Connection> & connection)
       [this, id] { clients_.erase(id); });
 }
 
+// Sending may close the connection, which destroys the client. The functions below keep the connection alive
+// and use the client after sending only if the connection is still open.
+
 void Server::receive(Client & client, std::string_view bytes)
 {
-  // Sending a reply may end the client: only its connection is sure to be there afterwards.
   const std::shared_ptr<Connection> connection = client.connection;
   client.received.append(bytes);
-  std::string received = std::move(client.received);
+  const std::string received = std::move(client.received);
   std::size_t begin = 0;
-  for (std::size_t end = received.find('\n'); end != std::string::npos && !client.pending;
+  for (std::size_t end = received.find('\n'); end != std::string::npos && !client.pending_reply;
        end = received.find('\n', begin)) {
     std::string_view line = std::string_view(received).substr(begin, end - begin);
     if (line.ends_with('\r')) {
       line.remove_suffix(1);
     }
     begin = end + 1;
-    answer(client, line);
-    if (!connection->open()) {
+    handle_line(client, line);
+    if (!connection->is_open()) {
       return;
     }
   }
-  if (received.size() - begin > longest_line) {
+  if (received.size() - begin > max_line_size) {
     pendant_.log().error("dashboard", fmt::format("{} sent a line of more than {} bytes: disconnected",
-                                                  connection->peer(), longest_line));
+                                                  connection->remote_endpoint(), max_line_size));
     connection->close();
     return;
   }
@@ -70,49 +72,52 @@ void Server::cycle()
 {
   for (auto next = clients_.begin(); next != clients_.end();) {
     Client & client = (next++)->second;
-    if (!client.pending) {
+    if (!client.pending_reply) {
       continue;
     }
-    // Sending may end the client: only its connection is sure to be there afterwards.
     const std::shared_ptr<Connection> connection = client.connection;
-    deliver(client);
-    if (connection->open() && !client.pending) {
+    send_pending_reply(client);
+    if (connection->is_open() && !client.pending_reply) {
       receive(client, {});
     }
   }
 }
 
-void Server::deliver(Client & client)
+void Server::send_pending_reply(Client & client)
 {
-  if (const auto reply = client.pending()) {
-    client.pending = nullptr;
+  if (const auto reply = client.pending_reply()) {
+    client.pending_reply = nullptr;
     client.connection->send(*reply + "\n");
   }
 }
 
-void Server::answer(Client & client, std::string_view line)
+bool Server::is_refused(const Client & client, bool requires_remote_control) const
 {
-  const std::shared_ptr<Connection> connection = client.connection;  // as in receive()
+  const bool local_control = !pendant_.remote_control() || !client.remote_control_at_connect;
+  return requires_remote_control && local_control && pendant_.options().version.is_e_series();
+}
+
+void Server::handle_line(Client & client, std::string_view line)
+{
+  const std::shared_ptr<Connection> connection = client.connection;
   std::string_view argument;
   const Command * command = find_command(line, pendant_.options().version, argument);
   if (command == nullptr) {
     connection->send(fmt::format("could not understand: '{}'\n", line));
     return;
   }
-  const bool local = !pendant_.remote_control() || !client.remote_when_connected;
-  if (command->needs_remote_control && local && pendant_.options().version.is_e_series()) {
+  if (is_refused(client, command->requires_remote_control)) {
     connection->send(
         "Command is not allowed due to safety reasons, please switch robot to Remote Control mode and "
-        "reconnect to port "
-        "29999\n");
+        "reconnect to port 29999\n");
     return;
   }
-  if (command->begin != nullptr) {
-    client.pending = command->begin(pendant_, argument);
-    deliver(client);
+  if (command->start != nullptr) {
+    client.pending_reply = command->start(pendant_, argument);
+    send_pending_reply(client);
     return;
   }
-  connection->send(command->reply(pendant_, argument) + "\n");
+  connection->send(command->execute(pendant_, argument) + "\n");
   if (command->name == "quit") {
     connection->close_after_sending();
   }

@@ -11,30 +11,32 @@
 
 namespace ur_simulator::dashboard {
 
-/// The Dashboard Server: one line a command, one line a reply.
+/// The dashboard server: each line is a command, answered with one line (UR, "Dashboard Server e-Series" and
+/// "Dashboard Server CB-Series").
 class Server {
  public:
   Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, Pendant & pendant);
   ~Server();
   Listener & listener() { return listener_; }
   const Listener & listener() const { return listener_; }
-  /// Sends the answers that were still to come; once a control cycle.
+  /// Sends the pending replies that have become available. Call once per control cycle.
   void cycle();
 
  private:
   struct Client {
     std::shared_ptr<Connection> connection;
     std::string received;
-    /// Control mode when it connected: an e-Series keeps to it until the client reconnects.
-    bool remote_when_connected;
-    /// The answer it waits for; what it sends meanwhile is answered after it.
-    ReportWriter::Pending pending = nullptr;
+    /// Remote control when the client connected: an e-Series controller applies it until the client
+    /// reconnects.
+    bool remote_control_at_connect;
+    /// Reply of the current command. Later commands of the client wait for it.
+    PendingReply pending_reply = nullptr;
   };
   void accept(const std::shared_ptr<Connection> & connection);
   void receive(Client & client, std::string_view bytes);
-  void answer(Client & client, std::string_view line);
-  /// Sends the answer that the client waits for, if there is one by now.
-  void deliver(Client & client);
+  void handle_line(Client & client, std::string_view line);
+  bool is_refused(const Client & client, bool requires_remote_control) const;
+  void send_pending_reply(Client & client);
 
   Pendant & pendant_;
   std::map<std::uint64_t, Client> clients_;

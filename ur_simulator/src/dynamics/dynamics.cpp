@@ -2,20 +2,20 @@
 
 #include <array>
 
-#include "kinematics/forward.hpp"
+#include "kinematics/forward_kinematics.hpp"
 
 namespace ur_simulator {
 namespace {
 
 using Frames = std::array<Transform, 6>;
 
-/// m (|r|^2 1 - r r'): what Steiner's theorem adds for a mass at r from the axis point.
-Eigen::Matrix3d steiner(double mass, const Vector3 & r)
+/// m (|r|^2 1 - r r'): the term of the parallel axis theorem for a mass at r.
+Eigen::Matrix3d parallel_axis_inertia(double mass, const Vector3 & r)
 {
   return mass * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
 }
 
-Link joined(const Link & link, const Payload & payload)
+Link with_payload(const Link & link, const Payload & payload)
 {
   Link body = link;
   body.mass = link.mass + payload.mass;
@@ -29,8 +29,8 @@ Link joined(const Link & link, const Payload & payload)
   own << i[0], i[3], i[4],  //
       i[3], i[1], i[5],     //
       i[4], i[5], i[2];
-  body.inertia = link.inertia + steiner(link.mass, link.center_of_mass - body.center_of_mass) + own +
-                 steiner(payload.mass, payload.center_of_gravity - body.center_of_mass);
+  body.inertia = link.inertia + parallel_axis_inertia(link.mass, link.center_of_mass - body.center_of_mass) +
+                 own + parallel_axis_inertia(payload.mass, payload.center_of_gravity - body.center_of_mass);
   return body;
 }
 
@@ -40,7 +40,7 @@ Dynamics::Dynamics(const RobotModel & model) : model_(model), links_(model.links
 
 void Dynamics::set_payload(const Payload & payload)
 {
-  links_[5] = joined(model_.links[5], payload);
+  links_[5] = with_payload(model_.links[5], payload);
 }
 
 void Dynamics::set_gravity(const Vector3 & gravity)
@@ -101,8 +101,8 @@ Vector6 Dynamics::currents(const Vector6 & torques) const
 Vector6 Dynamics::newton_euler(const Frames & frames, const Vector6 & qd, const Vector6 & qdd,
                                const Vector3 & gravity) const
 {
-  // Everything in base axes. Outwards: motion of each link, and the force and moment (about its centre of
-  // mass) it takes.
+  // All quantities in the base frame. Outward recursion: motion of each link, and the force and the moment
+  // about its center of mass that accelerate it.
   std::array<Vector3, 6> axis, origin, force, moment, center;
   Vector3 angular = Vector3::Zero(), angular_acceleration = Vector3::Zero(), acceleration = gravity;
   Vector3 previous_axis = Vector3::UnitZ(), previous_origin = Vector3::Zero();
@@ -112,20 +112,20 @@ Vector6 Dynamics::newton_euler(const Frames & frames, const Vector6 & qd, const 
     origin[i] = previous_origin;
     angular_acceleration += qdd[joint] * axis[i] + angular.cross(Vector3(qd[joint] * axis[i]));
     angular += qd[joint] * axis[i];
-    const auto carried = [&](const Vector3 & arm) -> Vector3 {
+    const auto relative_acceleration = [&](const Vector3 & arm) -> Vector3 {
       return angular_acceleration.cross(arm) + angular.cross(Vector3(angular.cross(arm)));
     };
     const auto & rotation = frames[i].linear();
     center[i] = frames[i] * links_[i].center_of_mass;
-    const Vector3 center_acceleration = acceleration + carried(center[i] - origin[i]);
+    const Vector3 center_acceleration = acceleration + relative_acceleration(center[i] - origin[i]);
     const Eigen::Matrix3d inertia = rotation * links_[i].inertia * rotation.transpose();
     force[i] = links_[i].mass * center_acceleration;
     moment[i] = inertia * angular_acceleration + angular.cross(Vector3(inertia * angular));
-    acceleration += carried(frames[i].translation() - origin[i]);
+    acceleration += relative_acceleration(frames[i].translation() - origin[i]);
     previous_axis = rotation.col(2);
     previous_origin = frames[i].translation();
   }
-  // Inwards: what each joint must carry of all that lies beyond it.
+  // Inward recursion: the torque of each joint from the forces on all links beyond it.
   Vector6 torques;
   Vector3 total_force = Vector3::Zero(), total_moment = Vector3::Zero(), point = previous_origin;
   for (std::size_t i = 6; i-- > 0;) {

@@ -8,9 +8,9 @@
 
 namespace ur_simulator {
 
-/// Rigid-body dynamics of one arm with a payload at its flange, by recursive Newton-Euler (Luh, Walker, Paul
-/// 1980) in DH frames. Torques in N m at the joints, behind the gears. `gravity` as set_gravity(): the upward
-/// acceleration, (0, 0, 9.82) upright.
+/// Rigid-body dynamics of an arm with a payload at the flange, by the recursive Newton-Euler algorithm (Luh,
+/// Walker, Paul 1980) in DH frames. Torques in N m at the joints, after the gears. `gravity` is defined as in
+/// URScript's set_gravity(): the upward acceleration, (0, 0, 9.82) for an upright arm.
 class Dynamics {
  public:
   explicit Dynamics(const RobotModel & model);
@@ -20,14 +20,14 @@ class Dynamics {
 
   /// tau = M(q) qdd + C(q, qd) qd + g(q)
   Vector6 inverse_dynamics(const Vector6 & q, const Vector6 & qd, const Vector6 & qdd) const;
-  /// The same from frames already known (link_frames).
+  /// The same from the frames of link_frames().
   Vector6 inverse_dynamics(const std::array<Transform, 6> & frames, const Vector6 & qd,
                            const Vector6 & qdd) const;
   Vector6 gravity_torques(const Vector6 & q) const;
   Matrix6 mass_matrix(const Vector6 & q) const;
-  /// C(q, qd) qd: the torques of URScript's get_coriolis_and_centrifugal_torques().
+  /// C(q, qd) qd, as URScript's get_coriolis_and_centrifugal_torques().
   Vector6 coriolis_torques(const Vector6 & q, const Vector6 & qd) const;
-  /// 1/2 qd' M qd and the height energy; for tests and power limits. J.
+  /// 1/2 qd' M qd and the gravitational energy, J.
   double kinetic_energy(const Vector6 & q, const Vector6 & qd) const;
   double potential_energy(const Vector6 & q) const;
   /// Motor current (A) for joint torques: torque / torque_constant.
@@ -38,7 +38,7 @@ class Dynamics {
                        const Vector3 & gravity) const;
 
   const RobotModel & model_;
-  std::array<Link, 6> links_;  ///< the last one together with the payload
+  std::array<Link, 6> links_;  ///< the last one includes the payload
   Vector3 gravity_ = Vector3(0.0, 0.0, 9.82);
 };
 

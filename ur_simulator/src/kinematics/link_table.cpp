@@ -20,44 +20,44 @@ Link link(double mass, const Vector3 & center_of_mass, const Tensor & t)
   return result;
 }
 
-// A cylinder about the named axis of the link's frame: moments across and along it.
-Tensor about_x(double across, double along)
+// Inertia tensor of a cylinder about the named axis of the link frame, from its transverse and axial moments.
+Tensor cylinder_x(double transverse, double axial)
 {
-  return {along, 0, 0, across, 0, across};
+  return {axial, 0, 0, transverse, 0, transverse};
 }
-Tensor about_y(double across, double along)
+Tensor cylinder_y(double transverse, double axial)
 {
-  return {across, 0, 0, along, 0, across};
+  return {transverse, 0, 0, axial, 0, transverse};
 }
-Tensor about_z(double across, double along)
+Tensor cylinder_z(double transverse, double axial)
 {
-  return {across, 0, 0, across, 0, along};
+  return {transverse, 0, 0, transverse, 0, axial};
 }
 
 using Links = std::array<Link, 6>;
 
-// Masses and centres of mass: Universal Robots, "DH Parameters for calculations of kinematics and dynamics".
-// Inertias: Universal_Robots_ROS2_Description, config/<model>/physical_parameters.yaml, whose link axes are
-// turned back into DH frames. For the UR3 and UR5 of the CB3 these are cylinders.
+// Masses and centers of mass: Universal Robots, "DH Parameters for calculations of kinematics and dynamics".
+// Inertias: Universal_Robots_ROS2_Description, config/<model>/physical_parameters.yaml, converted from its
+// link frames to DH frames. For the UR3 and UR5 (CB3) these are cylinders.
 
 Links ur3()
 {
-  return {link(2.0, {0, -0.02, 0}, about_y(0.00809317, 0.005625)),
-          link(3.42, {0.13, 0, 0.1157}, about_x(0.02172849, 0.00961875)),
-          link(1.26, {0.05, 0, 0.0238}, about_x(0.00654681, 0.00354375)),
-          link(0.8, {0, 0, 0.01}, about_y(0.00161064, 0.00225)),
-          link(0.8, {0, 0, 0.01}, about_y(0.00157217, 0.00225)),
-          link(0.35, {0, 0, -0.02}, about_z(0.00013627, 0.0001792))};
+  return {link(2.0, {0, -0.02, 0}, cylinder_y(0.00809317, 0.005625)),
+          link(3.42, {0.13, 0, 0.1157}, cylinder_x(0.02172849, 0.00961875)),
+          link(1.26, {0.05, 0, 0.0238}, cylinder_x(0.00654681, 0.00354375)),
+          link(0.8, {0, 0, 0.01}, cylinder_y(0.00161064, 0.00225)),
+          link(0.8, {0, 0, 0.01}, cylinder_y(0.00157217, 0.00225)),
+          link(0.35, {0, 0, -0.02}, cylinder_z(0.00013627, 0.0001792))};
 }
 
 Links ur5()
 {
-  return {link(3.7, {0, -0.02561, 0.00193}, about_y(0.01497236, 0.01040625)),
-          link(8.393, {0.2125, 0, 0.11336}, about_x(0.13388584, 0.0151074)),
-          link(2.33, {0.15, 0, 0.0265}, about_x(0.0312168, 0.004095)),
-          link(1.219, {0, -0.0018, 0.01634}, about_y(0.00201389, 0.0021942)),
-          link(1.219, {0, 0.0018, 0.01634}, about_y(0.00183104, 0.0021942)),
-          link(0.1879, {0, 0, -0.001159}, about_z(8.062476e-05, 0.00013211719))};
+  return {link(3.7, {0, -0.02561, 0.00193}, cylinder_y(0.01497236, 0.01040625)),
+          link(8.393, {0.2125, 0, 0.11336}, cylinder_x(0.13388584, 0.0151074)),
+          link(2.33, {0.15, 0, 0.0265}, cylinder_x(0.0312168, 0.004095)),
+          link(1.219, {0, -0.0018, 0.01634}, cylinder_y(0.00201389, 0.0021942)),
+          link(1.219, {0, 0.0018, 0.01634}, cylinder_y(0.00183104, 0.0021942)),
+          link(0.1879, {0, 0, -0.001159}, cylinder_z(8.062476e-05, 0.00013211719))};
 }
 
 // The same tensors are published for the UR10, UR10e and UR12e.
@@ -179,7 +179,7 @@ std::map<std::string, Links, std::less<>> all_links()
 
 }  // namespace
 
-const std::array<Link, 6> & links_of(std::string_view model)
+const std::array<Link, 6> & model_links(std::string_view model)
 {
   static const auto table = all_links();
   const auto found = table.find(model);

@@ -7,8 +7,8 @@
 
 namespace ur_simulator {
 
-/// Masses, centres of mass and inertias of a model's six links ("ur10e"); std::invalid_argument for an
-/// unknown name.
-const std::array<Link, 6> & links_of(std::string_view model);
+/// Masses, centers of mass and inertias of the six links of a model ("ur10e"). Throws std::invalid_argument
+/// if the name is unknown.
+const std::array<Link, 6> & model_links(std::string_view model);
 
 }  // namespace ur_simulator

@@ -14,12 +14,12 @@ namespace {
 
 using std::numbers::pi;
 
-/// What differs from model to model and is published: DH lengths (m), joint speed limits (deg/s), joint
-/// torques (N m), rated payload (kg), reach (m). Lengths: Universal Robots, "DH Parameters for calculations
-/// of kinematics and dynamics". Limits: Universal_Robots_ROS2_Description, config/<model>/joint_limits.yaml
-/// (from UR's user manuals and "Max. joint torques"); those of UR8 Long and UR15 are taken to be the UR18's,
-/// which has the same joints.
-struct Row {
+/// Published parameters of a model: DH lengths (m), joint speed limits (deg/s), joint torques (N m), rated
+/// payload (kg), reach (m). Lengths: Universal Robots, "DH Parameters for calculations of kinematics and
+/// dynamics". Limits: Universal_Robots_ROS2_Description, config/<model>/joint_limits.yaml (from UR's user
+/// manuals and "Max. joint torques"); the UR8 Long and UR15 are assumed to have the limits of the UR18, which
+/// has the same joints.
+struct ModelParameters {
   const char * name;
   const char * display_name;
   const char * dashboard_name;
@@ -32,53 +32,54 @@ struct Row {
   double reach;
 };
 
-using Six = std::array<double, 6>;
-constexpr Six all180{180, 180, 180, 180, 180, 180};
-constexpr Six small{180, 180, 180, 360, 360, 360};
-constexpr Six big{120, 120, 180, 180, 180, 180};
-constexpr Six fast{180, 180, 240, 300, 300, 300};
-constexpr Six heavy{120, 120, 150, 210, 210, 210};
-constexpr Six torque3{56, 56, 28, 12, 12, 12};
-constexpr Six torque5{150, 150, 150, 28, 28, 28};
-constexpr Six torque10{330, 330, 150, 56, 56, 56};
-constexpr Six torque10e{330, 330, 150, 54, 54, 54};
-constexpr Six torque15{433, 433, 204, 70, 70, 70};
-constexpr Six torque20{738, 738, 433, 107, 107, 107};
+using JointValues = std::array<double, 6>;
+constexpr JointValues speed_ur5{180, 180, 180, 180, 180, 180};
+constexpr JointValues speed_ur3{180, 180, 180, 360, 360, 360};
+constexpr JointValues speed_ur10{120, 120, 180, 180, 180, 180};
+constexpr JointValues speed_ur15{180, 180, 240, 300, 300, 300};
+constexpr JointValues speed_ur20{120, 120, 150, 210, 210, 210};
+constexpr JointValues torque3{56, 56, 28, 12, 12, 12};
+constexpr JointValues torque5{150, 150, 150, 28, 28, 28};
+constexpr JointValues torque10{330, 330, 150, 56, 56, 56};
+constexpr JointValues torque10e{330, 330, 150, 54, 54, 54};
+constexpr JointValues torque15{433, 433, 204, 70, 70, 70};
+constexpr JointValues torque20{738, 738, 433, 107, 107, 107};
 
-// Type numbers as in the primary interface's robot mode and version messages (ur_client_library, RobotType).
-constexpr std::array<Row, 14> rows{{
-    {"ur3", "UR3", "UR3", 3, Series::cb3, 0.1519, -0.24365, -0.21325, 0.11235, 0.08535, 0.0819, small,
+// Type numbers of the robot mode and version messages of the primary interface (ur_client_library,
+// RobotType).
+constexpr std::array<ModelParameters, 14> model_parameters{{
+    {"ur3", "UR3", "UR3", 3, Series::cb3, 0.1519, -0.24365, -0.21325, 0.11235, 0.08535, 0.0819, speed_ur3,
      torque3, 3, 0.5},
-    {"ur5", "UR5", "UR5", 1, Series::cb3, 0.089159, -0.425, -0.39225, 0.10915, 0.09465, 0.0823, all180,
+    {"ur5", "UR5", "UR5", 1, Series::cb3, 0.089159, -0.425, -0.39225, 0.10915, 0.09465, 0.0823, speed_ur5,
      torque5, 5, 0.85},
-    {"ur10", "UR10", "UR10", 2, Series::cb3, 0.1273, -0.612, -0.5723, 0.163941, 0.1157, 0.0922, big, torque10,
-     10, 1.3},
-    {"ur3e", "UR3e", "UR3", 3, Series::e_series, 0.15185, -0.24355, -0.2132, 0.13105, 0.08535, 0.0921, small,
-     torque3, 3, 0.5},
-    {"ur5e", "UR5e", "UR5", 1, Series::e_series, 0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996, all180,
+    {"ur10", "UR10", "UR10", 2, Series::cb3, 0.1273, -0.612, -0.5723, 0.163941, 0.1157, 0.0922, speed_ur10,
+     torque10, 10, 1.3},
+    {"ur3e", "UR3e", "UR3", 3, Series::e_series, 0.15185, -0.24355, -0.2132, 0.13105, 0.08535, 0.0921,
+     speed_ur3, torque3, 3, 0.5},
+    {"ur5e", "UR5e", "UR5", 1, Series::e_series, 0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996, speed_ur5,
      torque5, 5, 0.85},
-    {"ur7e", "UR7e", "UR5", 1, Series::e_series, 0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996, all180,
+    {"ur7e", "UR7e", "UR5", 1, Series::e_series, 0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996, speed_ur5,
      torque5, 7.5, 0.85},
-    {"ur10e", "UR10e", "UR10", 2, Series::e_series, 0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655, big,
-     torque10e, 12.5, 1.3},
-    {"ur12e", "UR12e", "UR10", 2, Series::e_series, 0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655, big,
-     torque10e, 12.5, 1.3},
-    {"ur16e", "UR16e", "UR16", 4, Series::e_series, 0.1807, -0.4784, -0.36, 0.17415, 0.11985, 0.11655, big,
-     torque10e, 16, 0.9},
+    {"ur10e", "UR10e", "UR10", 2, Series::e_series, 0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655,
+     speed_ur10, torque10e, 12.5, 1.3},
+    {"ur12e", "UR12e", "UR10", 2, Series::e_series, 0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655,
+     speed_ur10, torque10e, 12.5, 1.3},
+    {"ur16e", "UR16e", "UR16", 4, Series::e_series, 0.1807, -0.4784, -0.36, 0.17415, 0.11985, 0.11655,
+     speed_ur10, torque10e, 16, 0.9},
     {"ur8long", "UR8 Long", "UR8LONG", 6, Series::ur_series, 0.2186, -0.8989, -0.7149, 0.1824, 0.1361, 0.1434,
-     fast, torque15, 10, 1.75},
-    {"ur15", "UR15", "UR15", 9, Series::ur_series, 0.2186, -0.6475, -0.5164, 0.1824, 0.1361, 0.1434, fast,
-     torque15, 17.5, 1.3},
-    {"ur18", "UR18", "UR18", 5, Series::ur_series, 0.2186, -0.475, -0.3389, 0.1824, 0.1361, 0.1434, fast,
-     torque15, 18, 0.95},
-    {"ur20", "UR20", "UR20", 7, Series::ur_series, 0.2363, -0.862, -0.7287, 0.201, 0.1593, 0.1543, heavy,
+     speed_ur15, torque15, 10, 1.75},
+    {"ur15", "UR15", "UR15", 9, Series::ur_series, 0.2186, -0.6475, -0.5164, 0.1824, 0.1361, 0.1434,
+     speed_ur15, torque15, 17.5, 1.3},
+    {"ur18", "UR18", "UR18", 5, Series::ur_series, 0.2186, -0.475, -0.3389, 0.1824, 0.1361, 0.1434,
+     speed_ur15, torque15, 18, 0.95},
+    {"ur20", "UR20", "UR20", 7, Series::ur_series, 0.2363, -0.862, -0.7287, 0.201, 0.1593, 0.1543, speed_ur20,
      torque20, 25, 1.75},
-    {"ur30", "UR30", "UR30", 8, Series::ur_series, 0.2363, -0.637, -0.5037, 0.201, 0.1593, 0.1543, heavy,
+    {"ur30", "UR30", "UR30", 8, Series::ur_series, 0.2363, -0.637, -0.5037, 0.201, 0.1593, 0.1543, speed_ur20,
      torque20, 35, 1.3},
 }};
 
-/// N m/A behind the gear. UR publishes none: of the size that identifications of UR arms report (about 10 to
-/// 15), by size of joint.
+/// N m/A at the joint, after the gear. Not published by UR; estimates by joint size, of the order that
+/// identifications of UR arms report (about 10 to 15).
 double torque_constant(double torque_max)
 {
   if (torque_max <= 12.0)
@@ -94,51 +95,50 @@ double torque_constant(double torque_max)
   return 20.0;
 }
 
-RobotModel build(const Row & row)
+RobotModel build(const ModelParameters & parameters)
 {
   RobotModel model{};
-  model.name = row.name;
-  model.display_name = row.display_name;
-  model.dashboard_name = row.dashboard_name;
-  model.type_number = row.type_number;
-  model.series = row.series;
-  model.a << 0.0, row.a2, row.a3, 0.0, 0.0, 0.0;
-  model.d << row.d1, 0.0, 0.0, row.d4, row.d5, row.d6;
+  model.name = parameters.name;
+  model.display_name = parameters.display_name;
+  model.dashboard_name = parameters.dashboard_name;
+  model.type_number = parameters.type_number;
+  model.series = parameters.series;
+  model.a << 0.0, parameters.a2, parameters.a3, 0.0, 0.0, 0.0;
+  model.d << parameters.d1, 0.0, 0.0, parameters.d4, parameters.d5, parameters.d6;
   model.alpha << pi / 2.0, 0.0, 0.0, pi / 2.0, -pi / 2.0, 0.0;
-  model.links = links_of(row.name);
+  model.links = model_links(parameters.name);
   model.position_min.setConstant(-2.0 * pi);
   model.position_max.setConstant(2.0 * pi);
-  if (row.payload == 3.0) {  // wrist 3 of the UR3 and UR3e turns without end
+  if (parameters.payload == 3.0) {  // wrist 3 of the UR3 and UR3e is continuous
     model.position_min[5] = -std::numeric_limits<double>::infinity();
     model.position_max[5] = std::numeric_limits<double>::infinity();
   }
-  model.velocity_max = Eigen::Map<const Vector6>(row.speed.data()) * (pi / 180.0);
-  // Not published; 40 rad/s^2 is the most that clients of the robot may ask for (ur_rtde,
-  // UR_JOINT_ACCELERATION_MAX).
+  model.velocity_max = Eigen::Map<const Vector6>(parameters.speed.data()) * (pi / 180.0);
+  // Not published. 40 rad/s^2 is the highest value that ur_rtde accepts (UR_JOINT_ACCELERATION_MAX).
   model.acceleration_max.setConstant(40.0);
-  model.torque_max = Eigen::Map<const Vector6>(row.torque.data());
-  // Not published; 10 mrad at the highest torque make some 30 N/mm at the tool of a UR10e, as is measured on
-  // arms of this kind.
+  model.torque_max = Eigen::Map<const Vector6>(parameters.torque.data());
+  // Not published. 10 mrad at the highest torque gives about 30 N/mm at the tool of a UR10e, as measured on
+  // similar arms.
   model.stiffness = 100.0 * model.torque_max;
   model.torque_constant = model.torque_max.unaryExpr(&torque_constant);
-  model.payload_max = row.payload;
-  model.reach = row.reach;
+  model.payload_max = parameters.payload;
+  model.reach = parameters.reach;
   return model;
 }
 
-const std::vector<RobotModel> & table()
+const std::vector<RobotModel> & model_table()
 {
   static const std::vector<RobotModel> models = [] {
     std::vector<RobotModel> built;
-    for (const Row & row : rows) {
-      built.push_back(build(row));
+    for (const ModelParameters & parameters : model_parameters) {
+      built.push_back(build(parameters));
     }
     return built;
   }();
   return models;
 }
 
-std::string plain(std::string_view name)
+std::string normalize_name(std::string_view name)
 {
   std::string result;
   for (const char c : name) {
@@ -153,15 +153,15 @@ std::string plain(std::string_view name)
 
 std::span<const RobotModel> robot_models()
 {
-  return table();
+  return model_table();
 }
 
 tl::expected<std::reference_wrapper<const RobotModel>, std::string> find_robot_model(std::string_view name)
 {
-  const std::string wanted = plain(name);
+  const std::string normalized = normalize_name(name);
   std::string known;
-  for (const RobotModel & model : table()) {
-    if (model.name == wanted) {
+  for (const RobotModel & model : model_table()) {
+    if (model.name == normalized) {
       return std::cref(model);
     }
     known += (known.empty() ? "" : ", ") + model.name;

@@ -12,38 +12,37 @@
 
 namespace ur_simulator {
 
-/// CB3 (125 Hz, PolyScope 3), e-Series (UR3e … UR16e) and the later UR Series (UR8 Long, UR15 … UR30), both
-/// 500 Hz.
+/// CB3 (125 Hz, PolyScope 3), e-Series (UR3e to UR16e) and UR Series (UR8 Long, UR15 to UR30), both 500 Hz.
 enum class Series { cb3, e_series, ur_series };
 
 /// One link in the frame of its Denavit-Hartenberg row (frame i is fixed to link i).
 struct Link {
   double mass;              ///< kg
   Vector3 center_of_mass;   ///< m
-  Eigen::Matrix3d inertia;  ///< kg m^2, about the centre of mass
+  Eigen::Matrix3d inertia;  ///< kg m^2, about the center of mass
 };
 
-/// What is published of one robot model. DH rows are standard (not modified): Rz(theta) Tz(d) Tx(a)
+/// Published data of one robot model. DH parameters are standard (not modified): Rz(theta) Tz(d) Tx(a)
 /// Rx(alpha). Source: Universal Robots, "DH Parameters for calculations of kinematics and dynamics"; inertias
-/// and limits as in UniversalRobots/Universal_Robots_ROS2_Description, config/<model>/.
+/// and limits: UniversalRobots/Universal_Robots_ROS2_Description, config/<model>/.
 struct RobotModel {
   std::string name;            ///< "ur10e"
-  std::string display_name;    ///< "UR10e"; get_robot_model() of the dashboard answers dashboard_name
-  std::string dashboard_name;  ///< "UR10"
+  std::string display_name;    ///< "UR10e"
+  std::string dashboard_name;  ///< "UR10", the answer of the dashboard command `get robot model`
   std::uint8_t
-      type_number;  ///< robot type in the primary interface's messages (UR5 1, UR10 2, UR3 3, UR16 4, …)
+      type_number;  ///< robot type in the messages of the primary interface (UR5 1, UR10 2, UR3 3, UR16 4, …)
   Series series;
   Vector6 a;      ///< m
   Vector6 d;      ///< m
   Vector6 alpha;  ///< rad
   std::array<Link, 6> links;
   Vector6 position_min;      ///< rad
-  Vector6 position_max;      ///< rad; infinite where the joint turns without end (UR3, UR3e: wrist 3)
+  Vector6 position_max;      ///< rad; infinite for continuous joints (UR3, UR3e: wrist 3)
   Vector6 velocity_max;      ///< rad/s
-  Vector6 acceleration_max;  ///< rad/s^2, the highest that motions use
+  Vector6 acceleration_max;  ///< rad/s^2, highest acceleration of motions
   Vector6 torque_max;        ///< N m
-  Vector6 stiffness;         ///< N m/rad of each joint, between motor and link
-  Vector6 torque_constant;   ///< N m/A, behind the gear
+  Vector6 stiffness;         ///< N m/rad of each joint
+  Vector6 torque_constant;   ///< N m/A at the joint, after the gear
   double payload_max;        ///< kg, rated
   double reach;              ///< m
 
@@ -53,12 +52,12 @@ struct RobotModel {
 
 /// All models, each once.
 std::span<const RobotModel> robot_models();
-/// By name, upper or lower case, spaces and '-' ignored ("UR10e", "ur8 long"); the error names all known
-/// models.
+/// Finds a model by name; case, spaces, '-' and '_' are ignored ("UR10e", "ur8 long"). The error lists the
+/// known models.
 tl::expected<std::reference_wrapper<const RobotModel>, std::string> find_robot_model(std::string_view name);
 
-/// Where the joints stand after power-on when nothing else is said: tool down in front of the robot, no
-/// singularity near.
+/// Default joint position after power-on: the tool points down in front of the robot, away from
+/// singularities.
 Vector6 default_position(const RobotModel & model);
 
 }  // namespace ur_simulator

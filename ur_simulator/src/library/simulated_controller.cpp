@@ -41,7 +41,7 @@ struct SimulatedController::Impl {
   Impl(const Impl &) = delete;
   Impl & operator=(const Impl &) = delete;
 
-  /// Runs the function on the controller's thread and returns what it returns or throws.
+  /// Runs the function on the controller's thread and returns its result or rethrows its exception.
   template <typename Function>
   auto call(Function function)
   {
@@ -86,18 +86,18 @@ nlohmann::json SimulatedController::state()
 bool SimulatedController::wait_until(const std::function<bool(const nlohmann::json &)> & condition,
                                      std::chrono::milliseconds limit)
 {
-  // Shared with the observer, which may outlast this call by a cycle.
+  // Shared with the observer, which may outlive this call by one cycle.
   struct Wait {
     std::promise<void> reached;
     std::function<bool(const nlohmann::json &)> condition;
-    bool given_up = false;  // of the controller's thread
+    bool timed_out = false;  // accessed on the controller's thread only
   };
   auto wait = std::make_shared<Wait>();
   wait->condition = condition;
   auto reached = wait->reached.get_future();
   Controller & controller = impl_->controller;
   const auto observe = [wait, &controller] {
-    if (wait->given_up) {
+    if (wait->timed_out) {
       return true;
     }
     try {
@@ -112,15 +112,15 @@ bool SimulatedController::wait_until(const std::function<bool(const nlohmann::js
   };
   impl_->call([&] {
     if (!observe()) {
-      controller.observe(observe);
+      controller.add_observer(observe);
     }
   });
   if (reached.wait_for(limit) == std::future_status::ready) {
     reached.get();
     return true;
   }
-  // From here on the condition, and what it refers to, is not used any more.
-  impl_->call([&] { wait->given_up = true; });
+  // The observer does not use the condition and its references any more.
+  impl_->call([&] { wait->timed_out = true; });
   const bool meanwhile = reached.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   if (meanwhile) {
     reached.get();

@@ -1,10 +1,12 @@
 #include "log/event_log.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace ur_simulator {
 
-std::string_view name(LogLevel level)
+std::string_view to_string(LogLevel level)
 {
   switch (level) {
     case LogLevel::info:
@@ -15,6 +17,12 @@ std::string_view name(LogLevel level)
       return "error";
   }
   return "unknown";
+}
+
+std::string to_string(const LogEntry & entry)
+{
+  return fmt::format("{:10.3f} {:7} {:10} {}", entry.timestamp, to_string(entry.level), entry.source,
+                     entry.text);
 }
 
 void EventLog::add(LogLevel level, std::string_view source, std::string text, std::int32_t line,
@@ -34,7 +42,7 @@ void EventLog::add(LogEntry entry)
   entry.number = ++count_;
   entry.timestamp = timestamp_;
   entries_.push_back(std::move(entry));
-  if (entries_.size() > kept) {
+  if (entries_.size() > max_entries) {
     entries_.pop_front();
   }
   for (const Listener & listener : listeners_) {

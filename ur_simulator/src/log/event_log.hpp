@@ -12,37 +12,40 @@ namespace ur_simulator {
 enum class LogLevel { info, warning, error };
 
 /// "info", "warning" or "error".
-std::string_view name(LogLevel level);
+std::string_view to_string(LogLevel level);
 
-/// What the primary interface makes of an entry beyond its text.
+/// Selects the message type in which the primary interface reports an entry.
 enum class LogKind { text, program_started, program_ended, popup, safety };
 
 struct LogEntry {
-  std::uint64_t number = 0;  ///< counts from 1, never reused
-  double timestamp = 0.0;    ///< s on the controller's clock
+  std::uint64_t number = 0;  ///< consecutive, starts at 1
+  double timestamp = 0.0;    ///< simulated time, s
   LogLevel level = LogLevel::info;
-  std::string source;  ///< room that says it: "rtde", "program", …
+  std::string source;  ///< reporting module: "rtde", "program", …
   std::string text;
-  std::int32_t line = -1;    ///< of the program's text that it is about, 1-based; -1: none
-  std::int32_t column = -1;  ///< 1-based; -1: none
+  std::int32_t line = -1;    ///< line of the program, 1-based; -1: none
+  std::int32_t column = -1;  ///< column of the program, 1-based; -1: none
   LogKind kind = LogKind::text;
-  std::string title;      ///< of a popup; a program's name
-  bool blocking = false;  ///< popup
+  std::string title;      ///< title of the popup, or name of the program
+  bool blocking = false;  ///< popups only: the program waits until the popup is closed
 };
 
-/// What a robot would show on its log tab: the most recent entries, in order. Belongs to the controller's
-/// thread.
+/// One line: timestamp, level, source and text, in columns.
+std::string to_string(const LogEntry & entry);
+
+/// The entries of the log tab of PolyScope, oldest first. Keeps the most recent 1000 entries. Not
+/// thread-safe: used on the controller's thread only.
 class EventLog {
  public:
   using Listener = std::function<void(const LogEntry &)>;
 
-  /// The clock that stamps entries, s.
+  /// Sets the timestamp of the entries that follow, s.
   void set_time(double timestamp) { timestamp_ = timestamp; }
-  /// Called for every further entry.
+  /// `listener` is called for every entry added from now on.
   void add_listener(Listener listener) { listeners_.push_back(std::move(listener)); }
   void add(LogLevel level, std::string_view source, std::string text, std::int32_t line = -1,
            std::int32_t column = -1);
-  /// The log numbers and dates the entry.
+  /// Adds the entry with the next number and the current timestamp.
   void add(LogEntry entry);
   void info(std::string_view source, std::string text) { add(LogLevel::info, source, std::move(text)); }
   void warning(std::string_view source, std::string text) { add(LogLevel::warning, source, std::move(text)); }
@@ -50,7 +53,7 @@ class EventLog {
   const std::deque<LogEntry> & entries() const { return entries_; }
 
  private:
-  static constexpr std::size_t kept = 1000;
+  static constexpr std::size_t max_entries = 1000;
 
   double timestamp_ = 0.0;
   std::uint64_t count_ = 0;

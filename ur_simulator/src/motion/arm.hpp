@@ -8,8 +8,8 @@
 #include <tl/expected.hpp>
 
 #include "common/types.hpp"
-#include "motion/force_mode.hpp"
-#include "motion/tcp_leg.hpp"
+#include "motion/force/force_mode.hpp"
+#include "motion/path/tcp_segment.hpp"
 #include "state/controller_state.hpp"
 #include "state/faults.hpp"
 
@@ -19,13 +19,13 @@ struct RobotModel;
 
 /// Identifies one motion since the controller started; never reused.
 using MotionId = std::uint64_t;
-/// The identifier, or why the robot refuses the motion, as a robot would say it on its log.
-using MotionStart = tl::expected<MotionId, std::string>;
-/// Of a motion that is none: its call returns at once.
-constexpr MotionId skipped_motion = 0;
+/// The identifier of the started motion, or why the robot rejects it, worded as for the robot's log.
+using StartResult = tl::expected<MotionId, std::string>;
+/// Identifier of a motion that was skipped: its call returns at once.
+constexpr MotionId skipped_motion_id = 0;
 
-/// Options of movej and movel: leading-axis acceleration (rad/s^2, m/s^2) and speed (rad/s, m/s), time (s, 0
-/// = by speed), blend radius (m).
+/// Options of movej and movel: acceleration (rad/s^2 of the leading joint, m/s^2), velocity (rad/s, m/s),
+/// time (s, 0: determined by the velocity) and blend radius (m).
 struct MoveOptions {
   double acceleration;
   double velocity;
@@ -33,12 +33,13 @@ struct MoveOptions {
   double blend_radius = 0.0;
 };
 
-/// The arm's motion generator: one motion at a time, advanced one control cycle at a time. A new motion takes
-/// over from the one before at its present position and velocity. Starts are refused (never throw) for
-/// unreachable, non-finite or limit-breaking targets. Nothing moves unless the robot mode is RUNNING and the
-/// safety mode NORMAL, REDUCED or RECOVERY.
-/// The state given to step() or teleport() must outlive the arm: its modes and its TCP offset hold for what
-/// starts next (Cartesian motions lead the TCP that was set when they started, to their end).
+/// Motion generator of the arm: executes one motion at a time, one control cycle at a time. A new motion
+/// takes over from the present one at its position and velocity. Targets that are unreachable, not finite or
+/// beyond limits are rejected; nothing throws. The arm moves only in robot mode RUNNING and safety mode
+/// NORMAL, REDUCED or RECOVERY.
+///
+/// The state given to step() or teleport() must outlive the arm: its modes and its TCP offset apply to the
+/// next motion. Cartesian motions use the TCP that was set when they started, until they end.
 class Arm {
  public:
   Arm(const RobotModel & model, double cycle_time, const Vector6 & initial_position);
@@ -46,92 +47,95 @@ class Arm {
   Arm(const Arm &) = delete;
   Arm & operator=(const Arm &) = delete;
 
-  // Motions to a target. With a blend radius the call may return when the TCP is that near to its target
-  // (movej, movel, optimove*: half of the way at most): what starts then is blended in; if nothing does, the
-  // motion ends at its target. One whose blend would overlap with that of the motion before is skipped.
-  MotionStart move_joint(const Vector6 & target, const MoveOptions & options);
-  MotionStart move_linear(const Vector6 & tcp_pose, const MoveOptions & options);
-  /// optimovej, optimovel: acceleration and velocity are fractions (0 < f <= 1) of the highest on this path.
-  MotionStart move_joint_optimally(const Vector6 & target, const MoveOptions & options);
-  MotionStart move_linear_optimally(const Vector6 & tcp_pose, const MoveOptions & options);
-  /// movep: constant tool speed, through the blends of movep with movep too, which are arcs.
-  MotionStart move_process(const Vector6 & tcp_pose, const MoveOptions & options);
-  /// movec: on the circle through where the TCP is (of a motion in its blend: will be), `via` and the target.
-  MotionStart move_circular(const Vector6 & via, const Vector6 & tcp_pose, CircleMode mode,
+  // Motions to a target. With a blend radius the call may return when the TCP is inside that radius (movej,
+  // movel, optimove*: at the earliest halfway). The motion that starts then is blended in; without one the
+  // motion ends at its target. A motion whose blend would overlap with the previous one is skipped.
+  StartResult move_joint(const Vector6 & target, const MoveOptions & options);
+  StartResult move_linear(const Vector6 & tcp_pose, const MoveOptions & options);
+  /// optimovej, optimovel: acceleration and velocity are fractions (0 < f <= 1) of the highest values on this
+  /// path.
+  StartResult move_joint_optimally(const Vector6 & target, const MoveOptions & options);
+  StartResult move_linear_optimally(const Vector6 & tcp_pose, const MoveOptions & options);
+  /// movep: constant tool speed, also in the blends with another movep, which are circular arcs.
+  StartResult move_process(const Vector6 & tcp_pose, const MoveOptions & options);
+  /// movec: on the circle through the start (the present TCP, or the target of a motion in its blend), `via`
+  /// and the target.
+  StartResult move_circular(const Vector6 & via, const Vector6 & tcp_pose, CircleMode mode,
                             const MoveOptions & options);
-  /// servoc: from the present velocity on the circle that leads to the target.
-  MotionStart servo_circular(const Vector6 & tcp_pose, const MoveOptions & options);
-  /// servoj: `time` s the call controls the robot, `lookahead` 0.03..0.2 s, `gain` 100..2000. The arm tracks
-  /// the target as long as nothing else follows, also when the time is up.
-  MotionStart servo_joint(const Vector6 & target, double time, double lookahead, double gain);
-  /// speedj / speedl: `time` 0 = until another motion; decelerates by itself when time is up and nothing
-  /// follows.
-  MotionStart speed_joint(const Vector6 & velocity, double acceleration, double time);
-  MotionStart speed_linear(const Vector6 & tcp_twist, double acceleration, double time);
-  MotionStart stop_joint(double deceleration);
-  MotionStart stop_linear(double deceleration);
+  /// servoc: from the present velocity on the tangent circle to the target.
+  StartResult servo_circular(const Vector6 & tcp_pose, const MoveOptions & options);
+  /// servoj: the call lasts `time` s; `lookahead` 0.03..0.2 s, `gain` 100..2000. The arm follows the target
+  /// until another motion starts, also when the time is up.
+  StartResult servo_joint(const Vector6 & target, double time, double lookahead, double gain);
+  /// speedj, speedl: without a following motion the arm decelerates after `time` s; 0: no time limit.
+  StartResult speed_joint(const Vector6 & velocity, double acceleration, double time);
+  StartResult speed_linear(const Vector6 & tcp_twist, double acceleration, double time);
+  StartResult stop_joint(double deceleration);
+  StartResult stop_linear(double deceleration);
 
-  /// force_mode(): from now on compliance is superposed on all that the program moves, until end_force_mode()
-  /// or end_program(). A further call changes the settings on the way. Stops suspend it.
+  /// force_mode(): superposes compliance on every motion of the program until end_force_mode() or
+  /// end_program(). A further call changes the settings. Compliance is suspended while the arm stops.
   tl::expected<void, std::string> start_force_mode(const ForceModeSettings & settings);
-  /// The arm decelerates along the compliant axes; a motion of the program ends where it is (a movel is begun
-  /// anew by its operation).
+  /// The arm decelerates along the compliant axes. A motion of the program ends at the present position (a
+  /// movel is restarted by its operation).
   void end_force_mode();
   bool in_force_mode() const;
-  /// 0..2 and 0..1, for the program that runs.
+  /// Scaling 0..2 and damping 0..1; they apply until the program ends.
   void set_force_mode_scaling(double scaling);
   void set_force_mode_damping(double damping);
-  /// freedrive_mode(): hands lead the arm along and about the free axes of the feature (a pose in the base
-  /// frame) until end_freedrive(), the program's end or a stop. Motions of the program are refused meanwhile.
-  MotionStart freedrive(const std::array<bool, 6> & free_axes, const Vector6 & feature);
+  /// freedrive_mode(): the arm is guided by hand along and about the free axes of the feature (a pose in the
+  /// base frame) until end_freedrive(), the end of the program or a stop. Motions of the program are rejected
+  /// meanwhile.
+  StartResult start_freedrive(const std::array<bool, 6> & free_axes, const Vector6 & feature);
   void end_freedrive();
-  /// direct_torque(): N m for the next cycle, gravity compensated; parts (0..1) of the friction that the
-  /// controller compensates.
-  MotionStart direct_torque(const Vector6 & torque, const Vector6 & viscous_scale,
+  /// direct_torque(): N m for the next cycle, gravity compensated. The scales (0..1) are the shares of the
+  /// friction that the controller compensates.
+  StartResult direct_torque(const Vector6 & torque, const Vector6 & viscous_scale,
                             const Vector6 & coulomb_scale);
-  /// The program ended: force mode, freedrive and their settings end with it.
+  /// Ends force mode and freedrive and resets their settings, as the end of a program does.
   void end_program();
 
-  /// May the URScript call that started this motion return? Paths: at the target, in the blend; stopj, stopl:
-  /// standstill; servoj: its time is up; speedj, speedl: time is up or, without one, the velocity is reached.
-  /// Also when replaced, abandoned, stopped by safety.
-  bool finished(MotionId motion) const;
-  /// Has it come to its blend, and is it going on to its target?
+  /// True when the URScript call that started this motion may return: paths at the target or in the blend;
+  /// stopj and stopl at standstill; servoj when its time is up; speedj and speedl when the time is up or,
+  /// without a time, when the velocity is reached. Also true if the motion was replaced, canceled or stopped
+  /// by the safety system.
+  bool call_complete(MotionId motion) const;
+  /// True while the motion is in the blend at its end and continues to its target.
   bool in_blend(MotionId motion) const;
-  /// Is it the last motion that went all its way, neither abandoned nor stopped by safety? The joints'
-  /// position does not tell: along the compliant axes force mode keeps them away from the target.
-  bool arrived(MotionId motion) const;
-  /// Where the path begins and leads that the arm follows, TCP poses; nothing when it follows none.
-  struct PathEnds {
+  /// True if this is the last motion that completed, neither canceled nor stopped by the safety system. The
+  /// joint position does not tell: force mode keeps the TCP away from the target along compliant axes.
+  bool reached_target(MotionId motion) const;
+  /// TCP poses at the start and the target of the active path; nothing if the arm follows no path.
+  struct PathEndpoints {
     Vector6 start;
     Vector6 target;
   };
-  std::optional<PathEnds> path_ends() const;
-  /// Is this the motion that the arm executes now? (servoj and speedj may be active and finished.)
+  std::optional<PathEndpoints> path_endpoints() const;
+  /// True while the arm executes this motion. A servoj or speedj may be active after its call returned.
   bool active(MotionId motion) const;
-  /// A motion whose program ended or was killed: the arm decelerates along its path to standstill.
-  void abandon(MotionId motion);
-  /// Whatever moves, as abandon().
-  void abandon_all();
-  /// As a protective stop or a program stop does: brake whatever moves at `deceleration` (rad/s^2 of the
-  /// fastest joint), and forget it.
-  void halt(double deceleration);
-  /// Target and actual joints stand still and nothing is being executed.
+  /// Decelerates this motion along its path to standstill: its program ended or its thread was killed.
+  void cancel(MotionId motion);
+  /// Decelerates any motion along its path to standstill.
+  void cancel_all();
+  /// Stops any motion at `deceleration` (rad/s^2 of the fastest joint) and discards it, as a protective stop
+  /// does.
+  void stop_all(double deceleration);
+  /// True if no motion is active and the target and actual joints stand still.
   bool at_rest() const;
 
-  /// Pausing ramps the speed scaling down to 0 and keeps the motion; resuming ramps it up again. speedj and
-  /// speedl end.
+  /// Ramps the speed scaling down to 0 and keeps the motion; resume() ramps it up again. speedj and speedl
+  /// end.
   void pause();
   void resume();
 
-  /// Why the arm gave up a motion since the last call: to be handed to Safety::trip().
+  /// Why the arm stopped a motion since the last call; pass it to Safety::trigger_protective_stop().
   std::optional<MotionFault> take_fault();
 
-  /// Advances one cycle: writes the target and actual joint state (with torques and currents), the TCP poses
-  /// and speeds, the tool's acceleration and the speed scaling.
+  /// Advances by one cycle. Writes the target and actual joint state (with torques and currents), the TCP
+  /// poses and speeds, the tool acceleration and the speed scaling.
   void step(ControllerState & state);
-  /// Puts the arm elsewhere at once, at rest (test set-up only). The position must be finite and within
-  /// limits, else std::invalid_argument.
+  /// Places the arm at a position at rest, for test set-ups. Throws std::invalid_argument if the position is
+  /// not finite or beyond the joint limits.
   void teleport(const Vector6 & position, ControllerState & state);
 
  private:

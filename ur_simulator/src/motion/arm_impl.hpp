@@ -7,20 +7,20 @@
 #include <utility>
 #include <variant>
 
-#include "kinematics/inverse.hpp"
+#include "kinematics/inverse_kinematics.hpp"
+#include "motion/argument_checks.hpp"
 #include "motion/arm.hpp"
-#include "motion/arm_state.hpp"
-#include "motion/cartesian_path.hpp"
-#include "motion/follower.hpp"
-#include "motion/force_mode.hpp"
-#include "motion/forward_dynamics.hpp"
-#include "motion/freedrive.hpp"
-#include "motion/joint_servo.hpp"
-#include "motion/joint_speed.hpp"
-#include "motion/linear_speed.hpp"
-#include "motion/path_move.hpp"
-#include "motion/refusal.hpp"
-#include "motion/torque_control.hpp"
+#include "motion/arm_state_writer.hpp"
+#include "motion/force/force_mode.hpp"
+#include "motion/force/forward_dynamics.hpp"
+#include "motion/force/freedrive_motion.hpp"
+#include "motion/force/torque_motion.hpp"
+#include "motion/joint_servo_loop.hpp"
+#include "motion/path/path_motion.hpp"
+#include "motion/servo/joint_servo_motion.hpp"
+#include "motion/servo/joint_speed_motion.hpp"
+#include "motion/servo/linear_speed_motion.hpp"
+#include "motion/tcp_kinematics.hpp"
 
 namespace ur_simulator {
 
@@ -30,11 +30,12 @@ constexpr double fault_deceleration = 20.0;  ///< rad/s^2
 constexpr double default_force_scaling = 1.0;
 constexpr double default_force_damping = 0.025;
 
-/// Room for any motion, in place: motions start within the control cycle, where nothing is allocated.
-using MotionSlot =
-    std::variant<std::monostate, PathMove, JointServo, JointSpeed, LinearSpeed, Freedrive, TorqueControl>;
+/// Any motion, stored in place: motions start inside the control cycle, which does not allocate.
+using AnyMotion = std::variant<std::monostate, PathMotion, JointServoMotion, JointSpeedMotion,
+                               LinearSpeedMotion, FreedriveMotion, TorqueMotion>;
 
-inline Motion * motion_in(MotionSlot & slot)
+/// Null if there is none.
+inline Motion * get_motion(AnyMotion & active_motion)
 {
   return std::visit(
       [](auto & held) -> Motion * {
@@ -44,15 +45,15 @@ inline Motion * motion_in(MotionSlot & slot)
           return nullptr;
         }
       },
-      slot);
+      active_motion);
 }
 
-/// What the sources of the arm share; nobody else includes this.
+/// Implementation of Arm, shared by the arm*.cpp files.
 struct Arm::Impl {
   Impl(const RobotModel & robot_model, double cycle, const Vector6 & position)
       : model(robot_model),
         cycle_time(cycle),
-        follower(cycle, position),
+        servo_loop(cycle, position),
         writer(robot_model, cycle),
         dynamics(robot_model)
   {
@@ -63,83 +64,88 @@ struct Arm::Impl {
   const RobotModel & model;
   double cycle_time;
   Setpoint setpoint;
-  Follower follower;
+  JointServoLoop servo_loop;
   ArmStateWriter writer;
-  MotionSlot slot;
-  MotionId last_id = 0;                    // of the motion in the slot, and the highest given away
-  MotionId last_arrived = skipped_motion;  // of the last motion that went all its way
-  bool given_up = false;                   // the motion in the slot only brakes any more
-  bool is_stop = false;                    // it is a stop: that it cannot go on straight is no fault
+  AnyMotion active_motion;
+  MotionId last_id = 0;                          ///< of the active motion; the highest in use
+  MotionId last_reached_id = skipped_motion_id;  ///< of the last motion that completed
+  bool canceled = false;                         ///< the active motion only decelerates
+  bool is_stop = false;  ///< the active motion is a stop: leaving its path is no fault
   bool paused = false;
-  const ControllerState * state =
-      nullptr;  // of the last step: its modes and its TCP hold for what starts next
+  const ControllerState * state = nullptr;  ///< of the last step: modes and TCP for the next motion
   std::optional<MotionFault> fault;
 
   std::optional<ForceMode> force;
   double force_scaling = default_force_scaling;
   double force_damping = default_force_damping;
-  Setpoint commanded;  // where the servo loops lead the joints: the setpoint, and what force mode adds
+  Setpoint commanded;  ///< target of the servo loops: the setpoint plus the deviation of force mode
   ForwardDynamics dynamics;
 
-  Motion * motion() { return motion_in(slot); }
+  Motion * current_motion() { return get_motion(active_motion); }
 
   bool may_move() const
   {
     return state != nullptr && state->robot_mode == RobotMode::running && allows_motion(state->safety_mode);
   }
 
-  Refusal not_ready(std::string_view call) const
+  Rejection check_ready(std::string_view function) const
   {
-    if (guided()) {
-      return fmt::format("{}: the arm is in freedrive: call end_freedrive_mode() first", call);
+    if (in_freedrive()) {
+      return fmt::format("{}: the arm is in freedrive: call end_freedrive_mode() first", function);
     }
     if (may_move()) {
       return std::nullopt;
     }
     if (state == nullptr) {
-      return fmt::format("{}: the robot has not started yet", call);
+      return fmt::format("{}: the robot has not started yet", function);
     }
-    return fmt::format("{}: the robot cannot move: its mode is {}, its safety mode {}", call,
+    return fmt::format("{}: the robot cannot move: its mode is {}, its safety mode {}", function,
                        to_string(state->robot_mode), to_string(state->safety_mode));
   }
 
-  Refusal unreachable(std::string_view call, const Vector6 & tcp_pose) const
+  Rejection check_reachable(std::string_view function, const Vector6 & tcp_pose) const
   {
     const auto solution = get_inverse_kin(model, tcp_pose, setpoint.position, state->tcp_offset);
-    return solution ? std::nullopt : Refusal(fmt::format("{}: {}", call, solution.error()));
+    return solution ? std::nullopt : Rejection(fmt::format("{}: {}", function, solution.error()));
   }
 
   template <typename M>
-  MotionId begin(M && motion, bool stop = false)
+  MotionId start_motion(M && motion, bool stop = false)
   {
-    slot = std::forward<M>(motion);
-    given_up = false;
+    active_motion = std::forward<M>(motion);
+    canceled = false;
     is_stop = stop;
     return ++last_id;
   }
 
-  /// Do hands lead the arm?
-  bool guided() const { return std::holds_alternative<Freedrive>(slot) && !given_up; }
-  /// Does it only come to a stop, whatever was asked for?
-  bool braking() const { return is_stop && given_up && !std::holds_alternative<std::monostate>(slot); }
+  /// True while the arm is guided by hand.
+  bool in_freedrive() const { return std::holds_alternative<FreedriveMotion>(active_motion) && !canceled; }
+  /// True while a stop replaces the motion that the program requested.
+  bool stopping() const
+  {
+    return is_stop && canceled && !std::holds_alternative<std::monostate>(active_motion);
+  }
 
-  CartesianPath path() const { return {model, state->tcp_offset}; }
+  TcpKinematics tcp_kinematics() const { return {model, state->tcp_offset}; }
 
-  Refusal no_cartesian(std::string_view call, const Vector6 & pose, const MoveOptions & options) const;
-  /// Lays what starts next; `path` and the motion in the slot must stay as long as the planner.
-  PathPlanner planner(const CartesianPath & path);
-  /// `lay` makes the path out of the planner.
-  template <typename Lay>
-  MotionStart begin_path(const Transform & target, double blend_radius, Lay lay);
+  Rejection check_cartesian_target(std::string_view function, const Vector6 & pose,
+                                   const MoveOptions & options) const;
+  /// A planner for the next path. `kinematics` and the active motion must outlive it.
+  PathPlanner make_planner(const TcpKinematics & kinematics);
+  /// Starts the path that `plan` makes with the planner.
+  template <typename Plan>
+  StartResult start_path(const Transform & target, double blend_radius, Plan plan);
 
-  void ramp_scaling(ControllerState & current) const;
-  void advance(const Tick & tick);
-  void brake_hard(double deceleration);
-  void lead_joints(const Tick & tick);
-  void comply(const Tick & tick);
-  void drop_deviation();
-  /// The setpoint is where the joints are: no servo loop leads them from here on.
-  void take_over_joints();
+  void ramp_speed_scaling(ControllerState & current) const;
+  void advance(const TimeStep & time_step);
+  /// Replaces the active motion by a stop.
+  void replace_with_stop(double deceleration);
+  void command_joints(const TimeStep & time_step);
+  void apply_force_mode(const TimeStep & time_step);
+  /// Moves the program's setpoint to the commanded position, so that force mode starts without deviation.
+  void reset_deviation();
+  /// Sets the setpoint to the actual joint state, for motions that control the actual joints.
+  void start_from_actual_joints();
 };
 
 }  // namespace ur_simulator

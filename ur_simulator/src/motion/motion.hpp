@@ -7,21 +7,22 @@
 
 namespace ur_simulator {
 
-/// One way of moving. Built at the setpoint it takes over from; never changes its velocity by leaps.
+/// One motion of the arm. It starts from the current setpoint; its velocity is continuous.
 class Motion {
  public:
   virtual ~Motion() = default;
 
-  /// One cycle further. On a fault `now` is left as it was, and the arm brakes.
-  virtual std::optional<MotionFault> advance(const Tick & tick, Setpoint & now) = 0;
-  /// May the URScript call that started it return?
-  virtual bool released() const = 0;
-  /// Stands still at its end: nothing more will come of it.
-  virtual bool done() const = 0;
-  /// From now on decelerate along the path to standstill, then be done.
-  virtual void brake() = 0;
-  /// Does it say where the joints are, rather than where their servo loops are to lead them?
-  virtual bool leads_actual() const { return false; }
+  /// Advances by one control cycle. On a fault `setpoint` is unchanged and the arm decelerates.
+  virtual std::optional<MotionFault> advance(const TimeStep & time_step, Setpoint & setpoint) = 0;
+  /// True when the URScript call that started the motion may return.
+  virtual bool call_complete() const = 0;
+  /// True when the motion is over and its setpoint stands still.
+  virtual bool finished() const = 0;
+  /// Decelerates along the path to standstill; the motion is then finished.
+  virtual void decelerate() = 0;
+  /// True if the setpoint is the actual joint position, as under torque control, and not the target of the
+  /// servo loops.
+  virtual bool controls_actual_joints() const { return false; }
 };
 
 }  // namespace ur_simulator

@@ -11,25 +11,27 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 
 Connection::Connection(tcp::socket socket, std::uint64_t id)
-    : socket_(std::move(socket)), id_(id), late_timer_(socket_.get_executor())
+    : socket_(std::move(socket)), id_(id), delay_timer_(socket_.get_executor())
 {
   boost::system::error_code ignored;
   socket_.non_blocking(true, ignored);
   socket_.set_option(tcp::no_delay(true), ignored);
-  const tcp::endpoint peer = socket_.remote_endpoint(ignored);
-  peer_ = peer.address().to_string(ignored) + ":" + std::to_string(peer.port());
+  const tcp::endpoint remote = socket_.remote_endpoint(ignored);
+  remote_endpoint_ = remote.address().to_string(ignored) + ":" + std::to_string(remote.port());
 }
 
-void Connection::start(OnData on_data, OnClose on_close)
+void Connection::start(DataHandler on_data, CloseHandler on_close)
 {
   on_data_ = std::move(on_data);
   on_close_ = std::move(on_close);
   if (!open_) {
-    finish();
+    notify_closed();
     return;
   }
   read();
 }
+
+// ---- reading
 
 void Connection::read()
 {
@@ -38,28 +40,28 @@ void Connection::read()
   }
   reading_ = true;
   socket_.async_read_some(
-      asio::buffer(received_),
+      asio::buffer(read_buffer_),
       [self = shared_from_this()](const boost::system::error_code & error, std::size_t size) {
         self->reading_ = false;
-        self->take(error, size);
+        self->handle_read(error, size);
       });
 }
 
-void Connection::take(const boost::system::error_code & error, std::size_t size)
+void Connection::handle_read(const boost::system::error_code & error, std::size_t size)
 {
   if (!open_) {
     return;
   }
-  if (error && error != asio::error::operation_aborted) {  // aborted: by stall()
+  if (error && error != asio::error::operation_aborted) {  // set_stalled() aborts the read
     close();
     return;
   }
   if (size > 0) {
-    const std::string_view bytes(received_.data(), size);
-    if (to_lose_ > 0) {
-      --to_lose_;
-    } else if (delay_.count() > 0 || !late_.empty()) {
-      keep(false, bytes);
+    const std::string_view bytes(read_buffer_.data(), size);
+    if (reads_to_discard_ > 0) {
+      --reads_to_discard_;
+    } else if (delays_data()) {
+      delay(Direction::incoming, bytes);
     } else {
       deliver(bytes);
     }
@@ -71,7 +73,7 @@ void Connection::take(const boost::system::error_code & error, std::size_t size)
 
 void Connection::deliver(std::string_view bytes)
 {
-  // A defect in one protocol handler costs that client its connection, never the controller its thread.
+  // An exception in a protocol handler closes this connection; the controller's thread continues.
   try {
     on_data_(bytes);
   } catch (const std::exception &) {
@@ -79,7 +81,52 @@ void Connection::deliver(std::string_view bytes)
   }
 }
 
-std::size_t Connection::write_now(std::string_view bytes)
+// ---- writing
+
+void Connection::send(std::string_view bytes)
+{
+  if (!open_ || close_after_sending_ || bytes.empty()) {
+    return;
+  }
+  if (delays_data()) {
+    delay(Direction::outgoing, bytes);
+  } else {
+    write(bytes);
+  }
+}
+
+bool Connection::send_or_drop(std::string_view bytes)
+{
+  if (!open_ || close_after_sending_ || stalled_ || !send_buffer_.empty()) {
+    return false;
+  }
+  if (delays_data()) {
+    delay(Direction::outgoing, bytes);
+    return true;
+  }
+  const std::size_t written = write_to_socket(bytes);
+  if (written > 0 && written < bytes.size()) {
+    send_buffer_.append(bytes.substr(written));
+    flush_when_writable();
+  }
+  return written > 0;
+}
+
+void Connection::write(std::string_view bytes)
+{
+  const std::size_t written = send_buffer_.empty() && !stalled_ ? write_to_socket(bytes) : 0;
+  if (!open_ || written == bytes.size()) {
+    return;
+  }
+  if (send_buffer_.size() + bytes.size() - written > send_buffer_limit) {
+    close();
+    return;
+  }
+  send_buffer_.append(bytes.substr(written));
+  flush_when_writable();
+}
+
+std::size_t Connection::write_to_socket(std::string_view bytes)
 {
   boost::system::error_code error;
   const std::size_t written = socket_.write_some(asio::buffer(bytes.data(), bytes.size()), error);
@@ -87,49 +134,6 @@ std::size_t Connection::write_now(std::string_view bytes)
     close();
   }
   return written;
-}
-
-void Connection::send(std::string_view bytes)
-{
-  if (!open_ || closing_ || bytes.empty()) {
-    return;
-  }
-  if (delay_.count() > 0 || !late_.empty()) {
-    keep(true, bytes);
-  } else {
-    write(bytes);
-  }
-}
-
-void Connection::write(std::string_view bytes)
-{
-  const std::size_t written = queue_.empty() && !stalled_ ? write_now(bytes) : 0;
-  if (!open_ || written == bytes.size()) {
-    return;
-  }
-  if (queue_.size() + bytes.size() - written > queue_limit) {
-    close();
-    return;
-  }
-  queue_.append(bytes.substr(written));
-  flush_when_writable();
-}
-
-bool Connection::send_or_drop(std::string_view bytes)
-{
-  if (!open_ || closing_ || stalled_ || !queue_.empty()) {
-    return false;
-  }
-  if (delay_.count() > 0 || !late_.empty()) {
-    keep(true, bytes);
-    return true;
-  }
-  const std::size_t written = write_now(bytes);
-  if (written > 0 && written < bytes.size()) {
-    queue_.append(bytes.substr(written));
-    flush_when_writable();
-  }
-  return written > 0;
 }
 
 void Connection::flush_when_writable()
@@ -144,83 +148,21 @@ void Connection::flush_when_writable()
                        if (error || !self->open_ || self->stalled_) {
                          return;
                        }
-                       self->queue_.erase(0, self->write_now(self->queue_));
+                       self->send_buffer_.erase(0, self->write_to_socket(self->send_buffer_));
                        if (!self->open_) {
                          return;
                        }
-                       if (!self->queue_.empty()) {
+                       if (!self->send_buffer_.empty()) {
                          self->flush_when_writable();
-                       } else if (self->closing_) {
+                       } else if (self->close_after_sending_) {
                          self->close();
                        }
                      });
 }
 
-void Connection::delay(std::chrono::milliseconds by)
-{
-  delay_ = by;
-}
+// ---- fault injection
 
-void Connection::keep(bool outgoing, std::string_view bytes)
-{
-  late_bytes_ += bytes.size();
-  if (late_bytes_ > queue_limit) {
-    close();
-    return;
-  }
-  // Never before what was sent earlier, also when the delay has become shorter.
-  const auto due = std::chrono::steady_clock::now() + delay_;
-  late_.push_back({late_.empty() ? due : std::max(due, late_.back().due), outgoing, std::string(bytes)});
-  if (late_.size() == 1) {
-    wait_for_kept();
-  }
-}
-
-void Connection::wait_for_kept()
-{
-  late_timer_.expires_at(late_.front().due);
-  late_timer_.async_wait([self = shared_from_this()](const boost::system::error_code & error) {
-    if (!error) {
-      self->release_kept();
-    }
-  });
-}
-
-void Connection::release_kept()
-{
-  const auto now = std::chrono::steady_clock::now();
-  while (open_ && !late_.empty() && late_.front().due <= now) {
-    // What is delivered may be answered: that comes after it, hence it stays in the queue meanwhile.
-    const bool outgoing = late_.front().outgoing;
-    const std::string bytes = std::move(late_.front().bytes);
-    late_bytes_ -= bytes.size();
-    outgoing ? write(bytes) : deliver(bytes);
-    late_.pop_front();
-  }
-  if (open_ && !late_.empty()) {
-    wait_for_kept();
-  } else if (open_ && closing_ && queue_.empty()) {
-    close();
-  }
-}
-
-void Connection::close_after_sending()
-{
-  if (queue_.empty() && late_.empty()) {
-    close();
-  } else {
-    closing_ = true;
-  }
-}
-
-void Connection::reset()
-{
-  boost::system::error_code ignored;
-  socket_.set_option(asio::socket_base::linger(true, 0), ignored);
-  close();
-}
-
-void Connection::stall(bool stalled)
+void Connection::set_stalled(bool stalled)
 {
   if (stalled_ == stalled || !open_) {
     return;
@@ -232,9 +174,71 @@ void Connection::stall(bool stalled)
     return;
   }
   read();
-  if (!queue_.empty()) {
+  if (!send_buffer_.empty()) {
     flush_when_writable();
   }
+}
+
+void Connection::delay(Direction direction, std::string_view bytes)
+{
+  delayed_bytes_ += bytes.size();
+  if (delayed_bytes_ > send_buffer_limit) {
+    close();
+    return;
+  }
+  // The order is kept, also after the delay has been reduced.
+  const auto due = std::chrono::steady_clock::now() + delay_;
+  delayed_.push_back(
+      {delayed_.empty() ? due : std::max(due, delayed_.back().due), direction, std::string(bytes)});
+  if (delayed_.size() == 1) {
+    schedule_delayed_data();
+  }
+}
+
+void Connection::schedule_delayed_data()
+{
+  delay_timer_.expires_at(delayed_.front().due);
+  delay_timer_.async_wait([self = shared_from_this()](const boost::system::error_code & error) {
+    if (!error) {
+      self->process_delayed_data();
+    }
+  });
+}
+
+void Connection::process_delayed_data()
+{
+  const auto now = std::chrono::steady_clock::now();
+  while (open_ && !delayed_.empty() && delayed_.front().due <= now) {
+    // The entry is removed after its delivery, so that a reply to it is queued behind it.
+    const Direction direction = delayed_.front().direction;
+    const std::string bytes = std::move(delayed_.front().bytes);
+    delayed_bytes_ -= bytes.size();
+    direction == Direction::outgoing ? write(bytes) : deliver(bytes);
+    delayed_.pop_front();
+  }
+  if (open_ && !delayed_.empty()) {
+    schedule_delayed_data();
+  } else if (open_ && close_after_sending_ && send_buffer_.empty()) {
+    close();
+  }
+}
+
+// ---- closing
+
+void Connection::close_after_sending()
+{
+  if (send_buffer_.empty() && delayed_.empty()) {
+    close();
+  } else {
+    close_after_sending_ = true;
+  }
+}
+
+void Connection::reset()
+{
+  boost::system::error_code ignored;
+  socket_.set_option(asio::socket_base::linger(true, 0), ignored);
+  close();
 }
 
 void Connection::close()
@@ -244,15 +248,15 @@ void Connection::close()
   }
   open_ = false;
   boost::system::error_code ignored;
-  late_timer_.cancel();
+  delay_timer_.cancel();
   socket_.close(ignored);
-  finish();
+  notify_closed();
 }
 
-void Connection::finish()
+void Connection::notify_closed()
 {
-  // Both callbacks may hold the session that holds this connection: let go of them.
-  const OnClose on_close = std::exchange(on_close_, nullptr);
+  // Released after the call: the handler may own objects that own this connection.
+  const CloseHandler on_close = std::exchange(on_close_, nullptr);
   if (on_close) {
     on_close();
   }

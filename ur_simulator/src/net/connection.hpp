@@ -14,82 +14,82 @@
 
 namespace ur_simulator {
 
-/// One client on one socket. Single-threaded: everything happens on the io_context's thread. Sends never
-/// block: what the kernel does not take waits in a bounded queue.
+/// A TCP connection with fault injection: stalls, delays and lost data. Not thread-safe: all functions and
+/// callbacks run on the thread of the io_context. Sending never blocks: data that the kernel does not accept
+/// is buffered up to `send_buffer_limit`.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  /// Bytes as they came, in pieces of any size.
-  using OnData = std::function<void(std::string_view)>;
-  /// Called exactly once, when the connection has ended for whatever reason.
-  using OnClose = std::function<void()>;
+  /// Receives the data in pieces of any size.
+  using DataHandler = std::function<void(std::string_view)>;
+  /// Called exactly once, after the connection has been closed by either side.
+  using CloseHandler = std::function<void()>;
 
   Connection(boost::asio::ip::tcp::socket socket, std::uint64_t id);
 
-  void start(OnData on_data, OnClose on_close);
-  /// Sends all of it, now or as soon as the client reads; a client that has let more than `queue_limit` bytes
-  /// pile up is disconnected.
+  void start(DataHandler on_data, CloseHandler on_close);
+  /// Sends or buffers all bytes. Closes the connection if more than `send_buffer_limit` bytes are buffered.
   void send(std::string_view bytes);
-  /// Sends all of it, or nothing when the client has not read what came before: then the caller's data is
-  /// dropped.
+  /// Sends all bytes, or none if earlier bytes are still buffered. Returns false if the bytes are dropped.
   bool send_or_drop(std::string_view bytes);
-  /// Ends the connection; what waits unsent is lost.
+  /// Closes the connection and discards the buffered data.
   void close();
-  /// Ends it once everything queued has been sent.
+  /// Closes the connection after the buffered data has been sent.
   void close_after_sending();
-  /// Ends it as a crashed peer would: with a reset instead of an orderly end.
+  /// Closes the connection with a TCP reset, as after a crash.
   void reset();
-  /// A stalled connection neither reads nor writes but stays open, as behind a pulled cable.
-  void stall(bool stalled);
-  /// From now on everything, both ways, is this late, as over a bad line. 0: no more.
-  void delay(std::chrono::milliseconds by);
-  /// The next `pieces` that arrive are lost, as if they had never been sent.
-  void lose(std::uint64_t pieces) { to_lose_ = pieces; }
+  /// A stalled connection neither reads nor writes but stays open, as if the cable were unplugged.
+  void set_stalled(bool stalled);
+  /// Delays all data in both directions from now on. 0 ends the delay.
+  void set_delay(std::chrono::milliseconds delay) { delay_ = delay; }
+  /// Discards the data of the next `count` reads.
+  void discard_next_reads(std::uint64_t count) { reads_to_discard_ = count; }
 
   std::uint64_t id() const { return id_; }
-  bool open() const { return open_; }
-  bool backed_up() const { return !queue_.empty(); }
-  /// "127.0.0.1:43210"
-  const std::string & peer() const { return peer_; }
+  bool is_open() const { return open_; }
+  /// Address and port of the peer: "127.0.0.1:43210"
+  const std::string & remote_endpoint() const { return remote_endpoint_; }
 
-  static constexpr std::size_t queue_limit = 256 * 1024;
+  static constexpr std::size_t send_buffer_limit = 256 * 1024;
 
  private:
-  void read();
-  void take(const boost::system::error_code & error, std::size_t size);
-  void deliver(std::string_view bytes);
-  std::size_t write_now(std::string_view bytes);
-  void flush_when_writable();
-  void finish();
-  void write(std::string_view bytes);
-  /// Keeps what was sent or received until its time has come.
-  void keep(bool outgoing, std::string_view bytes);
-  void wait_for_kept();
-  void release_kept();
+  enum class Direction { incoming, outgoing };
 
-  /// Bytes on their way over a bad line.
-  struct Late {
+  /// Data whose delivery is delayed.
+  struct DelayedData {
     std::chrono::steady_clock::time_point due;
-    bool outgoing;
+    Direction direction;
     std::string bytes;
   };
 
+  void read();
+  void handle_read(const boost::system::error_code & error, std::size_t size);
+  void deliver(std::string_view bytes);
+  void write(std::string_view bytes);
+  std::size_t write_to_socket(std::string_view bytes);
+  void flush_when_writable();
+  void notify_closed();
+  bool delays_data() const { return delay_.count() > 0 || !delayed_.empty(); }
+  void delay(Direction direction, std::string_view bytes);
+  void schedule_delayed_data();
+  void process_delayed_data();
+
   boost::asio::ip::tcp::socket socket_;
   std::uint64_t id_;
-  std::string peer_;
-  OnData on_data_;
-  OnClose on_close_;
-  std::array<char, 16384> received_;
-  std::string queue_;
+  std::string remote_endpoint_;
+  DataHandler on_data_;
+  CloseHandler on_close_;
+  std::array<char, 16384> read_buffer_;
+  std::string send_buffer_;
   bool open_ = true;
   bool reading_ = false;
   bool waiting_to_write_ = false;
-  bool closing_ = false;
+  bool close_after_sending_ = false;
   bool stalled_ = false;
   std::chrono::milliseconds delay_{0};
-  boost::asio::steady_timer late_timer_;
-  std::deque<Late> late_;
-  std::size_t late_bytes_ = 0;
-  std::uint64_t to_lose_ = 0;
+  boost::asio::steady_timer delay_timer_;
+  std::deque<DelayedData> delayed_;
+  std::size_t delayed_bytes_ = 0;
+  std::uint64_t reads_to_discard_ = 0;
 };
 
 }  // namespace ur_simulator

@@ -14,26 +14,28 @@ using asio::ip::tcp;
 
 namespace {
 
-std::string explain(const boost::system::error_code & error, const tcp::endpoint & endpoint)
+std::string describe_bind_error(const boost::system::error_code & error, const tcp::endpoint & endpoint)
 {
   const std::string where = fmt::format("port {} of {}", endpoint.port(), endpoint.address().to_string());
   if (error == asio::error::address_in_use) {
     return where +
-           " is in use by another process: stop it or choose another address (--address) or port (--ports)";
+           " is in use by another process: stop that process or select another address (--address) or port "
+           "(--ports)";
   }
   if (error == asio::error::access_denied) {
-    return where + " may not be opened by this user: choose a port above 1023 (--ports)";
+    return where + " cannot be opened without privileges: select a port above 1023 (--ports)";
   }
   if (error == boost::system::errc::address_not_available) {
-    return where + " cannot be opened: no network interface of this machine has that address (--address)";
+    return where + " cannot be opened: no network interface of this machine has this address (--address)";
   }
   return where + " cannot be opened: " + error.message();
 }
 
 }  // namespace
 
-Listener::Listener(asio::io_context & io, const std::string & address, std::uint16_t port, OnAccept on_accept)
-    : acceptor_(io), retry_(io), on_accept_(std::move(on_accept))
+Listener::Listener(asio::io_context & io, const std::string & address, std::uint16_t port,
+                   AcceptHandler on_accept)
+    : acceptor_(io), retry_timer_(io), on_accept_(std::move(on_accept))
 {
   boost::system::error_code error;
   const asio::ip::address parsed = asio::ip::make_address(address, error);
@@ -47,7 +49,7 @@ Listener::Listener(asio::io_context & io, const std::string & address, std::uint
 
 Listener::~Listener()
 {
-  close_all();
+  close_connections();
 }
 
 void Listener::listen()
@@ -66,7 +68,7 @@ void Listener::listen()
   if (error) {
     boost::system::error_code ignored;
     acceptor_.close(ignored);
-    throw std::runtime_error(explain(error, endpoint_));
+    throw std::runtime_error(describe_bind_error(error, endpoint_));
   }
   endpoint_ = acceptor_.local_endpoint();
   accept();
@@ -79,7 +81,7 @@ void Listener::accept()
       return;
     }
     if (error) {
-      accept_later();
+      retry_accept();
       return;
     }
     const std::uint64_t id = next_id_++;
@@ -91,23 +93,23 @@ void Listener::accept()
   });
 }
 
-void Listener::accept_later()
+void Listener::retry_accept()
 {
-  // Out of file descriptors, as a rule: at once it would fail again, and again.
-  retry_.expires_after(std::chrono::milliseconds(100));
-  retry_.async_wait([this](const boost::system::error_code & error) {
+  // The usual cause is a lack of file descriptors. An immediate retry would fail again.
+  retry_timer_.expires_after(std::chrono::milliseconds(100));
+  retry_timer_.async_wait([this](const boost::system::error_code & error) {
     if (!error && acceptor_.is_open()) {
       accept();
     }
   });
 }
 
-std::size_t Listener::clients() const
+std::size_t Listener::connection_count() const
 {
   std::size_t count = 0;
   for (const auto & [id, weak] : connections_) {
     const auto connection = weak.lock();
-    count += connection && connection->open() ? 1 : 0;
+    count += connection && connection->is_open() ? 1 : 0;
   }
   return count;
 }
@@ -125,11 +127,11 @@ void Listener::set_accepting(bool accepting)
   acceptor_.close(ignored);
 }
 
-void Listener::for_each(const std::function<void(Connection &)> & action)
+void Listener::for_each_connection(const std::function<void(Connection &)> & action)
 {
   std::vector<std::shared_ptr<Connection>> open;
   for (const auto & [id, weak] : connections_) {
-    if (auto connection = weak.lock(); connection && connection->open()) {
+    if (auto connection = weak.lock(); connection && connection->is_open()) {
       open.push_back(std::move(connection));
     }
   }
@@ -138,9 +140,9 @@ void Listener::for_each(const std::function<void(Connection &)> & action)
   }
 }
 
-void Listener::close_all()
+void Listener::close_connections()
 {
-  for_each([](Connection & connection) { connection.close(); });
+  for_each_connection([](Connection & connection) { connection.close(); });
 }
 
 }  // namespace ur_simulator

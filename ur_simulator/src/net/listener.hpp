@@ -13,35 +13,36 @@
 
 namespace ur_simulator {
 
-/// A listening port and the connections that came through it.
+/// A listening TCP port and the connections accepted on it.
 class Listener {
  public:
-  /// The new client; the callee starts it.
-  using OnAccept = std::function<void(const std::shared_ptr<Connection> &)>;
+  /// Receives each new connection and calls Connection::start().
+  using AcceptHandler = std::function<void(const std::shared_ptr<Connection> &)>;
 
-  /// Throws std::runtime_error that names address and port when it cannot be bound. Port 0 takes a free one.
-  Listener(boost::asio::io_context & io, const std::string & address, std::uint16_t port, OnAccept on_accept);
+  /// Port 0 selects a free port. Throws std::runtime_error with address and port if the port cannot be bound.
+  Listener(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
+           AcceptHandler on_accept);
   ~Listener();
   Listener(const Listener &) = delete;
   Listener & operator=(const Listener &) = delete;
 
   std::uint16_t port() const { return endpoint_.port(); }
-  std::size_t clients() const;
-  /// While not accepting, the port is closed: clients are refused as by a controller that is switched off.
+  /// Number of open connections.
+  std::size_t connection_count() const;
+  /// While accepting is off, the port is closed and clients are refused, as by a controller without power.
   void set_accepting(bool accepting);
-  bool accepting() const { return acceptor_.is_open(); }
-  void for_each(const std::function<void(Connection &)> & action);
-  void close_all();
+  void for_each_connection(const std::function<void(Connection &)> & action);
+  void close_connections();
 
  private:
   void listen();
   void accept();
-  void accept_later();
+  void retry_accept();
 
   boost::asio::ip::tcp::acceptor acceptor_;
-  boost::asio::steady_timer retry_;
+  boost::asio::steady_timer retry_timer_;
   boost::asio::ip::tcp::endpoint endpoint_;
-  OnAccept on_accept_;
+  AcceptHandler on_accept_;
   std::map<std::uint64_t, std::weak_ptr<Connection>> connections_;
   std::uint64_t next_id_ = 1;
 };

@@ -8,15 +8,30 @@ namespace ur_simulator {
 namespace {
 
 constexpr std::string_view pendant_source = "pendant";
-constexpr std::string_view folder = "/programs/";
+constexpr std::string_view programs_folder_prefix = "/programs/";
 
-/// The name inside the programs folder: clients give it with and without the folder.
+/// The name within the programs folder. Clients give it with or without the folder.
 std::string file_name(std::string_view path)
 {
-  if (path.starts_with(folder)) {
-    path.remove_prefix(folder.size());
+  if (path.starts_with(programs_folder_prefix)) {
+    path.remove_prefix(programs_folder_prefix.size());
   }
   return std::string(path);
+}
+
+/// The program that the External Control URCap substitutes for a program that it could not receive (source
+/// code of the URCap, Universal_Robots_ExternalControl_URCap).
+std::string receive_failed_popup(const ProgramHost & host, const std::string & reason)
+{
+  return fmt::format(
+      "popup(\"The connection to the remote PC at {}:{} could not be established. Reason: {}\", \"Receive "
+      "program failed\", False, True, blocking=True)\nsync()",
+      host.address, host.port, reason);
+}
+
+tl::unexpected<std::string> refusal(std::string reason)
+{
+  return tl::make_unexpected(std::move(reason));
 }
 
 }  // namespace
@@ -34,16 +49,18 @@ Pendant::Pendant(const RobotModel & model, const PendantOptions & options, Contr
 {
 }
 
+// ---- stored programs
+
 void Pendant::store_program(const std::string & name, const std::string & script)
 {
   programs_.insert_or_assign(file_name(name), script);
-  external_.erase(file_name(name));
+  external_control_hosts_.erase(file_name(name));
 }
 
 void Pendant::store_external_control(const std::string & name, const ProgramHost & host)
 {
   store_program(name, "");
-  external_.insert_or_assign(file_name(name), host);
+  external_control_hosts_.insert_or_assign(file_name(name), host);
 }
 
 tl::expected<void, Pendant::LoadError> Pendant::load_program(const std::string & name)
@@ -52,13 +69,13 @@ tl::expected<void, Pendant::LoadError> Pendant::load_program(const std::string &
   if (found == programs_.end()) {
     return tl::make_unexpected(LoadError::not_found);
   }
-  const bool fetched = external_.contains(found->first);
-  if (const auto compiled = runner_.compile(found->second); !fetched && !compiled) {
+  const bool external = external_control_hosts_.contains(found->first);
+  if (const auto compiled = runner_.compile(found->second); !external && !compiled) {
     log_.error(pendant_source, fmt::format("'{}' cannot be loaded: {}", name, compiled.error().text()));
-    return tl::make_unexpected(LoadError::not_a_program);
+    return tl::make_unexpected(LoadError::does_not_compile);
   }
   runner_.stop("another program was loaded");
-  loaded_ = found->first;
+  loaded_program_ = found->first;
   return {};
 }
 
@@ -73,35 +90,34 @@ bool Pendant::load_installation(const std::string & name)
   return true;
 }
 
-Pendant::Answer Pendant::can_run() const
+// ---- running programs
+
+Pendant::Result Pendant::check_can_run() const
 {
   if (state_.robot_mode != RobotMode::running) {
-    return tl::make_unexpected(
-        fmt::format("robot mode is {}, a program needs RUNNING", to_string(state_.robot_mode)));
+    return refusal(fmt::format("robot mode is {}, a program needs RUNNING", to_string(state_.robot_mode)));
   }
-  const bool safe = state_.safety_mode == SafetyMode::normal || state_.safety_mode == SafetyMode::reduced ||
-                    state_.safety_mode == SafetyMode::recovery;
-  if (!safe) {
-    return tl::make_unexpected(
+  if (!allows_motion(state_.safety_mode)) {
+    return refusal(
         fmt::format("safety mode is {}, a program needs NORMAL or REDUCED", to_string(state_.safety_mode)));
   }
   return {};
 }
 
-Pendant::Answer Pendant::start(std::string_view script)
+Pendant::Result Pendant::start(std::string_view script)
 {
   auto program = runner_.compile(script);
   if (!program) {
-    return tl::make_unexpected(program.error().text());
+    return refusal(program.error().text());
   }
   return start(std::move(*program), script);
 }
 
-Pendant::Answer Pendant::start(urscript::Program program, std::string_view script)
+Pendant::Result Pendant::start(urscript::Program program, std::string_view script)
 {
   const bool secondary = program.secondary();
-  if (const Answer can = can_run(); !secondary && !can) {
-    return can;
+  if (Result can_run = check_can_run(); !secondary && !can_run) {
+    return can_run;
   }
   runner_.start(std::move(program));
   if (!secondary) {
@@ -110,92 +126,73 @@ Pendant::Answer Pendant::start(urscript::Program program, std::string_view scrip
   return {};
 }
 
-Pendant::Answer Pendant::run_script(std::string_view text)
+Pendant::Result Pendant::run_script(std::string_view text)
 {
-  Answer answer;
+  Result result;
   if (!remote_control_ && options_.version.is_e_series()) {
-    answer = tl::make_unexpected(std::string("the robot is in local control: switch it to remote control"));
-  } else if (manual()) {
-    answer = tl::make_unexpected(std::string("the operational mode is MANUAL: set it to automatic"));
+    result = refusal("the robot is in local control: switch it to remote control");
+  } else if (in_manual_mode()) {
+    result = refusal("the operational mode is MANUAL: set it to automatic");
   } else {
     auto program = runner_.compile(text);
     if (!program) {
       const urscript::CompileError & error = program.error();
       log_.add(LogLevel::error, "program", "script was not started: " + error.text(), error.line,
                error.column);
-      return tl::make_unexpected(error.text());
+      return refusal(error.text());
     }
-    answer = start(std::move(*program), text);
+    result = start(std::move(*program), text);
   }
-  if (!answer) {
-    log_.error("program", "script was not started: " + answer.error());
+  if (!result) {
+    log_.error("program", "script was not started: " + result.error());
   }
-  return answer;
+  return result;
 }
 
-void Pendant::play(const std::function<void(const Answer &)> & done)
+void Pendant::play(const std::function<void(const Result &)> & done)
 {
-  const auto host = external_.find(loaded_);
-  const Answer can = can_run();
-  if (runner_.running() || host == external_.end() || !fetch_ || !can) {
-    done(play_now());
+  const auto external = external_control_hosts_.find(loaded_program_);
+  if (runner_.running() || external == external_control_hosts_.end() || !request_program_ ||
+      !check_can_run()) {
+    done(log_refusal("play", resume_or_start_program()));
     return;
   }
-  if (fetching_) {
-    done(tl::make_unexpected(std::string("the program is being fetched already")));
+  if (program_requested_) {
+    done(refusal("the program has already been requested from its host"));
     return;
   }
-  fetching_ = true;
-  fetch_(host->second,
-         [this, done, from = host->second](const tl::expected<std::string, std::string> & text) {
-           fetching_ = false;
-           done(play_fetched(from, text));
-         });
+  program_requested_ = true;
+  request_program_(external->second, [this, done, host = external->second](const ProgramText & text) {
+    program_requested_ = false;
+    done(log_refusal("play", start_external_program(host, text)));
+  });
 }
 
-Pendant::Answer Pendant::play_fetched(const ProgramHost & host,
-                                      const tl::expected<std::string, std::string> & text)
+Pendant::Result Pendant::start_external_program(const ProgramHost & host, const ProgramText & text)
 {
-  std::string script = "def external_control():\n";
-  if (text) {
-    script += text.value();
-  } else {
-    // What the URCap puts in the place of a program that it could not get.
-    script += fmt::format(
-        "popup(\"The connection to the remote PC at {}:{} could not be established. Reason: {}\", \"Receive "
-        "program failed\", False, True, blocking=True)\nsync()",
-        host.address, host.port, text.error());
+  if (!text) {
     log_.error(pendant_source,
                fmt::format("no program from {}:{}: {}", host.address, host.port, text.error()));
   }
-  const Answer answer = start(script + "\nend\n");
-  if (!answer) {
-    log_.error(pendant_source, "play was refused: " + answer.error());
-  }
-  return answer;
+  const std::string body = text ? text.value() : receive_failed_popup(host, text.error());
+  return start("def external_control():\n" + body + "\nend\n");
 }
 
-Pendant::Answer Pendant::play_now()
+Pendant::Result Pendant::resume_or_start_program()
 {
-  Answer answer = can_run();
-  if (answer && runner_.running()) {
-    answer = runner_.resume() ? Answer() : tl::make_unexpected(std::string("the program is running already"));
-  } else if (answer) {
-    const std::string script = loaded_.empty() ? last_script_ : programs_.at(loaded_);
-    answer = script.empty() ? tl::make_unexpected(std::string("no program is loaded")) : start(script);
+  if (Result can_run = check_can_run(); !can_run) {
+    return can_run;
   }
-  if (!answer) {
-    log_.error(pendant_source, "play was refused: " + answer.error());
+  if (runner_.running()) {
+    return runner_.resume() ? Result() : refusal("the program is running already");
   }
-  return answer;
+  const std::string script = loaded_program_.empty() ? last_script_ : programs_.at(loaded_program_);
+  return script.empty() ? refusal("no program is loaded") : start(script);
 }
 
-Pendant::Answer Pendant::pause()
+Pendant::Result Pendant::pause()
 {
-  if (!runner_.pause()) {
-    return tl::make_unexpected(std::string("no program is running"));
-  }
-  return {};
+  return runner_.pause() ? Result() : refusal("no program is running");
 }
 
 void Pendant::stop()
@@ -203,41 +200,43 @@ void Pendant::stop()
   runner_.stop("stopped by the operator");
 }
 
-Pendant::Answer Pendant::logged(std::string_view action, const SafetyAnswer & answer)
+// ---- power, safety and modes
+
+Pendant::Result Pendant::log_refusal(std::string_view action, Result result)
 {
-  if (!answer) {
-    log_.error(pendant_source, fmt::format("{} was refused: {}", action, answer.error()));
+  if (!result) {
+    log_.error(pendant_source, fmt::format("{} was refused: {}", action, result.error()));
   }
-  return answer;
+  return result;
 }
 
-Pendant::Answer Pendant::power_on()
+Pendant::Result Pendant::power_on()
 {
-  return logged("power on", safety_.power_on());
+  return log_refusal("power on", safety_.power_on());
 }
 
-Pendant::Answer Pendant::power_off()
+Pendant::Result Pendant::power_off()
 {
-  return logged("power off", safety_.power_off());
+  return log_refusal("power off", safety_.power_off());
 }
 
-Pendant::Answer Pendant::release_brakes()
+Pendant::Result Pendant::release_brakes()
 {
-  return logged("brake release", safety_.brake_release());
+  return log_refusal("brake release", safety_.brake_release());
 }
 
-Pendant::Answer Pendant::unlock_protective_stop()
+Pendant::Result Pendant::unlock_protective_stop()
 {
-  Answer answer = logged("unlock protective stop", safety_.unlock_protective_stop());
-  if (answer) {
+  Result result = log_refusal("unlock protective stop", safety_.unlock_protective_stop());
+  if (result) {
     safety_popup_.reset();
   }
-  return answer;
+  return result;
 }
 
-Pendant::Answer Pendant::restart_safety()
+Pendant::Result Pendant::restart_safety()
 {
-  return logged("restart safety", safety_.restart_safety());
+  return log_refusal("restart safety", safety_.restart_safety());
 }
 
 void Pendant::set_remote_control(bool remote)

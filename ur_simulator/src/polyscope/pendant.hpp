@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 
 #include "kinematics/robot_model.hpp"
 #include "log/event_log.hpp"
@@ -25,71 +26,79 @@ struct PendantOptions {
   std::string reports_folder;
 };
 
-/// Where the External Control URCap fetches its program.
+/// The host from which the External Control URCap requests its program.
 struct ProgramHost {
   std::string address;
   std::uint16_t port = 50002;
 };
 
-/// What a person at the teach pendant, or a program on its behalf, does with the robot: the part of PolyScope
-/// that stands above controller and safety system. The dashboard server, the script ports and the control
-/// port all act through it.
+/// The operator's functions of PolyScope: programs, power, safety, modes and popups. The dashboard server,
+/// the client interfaces and the control port use them.
 class Pendant {
  public:
-  /// Refusals say why.
-  using Answer = tl::expected<void, std::string>;
-  enum class LoadError { not_found, not_a_program };
+  /// Success, or the reason for the refusal.
+  using Result = tl::expected<void, std::string>;
+  enum class LoadError { not_found, does_not_compile };
 
   Pendant(const RobotModel & model, const PendantOptions & options, ControllerState & state, Safety & safety,
           ProgramRunner & runner, EventLog & log);
 
-  /// Puts a program on the controller's disk, as one made on the pendant would be. A name that ends in
-  /// ".installation" is an installation.
+  // ---- programs
+
+  /// Stores a program on the controller's disk. A name that ends in ".installation" is an installation.
   void store_program(const std::string & name, const std::string & script);
-  /// One that consists of the External Control URCap's node.
+  /// Stores a program that consists of the External Control URCap's program node.
   void store_external_control(const std::string & name, const ProgramHost & host);
   tl::expected<void, LoadError> load_program(const std::string & name);
+  /// Returns false if there is no such installation.
   bool load_installation(const std::string & name);
-  /// A script from one of the script ports: runs at once, in place of what runs.
-  Answer run_script(std::string_view text);
-  /// Starts the loaded program (without one: the last script received), or goes on with a paused one. `done`
-  /// is told when it runs, or why it does not: at once, unless the program is fetched from a host first.
-  void play(const std::function<void(const Answer &)> & done);
-  Answer pause();
+  /// Runs a script received on a client interface. It replaces the running program.
+  Result run_script(std::string_view text);
+  /// Resumes a paused program. Otherwise starts the loaded program or, without one, the last received script.
+  /// `done` receives the result: before the function returns, or later if the program is requested from a
+  /// host.
+  void play(const std::function<void(const Result &)> & done);
+  Result pause();
   void stop();
 
-  Answer power_on();
-  Answer power_off();
-  Answer release_brakes();
-  Answer unlock_protective_stop();
-  Answer restart_safety();
+  using ProgramText = tl::expected<std::string, std::string>;
+  /// Requests the program of a host. `done` receives the program, or the reason why there is none.
+  using ProgramRequest =
+      std::function<void(const ProgramHost & host, std::function<void(const ProgramText &)> done)>;
+  void set_program_request(ProgramRequest request) { request_program_ = std::move(request); }
+
+  const std::string & loaded_program() const { return loaded_program_; }
+  const std::string & installation() const { return installation_; }
+
+  // ---- power and safety
+
+  Result power_on();
+  Result power_off();
+  Result release_brakes();
+  Result unlock_protective_stop();
+  Result restart_safety();
   void close_safety_popup() { safety_popup_.reset(); }
   void show_safety_popup(std::string text) { safety_popup_ = std::move(text); }
   const std::optional<std::string> & safety_popup() const { return safety_popup_; }
 
-  /// Asks a host for its program; `done` gets it, or why there is none.
-  using Fetch = std::function<void(const ProgramHost & host,
-                                   std::function<void(const tl::expected<std::string, std::string> &)> done)>;
-  void fetch_programs_by(Fetch fetch) { fetch_ = std::move(fetch); }
+  /// Requests that the controller switches itself off.
+  void request_shutdown() { shutdown_requested_ = true; }
+  /// Returns whether a shutdown was requested since the last call.
+  bool take_shutdown_request() { return std::exchange(shutdown_requested_, false); }
 
-  /// The operational mode that the dashboard set is manual: nothing is started from afar.
-  bool manual() const { return operational_mode == "MANUAL"; }
-  ReportWriter & reports() { return reports_; }
+  // ---- modes
 
   bool remote_control() const { return remote_control_; }
   void set_remote_control(bool remote);
+  /// The dashboard server has set the operational mode to manual: programs cannot be started remotely.
+  bool in_manual_mode() const { return operational_mode == "MANUAL"; }
 
-  /// "MANUAL" or "AUTOMATIC" while the dashboard controls it.
+  /// "MANUAL" or "AUTOMATIC" while the dashboard server controls the mode.
   std::optional<std::string> operational_mode;
-  /// CB3 only: "PROGRAMMER", "OPERATOR", "NONE", "LOCKED", "RESTRICTED".
+  /// CB3 only: "PROGRAMMER", "OPERATOR", "NONE", "LOCKED" or "RESTRICTED".
   std::string user_role = "PROGRAMMER";
 
-  const std::string & loaded_program() const { return loaded_; }
-  const std::string & installation() const { return installation_; }
-  /// Set by shutdown(): the controller switches off.
-  bool shutdown_requested() const { return shutdown_; }
-  void request_shutdown(bool shutdown) { shutdown_ = shutdown; }
-
+  ReportWriter & reports() { return reports_; }
   const RobotModel & model() const { return model_; }
   const PendantOptions & options() const { return options_; }
   const ControllerState & state() const { return state_; }
@@ -97,12 +106,13 @@ class Pendant {
   EventLog & log() { return log_; }
 
  private:
-  Answer can_run() const;
-  Answer start(std::string_view script);
-  Answer start(urscript::Program program, std::string_view script);
-  Answer play_now();
-  Answer play_fetched(const ProgramHost & host, const tl::expected<std::string, std::string> & text);
-  Answer logged(std::string_view action, const SafetyAnswer & answer);
+  Result check_can_run() const;
+  Result start(std::string_view script);
+  Result start(urscript::Program program, std::string_view script);
+  Result resume_or_start_program();
+  Result start_external_program(const ProgramHost & host, const ProgramText & text);
+  /// Logs the reason if the action was refused.
+  Result log_refusal(std::string_view action, Result result);
 
   const RobotModel & model_;
   PendantOptions options_;
@@ -111,13 +121,13 @@ class Pendant {
   ProgramRunner & runner_;
   EventLog & log_;
   bool remote_control_;
-  bool shutdown_ = false;
+  bool shutdown_requested_ = false;
   std::map<std::string, std::string> programs_;
-  std::map<std::string, ProgramHost> external_;  ///< those of programs_ that are fetched
-  Fetch fetch_;
-  bool fetching_ = false;
+  std::map<std::string, ProgramHost> external_control_hosts_;  ///< of the External Control programs
+  ProgramRequest request_program_;
+  bool program_requested_ = false;
   ReportWriter reports_;
-  std::string loaded_;
+  std::string loaded_program_;
   std::string last_script_;
   std::string installation_ = "default.installation";
   std::optional<std::string> safety_popup_;

@@ -8,53 +8,53 @@ namespace ur_simulator {
 namespace {
 
 constexpr std::string_view program_source = "program";
-constexpr std::size_t most_secondaries = 16;
-constexpr double stood_still = 1e-3;  // speed scaling below which a paused trajectory counts as standing
+constexpr std::size_t max_secondary_programs = 16;
+constexpr double paused_speed_scaling = 1e-3;  // below this speed scaling a program counts as paused
 
 }  // namespace
 
-ProgramRunner::ProgramRunner(const ProgramAccess & access) : access_(access) {}
+ProgramRunner::ProgramRunner(const ProgramContext & context) : context_(context) {}
 
 tl::expected<urscript::Program, urscript::CompileError> ProgramRunner::compile(std::string_view text) const
 {
-  return urscript::compile(text, *access_.library);
+  return urscript::compile(text, *context_.library);
 }
 
 void ProgramRunner::start(urscript::Program program)
 {
   urscript::MachineOptions options;
-  options.cycle_time = access_.cycle_time;
-  auto machine = std::make_unique<urscript::Machine>(std::move(program), access_.library, *this, options);
+  options.cycle_time = context_.cycle_time;
+  auto machine = std::make_unique<urscript::Machine>(std::move(program), context_.library, *this, options);
   if (machine->program().secondary()) {
     start_secondary(std::move(machine));
     return;
   }
   stop("another program was started");
-  access_.arm.resume();
-  name_ = machine->program().name();
-  primary_ = std::move(machine);
-  access_.state.runtime_state = RuntimeState::playing;
-  log(LogKind::program_started, fmt::format("program '{}' started", name_));
+  context_.arm.resume();
+  program_name_ = machine->program().name();
+  program_ = std::move(machine);
+  context_.state.runtime_state = RuntimeState::playing;
+  log(LogKind::program_started, fmt::format("program '{}' started", program_name_));
 }
 
 void ProgramRunner::start_secondary(std::unique_ptr<urscript::Machine> machine)
 {
-  if (secondaries_.size() == most_secondaries) {
-    access_.log.error(program_source, fmt::format("{} secondary programs run already: '{}' was not started",
-                                                  most_secondaries, machine->program().name()));
+  if (secondary_programs_.size() == max_secondary_programs) {
+    context_.log.error(program_source, fmt::format("{} secondary programs run already: '{}' was not started",
+                                                   max_secondary_programs, machine->program().name()));
     return;
   }
-  secondaries_.push_back(std::move(machine));
+  secondary_programs_.push_back(std::move(machine));
 }
 
-void ProgramRunner::stop(std::string_view why)
+void ProgramRunner::stop(std::string_view reason)
 {
-  if (!primary_) {
+  if (!program_) {
     return;
   }
-  primary_->stop();
-  log(LogKind::program_ended, fmt::format("program '{}' stopped: {}", name_, why));
-  end(RuntimeState::stopping);
+  program_->stop();
+  log(LogKind::program_ended, fmt::format("program '{}' stopped: {}", program_name_, reason));
+  end_program(RuntimeState::stopping);
 }
 
 void ProgramRunner::log(LogKind kind, std::string text)
@@ -63,114 +63,114 @@ void ProgramRunner::log(LogKind kind, std::string text)
   entry.source = program_source;
   entry.text = std::move(text);
   entry.kind = kind;
-  entry.title = name_;
-  access_.log.add(std::move(entry));
+  entry.title = program_name_;
+  context_.log.add(std::move(entry));
 }
 
 bool ProgramRunner::kill()
 {
-  if (!primary_) {
+  if (!program_) {
     return false;
   }
-  primary_->stop();
-  end(RuntimeState::stopped);
+  program_->stop();
+  end_program(RuntimeState::stopped);
   return true;
 }
 
 void ProgramRunner::shut_down()
 {
   stop("the controller switches off");
-  secondaries_.clear();
+  secondary_programs_.clear();
   popup_.reset();
 }
 
-void ProgramRunner::end(RuntimeState next)
+void ProgramRunner::end_program(RuntimeState next)
 {
-  primary_.reset();
+  program_.reset();
   popup_.reset();
-  access_.watchdog.clear();
-  access_.state.runtime_state = next;
-  access_.arm.end_program();
-  access_.arm.resume();
+  context_.watchdog.clear();
+  context_.state.runtime_state = next;
+  context_.arm.end_program();
+  context_.arm.resume();
 }
 
 bool ProgramRunner::paused() const
 {
-  const RuntimeState now = access_.state.runtime_state;
+  const RuntimeState now = context_.state.runtime_state;
   return now == RuntimeState::paused || now == RuntimeState::pausing;
 }
 
 bool ProgramRunner::pause()
 {
-  if (!primary_) {
+  if (!program_) {
     return false;
   }
   if (!paused()) {
-    access_.state.runtime_state = RuntimeState::pausing;
-    access_.arm.pause();
+    context_.state.runtime_state = RuntimeState::pausing;
+    context_.arm.pause();
   }
   return true;
 }
 
 bool ProgramRunner::resume()
 {
-  if (!primary_ || !paused()) {
+  if (!program_ || !paused()) {
     return false;
   }
-  access_.state.runtime_state = RuntimeState::resuming;
-  access_.arm.resume();
+  context_.state.runtime_state = RuntimeState::resuming;
+  context_.arm.resume();
   return true;
 }
 
 void ProgramRunner::cycle()
 {
-  follow_ramps();
-  if (primary_ && !paused()) {
-    run_primary();
+  update_runtime_state();
+  if (program_ && !paused()) {
+    run_program();
   }
-  run_secondaries();
+  run_secondary_programs();
 }
 
-void ProgramRunner::follow_ramps()
+void ProgramRunner::update_runtime_state()
 {
-  RuntimeState & runtime = access_.state.runtime_state;
+  RuntimeState & runtime = context_.state.runtime_state;
   if (runtime == RuntimeState::pausing &&
-      (access_.arm.at_rest() || access_.state.speed_scaling < stood_still)) {
+      (context_.arm.at_rest() || context_.state.speed_scaling < paused_speed_scaling)) {
     runtime = RuntimeState::paused;
   } else if (runtime == RuntimeState::resuming) {
     runtime = RuntimeState::playing;
-  } else if (runtime == RuntimeState::stopping && access_.arm.at_rest()) {
+  } else if (runtime == RuntimeState::stopping && context_.arm.at_rest()) {
     runtime = RuntimeState::stopped;
   }
 }
 
-void ProgramRunner::run_primary()
+void ProgramRunner::run_program()
 {
-  switch (primary_->cycle()) {
+  switch (program_->cycle()) {
     case urscript::MachineStatus::running:
       return;
     case urscript::MachineStatus::finished:
-      log(LogKind::program_ended, fmt::format("program '{}' ended", name_));
+      log(LogKind::program_ended, fmt::format("program '{}' ended", program_name_));
       break;
     case urscript::MachineStatus::failed:
-      access_.log.add(LogLevel::error, program_source,
-                      fmt::format("program '{}' failed in line {}: {}", name_, primary_->error().line,
-                                  primary_->error().message),
-                      primary_->error().line);
+      context_.log.add(LogLevel::error, program_source,
+                       fmt::format("program '{}' failed in line {}: {}", program_name_,
+                                   program_->error().line, program_->error().message),
+                       program_->error().line);
       break;
   }
-  end(RuntimeState::stopping);
+  end_program(RuntimeState::stopping);
 }
 
-void ProgramRunner::run_secondaries()
+void ProgramRunner::run_secondary_programs()
 {
-  std::erase_if(secondaries_, [this](const std::unique_ptr<urscript::Machine> & machine) {
+  std::erase_if(secondary_programs_, [this](const std::unique_ptr<urscript::Machine> & machine) {
     const urscript::MachineStatus status = machine->cycle();
     if (status == urscript::MachineStatus::failed) {
-      access_.log.add(LogLevel::error, program_source,
-                      fmt::format("secondary program '{}' failed in line {}: {}", machine->program().name(),
-                                  machine->error().line, machine->error().message),
-                      machine->error().line);
+      context_.log.add(LogLevel::error, program_source,
+                       fmt::format("secondary program '{}' failed in line {}: {}", machine->program().name(),
+                                   machine->error().line, machine->error().message),
+                       machine->error().line);
     }
     return status != urscript::MachineStatus::running;
   });
@@ -178,7 +178,7 @@ void ProgramRunner::run_secondaries()
 
 void ProgramRunner::text_message(const std::string & text)
 {
-  access_.log.info("textmsg", text);
+  context_.log.info("textmsg", text);
 }
 
 void ProgramRunner::show_popup(const urscript::Popup & popup)
@@ -191,7 +191,7 @@ void ProgramRunner::show_popup(const urscript::Popup & popup)
   entry.kind = LogKind::popup;
   entry.title = popup.title;
   entry.blocking = popup.blocking;
-  access_.log.add(std::move(entry));
+  context_.log.add(std::move(entry));
 }
 
 }  // namespace ur_simulator

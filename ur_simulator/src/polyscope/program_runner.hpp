@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,8 +16,8 @@
 
 namespace ur_simulator {
 
-/// Where the runner works. Everything outlives it.
-struct ProgramAccess {
+/// The objects that programs act on. They outlive the program runner.
+struct ProgramContext {
   ControllerState & state;
   Arm & arm;
   Watchdog & watchdog;
@@ -27,31 +26,34 @@ struct ProgramAccess {
   double cycle_time;  ///< s
 };
 
-/// Runs the robot's program, and `sec` programs beside it; owns the runtime state.
+/// Runs the robot program and its secondary programs (`sec`). Owns the runtime state.
 class ProgramRunner final : public urscript::Host {
  public:
-  explicit ProgramRunner(const ProgramAccess & access);
+  explicit ProgramRunner(const ProgramContext & context);
 
   tl::expected<urscript::Program, urscript::CompileError> compile(std::string_view text) const;
-  /// Starts the program in place of the running one, or beside it when it is a `sec` program.
+  /// Starts a program. A secondary program runs in parallel; any other replaces the running program.
   void start(urscript::Program program);
-  /// Ends the program; the arm decelerates.
-  void stop(std::string_view why);
-  /// A fault on demand: the program is gone, and nothing says so. False when none runs.
+  /// Stops the program and decelerates the arm. The log reports the reason.
+  void stop(std::string_view reason);
+  /// Fault injection: ends the program without any message. Returns false if no program is running.
   bool kill();
-  /// Ends all programs at once, `sec` programs too (the controller switches off).
+  /// Stops all programs because the controller switches off.
   void shut_down();
-  /// Ramp down and wait, or go on; false when no program runs (is paused).
+  /// Decelerates the arm and pauses the program. Returns false if no program is running.
   bool pause();
+  /// Returns false if no program is paused.
   bool resume();
-  /// One control cycle of all programs.
+  /// Runs one control cycle of all programs.
   void cycle();
 
-  bool running() const { return primary_ != nullptr; }
+  /// Whether there is a program, running or paused.
+  bool running() const { return program_ != nullptr; }
   bool paused() const;
-  /// The name after `def` of the program that runs or ran last.
-  const std::string & name() const { return name_; }
-  const urscript::Machine * machine() const { return primary_.get(); }
+  /// Name of the current or last program.
+  const std::string & program_name() const { return program_name_; }
+  /// The machine of the current program, or nullptr.
+  const urscript::Machine * machine() const { return program_.get(); }
 
   const std::optional<urscript::Popup> & popup() const { return popup_; }
   void close_popup() { popup_.reset(); }
@@ -62,16 +64,17 @@ class ProgramRunner final : public urscript::Host {
 
  private:
   void start_secondary(std::unique_ptr<urscript::Machine> machine);
-  void run_primary();
-  void run_secondaries();
-  void follow_ramps();
-  void end(RuntimeState next);
+  void run_program();
+  void run_secondary_programs();
+  /// Completes pausing, resuming and stopping once the arm has reached the corresponding state.
+  void update_runtime_state();
+  void end_program(RuntimeState next);
   void log(LogKind kind, std::string text);
 
-  ProgramAccess access_;
-  std::string name_;
-  std::unique_ptr<urscript::Machine> primary_;
-  std::vector<std::unique_ptr<urscript::Machine>> secondaries_;
+  ProgramContext context_;
+  std::string program_name_;
+  std::unique_ptr<urscript::Machine> program_;
+  std::vector<std::unique_ptr<urscript::Machine>> secondary_programs_;
   std::optional<urscript::Popup> popup_;
 };
 

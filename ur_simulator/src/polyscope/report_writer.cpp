@@ -16,12 +16,12 @@
 namespace ur_simulator {
 namespace {
 
-ReportWriter::Pending at_once(std::string reply)
+PendingReply immediate_reply(std::string reply)
 {
   return [reply = std::move(reply)]() -> std::optional<std::string> { return reply; };
 }
 
-constexpr std::string_view programs = "/programs";
+constexpr std::string_view programs_folder = "/programs";
 
 }  // namespace
 
@@ -31,48 +31,51 @@ ReportWriter::ReportWriter(const ControllerState & state, const EventLog & log, 
 {
 }
 
-ReportWriter::Pending ReportWriter::begin_flight_report(std::string_view type)
+PendingReply ReportWriter::start_flight_report(std::string_view type)
 {
   constexpr std::array<std::string_view, 3> types{"controller", "software", "system"};
   if (std::ranges::find(types, type) == types.end()) {
-    return at_once(fmt::format("Error: Flight Report type '{}' is not one of {}", type,
-                               fmt::join(types.begin(), types.end(), ", ")));
+    return immediate_reply(fmt::format("Error: Flight Report type '{}' is not one of {}", type,
+                                       fmt::join(types.begin(), types.end(), ", ")));
   }
-  return after(flight_report_time, [this, name = std::string(type)] { return finish_flight_report(name); });
+  return start_report(flight_report_duration,
+                      [this, name = std::string(type)] { return finish_flight_report(name); });
 }
 
-ReportWriter::Pending ReportWriter::begin_support_file(std::string_view folder)
+PendingReply ReportWriter::start_support_file(std::string_view folder)
 {
   std::string_view inside = folder;
-  if (inside.starts_with(programs)) {
-    inside.remove_prefix(programs.size());
+  if (inside.starts_with(programs_folder)) {
+    inside.remove_prefix(programs_folder.size());
   }
   const bool known = inside.empty() || inside == "/" || inside == ".";
   if (!known) {
-    return at_once(fmt::format("Error: Directory does not exist: {}", folder));
+    return immediate_reply(fmt::format("Error: Directory does not exist: {}", folder));
   }
-  return after(support_file_time, [this] { return finish_support_file(std::string(programs)); });
+  return start_report(support_file_duration,
+                      [this] { return finish_support_file(std::string(programs_folder)); });
 }
 
-ReportWriter::Pending ReportWriter::after(double time, std::function<std::string()> finish)
+PendingReply ReportWriter::start_report(double duration, std::function<std::string()> finish)
 {
-  // By the clock, which a reboot sets back: the client that asked may be gone before its report is done.
+  // Whether a report is being generated depends on the simulated time only, because the client may disconnect
+  // before the report is finished. A reboot resets the time and ends the report.
   const double now = state_.timestamp;
-  if (now >= begun_ && now < due_) {
-    return at_once("Error: Another report is already being generated");
+  if (now >= report_started_ && now < report_finished_) {
+    return immediate_reply("Error: Another report is already being generated");
   }
-  begun_ = now;
-  due_ = now + time;
-  return [this, due = due_, finish = std::move(finish)]() -> std::optional<std::string> {
-    return state_.timestamp < due ? std::nullopt : std::optional(finish());
+  report_started_ = now;
+  report_finished_ = now + duration;
+  return [this, finish_time = report_finished_, finish = std::move(finish)]() -> std::optional<std::string> {
+    return state_.timestamp < finish_time ? std::nullopt : std::optional(finish());
   };
 }
 
 std::string ReportWriter::finish_flight_report(const std::string & type)
 {
-  const std::uint64_t id = ++reports_;
+  const std::uint64_t id = ++report_count_;
   const std::string name = fmt::format("flightreports/{}_{}.txt", id, type);
-  const auto failure = write(name, describe(type));
+  const auto failure = write_file(name, flight_report_text(type));
   return failure ? *failure : fmt::format("Flight Report generated with id: {}", id);
 }
 
@@ -90,17 +93,17 @@ std::string ReportWriter::finish_support_file(const std::string & folder)
   }
   const std::string name =
       fmt::format("ur_{}_{:%Y-%m-%d_%H-%M-%S}.zip", serial_number_, fmt::gmtime(std::time(nullptr)));
-  const auto failure = write(name, zip_archive(content));
+  const auto failure = write_file(name, zip_archive(content));
   return failure ? *failure : fmt::format("Completed successfully: {}/{}", folder, name);
 }
 
 std::string ReportWriter::save_log()
 {
-  const auto failure = write("log_history.txt", log_text());
+  const auto failure = write_file("log_history.txt", log_text());
   return failure ? *failure : "Log saved to disk";
 }
 
-std::string ReportWriter::describe(std::string_view type) const
+std::string ReportWriter::flight_report_text(std::string_view type) const
 {
   return fmt::format(
       "Flight report: {}\nserial number: {}\ntime: {:.3f} s\nrobot mode: {}\nsafety mode: {}\n\n{}", type,
@@ -112,13 +115,12 @@ std::string ReportWriter::log_text() const
 {
   std::string text;
   for (const LogEntry & entry : log_.entries()) {
-    text +=
-        fmt::format("{:10.3f} {:7} {:10} {}\n", entry.timestamp, name(entry.level), entry.source, entry.text);
+    text += to_string(entry) + "\n";
   }
   return text;
 }
 
-std::optional<std::string> ReportWriter::write(const std::string & name, const std::string & content)
+std::optional<std::string> ReportWriter::write_file(const std::string & name, const std::string & content)
 {
   files_.insert_or_assign(name, content);
   if (folder_.empty()) {

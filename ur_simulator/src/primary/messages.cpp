@@ -18,10 +18,10 @@ enum class MessageType : std::uint8_t {
   runtime_exception = 10
 };
 
-std::string begin(MessageType type, double timestamp)
+std::string begin_message(MessageType type, double timestamp)
 {
   std::string message;
-  put_u32(message, 0);  // the size, when it is known
+  put_u32(message, 0);  // size, set by finish_message()
   put_u8(message, robot_message);
   put_u64(message, static_cast<std::uint64_t>(timestamp * 1e6));
   put_u8(message, 0xff);  // source: -1, the controller
@@ -29,7 +29,7 @@ std::string begin(MessageType type, double timestamp)
   return message;
 }
 
-std::string finish(std::string message)
+std::string finish_message(std::string message)
 {
   std::string size;
   put_u32(size, static_cast<std::uint32_t>(message.size()));
@@ -41,7 +41,7 @@ std::string finish(std::string message)
 std::string version_message(const PolyscopeVersion & version)
 {
   constexpr std::string_view project = "URControl";
-  std::string message = begin(MessageType::version, 0.0);
+  std::string message = begin_message(MessageType::version, 0.0);
   put_u8(message, static_cast<std::uint8_t>(project.size()));
   message += project;
   put_u8(message, static_cast<std::uint8_t>(version.major));
@@ -49,69 +49,69 @@ std::string version_message(const PolyscopeVersion & version)
   put_u32(message, version.bugfix);
   put_u32(message, version.build);
   message += "01-01-2025, 00:00:00";
-  return finish(std::move(message));
+  return finish_message(std::move(message));
 }
 
 std::string text_message(double timestamp, std::string_view text)
 {
-  std::string message = begin(MessageType::text, timestamp);
+  std::string message = begin_message(MessageType::text, timestamp);
   message += text;
-  return finish(std::move(message));
+  return finish_message(std::move(message));
 }
 
 std::string runtime_exception_message(double timestamp, std::int32_t line, std::int32_t column,
                                       std::string_view text)
 {
-  std::string message = begin(MessageType::runtime_exception, timestamp);
+  std::string message = begin_message(MessageType::runtime_exception, timestamp);
   put_u32(message, static_cast<std::uint32_t>(line));
   put_u32(message, static_cast<std::uint32_t>(column));
   message += text;
-  return finish(std::move(message));
+  return finish_message(std::move(message));
 }
 
 std::string key_message(double timestamp, std::string_view title, std::string_view text)
 {
-  std::string message = begin(MessageType::key, timestamp);
+  std::string message = begin_message(MessageType::key, timestamp);
   put_u32(message, 0);  // code
   put_u32(message, 0);  // argument
   put_u8(message, static_cast<std::uint8_t>(title.size()));
   message += title;
   message += text;
-  return finish(std::move(message));
+  return finish_message(std::move(message));
 }
 
 std::string error_code_message(double timestamp, LogLevel level, std::string_view text)
 {
   constexpr std::uint32_t no_data = 0;
-  // Report levels of the interface: 1 information, 2 warning, 3 violation.
+  // Report levels: 1 information, 2 warning, 3 violation.
   const std::uint32_t report_level = level == LogLevel::error ? 3 : level == LogLevel::warning ? 2 : 1;
-  std::string message = begin(MessageType::error_code, timestamp);
-  put_u32(message, 0);  // code: the robot's numbers are not modelled
+  std::string message = begin_message(MessageType::error_code, timestamp);
+  put_u32(message, 0);  // code: UR's error codes are not simulated
   put_u32(message, 0);  // argument
   put_u32(message, report_level);
   put_u32(message, no_data);
   put_u32(message, 0);
   message += text;
-  return finish(std::move(message));
+  return finish_message(std::move(message));
 }
 
 std::string popup_message(const LogEntry & entry)
 {
-  const std::string title = entry.title.substr(0, 255);  // its length is one byte
-  std::string message = begin(MessageType::popup, entry.timestamp);
+  const std::string title = entry.title.substr(0, 255);  // the length field has one byte
+  std::string message = begin_message(MessageType::popup, entry.timestamp);
   put_u32(message, static_cast<std::uint32_t>(entry.number));
-  put_u8(message, 0);  // requested type: none, it is a message
+  put_u8(message, 0);  // requested type: none
   put_u8(message, entry.level == LogLevel::warning ? 1 : 0);
   put_u8(message, entry.level == LogLevel::error ? 1 : 0);
   put_u8(message, entry.blocking ? 1 : 0);
   put_u8(message, static_cast<std::uint8_t>(title.size()));
   message += title;
-  // The log names the title before the text.
+  // The text of the log entry starts with "<title>: ".
   message += entry.text.substr(std::min(entry.text.size(), entry.title.size() + 2));
-  return finish(std::move(message));
+  return finish_message(std::move(message));
 }
 
-std::string message_for(const LogEntry & entry)
+std::string robot_message_for(const LogEntry & entry)
 {
   switch (entry.kind) {
     case LogKind::program_started:

@@ -9,23 +9,26 @@
 
 namespace ur_simulator::primary {
 
-/// Robot messages (type 20) of the primary and secondary interface, big-endian, as in UR's "Client Interface"
-/// documents. What a client receives first.
+// Encoding of the robot messages (message type 20) of the primary and secondary interface (UR, "Client
+// Interface"). Values are big-endian. Timestamps are in s.
+
+/// Sent to each client when it connects.
 std::string version_message(const PolyscopeVersion & version);
-/// textmsg() of a program. `timestamp` in s.
+/// textmsg() of a program.
 std::string text_message(double timestamp, std::string_view text);
-/// A program that could not be compiled or failed while it ran.
+/// Compile and run-time errors of programs.
 std::string runtime_exception_message(double timestamp, std::int32_t line, std::int32_t column,
                                       std::string_view text);
 
-/// A program started ("PROGRAM_XXX_STARTED") or ended ("PROGRAM_XXX_STOPPED"): title and the program's name.
+/// Start or end of a program: title "PROGRAM_XXX_STARTED" or "PROGRAM_XXX_STOPPED", text: name of the
+/// program.
 std::string key_message(double timestamp, std::string_view title, std::string_view text);
-/// What the safety system reports.
+/// Messages of the safety system.
 std::string error_code_message(double timestamp, LogLevel level, std::string_view text);
 /// A popup on the pendant's screen.
 std::string popup_message(const LogEntry & entry);
 
-/// The message that a log entry becomes on the primary interface, or "".
-std::string message_for(const LogEntry & entry);
+/// The robot message that reports a log entry, or "" if the primary interface does not report it.
+std::string robot_message_for(const LogEntry & entry);
 
 }  // namespace ur_simulator::primary

@@ -1,6 +1,7 @@
 #include "primary/realtime_packet.hpp"
 
 #include "primary/big_endian.hpp"
+#include "state/electrical_constants.hpp"
 
 namespace ur_simulator::primary {
 namespace {
@@ -46,7 +47,7 @@ std::string_view RealtimePacket::encode(const ControllerState & state)
   put_u32(bytes_, static_cast<std::uint32_t>(size_));
   put_motion(state);
   put_status(state);
-  // Later versions append; what a version does not have yet is cut off.
+  // Later versions append fields: older versions send the beginning of the packet.
   bytes_.resize(size_, '\0');
   return bytes_;
 }
@@ -76,7 +77,7 @@ void RealtimePacket::put_motion(const ControllerState & s)
 
 void RealtimePacket::put_status(const ControllerState & s)
 {
-  const bool powered = (s.robot_status_bits & 1u) != 0;
+  const bool powered = s.is_powered();
   put(static_cast<double>(s.robot_mode));
   for (const std::int32_t mode : s.joint_modes) {
     put(static_cast<double>(mode));
@@ -88,13 +89,13 @@ void RealtimePacket::put_status(const ControllerState & s)
   put(s.speed_scaling);
   put(s.payload.mass * s.actual_tcp_speed.head<3>().norm());  // linear momentum norm
   put_zeros(2);                                               // internal
-  put(48.0);                                                  // main voltage
-  put(powered ? 48.0 : 0.0);                                  // robot voltage
-  put(powered ? 0.6 : 0.0);                                   // robot current
-  put(Vector6::Constant(powered ? 48.0 : 0.0));               // joint voltages
+  put(main_voltage);                                          // main voltage
+  put(powered ? main_voltage : 0.0);                          // robot voltage
+  put(powered ? idle_robot_current : 0.0);                    // robot current
+  put(Vector6::Constant(powered ? main_voltage : 0.0));       // joint voltages
   put(static_cast<double>(s.io.digital_outputs));
   put(static_cast<double>(s.runtime_state));
-  put_zeros(6);                             // elbow position and velocity are not modelled
+  put_zeros(6);                             // elbow position and velocity are not simulated
   put(static_cast<double>(s.safety_mode));  // safety status
   put_zeros(3);                             // internal
   put(s.payload.mass);

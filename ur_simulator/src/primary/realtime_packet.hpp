@@ -9,12 +9,12 @@
 
 namespace ur_simulator::primary {
 
-/// The packet that port 30003 sends each cycle: doubles, big-endian, behind a 4-byte size. UR, "Client
+/// The packet that port 30003 sends in each cycle: a 4-byte size and big-endian doubles. UR, "Client
 /// Interface", sheets "RealTime 3.5" (1060 bytes), "RealTime 5.4" (1116) and "RealTime 5.10" (1220).
 class RealtimePacket {
  public:
   explicit RealtimePacket(const PolyscopeVersion & version);
-  /// Valid until the next call.
+  /// The result is valid until the next call.
   std::string_view encode(const ControllerState & state);
 
  private:

@@ -2,8 +2,9 @@
 
 #include <cmath>
 
-#include "kinematics/inverse.hpp"
+#include "kinematics/inverse_kinematics.hpp"
 #include "primary/big_endian.hpp"
+#include "state/electrical_constants.hpp"
 
 namespace ur_simulator::primary {
 namespace {
@@ -22,11 +23,11 @@ enum class Package : std::uint8_t {
   additional = 8,
 };
 
-// Of a healthy robot; nothing here changes them.
-constexpr float supply_voltage = 48.0F;
-constexpr float idle_current = 0.6F;
+// Constant values of an operational robot.
+constexpr auto supply_voltage = static_cast<float>(main_voltage);
+constexpr auto idle_current = static_cast<float>(idle_robot_current);
 constexpr float board_temperature = 25.0F;
-constexpr std::uint8_t running_tool = 253;
+constexpr std::uint8_t tool_mode_running = 253;
 
 template <typename Derived>
 void put(std::string & to, const Eigen::MatrixBase<Derived> & values)
@@ -34,11 +35,6 @@ void put(std::string & to, const Eigen::MatrixBase<Derived> & values)
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     put_f64(to, static_cast<double>(values[i]));
   }
-}
-
-bool powered(const ControllerState & s)
-{
-  return (s.robot_status_bits & 1U) != 0;
 }
 
 bool playing(const ControllerState & s)
@@ -51,7 +47,7 @@ bool paused(const ControllerState & s)
   return s.runtime_state == RuntimeState::paused || s.runtime_state == RuntimeState::pausing;
 }
 
-void add(std::string & message, Package type, const std::string & content)
+void append_package(std::string & message, Package type, const std::string & content)
 {
   put_u32(message, static_cast<std::uint32_t>(content.size() + 5));
   put_u8(message, static_cast<std::uint8_t>(type));
@@ -67,7 +63,7 @@ std::string robot_mode_data(const ControllerState & s)
   put_u64(data, static_cast<std::uint64_t>(s.timestamp * 1e6));
   put_u8(data, 1);  // real robot connected
   put_u8(data, 1);  // real robot enabled
-  put_u8(data, powered(s) ? 1 : 0);
+  put_u8(data, s.is_powered() ? 1 : 0);
   put_u8(data, s.safety_mode == SafetyMode::robot_emergency_stop ||
                        s.safety_mode == SafetyMode::system_emergency_stop
                    ? 1
@@ -79,7 +75,7 @@ std::string robot_mode_data(const ControllerState & s)
   put_u8(data, s.freedrive ? teach_control : s.in_force_mode ? force_control : position_control);
   put_f64(data, s.target_speed_fraction);
   put_f64(data, s.speed_scaling);
-  put_f64(data, 1.0);  // the highest target speed fraction
+  put_f64(data, 1.0);  // limit of the target speed fraction
   put_u8(data, 0);
   return data;
 }
@@ -92,7 +88,7 @@ std::string joint_data(const ControllerState & s)
     put_f64(data, s.target.position[i]);
     put_f64(data, s.actual.velocity[i]);
     put_f32(data, static_cast<float>(s.actual.current[i]));
-    put_f32(data, powered(s) ? supply_voltage : 0.0F);
+    put_f32(data, s.is_powered() ? supply_voltage : 0.0F);
     put_f32(data, static_cast<float>(s.joint_temperatures[i]));
     put_f32(data, 0.0F);  // deprecated
     put_u8(data, static_cast<std::uint8_t>(s.joint_modes[static_cast<std::size_t>(i)]));
@@ -107,11 +103,11 @@ std::string tool_data(const ControllerState & s)
   put_u8(data, (s.io.tool_analog_input_types >> 1) & 1U);
   put_f64(data, s.io.tool_analog_inputs[0]);
   put_f64(data, s.io.tool_analog_inputs[1]);
-  put_f32(data, powered(s) ? supply_voltage : 0.0F);
+  put_f32(data, s.is_powered() ? supply_voltage : 0.0F);
   put_u8(data, static_cast<std::uint8_t>(s.io.tool_output_voltage));
   put_f32(data, static_cast<float>(s.io.tool_output_current));
   put_f32(data, static_cast<float>(s.io.tool_temperature));
-  put_u8(data, running_tool);
+  put_u8(data, tool_mode_running);
   return data;
 }
 
@@ -129,8 +125,8 @@ std::string masterboard_data(const ControllerState & s)
   put_f64(data, s.io.analog_outputs[0]);
   put_f64(data, s.io.analog_outputs[1]);
   put_f32(data, board_temperature);
-  put_f32(data, powered(s) ? supply_voltage : 0.0F);
-  put_f32(data, powered(s) ? idle_current : 0.0F);
+  put_f32(data, s.is_powered() ? supply_voltage : 0.0F);
+  put_f32(data, s.is_powered() ? idle_current : 0.0F);
   put_f32(data, 0.0F);  // current of the inputs and outputs
   put_u8(data, static_cast<std::uint8_t>(s.safety_mode));
   put_u8(data, s.safety_mode == SafetyMode::reduced ? 1 : 0);
@@ -153,7 +149,7 @@ std::string cartesian_data(const ControllerState & s)
 std::string kinematics_data(const RobotModel & model)
 {
   constexpr std::uint32_t no_checksum = 0xffffffff;
-  constexpr std::uint32_t nominal = 0;  // calibration status: the model's own parameters
+  constexpr std::uint32_t nominal = 0;  // calibration status: nominal parameters of the model
   std::string data;
   for (int i = 0; i < 6; ++i) {
     put_u32(data, no_checksum);
@@ -177,11 +173,11 @@ std::string configuration_data(const RobotModel & model)
     put_f64(data, model.velocity_max[i]);
     put_f64(data, model.acceleration_max[i]);
   }
-  put_f64(data, 1.05);  // defaults of movej and movel
-  put_f64(data, 1.4);
-  put_f64(data, 0.25);
-  put_f64(data, 1.2);
-  put_f64(data, 0.25);  // equivalent radius
+  put_f64(data, 1.05);  // default joint velocity, rad/s
+  put_f64(data, 1.4);   // default joint acceleration, rad/s^2
+  put_f64(data, 0.25);  // default tool velocity, m/s
+  put_f64(data, 1.2);   // default tool acceleration, m/s^2
+  put_f64(data, 0.25);  // equivalent radius, m
   put(data, model.a);
   put(data, model.d);
   put(data, model.alpha);
@@ -197,7 +193,7 @@ std::string force_mode_data(const RobotModel & model, const ControllerState & s)
 {
   std::string data;
   put(data, s.actual_tcp_force);
-  put_f64(data, dexterity(model, s.actual.position));
+  put_f64(data, singularity_distance(model, s.actual.position));
   return data;
 }
 
@@ -205,8 +201,8 @@ std::string additional_data(const ControllerState & s)
 {
   std::string data;
   put_u8(data, s.freedrive ? 1 : 0);
-  put_u8(data, 1);  // the freedrive button is enabled
-  put_u8(data, 0);  // freedrive by an input is not
+  put_u8(data, 1);  // freedrive button enabled
+  put_u8(data, 0);  // freedrive by IO disabled
   put_u8(data, 0);
   return data;
 }
@@ -216,15 +212,15 @@ std::string additional_data(const ControllerState & s)
 std::string robot_state_message(const RobotModel & model, const ControllerState & state)
 {
   std::string packages;
-  add(packages, Package::robot_mode, robot_mode_data(state));
-  add(packages, Package::joints, joint_data(state));
-  add(packages, Package::tool, tool_data(state));
-  add(packages, Package::masterboard, masterboard_data(state));
-  add(packages, Package::cartesian, cartesian_data(state));
-  add(packages, Package::kinematics, kinematics_data(model));
-  add(packages, Package::configuration, configuration_data(model));
-  add(packages, Package::force_mode, force_mode_data(model, state));
-  add(packages, Package::additional, additional_data(state));
+  append_package(packages, Package::robot_mode, robot_mode_data(state));
+  append_package(packages, Package::joints, joint_data(state));
+  append_package(packages, Package::tool, tool_data(state));
+  append_package(packages, Package::masterboard, masterboard_data(state));
+  append_package(packages, Package::cartesian, cartesian_data(state));
+  append_package(packages, Package::kinematics, kinematics_data(model));
+  append_package(packages, Package::configuration, configuration_data(model));
+  append_package(packages, Package::force_mode, force_mode_data(model, state));
+  append_package(packages, Package::additional, additional_data(state));
   std::string message;
   put_u32(message, static_cast<std::uint32_t>(packages.size() + 5));
   put_u8(message, robot_state);

@@ -5,24 +5,23 @@
 #include <string_view>
 #include <vector>
 
-#include "rtde/wire.hpp"
+#include "rtde/package_encoding.hpp"
 #include "state/controller_state.hpp"
 #include "version/polyscope_version.hpp"
 
 namespace ur_simulator::rtde {
 
-/// A variable that the controller sends. Register families are one row each in the source and one field a
-/// register here.
+/// An RTDE output (UR, "RTDE Guide", "Robot controller outputs"). Each register is a field of its own.
 struct OutputField {
   std::string name;
   FieldType type;
-  Since since;
-  unsigned index;  ///< of the register; 0 for others
-  void (*write)(const ControllerState & state, unsigned index, Writer & to);
+  MinVersion min_version;
+  unsigned index;  ///< number of the register; 0 for other fields
+  void (*write)(const ControllerState & state, unsigned index, PackageWriter & to);
 };
 
-/// The values of inputs that act only under a mask, as one client last sent them; `touched` tells which
-/// groups came with the present package.
+/// The inputs of one client that take effect under a mask: last received values, and the groups that the
+/// current data package contains.
 struct MaskedInputs {
   enum Group : unsigned {
     speed_slider = 1,
@@ -32,7 +31,7 @@ struct MaskedInputs {
     analog = 16
   };
 
-  unsigned touched = 0;
+  unsigned updated_groups = 0;
   std::uint32_t speed_slider_mask = 0;
   double speed_slider_fraction = 1.0;
   std::uint8_t standard_digital_mask = 0, standard_digital_values = 0;
@@ -42,24 +41,24 @@ struct MaskedInputs {
   double analog_values[2] = {0.0, 0.0};
 };
 
-/// A variable that a client may write. Each belongs to one client at a time.
+/// An RTDE input (UR, "RTDE Guide", "Robot controller inputs"). Only one client at a time may use it.
 struct InputField {
   std::string name;
   FieldType type;
-  Since since;
-  unsigned index;
-  void (*read)(Reader & from, unsigned index, ControllerState & state, MaskedInputs & masked);
+  MinVersion min_version;
+  unsigned index;  ///< number of the register; 0 for other fields
+  void (*read)(PackageReader & from, unsigned index, ControllerState & state, MaskedInputs & masked);
 };
 
-/// All fields of PolyScope 3 and 5; which of them exist on a version: field.since.
+/// All fields of PolyScope 3 and 5, sorted by name. `min_version` tells which versions have a field.
 const std::vector<OutputField> & output_fields();
 const std::vector<InputField> & input_fields();
 
-/// The field of that name that exists on that version, or nullptr.
-const OutputField * find_output(std::string_view name, const PolyscopeVersion & version);
-const InputField * find_input(std::string_view name, const PolyscopeVersion & version);
+/// The field with this name, or nullptr if the version has none.
+const OutputField * find_output_field(std::string_view name, const PolyscopeVersion & version);
+const InputField * find_input_field(std::string_view name, const PolyscopeVersion & version);
 
-/// Carries out the groups that a package touched: bits and values under their masks.
-void apply(MaskedInputs & masked, ControllerState & state);
+/// Applies the groups that the current data package contains to the state.
+void apply_masked_inputs(MaskedInputs & masked, ControllerState & state);
 
 }  // namespace ur_simulator::rtde

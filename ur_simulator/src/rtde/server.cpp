@@ -10,7 +10,7 @@ namespace ur_simulator::rtde {
 
 Server::Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
                ControllerState & state, const PolyscopeVersion & version, EventLog & log)
-    : shared_{state, version, log, {}, nullptr},
+    : context_{state, version, log, {}, nullptr},
       listener_(io, address, port,
                 [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
 {
@@ -18,49 +18,49 @@ Server::Server(boost::asio::io_context & io, const std::string & address, std::u
 
 Server::~Server()
 {
-  // The sessions' ends reach back into this object: end them while it is whole.
-  listener_.close_all();
+  // Closing a connection calls remove_session(): the members must still exist.
+  listener_.close_connections();
 }
 
 void Server::accept(const std::shared_ptr<Connection> & connection)
 {
   const std::uint64_t id = connection->id();
-  auto session = std::make_shared<Session>(connection, shared_);
+  auto session = std::make_shared<Session>(connection, context_);
   sessions_.emplace(id, session);
-  shared_.log.info("rtde", fmt::format("client {} ({}) connected", id, connection->peer()));
+  context_.log.info("rtde", fmt::format("client {} ({}) connected", id, connection->remote_endpoint()));
   connection->start(
       [weak = std::weak_ptr(session)](std::string_view bytes) {
-        // Held while it works: what it receives may end it.
-        if (const auto alive = weak.lock()) {
-          alive->receive(bytes);
+        // Keeps the session alive: the received data may close its connection.
+        if (const auto locked = weak.lock()) {
+          locked->receive(bytes);
         }
       },
-      [this, id] { end(id); });
+      [this, id] { remove_session(id); });
 }
 
-void Server::end(std::uint64_t id)
+void Server::remove_session(std::uint64_t id)
 {
   const auto session = sessions_.extract(id).mapped();
-  dropped_before_ += session->dropped_packages();
-  session->leave();
+  dropped_by_closed_sessions_ += session->dropped_packages();
+  session->handle_disconnect();
 }
 
 void Server::publish()
 {
-  // A failed write ends its session, which removes it from the map: look ahead and hold it.
+  // A failed write removes the session from the map: advance first and keep the session alive.
   for (auto next = sessions_.begin(); next != sessions_.end();) {
     const std::shared_ptr<Session> session = (next++)->second;
     session->publish();
   }
 }
 
-std::size_t Server::clients(ClientRole role) const
+std::size_t Server::client_count(ClientRole role) const
 {
   return static_cast<std::size_t>(
       std::ranges::count_if(sessions_, [role](const auto & entry) { return entry.second->role() == role; }));
 }
 
-void Server::for_each(ClientRole role, const std::function<void(Connection &)> & action)
+void Server::for_each_connection(ClientRole role, const std::function<void(Connection &)> & action)
 {
   for (auto next = sessions_.begin(); next != sessions_.end();) {
     const std::shared_ptr<Session> session = (next++)->second;
@@ -70,29 +70,30 @@ void Server::for_each(ClientRole role, const std::function<void(Connection &)> &
   }
 }
 
-std::size_t Server::set_fieldbus(bool on)
+std::size_t Server::set_fieldbus_enabled(bool enabled)
 {
-  constexpr std::uint64_t fieldbus = 0;  // connections count from 1
-  constexpr unsigned lower_range = 24;
-  constexpr unsigned lower_bits = 64;
-  std::size_t taken_by_others = 0;
+  constexpr std::uint64_t fieldbus = 0;  // the ids of connections start at 1
+  constexpr unsigned lower_registers = 24;
+  constexpr unsigned lower_bit_registers = 64;
+  std::size_t used_by_clients = 0;
   for (const InputField & field : input_fields()) {
-    const bool bit = field.name.starts_with("input_bit_register_");
-    if (!field.name.starts_with("input_") || field.index >= (bit ? lower_bits : lower_range)) {
+    const bool bit_register = field.name.starts_with("input_bit_register_");
+    if (!field.name.starts_with("input_") ||
+        field.index >= (bit_register ? lower_bit_registers : lower_registers)) {
       continue;
     }
-    const auto [owner, added] = shared_.owners.try_emplace(&field, fieldbus);
-    taken_by_others += owner->second == fieldbus ? 0 : 1;
-    if (!on && owner->second == fieldbus) {
-      shared_.owners.erase(owner);
+    const auto [owner, added] = context_.input_owners.try_emplace(&field, fieldbus);
+    used_by_clients += owner->second == fieldbus ? 0 : 1;
+    if (!enabled && owner->second == fieldbus) {
+      context_.input_owners.erase(owner);
     }
   }
-  return taken_by_others;
+  return used_by_clients;
 }
 
 std::uint64_t Server::dropped_packages() const
 {
-  std::uint64_t dropped = dropped_before_;
+  std::uint64_t dropped = dropped_by_closed_sessions_;
   for (const auto & [id, session] : sessions_) {
     dropped += session->dropped_packages();
   }

@@ -17,51 +17,52 @@ namespace ur_simulator::rtde {
 
 class Session;
 
-/// What a client uses the link for, as its recipes tell: ur_rtde's interfaces are `receive` (outputs only),
-/// `io` (inputs only) and `control` (both).
-enum class ClientRole : std::uint8_t { undecided, receive, io, control };
+/// The ur_rtde interface of a client, judged by its recipes: `receive` (outputs only), `io` (inputs only) or
+/// `control` (both).
+enum class ClientRole : std::uint8_t { unknown, receive, io, control };
 
-/// Called for each data package when its fields have been read, with those that were in it.
-using PackageFunction = std::function<void(std::span<const InputField * const>)>;
+/// Called for each received data package, after its fields have been read, with these fields.
+using DataPackageHandler = std::function<void(std::span<const InputField * const>)>;
 
-/// What the sessions share. An input field belongs to the client that first asked for it, until that client
-/// leaves.
-struct Shared {
+/// The data that all sessions share.
+struct ServerContext {
   ControllerState & state;
   PolyscopeVersion version;
   EventLog & log;
-  std::unordered_map<const InputField *, std::uint64_t> owners;
-  PackageFunction package_read;
+  /// Connection that uses an input field: the first whose recipe contains it, until it disconnects.
+  std::unordered_map<const InputField *, std::uint64_t> input_owners;
+  DataPackageHandler on_data_package;
 };
 
-/// The Real-Time Data Exchange server, protocol versions 1 and 2.
+/// The Real-Time Data Exchange server, protocol versions 1 and 2 (UR, "Real-Time Data Exchange (RTDE)
+/// Guide").
 class Server {
  public:
   Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
          ControllerState & state, const PolyscopeVersion & version, EventLog & log);
   ~Server();
 
-  void on_package(PackageFunction read) { shared_.package_read = std::move(read); }
-  /// Sends the state of this cycle to every started client whose turn it is. Allocates nothing.
+  void set_data_package_handler(DataPackageHandler handler) { context_.on_data_package = std::move(handler); }
+  /// Sends the current state to each client whose output frequency requires a package in this cycle. Does not
+  /// allocate memory.
   void publish();
   Listener & listener() { return listener_; }
   const Listener & listener() const { return listener_; }
-  std::size_t clients() const { return sessions_.size(); }
-  std::size_t clients(ClientRole role) const;
-  void for_each(ClientRole role, const std::function<void(Connection &)> & action);
-  /// A fieldbus of the installation has the input registers of the lower range, or gives them back. How many
-  /// it has not got because an RTDE client has them.
-  std::size_t set_fieldbus(bool on);
-  /// Data packages that were dropped because a client did not read.
+  std::size_t client_count(ClientRole role) const;
+  void for_each_connection(ClientRole role, const std::function<void(Connection &)> & action);
+  /// Reserves the input registers 0-23 and the input bit registers 0-63 for a fieldbus, or releases them.
+  /// Registers of RTDE clients stay with the client; returns their number.
+  std::size_t set_fieldbus_enabled(bool enabled);
+  /// Number of data packages that were dropped because a client did not read.
   std::uint64_t dropped_packages() const;
 
  private:
   void accept(const std::shared_ptr<Connection> & connection);
-  void end(std::uint64_t id);
+  void remove_session(std::uint64_t id);
 
-  Shared shared_;
+  ServerContext context_;
   std::map<std::uint64_t, std::shared_ptr<Session>> sessions_;
-  std::uint64_t dropped_before_ = 0;  ///< by clients that have left
+  std::uint64_t dropped_by_closed_sessions_ = 0;
   Listener listener_;
 };
 

@@ -9,16 +9,18 @@ namespace ur_simulator::rtde {
 namespace {
 
 constexpr std::uint8_t output_recipe_id = 1;
-constexpr std::size_t most_input_recipes = 255;  // the id is one byte and 0 means "not valid"
-constexpr double version_1_frequency = 125.0;
+constexpr std::size_t max_input_recipes = 255;    // the recipe id is one byte; 0 reports an invalid recipe
+constexpr std::size_t max_package_size = 0xffff;  // the size field has two bytes
+constexpr double protocol_version_1_frequency = 125.0;  // Hz
 
-double highest_frequency(const PolyscopeVersion & version)
+/// Frequency of the control loop, which is the highest output frequency, Hz.
+double control_frequency(const PolyscopeVersion & version)
 {
   return version.is_e_series() ? 500.0 : 125.0;
 }
 
-/// "a,b,": a trailing comma ends the list, it does not begin another name.
-std::vector<std::string_view> split(std::string_view names)
+/// Splits "a,b". A trailing comma is ignored.
+std::vector<std::string_view> split_names(std::string_view names)
 {
   std::vector<std::string_view> parts;
   while (!names.empty()) {
@@ -29,286 +31,313 @@ std::vector<std::string_view> split(std::string_view names)
   return parts;
 }
 
-std::string join(const std::vector<std::string> & parts)
+/// The payload of a reply that accepts or rejects a request.
+std::string acceptance(bool accepted)
 {
-  return fmt::format("{}", fmt::join(parts, ","));
+  return std::string(1, accepted ? '\1' : '\0');
 }
 
-std::string accepted(bool yes)
+/// The types of a recipe reply. Empty if they do not fit into a package, which is the case only for invalid
+/// recipes: NOT_FOUND can be longer than the requested name.
+std::string join_types(const std::vector<std::string_view> & types)
 {
-  return std::string(1, yes ? '\1' : '\0');
+  std::string joined = fmt::format("{}", fmt::join(types, ","));
+  constexpr std::size_t max_size = max_package_size - header_size - sizeof(output_recipe_id);
+  return joined.size() <= max_size ? joined : std::string();
+}
+
+std::string with_recipe_id(std::uint8_t id, std::string_view types)
+{
+  return static_cast<char>(id) + std::string(types);
 }
 
 }  // namespace
 
-Session::Session(std::shared_ptr<Connection> connection, Shared & shared)
-    : connection_(std::move(connection)), shared_(shared), frequency_(highest_frequency(shared.version))
+Session::Session(std::shared_ptr<Connection> connection, ServerContext & context)
+    : connection_(std::move(connection)),
+      context_(context),
+      output_frequency_(control_frequency(context.version))
 {
 }
 
-void Session::leave()
+void Session::handle_disconnect()
 {
   started_ = false;
-  std::erase_if(shared_.owners, [this](const auto & owner) { return owner.second == connection_->id(); });
-  shared_.log.info("rtde", fmt::format("client {} disconnected", connection_->id()));
+  std::erase_if(context_.input_owners,
+                [this](const auto & owner) { return owner.second == connection_->id(); });
+  context_.log.info("rtde", fmt::format("client {} disconnected", connection_->id()));
 }
 
 ClientRole Session::role() const
 {
-  if (inputs_.empty()) {
-    return outputs_.empty() ? ClientRole::undecided : ClientRole::receive;
+  if (input_recipes_.empty()) {
+    return output_fields_.empty() ? ClientRole::unknown : ClientRole::receive;
   }
-  return outputs_.empty() ? ClientRole::io : ClientRole::control;
+  return output_fields_.empty() ? ClientRole::io : ClientRole::control;
 }
+
+// ---- receiving packages
 
 void Session::receive(std::string_view bytes)
 {
   received_.append(bytes);
-  std::size_t at = 0;
-  while (connection_->open() && received_.size() - at >= header_size) {
-    Reader header(std::string_view(received_).substr(at, header_size));
-    const std::size_t size = header.u16();
-    const std::uint8_t type = header.u8();
+  std::size_t begin = 0;
+  while (connection_->is_open() && received_.size() - begin >= header_size) {
+    PackageReader header(std::string_view(received_).substr(begin, header_size));
+    const std::size_t size = header.read_u16();
+    const std::uint8_t type = header.read_u8();
     if (size < header_size) {
-      // The packages' ends cannot be found any more.
-      shared_.log.error(
+      // The start of the next package is unknown.
+      context_.log.error(
           "rtde", fmt::format("client {}: package size is {}, the header alone has {} bytes: disconnected",
                               connection_->id(), size, header_size));
       connection_->close();
       return;
     }
-    if (received_.size() - at < size) {
+    if (received_.size() - begin < size) {
       break;
     }
-    handle(type, std::string_view(received_).substr(at + header_size, size - header_size));
-    at += size;
+    handle_package(type, std::string_view(received_).substr(begin + header_size, size - header_size));
+    begin += size;
   }
-  received_.erase(0, at);
+  received_.erase(0, begin);
 }
 
-void Session::handle(std::uint8_t type, std::string_view payload)
+void Session::handle_package(std::uint8_t type, std::string_view payload)
 {
   switch (static_cast<PackageType>(type)) {
     case PackageType::request_protocol_version:
-      return request_protocol_version(payload);
+      return handle_request_protocol_version(payload);
     case PackageType::get_urcontrol_version:
-      return get_urcontrol_version();
+      return handle_get_urcontrol_version();
     case PackageType::text_message:
-      return text_message(payload);
+      return handle_text_message(payload);
     case PackageType::data_package:
-      return data_package(payload);
+      return handle_data_package(payload);
     case PackageType::setup_outputs:
-      return setup_outputs(payload);
+      return handle_setup_outputs(payload);
     case PackageType::setup_inputs:
-      return setup_inputs(payload);
+      return handle_setup_inputs(payload);
     case PackageType::start:
-      return start_synchronisation();
+      return handle_start();
     case PackageType::pause:
       started_ = false;
-      return reply(PackageType::pause, accepted(true));
+      return reply(PackageType::pause, acceptance(true));
   }
-  say(fmt::format("Unknown package type {}", type));
+  send_warning(fmt::format("Unknown package type {}", type));
 }
 
-void Session::request_protocol_version(std::string_view payload)
+// ---- negotiation and synchronization
+
+void Session::handle_request_protocol_version(std::string_view payload)
 {
-  Reader reader(payload);
-  const std::uint16_t version = reader.u16();
-  const bool known = reader.ok() && (version == 1 || version == 2);
-  if (known) {
-    protocol_ = version;
+  PackageReader reader(payload);
+  const std::uint16_t version = reader.read_u16();
+  const bool supported = reader.ok() && (version == 1 || version == 2);
+  if (supported) {
+    protocol_version_ = version;
   }
-  reply(PackageType::request_protocol_version, accepted(known));
+  reply(PackageType::request_protocol_version, acceptance(supported));
 }
 
-void Session::get_urcontrol_version()
+void Session::handle_get_urcontrol_version()
 {
   std::array<char, 16> payload;
-  Writer writer(payload.data());
+  PackageWriter writer(payload.data());
   for (const std::uint32_t part :
-       {shared_.version.major, shared_.version.minor, shared_.version.bugfix, shared_.version.build}) {
+       {context_.version.major, context_.version.minor, context_.version.bugfix, context_.version.build}) {
     writer.put(part);
   }
   reply(PackageType::get_urcontrol_version, {payload.data(), payload.size()});
 }
 
-void Session::text_message(std::string_view payload)
+void Session::handle_text_message(std::string_view payload)
 {
-  Reader reader(payload);
+  PackageReader reader(payload);
   std::string_view text;
-  if (protocol_ == 1) {
-    reader.u8();  // level
-    text = reader.rest();
+  if (protocol_version_ == 1) {
+    reader.read_u8();  // level
+    text = reader.read_remaining();
   } else {
-    text = reader.bytes(reader.u8());
+    text = reader.read_bytes(reader.read_u8());
   }
-  shared_.log.info("rtde", fmt::format("client {} says: {}", connection_->id(), text));
+  context_.log.info("rtde", fmt::format("client {} says: {}", connection_->id(), text));
 }
 
-void Session::setup_outputs(std::string_view payload)
+void Session::handle_start()
 {
-  Reader reader(payload);
-  frequency_ = protocol_ == 1 ? version_1_frequency : reader.f64();
-  const double highest = highest_frequency(shared_.version);
-  if (!reader.ok() || !std::isfinite(frequency_) || frequency_ <= 0.0) {
-    say(fmt::format("Output frequency must be above 0 and at most {} Hz", highest));
-    frequency_ = highest;
-  }
-  frequency_ = std::min(frequency_, highest);
+  const bool can_start = output_recipe_valid_ && (!output_fields_.empty() || !input_recipes_.empty());
+  started_ = can_start;
+  publish_phase_ = 1.0 - output_frequency_ / control_frequency(context_.version);
+  reply(PackageType::start, acceptance(can_start));
+}
 
-  outputs_.clear();
-  outputs_valid_ = true;
-  std::vector<std::string> types;
-  std::size_t bytes = header_size + (protocol_ == 1 ? 0 : 1);
-  for (const std::string_view name : split(reader.rest())) {
-    const OutputField * field = find_output(name, shared_.version);
-    types.emplace_back(field != nullptr ? rtde::name(field->type) : "NOT_FOUND");
-    outputs_valid_ = outputs_valid_ && field != nullptr;
+// ---- outputs
+
+void Session::handle_setup_outputs(std::string_view payload)
+{
+  PackageReader reader(payload);
+  read_output_frequency(reader);
+  const std::string types = set_output_recipe(reader.read_remaining());
+  reply(PackageType::setup_outputs,
+        protocol_version_ == 1 ? types : with_recipe_id(output_recipe_valid_ ? output_recipe_id : 0, types));
+}
+
+void Session::read_output_frequency(PackageReader & reader)
+{
+  output_frequency_ = protocol_version_ == 1 ? protocol_version_1_frequency : reader.read_f64();
+  const double highest = control_frequency(context_.version);
+  if (!reader.ok() || !std::isfinite(output_frequency_) || output_frequency_ <= 0.0) {
+    send_warning(fmt::format("Output frequency must be above 0 and at most {} Hz", highest));
+    output_frequency_ = highest;
+  }
+  output_frequency_ = std::min(output_frequency_, highest);
+}
+
+std::string Session::set_output_recipe(std::string_view names)
+{
+  output_fields_.clear();
+  output_recipe_valid_ = true;
+  std::vector<std::string_view> types;
+  std::size_t size = header_size + (protocol_version_ == 1 ? 0 : sizeof(output_recipe_id));
+  for (const std::string_view name : split_names(names)) {
+    const OutputField * field = find_output_field(name, context_.version);
+    types.push_back(field != nullptr ? type_name(field->type) : "NOT_FOUND");
+    output_recipe_valid_ = output_recipe_valid_ && field != nullptr;
     if (field != nullptr) {
-      outputs_.push_back(field);
-      bytes += size(field->type);
+      output_fields_.push_back(field);
+      size += encoded_size(field->type);
     }
   }
-  outputs_valid_ = outputs_valid_ && bytes <= 0xffff;
-  package_.assign(outputs_valid_ ? bytes : 0, '\0');
-  std::string answer = join(types);
-  if (protocol_ != 1) {
-    answer.insert(answer.begin(), static_cast<char>(outputs_valid_ ? output_recipe_id : 0));
-  }
-  reply(PackageType::setup_outputs, answer);
+  output_recipe_valid_ = output_recipe_valid_ && size <= max_package_size;
+  data_package_.assign(output_recipe_valid_ ? size : 0, '\0');
+  return join_types(types);
 }
 
-std::string Session::type_of(const InputField * field) const
+void Session::publish()
+{
+  if (!started_ || output_fields_.empty()) {
+    return;
+  }
+  publish_phase_ += output_frequency_ / control_frequency(context_.version);
+  constexpr double rounding_error = 1e-9;
+  if (publish_phase_ < 1.0 - rounding_error) {
+    return;
+  }
+  publish_phase_ = std::fmod(publish_phase_ + rounding_error, 1.0) - rounding_error;
+
+  PackageWriter writer(data_package_.data());
+  writer.put(static_cast<std::uint16_t>(data_package_.size()));
+  writer.put(static_cast<std::uint8_t>(PackageType::data_package));
+  if (protocol_version_ != 1) {
+    writer.put(output_recipe_id);
+  }
+  for (const OutputField * field : output_fields_) {
+    field->write(context_.state, field->index, writer);
+  }
+  dropped_packages_ += connection_->send_or_drop(data_package_) ? 0 : 1;
+}
+
+// ---- inputs
+
+std::string_view Session::input_type_or_error(const InputField * field) const
 {
   if (field == nullptr) {
     return "NOT_FOUND";
   }
-  const auto owner = shared_.owners.find(field);
-  const bool foreign = owner != shared_.owners.end() && owner->second != connection_->id();
-  return foreign ? "IN_USE" : std::string(rtde::name(field->type));
+  const auto owner = context_.input_owners.find(field);
+  const bool in_use = owner != context_.input_owners.end() && owner->second != connection_->id();
+  return in_use ? "IN_USE" : type_name(field->type);
 }
 
-void Session::claim(const std::vector<const InputField *> & fields)
+void Session::claim_inputs(const std::vector<const InputField *> & fields)
 {
   for (const InputField * field : fields) {
-    shared_.owners[field] = connection_->id();
+    context_.input_owners[field] = connection_->id();
   }
 }
 
-void Session::setup_inputs(std::string_view payload)
+void Session::handle_setup_inputs(std::string_view payload)
 {
   InputRecipe recipe;
-  std::vector<std::string> types;
-  bool valid = inputs_.size() < most_input_recipes;
-  for (const std::string_view name : split(payload)) {
-    const InputField * field = find_input(name, shared_.version);
-    types.push_back(type_of(field));
+  std::vector<std::string_view> types;
+  bool valid = input_recipes_.size() < max_input_recipes;
+  for (const std::string_view name : split_names(payload)) {
+    const InputField * field = find_input_field(name, context_.version);
+    types.push_back(input_type_or_error(field));
     valid = valid && types.back() != "NOT_FOUND" && types.back() != "IN_USE";
     recipe.fields.push_back(field);
   }
   valid = valid && !recipe.fields.empty();
   std::uint8_t id = 0;
   if (valid) {
-    claim(recipe.fields);
-    inputs_.push_back(std::move(recipe));
-    id = static_cast<std::uint8_t>(inputs_.size());
+    claim_inputs(recipe.fields);
+    input_recipes_.push_back(std::move(recipe));
+    id = static_cast<std::uint8_t>(input_recipes_.size());
   }
-  std::string answer = join(types);
-  answer.insert(answer.begin(), static_cast<char>(id));
-  reply(PackageType::setup_inputs, answer);
+  reply(PackageType::setup_inputs, with_recipe_id(id, join_types(types)));
 }
 
-void Session::start_synchronisation()
+void Session::handle_data_package(std::string_view payload)
 {
-  const bool can = outputs_valid_ && (!outputs_.empty() || !inputs_.empty());
-  started_ = can;
-  due_ = 1.0 - frequency_ / highest_frequency(shared_.version);
-  reply(PackageType::start, accepted(can));
-}
-
-void Session::data_package(std::string_view payload)
-{
-  Reader reader(payload);
-  const unsigned id = reader.u8();
-  if (!reader.ok() || id == 0 || id > inputs_.size()) {
-    shared_.log.warning(
+  PackageReader reader(payload);
+  const unsigned id = reader.read_u8();
+  if (!reader.ok() || id == 0 || id > input_recipes_.size()) {
+    context_.log.warning(
         "rtde", fmt::format("client {}: data package for recipe {}, which was not set up (there are {})",
-                            connection_->id(), id, inputs_.size()));
+                            connection_->id(), id, input_recipes_.size()));
     return;
   }
-  read_fields(inputs_[id - 1], reader.rest(), id);
+  read_input_fields(input_recipes_[id - 1], reader.read_remaining(), id);
 }
 
-void Session::read_fields(InputRecipe & recipe, std::string_view values, unsigned recipe_id)
+void Session::read_input_fields(InputRecipe & recipe, std::string_view values, unsigned recipe_id)
 {
-  // Clients send packages that are longer or shorter than their recipe (ur_rtde does): the controller takes
-  // the fields that are there, in order, and keeps the last value of the others.
-  Reader reader(values);
-  std::size_t expected = 0;
-  std::size_t there = 0;
+  // Some packages of ur_rtde are longer or shorter than their recipe. The fields that the package contains
+  // are read in order; the others keep their last value.
+  PackageReader reader(values);
+  std::size_t recipe_size = 0;
+  std::size_t fields_read = 0;
   for (const InputField * field : recipe.fields) {
-    expected += size(field->type);
-    if (reader.left() < size(field->type)) {
-      reader.rest();
+    recipe_size += encoded_size(field->type);
+    if (reader.remaining() < encoded_size(field->type)) {
+      reader.read_remaining();
       continue;
     }
-    field->read(reader, field->index, shared_.state, masked_);
-    ++there;
+    field->read(reader, field->index, context_.state, masked_inputs_);
+    ++fields_read;
   }
-  apply(masked_, shared_.state);
-  if (shared_.package_read) {
-    shared_.package_read(std::span(recipe.fields).first(there));
+  apply_masked_inputs(masked_inputs_, context_.state);
+  if (context_.on_data_package) {
+    context_.on_data_package(std::span(recipe.fields).first(fields_read));
   }
-  if (expected != values.size() && !recipe.wrong_size_reported) {
-    recipe.wrong_size_reported = true;
-    shared_.log.warning("rtde",
-                        fmt::format("client {}: data package for recipe {} has {} bytes, the recipe {}",
-                                    connection_->id(), recipe_id, values.size(), expected));
+  if (recipe_size != values.size() && !recipe.wrong_size_logged) {
+    recipe.wrong_size_logged = true;
+    context_.log.warning("rtde",
+                         fmt::format("client {}: data package for recipe {} has {} bytes, the recipe {}",
+                                     connection_->id(), recipe_id, values.size(), recipe_size));
   }
 }
 
-void Session::publish()
-{
-  if (!started_ || outputs_.empty()) {
-    return;
-  }
-  const double cycles_per_second = highest_frequency(shared_.version);
-  due_ += frequency_ / cycles_per_second;
-  constexpr double rounding = 1e-9;
-  if (due_ < 1.0 - rounding) {
-    return;
-  }
-  due_ = std::fmod(due_ + rounding, 1.0) - rounding;
-
-  Writer writer(package_.data());
-  writer.put(static_cast<std::uint16_t>(package_.size()));
-  writer.put(static_cast<std::uint8_t>(PackageType::data_package));
-  if (protocol_ != 1) {
-    writer.put(output_recipe_id);
-  }
-  for (const OutputField * field : outputs_) {
-    field->write(shared_.state, field->index, writer);
-  }
-  dropped_packages_ += connection_->send_or_drop(package_) ? 0 : 1;
-}
+// ---- sending packages
 
 void Session::reply(PackageType type, std::string_view payload)
 {
   std::string package(header_size + payload.size(), '\0');
-  Writer writer(package.data());
+  PackageWriter writer(package.data());
   writer.put(static_cast<std::uint16_t>(package.size()));
   writer.put(static_cast<std::uint8_t>(type));
   writer.put(payload);
   connection_->send(package);
 }
 
-void Session::say(std::string_view text)
+void Session::send_warning(std::string_view text)
 {
-  shared_.log.warning("rtde", fmt::format("client {}: {}", connection_->id(), text));
+  context_.log.warning("rtde", fmt::format("client {}: {}", connection_->id(), text));
   constexpr std::string_view source = "RTDE";
   constexpr std::uint8_t warning = 2;  // 0 exception, 1 error, 2 warning, 3 info
-  text = text.substr(0, 255);          // the length is one byte
-  if (protocol_ == 1) {
+  text = text.substr(0, 255);          // the length field has one byte
+  if (protocol_version_ == 1) {
     reply(PackageType::text_message, static_cast<char>(warning) + std::string(text));
     return;
   }

@@ -8,18 +8,18 @@
 namespace ur_simulator {
 namespace {
 
-constexpr std::size_t kept_events = 256;
-constexpr double stop_deceleration = 20.0;  // rad/s^2 of the fastest joint: 3 rad/s come to rest in 150 ms
-constexpr double steady_after = 0.5;        // s of standing still
+constexpr std::size_t max_events = 256;
+constexpr double stop_deceleration = 20.0;  // rad/s^2 of the fastest joint: stops from 3 rad/s in 150 ms
+constexpr double steady_delay = 0.5;        // s at standstill
 
 using Level = SafetyEvent::Level;
 
-tl::unexpected<std::string> refuse(std::string why)
+tl::unexpected<std::string> reject(std::string why)
 {
   return tl::unexpected(std::move(why));
 }
 
-/// Joint modes of RTDE (UR, "RTDE Guide", joint_mode).
+/// RTDE joint mode (UR, "Real-Time Data Exchange (RTDE) Guide", joint_mode).
 std::int32_t joint_mode(RobotMode mode)
 {
   switch (mode) {
@@ -55,90 +55,90 @@ Safety::Safety(const RobotModel & model, double cycle_time, const SafetyLimits &
     : cycle_time_(cycle_time),
       limits_(limits),
       times_(times),
-      watch_(model, cycle_time),
-      still_for_(steady_after)
+      limit_monitor_(model, cycle_time),
+      standstill_time_(steady_delay)
 {
 }
 
-SafetyAnswer Safety::may_power_on() const
+SafetyResult Safety::check_power_on() const
 {
   if (is_emergency(safety_mode_) || is_failure(safety_mode_)) {
-    return refuse(fmt::format("cannot power on: safety mode is {}; {}", to_string(safety_mode_),
+    return reject(fmt::format("cannot power on: safety mode is {}; {}", to_string(safety_mode_),
                               is_emergency(safety_mode_) ? "release the emergency stop" : "restart safety"));
   }
-  if (restart_until_ >= 0.0) {
-    return refuse("cannot power on: the safety system restarts");
+  if (restart_ends_at_ >= 0.0) {
+    return reject("cannot power on: the safety system is restarting");
   }
   return {};
 }
 
-SafetyAnswer Safety::power_on()
+SafetyResult Safety::power_on()
 {
-  if (const auto granted = may_power_on(); !granted) {
-    return granted;
+  if (const auto result = check_power_on(); !result) {
+    return result;
   }
-  wanted_ = std::max(wanted_, Power::idle);
+  requested_power_ = std::max(requested_power_, Power::idle);
   return {};
 }
 
-SafetyAnswer Safety::brake_release()
+SafetyResult Safety::brake_release()
 {
-  if (const auto granted = may_power_on(); !granted) {
-    return granted;
+  if (const auto result = check_power_on(); !result) {
+    return result;
   }
-  wanted_ = Power::running;
+  requested_power_ = Power::running;
   return {};
 }
 
-SafetyAnswer Safety::power_off()
+SafetyResult Safety::power_off()
 {
-  wanted_ = Power::off;
+  requested_power_ = Power::off;
   if (robot_mode_ == RobotMode::power_off) {
     return {};
   }
-  orders_.halt = stop_deceleration;
-  orders_.stop_program = true;
-  cutting_power_ = true;
-  cut_since_ = now_;
+  actions_.stop_arm = stop_deceleration;
+  actions_.stop_program = true;
+  power_cut_pending_ = true;
+  power_cut_since_ = now_;
   log(Level::information, "powering off");
   return {};
 }
 
 void Safety::start_running(ControllerState & state)
 {
-  wanted_ = Power::running;
-  cutting_power_ = false;
+  requested_power_ = Power::running;
+  power_cut_pending_ = false;
   enter(RobotMode::running);
   write(state);
 }
 
-void Safety::trip(std::string_view reason)
+void Safety::trigger_protective_stop(std::string_view reason)
 {
   if (robot_mode_ != RobotMode::running || stopped()) {
-    log(Level::warning, fmt::format("protective stop asked for while {} / {}: {}", to_string(robot_mode_),
-                                    to_string(safety_mode_), reason));
+    log(Level::warning, fmt::format("protective stop requested in robot mode {}, safety mode {}: {}",
+                                    to_string(robot_mode_), to_string(safety_mode_), reason));
     return;
   }
   stop(SafetyMode::protective_stop, Level::error, fmt::format("protective stop: {}", reason));
 }
 
-void Safety::trip(const MotionFault & fault)
+void Safety::trigger_protective_stop(const MotionFault & fault)
 {
-  trip(describe(fault));
+  trigger_protective_stop(describe(fault));
 }
 
-SafetyAnswer Safety::unlock_protective_stop()
+SafetyResult Safety::unlock_protective_stop()
 {
   if (safety_mode_ != SafetyMode::protective_stop) {
-    return refuse(fmt::format("no protective stop to unlock: safety mode is {}", to_string(safety_mode_)));
+    return reject(fmt::format("no protective stop to unlock: safety mode is {}", to_string(safety_mode_)));
   }
-  const double left = times_.unlock_delay - (now_ - stop_since_);
+  const double left = times_.unlock_delay - (now_ - safety_mode_since_);
   if (left > 1e-9) {
-    return refuse(fmt::format(
+    return reject(fmt::format(
         "cannot unlock protective stop until {:g} s after it occurred, {:.1f} s are left; inspect the cause",
         times_.unlock_delay, left));
   }
-  watch_.relent();
+  limit_monitor_.tolerate_present_force();
   enter(reduced_ ? SafetyMode::reduced : SafetyMode::normal);
   log(Level::information, "protective stop unlocked");
   return {};
@@ -147,18 +147,18 @@ SafetyAnswer Safety::unlock_protective_stop()
 void Safety::press_emergency_stop(bool system)
 {
   const SafetyMode mode = system ? SafetyMode::system_emergency_stop : SafetyMode::robot_emergency_stop;
-  button_pressed_ = mode;
+  pressed_button_ = mode;
   if (safety_mode_ != mode && !is_failure(safety_mode_)) {
     stop_and_cut_power(mode, "emergency stop");
   }
 }
 
-SafetyAnswer Safety::release_emergency_stop()
+SafetyResult Safety::release_emergency_stop()
 {
-  if (!button_pressed_) {
-    return refuse("no emergency stop is pressed");
+  if (!pressed_button_) {
+    return reject("no emergency stop is pressed");
   }
-  button_pressed_.reset();
+  pressed_button_.reset();
   if (is_emergency(safety_mode_)) {
     enter(reduced_ ? SafetyMode::reduced : SafetyMode::normal);
     log(Level::information, "emergency stop released");
@@ -173,18 +173,18 @@ void Safety::open_safeguard()
   }
 }
 
-SafetyAnswer Safety::reset_safeguard()
+SafetyResult Safety::reset_safeguard()
 {
   if (safety_mode_ != SafetyMode::safeguard_stop) {
-    return refuse(fmt::format("no safeguard stop to reset: safety mode is {}", to_string(safety_mode_)));
+    return reject(fmt::format("no safeguard stop to reset: safety mode is {}", to_string(safety_mode_)));
   }
   enter(reduced_ ? SafetyMode::reduced : SafetyMode::normal);
-  orders_.resume_program = true;
+  actions_.resume_program = true;
   log(Level::information, "safeguard reset");
   return {};
 }
 
-SafetyAnswer Safety::set_reduced(bool reduced)
+SafetyResult Safety::set_reduced(bool reduced)
 {
   reduced_ = reduced;
   if (safety_mode_ == SafetyMode::normal || safety_mode_ == SafetyMode::reduced) {
@@ -193,41 +193,41 @@ SafetyAnswer Safety::set_reduced(bool reduced)
   return {};
 }
 
-void Safety::violate(std::string_view reason)
+void Safety::trigger_violation(std::string_view reason)
 {
   stop_and_cut_power(SafetyMode::violation, fmt::format("safety violation: {}", reason));
 }
 
-void Safety::fail(std::string_view reason)
+void Safety::trigger_fault(std::string_view reason)
 {
   stop_and_cut_power(SafetyMode::fault, fmt::format("safety fault: {}", reason));
 }
 
-SafetyAnswer Safety::restart_safety()
+SafetyResult Safety::restart_safety()
 {
-  if (button_pressed_) {
-    return refuse("cannot restart safety: release the emergency stop first");
+  if (pressed_button_) {
+    return reject("cannot restart safety: release the emergency stop first");
   }
-  wanted_ = Power::off;
-  cutting_power_ = robot_mode_ != RobotMode::power_off;
-  cut_since_ = now_;
-  orders_.halt = stop_deceleration;
-  orders_.stop_program = true;
-  restart_until_ = now_ + times_.restart;
+  requested_power_ = Power::off;
+  power_cut_pending_ = robot_mode_ != RobotMode::power_off;
+  power_cut_since_ = now_;
+  actions_.stop_arm = stop_deceleration;
+  actions_.stop_program = true;
+  restart_ends_at_ = now_ + times_.restart;
   log(Level::information, "restarting safety");
   return {};
 }
 
-SafetyOrders Safety::step(ControllerState & state)
+SafetyActions Safety::step(ControllerState & state)
 {
   cycle_ = state.cycle;
   now_ = state.timestamp;
-  watch_rest(state);
-  watch_limits(state);
-  advance_power_cut();
-  advance_power();
+  update_standstill(state);
+  check_limits(state);
+  update_power_cut();
+  update_power();
   write(state);
-  return std::exchange(orders_, {});
+  return std::exchange(actions_, {});
 }
 
 std::optional<SafetyEvent> Safety::take_event()
@@ -242,9 +242,9 @@ std::optional<SafetyEvent> Safety::take_event()
 
 void Safety::log(SafetyEvent::Level level, std::string message)
 {
-  if (events_.size() >= kept_events) {
+  if (events_.size() >= max_events) {
     events_.pop_front();
-    ++dropped_;
+    ++dropped_events_;
   }
   events_.push_back({cycle_, now_, level, robot_mode_, safety_mode_, std::move(message)});
 }
@@ -255,7 +255,7 @@ void Safety::enter(RobotMode mode)
     return;
   }
   robot_mode_ = mode;
-  mode_since_ = now_;
+  robot_mode_since_ = now_;
   log(Level::information, fmt::format("robot mode {}", to_string(mode)));
 }
 
@@ -265,7 +265,7 @@ void Safety::enter(SafetyMode mode)
     return;
   }
   safety_mode_ = mode;
-  stop_since_ = now_;
+  safety_mode_since_ = now_;
   log(Level::information, fmt::format("safety mode {}", to_string(mode)));
 }
 
@@ -273,79 +273,79 @@ void Safety::stop(SafetyMode mode, SafetyEvent::Level level, std::string message
 {
   enter(mode);
   log(level, std::move(message));
-  orders_.halt = stop_deceleration;
-  orders_.pause_program = true;
-  orders_.resume_program = false;
+  actions_.stop_arm = stop_deceleration;
+  actions_.pause_program = true;
+  actions_.resume_program = false;
 }
 
 void Safety::stop_and_cut_power(SafetyMode mode, std::string message)
 {
   stop(mode, Level::error, std::move(message));
-  orders_.pause_program = false;
-  orders_.stop_program = true;
-  wanted_ = Power::off;
-  cutting_power_ = robot_mode_ != RobotMode::power_off;
-  cut_since_ = now_;
+  actions_.pause_program = false;
+  actions_.stop_program = true;
+  requested_power_ = Power::off;
+  power_cut_pending_ = robot_mode_ != RobotMode::power_off;
+  power_cut_since_ = now_;
 }
 
-void Safety::advance_power_cut()
+void Safety::update_power_cut()
 {
-  if (!cutting_power_) {
+  if (!power_cut_pending_) {
     return;
   }
-  const bool standing = still_for_ > 0.0;
-  if (robot_mode_ == RobotMode::running && !standing && now_ - cut_since_ < times_.stop_limit) {
+  const bool at_standstill = standstill_time_ > 0.0;
+  if (robot_mode_ == RobotMode::running && !at_standstill && now_ - power_cut_since_ < times_.stop_limit) {
     return;
   }
-  cutting_power_ = false;
+  power_cut_pending_ = false;
   enter(RobotMode::power_off);
 }
 
-void Safety::advance_power()
+void Safety::update_power()
 {
-  if (restart_until_ >= 0.0) {
-    if (now_ < restart_until_) {
+  if (restart_ends_at_ >= 0.0) {
+    if (now_ < restart_ends_at_) {
       return;
     }
-    restart_until_ = -1.0;
-    enter(button_pressed_.value_or(reduced_ ? SafetyMode::reduced : SafetyMode::normal));
+    restart_ends_at_ = -1.0;
+    enter(pressed_button_.value_or(reduced_ ? SafetyMode::reduced : SafetyMode::normal));
   }
-  if (cutting_power_) {
+  if (power_cut_pending_) {
     return;
   }
-  const double waited = now_ - mode_since_;
-  if (robot_mode_ == RobotMode::power_off && wanted_ != Power::off) {
+  const double elapsed = now_ - robot_mode_since_;
+  if (robot_mode_ == RobotMode::power_off && requested_power_ != Power::off) {
     enter(RobotMode::booting);
-  } else if (robot_mode_ == RobotMode::booting && waited >= 0.5 * times_.power_on) {
+  } else if (robot_mode_ == RobotMode::booting && elapsed >= 0.5 * times_.power_on) {
     enter(RobotMode::power_on);
-  } else if (robot_mode_ == RobotMode::power_on && waited >= 0.5 * times_.power_on) {
+  } else if (robot_mode_ == RobotMode::power_on && elapsed >= 0.5 * times_.power_on) {
     enter(RobotMode::idle);
-  } else if (robot_mode_ == RobotMode::idle && wanted_ == Power::running) {
-    if (!releasing_) {
-      releasing_ = true;
-      release_since_ = now_;
+  } else if (robot_mode_ == RobotMode::idle && requested_power_ == Power::running) {
+    if (!releasing_brakes_) {
+      releasing_brakes_ = true;
+      brake_release_since_ = now_;
     }
-    if (now_ - release_since_ >= times_.brake_release) {
+    if (now_ - brake_release_since_ >= times_.brake_release) {
       enter(RobotMode::running);
     }
   }
-  releasing_ = releasing_ && robot_mode_ == RobotMode::idle;
+  releasing_brakes_ = releasing_brakes_ && robot_mode_ == RobotMode::idle;
 }
 
-void Safety::watch_limits(const ControllerState & state)
+void Safety::check_limits(const ControllerState & state)
 {
   if (robot_mode_ != RobotMode::running || stopped() || !limits_.monitor) {
     return;
   }
-  if (const auto exceeded = watch_.check(limits_, state)) {
-    trip(*exceeded);
+  if (const auto exceeded = limit_monitor_.check(limits_, state)) {
+    trigger_protective_stop(*exceeded);
   }
 }
 
-void Safety::watch_rest(const ControllerState & state)
+void Safety::update_standstill(const ControllerState & state)
 {
-  const bool still = state.target.velocity.isZero(1e-6) && state.actual.velocity.isZero(1e-4);
-  still_for_ = still ? std::min(still_for_ + cycle_time_, steady_after) : 0.0;
+  const bool at_standstill = state.target.velocity.isZero(1e-6) && state.actual.velocity.isZero(1e-4);
+  standstill_time_ = at_standstill ? std::min(standstill_time_ + cycle_time_, steady_delay) : 0.0;
 }
 
 void Safety::write(ControllerState & state) const
@@ -353,7 +353,7 @@ void Safety::write(ControllerState & state) const
   state.robot_mode = robot_mode_;
   state.safety_mode = safety_mode_;
   state.joint_modes.fill(joint_mode(robot_mode_));
-  state.steady = still_for_ >= steady_after - 0.5 * cycle_time_;
+  state.steady = standstill_time_ >= steady_delay - 0.5 * cycle_time_;
   state.robot_status_bits = robot_status_bits(robot_mode_, state.runtime_state, state.freedrive);
   state.safety_status_bits = safety_status_bits(safety_mode_);
 }

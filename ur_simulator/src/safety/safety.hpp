@@ -8,115 +8,115 @@
 #include <tl/expected.hpp>
 
 #include "kinematics/robot_model.hpp"
-#include "safety/event.hpp"
-#include "safety/limits.hpp"
-#include "safety/watch.hpp"
+#include "safety/limit_monitor.hpp"
+#include "safety/safety_event.hpp"
+#include "safety/safety_limits.hpp"
 #include "state/controller_state.hpp"
 #include "state/faults.hpp"
 
 namespace ur_simulator {
 
-/// What the rest of the controller has to do this cycle because of safety.
-struct SafetyOrders {
-  std::optional<double> halt;   ///< Arm::halt() with this deceleration, rad/s^2
-  bool pause_program = false;   ///< protective or safeguard stop began: a running program is PAUSED
-  bool resume_program = false;  ///< safeguard was reset
-  bool stop_program = false;    ///< emergency stop, violation, fault, power off
+/// Actions that the safety system requests from the rest of the controller in this cycle.
+struct SafetyActions {
+  std::optional<double> stop_arm;  ///< Arm::stop_all() with this deceleration, rad/s^2
+  bool pause_program = false;      ///< a protective or safeguard stop began
+  bool resume_program = false;     ///< safeguard was reset
+  bool stop_program = false;       ///< emergency stop, violation, fault, power off
 };
 
-/// Refusals say why, as the dashboard's log would.
-using SafetyAnswer = tl::expected<void, std::string>;
+/// The error says why the request is rejected, worded as for the robot's log.
+using SafetyResult = tl::expected<void, std::string>;
 
-/// Robot mode and safety mode, and the limits that lead to a protective stop. One step each cycle, after Arm
-/// and World. It owns robot_mode, safety_mode, joint_modes, steady and the status bits of the state.
+/// The safety system: robot mode, safety mode, and the limits whose violation triggers a protective stop.
+/// Call step() once per cycle after Arm and World. It owns robot_mode, safety_mode, joint_modes, steady and
+/// the status bits of the state.
 class Safety {
  public:
   Safety(const RobotModel & model, double cycle_time, const SafetyLimits & limits = {},
          const SafetyTimes & times = {});
 
-  /// Dashboard: power on, brake release (powers on first where need be), power off. Repeating what is already
-  /// so is granted.
-  SafetyAnswer power_on();
-  SafetyAnswer brake_release();
-  SafetyAnswer power_off();
-  /// Skips all delays: powered on, brakes released (as a test or `start_running` wants it).
+  /// Dashboard commands power on, brake release (powers on first if necessary) and power off. A request that
+  /// is already fulfilled succeeds.
+  SafetyResult power_on();
+  SafetyResult brake_release();
+  SafetyResult power_off();
+  /// Powers on and releases the brakes without delays.
   void start_running(ControllerState & state);
 
-  /// Protective stop; a second one while stopped is only logged. URScript's protective_stop(), faults of
-  /// motions, limits.
-  void trip(std::string_view reason);
-  void trip(const MotionFault & fault);
-  /// Refused until SafetyTimes::unlock_delay is over, or when there is nothing to unlock.
-  SafetyAnswer unlock_protective_stop();
+  /// Triggers a protective stop; while stopped, the request is only logged.
+  void trigger_protective_stop(std::string_view reason);
+  void trigger_protective_stop(const MotionFault & fault);
+  /// Rejected before SafetyTimes::unlock_delay has passed, or if there is no protective stop.
+  SafetyResult unlock_protective_stop();
 
-  /// Emergency stop button of the robot (or of the system): latches; powers the arm off after the stop; once
-  /// released the robot stays in POWER_OFF with safety mode NORMAL.
+  /// Emergency stop button of the robot (or of the system). It latches, and the arm is powered off after the
+  /// stop. After the release the robot stays in POWER_OFF with safety mode NORMAL.
   void press_emergency_stop(bool system = false);
-  SafetyAnswer release_emergency_stop();
-  /// Safeguard input: opens (stop, arm stays powered) and closes again.
+  SafetyResult release_emergency_stop();
+  /// Safeguard input: opening it stops the arm, which stays powered.
   void open_safeguard();
-  SafetyAnswer reset_safeguard();
-  /// Reduced mode on or off (only between NORMAL and REDUCED).
-  SafetyAnswer set_reduced(bool reduced);
+  SafetyResult reset_safeguard();
+  /// Switches between safety modes NORMAL and REDUCED.
+  SafetyResult set_reduced(bool reduced);
 
-  /// Violation and fault power the arm off; only restart_safety() leads out of them.
-  void violate(std::string_view reason);
-  void fail(std::string_view reason);
-  SafetyAnswer restart_safety();
+  /// Safety violation and fault: the arm is powered off, and only restart_safety() ends the mode.
+  void trigger_violation(std::string_view reason);
+  void trigger_fault(std::string_view reason);
+  SafetyResult restart_safety();
 
   void set_limits(const SafetyLimits & limits) { limits_ = limits; }
   const SafetyLimits & limits() const { return limits_; }
 
-  /// Advances modes, watches limits, writes the state's modes and bits and says what the controller must do.
-  SafetyOrders step(ControllerState & state);
+  /// Advances the modes, checks the limits and writes the modes and status bits of the state. Returns the
+  /// actions that the controller has to take.
+  SafetyActions step(ControllerState & state);
 
-  /// Oldest first; at most 256 are kept, older ones are dropped (and counted).
+  /// Returns the oldest event. At most 256 are kept; older ones are dropped and counted.
   std::optional<SafetyEvent> take_event();
-  std::uint64_t dropped_events() const { return dropped_; }
+  std::uint64_t dropped_events() const { return dropped_events_; }
 
  private:
-  enum class Power { off, idle, running };  ///< what was asked for
+  enum class Power { off, idle, running };
 
   void log(SafetyEvent::Level level, std::string message);
   void enter(RobotMode mode);
   void enter(SafetyMode mode);
   void stop(SafetyMode mode, SafetyEvent::Level level, std::string message);
   void stop_and_cut_power(SafetyMode mode, std::string message);
-  SafetyAnswer may_power_on() const;
-  void advance_power();
-  void advance_power_cut();
-  void watch_limits(const ControllerState & state);
-  void watch_rest(const ControllerState & state);
+  SafetyResult check_power_on() const;
+  void update_power();
+  void update_power_cut();
+  void check_limits(const ControllerState & state);
+  void update_standstill(const ControllerState & state);
   void write(ControllerState & state) const;
   bool stopped() const { return !allows_motion(safety_mode_); }
 
   double cycle_time_;
   SafetyLimits limits_;
   SafetyTimes times_;
-  LimitWatch watch_;
+  LimitMonitor limit_monitor_;
 
   RobotMode robot_mode_ = RobotMode::power_off;
   SafetyMode safety_mode_ = SafetyMode::normal;
-  Power wanted_ = Power::off;
+  Power requested_power_ = Power::off;
   std::uint64_t cycle_ = 0;
   double now_ = 0.0;
-  double mode_since_ = 0.0;  ///< when robot_mode_ was entered
-  double stop_since_ = 0.0;  ///< when safety_mode_ was entered
-  double restart_until_ = -1.0;
-  double still_for_;
-  double cut_since_ = 0.0;
-  double release_since_ = 0.0;
-  bool releasing_ = false;
-  bool cutting_power_ = false;
+  double robot_mode_since_ = 0.0;   ///< timestamp at which robot_mode_ was entered
+  double safety_mode_since_ = 0.0;  ///< timestamp at which safety_mode_ was entered
+  double restart_ends_at_ = -1.0;
+  double standstill_time_;
+  double power_cut_since_ = 0.0;
+  double brake_release_since_ = 0.0;
+  bool releasing_brakes_ = false;
+  bool power_cut_pending_ = false;
   bool reduced_ = false;
-  std::optional<SafetyMode> button_pressed_;
-  SafetyOrders orders_;
+  std::optional<SafetyMode> pressed_button_;
+  SafetyActions actions_;
   std::deque<SafetyEvent> events_;
-  std::uint64_t dropped_ = 0;
+  std::uint64_t dropped_events_ = 0;
 };
 
-/// robot_status_bits and safety_status_bits of RTDE for the modes given.
-/// Source: UR, "Real-Time Data Exchange (RTDE) Guide", output variables of these names.
+/// The RTDE outputs robot_status_bits and safety_status_bits (UR, "Real-Time Data Exchange (RTDE) Guide").
 std::uint32_t robot_status_bits(RobotMode mode, RuntimeState runtime, bool freedrive);
 std::uint32_t safety_status_bits(SafetyMode mode);
 

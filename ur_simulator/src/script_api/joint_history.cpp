@@ -1,6 +1,6 @@
-#include <algorithm>
+#include "script_api/joint_history.hpp"
 
-#include "script_api/robot_library.hpp"
+#include <algorithm>
 
 namespace ur_simulator {
 
@@ -9,12 +9,12 @@ void JointHistory::record(const Vector6 & position)
   positions_[count_++ % capacity] = position;
 }
 
-std::optional<Vector6> JointHistory::back(std::size_t steps) const
+std::optional<Vector6> JointHistory::position(std::size_t steps) const
 {
   if (count_ == 0 || steps >= capacity) {
     return std::nullopt;
   }
-  // Just switched on, it has stood where the first record says.
+  // Before the first record the arm stood at the first recorded position.
   return positions_[(count_ - 1 - std::min(steps, count_ - 1)) % capacity];
 }
 

@@ -4,14 +4,15 @@ namespace ur_simulator::script_api {
 
 namespace {
 
-// Two threads that move at once stop the program on the robot too.
-const Failure occupied{"Another thread is already controlling the robot"};
+// The robot also stops a program in which two threads move the arm at the same time.
+const Failure robot_in_use{"Another thread is already controlling the robot"};
 
 }  // namespace
 
-MotionOperation::MotionOperation(RobotPtr robot, MotionId motion) : robot_(std::move(robot)), motion_(motion)
+MotionOperation::MotionOperation(RobotContextPtr robot, MotionId motion)
+    : robot_(std::move(robot)), motion_(motion)
 {
-  robot_->moving = this;
+  robot_->motion_owner = this;
 }
 
 MotionOperation::~MotionOperation()
@@ -21,74 +22,74 @@ MotionOperation::~MotionOperation()
 
 void MotionOperation::release()
 {
-  if (robot_->moving == this) {
-    robot_->moving = nullptr;
+  if (robot_->motion_owner == this) {
+    robot_->motion_owner = nullptr;
   }
 }
 
 tl::expected<std::optional<Value>, std::string> MotionOperation::poll(CallContext &)
 {
-  if (!robot_->access.arm.finished(motion_)) {
+  if (!robot_->access.arm.call_complete(motion_)) {
     return std::nullopt;
   }
   release();
   return Value();
 }
 
-void MotionOperation::abandon()
+void MotionOperation::cancel()
 {
-  robot_->access.arm.abandon(motion_);
+  robot_->access.arm.cancel(motion_);
   release();
 }
 
-MoveOperation::MoveOperation(RobotPtr robot, MotionId motion, Start start)
+MoveOperation::MoveOperation(RobotContextPtr robot, MotionId motion, StartFunction start)
     : MotionOperation(std::move(robot), motion), start_(std::move(start))
 {
 }
 
 tl::expected<std::optional<Value>, std::string> MoveOperation::poll(CallContext & context)
 {
-  // In its blend it goes on to its target, whether the program has something to blend with it or not.
+  // In its blend the motion reaches its target without being restarted.
   Arm & arm = robot().access.arm;
-  const bool arrives = arm.in_blend(motion()) || arm.arrived(motion());
+  const bool arrives = arm.in_blend(motion()) || arm.reached_target(motion());
   auto result = MotionOperation::poll(context);
   if (!result || !*result || arrives) {
     return result;
   }
-  const MotionStart again = start_(arm);
+  const StartResult again = start_(arm);
   if (!again) {
     return tl::unexpected(again.error());
   }
-  if (*again == skipped_motion) {
-    return Value();  // it was stopped so near to its target that its blend has begun
+  if (*again == skipped_motion_id) {
+    return Value();  // stopped inside its blend
   }
-  follow(*again);
-  robot().moving = this;
+  set_motion(*again);
+  robot().motion_owner = this;
   return std::nullopt;
 }
 
-Outcome begin_motion(const RobotPtr & robot, const std::function<MotionStart(Arm & arm)> & start)
+Outcome start_motion(const RobotContextPtr & robot, const std::function<StartResult(Arm & arm)> & start)
 {
-  if (robot->moving != nullptr) {
-    return occupied;
+  if (robot->motion_owner != nullptr) {
+    return robot_in_use;
   }
-  const MotionStart motion = start(robot->access.arm);
+  const StartResult motion = start(robot->access.arm);
   if (!motion) {
     return Failure{motion.error()};
   }
   return std::make_unique<MotionOperation>(robot, *motion);
 }
 
-Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start)
+Outcome start_move(const RobotContextPtr & robot, MoveOperation::StartFunction start)
 {
-  if (robot->moving != nullptr) {
-    return occupied;
+  if (robot->motion_owner != nullptr) {
+    return robot_in_use;
   }
-  const MotionStart motion = start(robot->access.arm);
+  const StartResult motion = start(robot->access.arm);
   if (!motion) {
     return Failure{motion.error()};
   }
-  if (*motion == skipped_motion) {
+  if (*motion == skipped_motion_id) {
     return Value();
   }
   return std::make_unique<MoveOperation>(robot, *motion, std::move(start));

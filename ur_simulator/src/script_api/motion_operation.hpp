@@ -4,49 +4,49 @@
 #include <string>
 
 #include "motion/arm.hpp"
-#include "script_api/robot.hpp"
+#include "script_api/robot_context.hpp"
 
 namespace ur_simulator::script_api {
 
-/// A call that moves the arm: lasts until the arm says that it may return, and holds the arm so long.
+/// A call that moves the arm. It lasts until Arm::call_complete(); meanwhile no other call may move the arm.
 class MotionOperation : public urscript::Operation {
  public:
-  MotionOperation(RobotPtr robot, MotionId motion);
+  MotionOperation(RobotContextPtr robot, MotionId motion);
   ~MotionOperation() override;
   MotionOperation(const MotionOperation &) = delete;
   MotionOperation & operator=(const MotionOperation &) = delete;
 
   tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override;
-  void abandon() override;
+  void cancel() override;
 
  protected:
-  Robot & robot() { return *robot_; }
+  RobotContext & robot() { return *robot_; }
   MotionId motion() const { return motion_; }
-  void follow(MotionId motion) { motion_ = motion; }
+  void set_motion(MotionId motion) { motion_ = motion; }
 
  private:
   void release();
 
-  RobotPtr robot_;
+  RobotContextPtr robot_;
   MotionId motion_;
 };
 
-/// A motion with a target. A protective or safeguard stop makes the arm give it up while the program is
-/// paused; once the program goes on, so does the motion, to the same target.
+/// A motion with a target. A protective or safeguard stop cancels the motion and pauses the program; when the
+/// program resumes, the motion to the same target is started again.
 class MoveOperation final : public MotionOperation {
  public:
-  using Start = std::function<MotionStart(Arm & arm)>;
+  using StartFunction = std::function<StartResult(Arm & arm)>;
 
-  MoveOperation(RobotPtr robot, MotionId motion, Start start);
+  MoveOperation(RobotContextPtr robot, MotionId motion, StartFunction start);
   tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override;
 
  private:
-  Start start_;
+  StartFunction start_;
 };
 
-/// Starts a motion that ends by itself (servoj, speedj, stopj, …), or tells why it cannot.
-Outcome begin_motion(const RobotPtr & robot, const std::function<MotionStart(Arm & arm)> & start);
-/// Starts a motion to a target; a value when the motion is skipped.
-Outcome begin_move(const RobotPtr & robot, MoveOperation::Start start);
+/// Starts a motion without a target to resume to (servoj, speedj, stopj, …).
+Outcome start_motion(const RobotContextPtr & robot, const std::function<StartResult(Arm & arm)> & start);
+/// Starts a motion to a target. The outcome is a value if the motion is skipped.
+Outcome start_move(const RobotContextPtr & robot, MoveOperation::StartFunction start);
 
 }  // namespace ur_simulator::script_api

@@ -10,22 +10,23 @@
 
 namespace ur_simulator {
 
-/// A TCP client of a program (socket_open()). Nothing waits; everything happens on the controller's thread.
+/// A TCP connection opened by a program with socket_open(). All calls are non-blocking and run on the
+/// controller's thread.
 class ScriptSocket {
  public:
   virtual ~ScriptSocket() = default;
   virtual bool connected() const = 0;
-  /// Could not connect, or the peer has gone. What it sent before may still be there.
+  /// True if connecting failed or the peer closed the connection. Received bytes may remain.
   virtual bool failed() const = 0;
   virtual void send(std::string_view bytes) = 0;
-  /// What came and was not taken yet.
+  /// Received bytes; the reader removes what it has consumed.
   virtual std::string & received() = 0;
 };
 
-/// Begins to connect. The socket closes when the last reference goes.
+/// Starts to connect. The socket is closed with its last reference.
 using OpenSocket = std::function<std::shared_ptr<ScriptSocket>(const std::string & host, std::uint16_t port)>;
 
-/// The library, with socket_open() and all that goes with it.
+/// A copy of the library with the socket functions added.
 std::shared_ptr<const urscript::Library> with_sockets(const urscript::Library & library,
                                                       OpenSocket open_socket);
 

@@ -1,22 +1,22 @@
-#include <algorithm>
+#include "script_api/watchdog.hpp"
 
-#include "script_api/robot_library.hpp"
+#include <algorithm>
 
 namespace ur_simulator {
 
-void Watchdog::set(const std::string & variable, double minimum_frequency, Action action, double now)
+void Watchdog::set(const std::string & variable, double min_frequency, Action action, double now)
 {
   std::erase_if(entries_, [&](const Entry & entry) { return entry.variable == variable; });
-  if (minimum_frequency > 0.0) {
-    entries_.push_back({variable, 1.0 / minimum_frequency, action, now, false});
+  if (min_frequency > 0.0) {
+    entries_.push_back({variable, 1.0 / min_frequency, action, now, false});
   }
 }
 
-void Watchdog::fed(const std::string & variable, double now)
+void Watchdog::feed(const std::string & variable, double now)
 {
   for (Entry & entry : entries_) {
     if (entry.variable == variable) {
-      entry.last = now;
+      entry.last_fed = now;
       entry.reported = false;
     }
   }
@@ -30,7 +30,7 @@ void Watchdog::clear()
 std::optional<Watchdog::Action> Watchdog::expired(double now)
 {
   for (Entry & entry : entries_) {
-    if (!entry.reported && entry.action != Action::ignore && now - entry.last > entry.period) {
+    if (!entry.reported && entry.action != Action::ignore && now - entry.last_fed > entry.period) {
       entry.reported = true;
       return entry.action;
     }

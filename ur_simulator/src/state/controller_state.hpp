@@ -10,15 +10,17 @@
 
 namespace ur_simulator {
 
-/// Registers that RTDE clients and the robot program exchange. Sizes as of PolyScope 5.
+/// The general purpose registers with which RTDE clients and the robot program exchange data. Sizes of
+/// PolyScope 5 (UR, "RTDE Guide").
 struct Registers {
   std::bitset<128> bits;
   std::array<std::int32_t, 48> integers{};
   std::array<double, 48> doubles{};
 };
 
-/// Digital bits 0-7 standard, 8-15 configurable, 16-17 tool; analog 0-1, current loop 4-20 mA (A) or voltage
-/// 0-10 V.
+/// Inputs and outputs. Digital bits 0-7 are the standard, 8-15 the configurable, 16-17 the tool IOs. Analog
+/// values are in A (current loop, 4-20 mA) or V (0-10 V); a set bit of the types selects voltage: bit 0 and 1
+/// inputs, bit 2 and 3 outputs (UR, "RTDE Guide", analog_io_types).
 struct Io {
   std::uint64_t digital_inputs = 0;
   std::uint64_t digital_outputs = 0;
@@ -38,12 +40,12 @@ struct Payload {
   Vector6 inertia = Vector6::Zero();            ///< Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m^2
 };
 
-/// ft_rtde_input_enable(): a sensor whose readings come by RTDE takes the place of the one in the flange.
+/// Settings of ft_rtde_input_enable(): readings received over RTDE replace those of the sensor in the flange.
 struct ExternalSensor {
   bool enabled = false;
-  double mass = 0.0;                           ///< kg, of the sensor: part of the payload that it cannot feel
-  Vector3 measuring_offset = Vector3::Zero();  ///< m, of its measuring point in the flange frame
-  Vector3 center_of_gravity = Vector3::Zero();  ///< m, of the sensor in the flange frame
+  double mass = 0.0;  ///< mass of the sensor, kg: the part of the payload that it does not measure
+  Vector3 measuring_offset = Vector3::Zero();   ///< measuring point in the flange frame, m
+  Vector3 center_of_gravity = Vector3::Zero();  ///< centre of gravity of the sensor in the flange frame, m
 };
 
 struct JointState {
@@ -54,12 +56,12 @@ struct JointState {
   Vector6 torque = Vector6::Zero();        ///< N m
 };
 
-/// Everything that one control cycle reads and writes; its only owner is the controller's thread. Poses,
-/// twists and wrenches are those of the TCP in the robot's base frame; forces are what the surroundings exert
-/// on the tool.
+/// The data that a control cycle reads and writes. Used on the controller's thread only. Poses, twists and
+/// wrenches are those of the TCP in the base frame unless stated otherwise; forces are those that the
+/// environment exerts on the tool.
 struct ControllerState {
   std::uint64_t cycle = 0;
-  double timestamp = 0.0;  ///< s since start, cycle * cycle time: the clock of the simulation
+  double timestamp = 0.0;  ///< simulated time since start, cycle * cycle time, s
 
   JointState target;
   JointState actual;
@@ -70,34 +72,35 @@ struct ControllerState {
   Vector6 target_tcp_speed = Vector6::Zero();
   Vector6 actual_tcp_pose = Vector6::Zero();
   Vector6 actual_tcp_speed = Vector6::Zero();
-  Vector6 actual_tcp_force = Vector6::Zero();  ///< filtered, payload subtracted, zeroed: as get_tcp_force()
-  Vector6 ft_raw_wrench =
-      Vector6::Zero();  ///< at and in the flange frame, with the weight of the load, not zeroed
-  Vector6 contact_wrench =
-      Vector6::Zero();  ///< what surfaces and hands truly do to the tool: no noise, filter or load
-  /// What pushes the tool beyond what the controller knows: contact, and the weight of a load that differs
-  /// from the payload that was set.
+  Vector6 actual_tcp_force = Vector6::Zero();  ///< get_tcp_force(): filtered, without the payload's weight,
+                                               ///< relative to the last zeroing
+  /// Wrench at the flange in flange axes, with the weight of the load, not zeroed.
+  Vector6 ft_raw_wrench = Vector6::Zero();
+  /// Wrench of surfaces and pushes on the tool, without noise, filter and load.
+  Vector6 contact_wrench = Vector6::Zero();
+  /// Disturbance of the motion control: the contact wrench and the weight of the load that the configured
+  /// payload does not account for.
   Vector6 tool_wrench = Vector6::Zero();
-  Vector3 tool_acceleration =
-      Vector3(0.0, 0.0, -9.81);  ///< accelerometer at the flange, in flange axes, m/s^2
+  /// Reading of the accelerometer at the flange, in flange axes, m/s^2.
+  Vector3 tool_acceleration = Vector3(0.0, 0.0, -9.81);
 
-  /// How far the TCP gives way to a force, m/N in base axes: the joints' elasticity. Written by Arm, read by
-  /// World.
+  /// Displacement of the TCP per force due to the elasticity of the joints, base axes, m/N. Written by Arm,
+  /// read by World.
   Eigen::Matrix3d tcp_compliance = Eigen::Matrix3d::Zero();
 
   Vector6 tcp_offset = Vector6::Zero();  ///< pose of the TCP in the flange frame
   Payload payload;
-  Vector3 gravity = Vector3(0.0, 0.0, 9.82);  ///< as set_gravity(): opposes the pull
+  Vector3 gravity = Vector3(0.0, 0.0, 9.82);  ///< as in set_gravity(): opposite to the pull of gravity, m/s^2
 
-  double speed_slider = 1.0;           ///< what a person or RTDE set, 0..1
-  double speed_scaling = 1.0;          ///< how fast the trajectory really runs, ramps towards the target
-  double target_speed_fraction = 1.0;  ///< what speed_scaling ramps to: the slider, 0 while paused
+  double speed_slider = 1.0;   ///< set on the pendant or over RTDE, 0..1
+  double speed_scaling = 1.0;  ///< current scaling of the trajectory speed, ramps to the target fraction
+  double target_speed_fraction = 1.0;  ///< the speed slider, 0 while the program is paused
 
   RobotMode robot_mode = RobotMode::power_off;
   SafetyMode safety_mode = SafetyMode::normal;
   RuntimeState runtime_state = RuntimeState::stopped;
-  std::uint32_t robot_status_bits = 0;   ///< as RTDE's, written by Safety::step
-  std::uint32_t safety_status_bits = 0;  ///< as RTDE's, written by Safety::step
+  std::uint32_t robot_status_bits = 0;   ///< RTDE output, written by Safety::step
+  std::uint32_t safety_status_bits = 0;  ///< RTDE output, written by Safety::step
   bool freedrive = false;
   bool in_force_mode = false;
   bool steady = true;
@@ -108,7 +111,10 @@ struct ControllerState {
   Registers inputs;                                 ///< written by RTDE clients, read by the program
   Registers outputs;                                ///< written by the program, read by RTDE clients
   Vector6 external_force_torque = Vector6::Zero();  ///< RTDE input, flange axes
-  double actual_execution_time = 0.0;               ///< ms the last cycle took
+  double actual_execution_time = 0.0;               ///< computation time of the last cycle, ms
+
+  /// Bit 0 of robot_status_bits, "Is power on" (UR, "RTDE Guide").
+  bool is_powered() const { return (robot_status_bits & 1U) != 0; }
 };
 
 }  // namespace ur_simulator

@@ -8,32 +8,34 @@
 
 namespace ur_simulator {
 
-/// What happened when, by the host's clock: the last cycles and the last commands, for measuring what lies
-/// between the controller and a client on the same host. No allocation.
+/// Records the last cycles and the last commands with times of the host's clock. Clients on the same host
+/// measure their latency with it. Does not allocate memory.
 class CycleTrace {
  public:
   using Clock = std::chrono::system_clock;
 
   struct Cycle {
     std::uint64_t number = 0;
-    std::int64_t published = 0;  ///< ns since the epoch, when sending the cycle's RTDE packages began
-    double speed = 0.0;          ///< of the fastest joint's target, rad/s
+    std::int64_t published = 0;  ///< time before the cycle's RTDE packages were sent, ns since the epoch
+    double speed = 0.0;          ///< largest target joint speed, rad/s
   };
   struct Command {
     std::uint64_t cycle = 0;
-    std::int64_t arrived = 0;  ///< ns since the epoch, when the package was read
-    std::int32_t code = 0;     ///< input integer register 0: ur_rtde's command number
+    std::int64_t arrived = 0;  ///< time at which the data package was read, ns since the epoch
+    std::int32_t code = 0;     ///< input integer register 0: the command number of ur_rtde
   };
 
-  /// Before the packages of a cycle are sent: a client may have its own before the last is out.
-  void cycle_publishing(const ControllerState & state)
+  /// Call before the packages of a cycle are sent: the first client may receive its package before the last
+  /// package is sent.
+  void record_cycle(const ControllerState & state)
   {
     cycles_[cycle_count_++ % cycles_.size()] = {state.cycle, now(),
                                                 state.target.velocity.cwiseAbs().maxCoeff()};
   }
-  /// Input integer register 0 was written; 0 (no command) is not kept, repeats are kept apart: they are what
-  /// a stream of targets is made of. A repeat without arguments is none of them: it feeds the watchdog.
-  void command_arrived(const ControllerState & state, bool with_arguments)
+  /// Call after a data package has written input integer register 0. Code 0 (no command) is not recorded. A
+  /// code equal to the previous one is recorded as a repeat: ur_rtde's servo and speed commands send the same
+  /// code with each target. Repeats without arguments only feed the RTDE watchdog and are not recorded.
+  void record_command(const ControllerState & state, bool with_arguments)
   {
     const std::int32_t code = state.inputs.integers[0];
     if (code != 0 && code == last_code_ && with_arguments) {

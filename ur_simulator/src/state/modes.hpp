@@ -5,7 +5,9 @@
 
 namespace ur_simulator {
 
-/// Numbers as RTDE reports them (UR, "Real-Time Data Exchange (RTDE) Guide").
+// Values of the RTDE outputs robot_mode, safety_mode and runtime_state (UR, "Real-Time Data Exchange (RTDE)
+// Guide").
+
 enum class RobotMode : std::int32_t {
   no_controller = -1,
   disconnected = 0,
@@ -42,12 +44,12 @@ enum class RuntimeState : std::uint32_t {
   resuming = 5
 };
 
-/// POWER_OFF, RUNNING, …, NORMAL, PROTECTIVE_STOP, … as the dashboard spells them.
+/// The spelling of the dashboard server: POWER_OFF, RUNNING, …, NORMAL, PROTECTIVE_STOP, …
 std::string_view to_string(RobotMode mode);
 std::string_view to_string(SafetyMode mode);
 std::string_view to_string(RuntimeState state);
 
-/// Does this safety mode let the arm move?
+/// Whether the arm may move in this safety mode.
 bool allows_motion(SafetyMode mode);
 
 }  // namespace ur_simulator

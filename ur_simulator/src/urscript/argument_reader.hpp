@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -10,8 +11,9 @@
 
 namespace ur_simulator::urscript {
 
-/// Reads a builtin's arguments by position and type. The first that does not fit decides the failure; what is
-/// read after it is a harmless zero, so that a builtin reads all of its arguments first and asks once.
+/// Reads the arguments of a builtin by position and type. The first argument that does not fit determines the
+/// failure; further reads return zero. A builtin therefore reads all arguments first and checks for a failure
+/// once.
 class ArgumentReader {
  public:
   explicit ArgumentReader(Arguments arguments) : arguments_(arguments) {}
@@ -24,7 +26,7 @@ class ArgumentReader {
   {
     const auto number = arguments_[i].is_number() ? arguments_[i].number() : std::nullopt;
     if (!number || !std::isfinite(*number)) {
-      return refuse(name, "a finite number", i), 0.0;
+      return reject_type(name, "a finite number", i), 0.0;
     }
     return *number;
   }
@@ -34,10 +36,10 @@ class ArgumentReader {
     if (arguments_[i].is(Type::integer)) {
       return arguments_[i].integer();
     }
-    // Registers and counters often arrive as floats.
+    // Integral floats are accepted: registers and counters are often floats.
     const auto number = arguments_[i].number();
     if (!number || std::floor(*number) != *number || std::abs(*number) > 2147483647.0) {
-      return refuse(name, "an int", i), 0;
+      return reject_type(name, "an int", i), 0;
     }
     return static_cast<std::int32_t>(*number);
   }
@@ -46,7 +48,7 @@ class ArgumentReader {
   {
     const auto number = arguments_[i].number();
     if (!number) {
-      return refuse(name, "a bool", i), false;
+      return reject_type(name, "a bool", i), false;
     }
     return *number != 0.0;
   }
@@ -54,23 +56,36 @@ class ArgumentReader {
   std::string string(std::size_t i, const char * name)
   {
     if (!arguments_[i].is(Type::string)) {
-      return refuse(name, "a string", i), std::string();
+      return reject_type(name, "a string", i), std::string();
     }
     return arguments_[i].string();
   }
 
   /// A pose, or a list of six numbers read as one.
-  Vector6 pose(std::size_t i, const char * name) { return vector6(i, name, "a pose"); }
+  Vector6 pose(std::size_t i, const char * name) { return read_vector6(i, name, "a pose"); }
   /// A list of six numbers (or a pose).
-  Vector6 six(std::size_t i, const char * name) { return vector6(i, name, "a list of six numbers"); }
+  Vector6 vector6(std::size_t i, const char * name) { return read_vector6(i, name, "a list of six numbers"); }
 
-  Vector3 three(std::size_t i, const char * name)
+  Vector3 vector3(std::size_t i, const char * name)
   {
     const auto vector = arguments_[i].vector3();
     if (!vector || !vector->allFinite()) {
-      return refuse(name, "a list of three numbers", i), Vector3::Zero();
+      return reject_type(name, "a list of three numbers", i), Vector3::Zero();
     }
     return *vector;
+  }
+
+  /// A selection vector: six numbers, each 0 or 1.
+  std::array<bool, 6> selection(std::size_t i, const char * name)
+  {
+    std::array<bool, 6> result{};
+    const Vector6 values = vector6(i, name);
+    for (std::size_t axis = 0; axis < result.size(); ++axis) {
+      const double value = values[static_cast<Eigen::Index>(axis)];
+      require(value == 0.0 || value == 1.0, fmt::format("{}[{}] must be 0 or 1, is {}", name, axis, value));
+      result[axis] = value == 1.0;
+    }
+    return result;
   }
 
   void require(bool condition, std::string message)
@@ -84,16 +99,16 @@ class ArgumentReader {
   Failure failure() const { return {message_}; }
 
  private:
-  Vector6 vector6(std::size_t i, const char * name, const char * expected)
+  Vector6 read_vector6(std::size_t i, const char * name, const char * expected)
   {
     const auto vector = arguments_[i].vector6();
     if (!vector || !vector->allFinite()) {
-      return refuse(name, expected, i), Vector6::Zero();
+      return reject_type(name, expected, i), Vector6::Zero();
     }
     return *vector;
   }
 
-  void refuse(const char * name, const char * expected, std::size_t i)
+  void reject_type(const char * name, const char * expected, std::size_t i)
   {
     const std::string found = arguments_[i].text().substr(0, 60);
     require(false, fmt::format("the argument '{}' must be {}, not {} {}", name, expected,

@@ -12,16 +12,15 @@ struct Popup {
   bool blocking = false;
 };
 
-/// What a program may ask of the controller that is no builtin of the robot: its messages and its operator.
-/// Called on the thread that runs the machine. The defaults ignore messages and answer questions at once, as
-/// with nobody at the teach pendant.
+/// Receives the messages and popups of a program. Called on the thread that runs the machine. The defaults
+/// ignore messages and close popups at once.
 class Host {
  public:
   virtual ~Host() = default;
-  /// textmsg(): for the log, as it arrives on the primary interface.
+  /// textmsg(): a message for the log and the primary interface.
   virtual void text_message(const std::string &) {}
   virtual void show_popup(const Popup &) {}
-  /// A blocking popup() ends when this turns false.
+  /// A blocking popup() returns when this is false.
   virtual bool popup_open() const { return false; }
 };
 

@@ -4,8 +4,8 @@ namespace ur_simulator::urscript {
 
 void Library::add(Builtin builtin)
 {
-  const auto fresh = static_cast<std::uint32_t>(builtins_.size());
-  const auto [entry, inserted] = index_.emplace(builtin.name, fresh);
+  const auto new_index = static_cast<std::uint32_t>(builtins_.size());
+  const auto [entry, inserted] = index_.emplace(builtin.name, new_index);
   if (inserted) {
     builtins_.push_back(std::move(builtin));
   } else {

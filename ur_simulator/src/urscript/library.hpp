@@ -17,43 +17,43 @@
 
 namespace ur_simulator::urscript {
 
-/// What a builtin sees of the machine that calls it.
+/// Context of a call of a builtin.
 struct CallContext {
   Host & host;
   double cycle_time;      ///< s
-  double time;            ///< s since the program started, of the simulation
+  double time;            ///< s of simulated time since the program started
   std::int32_t line;      ///< of the call, 1-based
-  bool secondary;         ///< called from a `sec` program, which may not take physical time
-  std::uint64_t program;  ///< identifies the run of the program
+  bool secondary;         ///< called from a secondary program (`sec`), which may not take physical time
+  std::uint64_t program;  ///< identifies the execution of the program
 };
 
-/// A builtin that takes time. Polled once in each control cycle, the first time in the cycle after the call;
-/// destroyed after it yielded its value, or after abandon().
+/// A call of a builtin that takes physical time. It is polled once per control cycle, first in the cycle
+/// after the call, and destroyed after it returned its value or after cancel().
 class Operation {
  public:
   virtual ~Operation() = default;
-  /// The call's value, nothing while it goes on, or why the program fails.
+  /// The value of the call, nothing while it is in progress, or the error that ends the program.
   virtual tl::expected<std::optional<Value>, std::string> poll(CallContext & context) = 0;
-  /// The thread was killed or the program stopped: nobody will poll again.
-  virtual void abandon() {}
+  /// The thread was killed or the program stopped; poll() is not called again.
+  virtual void cancel() {}
 };
 
-/// The call's value, from the next cycle on: what sync() does, without an Operation.
+/// The call returns this value in the next cycle, as sync() does.
 struct NextCycle {
   Value value;
 };
 
-/// A run-time error: the program stops and the message goes to the log.
+/// A run-time error: stops the program and is logged.
 struct Failure {
   std::string message;
 };
 
-/// Stops the whole program without an error, as halt does.
+/// Stops the program without an error, as `halt` does.
 struct Halt {};
 
 using Outcome = std::variant<Value, NextCycle, std::unique_ptr<Operation>, Failure, Halt>;
 
-/// One for each parameter of the builtin; a parameter without default that was not given is Type::none.
+/// One value per parameter of the builtin. A parameter without default that was not passed is Type::none.
 using Arguments = std::span<const Value>;
 using BuiltinFunction = std::function<Outcome(CallContext & context, Arguments arguments)>;
 
@@ -62,29 +62,29 @@ struct Parameter {
       : name(std::move(parameter_name)) {}                          // NOLINT(google-explicit-constructor)
   Parameter(const char * parameter_name) : name(parameter_name) {}  // NOLINT(google-explicit-constructor)
   Parameter(std::string parameter_name, Value value)
-      : name(std::move(parameter_name)), fallback(std::move(value))
+      : name(std::move(parameter_name)), default_value(std::move(value))
   {
   }
 
   std::string name;
-  Value fallback;
+  Value default_value;
 };
 
 struct Builtin {
   std::string name;
   std::vector<Parameter> parameters;
-  std::size_t required = 0;  ///< how many of the parameters a call must give
+  std::size_t required = 0;  ///< number of parameters that a call must pass
   BuiltinFunction function;
-  bool variadic = false;    ///< takes further positional arguments
-  std::uint32_t cost = 15;  ///< of a call in units of instructions, about 20 ns each
+  bool variadic = false;    ///< accepts further positional arguments
+  std::uint32_t cost = 15;  ///< of a call, in instructions of about 20 ns
 };
 
-/// The functions that programs find by name. Filled once, then shared and never changed.
+/// Builtin functions and constants by name. Immutable once it is shared.
 class Library {
  public:
   /// Replaces a builtin of the same name.
   void add(Builtin builtin);
-  /// A name that a program can read without declaring it (a constant, such as MATH_PI).
+  /// Adds a constant that programs can read, such as MATH_PI.
   void add_constant(std::string name, Value value);
 
   std::optional<std::uint32_t> find(std::string_view name) const;
@@ -98,8 +98,8 @@ class Library {
   std::unordered_map<std::string, Value> constants_;
 };
 
-/// Adds what needs no robot: math, lists, matrices, strings, poses, sleep, sync, halt, textmsg, popup,
-/// assert, time.
+/// Adds the builtins that need no robot: math, lists, matrices, strings, poses, sleep, sync, halt, textmsg,
+/// popup, time.
 void add_standard_builtins(Library & library);
 
 }  // namespace ur_simulator::urscript

@@ -6,14 +6,14 @@
 #include <atomic>
 #include <exception>
 
-#include "urscript/interpreter.hpp"
+#include "urscript/interpreter/interpreter.hpp"
 
 namespace ur_simulator::urscript {
 
 namespace {
 
-// A thread late in a cycle's order still gets something done.
-constexpr std::uint32_t least_share = 200;
+// Also granted to threads that run last in a cycle.
+constexpr std::uint32_t min_instructions_per_turn = 200;
 
 std::uint64_t next_program()
 {
@@ -31,36 +31,37 @@ struct Machine::Impl {
         context{to, settings.cycle_time, 0.0, 0, program.secondary(), next_program()},
         interpreter(program.code(), *library, options)
   {
-    interpreter.start(0, {});
+    interpreter.start_thread(0, {});
   }
 
   void cycle()
   {
     instructions = 0;
-    // By index: threads may start others meanwhile, which have their first turn in this same cycle.
+    // By index: a thread may start others, which run in the same cycle.
     for (std::size_t i = 0; i < interpreter.threads().size() && status == MachineStatus::running; ++i) {
       Thread & thread = *interpreter.threads()[i];
-      if (wakes(thread)) {
-        turn(thread, interpreter.threads().size() - i);
+      if (try_resume(thread)) {
+        run_turn(thread, interpreter.threads().size() - i);
       }
-      settle();
+      check_end();
     }
     interpreter.remove_ended();
     ++cycles;
     context.time = static_cast<double>(cycles) * options.cycle_time;
   }
 
-  // Is the thread's wait over, and may it run?
-  bool wakes(Thread & thread)
+  // Ends the wait of the thread if possible; true if the thread may run.
+  bool try_resume(Thread & thread)
   {
     const std::int32_t owner = interpreter.critical_owner();
     if (thread.state == ThreadState::operation) {
       poll(thread);
     } else if (thread.state == ThreadState::next_cycle) {
-      proceed(thread, std::move(thread.pending));
-    } else if (thread.state == ThreadState::joining && interpreter.find(thread.awaited) == nullptr) {
+      resume(thread, std::move(thread.pending));
+    } else if (thread.state == ThreadState::joining &&
+               interpreter.find_thread(thread.joined_thread) == nullptr) {
       thread.state = ThreadState::ready;
-      thread.computing = 0;
+      thread.cycles_without_wait = 0;
     }
     return thread.state == ThreadState::ready && (owner == 0 || owner == thread.handle) &&
            !interpreter.error();
@@ -74,29 +75,30 @@ struct Machine::Impl {
       interpreter.fail(interpreter.line_of(thread), std::move(result.error()));
     } else if (*result) {
       thread.operation.reset();
-      proceed(thread, std::move(**result));
+      resume(thread, std::move(**result));
     }
   }
 
-  static void proceed(Thread & thread, Value value)
+  static void resume(Thread & thread, Value value)
   {
     thread.stack.push_back(std::move(value));
     thread.pending = Value();
     thread.state = ThreadState::ready;
-    thread.computing = 0;
+    thread.cycles_without_wait = 0;
   }
 
-  void turn(Thread & thread, std::size_t threads_left)
+  void run_turn(Thread & thread, std::size_t threads_left)
   {
     const std::uint32_t left =
         options.instructions_per_cycle - std::min(instructions, options.instructions_per_cycle);
-    const std::uint32_t share = std::max(left / static_cast<std::uint32_t>(threads_left), least_share);
+    const std::uint32_t share =
+        std::max(left / static_cast<std::uint32_t>(threads_left), min_instructions_per_turn);
     instructions += interpreter.run(thread, share, context);
     if (thread.state != ThreadState::ready) {
       return;
     }
-    ++thread.computing;
-    if (static_cast<double>(thread.computing) * options.cycle_time > options.infinite_loop_after) {
+    ++thread.cycles_without_wait;
+    if (static_cast<double>(thread.cycles_without_wait) * options.cycle_time > options.infinite_loop_after) {
       interpreter.fail(
           interpreter.line_of(thread),
           fmt::format("infinite loop: '{}' has computed for {} s without taking time; use sync() or sleep()",
@@ -104,11 +106,11 @@ struct Machine::Impl {
     }
   }
 
-  void settle()
+  void check_end()
   {
     if (interpreter.error()) {
       finish(MachineStatus::failed);
-    } else if (interpreter.halted() || interpreter.find(1) == nullptr) {
+    } else if (interpreter.halted() || interpreter.find_thread(1) == nullptr) {
       finish(MachineStatus::finished);
     }
   }
@@ -120,7 +122,7 @@ struct Machine::Impl {
     }
     status = how;
     for (const auto & thread : interpreter.threads()) {
-      interpreter.end(*thread);
+      interpreter.end_thread(*thread);
     }
   }
 
@@ -151,7 +153,7 @@ MachineStatus Machine::cycle()
     try {
       impl_->cycle();
     } catch (const std::exception & error) {
-      // Out of memory, or a builtin that throws: the program ends, the controller goes on.
+      // Out of memory or a builtin that throws ends the program, not the controller.
       impl_->interpreter.fail(0, error.what());
       impl_->finish(MachineStatus::failed);
     }

@@ -11,17 +11,17 @@ namespace ur_simulator::urscript {
 class Library;
 struct Code;
 
-/// Why a text is not a program. Line and column are 1-based positions in the text.
+/// A syntax or name error in a program. Line and column are 1-based.
 struct CompileError {
   std::int32_t line = 0;
   std::int32_t column = 0;
   std::string message;
 
-  /// "Syntax error on line 3, column 5: …", as the controller's log shows it.
+  /// "Compile error on line 3, column 5: …"
   std::string text() const;
 };
 
-/// Limits that keep a hostile text from exhausting the controller.
+/// Limits that protect the controller from malicious or broken programs.
 struct CompileLimits {
   std::size_t text_bytes = 4U << 20U;
   std::size_t nesting = 128;   ///< of expressions and blocks
@@ -29,14 +29,15 @@ struct CompileLimits {
   std::size_t instructions = 1U << 20U;
 };
 
-/// A compiled program: immutable, may run any number of times.
+/// A compiled program: immutable, can run any number of times.
 class Program {
  public:
   explicit Program(std::shared_ptr<const Code> code);
 
-  /// The name after `def` or `sec`; "" for a bare statement.
+  /// The name after `def` or `sec`; "" for bare statements.
   const std::string & name() const;
-  /// A `sec` program: runs beside the primary one, and may not take physical time.
+  /// True for a secondary program (`sec`), which runs beside the primary program and may not take physical
+  /// time.
   bool secondary() const;
   const Code & code() const { return *code_; }
 
@@ -44,9 +45,9 @@ class Program {
   std::shared_ptr<const Code> code_;
 };
 
-/// Compiles `def name(): … end`, `sec name(): … end`, or bare statements (as External Control and the script
-/// ports get them). Unknown functions are errors here, as on the robot. The program keeps indices into
-/// `library`: run it with the same one.
+/// Compiles `def name(): … end`, `sec name(): … end`, or bare statements, as received by External Control and
+/// on the script ports. Unknown functions are compile errors, as on the robot. The program contains indices
+/// into `library` and must be run with the same library.
 tl::expected<Program, CompileError> compile(std::string_view text, const Library & library,
                                             const CompileLimits & limits = {});
 

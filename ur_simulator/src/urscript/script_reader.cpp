@@ -1,6 +1,6 @@
 #include "urscript/script_reader.hpp"
 
-#include "urscript/lexer.hpp"
+#include "urscript/parser/lexer.hpp"
 
 namespace ur_simulator::urscript {
 
@@ -8,11 +8,11 @@ ScriptReader::ScriptReader(std::size_t limit) : limit_(limit) {}
 
 void ScriptReader::feed(std::string_view bytes)
 {
-  if (deaf_) {
+  if (ignore_input_) {
     return;
   }
-  // What was handed out is dropped here, not program by program: many short ones in one packet would move the
-  // rest each time.
+  // Returned programs are erased here, all at once: erasing them one by one would move the rest of the buffer
+  // each time.
   buffer_.erase(0, begin_);
   scanned_ -= begin_;
   begin_ = 0;
@@ -31,10 +31,10 @@ void ScriptReader::reset()
   scanned_ = 0;
   depth_ = 0;
   dropping_ = false;
-  deaf_ = false;
+  ignore_input_ = false;
 }
 
-// Counts the blocks that a line opens and closes; true when the program ends with it.
+// Counts the blocks that a line opens and closes; true if the program ends with the line.
 bool ScriptReader::scan_line(std::string_view line)
 {
   Lexer lexer(line);
@@ -66,23 +66,23 @@ std::optional<std::string> ScriptReader::next()
     }
     dropping_ = dropping_ && !complete;
     if (depth_ == 0 || dropping_) {
-      begin_ = scanned_;  // blank lines and comments between programs; what is dropped
+      begin_ = scanned_;  // skips blank lines and comments between programs, and dropped programs
     }
   }
-  bound();
+  enforce_limit();
   return std::nullopt;
 }
 
-void ScriptReader::bound()
+void ScriptReader::enforce_limit()
 {
   if (pending() <= limit_) {
     return;
   }
   dropped_ += dropping_ ? 0 : 1;
-  deaf_ = buffer_.size() - scanned_ > limit_;
+  ignore_input_ = buffer_.size() - scanned_ > limit_;
   dropping_ = true;
   begin_ = scanned_;
-  if (deaf_) {
+  if (ignore_input_) {
     buffer_.clear();
     begin_ = 0;
     scanned_ = 0;

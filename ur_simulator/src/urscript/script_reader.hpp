@@ -7,38 +7,38 @@
 
 namespace ur_simulator::urscript {
 
-/// Cuts complete programs out of the bytes that arrive on the script ports (30001, 30002, 30003): `def …
-/// end`, `sec … end` with everything nested in it, or one bare line. Clients keep the socket open and send no
-/// length, so the end is found by counting blocks. Bounded: a program that outgrows the limit is dropped as a
-/// whole, up to its own end (its lines must not run one by one); when a single line outgrows it, everything
-/// after is ignored.
+/// Extracts complete programs from the bytes received on the script ports (30001, 30002, 30003): `def … end`
+/// or `sec … end` with all nested blocks, or one bare line. Clients send no length and keep the socket open,
+/// so the end is found by counting blocks. A program that exceeds the limit is dropped up to its own end, so
+/// that its lines do not run one by one. After a single line that exceeds the limit all further input is
+/// ignored.
 class ScriptReader {
  public:
   explicit ScriptReader(std::size_t limit = 4U << 20U);
 
-  /// Takes what arrived.
+  /// Appends received bytes.
   void feed(std::string_view bytes);
-  /// The next complete program, if there is one. Call until empty.
+  /// The next complete program, if there is one. Call until it returns nothing.
   std::optional<std::string> next();
-  /// Bytes of a program that is not complete yet.
+  /// Number of bytes of the incomplete program.
   std::size_t pending() const;
-  /// Programs dropped because they were larger than the limit.
+  /// Number of programs dropped because they exceeded the limit.
   std::uint64_t dropped() const { return dropped_; }
-  /// The connection ended: what is pending will never be complete.
+  /// The connection was closed: discards the incomplete program.
   void reset();
 
  private:
   bool scan_line(std::string_view line);
-  void bound();
+  void enforce_limit();
 
   std::string buffer_;
   std::size_t limit_;
   std::size_t begin_ = 0;    ///< of the program that is being received
-  std::size_t scanned_ = 0;  ///< up to here the buffer has been counted
+  std::size_t scanned_ = 0;  ///< end of the part of the buffer whose blocks have been counted
   std::size_t depth_ = 0;    ///< open blocks at `scanned_`
   std::uint64_t dropped_ = 0;
-  bool dropping_ = false;  ///< the program being received is too large
-  bool deaf_ = false;      ///< a line was too large: where the program ends cannot be known
+  bool dropping_ = false;      ///< the program that is being received is too large
+  bool ignore_input_ = false;  ///< a line was too large: the end of the program cannot be found
 };
 
 }  // namespace ur_simulator::urscript

@@ -9,7 +9,8 @@ namespace ur_simulator::urscript {
 
 namespace {
 
-// textmsg and to_str stop here: values may share storage, so their text could be far larger than they are.
+// Limit of textmsg() and to_str(). Values may share storage, so that their text can be much larger than their
+// memory.
 constexpr std::size_t text_limit = 16384;
 
 void append_text(std::string & out, const Value & value, bool nested);

@@ -14,14 +14,14 @@ namespace ur_simulator::urscript {
 
 enum class Type : std::uint8_t { none, boolean, integer, floating, string, pose, list, matrix, structure };
 
-/// The type's name as error messages show it ("int", "pose", …).
+/// The name of the type in error messages ("int", "pose", …).
 std::string_view name_of(Type type);
 
 class Value;
 
 using List = std::vector<Value>;
 
-/// Rows of equal length; numbers only, as in URScript ("Matrix and Array Expressions" of the script manual).
+/// A matrix of numbers (script manual, "Matrix and Array Expressions").
 struct Matrix {
   std::size_t rows = 0;
   std::size_t columns = 0;
@@ -35,9 +35,8 @@ struct Matrix {
 /// Named members in the order of their declaration: `struct(x = 1, label = "a")`.
 struct Structure;
 
-/// A URScript value. Copying is cheap (strings, lists, poses, matrices and structures are shared until one of
-/// them is written), and has the language's meaning: each variable has its own. Integers are 32 bit, as on
-/// the controller.
+/// A URScript value with value semantics. Copying is cheap: strings, lists, poses, matrices and structures
+/// are shared until one copy is written. Integers have 32 bits, as on the controller.
 class Value {
  public:
   Value() = default;
@@ -68,7 +67,7 @@ class Value {
   bool is(Type type) const { return type_ == type; }
   bool is_number() const { return type_ == Type::integer || type_ == Type::floating; }
 
-  /// The following require the right type (see type()).
+  /// The following accessors require that type() matches.
   bool boolean() const { return scalar_.boolean; }
   std::int32_t integer() const { return scalar_.integer; }
   double floating() const { return scalar_.floating; }
@@ -78,20 +77,19 @@ class Value {
   const Matrix & matrix() const { return get<Matrix>(); }
   const Structure & structure() const { return get<Structure>(); }
 
-  /// As above, for writing: detached from every other value that shares the storage.
+  /// Accessors for writing. They copy the storage if other values share it.
   Vector6 & own_pose() { return own<Vector6>(); }
   List & own_list() { return own<List>(); }
   Matrix & own_matrix() { return own<Matrix>(); }
   Structure & own_structure() { return own<Structure>(); }
 
-  /// An int or float as double; a bool counts as 0 or 1, as in URScript's mixed comparisons. Nothing for
-  /// other types.
+  /// An int, float or bool (0 or 1, as in URScript's mixed comparisons) as double; nothing for other types.
   std::optional<double> number() const;
   /// A list of six numbers or a pose.
   std::optional<Vector6> vector6() const;
   std::optional<Vector3> vector3() const;
 
-  /// As to_str() and textmsg() show it: True, 3, 0.5, [1, 2], p[…]; strings without quotes at the top level.
+  /// The text of to_str() and textmsg(): True, 3, 0.5, [1, 2], p[…]; strings have no quotes at the top level.
   std::string text() const;
 
  private:
@@ -129,7 +127,7 @@ struct Structure {
   const Value * find(std::string_view name) const;
 };
 
-/// Equality of the language: numbers by value across int, float and bool; containers by element.
+/// Equality in URScript: int, float and bool compare by value; containers by element.
 bool equal(const Value & left, const Value & right);
 
 }  // namespace ur_simulator::urscript

@@ -7,7 +7,7 @@
 
 namespace ur_simulator {
 
-std::string PolyscopeVersion::text() const
+std::string PolyscopeVersion::to_string() const
 {
   return fmt::format("{}.{}.{}.{}", major, minor, bugfix, build);
 }
@@ -16,23 +16,23 @@ std::optional<PolyscopeVersion> PolyscopeVersion::parse(std::string_view text)
 {
   std::array<std::uint32_t, 4> parts{};
   std::size_t count = 0;
-  const char * at = text.data();
-  const char * const end = at + text.size();
+  const char * position = text.data();
+  const char * const end = position + text.size();
   while (count < parts.size()) {
-    const auto [next, error] = std::from_chars(at, end, parts[count]);
+    const auto [next, error] = std::from_chars(position, end, parts[count]);
     if (error != std::errc()) {
       return std::nullopt;
     }
     ++count;
-    at = next;
-    if (at == end) {
+    position = next;
+    if (position == end) {
       break;
     }
-    if (*at++ != '.') {
+    if (*position++ != '.') {
       return std::nullopt;
     }
   }
-  if (at != end || count < 2) {
+  if (position != end || count < 2) {
     return std::nullopt;
   }
   return PolyscopeVersion{parts[0], parts[1], parts[2], parts[3]};

@@ -8,7 +8,8 @@
 
 namespace ur_simulator {
 
-/// The controller's software version. Major 3 is a CB3 controller (125 Hz), 5 an e-Series one (500 Hz).
+/// Version of the controller software. Major version 3 runs on CB3 controllers (125 Hz control rate), major
+/// version 5 on e-Series controllers (500 Hz).
 struct PolyscopeVersion {
   std::uint32_t major = 5;
   std::uint32_t minor = 0;
@@ -18,23 +19,23 @@ struct PolyscopeVersion {
   auto operator<=>(const PolyscopeVersion &) const = default;
 
   bool is_e_series() const { return major >= 5; }
-  /// Seconds a control cycle takes.
+  /// Duration of a control cycle, s.
   double cycle_time() const { return is_e_series() ? 0.002 : 0.008; }
   /// "5.25.1.0"
-  std::string text() const;
-  /// "5.25", "5.25.1" or "5.25.1.130123"; nothing when it is not a version.
+  std::string to_string() const;
+  /// Parses "5.25", "5.25.1" or "5.25.1.130123". Returns nullopt if the text is not a version.
   static std::optional<PolyscopeVersion> parse(std::string_view text);
 };
 
-/// The version from which on something exists on each controller generation; `never` where it does not.
-struct Since {
+/// The first version of each controller generation that has a feature; `never` if the generation lacks it.
+struct MinVersion {
   static constexpr PolyscopeVersion always{0, 0, 0, 0};
   static constexpr PolyscopeVersion never{0xffffffff, 0, 0, 0};
 
   PolyscopeVersion e_series = always;
   PolyscopeVersion cb3 = always;
 
-  bool holds_for(const PolyscopeVersion & version) const
+  bool is_met_by(const PolyscopeVersion & version) const
   {
     return version >= (version.is_e_series() ? e_series : cb3);
   }

@@ -6,7 +6,7 @@ namespace ur_simulator {
 
 void SoftGripper::move_to(double width, bool gentle)
 {
-  target_ = std::clamp(width, narrowest, widest);
+  target_ = std::clamp(width, min_width, max_width);
   gentle_ = gentle;
 }
 
@@ -20,7 +20,7 @@ void SoftGripper::step(double duration)
   const bool blocked = object_ > 0.0 && width_ >= object_ && next < object_;
   width_ = blocked ? object_ : next;
   if (blocked) {
-    target_ = object_;  // it rests on what it holds
+    target_ = object_;  // holds the object
   }
 }
 

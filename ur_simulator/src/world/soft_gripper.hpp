@@ -4,27 +4,27 @@
 
 namespace ur_simulator {
 
-/// An OnRobot soft gripper: its cups open and close to a width, mm, at a finite speed. Ours in place of the
-/// device; speeds and limits are estimates by its data sheet (SG-a: 11-75 mm).
+/// Model of an OnRobot soft gripper, which opens and closes to a width at a finite speed. Limits: data sheet
+/// of the SG-a (11 to 75 mm); speeds are estimates.
 class SoftGripper {
  public:
-  static constexpr double narrowest = 11.0;     ///< mm
-  static constexpr double widest = 75.0;        ///< mm
+  static constexpr double min_width = 11.0;     ///< mm
+  static constexpr double max_width = 75.0;     ///< mm
   static constexpr double speed = 60.0;         ///< mm/s
   static constexpr double gentle_speed = 20.0;  ///< mm/s
 
-  /// One cycle further.
+  /// Advances by one cycle.
   void step(double duration);
-  /// The target is kept within the limits.
+  /// The target is clamped to the limits.
   void move_to(double width, bool gentle);
   double width() const { return width_; }
   double target() const { return target_; }
   bool busy() const { return width_ != target_ || stuck_; }
 
-  /// As a gripper whose air is gone: it stops where it is and never says that it is done.
+  /// A stuck gripper stops and stays busy, as without compressed air.
   void set_stuck(bool stuck) { stuck_ = stuck; }
   bool stuck() const { return stuck_; }
-  /// Something between the cups: they close no further than this, mm; 0 is nothing.
+  /// Width of an object between the fingers, mm, which limits closing; 0: no object.
   void set_object(double width) { object_ = width; }
   bool holds_object() const { return object_ > 0.0 && width_ == object_; }
 

@@ -14,17 +14,16 @@ namespace {
 
 using std::numbers::pi;
 
-void require(bool granted, const std::string & complaint)
+void require(bool condition, const std::string & message)
 {
-  if (!granted) {
-    throw std::invalid_argument(complaint);
+  if (!condition) {
+    throw std::invalid_argument(message);
   }
 }
 
-void require_within(const char * field, double value, double least, double most)
+void require_within(const char * field, double value, double min, double max)
 {
-  require(value >= least && value <= most,
-          fmt::format("{} must be in [{}, {}], is {}", field, least, most, value));
+  require(value >= min && value <= max, fmt::format("{} must be in [{}, {}], is {}", field, min, max, value));
 }
 
 Surface checked(const Surface & surface)
@@ -40,20 +39,21 @@ Surface checked(const Surface & surface)
   return result;
 }
 
-/// Spring and damper along the normal, never pulling; Coulomb friction across it, smooth through standstill.
-/// The arm's own elasticity lies in series with the surface: `state` tells where a rigid arm would be, and
-/// the arm gives way by its share of the depth.
+/// Spring and damper along the normal, never pulling; Coulomb friction in the plane, regularized at low
+/// speed. The elasticity of the arm is in series with the surface: `state` holds the TCP of a rigid arm, and
+/// the penetration is shared between arm and surface.
 Vector3 surface_force(const Surface & surface, const ControllerState & state)
 {
   const Vector3 velocity = state.actual_tcp_speed.head<3>();
-  const double depth = -surface.normal.dot(state.actual_tcp_pose.head<3>() - surface.point);
-  if (depth <= 0.0) {
+  const double penetration = -surface.normal.dot(state.actual_tcp_pose.head<3>() - surface.point);
+  if (penetration <= 0.0) {
     return Vector3::Zero();
   }
   const double approach = -surface.normal.dot(velocity);
-  const double share =
+  const double surface_share =
       1.0 / (1.0 + surface.stiffness * surface.normal.dot(state.tcp_compliance * surface.normal));
-  const double normal_force = share * std::max(0.0, surface.stiffness * depth + surface.damping * approach);
+  const double normal_force =
+      surface_share * std::max(0.0, surface.stiffness * penetration + surface.damping * approach);
   const Vector3 sliding = velocity + approach * surface.normal;
   constexpr double full_friction_speed = 1e-3;  // m/s
   return normal_force * surface.normal -
@@ -63,7 +63,7 @@ Vector3 surface_force(const Surface & surface, const ControllerState & state)
 }  // namespace
 
 World::World(double cycle_time, std::uint64_t seed)
-    : cycle_time_(cycle_time), sensor_(cycle_time, seed), contact_watch_(cycle_time)
+    : cycle_time_(cycle_time), sensor_(cycle_time, seed), contact_detector_(cycle_time)
 {
   surfaces_.reserve(max_surfaces);
   pushes_.reserve(max_pushes);
@@ -72,7 +72,7 @@ World::World(double cycle_time, std::uint64_t seed)
 std::uint32_t World::place_surface(const Surface & surface)
 {
   require(surfaces_.size() < max_surfaces,
-          fmt::format("surface: there are {} already, no more fit", max_surfaces));
+          fmt::format("surface: there are {} already, the maximum", max_surfaces));
   surfaces_.push_back({next_id_, checked(surface)});
   return next_id_++;
 }
@@ -89,7 +89,7 @@ void World::clear_surfaces()
 
 void World::push(const Push & push)
 {
-  require(pushes_.size() < max_pushes, fmt::format("push: {} go on already, no more fit", max_pushes));
+  require(pushes_.size() < max_pushes, fmt::format("push: {} are active already, the maximum", max_pushes));
   require(is_finite(push.wrench), "push: wrench must be six finite numbers");
   require_within("push: force (N)", push.wrench.head<3>().norm(), 0.0, 1e4);
   require_within("push: torque (N m)", push.wrench.tail<3>().norm(), 0.0, 1e4);
@@ -106,7 +106,7 @@ void World::attach_load(const Payload & load)
 {
   require_within("load: mass (kg)", load.mass, 0.0, 1000.0);
   require(is_finite(load.center_of_gravity) && load.center_of_gravity.norm() <= 10.0,
-          "load: centre of gravity must be three finite numbers, at most 10 m from the flange");
+          "load: center of gravity must be three finite numbers, at most 10 m from the flange");
   require(is_finite(load.inertia), "load: inertia must be six finite numbers");
   load_ = load;
 }
@@ -139,8 +139,9 @@ Vector6 World::advance_pushes(const ControllerState & state)
     active.elapsed += cycle_time_;
     const double phase = std::min(1.0, active.elapsed / active.push.duration);
     const Vector6 wrench = std::sin(pi * phase) * active.push.wrench;
-    sum +=
-        active.push.tool_frame ? rotate_pair(to_rotation(state.actual_tcp_pose.tail<3>()), wrench) : wrench;
+    sum += active.push.tool_frame
+               ? rotate_spatial_vector(to_rotation_matrix(state.actual_tcp_pose.tail<3>()), wrench)
+               : wrench;
   }
   std::erase_if(pushes_, [](const ActivePush & active) { return active.elapsed >= active.push.duration; });
   return sum;
@@ -153,7 +154,7 @@ void World::step(ControllerState & state)
   if (gripper_) {
     gripper_->step(cycle_time_);
   }
-  contact_watch_.record(sensor_.force(), state);
+  contact_detector_.record(sensor_.force(), state);
 }
 
 }  // namespace ur_simulator

@@ -1,58 +1,61 @@
-#include "support/raw_socket.hpp"
 #include "support/rtde_client.hpp"
 #include "support/simulator_test.hpp"
+#include "support/tcp_client.hpp"
 
 namespace ur_simulator::testing {
 namespace {
 
-class ControlPort : public SimulatorTest {
+class ControlPortTest : public SimulatorTest {
  protected:
-  json ask(const std::string & line)
+  json request(const std::string & line)
   {
     client.send(line + "\n");
     return json::parse(client.receive_line());
   }
-  std::string error(const std::string & line)
+  std::string request_error(const std::string & line)
   {
-    const json reply = ask(line);
+    const json reply = request(line);
     return reply["ok"] == false ? reply["error"].get<std::string>() : "no error";
   }
-  RawSocket client{controller.address(), 30099};
+  TcpClient client{controller.address(), 30099};
 };
 
-TEST_F(ControlPort, lists_its_commands)
+TEST_F(ControlPortTest, ListsItsCommands)
 {
-  const json reply = ask(R"({"command": "help"})");
+  const json reply = request(R"({"command": "help"})");
   ASSERT_TRUE(reply["ok"]);
   EXPECT_GT(reply["commands"].size(), 20u);
 }
 
-TEST_F(ControlPort, names_what_is_wrong_with_a_request)
+TEST_F(ControlPortTest, NamesFieldAndValueOfInvalidRequests)
 {
-  EXPECT_EQ(error("{"), "the line is not JSON: one object a line");
-  EXPECT_NE(error("[]").find("JSON object"), std::string::npos);
-  EXPECT_EQ(error("{}"), "field 'command' is missing");
-  EXPECT_EQ(error(R"({"command": 5})"), "field 'command' is 5: it must be a string");
-  EXPECT_NE(error(R"({"command": "fly"})").find("'fly' is not known"), std::string::npos);
-  EXPECT_EQ(error(R"({"command": "push"})"), "field 'wrench' is missing");
-  EXPECT_NE(error(R"({"command": "push", "force": [1, 2]})").find("array of 3 numbers"), std::string::npos);
-  EXPECT_NE(error(R"({"command": "push", "force": [0, 1e9, 0]})")
+  EXPECT_EQ(request_error("{"), "the line is not JSON: send one object per line");
+  EXPECT_NE(request_error("[]").find("JSON object"), std::string::npos);
+  EXPECT_EQ(request_error("{}"), "field 'command' is missing");
+  EXPECT_EQ(request_error(R"({"command": 5})"), "field 'command' is 5: it must be a string");
+  EXPECT_NE(request_error(R"({"command": "fly"})").find("'fly' is not known"), std::string::npos);
+  EXPECT_EQ(request_error(R"({"command": "push"})"), "field 'wrench' is missing");
+  EXPECT_NE(request_error(R"({"command": "push", "force": [1, 2]})").find("array of 3 numbers"),
+            std::string::npos);
+  EXPECT_NE(request_error(R"({"command": "push", "force": [0, 1e9, 0]})")
                 .find("'force[1]' is 1000000000.0: it must be between"),
             std::string::npos);
+  EXPECT_NE(request_error(R"({"command": "push", "force": [0, 1, 0], "durration": 1})")
+                .find("'durration' is not known"),
+            std::string::npos);
   EXPECT_NE(
-      error(R"({"command": "push", "force": [0, 1, 0], "durration": 1})").find("'durration' is not known"),
+      request_error(R"({"command": "push", "force": [0, 1, 0], "frame": "sky"})").find("one of base, tool"),
       std::string::npos);
-  EXPECT_NE(error(R"({"command": "push", "force": [0, 1, 0], "frame": "sky"})").find("one of base, tool"),
-            std::string::npos);
-  EXPECT_NE(error(R"({"command": "set_digital_input", "number": 18, "value": true})").find("from 0 to 17"),
-            std::string::npos);
-  EXPECT_NE(error(R"({"command": "set_joints", "joints": [0, 0, 0, 0, 0, 100]})").find("joints[5]"),
+  EXPECT_NE(
+      request_error(R"({"command": "set_digital_input", "number": 18, "value": true})").find("from 0 to 17"),
+      std::string::npos);
+  EXPECT_NE(request_error(R"({"command": "set_joints", "joints": [0, 0, 0, 0, 0, 100]})").find("joints[5]"),
             std::string::npos);
 }
 
-TEST_F(ControlPort, a_push_is_felt_and_passes)
+TEST_F(ControlPortTest, PushRaisesTcpForceAndEnds)
 {
-  ASSERT_TRUE(ask(R"({"command": "push", "force": [0, 25, 0], "duration": 0.2})")["ok"]);
+  ASSERT_TRUE(request(R"({"command": "push", "force": [0, 25, 0], "duration": 0.2})")["ok"]);
   EXPECT_TRUE(controller.wait_until(
       [](const json & state) { return state["actual_tcp_force"][1].get<double>() > 15.0; }, seconds(5)));
   EXPECT_TRUE(controller.wait_until(
@@ -60,53 +63,53 @@ TEST_F(ControlPort, a_push_is_felt_and_passes)
       seconds(5)));
 }
 
-TEST_F(ControlPort, inputs_are_set)
+TEST_F(ControlPortTest, SetsInputs)
 {
-  ASSERT_TRUE(ask(R"({"command": "set_digital_input", "number": 9, "value": true})")["ok"]);
-  ASSERT_TRUE(ask(R"({"command": "set_analog_input", "number": 1, "value": 2.5})")["ok"]);
+  ASSERT_TRUE(request(R"({"command": "set_digital_input", "number": 9, "value": true})")["ok"]);
+  ASSERT_TRUE(request(R"({"command": "set_analog_input", "number": 1, "value": 2.5})")["ok"]);
   const json io = controller.state()["io"];
   EXPECT_EQ(io["digital_inputs"], 512);
   EXPECT_EQ(io["analog_inputs"][1], 2.5);
 }
 
-TEST_F(ControlPort, drops_the_links_of_one_kind_only)
+TEST_F(ControlPortTest, DropsOnlyConnectionsOfSelectedClients)
 {
   RtdeClient io(controller.address());
   ASSERT_TRUE(io.negotiate(2));
-  io.inputs("input_int_register_0");
+  io.setup_inputs("input_int_register_0");
   RtdeClient receive(controller.address());
   ASSERT_TRUE(receive.negotiate(2));
-  receive.outputs(10.0, "timestamp");
-  EXPECT_EQ(ask(R"({"command": "drop_links", "which": "rtde", "clients": "io"})")["connections"], 1);
+  receive.setup_outputs(10.0, "timestamp");
+  EXPECT_EQ(request(R"({"command": "drop_links", "which": "rtde", "clients": "io"})")["connections"], 1);
   EXPECT_TRUE(io.socket().closed_by_peer());
   EXPECT_EQ(receive.request('v', "").size(), 16u);
 }
 
-TEST_F(ControlPort, a_stalled_link_is_silent_until_it_goes_on)
+TEST_F(ControlPortTest, StalledConnectionIsSilentUntilResumed)
 {
-  RtdeClient link(controller.address());
-  ASSERT_TRUE(link.negotiate(2));
-  ASSERT_TRUE(ask(R"({"command": "stall_links", "which": "rtde"})")["ok"]);
-  link.send('v', "");
-  EXPECT_THROW(link.socket().receive(1, milliseconds(100)), std::runtime_error);
-  ASSERT_TRUE(ask(R"({"command": "stall_links", "which": "rtde", "stalled": false})")["ok"]);
-  EXPECT_EQ(link.receive('v').payload.size(), 16u);
+  RtdeClient rtde_client(controller.address());
+  ASSERT_TRUE(rtde_client.negotiate(2));
+  ASSERT_TRUE(request(R"({"command": "stall_links", "which": "rtde"})")["ok"]);
+  rtde_client.send('v', "");
+  EXPECT_THROW(rtde_client.socket().receive(1, milliseconds(100)), std::runtime_error);
+  ASSERT_TRUE(request(R"({"command": "stall_links", "which": "rtde", "stalled": false})")["ok"]);
+  EXPECT_EQ(rtde_client.receive('v').payload.size(), 16u);
 }
 
-TEST_F(ControlPort, refuses_and_accepts_connections)
+TEST_F(ControlPortTest, RefusesAndAcceptsConnections)
 {
-  ASSERT_TRUE(ask(R"({"command": "refuse_connections", "which": "rtde"})")["ok"]);
+  ASSERT_TRUE(request(R"({"command": "refuse_connections", "which": "rtde"})")["ok"]);
   EXPECT_THROW(RtdeClient(controller.address()), std::runtime_error);
-  ASSERT_TRUE(ask(R"({"command": "accept_connections", "which": "rtde"})")["ok"]);
+  ASSERT_TRUE(request(R"({"command": "accept_connections", "which": "rtde"})")["ok"]);
   EXPECT_TRUE(RtdeClient(controller.address()).negotiate(2));
 }
 
-TEST_F(ControlPort, reboots_the_controller)
+TEST_F(ControlPortTest, RebootsController)
 {
-  RtdeClient link(controller.address());
-  ASSERT_TRUE(link.negotiate(2));
-  ASSERT_TRUE(ask(R"({"command": "reboot", "duration": 0.2})")["ok"]);
-  EXPECT_TRUE(link.socket().closed_by_peer());
+  RtdeClient rtde_client(controller.address());
+  ASSERT_TRUE(rtde_client.negotiate(2));
+  ASSERT_TRUE(request(R"({"command": "reboot", "duration": 0.2})")["ok"]);
+  EXPECT_TRUE(rtde_client.socket().closed_by_peer());
   EXPECT_THROW(RtdeClient(controller.address()), std::runtime_error);
   ASSERT_TRUE(controller.wait_until(
       [](const json & state) {
@@ -116,22 +119,24 @@ TEST_F(ControlPort, reboots_the_controller)
   EXPECT_TRUE(RtdeClient(controller.address()).negotiate(2));
 }
 
-TEST_F(ControlPort, traces_commands_and_repeats_but_no_kick_of_a_watchdog)
+TEST_F(ControlPortTest, TracesCommandsAndRepeatsButNotWatchdogKicks)
 {
-  RtdeClient link(controller.address());
-  ASSERT_TRUE(link.negotiate(2));
-  link.inputs("input_int_register_0,input_double_register_0");
-  link.inputs("input_int_register_0");
-  const auto servo = [&](double target) { link.send('U', package_for(1) + int32(11) + float64(target)); };
+  RtdeClient rtde_client(controller.address());
+  ASSERT_TRUE(rtde_client.negotiate(2));
+  rtde_client.setup_inputs("input_int_register_0,input_double_register_0");
+  rtde_client.setup_inputs("input_int_register_0");
+  const auto servo = [&](double target) {
+    rtde_client.send('U', data_package_header(1) + encode_int32(11) + encode_double(target));
+  };
   servo(0.1);
   servo(0.2);
-  link.send('U', package_for(2) + int32(11));
+  rtde_client.send('U', data_package_header(2) + encode_int32(11));
   servo(0.3);
-  link.send('U', package_for(2) + int32(0));
-  link.send('U', package_for(2) + int32(66));
+  rtde_client.send('U', data_package_header(2) + encode_int32(0));
+  rtde_client.send('U', data_package_header(2) + encode_int32(66));
   json trace;
   for (bool all = false; !all;) {
-    trace = ask(R"({"command": "trace"})");
+    trace = request(R"({"command": "trace"})");
     all = !trace["commands"].empty() && trace["commands"].back()[2] == 66;
   }
   ASSERT_EQ(trace["commands"].size(), 2U) << trace["commands"];
@@ -141,15 +146,24 @@ TEST_F(ControlPort, traces_commands_and_repeats_but_no_kick_of_a_watchdog)
   EXPECT_LE(trace["repeats"][0][1], trace["repeats"][1][1]);
 }
 
-TEST_F(ControlPort, puts_the_arm_elsewhere)
+TEST_F(ControlPortTest, SetsJointPositions)
 {
-  ASSERT_TRUE(ask(R"({"command": "set_joints", "joints": [0.1, -1.2, 1.3, -1.4, -1.5, 0.6]})")["ok"]);
+  ASSERT_TRUE(request(R"({"command": "set_joints", "joints": [0.1, -1.2, 1.3, -1.4, -1.5, 0.6]})")["ok"]);
   EXPECT_TRUE(controller.wait_until(
       [](const json & state) { return std::abs(state["actual"]["position"][5].get<double>() - 0.6) < 1e-6; },
       seconds(5)));
 }
 
-TEST_F(ControlPort, survives_a_line_without_end)
+TEST_F(ControlPortTest, RejectsDeeplyNestedRequests)
+{
+  constexpr std::size_t depth = 400000;
+  EXPECT_NE(request_error(R"({"command": )" + std::string(depth, '[') + std::string(depth, ']') + "}")
+                .find("nested"),
+            std::string::npos);
+  EXPECT_TRUE(request(R"({"command": "state"})")["ok"]);
+}
+
+TEST_F(ControlPortTest, ClosesConnectionOnTooLongLine)
 {
   client.send(std::string(1200000, 'x'));
   EXPECT_NE(client.receive_line().find("at most"), std::string::npos);

@@ -8,192 +8,192 @@
 namespace ur_simulator::testing {
 namespace {
 
-bool wait_for_mode(SimulatedController & controller, const std::string & mode)
-{
-  return controller.wait_until([&](const json & state) { return state["robot_mode"] == mode; }, seconds(20));
-}
+constexpr const char * endless_program = "def endless():\n  while True:\n    sync()\n  end\nend\n";
 
-constexpr const char * endless = "def endless():\n  while True:\n    sync()\n  end\nend\n";
-
-class Dashboard : public SimulatorTest {
+class DashboardTest : public SimulatorTest {
  protected:
-  void store(const std::string & name, const std::string & script)
+  void store_program(const std::string & name, const std::string & script)
   {
     ASSERT_TRUE(controller.control({{"command", "store_program"}, {"name", name}, {"script", script}})["ok"]);
   }
   DashboardClient client{controller.address()};
 };
 
-TEST_F(Dashboard, greets_and_says_goodbye)
+TEST_F(DashboardTest, SendsGreetingAndQuits)
 {
   EXPECT_EQ(client.greeting, "Connected: Universal Robots Dashboard Server");
-  EXPECT_EQ(client.ask("quit"), "Disconnected");
+  EXPECT_EQ(client.request("quit"), "Disconnected");
   EXPECT_TRUE(client.socket().closed_by_peer());
 }
 
-// AddressSanitizer sees it if the client is used after that.
-TEST_F(Dashboard, survives_a_client_that_is_gone_when_its_quit_is_answered)
+// AddressSanitizer detects a use of the client after the reply.
+TEST_F(DashboardTest, HandlesClientThatDisconnectsBeforeReply)
 {
-  const auto stall = [&](bool stalled) {
+  const auto set_stalled = [&](bool stalled) {
     controller.control({{"command", "stall_links"}, {"which", "dashboard"}, {"stalled", stalled}});
   };
-  stall(true);
+  set_stalled(true);
   client.socket().send("quit\n");
   client.socket().reset();
-  stall(false);
+  set_stalled(false);
   DashboardClient next(controller.address());
-  EXPECT_EQ(next.ask("quit"), "Disconnected");
+  EXPECT_EQ(next.request("quit"), "Disconnected");
 }
 
-TEST_F(Dashboard, answers_inquiries_as_the_manual_says)
+TEST_F(DashboardTest, AnswersQueriesAsInManual)
 {
-  EXPECT_EQ(client.ask("robotmode"), "Robotmode: RUNNING");
-  EXPECT_EQ(client.ask("safetymode"), "Safetymode: NORMAL");
-  EXPECT_EQ(client.ask("safetystatus"), "Safetystatus: NORMAL");
-  EXPECT_EQ(client.ask("running"), "Program running: false");
-  EXPECT_EQ(client.ask("get loaded program"), "No program loaded");
-  EXPECT_EQ(client.ask("is in remote control"), "true");
-  EXPECT_EQ(client.ask("get robot model"), "UR10");
-  EXPECT_EQ(client.ask("get operational mode"), "NONE");
-  EXPECT_TRUE(std::regex_match(client.ask("get serial number"), std::regex("\\d+")));
-  EXPECT_TRUE(std::regex_match(client.ask("PolyscopeVersion"),
+  EXPECT_EQ(client.request("robotmode"), "Robotmode: RUNNING");
+  EXPECT_EQ(client.request("safetymode"), "Safetymode: NORMAL");
+  EXPECT_EQ(client.request("safetystatus"), "Safetystatus: NORMAL");
+  EXPECT_EQ(client.request("running"), "Program running: false");
+  EXPECT_EQ(client.request("get loaded program"), "No program loaded");
+  EXPECT_EQ(client.request("is in remote control"), "true");
+  EXPECT_EQ(client.request("get robot model"), "UR10");
+  EXPECT_EQ(client.request("get operational mode"), "NONE");
+  EXPECT_TRUE(std::regex_match(client.request("get serial number"), std::regex("\\d+")));
+  EXPECT_TRUE(std::regex_match(client.request("PolyscopeVersion"),
                                std::regex("URSoftware \\d+\\.\\d+\\.\\d+\\.\\d+ .*")));
-  EXPECT_EQ(client.ask("version"), "5.25.1.0");
+  EXPECT_EQ(client.request("version"), "5.25.1.0");
 }
 
-TEST_F(Dashboard, understands_commands_in_any_case_and_with_carriage_returns)
+TEST_F(DashboardTest, IgnoresCaseAndCarriageReturns)
 {
-  EXPECT_EQ(client.ask("ROBOTMODE\r"), "Robotmode: RUNNING");
-  EXPECT_EQ(client.ask("polyscopeversion").substr(0, 10), "URSoftware");
+  EXPECT_EQ(client.request("ROBOTMODE\r"), "Robotmode: RUNNING");
+  EXPECT_EQ(client.request("polyscopeversion").substr(0, 10), "URSoftware");
 }
 
-TEST_F(Dashboard, does_not_understand_what_is_no_command)
+TEST_F(DashboardTest, RejectsUnknownCommands)
 {
-  EXPECT_EQ(client.ask("dance"), "could not understand: 'dance'");
-  EXPECT_EQ(client.ask(""), "could not understand: ''");
-  EXPECT_EQ(client.ask("setUserRole operator"), "could not understand: 'setUserRole operator'");
+  EXPECT_EQ(client.request("dance"), "could not understand: 'dance'");
+  EXPECT_EQ(client.request(""), "could not understand: ''");
+  EXPECT_EQ(client.request("setUserRole operator"), "could not understand: 'setUserRole operator'");
 }
 
-TEST_F(Dashboard, answers_stop_also_when_nothing_runs)
+TEST_F(DashboardTest, AnswersStopWithoutProgram)
 {
-  EXPECT_EQ(client.ask("stop"), "Stopped");
+  EXPECT_EQ(client.request("stop"), "Stopped");
 }
 
-TEST_F(Dashboard, loads_plays_pauses_and_stops_a_program)
+TEST_F(DashboardTest, LoadsPlaysPausesAndStopsProgram)
 {
-  store("endless.urp", endless);
-  EXPECT_EQ(client.ask("load endless.urp"), "Loading program: endless.urp");
-  EXPECT_EQ(client.ask("get loaded program"), "Loaded program: /programs/endless.urp");
-  EXPECT_EQ(client.ask("play"), "Starting program");
-  EXPECT_TRUE(wait_for_program(controller, "PLAYING"));
-  EXPECT_EQ(client.ask("running"), "Program running: true");
-  EXPECT_EQ(client.ask("programState"), "PLAYING endless.urp");
-  EXPECT_EQ(client.ask("pause"), "Pausing program");
-  EXPECT_TRUE(wait_for_program(controller, "PAUSED"));
-  EXPECT_EQ(client.ask("programState"), "PAUSED endless.urp");
-  EXPECT_EQ(client.ask("play"), "Starting program");
-  EXPECT_TRUE(wait_for_program(controller, "PLAYING"));
-  EXPECT_EQ(client.ask("stop"), "Stopped");
-  EXPECT_TRUE(wait_for_program(controller, "STOPPED"));
+  store_program("endless.urp", endless_program);
+  EXPECT_EQ(client.request("load endless.urp"), "Loading program: endless.urp");
+  EXPECT_EQ(client.request("get loaded program"), "Loaded program: /programs/endless.urp");
+  EXPECT_EQ(client.request("play"), "Starting program");
+  EXPECT_TRUE(wait_for_program_state(controller, "PLAYING"));
+  EXPECT_EQ(client.request("running"), "Program running: true");
+  EXPECT_EQ(client.request("programState"), "PLAYING endless.urp");
+  EXPECT_EQ(client.request("pause"), "Pausing program");
+  EXPECT_TRUE(wait_for_program_state(controller, "PAUSED"));
+  EXPECT_EQ(client.request("programState"), "PAUSED endless.urp");
+  EXPECT_EQ(client.request("play"), "Starting program");
+  EXPECT_TRUE(wait_for_program_state(controller, "PLAYING"));
+  EXPECT_EQ(client.request("stop"), "Stopped");
+  EXPECT_TRUE(wait_for_program_state(controller, "STOPPED"));
 }
 
-TEST_F(Dashboard, refuses_programs_that_are_missing_or_broken)
+TEST_F(DashboardTest, RejectsMissingAndInvalidPrograms)
 {
-  store("broken.urp", "def broken(:\n");
-  EXPECT_EQ(client.ask("load missing.urp"), "File not found: missing.urp");
-  EXPECT_EQ(client.ask("load broken.urp"), "Error while loading program: broken.urp");
-  EXPECT_EQ(client.ask("play"), "Failed to execute: play");
-  EXPECT_EQ(client.ask("pause"), "Failed to execute: pause");
+  store_program("broken.urp", "def broken(:\n");
+  EXPECT_EQ(client.request("load missing.urp"), "File not found: missing.urp");
+  EXPECT_EQ(client.request("load broken.urp"), "Error while loading program: broken.urp");
+  EXPECT_EQ(client.request("play"), "Failed to execute: play");
+  EXPECT_EQ(client.request("pause"), "Failed to execute: pause");
 }
 
-TEST_F(Dashboard, powers_the_robot_off_and_on_and_releases_the_brakes)
+TEST_F(DashboardTest, PowersOffAndOnAndReleasesBrakes)
 {
-  store("endless.urp", endless);
-  client.ask("load endless.urp");
-  EXPECT_EQ(client.ask("power off"), "Powering off");
-  EXPECT_TRUE(wait_for_mode(controller, "POWER_OFF"));
-  EXPECT_EQ(client.ask("play"), "Failed to execute: play");
-  EXPECT_EQ(client.ask("power on"), "Powering on");
-  EXPECT_TRUE(wait_for_mode(controller, "IDLE"));
-  EXPECT_EQ(client.ask("brake release"), "Brake releasing");
-  EXPECT_TRUE(wait_for_mode(controller, "RUNNING"));
+  store_program("endless.urp", endless_program);
+  client.request("load endless.urp");
+  EXPECT_EQ(client.request("power off"), "Powering off");
+  EXPECT_TRUE(wait_for_robot_mode(controller, "POWER_OFF", seconds(20)));
+  EXPECT_EQ(client.request("play"), "Failed to execute: play");
+  EXPECT_EQ(client.request("power on"), "Powering on");
+  EXPECT_TRUE(wait_for_robot_mode(controller, "IDLE", seconds(20)));
+  EXPECT_EQ(client.request("brake release"), "Brake releasing");
+  EXPECT_TRUE(wait_for_robot_mode(controller, "RUNNING", seconds(20)));
 }
 
-TEST_F(Dashboard, unlocks_a_protective_stop_after_five_seconds_only)
+TEST_F(DashboardTest, UnlocksProtectiveStopAfterFiveSecondsOnly)
 {
   controller.control({{"command", "protective_stop"}});
-  ASSERT_TRUE(controller.wait_until(
-      [](const json & state) { return state["safety_mode"] == "PROTECTIVE_STOP"; }, seconds(5)));
-  EXPECT_EQ(client.ask("unlock protective stop").substr(0, 46),
+  ASSERT_TRUE(wait_for_safety_mode(controller, "PROTECTIVE_STOP", seconds(5)));
+  EXPECT_EQ(client.request("unlock protective stop").substr(0, 46),
             "Cannot unlock protective stop until 5s after o");
-  const double since = controller.state()["timestamp"];
-  ASSERT_TRUE(controller.wait_until(
-      [&](const json & state) { return state["timestamp"].get<double>() > since + 5.1; }, seconds(30)));
-  EXPECT_EQ(client.ask("unlock protective stop"), "Protective stop releasing");
-  EXPECT_TRUE(
-      controller.wait_until([](const json & state) { return state["safety_mode"] == "NORMAL"; }, seconds(5)));
+  ASSERT_TRUE(wait_simulated_time(controller, 5.1, seconds(30)));
+  EXPECT_EQ(client.request("unlock protective stop"), "Protective stop releasing");
+  EXPECT_TRUE(wait_for_safety_mode(controller, "NORMAL", seconds(5)));
 }
 
-TEST_F(Dashboard, shows_and_closes_popups)
+TEST_F(DashboardTest, ShowsAndClosesPopups)
 {
-  EXPECT_EQ(client.ask("popup mind the gap"), "showing popup");
+  EXPECT_EQ(client.request("popup mind the gap"), "showing popup");
   EXPECT_EQ(controller.state()["popup"], "mind the gap");
-  EXPECT_EQ(client.ask("close popup"), "closing popup");
+  EXPECT_EQ(client.request("close popup"), "closing popup");
   EXPECT_TRUE(controller.state()["popup"].is_null());
 }
 
-TEST_F(Dashboard, adds_messages_to_the_log)
+TEST_F(DashboardTest, AddsMessagesToLog)
 {
-  EXPECT_EQ(client.ask("addToLog shift begins"), "Added log message");
-  EXPECT_EQ(client.ask("addToLog"), "No log message to add");
-  EXPECT_TRUE(logged(controller, "shift begins"));
+  EXPECT_EQ(client.request("addToLog shift begins"), "Added log message");
+  EXPECT_EQ(client.request("addToLog"), "No log message to add");
+  EXPECT_TRUE(log_contains(controller, "shift begins"));
 }
 
-TEST_F(Dashboard, in_local_control_only_answers_inquiries_until_switched_and_reconnected)
+TEST_F(DashboardTest, RefusesCommandsInLocalControlUntilReconnected)
 {
   controller.control({{"command", "remote_control"}, {"on", false}});
-  EXPECT_EQ(client.ask("power off").substr(0, 44), "Command is not allowed due to safety reasons");
-  EXPECT_EQ(client.ask("is in remote control"), "false");
+  EXPECT_EQ(client.request("power off").substr(0, 44), "Command is not allowed due to safety reasons");
+  EXPECT_EQ(client.request("is in remote control"), "false");
   DashboardClient connected_in_local_control(controller.address());
   controller.control({{"command", "remote_control"}, {"on", true}});
-  EXPECT_EQ(connected_in_local_control.ask("stop").substr(0, 22), "Command is not allowed");
-  EXPECT_EQ(DashboardClient(controller.address()).ask("stop"), "Stopped");
+  EXPECT_EQ(connected_in_local_control.request("stop").substr(0, 22), "Command is not allowed");
+  EXPECT_EQ(DashboardClient(controller.address()).request("stop"), "Stopped");
 }
 
-TEST_F(Dashboard, survives_lines_without_end)
+TEST_F(DashboardTest, LoadsInstallationsByName)
+{
+  EXPECT_EQ(client.request("load installation default.installation"),
+            "Loading installation: default.installation");
+  EXPECT_EQ(client.request("load installation cell.installation"), "File not found: cell.installation");
+  controller.control({{"command", "store_program"}, {"name", "cell.installation"}, {"script", ""}});
+  EXPECT_EQ(client.request("load installation cell.installation"), "Loading installation: cell.installation");
+}
+
+TEST_F(DashboardTest, ClosesConnectionOnTooLongLine)
 {
   client.socket().send(std::string(100000, 'x'));
   EXPECT_TRUE(client.socket().closed_by_peer());
-  EXPECT_EQ(DashboardClient(controller.address()).ask("robotmode"), "Robotmode: RUNNING");
+  EXPECT_EQ(DashboardClient(controller.address()).request("robotmode"), "Robotmode: RUNNING");
 }
 
-TEST_F(Dashboard, shutdown_switches_the_controller_off)
+TEST_F(DashboardTest, ShutdownSwitchesControllerOff)
 {
-  EXPECT_EQ(client.ask("shutdown"), "Shutting down");
+  EXPECT_EQ(client.request("shutdown"), "Shutting down");
   EXPECT_TRUE(client.socket().closed_by_peer());
   const auto refused = [address = controller.address()] {
     try {
-      RawSocket(address, 29999);
+      TcpClient(address, 29999);
       return false;
     } catch (const std::runtime_error &) {
       return true;
     }
   };
-  // The connections go first, the ports right after.
+  // The ports are closed after the connections.
   EXPECT_TRUE(
       controller.wait_until([&](const nlohmann::json &) { return refused(); }, std::chrono::seconds(5)));
 }
 
-TEST(DashboardOfACb3, knows_user_roles_but_no_operational_modes)
+TEST(DashboardCb3Test, HasUserRolesButNoOperationalModes)
 {
   SimulatorOptions options;
   options.model = "ur5";
-  SimulatedController controller(on_own_address(options));
+  SimulatedController controller(with_unique_address(options));
   DashboardClient client(controller.address());
-  EXPECT_EQ(client.ask("setUserRole operator"), "Setting user role: operator");
-  EXPECT_EQ(client.ask("getUserRole"), "OPERATOR");
-  EXPECT_EQ(client.ask("get operational mode"), "could not understand: 'get operational mode'");
-  EXPECT_EQ(client.ask("get robot model"), "UR5");
+  EXPECT_EQ(client.request("setUserRole operator"), "Setting user role: operator");
+  EXPECT_EQ(client.request("getUserRole"), "OPERATOR");
+  EXPECT_EQ(client.request("get operational mode"), "could not understand: 'get operational mode'");
+  EXPECT_EQ(client.request("get robot model"), "UR5");
 }
 
 }  // namespace

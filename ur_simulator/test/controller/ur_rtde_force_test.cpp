@@ -1,4 +1,4 @@
-// What of the ur_rtde library deals with forces, hands and torques.
+// Force, freedrive and torque functions of the ur_rtde library.
 #include <ur_rtde/rtde_control_interface.h>
 #include <ur_rtde/rtde_receive_interface.h>
 
@@ -9,44 +9,36 @@
 namespace ur_simulator::testing {
 namespace {
 
-using Numbers = std::vector<double>;
+using Vector = std::vector<double>;
 using Control = ur_rtde::RTDEControlInterface;
 
-double number(SimulatedController & controller, const char * field, std::size_t index)
+double state_value(SimulatedController & controller, const char * field, std::size_t index)
 {
   return controller.state()[field][index].get<double>();
 }
 
-/// So many seconds of simulated time.
-void let_pass(SimulatedController & controller, double time)
-{
-  const double until = controller.state()["timestamp"].get<double>() + time;
-  ASSERT_TRUE(controller.wait_until(
-      [until](const json & state) { return state["timestamp"].get<double>() >= until; }, seconds(30)));
-}
-
-/// Asks the library until it answers so. (It asks the robot, so it cannot be asked in a condition of
-/// wait_until.)
+/// Polls a condition that calls the library. Such a condition cannot be passed to wait_until(), because the
+/// library waits for the controller.
 template <typename Condition>
-bool eventually(SimulatedController & controller, Condition condition)
+bool poll_until(SimulatedController & controller, Condition condition)
 {
   for (int i = 0; i < 200; ++i) {
     if (condition()) {
       return true;
     }
-    let_pass(controller, 0.05);
+    EXPECT_TRUE(wait_simulated_time(controller, 0.05, seconds(30)));
   }
   return false;
 }
 
-class UrRtdeForce : public SimulatorTest {
+class UrRtdeForceTest : public SimulatorTest {
  protected:
   Control control{controller.address(), -1.0, Control::FLAGS_DEFAULT, 50002, -1};
-  double height = number(controller, "actual_tcp_pose", 2);
+  double height = state_value(controller, "actual_tcp_pose", 2);
 
-  void place_table(double below) { place(height - below); }
-  void place(double z) { controller.control({{"command", "place_surface"}, {"z", z}}); }
-  bool press(double force)
+  void place_table_below_tcp(double distance) { place_surface(height - distance); }
+  void place_surface(double z) { controller.control({{"command", "place_surface"}, {"z", z}}); }
+  bool press_down(double force)
   {
     return control.forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, -force, 0, 0, 0}, 2,
                              {0.1, 0.1, 0.05, 0.2, 0.2, 0.2});
@@ -59,100 +51,98 @@ class UrRtdeForce : public SimulatorTest {
         },
         seconds(10));
   }
-  void push(const Numbers & force, double duration)
+  void push(const Vector & force, double duration)
   {
     controller.control({{"command", "push"}, {"force", force}, {"duration", duration}});
   }
 };
 
-TEST_F(UrRtdeForce, presses_on_a_table_and_lets_go)
+TEST_F(UrRtdeForceTest, PressesOnTableAndReleases)
 {
-  place_table(0.01);
+  place_table_below_tcp(0.01);
   ASSERT_TRUE(control.zeroFtSensor());
-  ASSERT_TRUE(press(20.0));
+  ASSERT_TRUE(press_down(20.0));
   ASSERT_TRUE(wait_for_force(20.0, 1.5));
-  let_pass(controller, 1.0);
-  EXPECT_NEAR(number(controller, "contact_wrench", 2), 20.0, 2.0);
+  ASSERT_TRUE(wait_simulated_time(controller, 1.0, seconds(30)));
+  EXPECT_NEAR(state_value(controller, "contact_wrench", 2), 20.0, 2.0);
   EXPECT_TRUE(control.forceModeStop());
-  EXPECT_TRUE(
-      controller.wait_until([](const json & state) { return state["at_rest"].get<bool>(); }, seconds(5)));
+  EXPECT_TRUE(wait_until_at_rest(controller, seconds(5)));
   EXPECT_TRUE(control.isProgramRunning());
 }
 
-TEST_F(UrRtdeForce, changes_the_force_on_the_way)
+TEST_F(UrRtdeForceTest, ChangesForceDuringForceMode)
 {
-  place_table(0.01);
+  place_table_below_tcp(0.01);
   ASSERT_TRUE(control.zeroFtSensor());
-  ASSERT_TRUE(press(10.0));
+  ASSERT_TRUE(press_down(10.0));
   ASSERT_TRUE(wait_for_force(10.0, 1.5));
-  ASSERT_TRUE(press(30.0));
+  ASSERT_TRUE(press_down(30.0));
   EXPECT_TRUE(wait_for_force(30.0, 1.5));
   EXPECT_TRUE(control.forceModeStop());
 }
 
-TEST_F(UrRtdeForce, moves_while_it_presses)
+TEST_F(UrRtdeForceTest, MovesDuringForceMode)
 {
-  place_table(0.01);
+  place_table_below_tcp(0.01);
   ASSERT_TRUE(control.zeroFtSensor());
-  ASSERT_TRUE(press(20.0));
+  ASSERT_TRUE(press_down(20.0));
   ASSERT_TRUE(wait_for_force(20.0, 1.5));
-  Numbers target = controller.state()["actual_tcp_pose"].get<Numbers>();
+  Vector target = controller.state()["actual_tcp_pose"].get<Vector>();
   target[1] += 0.1;
   ASSERT_TRUE(control.moveL(target, 0.1, 0.5));
-  EXPECT_NEAR(number(controller, "actual_tcp_pose", 1), target[1], 2e-3);
-  EXPECT_NEAR(number(controller, "actual_tcp_force", 2), 20.0, 3.0);
+  EXPECT_NEAR(state_value(controller, "actual_tcp_pose", 1), target[1], 2e-3);
+  EXPECT_NEAR(state_value(controller, "actual_tcp_force", 2), 20.0, 3.0);
   EXPECT_TRUE(control.forceModeStop());
 }
 
-TEST_F(UrRtdeForce, changes_the_force_under_a_motion_which_ends)
+TEST_F(UrRtdeForceTest, ChangesForceDuringMotion)
 {
   const auto running = [this] { return control.getAsyncOperationProgressEx().isAsyncOperationRunning(); };
-  place_table(0.01);
+  place_table_below_tcp(0.01);
   ASSERT_TRUE(control.zeroFtSensor());
-  ASSERT_TRUE(press(15.0));
+  ASSERT_TRUE(press_down(15.0));
   ASSERT_TRUE(wait_for_force(15.0, 1.5));
-  Numbers target = controller.state()["actual_tcp_pose"].get<Numbers>();
+  Vector target = controller.state()["actual_tcp_pose"].get<Vector>();
   target[1] += 0.1;
   ASSERT_TRUE(control.moveL(target, 0.05, 0.5, true));
-  ASSERT_TRUE(eventually(controller, running));
-  ASSERT_TRUE(press(60.0));
-  ASSERT_TRUE(eventually(controller, [&] { return !running(); }));
-  EXPECT_NEAR(number(controller, "actual_tcp_pose", 1), target[1], 2e-3);
+  ASSERT_TRUE(poll_until(controller, running));
+  ASSERT_TRUE(press_down(60.0));
+  ASSERT_TRUE(poll_until(controller, [&] { return !running(); }));
+  EXPECT_NEAR(state_value(controller, "actual_tcp_pose", 1), target[1], 2e-3);
   EXPECT_TRUE(wait_for_force(60.0, 1.5));
   EXPECT_TRUE(control.forceModeStop());
 }
 
-TEST_F(UrRtdeForce, sets_damping_and_gain)
+TEST_F(UrRtdeForceTest, SetsDampingAndGain)
 {
   EXPECT_TRUE(control.forceModeSetDamping(0.1));
   EXPECT_TRUE(control.forceModeSetGainScaling(1.2));
   EXPECT_TRUE(control.isProgramRunning());
 }
 
-TEST_F(UrRtdeForce, ends_force_mode_with_its_script)
+TEST_F(UrRtdeForceTest, EndsForceModeWithScript)
 {
-  ASSERT_TRUE(press(20.0));
+  ASSERT_TRUE(press_down(20.0));
   ASSERT_TRUE(controller.wait_until(
       [](const json & state) { return state["actual_tcp_speed"][2].get<double>() < -0.02; }, seconds(5)));
   control.stopScript();
-  EXPECT_TRUE(
-      controller.wait_until([](const json & state) { return state["at_rest"].get<bool>(); }, seconds(5)));
+  EXPECT_TRUE(wait_until_at_rest(controller, seconds(5)));
 }
 
-TEST_F(UrRtdeForce, guides_the_arm_by_hand_along_one_axis)
+TEST_F(UrRtdeForceTest, FreedriveMovesAlongFreeAxisOnly)
 {
-  const Numbers before = controller.state()["actual_tcp_pose"].get<Numbers>();
+  const Vector before = controller.state()["actual_tcp_pose"].get<Vector>();
   ASSERT_TRUE(control.freedriveMode({0, 1, 0, 0, 0, 0}));
   EXPECT_EQ(control.getFreedriveStatus(), 0);
   push({40.0, 40.0, 0.0}, 1.0);
-  let_pass(controller, 1.2);
+  ASSERT_TRUE(wait_simulated_time(controller, 1.2, seconds(30)));
   ASSERT_TRUE(control.endFreedriveMode());
-  const Numbers after = controller.state()["actual_tcp_pose"].get<Numbers>();
+  const Vector after = controller.state()["actual_tcp_pose"].get<Vector>();
   EXPECT_GT(after[1] - before[1], 0.02);
   EXPECT_NEAR(after[0], before[0], 2e-3);
 }
 
-TEST_F(UrRtdeForce, teaches)
+TEST_F(UrRtdeForceTest, TeachModeEnablesFreedrive)
 {
   ASSERT_TRUE(control.teachMode());
   EXPECT_TRUE(
@@ -162,62 +152,60 @@ TEST_F(UrRtdeForce, teaches)
       controller.wait_until([](const json & state) { return !state["freedrive"].get<bool>(); }, seconds(5)));
 }
 
-TEST_F(UrRtdeForce, moves_until_contact_and_back_to_where_it_began)
+TEST_F(UrRtdeForceTest, MovesUntilContactAndRetracts)
 {
-  place_table(0.05);
+  place_table_below_tcp(0.05);
   ASSERT_TRUE(control.moveUntilContact({0, 0, -0.05, 0, 0, 0}));
-  EXPECT_NEAR(number(controller, "actual_tcp_pose", 2), height - 0.05, 2e-3);
+  EXPECT_NEAR(state_value(controller, "actual_tcp_pose", 2), height - 0.05, 2e-3);
 }
 
-TEST_F(UrRtdeForce, watches_for_contact_while_something_else_moves)
+TEST_F(UrRtdeForceTest, DetectsContactDuringMotion)
 {
-  place_table(0.05);
+  place_table_below_tcp(0.05);
   ASSERT_TRUE(control.startContactDetection({0, 0, -1, 0, 0, 0}));
   EXPECT_FALSE(control.readContactDetection());
-  Numbers target = controller.state()["actual_tcp_pose"].get<Numbers>();
+  Vector target = controller.state()["actual_tcp_pose"].get<Vector>();
   target[2] -= 0.08;
   ASSERT_TRUE(control.moveL(target, 0.05, 0.5, true));
-  ASSERT_TRUE(eventually(controller, [this] { return control.readContactDetection(); }));
-  ASSERT_TRUE(
-      controller.wait_until([](const json & state) { return state["at_rest"].get<bool>(); }, seconds(10)));
-  EXPECT_NEAR(number(controller, "actual_tcp_pose", 2), height - 0.05, 2e-3);
+  ASSERT_TRUE(poll_until(controller, [this] { return control.readContactDetection(); }));
+  ASSERT_TRUE(wait_until_at_rest(controller, seconds(10)));
+  EXPECT_NEAR(state_value(controller, "actual_tcp_pose", 2), height - 0.05, 2e-3);
   EXPECT_TRUE(control.stopContactDetection());
 }
 
-TEST_F(UrRtdeForce, asks_for_contact)
+TEST_F(UrRtdeForceTest, ReportsToolContact)
 {
-  place(height - 0.002);
+  place_surface(height - 0.002);
   EXPECT_EQ(control.toolContact({0, 0, -1, 0, 0, 0}), 0);
-  Numbers target = controller.state()["actual_tcp_pose"].get<Numbers>();
+  Vector target = controller.state()["actual_tcp_pose"].get<Vector>();
   target[2] -= 0.004;
   ASSERT_TRUE(control.moveL(target, 0.02, 0.5));
-  // The library reads the register before the script has written it: asked again, it answers.
-  EXPECT_TRUE(eventually(controller, [this] { return control.toolContact({0, 0, -1, 0, 0, 0}) > 0; }));
+  // The library reads the register before the script has written it: the next call returns the result.
+  EXPECT_TRUE(poll_until(controller, [this] { return control.toolContact({0, 0, -1, 0, 0, 0}) > 0; }));
 }
 
-TEST_F(UrRtdeForce, jogs_and_stops)
+TEST_F(UrRtdeForceTest, JogsAndStops)
 {
   ASSERT_TRUE(control.jogStart({0, 0, 0.05, 0, 0, 0}, 0));
   EXPECT_TRUE(controller.wait_until(
       [](const json & state) { return std::abs(state["actual_tcp_speed"][2].get<double>() - 0.05) < 0.005; },
       seconds(5)));
   ASSERT_TRUE(control.jogStop());
-  EXPECT_TRUE(
-      controller.wait_until([](const json & state) { return state["at_rest"].get<bool>(); }, seconds(5)));
+  EXPECT_TRUE(wait_until_at_rest(controller, seconds(5)));
 }
 
-TEST_F(UrRtdeForce, reads_mass_matrix_jacobian_and_the_way_the_joints_came)
+TEST_F(UrRtdeForceTest, ReadsMassMatrixJacobianAndJointHistory)
 {
   EXPECT_EQ(control.getMassMatrix().size(), 36u);
   EXPECT_EQ(control.getJacobian().size(), 36u);
-  const Numbers joints = controller.state()["actual"]["position"].get<Numbers>();
-  EXPECT_TRUE(eventually(controller, [&] {
+  const Vector joints = controller.state()["actual"]["position"].get<Vector>();
+  EXPECT_TRUE(poll_until(controller, [&] {
     return std::abs(control.getActualJointPositionsHistory(10).at(1) - joints[1]) < 1e-6;
   }));
   EXPECT_EQ(control.getTargetWaypoint().size(), 6u);
 }
 
-TEST_F(UrRtdeForce, sets_target_payload_and_gravity)
+TEST_F(UrRtdeForceTest, SetsTargetPayloadAndGravity)
 {
   EXPECT_TRUE(control.setTargetPayload(2.0, {0.0, 0.0, 0.1}, {0.01, 0.01, 0.01, 0.0, 0.0, 0.0}));
   EXPECT_TRUE(control.setGravity({0.0, 0.0, 9.82}));
@@ -225,7 +213,7 @@ TEST_F(UrRtdeForce, sets_target_payload_and_gravity)
       controller.wait_until([](const json & state) { return state["payload"]["mass"] == 2.0; }, seconds(5)));
 }
 
-TEST_F(UrRtdeForce, lets_an_external_sensor_take_over)
+TEST_F(UrRtdeForceTest, UsesExternalSensor)
 {
   ASSERT_TRUE(control.ftRtdeInputEnable(true));
   EXPECT_TRUE(controller.wait_until([](const json & state) { return state["external_sensor"].get<bool>(); },
@@ -233,18 +221,18 @@ TEST_F(UrRtdeForce, lets_an_external_sensor_take_over)
   ASSERT_TRUE(control.setExternalForceTorque({0.0, 0.0, -12.0, 0.0, 0.0, 0.0}));
   EXPECT_TRUE(controller.wait_until(
       [](const json & state) {
-        const auto force = state["actual_tcp_force"].get<Numbers>();
+        const auto force = state["actual_tcp_force"].get<Vector>();
         return std::abs(std::hypot(force[0], force[1], force[2]) - 12.0) < 0.5;
       },
       seconds(5)));
   EXPECT_TRUE(control.ftRtdeInputEnable(false));
 }
 
-TEST(UrRtdeTorque, leads_the_joints_by_torques_from_5_26_on)
+TEST(UrRtdeTorqueTest, DirectTorqueMovesJointOnPolyscope526)
 {
   SimulatorOptions options;
   options.polyscope_version = "5.26.0";
-  SimulatedController controller(on_own_address(options));
+  SimulatedController controller(with_unique_address(options));
   Control control(controller.address(), -1.0, Control::FLAGS_DEFAULT, 50002, -1);
   const double before = controller.state()["actual"]["position"][0].get<double>();
   for (int i = 0; i < 250; ++i) {

@@ -1,4 +1,4 @@
-// The unmodified ur_rtde library against the simulator, over real sockets.
+// The ur_rtde library as a client of the simulator.
 #include <ur_rtde/dashboard_client.h>
 #include <ur_rtde/rtde_control_interface.h>
 #include <ur_rtde/rtde_io_interface.h>
@@ -14,7 +14,7 @@ namespace {
 
 using Joints = std::vector<double>;
 
-double distance(const Joints & a, const Joints & b)
+double max_difference(const Joints & a, const Joints & b)
 {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -23,14 +23,9 @@ double distance(const Joints & a, const Joints & b)
   return largest;
 }
 
-Joints joints_of(SimulatedController & controller)
+Joints actual_joint_positions(SimulatedController & controller)
 {
   return controller.state()["actual"]["position"].get<Joints>();
-}
-
-bool wait_for_rest(SimulatedController & controller)
-{
-  return controller.wait_until([](const json & state) { return state["at_rest"].get<bool>(); }, seconds(10));
 }
 
 bool wait_for_tcp_speed(SimulatedController & controller, std::size_t axis, double speed, double tolerance)
@@ -42,31 +37,31 @@ bool wait_for_tcp_speed(SimulatedController & controller, std::size_t axis, doub
       seconds(10));
 }
 
-TEST(UrRtdeReceive, reads_the_state)
+TEST(UrRtdeReceiveTest, ReadsState)
 {
-  SimulatedController controller(on_own_address());
+  SimulatedController controller(with_unique_address());
   ur_rtde::RTDEReceiveInterface receive(controller.address());
   ASSERT_TRUE(receive.isConnected());
   EXPECT_EQ(receive.getRobotMode(), 7);
   EXPECT_EQ(receive.getSafetyMode(), 1);
-  EXPECT_LT(distance(receive.getActualQ(), joints_of(controller)), 1e-6);
+  EXPECT_LT(max_difference(receive.getActualQ(), actual_joint_positions(controller)), 1e-6);
   EXPECT_EQ(receive.getActualTCPPose().size(), 6u);
   EXPECT_GT(receive.getTimestamp(), 0.0);
   EXPECT_EQ(receive.getFtRawWrench().size(), 6u);
 }
 
-TEST(UrRtdeReceive, follows_a_cb3_controller_at_125_hertz)
+TEST(UrRtdeReceiveTest, ConnectsToCb3Controller)
 {
   SimulatorOptions options;
   options.model = "ur5";
-  SimulatedController controller(on_own_address(options));
+  SimulatedController controller(with_unique_address(options));
   ur_rtde::RTDEReceiveInterface receive(controller.address());
   EXPECT_EQ(receive.getRobotMode(), 7);
 }
 
-TEST(UrRtdeIo, sets_outputs_slider_and_registers)
+TEST(UrRtdeIoTest, SetsOutputsSpeedSliderAndRegisters)
 {
-  SimulatedController controller(on_own_address());
+  SimulatedController controller(with_unique_address());
   ur_rtde::RTDEIOInterface io(controller.address());
   EXPECT_TRUE(io.setStandardDigitalOut(3, true));
   EXPECT_TRUE(io.setConfigurableDigitalOut(1, true));
@@ -84,19 +79,18 @@ TEST(UrRtdeIo, sets_outputs_slider_and_registers)
   EXPECT_EQ(controller.control({{"command", "registers"}})["inputs"]["integers"][18], 42);
 }
 
-TEST(UrRtdeDashboard, powers_the_robot_on)
+TEST(UrRtdeDashboardTest, PowersRobotOn)
 {
   SimulatorOptions options;
   options.start_running = false;
-  SimulatedController controller(on_own_address(options));
+  SimulatedController controller(with_unique_address(options));
   ur_rtde::DashboardClient dashboard(controller.address());
   dashboard.connect();
   EXPECT_EQ(dashboard.polyscopeVersion(), "5.25.1.0");
   EXPECT_EQ(dashboard.robotmode(), "Robotmode: POWER_OFF");
   dashboard.powerOn();
   dashboard.brakeRelease();
-  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["robot_mode"] == "RUNNING"; },
-                                    seconds(20)));
+  EXPECT_TRUE(wait_for_robot_mode(controller, "RUNNING", seconds(20)));
   EXPECT_TRUE(dashboard.isInRemoteControl());
   EXPECT_FALSE(dashboard.running());
   EXPECT_TRUE(dashboard.isProgramSaved());
@@ -104,40 +98,40 @@ TEST(UrRtdeDashboard, powers_the_robot_on)
   EXPECT_THROW(dashboard.play(), std::runtime_error);
 }
 
-/// The control interface with its script running.
-class UrRtdeControl : public SimulatorTest {
+/// A control interface whose control script is running.
+class UrRtdeControlTest : public SimulatorTest {
  protected:
   ur_rtde::RTDEControlInterface control{controller.address(), -1.0,
                                         ur_rtde::RTDEControlInterface::FLAGS_DEFAULT, 50002, -1};
-  Joints start = joints_of(controller);
+  Joints start = actual_joint_positions(controller);
 
-  Joints shifted(double by) const
+  Joints start_plus(double offset) const
   {
     Joints joints = start;
     for (double & joint : joints) {
-      joint += by;
+      joint += offset;
     }
     return joints;
   }
 };
 
-TEST_F(UrRtdeControl, uploads_its_script_and_finds_it_running)
+TEST_F(UrRtdeControlTest, UploadsAndRunsControlScript)
 {
   EXPECT_TRUE(control.isConnected());
   EXPECT_TRUE(control.isProgramRunning());
   EXPECT_EQ(controller.state()["program"]["state"], "PLAYING");
 }
 
-TEST_F(UrRtdeControl, moves_to_joint_positions)
+TEST_F(UrRtdeControlTest, MovesToJointPositions)
 {
-  const Joints target = shifted(0.2);
+  const Joints target = start_plus(0.2);
   EXPECT_TRUE(control.moveJ(target, 1.0, 2.0));
-  EXPECT_LT(distance(joints_of(controller), target), 1e-3);
+  EXPECT_LT(max_difference(actual_joint_positions(controller), target), 1e-3);
   EXPECT_TRUE(control.moveJ(start, 1.0, 2.0));
-  EXPECT_LT(distance(joints_of(controller), start), 1e-3);
+  EXPECT_LT(max_difference(actual_joint_positions(controller), start), 1e-3);
 }
 
-TEST_F(UrRtdeControl, moves_linearly_and_stops_on_request)
+TEST_F(UrRtdeControlTest, MovesLinearlyAndStopsOnRequest)
 {
   Joints pose = controller.state()["actual_tcp_pose"].get<Joints>();
   const double height = pose[2];
@@ -145,23 +139,22 @@ TEST_F(UrRtdeControl, moves_linearly_and_stops_on_request)
   ASSERT_TRUE(control.moveL(pose, 0.2, 0.5, true));
   ASSERT_TRUE(wait_for_tcp_speed(controller, 2, -0.2, 0.01));
   control.stopL(2.0);
-  ASSERT_TRUE(wait_for_rest(controller));
+  ASSERT_TRUE(wait_until_at_rest(controller, seconds(10)));
   const double reached = controller.state()["actual_tcp_pose"][2];
   EXPECT_LT(reached, height - 0.01);
   EXPECT_GT(reached, height - 0.25);
 }
 
-TEST_F(UrRtdeControl, reports_progress_of_asynchronous_motions)
+TEST_F(UrRtdeControlTest, ReportsProgressOfAsynchronousMotions)
 {
-  ASSERT_TRUE(control.moveJ(shifted(0.3), 1.0, 2.0, true));
-  ASSERT_TRUE(
-      controller.wait_until([](const json & state) { return !state["at_rest"].get<bool>(); }, seconds(5)));
+  ASSERT_TRUE(control.moveJ(start_plus(0.3), 1.0, 2.0, true));
+  ASSERT_TRUE(wait_until_moving(controller, seconds(5)));
   EXPECT_GE(control.getAsyncOperationProgress(), 0);
-  ASSERT_TRUE(wait_for_rest(controller));
-  EXPECT_LT(distance(joints_of(controller), shifted(0.3)), 1e-3);
+  ASSERT_TRUE(wait_until_at_rest(controller, seconds(10)));
+  EXPECT_LT(max_difference(actual_joint_positions(controller), start_plus(0.3)), 1e-3);
 }
 
-TEST_F(UrRtdeControl, follows_a_servo_stream)
+TEST_F(UrRtdeControlTest, ServoJFollowsTargets)
 {
   Joints target = start;
   for (int i = 0; i < 250; ++i) {
@@ -171,26 +164,26 @@ TEST_F(UrRtdeControl, follows_a_servo_stream)
     control.waitPeriod(begin);
   }
   control.servoStop();
-  ASSERT_TRUE(wait_for_rest(controller));
-  EXPECT_NEAR(joints_of(controller)[5], target[5], 0.01);
+  ASSERT_TRUE(wait_until_at_rest(controller, seconds(10)));
+  EXPECT_NEAR(actual_joint_positions(controller)[5], target[5], 0.01);
 }
 
-TEST_F(UrRtdeControl, moves_at_a_cartesian_speed_until_told_to_stop)
+TEST_F(UrRtdeControlTest, SpeedLMovesUntilSpeedStop)
 {
   ASSERT_TRUE(control.speedL({0.0, 0.0, -0.1, 0.0, 0.0, 0.0}, 0.5));
   EXPECT_TRUE(wait_for_tcp_speed(controller, 2, -0.1, 0.005));
   EXPECT_TRUE(control.speedStop());
-  EXPECT_TRUE(wait_for_rest(controller));
+  EXPECT_TRUE(wait_until_at_rest(controller, seconds(10)));
 }
 
-TEST_F(UrRtdeControl, forward_and_inverse_kinematics_agree)
+TEST_F(UrRtdeControlTest, ForwardAndInverseKinematicsAgree)
 {
   const Joints pose = control.getForwardKinematics(start, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
-  EXPECT_LT(distance(pose, controller.state()["actual_tcp_pose"].get<Joints>()), 1e-6);
-  EXPECT_LT(distance(control.getInverseKinematics(pose), start), 1e-6);
+  EXPECT_LT(max_difference(pose, controller.state()["actual_tcp_pose"].get<Joints>()), 1e-6);
+  EXPECT_LT(max_difference(control.getInverseKinematics(pose), start), 1e-6);
 }
 
-TEST_F(UrRtdeControl, zeroes_the_force_sensor_and_sets_payload_and_tcp)
+TEST_F(UrRtdeControlTest, ZeroesForceSensorAndSetsPayloadAndTcp)
 {
   EXPECT_TRUE(control.zeroFtSensor());
   EXPECT_TRUE(control.setPayload(1.5, {0.0, 0.0, 0.05}));
@@ -200,18 +193,17 @@ TEST_F(UrRtdeControl, zeroes_the_force_sensor_and_sets_payload_and_tcp)
       seconds(5)));
 }
 
-TEST_F(UrRtdeControl, a_motion_ends_on_a_protective_stop)
+TEST_F(UrRtdeControlTest, ProtectiveStopEndsMotion)
 {
-  ASSERT_TRUE(control.moveJ(shifted(0.5), 0.5, 1.0, true));
-  ASSERT_TRUE(
-      controller.wait_until([](const json & state) { return !state["at_rest"].get<bool>(); }, seconds(5)));
+  ASSERT_TRUE(control.moveJ(start_plus(0.5), 0.5, 1.0, true));
+  ASSERT_TRUE(wait_until_moving(controller, seconds(5)));
   controller.control({{"command", "protective_stop"}});
-  ASSERT_TRUE(wait_for_rest(controller));
+  ASSERT_TRUE(wait_until_at_rest(controller, seconds(10)));
   EXPECT_EQ(controller.state()["safety_mode"], "PROTECTIVE_STOP");
-  EXPECT_GT(distance(joints_of(controller), shifted(0.5)), 0.05);
+  EXPECT_GT(max_difference(actual_joint_positions(controller), start_plus(0.5)), 0.05);
 }
 
-TEST_F(UrRtdeControl, feels_the_contact_with_a_surface_and_stops_on_it)
+TEST_F(UrRtdeControlTest, MeasuresContactForceAndStopsOnSurface)
 {
   const double height = controller.state()["actual_tcp_pose"][2];
   controller.control({{"command", "place_surface"}, {"z", height - 0.1}});
@@ -223,56 +215,56 @@ TEST_F(UrRtdeControl, feels_the_contact_with_a_surface_and_stops_on_it)
   ASSERT_TRUE(controller.wait_until(
       [](const json & state) { return state["actual_tcp_force"][2].get<double>() > 20.0; }, seconds(10)));
   control.stopL(10.0);
-  ASSERT_TRUE(wait_for_rest(controller));
+  ASSERT_TRUE(wait_until_at_rest(controller, seconds(10)));
   EXPECT_NEAR(controller.state()["actual_tcp_pose"][2].get<double>(), height - 0.1, 0.01);
   EXPECT_GT(receive.getActualTCPForce()[2], 10.0);
   EXPECT_TRUE(control.isProgramRunning());
 }
 
-TEST_F(UrRtdeControl, its_watchdog_stops_the_program_when_nothing_is_sent)
+TEST_F(UrRtdeControlTest, WatchdogStopsProgramWithoutCommands)
 {
   ASSERT_TRUE(control.setWatchdog(10.0));
-  EXPECT_TRUE(wait_for_program(controller, "STOPPED"));
-  EXPECT_TRUE(logged(controller, "RTDE watchdog"));
+  EXPECT_TRUE(wait_for_program_state(controller, "STOPPED"));
+  EXPECT_TRUE(log_contains(controller, "RTDE watchdog"));
 }
 
-TEST_F(UrRtdeControl, uploads_its_script_again_after_a_stop)
+TEST_F(UrRtdeControlTest, ReuploadsScriptAfterStop)
 {
   control.stopScript();
-  ASSERT_TRUE(wait_for_program(controller, "STOPPED"));
+  ASSERT_TRUE(wait_for_program_state(controller, "STOPPED"));
   ASSERT_TRUE(control.reuploadScript());
-  // The library does not wait until its own copy of the state shows the program.
+  // reuploadScript() does not wait until the library's copy of the state shows the program.
   ASSERT_TRUE(controller.wait_until([this](const json &) { return control.isProgramRunning(); }, seconds(5)));
-  EXPECT_TRUE(control.moveJ(shifted(0.05), 1.0, 2.0));
+  EXPECT_TRUE(control.moveJ(start_plus(0.05), 1.0, 2.0));
 }
 
-TEST_F(UrRtdeControl, moves_along_a_path)
+TEST_F(UrRtdeControlTest, MoveJFollowsPath)
 {
-  Joints first = shifted(0.1);
-  Joints last = shifted(0.2);
+  Joints first = start_plus(0.1);
+  Joints last = start_plus(0.2);
   for (Joints * waypoint : {&first, &last}) {
     waypoint->insert(waypoint->end(), {1.0, 2.0, 0.0});  // speed, acceleration, blend radius
   }
   ASSERT_TRUE(control.moveJ({first, last}));
-  EXPECT_LT(distance(joints_of(controller), shifted(0.2)), 1e-3);
+  EXPECT_LT(max_difference(actual_joint_positions(controller), start_plus(0.2)), 1e-3);
 }
 
-TEST_F(UrRtdeControl, stops_its_script)
+TEST_F(UrRtdeControlTest, StopsScript)
 {
   control.stopScript();
-  EXPECT_TRUE(wait_for_program(controller, "STOPPED"));
+  EXPECT_TRUE(wait_for_program_state(controller, "STOPPED"));
 }
 
-TEST_F(UrRtdeControl, shares_the_controller_with_receive_and_io)
+TEST_F(UrRtdeControlTest, SharesControllerWithReceiveAndIoInterfaces)
 {
   ur_rtde::RTDEReceiveInterface receive(controller.address());
   ur_rtde::RTDEIOInterface io(controller.address());
   ASSERT_TRUE(io.setSpeedSlider(0.5));
-  EXPECT_TRUE(control.moveJ(shifted(0.1), 1.0, 2.0));
-  EXPECT_LT(distance(receive.getActualQ(), shifted(0.1)), 1e-2);
+  EXPECT_TRUE(control.moveJ(start_plus(0.1), 1.0, 2.0));
+  EXPECT_LT(max_difference(receive.getActualQ(), start_plus(0.1)), 1e-2);
 }
 
-TEST_F(UrRtdeControl, a_second_control_interface_finds_the_registers_in_use)
+TEST_F(UrRtdeControlTest, SecondControlInterfaceIsRejected)
 {
   EXPECT_THROW(ur_rtde::RTDEControlInterface(controller.address(), -1.0,
                                              ur_rtde::RTDEControlInterface::FLAGS_DEFAULT, 50002, -1),

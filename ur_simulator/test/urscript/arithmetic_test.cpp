@@ -1,9 +1,9 @@
-#include "script_runner.hpp"
+#include "support/script_runner.hpp"
 
 namespace ur_simulator::urscript {
 namespace {
 
-TEST(Arithmetic, keeps_integers_and_divides_to_floats)
+TEST(ArithmeticTest, KeepsIntegersAndDividesToFloats)
 {
   EXPECT_EQ(evaluate("1+2-3"), "0");
   EXPECT_EQ(evaluate("4*5/6"), "3.3333333333333335");
@@ -14,7 +14,7 @@ TEST(Arithmetic, keeps_integers_and_divides_to_floats)
   EXPECT_EQ(evaluate("2 + 0.5"), "2.5");
 }
 
-TEST(Arithmetic, binds_tighter_than_comparisons_and_these_tighter_than_logic)
+TEST(ArithmeticTest, BindsTighterThanComparisonsAndTheseTighterThanLogic)
 {
   EXPECT_EQ(evaluate("True or False and (1 == 2)"), "True");
   EXPECT_EQ(evaluate("1 > 2 or 3 != 4 xor 5 < -6"), "True");
@@ -24,13 +24,13 @@ TEST(Arithmetic, binds_tighter_than_comparisons_and_these_tighter_than_logic)
   EXPECT_EQ(evaluate("2 - 3 - 4"), "-5");
 }
 
-TEST(Arithmetic, wraps_integers_at_32_bit)
+TEST(ArithmeticTest, WrapsIntegersAt32Bit)
 {
   EXPECT_EQ(evaluate("2147483647 + 1"), "-2147483648");
   EXPECT_EQ(evaluate("127 * 16777216 + 127 * 65536 + 65535"), "2139095039");
 }
 
-TEST(Arithmetic, reads_leading_zeros_as_decimal_and_exponents)
+TEST(ArithmeticTest, ReadsLeadingZerosAsDecimalAndExponents)
 {
   EXPECT_EQ(evaluate("024"), "24");
   EXPECT_EQ(evaluate("00"), "0");
@@ -39,7 +39,7 @@ TEST(Arithmetic, reads_leading_zeros_as_decimal_and_exponents)
   EXPECT_EQ(evaluate("4294967296"), "4294967296");
 }
 
-TEST(Arithmetic, compares_int_float_and_bool_by_value)
+TEST(ArithmeticTest, ComparesIntFloatAndBoolByValue)
 {
   EXPECT_EQ(evaluate("1 == 1.0"), "True");
   EXPECT_EQ(evaluate("True == 1"), "True");
@@ -50,13 +50,13 @@ TEST(Arithmetic, compares_int_float_and_bool_by_value)
   EXPECT_EQ(evaluate("[1, 2] != [1, 3]"), "True");
 }
 
-TEST(Arithmetic, joins_strings)
+TEST(ArithmeticTest, JoinsStrings)
 {
   EXPECT_EQ(evaluate("\"Hello\" + \", \" + \"World!\""), "Hello, World!");
   EXPECT_EQ(evaluate("'single' + \" and # double\""), "single and # double");
 }
 
-TEST(Arithmetic, works_on_arrays_element_by_element)
+TEST(ArithmeticTest, WorksOnArraysElementByElement)
 {
   EXPECT_EQ(evaluate("[1,2,3] * [10,20,30]"), "[10, 40, 90]");
   EXPECT_EQ(evaluate("[10,20,30] / [1,2,3]"), "[10, 10, 10]");
@@ -65,7 +65,7 @@ TEST(Arithmetic, works_on_arrays_element_by_element)
   EXPECT_EQ(evaluate("-[1,2]"), "[-1, -2]");
 }
 
-TEST(Arithmetic, multiplies_matrices_with_matrices_arrays_and_numbers)
+TEST(ArithmeticTest, MultipliesMatricesWithMatricesArraysAndNumbers)
 {
   EXPECT_EQ(evaluate("[[1,2],[3,4],[5,6]] * [[10,20,30],[40,50,60]]"),
             "[[90, 120, 150], [190, 260, 330], [290, 400, 510]]");
@@ -75,7 +75,7 @@ TEST(Arithmetic, multiplies_matrices_with_matrices_arrays_and_numbers)
   EXPECT_EQ(evaluate("[[1,2],[3,4]] * [[1,2,3]]"), "error: a 2x2 matrix cannot be multiplied by a 1x3 one");
 }
 
-TEST(Arithmetic, refuses_types_that_do_not_fit_and_division_by_zero)
+TEST(ArithmeticTest, RejectsUnsuitableTypesAndDivisionByZero)
 {
   EXPECT_EQ(evaluate("1 + \"a\""), "error: Type error: '+' does not take int and string");
   EXPECT_EQ(evaluate("[1, 2] + [1]"), "error: '+' of lists of different lengths: 2 and 1");
@@ -86,7 +86,7 @@ TEST(Arithmetic, refuses_types_that_do_not_fit_and_division_by_zero)
   EXPECT_EQ(evaluate("not [1]"), "error: Type error: a condition must be a bool, not list");
 }
 
-TEST(Arithmetic, evaluates_the_right_side_of_and_or_only_when_needed)
+TEST(ArithmeticTest, EvaluatesTheRightSideOfAndOrOnlyWhenNeeded)
 {
   EXPECT_EQ(evaluate("True or 1 / 0 == 1"), "True");
   EXPECT_EQ(evaluate("False and 1 / 0 == 1"), "False");

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "script_runner.hpp"
+#include "support/script_runner.hpp"
 
 namespace ur_simulator::urscript {
 namespace {
@@ -33,7 +33,7 @@ Vector6 vector(double a, double b, double c, double d, double e, double f)
   return result;
 }
 
-TEST(Math, computes_functions_of_the_urmath_module)
+TEST(MathTest, ComputesFunctionsOfTheUrmathModule)
 {
   EXPECT_DOUBLE_EQ(number("sin(1) * sin(1) + cos(1) * cos(1)"), 1.0);
   EXPECT_DOUBLE_EQ(number("atan2(1, 2)"), std::atan2(1.0, 2.0));
@@ -48,14 +48,14 @@ TEST(Math, computes_functions_of_the_urmath_module)
   EXPECT_EQ(evaluate("random() < 1 and random() >= 0"), "True");
 }
 
-TEST(Math, refuses_arguments_outside_of_the_domain)
+TEST(MathTest, RejectsArgumentsOutsideTheDomain)
 {
-  EXPECT_EQ(evaluate("sqrt(-1)"), "error: sqrt: f = -1 is outside of [0, inf]");
-  EXPECT_EQ(evaluate("asin(2)"), "error: asin: f = 2 is outside of [-1, 1]");
+  EXPECT_EQ(evaluate("sqrt(-1)"), "error: sqrt: f must be in [0, inf], is -1");
+  EXPECT_EQ(evaluate("asin(2)"), "error: asin: f must be in [-1, 1], is 2");
   EXPECT_EQ(evaluate("sin(\"a\")"), "error: sin: the argument 'f' must be a finite number, not string a");
 }
 
-TEST(Lists, have_length_transpose_and_inverse)
+TEST(ListTest, HaveLengthTransposeAndInverse)
 {
   EXPECT_EQ(evaluate("get_list_length([1, 2, 3])"), "3");
   EXPECT_EQ(evaluate("size([[1, 2, 3], [4, 5, 6]])"), "[2, 3]");
@@ -64,21 +64,21 @@ TEST(Lists, have_length_transpose_and_inverse)
   EXPECT_EQ(evaluate("inv([[1, 1], [1, 1]])"), "error: inv: the matrix is singular");
   EXPECT_EQ(evaluate("make_list(3, 7, 10)"), "[7, 7, 7]");
   EXPECT_EQ(evaluate("make_list(1000000000, 7)"),
-            "error: make_list: length 1000000000 is outside of 0..10000");
+            "error: make_list: length must be in [0, 10000], is 1000000000");
 }
 
-TEST(Lists, convert_between_bits_and_integers)
+TEST(ListTest, ConvertBetweenBitsAndIntegers)
 {
   EXPECT_EQ(evaluate("binary_list_to_integer([True, False, True])"), "5");
   EXPECT_EQ(evaluate("binary_list_to_integer(integer_to_binary_list(-12345))"), "-12345");
   EXPECT_EQ(evaluate("get_list_length(integer_to_binary_list(1))"), "32");
 }
 
-TEST(Strings, are_searched_cut_and_converted)
+TEST(StringTest, AreSearchedCutAndConverted)
 {
   EXPECT_EQ(evaluate("str_cat(\"x = \", 1.5)"), "x = 1.5");
   EXPECT_EQ(evaluate("str_at(\"Hello\", 1)"), "e");
-  EXPECT_EQ(evaluate("str_at(\"Hello\", 5)"), "error: str_at: index 5 is outside of the string of 5 bytes");
+  EXPECT_EQ(evaluate("str_at(\"Hello\", 5)"), "error: str_at: index must be in [0, 4], is 5");
   EXPECT_EQ(evaluate("str_find(\"Hello World\", \"o\", 5)"), "7");
   EXPECT_EQ(evaluate("str_find(\"Hello\", \"z\")"), "-1");
   EXPECT_EQ(evaluate("str_sub(\"0123456789\", 5, 2)"), "56");
@@ -91,7 +91,7 @@ TEST(Strings, are_searched_cut_and_converted)
   EXPECT_EQ(evaluate("to_str([1, 2.5, True, \"a\"])"), "[1, 2.5, True, \"a\"]");
 }
 
-TEST(Poses, are_added_subtracted_and_inverted)
+TEST(PoseBuiltinsTest, AreAddedSubtractedAndInverted)
 {
   expect_near(six("pose_add(p[1,2,3,0,0,1], p[1,1,1,0,0,1])"), vector(2, 3, 4, 0, 0, 2));
   expect_near(six("pose_sub(p[.2,.5,.1,1.57,0,0], p[.2,.5,.6,1.57,0,0])"), vector(0, 0, -0.5, 0, 0, 0));
@@ -104,7 +104,7 @@ TEST(Poses, are_added_subtracted_and_inverted)
   EXPECT_NEAR(number("point_dist(p[0,0,0,1,1,1], p[3,4,0,0,0,0])"), 5.0, 1e-12);
 }
 
-TEST(Poses, convert_rotation_vectors_to_roll_pitch_yaw_and_back)
+TEST(PoseBuiltinsTest, ConvertRotationVectorsToRollPitchYawAndBack)
 {
   EXPECT_EQ(evaluate("rpy2rotvec([0, 0, 0.5])"), "[0, 0, 0.5]");
   EXPECT_LT(number("norm(rotvec2rpy(rpy2rotvec([0.1, -0.2, 0.3])) - [0.1, -0.2, 0.3])"), 1e-9);
@@ -114,15 +114,15 @@ TEST(Poses, convert_rotation_vectors_to_roll_pitch_yaw_and_back)
       1e-6);
 }
 
-TEST(Poses, move_a_wrench_to_another_point_of_view)
+TEST(PoseBuiltinsTest, TransformAWrenchToAnotherFrame)
 {
-  // 10 N along Y, one metre along X away from the new origin, turned by 90 degrees about Z.
+  // 10 N along Y; the new frame is displaced by 1 m along X and rotated by 90 degrees about Z.
   expect_near(six("wrench_trans(p[-1,0,0,0,0,0], [0,10,0,0,0,0])"), vector(0, 10, 0, 0, 0, 10));
   expect_near(six("wrench_trans(p[0,0,0,0,0,1.5707963267948966], [0,10,0,0,0,0])"),
               vector(10, 0, 0, 0, 0, 0));
 }
 
-TEST(Messages, join_both_arguments)
+TEST(TextMessageTest, JoinBothArguments)
 {
   ScriptRunner runner(
       "def test():\n textmsg(\"value: \", 3)\n textmsg(p[0.5,0,0,0,0,0])\n textmsg(\"\")\nend");
@@ -130,7 +130,7 @@ TEST(Messages, join_both_arguments)
   EXPECT_EQ(runner.host.messages, (std::vector<std::string>{"value: 3", "p[0.5, 0, 0, 0, 0, 0]", ""}));
 }
 
-TEST(Builtins, name_a_required_argument_that_has_no_value)
+TEST(BuiltinCallTest, ErrorContainsTheRequiredArgumentWithoutValue)
 {
   ScriptRunner runner("def test():\n def f():\n end\n x = sin(f())\nend");
   EXPECT_EQ(runner.finish(), MachineStatus::failed);

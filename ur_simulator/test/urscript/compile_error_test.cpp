@@ -1,4 +1,4 @@
-#include "script_runner.hpp"
+#include "support/script_runner.hpp"
 
 namespace ur_simulator::urscript {
 namespace {
@@ -10,7 +10,7 @@ void expect_error(const std::string & text, int line, const std::string & messag
   EXPECT_NE(error.message.find(message), std::string::npos) << error.text();
 }
 
-TEST(CompileError, names_functions_and_variables_that_do_not_exist)
+TEST(CompileErrorTest, ContainsUnknownFunctionsAndVariables)
 {
   expect_error("def test():\n  movej_fast([1])\nend", 2, "The function 'movej_fast' is not defined");
   expect_error("def test():\n  x = y\nend", 2, "The variable 'y' is not defined");
@@ -18,7 +18,7 @@ TEST(CompileError, names_functions_and_variables_that_do_not_exist)
   expect_error("def test():\n  q[0] = 1\nend", 2, "The variable 'q' is not defined");
 }
 
-TEST(CompileError, checks_arguments)
+TEST(CompileErrorTest, ChecksArguments)
 {
   expect_error("def test():\n def f(a):\n end\n f()\nend", 4, "needs the argument 'a'");
   expect_error("def test():\n def f(a):\n end\n f(1, 2)\nend", 4, "takes 1 arguments, 2 are given");
@@ -29,7 +29,7 @@ TEST(CompileError, checks_arguments)
   expect_error("sleep()", 1, "needs the argument 't'");
 }
 
-TEST(CompileError, tells_where_the_grammar_is_broken)
+TEST(CompileErrorTest, ContainsThePositionOfASyntaxError)
 {
   const CompileError error = compile_error("def test():\n  if True\n    x = 1\n  end\nend\n");
   EXPECT_EQ(error.line, 3);
@@ -39,7 +39,7 @@ TEST(CompileError, tells_where_the_grammar_is_broken)
   expect_error("def test():\n  x = 1\n", 3, "an 'end' is missing");
   expect_error("def test():\n  x = (1 + \nend\n", 3, "expected a value, found 'end'");
   expect_error("def test():\n  x = \"abc\nend\n", 2, "not closed");
-  expect_error("def test():\n  x = 1 ? 2\nend\n", 2, "no place here");
+  expect_error("def test():\n  x = 1 ? 2\nend\n", 2, "unexpected character");
   expect_error("def test():\n  x\nend\n", 2, "without effect");
   expect_error("def test():\n  f() = 1\nend\n", 2, "can be assigned to");
   expect_error("def test():\n  x = p[1, 2, 3]\nend\n", 2, "a pose has six elements, not 3");
@@ -48,7 +48,7 @@ TEST(CompileError, tells_where_the_grammar_is_broken)
   expect_error("def test(a):\nend\n", 1, "takes no parameters");
 }
 
-TEST(CompileError, bounds_nesting_and_size)
+TEST(CompileErrorTest, LimitsNestingAndSize)
 {
   expect_error("x = " + std::string(100000, '(') + "1", 1, "nested deeper");
   expect_error("x = " + std::string(100000, '-') + "1", 1, "nested deeper");
@@ -69,7 +69,7 @@ TEST(CompileError, bounds_nesting_and_size)
   EXPECT_FALSE(compile("x = 1+1+1+1+1+1+1+1+1+1+1+1+1+1", *standard_library(), limits).has_value());
 }
 
-TEST(CompileError, long_chains_are_not_deep)
+TEST(CompileErrorTest, LongChainsDoNotCountAsNesting)
 {
   std::string text = "x = 0";
   for (int i = 0; i < 20000; ++i) {

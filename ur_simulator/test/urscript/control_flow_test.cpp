@@ -1,9 +1,9 @@
-#include "script_runner.hpp"
+#include "support/script_runner.hpp"
 
 namespace ur_simulator::urscript {
 namespace {
 
-TEST(ControlFlow, takes_the_first_branch_whose_condition_holds)
+TEST(ControlFlowTest, TakesTheFirstBranchWhoseConditionHolds)
 {
   const std::string text = R"(def test():
     result = ""
@@ -24,7 +24,7 @@ TEST(ControlFlow, takes_the_first_branch_whose_condition_holds)
   EXPECT_EQ(runner.global("result"), "onetwomany");
 }
 
-TEST(ControlFlow, loops_until_break_and_skips_on_continue)
+TEST(ControlFlowTest, LoopsUntilBreakAndSkipsOnContinue)
 {
   ScriptRunner runner(R"(def test():
     i = 0
@@ -44,14 +44,14 @@ TEST(ControlFlow, loops_until_break_and_skips_on_continue)
   EXPECT_EQ(runner.global("sum"), "25");
 }
 
-TEST(ControlFlow, does_not_need_line_ends)
+TEST(ControlFlowTest, DoesNotNeedLineEnds)
 {
   ScriptRunner runner("def test(): a = 1 b = 2 if a < b: c = a + b end end");
   EXPECT_EQ(runner.finish(), MachineStatus::finished);
   EXPECT_EQ(runner.global("c"), "3");
 }
 
-TEST(ControlFlow, an_expression_may_be_complete_only_on_the_next_line)
+TEST(ControlFlowTest, AnExpressionMayBeCompleteOnlyOnTheNextLine)
 {
   ScriptRunner runner(R"(def test():
     global offset = # offset of the float registers
@@ -69,7 +69,7 @@ TEST(ControlFlow, an_expression_may_be_complete_only_on_the_next_line)
   EXPECT_EQ(runner.global("third"), "2");
 }
 
-TEST(ControlFlow, calls_with_defaults_and_named_arguments)
+TEST(ControlFlowTest, CallsWithDefaultsAndNamedArguments)
 {
   ScriptRunner runner(R"(def test():
     def add(a = 1, b = a * 10):
@@ -87,7 +87,7 @@ TEST(ControlFlow, calls_with_defaults_and_named_arguments)
   EXPECT_EQ(runner.global("w"), "3");
 }
 
-TEST(ControlFlow, recursion_works_and_has_an_end)
+TEST(ControlFlowTest, RecursionWorksAndHasAnEnd)
 {
   ScriptRunner runner(
       "def test():\n def f(n):\n if n < 2:\n return 1\n end\n return n * f(n - 1)\n end\n x = f(10)\n end");
@@ -96,11 +96,11 @@ TEST(ControlFlow, recursion_works_and_has_an_end)
 
   ScriptRunner endless("def test():\n def f():\n f()\n end\n f()\n end");
   EXPECT_EQ(endless.finish(), MachineStatus::failed);
-  EXPECT_NE(endless.machine->error().message.find("calls inside each other"), std::string::npos);
+  EXPECT_NE(endless.machine->error().message.find("call depth exceeds"), std::string::npos);
   EXPECT_EQ(endless.machine->error().line, 3);
 }
 
-TEST(ControlFlow, runs_several_definitions_and_statements_as_one_body)
+TEST(ControlFlowTest, RunsSeveralDefinitionsAndStatementsAsOneBody)
 {
   ScriptRunner runner("def one():\n return 1\nend\ndef two():\n return one() + 1\nend\nx = two()\n");
   EXPECT_EQ(runner.finish(), MachineStatus::finished);
@@ -108,7 +108,7 @@ TEST(ControlFlow, runs_several_definitions_and_statements_as_one_body)
   EXPECT_EQ(runner.machine->program().name(), "");
 }
 
-TEST(ControlFlow, knows_the_name_and_kind_of_a_program)
+TEST(ControlFlowTest, ProvidesNameAndKindOfAProgram)
 {
   const auto library = standard_library();
   EXPECT_EQ(compile("def first():\nend\n", *library)->name(), "first");
@@ -116,14 +116,14 @@ TEST(ControlFlow, knows_the_name_and_kind_of_a_program)
   EXPECT_TRUE(compile("sec second():\n textmsg(1)\nend\n", *library)->secondary());
 }
 
-TEST(ControlFlow, halt_ends_the_whole_program)
+TEST(ControlFlowTest, HaltEndsTheWholeProgram)
 {
   ScriptRunner runner("def test():\n def f():\n halt\n end\n x = 1\n f()\n x = 2\n end");
   EXPECT_EQ(runner.finish(), MachineStatus::finished);
   EXPECT_EQ(runner.global("x"), "1");
 }
 
-TEST(ControlFlow, program_labels_of_polyscope_are_skipped)
+TEST(ControlFlowTest, ProgramLabelsOfPolyscopeAreSkipped)
 {
   ScriptRunner runner("def test():\n $ 1 \"Robot Program\"\n $ 2 \"x=1\" \"noBreak\"\n x = 1\n end");
   EXPECT_EQ(runner.finish(), MachineStatus::finished);

@@ -1,6 +1,6 @@
 #include <random>
 
-#include "script_runner.hpp"
+#include "support/script_runner.hpp"
 #include "urscript/script_reader.hpp"
 
 namespace ur_simulator::urscript {
@@ -90,14 +90,14 @@ std::string mutate(const std::string & text, std::mt19937 & random)
   return result;
 }
 
-TEST(Mutation, the_unchanged_program_runs)
+TEST(MutationTest, TheUnchangedProgramRuns)
 {
   ScriptRunner runner(seed_program);
   EXPECT_EQ(runner.finish(), MachineStatus::finished) << runner.machine->error().message;
 }
 
-// Nothing to check but that every text is refused or runs, within its limits and without a crash.
-TEST(Mutation, no_text_crashes_the_compiler_or_the_machine)
+// Every text must be rejected or run within its limits, without a crash.
+TEST(MutationTest, NoMutationCrashesTheCompilerOrTheMachine)
 {
   std::mt19937 random(20240607);
   const auto library = standard_library();
@@ -125,7 +125,7 @@ TEST(Mutation, no_text_crashes_the_compiler_or_the_machine)
   EXPECT_GT(refused, 400);
 }
 
-TEST(Mutation, no_bytes_crash_the_reader)
+TEST(MutationTest, NoInputCrashesTheReader)
 {
   std::mt19937 random(7);
   ScriptReader reader(2000);

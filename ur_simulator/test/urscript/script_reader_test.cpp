@@ -5,7 +5,7 @@
 namespace ur_simulator::urscript {
 namespace {
 
-TEST(ScriptReader, cuts_a_program_at_its_end)
+TEST(ScriptReaderTest, ReturnsAProgramAtItsEnd)
 {
   ScriptReader reader;
   reader.feed("def a():\n  if True:\n    x = 1\n  end\nend\nmovej([0,0,0,0,0,0])\nsec b():\nend\n");
@@ -15,7 +15,7 @@ TEST(ScriptReader, cuts_a_program_at_its_end)
   EXPECT_EQ(reader.next(), std::nullopt);
 }
 
-TEST(ScriptReader, waits_for_the_rest_however_the_bytes_arrive)
+TEST(ScriptReaderTest, WaitsForTheRestForAnyFragmentation)
 {
   const std::string program = "def a():\n thread t():\n  while True:\n sync()\n end\n end\nend\n";
   ScriptReader reader;
@@ -28,7 +28,7 @@ TEST(ScriptReader, waits_for_the_rest_however_the_bytes_arrive)
   EXPECT_EQ(reader.pending(), 0U);
 }
 
-TEST(ScriptReader, is_not_misled_by_comments_and_strings)
+TEST(ScriptReaderTest, IgnoresBlockKeywordsInCommentsAndStrings)
 {
   ScriptReader reader;
   const std::string program = "def a():\n # the end\n x = \"end if def\"\n end_it = 1\nend\r\n";
@@ -36,14 +36,14 @@ TEST(ScriptReader, is_not_misled_by_comments_and_strings)
   EXPECT_EQ(reader.next(), program);
 }
 
-TEST(ScriptReader, skips_blank_lines_and_comments_between_programs)
+TEST(ScriptReaderTest, SkipsBlankLinesAndCommentsBetweenPrograms)
 {
   ScriptReader reader;
   reader.feed("\n\n  # hello\r\n\nstopj(2)\n");
   EXPECT_EQ(reader.next(), "stopj(2)\n");
 }
 
-TEST(ScriptReader, drops_a_program_that_outgrows_the_limit_up_to_its_end)
+TEST(ScriptReaderTest, DropsAProgramAboveTheLimitUpToItsEnd)
 {
   ScriptReader reader(1000);
   reader.feed("def a():\n");
@@ -57,7 +57,7 @@ TEST(ScriptReader, drops_a_program_that_outgrows_the_limit_up_to_its_end)
   EXPECT_EQ(reader.next(), "stopj(2)\n");
 }
 
-TEST(ScriptReader, ignores_everything_after_a_line_that_outgrows_the_limit)
+TEST(ScriptReaderTest, IgnoresInputAfterALineAboveTheLimit)
 {
   ScriptReader reader(1000);
   reader.feed(std::string(2000, 'x'));
@@ -68,7 +68,7 @@ TEST(ScriptReader, ignores_everything_after_a_line_that_outgrows_the_limit)
   EXPECT_EQ(reader.pending(), 0U);
 }
 
-TEST(ScriptReader, forgets_what_was_pending_on_reset)
+TEST(ScriptReaderTest, ResetDiscardsTheIncompleteProgram)
 {
   ScriptReader reader;
   reader.feed("def a():\n x = 1\n");

@@ -1,9 +1,9 @@
-#include "script_runner.hpp"
+#include "support/script_runner.hpp"
 
 namespace ur_simulator::urscript {
 namespace {
 
-/// A builtin that takes time until the test says so, as a motion does.
+/// A builtin that takes physical time until the test ends it, like a motion.
 struct Motion {
   bool done = false;
   int started = 0;
@@ -17,7 +17,7 @@ class MotionOperation : public Operation {
   {
     return motion_.done ? std::optional<Value>(Value()) : std::nullopt;
   }
-  void abandon() override { ++motion_.abandoned; }
+  void cancel() override { ++motion_.abandoned; }
 
  private:
   Motion & motion_;
@@ -33,7 +33,7 @@ std::shared_ptr<Library> library_with(Motion & motion)
   return library;
 }
 
-TEST(Threads, take_turns_at_each_sync)
+TEST(ThreadTest, AlternateAtEachSync)
 {
   ScriptRunner runner(R"(def test():
     global log = ""
@@ -58,7 +58,7 @@ TEST(Threads, take_turns_at_each_sync)
   EXPECT_EQ(runner.global("log"), "bababa!");
 }
 
-TEST(Threads, start_only_after_the_handle_is_assigned)
+TEST(ThreadTest, StartOnlyAfterTheHandleIsAssigned)
 {
   ScriptRunner runner(R"(def test():
     global handle = 0
@@ -76,7 +76,7 @@ TEST(Threads, start_only_after_the_handle_is_assigned)
   EXPECT_EQ(runner.global("seen"), "2");
 }
 
-TEST(Threads, join_waits_for_the_end_of_the_other)
+TEST(ThreadTest, JoinWaitsForTheEndOfTheOther)
 {
   ScriptRunner runner(R"(def test():
     global done = False
@@ -94,14 +94,14 @@ TEST(Threads, join_waits_for_the_end_of_the_other)
   EXPECT_GE(runner.cycles, 10);
 }
 
-TEST(Threads, killing_nothing_is_no_error)
+TEST(ThreadTest, KillingAnEndedThreadIsNoError)
 {
   ScriptRunner runner("def test():\n kill 0\n kill 99\n x = 1\nend");
   EXPECT_EQ(runner.finish(), MachineStatus::finished);
   EXPECT_EQ(runner.global("x"), "1");
 }
 
-TEST(Threads, killed_while_it_moves_abandons_the_motion)
+TEST(ThreadTest, KillingAThreadCancelsItsMotion)
 {
   Motion motion;
   ScriptRunner runner(
@@ -115,7 +115,7 @@ TEST(Threads, killed_while_it_moves_abandons_the_motion)
   EXPECT_EQ(runner.machine->thread_count(), 1U);
 }
 
-TEST(Threads, stopping_the_program_abandons_what_they_do)
+TEST(ThreadTest, StoppingTheProgramCancelsOperations)
 {
   Motion motion;
   ScriptRunner runner("def test():\n move()\nend", library_with(motion));
@@ -127,7 +127,7 @@ TEST(Threads, stopping_the_program_abandons_what_they_do)
   EXPECT_EQ(runner.machine->cycle(), MachineStatus::finished);
 }
 
-TEST(Threads, destroying_the_machine_abandons_what_they_do)
+TEST(ThreadTest, DestroyingTheMachineCancelsOperations)
 {
   Motion motion;
   ScriptRunner runner("def test():\n move()\nend", library_with(motion));
@@ -136,7 +136,7 @@ TEST(Threads, destroying_the_machine_abandons_what_they_do)
   EXPECT_EQ(motion.abandoned, 1);
 }
 
-TEST(Threads, end_with_the_main_thread)
+TEST(ThreadTest, EndWithTheMainThread)
 {
   Motion motion;
   ScriptRunner runner("def test():\n thread mover():\n move()\n end\n run mover()\n sync()\nend",
@@ -145,7 +145,7 @@ TEST(Threads, end_with_the_main_thread)
   EXPECT_EQ(motion.abandoned, 1);
 }
 
-TEST(Threads, wait_while_another_is_in_a_critical_section_even_when_that_one_moves)
+TEST(ThreadTest, WaitWhileAnotherIsInACriticalSection)
 {
   Motion motion;
   ScriptRunner runner(R"(def test():
@@ -176,7 +176,7 @@ TEST(Threads, wait_while_another_is_in_a_critical_section_even_when_that_one_mov
   EXPECT_EQ(runner.global("count"), "6");
 }
 
-TEST(Threads, leave_the_critical_section_when_they_are_killed_or_end)
+TEST(ThreadTest, LeaveTheCriticalSectionWhenTheyAreKilledOrEnd)
 {
   ScriptRunner runner(R"(def test():
     thread selfish():
@@ -190,7 +190,7 @@ TEST(Threads, leave_the_critical_section_when_they_are_killed_or_end)
   EXPECT_EQ(runner.global("x"), "1");
 }
 
-TEST(Threads, take_parameters)
+TEST(ThreadTest, TakeParameters)
 {
   ScriptRunner runner(
       "def test():\n global x = 0\n thread t(a, b):\n x = a + b\n end\n h = run t(1, b = 2)\n join h\nend");
@@ -198,14 +198,14 @@ TEST(Threads, take_parameters)
   EXPECT_EQ(runner.global("x"), "3");
 }
 
-TEST(Threads, sleep_takes_its_time_in_cycles)
+TEST(ThreadTest, SleepTakesItsTimeInCycles)
 {
   ScriptRunner runner("def test():\n sleep(0.01)\nend");
   EXPECT_EQ(runner.finish(), MachineStatus::finished);
   EXPECT_EQ(runner.cycles, 6);
 }
 
-TEST(Threads, a_long_computation_goes_on_in_the_next_cycle)
+TEST(ThreadTest, ALongComputationContinuesInTheNextCycle)
 {
   ScriptRunner runner("def test():\n i = 0\n while i < 20000:\n i = i + 1\n end\nend");
   EXPECT_EQ(runner.finish(), MachineStatus::finished);
@@ -213,7 +213,7 @@ TEST(Threads, a_long_computation_goes_on_in_the_next_cycle)
   EXPECT_EQ(runner.global("i"), "20000");
 }
 
-TEST(Threads, one_that_only_computes_does_not_starve_the_others)
+TEST(ThreadTest, AComputingThreadDoesNotStarveOthers)
 {
   MachineOptions options;
   options.infinite_loop_after = 10.0;
@@ -237,7 +237,7 @@ TEST(Threads, one_that_only_computes_does_not_starve_the_others)
   EXPECT_EQ(runner.global("count"), "50");
 }
 
-TEST(Threads, one_that_never_takes_time_fails_as_an_infinite_loop)
+TEST(ThreadTest, AThreadThatNeverTakesTimeFailsAsInfiniteLoop)
 {
   ScriptRunner runner("def test():\n x = 0\n while True:\n x = 1 - x\n end\nend");
   EXPECT_EQ(runner.finish(2000), MachineStatus::failed);
@@ -245,14 +245,14 @@ TEST(Threads, one_that_never_takes_time_fails_as_an_infinite_loop)
   EXPECT_NEAR(runner.cycles, 1000, 2);
 }
 
-TEST(Threads, are_limited_in_number)
+TEST(ThreadTest, AreLimitedInNumber)
 {
   ScriptRunner runner("def test():\n thread t():\n sleep(9)\n end\n while True:\n run t()\n end\nend");
   EXPECT_EQ(runner.finish(), MachineStatus::failed);
-  EXPECT_NE(runner.machine->error().message.find("more than 64 threads"), std::string::npos);
+  EXPECT_NE(runner.machine->error().message.find("number of threads exceeds 64"), std::string::npos);
 }
 
-TEST(Threads, an_error_in_one_ends_the_program)
+TEST(ThreadTest, AnErrorInOneEndsTheProgram)
 {
   Motion motion;
   ScriptRunner runner("def test():\n thread t():\n x = 1 / 0\n end\n run t()\n move()\nend",
@@ -262,7 +262,7 @@ TEST(Threads, an_error_in_one_ends_the_program)
   EXPECT_EQ(motion.abandoned, 1);
 }
 
-TEST(SecondaryProgram, may_not_take_physical_time)
+TEST(SecondaryProgramTest, MayNotTakePhysicalTime)
 {
   ScriptRunner fine("sec test():\n textmsg(\"hello\")\nend");
   EXPECT_EQ(fine.finish(), MachineStatus::finished);
@@ -275,7 +275,7 @@ TEST(SecondaryProgram, may_not_take_physical_time)
   EXPECT_EQ(motion.abandoned, 1);
 }
 
-TEST(BlockingPopup, holds_the_thread_until_the_operator_closes_it)
+TEST(BlockingPopupTest, BlocksTheThreadUntilTheOperatorClosesIt)
 {
   ScriptRunner runner("def test():\n popup(\"Ready?\", title=\"Check\", blocking=True)\n x = 1\nend");
   for (int i = 0; i < 10; ++i) {

@@ -1,4 +1,4 @@
-#include "script_runner.hpp"
+#include "support/script_runner.hpp"
 
 namespace ur_simulator::urscript {
 namespace {
@@ -12,7 +12,7 @@ std::string after(const std::string & body, const std::string & name)
   return runner.global(name);
 }
 
-TEST(Values, are_copied_by_assignment)
+TEST(ValueTest, AreCopiedByAssignment)
 {
   EXPECT_EQ(after("a = [1, 2, 3]\n b = a\n b[0] = 9", "a"), "[1, 2, 3]");
   EXPECT_EQ(after("a = [1, 2, 3]\n b = a\n b[0] = 9", "b"), "[9, 2, 3]");
@@ -21,34 +21,34 @@ TEST(Values, are_copied_by_assignment)
   EXPECT_EQ(after("a = [[1,2],[3,4]]\n b = a\n b[1, 0] = 9", "a"), "[[1, 2], [3, 4]]");
 }
 
-TEST(Values, p_is_a_variable_and_the_mark_of_a_pose)
+TEST(ValueTest, PIsAVariableAndThePrefixOfAPose)
 {
   EXPECT_EQ(after("p = p[1, 2, 3, 4, 5, 6]\n x = p[0] + p[5]", "x"), "7");
   EXPECT_EQ(after("p = [1, 2]\n p[1] = 5\n x = p[1]", "x"), "5");
 }
 
-TEST(Values, rows_of_equal_length_form_a_matrix)
+TEST(ValueTest, RowsOfEqualLengthFormAMatrix)
 {
   EXPECT_EQ(after("m = [[1, 2], [3, 4], [5, 6]]\n x = m[2, 0]", "x"), "5");
   EXPECT_EQ(after("m = [[1, 2], [3, 4]]\n x = m[1]", "x"), "[3, 4]");
   EXPECT_EQ(after("m = [[1, 2], [3, 4]]\n m[2, 0] = 1", "m"),
-            "line 3: the index 2 is outside of the matrix of 2 elements");
+            "line 3: index 2 is out of range: the matrix has 2 elements");
 }
 
-TEST(Values, elements_of_elements_can_be_written)
+TEST(ValueTest, ElementsOfElementsCanBeWritten)
 {
   EXPECT_EQ(after("l = [p[0,0,0,0,0,0], p[1,1,1,1,1,1]]\n l[1][2] = 5", "l"),
             "[p[0, 0, 0, 0, 0, 0], p[1, 1, 5, 1, 1, 1]]");
 }
 
-TEST(Values, structures_have_named_members)
+TEST(ValueTest, StructuresHaveNamedMembers)
 {
   EXPECT_EQ(after("s = struct(x = 1, label = \"a\")\n s.x = s.x + 1", "s"), "struct(x=2, label=\"a\")");
   EXPECT_EQ(after("s = struct(q = [1, 2])\n t = s\n t.q[0] = 5\n x = s.q[0] + t.q[0]", "x"), "6");
   EXPECT_EQ(after("s = struct(x = 1)\n y = s.z", "y"), "line 3: the struct has no member 'z'");
 }
 
-TEST(Values, lists_have_methods)
+TEST(ValueTest, ListsHaveMethods)
 {
   EXPECT_EQ(after("l = [1]\n l.append(2)\n l.insert(0, 0)\n l.extend([3, 4])", "l"), "[0, 1, 2, 3, 4]");
   EXPECT_EQ(after("l = [1, 2, 3]\n x = l.pop()\n l.remove(0)\n x = x + l.length()", "x"), "4");
@@ -57,22 +57,23 @@ TEST(Values, lists_have_methods)
   EXPECT_EQ(after("l = [1]\n l.sort()", "l"), "line 3: a list has no method 'sort'");
 }
 
-TEST(Values, refuse_indices_out_of_range_with_the_line)
+TEST(ValueTest, ErrorForIndicesOutOfRangeContainsTheLine)
 {
-  EXPECT_EQ(after("l = [1, 2]\n x = l[2]", "x"), "line 3: the index 2 is outside of the list of 2 elements");
+  EXPECT_EQ(after("l = [1, 2]\n x = l[2]", "x"), "line 3: index 2 is out of range: the list has 2 elements");
   EXPECT_EQ(after("l = [1, 2]\n x = l[-1]", "x"),
-            "line 3: the index -1 is outside of the list of 2 elements");
+            "line 3: index -1 is out of range: the list has 2 elements");
   EXPECT_EQ(after("l = [1, 2]\n x = l[0.5]", "x"),
             "line 3: Type error: the index of a list must be an int, not float");
   EXPECT_EQ(after("q = p[0,0,0,0,0,0]\n q[0] = \"a\"", "q"),
             "line 3: Type error: an element of a pose is a number, not string");
 }
 
-TEST(Values, cannot_grow_without_bound)
+TEST(ValueTest, SizeIsBounded)
 {
-  EXPECT_NE(after("l = [1]\n while True:\n l.extend(l)\n end", "l").find("more than"), std::string::npos);
+  EXPECT_NE(after("l = [1]\n while True:\n l.extend(l)\n end", "l").find("must have at most"),
+            std::string::npos);
   EXPECT_NE(after("s = \"ab\"\n while True:\n s = s + s\n end", "s").find("longer than"), std::string::npos);
-  EXPECT_NE(after("l = [struct(a=1)]\n while True:\n l = [l, l]\n end", "l").find("more than"),
+  EXPECT_NE(after("l = [struct(a=1)]\n while True:\n l = [l, l]\n end", "l").find("must have at most"),
             std::string::npos);
 }
 

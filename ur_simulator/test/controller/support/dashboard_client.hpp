@@ -2,27 +2,29 @@
 
 #include <string>
 
-#include "raw_socket.hpp"
+#include "tcp_client.hpp"
 
 namespace ur_simulator::testing {
 
-/// Asks the Dashboard Server line by line.
+/// A client of the dashboard server.
 class DashboardClient {
  public:
   explicit DashboardClient(const std::string & address) : socket_(address, 29999)
   {
     greeting = socket_.receive_line();
   }
-  std::string ask(const std::string & command, std::chrono::milliseconds limit = std::chrono::seconds(5))
+  /// Sends a command and returns the reply.
+  std::string request(const std::string & command,
+                      std::chrono::milliseconds timeout = std::chrono::seconds(5))
   {
     socket_.send(command + "\n");
-    return socket_.receive_line(limit);
+    return socket_.receive_line(timeout);
   }
-  RawSocket & socket() { return socket_; }
+  TcpClient & socket() { return socket_; }
   std::string greeting;
 
  private:
-  RawSocket socket_;
+  TcpClient socket_;
 };
 
 }  // namespace ur_simulator::testing

@@ -1,51 +1,21 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
-#include "raw_socket.hpp"
+#include "encoding.hpp"
+#include "tcp_client.hpp"
 
 namespace ur_simulator::testing {
 
-inline std::string big_endian(std::uint64_t value, int bytes)
+/// The beginning of the payload of a data package: the recipe id.
+inline std::string data_package_header(int recipe_id)
 {
-  std::string result;
-  for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8) {
-    result += static_cast<char>(static_cast<std::uint8_t>(value >> shift));
-  }
-  return result;
-}
-inline std::string int32(std::int32_t value)
-{
-  return big_endian(static_cast<std::uint32_t>(value), 4);
-}
-inline std::string float64(double value)
-{
-  return big_endian(std::bit_cast<std::uint64_t>(value), 8);
+  return std::string(1, static_cast<char>(recipe_id));
 }
 
-/// The beginning of a data package: its recipe.
-inline std::string package_for(int recipe)
-{
-  return std::string(1, static_cast<char>(recipe));
-}
-
-inline std::uint64_t number(std::string_view bytes)
-{
-  std::uint64_t value = 0;
-  for (const char byte : bytes) {
-    value = value << 8 | static_cast<std::uint8_t>(byte);
-  }
-  return value;
-}
-inline double real(std::string_view bytes)
-{
-  return std::bit_cast<double>(number(bytes));
-}
-
-/// Speaks RTDE byte by byte.
+/// An RTDE client that encodes the packages itself.
 class RtdeClient {
  public:
   struct Package {
@@ -57,16 +27,16 @@ class RtdeClient {
 
   static std::string package(char type, std::string_view payload)
   {
-    return big_endian(payload.size() + 3, 2) + type + std::string(payload);
+    return encode_uint(payload.size() + 3, 2) + type + std::string(payload);
   }
   void send(char type, std::string_view payload) { socket_.send(package(type, payload)); }
   void send_raw(std::string_view bytes) { socket_.send(bytes); }
   Package receive()
   {
     const std::string header = socket_.receive(3);
-    return {header[2], socket_.receive(number(header.substr(0, 2)) - 3)};
+    return {header[2], socket_.receive(decode_uint(header.substr(0, 2)) - 3)};
   }
-  /// The next package of that type, others are skipped.
+  /// Returns the next package of this type; skips others.
   Package receive(char type)
   {
     for (Package next = receive();; next = receive()) {
@@ -75,22 +45,23 @@ class RtdeClient {
       }
     }
   }
+  /// Sends a package and returns the payload of the reply.
   std::string request(char type, std::string_view payload)
   {
     send(type, payload);
     return receive(type).payload;
   }
-  bool negotiate(unsigned version) { return request('V', big_endian(version, 2)) == "\1"; }
-  std::string outputs(double frequency, std::string_view names)
+  bool negotiate(unsigned version) { return request('V', encode_uint(version, 2)) == "\1"; }
+  std::string setup_outputs(double frequency, std::string_view names)
   {
-    return request('O', float64(frequency) + std::string(names));
+    return request('O', encode_double(frequency) + std::string(names));
   }
-  std::string inputs(std::string_view names) { return request('I', names); }
+  std::string setup_inputs(std::string_view names) { return request('I', names); }
   bool start() { return request('S', "") == "\1"; }
-  RawSocket & socket() { return socket_; }
+  TcpClient & socket() { return socket_; }
 
  private:
-  RawSocket socket_;
+  TcpClient socket_;
 };
 
 }  // namespace ur_simulator::testing

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "address.hpp"
+#include "unique_address.hpp"
 #include "ur_simulator/simulated_controller.hpp"
 
 namespace ur_simulator::testing {
@@ -13,15 +13,15 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// Options of a controller on an address of its own.
-inline SimulatorOptions on_own_address(SimulatorOptions options = {})
+/// Returns the options with a unique address.
+inline SimulatorOptions with_unique_address(SimulatorOptions options = {})
 {
-  options.address = next_address();
+  options.address = unique_address();
   return options;
 }
 
-/// Does the log hold an entry with this text?
-inline bool logged(SimulatedController & controller, const std::string & text)
+/// Returns whether an entry of the log contains the text.
+inline bool log_contains(SimulatedController & controller, const std::string & text)
 {
   const json reply = controller.control({{"command", "log"}});
   for (const json & entry : reply.at("entries")) {
@@ -32,30 +32,63 @@ inline bool logged(SimulatedController & controller, const std::string & text)
   return false;
 }
 
+inline bool wait_for_next_cycle(SimulatedController & controller)
+{
+  return controller.wait_until([cycle = controller.state()["cycle"].get<int>()](
+                                   const json & state) { return state["cycle"].get<int>() > cycle; },
+                               seconds(1));
+}
+
 inline bool wait_for_log(SimulatedController & controller, const std::string & text)
 {
-  // The log is no part of the state: look at it once a cycle at most.
+  // The log is not part of the state: it is queried once per cycle.
   for (int i = 0; i < 5000; ++i) {
-    if (logged(controller, text)) {
+    if (log_contains(controller, text)) {
       return true;
     }
-    controller.wait_until([cycle = controller.state()["cycle"].get<int>()](
-                              const json & state) { return state["cycle"].get<int>() > cycle; },
-                          seconds(1));
+    wait_for_next_cycle(controller);
   }
   return false;
 }
 
-inline bool wait_for_program(SimulatedController & controller, const std::string & state)
+inline bool wait_for_program_state(SimulatedController & controller, const std::string & program_state)
 {
-  return controller.wait_until([&](const json & now) { return now["program"]["state"] == state; },
+  return controller.wait_until([&](const json & state) { return state["program"]["state"] == program_state; },
                                seconds(10));
 }
 
-/// One controller a test, on an address of its own.
+inline bool wait_for_robot_mode(SimulatedController & controller, const std::string & mode, seconds timeout)
+{
+  return controller.wait_until([&](const json & state) { return state["robot_mode"] == mode; }, timeout);
+}
+
+inline bool wait_for_safety_mode(SimulatedController & controller, const std::string & mode, seconds timeout)
+{
+  return controller.wait_until([&](const json & state) { return state["safety_mode"] == mode; }, timeout);
+}
+
+/// Waits until the simulated time has advanced by `duration`, s.
+inline bool wait_simulated_time(SimulatedController & controller, double duration, seconds timeout)
+{
+  const double end = controller.state()["timestamp"].get<double>() + duration;
+  return controller.wait_until([end](const json & state) { return state["timestamp"].get<double>() >= end; },
+                               timeout);
+}
+
+inline bool wait_until_at_rest(SimulatedController & controller, seconds timeout)
+{
+  return controller.wait_until([](const json & state) { return state["at_rest"].get<bool>(); }, timeout);
+}
+
+inline bool wait_until_moving(SimulatedController & controller, seconds timeout)
+{
+  return controller.wait_until([](const json & state) { return !state["at_rest"].get<bool>(); }, timeout);
+}
+
+/// A simulated controller with default options and a unique address.
 class SimulatorTest : public ::testing::Test {
  protected:
-  SimulatedController controller{on_own_address()};
+  SimulatedController controller{with_unique_address()};
 };
 
 }  // namespace ur_simulator::testing

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/types.hpp"
+
+namespace ur_simulator::control_port {
+
+/// An invalid request. The text states field, value and limit.
+class RequestError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Range {
+  double min;
+  double max;
+};
+
+/// Typed access to the fields of a request. All functions throw RequestError if the field is invalid, or
+/// missing without a default.
+class RequestFields {
+ public:
+  explicit RequestFields(const nlohmann::json & request);
+
+  bool has(std::string_view name) const;
+  double number(const std::string & name, Range range, std::optional<double> default_value = {});
+  std::int64_t integer(const std::string & name, std::int64_t min, std::int64_t max,
+                       std::optional<std::int64_t> default_value = {});
+  bool boolean(const std::string & name, std::optional<bool> default_value = {});
+  std::string string(const std::string & name, std::optional<std::string> default_value = {});
+  /// A string that is one of the choices.
+  std::string choice(const std::string & name, std::span<const std::string_view> choices,
+                     std::optional<std::string> default_value = {});
+  Vector3 vector3(const std::string & name, Range range, std::optional<Vector3> default_value = {});
+  Vector6 vector6(const std::string & name, Range range, std::optional<Vector6> default_value = {});
+  /// Throws RequestError if the request has a field that has not been read, such as a misspelled one.
+  void reject_unknown() const;
+
+ private:
+  const nlohmann::json * find(const std::string & name, bool optional);
+  std::vector<double> numbers(const std::string & name, std::size_t count, Range range);
+
+  const nlohmann::json & request_;
+  std::vector<std::string> read_names_;
+};
+
+}  // namespace ur_simulator::control_port

@@ -1,0 +1,126 @@
+#include "control_port/commands.hpp"
+
+namespace ur_simulator::control_port {
+namespace {
+
+using nlohmann::json;
+
+template <typename Derived>
+json to_json_array(const Eigen::MatrixBase<Derived> & values)
+{
+  json result = json::array();
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    result.push_back(static_cast<double>(values[i]));
+  }
+  return result;
+}
+
+json joints_to_json(const JointState & joints)
+{
+  return {{"position", to_json_array(joints.position)},
+          {"velocity", to_json_array(joints.velocity)},
+          {"acceleration", to_json_array(joints.acceleration)},
+          {"current", to_json_array(joints.current)},
+          {"torque", to_json_array(joints.torque)}};
+}
+
+json payload_to_json(const Payload & payload)
+{
+  return {{"mass", payload.mass}, {"center_of_gravity", to_json_array(payload.center_of_gravity)}};
+}
+
+json io_to_json(const Io & io)
+{
+  return {{"digital_inputs", io.digital_inputs},   {"digital_outputs", io.digital_outputs},
+          {"analog_inputs", io.analog_inputs},     {"analog_outputs", io.analog_outputs},
+          {"analog_io_types", io.analog_io_types}, {"tool_analog_inputs", io.tool_analog_inputs}};
+}
+
+json program_to_json(const ControlPortContext & context)
+{
+  const ProgramRunner & runner = context.pendant.runner();
+  return {{"state", to_string(context.state.runtime_state)},
+          {"name", runner.program_name()},
+          {"loaded", context.pendant.loaded_program()},
+          {"threads", runner.machine() != nullptr ? runner.machine()->thread_count() : 0}};
+}
+
+json clients_to_json(const ControlPortContext & context)
+{
+  json result;
+  for (const auto & [name, listener] : context.listeners) {
+    result[name] = listener->connection_count();
+  }
+  result["rtde_control"] = context.rtde.client_count(rtde::ClientRole::control);
+  result["rtde_receive"] = context.rtde.client_count(rtde::ClientRole::receive);
+  result["rtde_io"] = context.rtde.client_count(rtde::ClientRole::io);
+  result["rtde_dropped_packages"] = context.rtde.dropped_packages();
+  return result;
+}
+
+json gripper_to_json(const SoftGripper * gripper)
+{
+  if (gripper == nullptr) {
+    return nullptr;
+  }
+  return {{"width", gripper->width()}, {"target", gripper->target()}, {"busy", gripper->busy()}};
+}
+
+void add_robot(json & result, const ControlPortContext & context)
+{
+  const ControllerState & s = context.state;
+  const Pendant & pendant = context.pendant;
+  const auto & popup = context.pendant.runner().popup();
+  const auto & safety_popup = pendant.safety_popup();
+  result.update({{"cycle", s.cycle},
+                 {"timestamp", s.timestamp},
+                 {"missed_cycles", context.missed_cycles},
+                 {"model", pendant.model().name},
+                 {"polyscope", pendant.options().version.to_string()},
+                 {"robot_mode", to_string(s.robot_mode)},
+                 {"safety_mode", to_string(s.safety_mode)},
+                 {"robot_status_bits", s.robot_status_bits},
+                 {"safety_status_bits", s.safety_status_bits},
+                 {"remote_control", pendant.remote_control()},
+                 {"program", program_to_json(context)},
+                 {"popup", popup ? json(popup->message) : json(nullptr)},
+                 {"safety_popup", safety_popup ? json(*safety_popup) : json(nullptr)},
+                 {"gripper", gripper_to_json(context.world.gripper())},
+                 {"io", io_to_json(s.io)},
+                 {"clients", clients_to_json(context)},
+                 {"actual_execution_time", s.actual_execution_time}});
+}
+
+void add_motion(json & result, const ControlPortContext & context)
+{
+  const ControllerState & s = context.state;
+  result.update({{"target", joints_to_json(s.target)},
+                 {"actual", joints_to_json(s.actual)},
+                 {"target_tcp_pose", to_json_array(s.target_tcp_pose)},
+                 {"target_tcp_speed", to_json_array(s.target_tcp_speed)},
+                 {"actual_tcp_pose", to_json_array(s.actual_tcp_pose)},
+                 {"actual_tcp_speed", to_json_array(s.actual_tcp_speed)},
+                 {"actual_tcp_force", to_json_array(s.actual_tcp_force)},
+                 {"contact_wrench", to_json_array(s.contact_wrench)},
+                 {"tcp_offset", to_json_array(s.tcp_offset)},
+                 {"payload", payload_to_json(s.payload)},
+                 {"speed_slider", s.speed_slider},
+                 {"speed_scaling", s.speed_scaling},
+                 {"at_rest", context.arm.at_rest()},
+                 {"steady", s.steady},
+                 {"freedrive", s.freedrive},
+                 {"force_mode", context.arm.in_force_mode()},
+                 {"external_sensor", s.external_sensor.enabled}});
+}
+
+}  // namespace
+
+json state_to_json(const ControlPortContext & context)
+{
+  json result;
+  add_robot(result, context);
+  add_motion(result, context);
+  return result;
+}
+
+}  // namespace ur_simulator::control_port

@@ -1,0 +1,70 @@
+#include "controller/tcp_script_socket.hpp"
+
+#include <boost/asio/connect.hpp>
+#include <utility>
+
+namespace ur_simulator {
+
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+
+std::shared_ptr<TcpScriptSocket> TcpScriptSocket::open(boost::asio::io_context & io, const std::string & host,
+                                                       std::uint16_t port)
+{
+  const std::shared_ptr<TcpScriptSocket> self(new TcpScriptSocket(io));
+  // The pending asynchronous operations own the socket.
+  self->resolver_.async_resolve(
+      host, std::to_string(port),
+      [self](const error_code & resolve_error, const tcp::resolver::results_type & endpoints) {
+        if (resolve_error) {
+          self->failed_ = true;
+          return;
+        }
+        boost::asio::async_connect(self->socket_, endpoints,
+                                   [self](const error_code & connect_error, const tcp::endpoint &) {
+                                     if (connect_error) {
+                                       self->failed_ = true;
+                                     } else {
+                                       self->start();
+                                     }
+                                   });
+      });
+  return self;
+}
+
+void TcpScriptSocket::start()
+{
+  connection_ = std::make_shared<Connection>(std::move(socket_), 0);
+  connection_->start(
+      [this](std::string_view bytes) {
+        received_.append(bytes);
+        if (received_.size() > unread_limit) {
+          connection_->close();
+        }
+      },
+      [this] { failed_ = true; });
+}
+
+TcpScriptSocket::~TcpScriptSocket()
+{
+  error_code ignored;
+  resolver_.cancel();
+  socket_.close(ignored);
+  if (connection_) {
+    connection_->close();
+  }
+}
+
+bool TcpScriptSocket::connected() const
+{
+  return connection_ != nullptr && connection_->is_open();
+}
+
+void TcpScriptSocket::send(std::string_view bytes)
+{
+  if (connection_) {
+    connection_->send(bytes);
+  }
+}
+
+}  // namespace ur_simulator

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "net/connection.hpp"
+#include "script_api/script_socket.hpp"
+
+namespace ur_simulator {
+
+/// The TCP connection of a program's socket. Closed if more than 256 KiB are unsent or more than 1 MiB are
+/// unread.
+class TcpScriptSocket final : public ScriptSocket {
+ public:
+  static std::shared_ptr<TcpScriptSocket> open(boost::asio::io_context & io, const std::string & host,
+                                               std::uint16_t port);
+  ~TcpScriptSocket() override;
+  TcpScriptSocket(const TcpScriptSocket &) = delete;
+  TcpScriptSocket & operator=(const TcpScriptSocket &) = delete;
+
+  bool connected() const override;
+  bool failed() const override { return failed_; }
+  void send(std::string_view bytes) override;
+  std::string & received() override { return received_; }
+
+ private:
+  explicit TcpScriptSocket(boost::asio::io_context & io) : resolver_(io), socket_(io) {}
+  void start();
+
+  static constexpr std::size_t unread_limit = 1024 * 1024;
+
+  boost::asio::ip::tcp::resolver resolver_;
+  boost::asio::ip::tcp::socket socket_;
+  std::shared_ptr<Connection> connection_;
+  std::string received_;
+  bool failed_ = false;
+};
+
+}  // namespace ur_simulator

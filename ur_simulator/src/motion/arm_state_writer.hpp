@@ -1,0 +1,33 @@
+#pragma once
+
+#include "dynamics/dynamics.hpp"
+#include "kinematics/robot_model.hpp"
+#include "motion/joint_servo_loop.hpp"
+#include "motion/setpoint.hpp"
+#include "state/controller_state.hpp"
+
+namespace ur_simulator {
+
+/// Writes the quantities that follow from the joint motion into the state: accelerations, torques, currents,
+/// TCP poses and speeds, and the reading of the accelerometer in the flange.
+class ArmStateWriter {
+ public:
+  ArmStateWriter(const RobotModel & model, double cycle_time);
+
+  void write(const Setpoint & target, const JointServoLoop & actual, ControllerState & state);
+  /// Call after a discontinuity (teleport): the next write reports no acceleration.
+  void reset();
+
+ private:
+  void write_joints(const Vector6 & position, const Vector6 & velocity, JointState & joints) const;
+  void write_target(ControllerState & state) const;
+  void write_actual(ControllerState & state);
+
+  const RobotModel & model_;
+  double cycle_time_;
+  Dynamics dynamics_;
+  Vector3 flange_velocity_ = Vector3::Zero();
+  bool first_cycle_ = true;
+};
+
+}  // namespace ur_simulator

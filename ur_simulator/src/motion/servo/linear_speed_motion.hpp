@@ -1,0 +1,23 @@
+#pragma once
+
+#include "motion/servo/speed_motion.hpp"
+#include "motion/tcp_kinematics.hpp"
+
+namespace ur_simulator {
+
+/// speedl and stopl: the twist of the TCP goes straight to its target, the linear and the angular part
+/// together. Neither changes faster than `acceleration` (m/s^2, rad/s^2).
+class LinearSpeedMotion final : public SpeedMotion {
+ public:
+  LinearSpeedMotion(const TcpKinematics & kinematics, const Setpoint & start, const Vector6 & twist,
+                    double acceleration, double time);
+
+  std::optional<MotionFault> advance(const TimeStep & time_step, Setpoint & setpoint) override;
+
+ private:
+  TcpKinematics kinematics_;
+  Transform pose_;
+  Vector6 twist_;
+};
+
+}  // namespace ur_simulator

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "net/listener.hpp"
+#include "polyscope/pendant.hpp"
+#include "urscript/script_reader.hpp"
+
+namespace ur_simulator::primary {
+
+/// One of the client interfaces: 30001 primary, 30002 secondary, 30003 real-time (UR, "Client Interface").
+/// Runs the scripts that clients send and sends them messages. Messages are dropped for clients that do not
+/// read; their connections stay open.
+class ClientInterfaceServer {
+ public:
+  /// `first_message` is sent to each new client; it may be empty.
+  ClientInterfaceServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
+                        Pendant & pendant, std::string first_message);
+  ~ClientInterfaceServer();
+
+  /// Sends a complete message to each client without unsent data.
+  void broadcast(std::string_view message);
+  Listener & listener() { return listener_; }
+  const Listener & listener() const { return listener_; }
+  bool has_clients() const { return !clients_.empty(); }
+
+ private:
+  struct Client {
+    std::shared_ptr<Connection> connection;
+    urscript::ScriptReader reader;
+    std::uint64_t dropped_scripts = 0;
+  };
+  void accept(const std::shared_ptr<Connection> & connection);
+  void receive(Client & client, std::string_view bytes);
+  void log_dropped_scripts(Client & client);
+
+  Pendant & pendant_;
+  std::string first_message_;
+  std::map<std::uint64_t, std::shared_ptr<Client>> clients_;
+  Listener listener_;
+};
+
+}  // namespace ur_simulator::primary

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "state/modes.hpp"
+
+namespace ur_simulator {
+
+/// An entry of the robot's log.
+struct SafetyEvent {
+  enum class Level { information, warning, error };
+  std::uint64_t cycle;
+  double timestamp;  ///< s of simulated time
+  Level level;
+  RobotMode robot_mode;    ///< after the event
+  SafetyMode safety_mode;  ///< after the event
+  std::string message;
+};
+
+}  // namespace ur_simulator

@@ -1,0 +1,113 @@
+#include "script_api/robot_context.hpp"
+
+namespace ur_simulator::script_api {
+
+namespace {
+
+// Bits of Io::analog_io_types, as in RTDE's analog_io_types: inputs 0 and 1, then outputs 0 and 1. 1:
+// voltage, 0: current.
+constexpr std::uint32_t input_type_bit = 0;
+constexpr std::uint32_t output_type_bit = 2;
+
+std::size_t port(ArgumentReader & reader, const char * name)
+{
+  const std::int32_t n = reader.integer(0, name);
+  reader.require(n == 0 || n == 1, fmt::format("{} must be 0 or 1, is {}", name, n));
+  return reader ? static_cast<std::size_t>(n) : 0;
+}
+
+bool is_voltage(const Io & io, std::size_t output)
+{
+  return ((io.analog_io_types >> (output_type_bit + output)) & 1U) != 0;
+}
+
+// A level of 0 to 1 corresponds to 4 to 20 mA or 0 to 10 V (script manual, "set_standard_analog_out").
+double to_physical(double level, bool voltage)
+{
+  return voltage ? level * 10.0 : 0.004 + level * 0.016;
+}
+double to_level(double value, bool voltage)
+{
+  return voltage ? value / 10.0 : (value - 0.004) / 0.016;
+}
+
+Outcome set_output(RobotContext & robot, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::size_t n = port(reader, "n");
+  const double level = reader.number(1, "f");
+  reader.require(level >= 0.0 && level <= 1.0, fmt::format("f must be in [0, 1], is {}", level));
+  if (!reader) {
+    return reader.failure();
+  }
+  Io & io = robot.state().io;
+  io.analog_outputs[n] = to_physical(level, is_voltage(io, n));
+  return Value();
+}
+
+Outcome get_output(RobotContext & robot, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::size_t n = port(reader, "n");
+  const Io & io = robot.state().io;
+  return reader ? Outcome(Value(to_level(io.analog_outputs[n], is_voltage(io, n)))) : reader.failure();
+}
+
+template <std::array<double, 2> Io::* inputs>
+Outcome get_input(RobotContext & robot, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::size_t n = port(reader, "n");
+  return reader ? Outcome(Value((robot.state().io.*inputs)[n])) : reader.failure();
+}
+
+template <std::uint32_t Io::* types, std::uint32_t first_bit>
+Outcome set_domain(RobotContext & robot, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::uint32_t mask = 1U << (first_bit + port(reader, "port"));
+  const std::int32_t domain = reader.integer(1, "domain");
+  reader.require(domain == 0 || domain == 1,
+                 fmt::format("domain must be 0 (current) or 1 (voltage), is {}", domain));
+  if (!reader) {
+    return reader.failure();
+  }
+  std::uint32_t & bits = robot.state().io.*types;
+  bits = domain == 1 ? bits | mask : bits & ~mask;
+  return Value();
+}
+
+Outcome set_tool_voltage(RobotContext & robot, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::int32_t voltage = reader.integer(0, "voltage");
+  reader.require(voltage == 0 || voltage == 12 || voltage == 24,
+                 fmt::format("voltage must be 0, 12 or 24, is {}", voltage));
+  if (!reader) {
+    return reader.failure();
+  }
+  robot.state().io.tool_output_voltage = voltage;
+  return Value();
+}
+
+}  // namespace
+
+void add_analog_io_builtins(Library & library, const RobotContextPtr & robot)
+{
+  add_robot_builtin(library, robot, "set_analog_out", {"n", "f"}, 2, set_output);
+  add_robot_builtin(library, robot, "set_standard_analog_out", {"n", "f"}, 2, set_output);
+  add_robot_builtin(library, robot, "get_analog_out", {"n"}, 1, get_output);
+  add_robot_builtin(library, robot, "get_standard_analog_out", {"n"}, 1, get_output);
+  add_robot_builtin(library, robot, "get_analog_in", {"n"}, 1, get_input<&Io::analog_inputs>);
+  add_robot_builtin(library, robot, "get_standard_analog_in", {"n"}, 1, get_input<&Io::analog_inputs>);
+  add_robot_builtin(library, robot, "get_tool_analog_in", {"n"}, 1, get_input<&Io::tool_analog_inputs>);
+  add_robot_builtin(library, robot, "set_analog_outputdomain", {"port", "domain"}, 2,
+                    set_domain<&Io::analog_io_types, output_type_bit>);
+  add_robot_builtin(library, robot, "set_standard_analog_input_domain", {"port", "domain"}, 2,
+                    set_domain<&Io::analog_io_types, input_type_bit>);
+  add_robot_builtin(library, robot, "set_tool_analog_input_domain", {"port", "domain"}, 2,
+                    set_domain<&Io::tool_analog_input_types, 0>);
+  add_robot_builtin(library, robot, "set_tool_voltage", {"voltage"}, 1, set_tool_voltage);
+}
+
+}  // namespace ur_simulator::script_api

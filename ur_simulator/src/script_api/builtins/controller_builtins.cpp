@@ -1,0 +1,63 @@
+#include "script_api/robot_context.hpp"
+
+namespace ur_simulator::script_api {
+
+namespace {
+
+std::optional<Watchdog::Action> parse_action(std::string name)
+{
+  for (char & c : name) {
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  if (name == "ignore") {
+    return Watchdog::Action::ignore;
+  }
+  if (name == "pause") {
+    return Watchdog::Action::pause;
+  }
+  return name == "stop" ? std::optional(Watchdog::Action::stop) : std::nullopt;
+}
+
+Outcome set_watchdog(RobotContext & robot, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::string variable = reader.string(0, "variable_name");
+  const double frequency = reader.number(1, "min_frequency");
+  const std::string name = reader.string(2, "action");
+  const auto action = parse_action(name);
+  reader.require(frequency >= 0.0, fmt::format("min_frequency must not be negative, is {}", frequency));
+  reader.require(action.has_value(),
+                 fmt::format("action must be \"ignore\", \"pause\" or \"stop\", is \"{}\"", name));
+  if (!reader) {
+    return reader.failure();
+  }
+  robot.access.watchdog.set(variable, frequency, *action, robot.state().timestamp);
+  return Value();
+}
+
+// The request takes effect after this cycle; the call returns in the next one.
+Outcome request(const std::function<void()> & what)
+{
+  if (what) {
+    what();
+  }
+  return NextCycle{};
+}
+
+}  // namespace
+
+void add_controller_builtins(Library & library, const RobotContextPtr & robot)
+{
+  library.add({"rtde_set_watchdog",
+               {"variable_name", "min_frequency", {"action", Value("pause")}},
+               2,
+               [robot](CallContext &, Arguments arguments) { return set_watchdog(*robot, arguments); }});
+  library.add({"powerdown", {}, 0, [robot](CallContext &, Arguments) {
+                 return request(robot->access.requests.power_down);
+               }});
+  library.add({"protective_stop", {}, 0, [robot](CallContext &, Arguments) {
+                 return request(robot->access.requests.protective_stop);
+               }});
+}
+
+}  // namespace ur_simulator::script_api

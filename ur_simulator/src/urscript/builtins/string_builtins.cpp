@@ -1,0 +1,106 @@
+#include <cstdlib>
+
+#include "urscript/argument_reader.hpp"
+#include "urscript/builtins/builtins.hpp"
+#include "urscript/interpreter/containers.hpp"
+
+namespace ur_simulator::urscript {
+
+namespace {
+
+Outcome str_at(CallContext &, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::string source = reader.string(0, "src");
+  const std::int32_t index = reader.integer(1, "index");
+  reader.require(
+      index >= 0 && static_cast<std::size_t>(index) < source.size(),
+      fmt::format("index must be in [0, {}], is {}", static_cast<std::int64_t>(source.size()) - 1, index));
+  return reader ? Outcome(Value(std::string(1, source[static_cast<std::size_t>(index)]))) : reader.failure();
+}
+
+Outcome str_cat(CallContext &, Arguments arguments)
+{
+  std::string result;
+  for (const Value & part : arguments) {
+    result += part.text();
+  }
+  if (result.size() > string_limit) {
+    return Failure{fmt::format("the string is longer than {} bytes", string_limit)};
+  }
+  return Value(std::move(result));
+}
+
+Outcome str_find(CallContext &, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::string source = reader.string(0, "src");
+  const std::string target = reader.string(1, "target");
+  const std::int32_t start = reader.integer(2, "start_from");
+  reader.require(start >= 0, "start_from must not be negative");
+  const std::size_t found = source.find(target, static_cast<std::size_t>(std::max(start, 0)));
+  return reader ? Outcome(Value(found == std::string::npos ? -1 : static_cast<std::int32_t>(found)))
+                : reader.failure();
+}
+
+Outcome str_sub(CallContext &, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::string source = reader.string(0, "src");
+  const std::int32_t index = reader.integer(1, "index");
+  const std::int32_t length = reader.given(2) ? reader.integer(2, "len") : -1;
+  reader.require(index >= 0 && static_cast<std::size_t>(index) <= source.size(),
+                 fmt::format("index must be in [0, {}], is {}", source.size(), index));
+  if (!reader) {
+    return reader.failure();
+  }
+  return Value(source.substr(static_cast<std::size_t>(index),
+                             length < 0 ? std::string::npos : static_cast<std::size_t>(length)));
+}
+
+Outcome to_num(CallContext &, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::string text = reader.string(0, "str");
+  char * end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  reader.require(!text.empty() && *end == '\0' && std::isfinite(number),
+                 fmt::format("'{}' is not a number", text));
+  if (!reader) {
+    return reader.failure();
+  }
+  const bool whole = text.find_first_of(".eE") == std::string::npos && std::abs(number) <= 2147483647.0;
+  return whole ? Value(static_cast<std::int32_t>(number)) : Value(number);
+}
+
+Outcome str_len(CallContext &, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const auto length = static_cast<std::int32_t>(reader.string(0, "str").size());
+  return reader ? Outcome(Value(length)) : reader.failure();
+}
+
+Outcome str_empty(CallContext &, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const bool empty = reader.string(0, "str").empty();
+  return reader ? Outcome(Value(empty)) : reader.failure();
+}
+
+}  // namespace
+
+void add_string_builtins(Library & library)
+{
+  library.add({"str_at", {"src", "index"}, 2, str_at});
+  library.add({"str_cat", {"op1", "op2"}, 2, str_cat});
+  library.add({"str_find", {"src", "target", {"start_from", Value(0)}}, 2, str_find});
+  library.add({"str_sub", {"src", "index", "len"}, 2, str_sub});
+  library.add({"str_len", {"str"}, 1, str_len});
+  library.add({"str_empty", {"str"}, 1, str_empty});
+  library.add({"to_num", {"str"}, 1, to_num});
+  library.add({"to_str", {"val"}, 1, [](CallContext &, Arguments arguments) -> Outcome {
+                 return Value(arguments[0].text());
+               }});
+}
+
+}  // namespace ur_simulator::urscript

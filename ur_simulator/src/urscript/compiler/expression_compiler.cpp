@@ -1,0 +1,332 @@
+#include "urscript/compiler/expression_compiler.hpp"
+
+#include <functional>
+
+namespace ur_simulator::urscript {
+
+namespace {
+
+constexpr std::uint32_t missing = 0xFFFFFFFF;
+
+/// For each parameter, the index of the operand that the call passes for it.
+std::vector<std::uint32_t> match_arguments(const Expression & call, std::size_t parameters,
+                                           const std::function<std::string(std::size_t)> & parameter_name,
+                                           const std::function<void(std::string)> & fail)
+{
+  std::vector<std::uint32_t> given(parameters, missing);
+  bool named = false;
+  for (std::uint32_t i = 0; i < call.operands.size(); ++i) {
+    const std::string & name = call.argument_names[i];
+    std::size_t position = i;
+    if (!name.empty()) {
+      named = true;
+      position = 0;
+      while (position < parameters && parameter_name(position) != name) {
+        ++position;
+      }
+      if (position == parameters) {
+        fail("The function '" + call.name + "' has no parameter '" + name + "'");
+      }
+    } else if (named) {
+      fail("In the call of '" + call.name + "' a positional argument follows a named one");
+    } else if (position >= parameters) {
+      fail("The function '" + call.name + "' takes " + std::to_string(parameters) + " arguments, " +
+           std::to_string(call.operands.size()) + " are given");
+    }
+    if (given[position] != missing) {
+      fail("In the call of '" + call.name + "' the argument '" + parameter_name(position) +
+           "' is given twice");
+    }
+    given[position] = i;
+  }
+  return given;
+}
+
+}  // namespace
+
+void ExpressionCompiler::fail(const Expression & where, std::string message)
+{
+  throw CompileError{where.line, where.column, std::move(message)};
+}
+
+void ExpressionCompiler::compile_expression(const Expression & expression)
+{
+  emitter_.set_line(expression.line);
+  switch (expression.kind) {
+    case ExpressionKind::literal:
+      emitter_.emit_constant(expression.value);
+      return;
+    case ExpressionKind::variable:
+      emit_load(expression);
+      return;
+    case ExpressionKind::chain:
+      compile_chain(expression);
+      return;
+    case ExpressionKind::call:
+      compile_call(expression);
+      return;
+    case ExpressionKind::method:
+      compile_method_call(expression);
+      return;
+    case ExpressionKind::run:
+      if (const auto thread = symbols_.function(*scope_, expression.name)) {
+        compile_function_call(expression, **thread, Opcode::run);
+        return;
+      }
+      fail(expression, "The thread '" + expression.name + "' is not defined");
+    default:
+      compile_operation(expression);
+      return;
+  }
+}
+
+void ExpressionCompiler::compile_operation(const Expression & expression)
+{
+  for (const ExpressionPtr & operand : expression.operands) {
+    compile_expression(*operand);
+  }
+  emitter_.set_line(expression.line);
+  const auto count = static_cast<std::uint32_t>(expression.operands.size());
+  switch (expression.kind) {
+    case ExpressionKind::list:
+      emitter_.emit(Opcode::make_list, count);
+      return;
+    case ExpressionKind::pose:
+      emitter_.emit(Opcode::make_pose);
+      return;
+    case ExpressionKind::index:
+      emitter_.emit(Opcode::index, count - 1);
+      return;
+    case ExpressionKind::member:
+      emitter_.emit(Opcode::member, emitter_.name_index(expression.name));
+      return;
+    case ExpressionKind::negate:
+      emitter_.emit(Opcode::negate);
+      return;
+    default:
+      emitter_.emit(Opcode::logical_not);
+      return;
+  }
+}
+
+Variable ExpressionCompiler::variable(const Expression & expression)
+{
+  if (const auto found = symbols_.find(*scope_, expression.name)) {
+    return *found;
+  }
+  fail(expression, "The variable '" + expression.name + "' is not defined");
+}
+
+void ExpressionCompiler::emit_load(const Expression & expression)
+{
+  const auto found = symbols_.find(*scope_, expression.name);
+  if (!found) {
+    if (const Value * constant = library_.constant(expression.name)) {
+      emitter_.emit_constant(*constant);
+      return;
+    }
+  }
+  const Variable source = variable(expression);
+  switch (source.storage) {
+    case Storage::global:
+      emitter_.emit(Opcode::load_global, source.global_slot);
+      return;
+    case Storage::local:
+      emitter_.emit(Opcode::load_local, source.local_slot);
+      return;
+    case Storage::global_or_local:
+      emitter_.emit(Opcode::load_global_or_local, source.global_slot, source.local_slot);
+      return;
+  }
+}
+
+void ExpressionCompiler::emit_store(const Variable & variable)
+{
+  switch (variable.storage) {
+    case Storage::global:
+      emitter_.emit(Opcode::store_global, variable.global_slot);
+      return;
+    case Storage::local:
+      emitter_.emit(Opcode::store_local, variable.local_slot);
+      return;
+    case Storage::global_or_local:
+      emitter_.emit(Opcode::store_global_or_local, variable.global_slot, variable.local_slot);
+      return;
+  }
+}
+
+void ExpressionCompiler::compile_structure(const Expression & expression)
+{
+  std::vector<std::string> member_names;
+  for (std::size_t i = 0; i < expression.operands.size(); ++i) {
+    if (expression.argument_names[i].empty()) {
+      fail(expression, "every member of struct(...) needs a name: struct(name = value, ...)");
+    }
+    member_names.push_back(expression.argument_names[i]);
+    compile_expression(*expression.operands[i]);
+  }
+  code_.structure_types.push_back(std::move(member_names));
+  emitter_.emit(Opcode::make_structure, static_cast<std::uint32_t>(code_.structure_types.size() - 1));
+}
+
+void ExpressionCompiler::compile_chain(const Expression & expression)
+{
+  compile_expression(*expression.operands.front());
+  std::size_t i = 0;
+  while (i < expression.operators.size()) {
+    const Operator op = expression.operators[i];
+    if (op != Operator::logical_or && op != Operator::logical_and) {
+      compile_expression(*expression.operands[i + 1]);
+      emitter_.set_line(expression.operands[i + 1]->line);
+      emitter_.emit(Opcode::binary, static_cast<std::uint32_t>(op));
+      ++i;
+      continue;
+    }
+    std::size_t last = i;
+    while (last + 1 < expression.operators.size() && expression.operators[last + 1] == op) {
+      ++last;
+    }
+    compile_short_circuit(expression, i, last);
+    i = last + 1;
+  }
+}
+
+// Jumps behind a run of equal logical operators as soon as the result is known.
+void ExpressionCompiler::compile_short_circuit(const Expression & expression, std::size_t first,
+                                               std::size_t last)
+{
+  const Opcode leave = expression.operators[first] == Operator::logical_or ? Opcode::jump_if_true_or_pop
+                                                                           : Opcode::jump_if_false_or_pop;
+  std::vector<std::uint32_t> jumps;
+  for (std::size_t i = first; i <= last; ++i) {
+    jumps.push_back(emitter_.emit_jump(leave));
+    compile_expression(*expression.operands[i + 1]);
+  }
+  emitter_.emit(Opcode::to_boolean);
+  for (const std::uint32_t jump : jumps) {
+    emitter_.patch_jump(jump);
+  }
+}
+
+void ExpressionCompiler::compile_call(const Expression & expression)
+{
+  if (const auto definition = symbols_.function(*scope_, expression.name)) {
+    compile_function_call(expression, **definition, Opcode::call);
+  } else if (expression.name == "struct") {
+    compile_structure(expression);
+  } else if (const auto builtin = library_.find(expression.name)) {
+    compile_builtin_call(expression, *builtin);
+  } else {
+    fail(expression, "The function '" + expression.name + "' is not defined");
+  }
+}
+
+void ExpressionCompiler::compile_function_call(const Expression & expression, const Definition & definition,
+                                               Opcode op)
+{
+  const auto & parameters = definition.parameters;
+  const auto given = match_arguments(
+      expression, parameters.size(), [&](std::size_t i) { return parameters[i].name; },
+      [&](std::string message) { fail(expression, std::move(message)); });
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (given[i] != missing) {
+      compile_expression(*expression.operands[given[i]]);
+    } else if (parameters[i].default_value) {
+      emitter_.emit(Opcode::push_none);
+    } else {
+      fail(expression,
+           "The function '" + expression.name + "' needs the argument '" + parameters[i].name + "'");
+    }
+  }
+  emitter_.set_line(expression.line);
+  emitter_.emit(op, symbols_.scope_of(definition).function, static_cast<std::uint32_t>(parameters.size()));
+}
+
+void ExpressionCompiler::compile_builtin_call(const Expression & expression, std::uint32_t index)
+{
+  const Builtin & builtin = library_[index];
+  std::size_t count = builtin.parameters.size();
+  if (builtin.variadic) {
+    count = std::max(count, expression.operands.size());
+  }
+  const auto name = [&](std::size_t i) {
+    return i < builtin.parameters.size() ? builtin.parameters[i].name : std::to_string(i + 1);
+  };
+  const auto given = match_arguments(expression, count, name,
+                                     [&](std::string message) { fail(expression, std::move(message)); });
+  for (std::size_t i = 0; i < count; ++i) {
+    if (given[i] != missing) {
+      compile_expression(*expression.operands[given[i]]);
+    } else if (i < builtin.required) {
+      fail(expression, "The function '" + expression.name + "' needs the argument '" + name(i) + "'");
+    } else if (builtin.parameters[i].default_value.is(Type::none)) {
+      emitter_.emit(Opcode::push_none);
+    } else {
+      emitter_.emit_constant(builtin.parameters[i].default_value);
+    }
+  }
+  emitter_.set_line(expression.line);
+  emitter_.emit(Opcode::call_builtin, index, static_cast<std::uint32_t>(count));
+}
+
+bool ExpressionCompiler::is_lvalue(const Expression & expression) const
+{
+  const Expression * inner = &expression;
+  while (inner->kind == ExpressionKind::index || inner->kind == ExpressionKind::member) {
+    inner = inner->operands.front().get();
+  }
+  return inner->kind == ExpressionKind::variable && symbols_.find(*scope_, inner->name).has_value();
+}
+
+void ExpressionCompiler::collect_lvalue(const Expression & target, Lvalue & lvalue)
+{
+  if (target.kind == ExpressionKind::variable) {
+    const Variable base = variable(target);
+    lvalue.storage = base.storage;
+    lvalue.global_slot = base.global_slot;
+    lvalue.local_slot = base.local_slot;
+    lvalue.name = target.name;
+    return;
+  }
+  collect_lvalue(*target.operands.front(), lvalue);
+  LvalueStep step;
+  step.member = target.name;
+  for (std::size_t i = 1; i < target.operands.size(); ++i) {
+    compile_expression(*target.operands[i]);
+    ++step.indices;
+  }
+  lvalue.indices += step.indices;
+  lvalue.steps.push_back(std::move(step));
+}
+
+std::uint32_t ExpressionCompiler::make_lvalue(const Expression & target)
+{
+  Lvalue lvalue;
+  collect_lvalue(target, lvalue);
+  code_.lvalues.push_back(std::move(lvalue));
+  return static_cast<std::uint32_t>(code_.lvalues.size() - 1);
+}
+
+void ExpressionCompiler::compile_method_call(const Expression & expression)
+{
+  const Expression & object = *expression.operands.front();
+  const bool in_place = is_lvalue(object);
+  std::uint32_t lvalue = 0;
+  if (in_place) {
+    lvalue = make_lvalue(object);
+  } else {
+    compile_expression(object);
+  }
+  for (std::size_t i = 1; i < expression.operands.size(); ++i) {
+    if (!expression.argument_names[i - 1].empty()) {
+      fail(expression, "the method '" + expression.name + "' takes no named arguments");
+    }
+    compile_expression(*expression.operands[i]);
+  }
+  code_.methods.push_back({expression.name, static_cast<std::uint32_t>(expression.operands.size() - 1)});
+  emitter_.set_line(expression.line);
+  emitter_.emit(in_place ? Opcode::call_method_of_lvalue : Opcode::call_method_of_value, lvalue,
+                static_cast<std::uint32_t>(code_.methods.size() - 1));
+}
+
+}  // namespace ur_simulator::urscript

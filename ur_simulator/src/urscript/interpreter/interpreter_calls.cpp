@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+
+#include "urscript/interpreter/containers.hpp"
+#include "urscript/interpreter/interpreter.hpp"
+
+// Instructions that call functions, builtins, methods and threads.
+
+namespace ur_simulator::urscript {
+
+namespace {
+
+constexpr std::uint32_t method_cost = 10;
+constexpr std::size_t stack_limit = 100000;
+
+}  // namespace
+
+Interpreter::Next Interpreter::call(const Instruction & instruction)
+{
+  const Function & callee = code_.functions[instruction.a];
+  if (thread_->frames.size() >= options_.call_depth || thread_->stack.size() > stack_limit) {
+    return fail_at_current_line(
+        fmt::format("call depth exceeds {} at '{}'", options_.call_depth, callee.name));
+  }
+  const auto base = static_cast<std::uint32_t>(thread_->stack.size() - instruction.b);
+  thread_->frames.push_back({instruction.a, base, thread_->next});
+  thread_->stack.resize(base + callee.locals);
+  thread_->next = callee.entry;
+  return Next::proceed;
+}
+
+Interpreter::Next Interpreter::return_value()
+{
+  const Frame frame = thread_->frames.back();
+  if (thread_->frames.size() == 1) {
+    end_thread(*thread_);
+    return Next::yield;
+  }
+  Value result = pop();
+  thread_->frames.pop_back();
+  thread_->stack.resize(frame.base);
+  thread_->stack.push_back(std::move(result));
+  thread_->next = frame.return_to;
+  return Next::proceed;
+}
+
+Interpreter::Next Interpreter::call_builtin(const Instruction & instruction)
+{
+  const Builtin & builtin = library_[instruction.a];
+  cost_ += builtin.cost;
+  const auto arguments = top(instruction.b);
+  add_cost(arguments);
+  for (std::size_t i = 0; i < builtin.required; ++i) {
+    if (arguments[i].is(Type::none)) {
+      return fail_at_current_line(
+          fmt::format("{}: the argument '{}' has no value", builtin.name, builtin.parameters[i].name));
+    }
+  }
+  context_->line = line_of(*thread_);
+  Outcome outcome = builtin.function(*context_, arguments);
+  if (auto * failure = std::get_if<Failure>(&outcome)) {
+    const bool named = failure->message.starts_with(builtin.name + ":");
+    return fail_at_current_line(named ? failure->message : builtin.name + ": " + failure->message);
+  }
+  return handle_outcome(std::move(outcome), instruction.b);
+}
+
+Interpreter::Next Interpreter::handle_outcome(Outcome outcome, std::size_t arguments)
+{
+  const bool waits = std::holds_alternative<NextCycle>(outcome) ||
+                     std::holds_alternative<std::unique_ptr<Operation>>(outcome);
+  if (waits && context_->secondary) {
+    if (auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome)) {
+      (*operation)->cancel();
+    }
+    return fail_at_current_line("a secondary program cannot call functions that take physical time");
+  }
+  drop(arguments);
+  if (auto * value = std::get_if<Value>(&outcome)) {
+    thread_->stack.push_back(std::move(*value));
+    return Next::proceed;
+  }
+  if (auto * next = std::get_if<NextCycle>(&outcome)) {
+    thread_->state = ThreadState::next_cycle;
+    thread_->pending = std::move(next->value);
+  } else if (auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome)) {
+    thread_->state = ThreadState::operation;
+    thread_->operation = std::move(*operation);
+  } else {
+    halted_ = true;
+  }
+  return Next::yield;
+}
+
+Value & Interpreter::variable(const Lvalue & lvalue)
+{
+  const bool global = lvalue.storage == Storage::global || (lvalue.storage == Storage::global_or_local &&
+                                                            !globals_[lvalue.global_slot].is(Type::none));
+  return global ? globals_[lvalue.global_slot] : local(lvalue.local_slot);
+}
+
+Interpreter::Next Interpreter::store_lvalue(const Instruction & instruction)
+{
+  const Lvalue & lvalue = code_.lvalues[instruction.a];
+  Value & target = variable(lvalue);
+  if (target.is(Type::none)) {
+    return fail_at_current_line(fmt::format("The variable '{}' has no value", lvalue.name));
+  }
+  add_cost(target);
+  Value value = pop();
+  const auto stored = assign(target, lvalue, top(lvalue.indices), std::move(value));
+  if (!stored) {
+    return fail_at_current_line(stored.error());
+  }
+  drop(lvalue.indices);
+  return Next::proceed;
+}
+
+Interpreter::Next Interpreter::method(const Instruction & instruction)
+{
+  cost_ += method_cost;
+  const MethodCall & call = code_.methods[instruction.b];
+  const auto arguments = top(call.arguments);
+  add_cost(arguments);
+  if (instruction.op == Opcode::call_method_of_value) {
+    Value & object = *(thread_->stack.end() - 1 - call.arguments);
+    add_cost(object);
+    return replace_top(call.arguments + 1, call_method(object, call.name, arguments));
+  }
+  const Lvalue & lvalue = code_.lvalues[instruction.a];
+  const auto indices = top(call.arguments + lvalue.indices).first(lvalue.indices);
+  const auto object = follow(variable(lvalue), lvalue, indices, lvalue.steps.size());
+  if (!object) {
+    return fail_at_current_line(object.error());
+  }
+  add_cost(**object);
+  auto result = call_method(**object, call.name, arguments);
+  if (!result) {
+    return fail_at_current_line(std::move(result.error()));
+  }
+  drop(call.arguments + lvalue.indices);
+  thread_->stack.push_back(std::move(*result));
+  return Next::proceed;
+}
+
+Interpreter::Next Interpreter::run_thread(const Instruction & instruction)
+{
+  if (threads_.size() >= options_.threads) {
+    return fail_at_current_line(fmt::format("the number of threads exceeds {}", options_.threads));
+  }
+  // The new thread first runs after this one waits, hence after the handle is assigned.
+  const std::int32_t handle = start_thread(instruction.a, top(instruction.b)).handle;
+  drop(instruction.b);
+  thread_->stack.emplace_back(handle);
+  return Next::proceed;
+}
+
+Interpreter::Next Interpreter::kill_or_join(bool join)
+{
+  const Value handle = pop();
+  if (!handle.is(Type::integer)) {
+    return fail_at_current_line(fmt::format("Type error: {} takes a thread's handle, not {}",
+                                            join ? "join" : "kill", urscript::name_of(handle.type())));
+  }
+  Thread * other = find_thread(handle.integer());
+  if (other == nullptr) {
+    return Next::proceed;
+  }
+  if (join) {
+    thread_->state = ThreadState::joining;
+    thread_->joined_thread = other->handle;
+    return Next::yield;
+  }
+  end_thread(*other);
+  return other == thread_ ? Next::yield : Next::proceed;
+}
+
+Interpreter::Next Interpreter::exit_critical_section()
+{
+  if (thread_->critical > 0 && --thread_->critical == 0) {
+    critical_owner_ = 0;
+  }
+  return Next::proceed;
+}
+
+}  // namespace ur_simulator::urscript

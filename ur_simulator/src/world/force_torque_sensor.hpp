@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+#include "common/types.hpp"
+#include "state/controller_state.hpp"
+
+namespace ur_simulator {
+
+/// The force/torque sensor at the flange and its signal processing in the controller: noise, weight and
+/// inertia of the load, low-pass filter, payload compensation, zero offset.
+class ForceTorqueSensor {
+ public:
+  ForceTorqueSensor(double cycle_time, std::uint64_t seed);
+
+  void zero() { zero_requested_ = true; }
+  void set_noise(double force, double torque);
+  /// Computes ft_raw_wrench, tool_wrench and actual_tcp_force from state.contact_wrench and the true load.
+  void step(const Payload & load, ControllerState & state);
+  /// Filtered force without the zero offset, in the base frame.
+  Vector3 force() const { return force_; }
+
+ private:
+  Vector6 noise();
+  static Vector6 sensor_wrench(const ControllerState & state);
+
+  double filter_gain_;
+  double force_noise_ = 0.5;
+  double torque_noise_ = 0.02;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  Vector6 filtered_ = Vector6::Zero();
+  Vector6 offset_ = Vector6::Zero();
+  Vector3 force_ = Vector3::Zero();
+  bool first_cycle_ = true;
+  bool zero_requested_ = false;
+};
+
+}  // namespace ur_simulator

@@ -1,0 +1,269 @@
+// Runs the control script of the installed ur_rtde against the simulated arm. The build defines the path of
+// the script.
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "script_fixture.hpp"
+
+namespace ur_simulator {
+namespace {
+
+using urscript::MachineStatus;
+
+// Prepares the script for PolyScope 5.25 as ur_rtde's ScriptClient does: selects the lines of that version
+// and inserts the register offset.
+std::string uploaded_script(const std::string & offset)
+{
+  std::ifstream file(UR_RTDE_CONTROL_SCRIPT);
+  std::stringstream result;
+  result << "def rtde_control():\n";
+  std::string line;
+  while (std::getline(file, line)) {
+    if (!line.empty() && line[0] == '$') {
+      const bool alternative = line.size() > 9 && line[5] == '|';
+      const std::size_t marker = alternative ? 10 : 5;
+      const int minor = std::stoi(line.substr(3, 2));
+      if (line[1] == '5' && minor > 25) {
+        continue;
+      }
+      line.replace(0, marker, std::string(marker, ' '));
+    }
+    result << line << "\n";
+    if (line.find("# float register offset") != std::string::npos ||
+        line.find("# int register offset") != std::string::npos) {
+      result << offset;
+    }
+  }
+  result << "end\n";
+  return result.str();
+}
+
+class ControlScriptTest : public ::testing::Test {
+ protected:
+  void SetUp() override
+  {
+    fixture.run(uploaded_script("0"));
+    fixture.until([&] { return output(0) == 1; }, 0.1);
+  }
+
+  std::int32_t output(std::size_t i) const { return fixture.state.outputs.integers[i]; }
+
+  void parameters(const Vector6 & six, std::initializer_list<double> more = {})
+  {
+    for (std::size_t i = 0; i < 6; ++i) {
+      fixture.state.inputs.doubles[i] = six[static_cast<Eigen::Index>(i)];
+    }
+    std::copy(more.begin(), more.end(), fixture.state.inputs.doubles.begin() + 6);
+  }
+
+  /// Sends one command like ur_rtde: waits until the script reports `done`, then until it is ready again.
+  double command(std::int32_t id, double limit = 30.0)
+  {
+    fixture.state.inputs.integers[0] = id;
+    const double time = fixture.until([&] { return output(0) == 2; }, limit);
+    fixture.state.inputs.integers[0] = 0;
+    fixture.until([&] { return output(0) == 1; }, 0.1);
+    return time;
+  }
+
+  void expect_running()
+  {
+    EXPECT_EQ(fixture.machine->status(), MachineStatus::running) << fixture.machine->error().message;
+  }
+
+  ScriptFixture fixture;
+};
+
+TEST_F(ControlScriptTest, ReportsItsStateAndIdleProgress)
+{
+  EXPECT_EQ(output(2), 65536);
+  EXPECT_NE(std::find(fixture.host.messages.begin(), fixture.host.messages.end(),
+                      "RTDE Control Script Loaded (14.02.2024-12:23)"),
+            fixture.host.messages.end());
+}
+
+TEST_F(ControlScriptTest, MovesJoints)
+{
+  Vector6 target = fixture.state.target.position;
+  target[0] += 0.4;
+  parameters(target, {1.0, 2.0});
+  fixture.state.inputs.integers[1] = 0;
+  EXPECT_GT(command(1), 0.4);
+  EXPECT_LT((fixture.state.target.position - target).norm(), 1e-6);
+  expect_running();
+}
+
+TEST_F(ControlScriptTest, MovesLinearlyInTheBackgroundAndStops)
+{
+  Vector6 target = fixture.state.target_tcp_pose;
+  const double start = target[2];
+  target[2] -= 0.3;
+  parameters(target, {0.1, 0.5});
+  fixture.state.inputs.integers[1] = 1;
+  EXPECT_LT(command(3), 0.02);
+  fixture.cycles(10);
+  EXPECT_NE(output(2) & 32768, 0) << "the operation is reported as running";
+  fixture.cycles(300);
+  EXPECT_LT(fixture.state.target_tcp_speed[2], -0.05);
+  parameters(Vector6::Constant(2.0));
+  fixture.state.inputs.integers[1] = 0;
+  const double time = command(33);
+  EXPECT_LT(time, 0.5);
+  EXPECT_LT(fixture.state.target_tcp_speed.norm(), 1e-9);
+  EXPECT_EQ(output(2) & 32768, 0);
+  EXPECT_GT(fixture.state.target_tcp_pose[2], start - 0.2);
+  expect_running();
+}
+
+TEST_F(ControlScriptTest, ReportsTheEndOfAMotionInTheBackground)
+{
+  Vector6 target = fixture.state.target.position;
+  target[5] += 0.2;
+  parameters(target, {1.0, 2.0});
+  fixture.state.inputs.integers[1] = 1;
+  command(1);
+  const std::int32_t operation = output(2) >> 24;
+  fixture.until([&] { return (output(2) & 32768) == 0; });
+  EXPECT_EQ(output(2) >> 24, operation);
+  EXPECT_LT((fixture.state.target.position - target).norm(), 1e-6);
+}
+
+TEST_F(ControlScriptTest, FollowsAServoStreamAndStops)
+{
+  Vector6 target = fixture.state.target.position;
+  for (int i = 0; i < 200; ++i) {
+    target[5] += 0.001;
+    parameters(target, {0.5, 0.5, 0.002, 0.1, 300.0});
+    fixture.state.inputs.integers[0] = 11;
+    fixture.cycle();
+    EXPECT_EQ(output(0), 1);
+  }
+  EXPECT_GT(fixture.state.target.velocity[5], 0.3);
+  fixture.state.inputs.integers[0] = 0;
+  fixture.cycle();
+  parameters(Vector6::Constant(10.0));
+  command(16);
+  EXPECT_LT(fixture.state.target.velocity.norm(), 1e-9);
+  expect_running();
+}
+
+TEST_F(ControlScriptTest, MovesAtJointAndAtToolSpeed)
+{
+  Vector6 speed = Vector6::Zero();
+  speed[2] = -0.05;
+  parameters(speed, {0.5, 0.0});
+  fixture.state.inputs.integers[0] = 10;
+  fixture.cycles(300);
+  EXPECT_NEAR(fixture.state.target_tcp_speed[2], -0.05, 1e-4);
+  fixture.state.inputs.integers[0] = 0;
+  fixture.cycle();
+  parameters(Vector6::Constant(10.0));
+  command(15);
+  EXPECT_LT(fixture.state.target_tcp_speed.norm(), 1e-9);
+
+  speed.setZero();
+  speed[0] = 0.2;
+  parameters(speed, {1.0, 0.0});
+  fixture.state.inputs.integers[0] = 9;
+  fixture.cycles(300);
+  EXPECT_NEAR(fixture.state.target.velocity[0], 0.2, 1e-6);
+  fixture.state.inputs.integers[0] = 0;
+  fixture.cycle();
+  parameters(Vector6::Constant(10.0));
+  command(15);
+  EXPECT_LT(fixture.state.target.velocity.norm(), 1e-9);
+  expect_running();
+}
+
+TEST_F(ControlScriptTest, JogsInTheToolFrame)
+{
+  Vector6 speed = Vector6::Zero();
+  speed[2] = 0.05;
+  parameters(speed, {1.0, 0.5, 0, 0, 0, 0, 0, 0});
+  command(41);
+  fixture.cycles(200);
+  EXPECT_NEAR(fixture.state.target_tcp_speed.head<3>().norm(), 0.05, 1e-3);
+  command(42);
+  EXPECT_LT(fixture.state.target_tcp_speed.norm(), 1e-9);
+}
+
+TEST_F(ControlScriptTest, AnswersQueries)
+{
+  parameters(fixture.state.target_tcp_pose);
+  command(46);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    EXPECT_NEAR(fixture.state.outputs.doubles[static_cast<std::size_t>(i)], fixture.state.target.position[i],
+                1e-8);
+  }
+  command(43);
+  EXPECT_NEAR(fixture.state.outputs.doubles[2], fixture.state.actual_tcp_pose[2], 1e-9);
+  parameters(fixture.state.target_tcp_pose);
+  command(60);
+  EXPECT_EQ(output(1), 1);
+  command(36);
+  EXPECT_EQ(output(1), 1);
+  command(47);
+  EXPECT_EQ(output(1), 1);
+  parameters(Vector6::Constant(0.0));
+  fixture.state.inputs.doubles[0] = 1.5;
+  command(17);
+  EXPECT_EQ(fixture.state.payload.mass, 1.5);
+  command(8);
+  expect_running();
+}
+
+// Commands that are processed in every cycle leave the script ready; each must run at least once without an
+// error.
+TEST_F(ControlScriptTest, ProcessesTheCommandsOfNewerControllers)
+{
+  for (const std::int32_t id : {26, 27, 38, 58, 67, 68, 69, 70, 71}) {
+    fixture.state.inputs.integers[0] = id;
+    fixture.cycles(3);
+    EXPECT_EQ(fixture.machine->status(), MachineStatus::running)
+        << id << ": " << fixture.machine->error().message;
+    fixture.state.inputs.integers[0] = 0;
+    fixture.cycles(2);
+  }
+  EXPECT_EQ(output(0), 1);
+}
+
+TEST_F(ControlScriptTest, EndsOnCommand)
+{
+  fixture.state.inputs.integers[0] = 255;
+  fixture.finish(0.1);
+  EXPECT_EQ(fixture.machine->status(), MachineStatus::finished);
+}
+
+TEST_F(ControlScriptTest, ARejectedCommandEndsItWithAReason)
+{
+  for (const std::int32_t command : {18, 0, 1}) {  // teach mode, end of teach mode, movej
+    fixture.state.inputs.integers[0] = command;
+    fixture.cycles(10);
+  }
+  EXPECT_EQ(fixture.machine->status(), MachineStatus::failed);
+  EXPECT_NE(fixture.machine->error().message.find("freedrive"), std::string::npos)
+      << fixture.machine->error().message;
+}
+
+TEST_F(ControlScriptTest, RunsWithInjectedOffsetsOfAnEarlierUploadToo)
+{
+  // After two uploads "0" becomes "00"; the upper register range inserts 24.
+  fixture.run(uploaded_script("00"));
+  fixture.cycles(3);
+  expect_running();
+}
+
+TEST_F(ControlScriptTest, UsesFewInstructions)
+{
+  Vector6 target = fixture.state.target.position;
+  parameters(target, {0.5, 0.5, 0.002, 0.1, 300.0});
+  fixture.state.inputs.integers[0] = 11;
+  fixture.cycles(10);
+  EXPECT_LT(fixture.machine->instructions(), 2500U);
+  RecordProperty("instructions", static_cast<int>(fixture.machine->instructions()));
+}
+
+}  // namespace
+}  // namespace ur_simulator
