@@ -4,7 +4,7 @@
 
 #include "kinematics/robot_model.hpp"
 #include "polyscope/pendant.hpp"
-#include "safety/limits.hpp"
+#include "safety/safety_limits.hpp"
 #include "ur_simulator/simulated_controller.hpp"
 #include "version/polyscope_version.hpp"
 #include "world/world.hpp"
