@@ -101,8 +101,8 @@ def test_the_headers_do_not_compile_without_the_library(tmp_path):
 
 def test_ur_ros_rtde_does_not_compile_with_headers_of_another_installation(tmp_path, other_headers):
     source = tmp_path / "main.cpp"
-    source.write_text("#include <ur_ros_rtde/interfaces.hpp>\n")
+    source.write_text("#include <ur_ros_rtde_robot/connection/interfaces.hpp>\n")
     code, text = compile_only(source, "-DUR_RTDE_VENDOR", "-I", other_headers, "-I", HEADERS,
-                              "-I", ROOT / "ur_ros_rtde" / "include")
+                              "-I", ROOT / "ur_ros_rtde_robot" / "include", "-I", ROOT / "ur_ros_rtde_trajectory" / "include")
     assert code != 0
     assert "These are not the ur_rtde headers of ur_rtde_vendor. Remove find_package(ur_rtde) from this project." in text

@@ -33,13 +33,13 @@ def installed() -> Iterator[Tuple[str, str, str]]:
 
 
 def action_type(name: str, package: str) -> Optional[Tuple[str, str]]:
-    """Returns package and name of the action type with the name of the plugin, in its package or its _msgs package.
+    """Returns package and name of the action type with the name of the plugin, in its package or the matching _msgs package.
 
-    For example, ("ur_ros_rtde_msgs", "MoveJ") for the plugin "move_j" of ur_ros_rtde. Returns None for a plugin that shares
+    For example, ("ur_ros_rtde_msgs", "MoveJ") for the plugin "move_j" of ur_ros_rtde_commands. Returns None for a plugin that shares
     its action type with others.
     """
     wanted = re.sub("[_/]", "", name).lower()
-    for candidate in (package, f"{package}_msgs"):
+    for candidate in (package, f"{package}_msgs", package.replace("_commands", "_msgs")):
         found = [action for action in _actions(candidate) if action.lower() == wanted]
         if len(found) == 1:
             return candidate, found[0]
