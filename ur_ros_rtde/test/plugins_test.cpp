@@ -70,7 +70,7 @@ TEST_F(PluginDescriptionTest, ReportsIncompleteXmlWithNameAndLine)
 {
   EXPECT_TRUE(read("<library path='x'>\n<class name=").empty());
   ASSERT_EQ(problems_.size(), 1U);
-  EXPECT_TRUE(mentions(problems_[0], {"plugins.xml", "some_package", "line"})) << problems_[0];
+  EXPECT_TRUE(mentions(problems_[0], {"plugins.xml", "some_package", "Line number=2"})) << problems_[0];
 }
 
 TEST_F(PluginDescriptionTest, ReportsAnotherRootElement)
