@@ -9,7 +9,7 @@
 
 #include "rcl_cxx/goal_uuid.hpp"
 
-/// rcl_action's own messages are C structs, those that the C++ type supports send are classes.
+/// Conversions between the C messages of rcl_action and the C++ messages that are sent.
 namespace rcl_cxx::detail {
 inline GoalUUID to_goal_id(const rcl_action_goal_info_t & info)
 {

@@ -7,98 +7,72 @@
 
 #include "action_messages.hpp"
 #include "node_impl.hpp"
-#include "qos_rmw.hpp"
 #include "rcl_compat.hpp"
 #include "rcl_error.hpp"
 #include "timer_impl.hpp"
 
-namespace rcl_cxx::detail {
+namespace rcl_cxx {
+namespace detail {
 namespace {
-// "For ever", and yet small enough that rcl can add it to the time of day.
+enum Source : std::size_t { kGoal, kCancel, kResult };
+
+// "For ever", but small enough that rcl can add it to the time of day.
 constexpr std::int64_t kCenturyNs = 100LL * 365 * 24 * 3600 * 1'000'000'000;
 
-// A client asks for the result as soon as it knows that its goal is accepted. It need not, though.
-constexpr std::chrono::milliseconds kGraceForRequests{250};
+// A client usually requests the result as soon as its goal is accepted.
+constexpr std::chrono::milliseconds kResultRequestLimit{250};
 
-// rcl compares "later than the timeout", in ROS time: a look exactly at it would come to nothing.
+// rcl_action expires a goal when its age, in ROS time, exceeds the timeout.
 constexpr std::chrono::milliseconds kExpirySlack{5};
 constexpr std::chrono::milliseconds kExpiryRetry{20};
 
-// A look at the graph takes 28 us beside 93 actions and a client of each.
+// A graph query takes 28 us with 93 actions and one client each.
 constexpr std::chrono::milliseconds kClientCheckPeriod{50};
-
-rcl_action_server_options_t to_rcl(const ActionServerOptions & options)
-{
-  rcl_action_server_options_t result = rcl_action_server_get_default_options();
-  result.goal_service_qos = to_rmw(options.goal_service_qos);
-  result.cancel_service_qos = to_rmw(options.cancel_service_qos);
-  result.result_service_qos = to_rmw(options.result_service_qos);
-  result.feedback_topic_qos = to_rmw(options.feedback_qos);
-  result.status_topic_qos = to_rmw(options.status_qos);
-  if (options.result_timeout) {
-    const std::int64_t ns = options.result_timeout->count();
-    result.result_timeout.nanoseconds = ns < 0 ? kCenturyNs : ns;
-  }
-  return result;
-}
 }  // namespace
 
-ExpireTimer::ExpireTimer(NodeImpl & node) : timer_(rcl_get_zero_initialized_timer())
-{
-  check_rcl(compat::timer_init_canceled(&timer_, node.get_clock().handle(), node.get_context().handle(),
-                                        kCenturyNs),
-            "timer", "cannot be created");
-}
-
-ExpireTimer::~ExpireTimer()
-{
-  ignore_rcl(rcl_timer_fini(&timer_));
-}
-
-std::shared_ptr<ActionServerImpl> ActionServerImpl::create(std::shared_ptr<NodeImpl> node,
-                                                           ErasedActionServer erased,
-                                                           const std::string & name,
-                                                           const ActionServerOptions & options)
-{
-  if (!erased.accepted) {
-    throw Error(fmt::format("action server {}: without a handler of accepted goals", name));
-  }
-  auto impl = std::make_shared<ActionServerImpl>(std::move(node), std::move(erased), name, options);
-  impl->start();
-  return impl;
-}
-
-ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, ErasedActionServer erased,
-                                   const std::string & name, const ActionServerOptions & options)
+ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const std::string & name,
+                                   ErasedActionServer erased, const ActionServerOptions & options)
     : Waitable(std::move(node), fmt::format("action server {}", name)),
       erased_(std::move(erased)),
-      ops_(*erased_.ops),
-      answers_(std::make_shared<ResponseRetry>(this->node())),
-      server_(rcl_action_get_zero_initialized_server())
+      sender_(std::make_shared<ResponseSender>(this->node()))
 {
-  const rcl_action_server_options_t rcl_options = to_rcl(options);
+  if (!erased_.handle_accepted) {
+    throw Error(fmt::format("{}: the callback handle_accepted is missing", label()));
+  }
+  rcl_action_server_options_t rcl_options = rcl_action_server_get_default_options();
+  if (options.result_timeout) {
+    const std::int64_t ns = options.result_timeout->count();
+    rcl_options.result_timeout.nanoseconds = ns < 0 ? kCenturyNs : ns;
+  }
   result_timeout_ = std::chrono::nanoseconds(rcl_options.result_timeout.nanoseconds);
-  results_expire_ = result_timeout_.count() < kCenturyNs;
-  name_ = this->node()->resolve(name, false);
-  const std::lock_guard lock(this->node()->mutex());
-  rcl_timer_ = std::make_unique<ExpireTimer>(*this->node());
-  check_rcl(compat::action_server_init(&server_, this->node()->handle(), rcl_timer_->get(),
-                                       this->node()->get_clock().handle(), ops_.type_support(), name.c_str(),
-                                       &rcl_options),
-            label(), "cannot be created");
+  NodeImpl & owner = *this->node();
+  name_ = owner.resolve(name, false);
+  const std::lock_guard lock(owner.mutex());
+  check_rcl(compat::timer_init_canceled(&rcl_timer_, owner.get_clock().handle(), owner.get_context().handle(),
+                                        kCenturyNs),
+            label(), "cannot create a timer");
+  const rcl_ret_t code =
+      compat::action_server_init(&server_, owner.handle(), &rcl_timer_, owner.get_clock().handle(),
+                                 erased_.type_support, name.c_str(), &rcl_options);
+  if (code != RCL_RET_OK) {
+    const std::string reason = take_rcl_error();
+    ignore_rcl(rcl_timer_fini(&rcl_timer_));
+    throw Error(fmt::format("{}: cannot be created (rcl error {}: {})", label(), code, reason), code);
+  }
 }
 
 ActionServerImpl::~ActionServerImpl()
 {
   const std::lock_guard lock(node()->mutex());
   ignore_rcl(rcl_action_server_fini(&server_, node()->handle()));
+  ignore_rcl(rcl_timer_fini(&rcl_timer_));
 }
 
-void ActionServerImpl::start()
+void ActionServerImpl::set_on_ready_callbacks()
 {
   const std::weak_ptr<ActionServerImpl> weak = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
-  const auto create_timer = [&](std::chrono::nanoseconds period, void (ActionServerImpl::*callback)()) {
-    auto timer = TimerImpl::create(node(), period, [weak, callback] {
+  const auto make_timer = [&](std::chrono::nanoseconds period, void (ActionServerImpl::*callback)()) {
+    auto timer = make_waitable<TimerImpl>(node(), period, [weak, callback] {
       if (const auto self = weak.lock()) {
         ((*self).*callback)();
       }
@@ -106,29 +80,26 @@ void ActionServerImpl::start()
     timer->cancel();
     return timer;
   };
-  expiry_ = create_timer(std::chrono::hours(1), &ActionServerImpl::expire);
-  if (erased_.client_lost) {
-    client_check_ = create_timer(kClientCheckPeriod, &ActionServerImpl::check_clients);
+  expiry_timer_ = make_timer(std::chrono::hours(1), &ActionServerImpl::expire_goals);
+  if (erased_.on_client_lost) {
+    client_timer_ = make_timer(kClientCheckPeriod, &ActionServerImpl::check_clients);
   }
-  shutdown_callback_ = node()->get_context().add_callback(ContextImpl::Phase::library_before, [weak] {
+  shutdown_callback_ = node()->get_context().add_callback(ContextImpl::Phase::action_servers, [weak] {
     if (const auto self = weak.lock()) {
       self->abort_all("shutdown", self->node()->in_own_callback());
     }
   });
-  check_rcl(rcl_action_server_set_goal_service_callback(&server_, &on_event, source(kGoal)), label(),
-            "its middleware does not report new goals");
-  check_rcl(rcl_action_server_set_cancel_service_callback(&server_, &on_event, source(kCancel)), label(),
-            "its middleware does not report requests to cancel");
-  check_rcl(rcl_action_server_set_result_service_callback(&server_, &on_event, source(kResult)), label(),
-            "its middleware does not report requests for results");
+  set_callback(rcl_action_server_set_goal_service_callback, server_, kGoal);
+  set_callback(rcl_action_server_set_cancel_service_callback, server_, kCancel);
+  set_callback(rcl_action_server_set_result_service_callback, server_, kResult);
 }
 
-void ActionServerImpl::stop() noexcept
+void ActionServerImpl::clear_on_ready_callbacks() noexcept
 {
-  ignore_rcl(rcl_action_server_set_goal_service_callback(&server_, nullptr, nullptr));
-  ignore_rcl(rcl_action_server_set_cancel_service_callback(&server_, nullptr, nullptr));
-  ignore_rcl(rcl_action_server_set_result_service_callback(&server_, nullptr, nullptr));
-  for (const auto & timer : {expiry_, client_check_}) {
+  clear_callback(rcl_action_server_set_goal_service_callback, server_);
+  clear_callback(rcl_action_server_set_cancel_service_callback, server_);
+  clear_callback(rcl_action_server_set_result_service_callback, server_);
+  for (const auto & timer : {expiry_timer_, client_timer_}) {
     if (timer) {
       timer->close();
     }
@@ -142,21 +113,9 @@ void ActionServerImpl::execute(std::size_t source)
       return take_goal();
     case kCancel:
       return take_cancel();
-    case kDeferredResponse:
-      return send_deferred_response();
     default:
       take_result();
   }
-}
-
-std::size_t ActionServerImpl::active_goal_count() const
-{
-  const std::lock_guard lock(mutex_);
-  std::size_t count = 0;
-  for (const auto & [id, goal] : goals_) {
-    count += is_terminal(goal->get_status()) ? 0 : 1;
-  }
-  return count;
 }
 
 std::shared_ptr<ServerGoalImpl> ActionServerImpl::find(const GoalUUID & id) const
@@ -166,46 +125,49 @@ std::shared_ptr<ServerGoalImpl> ActionServerImpl::find(const GoalUUID & id) cons
   return found == goals_.end() ? nullptr : found->second;
 }
 
-std::shared_ptr<void> ActionServerImpl::missing_result(GoalStatus status) const
+ActionServerImpl::Goals ActionServerImpl::get_active_goals() const
 {
-  std::shared_ptr<void> response = ops_.make_result_response(status);
-  if (erased_.missing_result) {
-    erased_.missing_result(status, response.get());
+  Goals active;
+  const std::lock_guard lock(mutex_);
+  for (const auto & [id, goal] : goals_) {
+    if (!is_terminal(goal->get_status())) {
+      active.push_back(goal);
+    }
+  }
+  return active;
+}
+
+std::shared_ptr<void> ActionServerImpl::make_missing_result(const GoalUUID & id, GoalStatus status) const
+{
+  std::shared_ptr<void> response = erased_.make_result_response(status);
+  if (erased_.fill_missing_result) {
+    call("fill_missing_result", id, [&] { erased_.fill_missing_result(status, response.get()); });
   }
   return response;
 }
 
-void ActionServerImpl::abort_all(const char * why, bool serve) noexcept
+void ActionServerImpl::abort_all(const char * reason, bool take_requests) noexcept
 {
-  reject_deferred_goals(why);
-  std::vector<std::shared_ptr<ServerGoalImpl>> aborted;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto & [id, goal] : goals_) {
-      if (!is_terminal(goal->get_status()) &&
-          finish_locked(*goal, GoalStatus::aborted, missing_result(GoalStatus::aborted))) {
-        aborted.push_back(goal);
-      }
-    }
-  }
-  if (aborted.empty()) {
-    return;
-  }
-  RCL_CXX_WARN(node()->get_logger(), "{}: goals aborted that were running: {} ({})", name_, aborted.size(),
-               why);
   try {
-    await_requests(aborted, serve);
+    Goals goals = get_active_goals();
+    std::erase_if(goals, [this](const auto & goal) {
+      return !try_to_finish(*goal, GoalStatus::aborted, make_missing_result(goal->id(), GoalStatus::aborted));
+    });
+    if (!goals.empty()) {
+      RCL_CXX_WARN(node()->get_logger(), "{}: {}, {} active goals aborted", name_, reason, goals.size());
+      wait_for_result_requests(goals, take_requests);
+    }
   } catch (const std::exception & error) {
     RCL_CXX_WARN(node()->get_logger(), "{}: {}", name_, error.what());
   }
 }
 
-void ActionServerImpl::await_requests(const std::vector<std::shared_ptr<ServerGoalImpl>> & goals, bool serve)
+void ActionServerImpl::wait_for_result_requests(const Goals & goals, bool take_requests)
 {
-  const auto deadline = std::chrono::steady_clock::now() + kGraceForRequests;
-  const auto sent = [](const std::shared_ptr<ServerGoalImpl> & goal) { return goal->result_sent.load(); };
+  const auto deadline = std::chrono::steady_clock::now() + kResultRequestLimit;
+  const auto sent = [](const auto & goal) { return goal->result_sent.load(); };
   while (!std::all_of(goals.begin(), goals.end(), sent) && std::chrono::steady_clock::now() < deadline) {
-    if (!serve || !take_result()) {
+    if (!take_requests || !take_result()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
@@ -215,13 +177,13 @@ void ActionServerImpl::retire() noexcept
 {
   node()->get_context().remove_callback(shutdown_callback_);
   close();
-  answers_->stop();
+  sender_->stop();
   abort_all("the action server was destroyed", true);
-  // Handles may find this for a moment yet: the executor's thread may hold it.
+  // Handles may find this server for a moment: the executor's thread may hold a reference.
   const std::lock_guard lock(mutex_);
   for (const auto & [id, goal] : goals_) {
     if (!is_terminal(goal->get_status())) {
-      goal->orphan();  // its abortion has failed
+      goal->orphan();  // aborting it has failed
     }
   }
   retired_ = true;
@@ -234,39 +196,52 @@ bool ActionServerImpl::publish_feedback(const ServerGoalImpl & goal, void * mess
   if (retired_ || is_terminal(goal.get_status())) {
     return false;
   }
-  if (rcl_action_publish_feedback(&server_, message) != RCL_RET_OK) {
-    if (node()->get_context().ok()) {
-      RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: feedback cannot be published: {}", name_,
-                    goal.id().short_string(), take_rcl_error());
-    }
-    rcl_reset_error();
-    return false;
+  if (guard_serialization([&] { return rcl_action_publish_feedback(&server_, message); }) == RCL_RET_OK) {
+    return true;
   }
-  return true;
+  if (node()->get_context().ok()) {
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: feedback cannot be published: {}", name_,
+                  goal.id().short_string(), take_rcl_error());
+  }
+  rcl_reset_error();
+  return false;
+}
+
+void ActionServerImpl::abort(ServerGoalImpl & goal) noexcept
+{
+  try {
+    try_to_finish(goal, GoalStatus::aborted, make_missing_result(goal.id(), GoalStatus::aborted));
+  } catch (const std::exception & error) {
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {} cannot be aborted: {}", name_, goal.id().short_string(),
+                  error.what());
+  }
 }
 
 void ActionServerImpl::on_handle_dropped(ServerGoalImpl & goal) noexcept
 {
-  const std::lock_guard lock(mutex_);
-  if (!retired_ && !is_terminal(goal.get_status())) {
-    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {} was given up without a result, it is aborted", name_,
-                  goal.id().short_string());
-    finish_locked(goal, GoalStatus::aborted, missing_result(GoalStatus::aborted));
+  {
+    const std::lock_guard lock(mutex_);
+    if (retired_ || is_terminal(goal.get_status())) {
+      return;
+    }
   }
+  RCL_CXX_ERROR(node()->get_logger(), "{}: goal {} aborted: its handle was released without a result", name_,
+                goal.id().short_string());
+  abort(goal);
 }
 
 bool ActionServerImpl::finish(ServerGoalImpl & goal, GoalStatus status,
                               std::shared_ptr<void> result_response) noexcept
 {
-  const std::lock_guard lock(mutex_);
-  if (retired_) {
-    return false;
+  try {
+    if (try_to_finish(goal, status, std::move(result_response))) {
+      return true;
+    }
+    RCL_CXX_WARN(node()->get_logger(), "{}: goal {} is {}, it cannot become {}", name_,
+                 goal.id().short_string(), to_string(goal.get_status()), to_string(status));
+  } catch (const std::exception & error) {
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {}", name_, goal.id().short_string(), error.what());
   }
-  if (finish_locked(goal, status, std::move(result_response))) {
-    return true;
-  }
-  RCL_CXX_WARN(node()->get_logger(), "{}: goal {} is {}, it cannot become {}", name_,
-               goal.id().short_string(), to_string(goal.get_status()), to_string(status));
   return false;
 }
 
@@ -278,8 +253,8 @@ bool ActionServerImpl::transition_locked(ServerGoalImpl & goal, GoalStatus statu
     case GoalStatus::aborted:
       return goal.update(GOAL_EVENT_ABORT);
     case GoalStatus::canceled:
-      // A worker that is quick may be done before its cancel handler has returned.
-      if (goal.cancel_being_decided && goal.get_status() == GoalStatus::executing) {
+      // The goal's thread may finish it before handle_cancel has returned.
+      if (goal.in_handle_cancel && goal.get_status() == GoalStatus::executing) {
         goal.update(GOAL_EVENT_CANCEL_GOAL);
       }
       return goal.update(GOAL_EVENT_CANCELED);
@@ -288,21 +263,26 @@ bool ActionServerImpl::transition_locked(ServerGoalImpl & goal, GoalStatus statu
   }
 }
 
-bool ActionServerImpl::finish_locked(ServerGoalImpl & goal, GoalStatus status,
+bool ActionServerImpl::try_to_finish(ServerGoalImpl & goal, GoalStatus status,
                                      std::shared_ptr<void> result_response)
 {
-  if (is_terminal(goal.get_status()) || !transition_locked(goal, status)) {
-    return false;
+  std::vector<rmw_request_id_t> requests;
+  {
+    const std::lock_guard lock(mutex_);
+    if (retired_ || is_terminal(goal.get_status()) || !transition_locked(goal, status)) {
+      return false;
+    }
+    goal.result_response = std::move(result_response);
+    goal.ended = std::chrono::steady_clock::now();
+    requests.swap(goal.result_requests);
   }
-  goal.result_response = std::move(result_response);
-  for (const rmw_request_id_t & request : goal.result_requests) {
+  for (const rmw_request_id_t & request : requests) {
     send_result(request, goal);
   }
-  goal.result_requests.clear();
+  const std::lock_guard lock(mutex_);
   publish_status_locked();
   ignore_rcl(rcl_action_notify_goal_done(&server_));
-  goal.ended = std::chrono::steady_clock::now();
-  if (results_expire_ && expiry_->is_canceled()) {
+  if (result_timeout_.count() < kCenturyNs && expiry_timer_->is_canceled()) {
     schedule_expiry_locked();
   }
   return true;
@@ -324,9 +304,9 @@ void ActionServerImpl::publish_status_locked()
   ignore_rcl(rcl_action_goal_status_array_fini(&status));
 }
 
-void ActionServerImpl::expire()
+void ActionServerImpl::expire_goals()
 {
-  std::vector<std::shared_ptr<ServerGoalImpl>> expired;  // destroyed after the lock is released
+  Goals expired;  // destroyed after the lock is released
   const std::lock_guard lock(mutex_);
   while (true) {
     rcl_action_goal_info_t info = rcl_action_get_zero_initialized_goal_info();
@@ -335,9 +315,7 @@ void ActionServerImpl::expire()
     if (count == 0) {
       break;
     }
-    GoalUUID id;
-    std::copy(std::begin(info.goal_id.uuid), std::end(info.goal_id.uuid), id.bytes.begin());
-    if (auto node = goals_.extract(id)) {
+    if (auto node = goals_.extract(to_goal_id(info))) {
       expired.push_back(std::move(node.mapped()));
     }
   }
@@ -349,19 +327,32 @@ void ActionServerImpl::expire()
 
 void ActionServerImpl::schedule_expiry_locked()
 {
-  auto first_end = std::chrono::steady_clock::time_point::max();
+  constexpr auto never = std::chrono::steady_clock::time_point::max();
+  auto first_end = never;
   for (const auto & [id, goal] : goals_) {
     if (is_terminal(goal->get_status())) {
       first_end = std::min(first_end, goal->ended);
     }
   }
-  if (first_end == std::chrono::steady_clock::time_point::max()) {
+  if (first_end == never) {
     return;
   }
-  // It may be overdue by this clock and yet not expired: ROS time goes its own way.
+  // A goal may be overdue by this clock and not have expired by ROS time.
   const std::chrono::nanoseconds left =
       first_end + result_timeout_ + kExpirySlack - std::chrono::steady_clock::now();
-  expiry_->call_once_in(std::max<std::chrono::nanoseconds>(left, kExpiryRetry));
+  expiry_timer_->call_once_in(std::max<std::chrono::nanoseconds>(left, kExpiryRetry));
+}
+}  // namespace detail
+
+ActionServerBase::ActionServerBase(std::shared_ptr<detail::NodeImpl> node, const std::string & action,
+                                   detail::ErasedActionServer erased, const ActionServerOptions & options)
+    : impl_(detail::make_waitable<detail::ActionServerImpl>(std::move(node), action, std::move(erased),
+                                                            options))
+{
+}
+ActionServerBase::~ActionServerBase()
+{
+  impl_->retire();
 }
 
-}  // namespace rcl_cxx::detail
+}  // namespace rcl_cxx

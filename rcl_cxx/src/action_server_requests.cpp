@@ -3,10 +3,10 @@
 #include "action_messages.hpp"
 #include "action_server_impl.hpp"
 #include "node_impl.hpp"
-#include "ns_per_second.hpp"
 #include "rcl_error.hpp"
+#include "to_time.hpp"
 
-/// What clients ask of an action server: goals, cancellations, results. In the executor's thread.
+/// The requests of clients: goals, cancel requests, results. In the executor's thread.
 namespace rcl_cxx::detail {
 namespace {
 bool nothing_to_take(rcl_ret_t code)
@@ -19,96 +19,119 @@ bool nothing_to_take(rcl_ret_t code)
 }
 }  // namespace
 
+void ActionServerImpl::call(const char * name, const GoalUUID & id,
+                            const std::function<void()> & callback) const noexcept
+{
+  try {
+    callback();
+  } catch (const std::exception & error) {
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {} failed: {}", name_, id.short_string(), name,
+                  error.what());
+  } catch (...) {
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {} threw an unknown exception", name_,
+                  id.short_string(), name);
+  }
+}
+
+void ActionServerImpl::respond(ResponseFunction send, const rmw_request_id_t & request,
+                               std::shared_ptr<void> response,
+                               std::function<std::shared_ptr<void>()> replacement,
+                               std::function<void(bool)> done)
+{
+  const auto self = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
+  const auto send_to = [self, send, request](void * message) {
+    rmw_request_id_t id = request;
+    return send(&self->server_, &id, message);
+  };
+  ResponseSender::Send send_replacement;
+  if (replacement) {
+    send_replacement = [send_to, replacement = std::move(replacement)] {
+      return send_to(replacement().get());
+    };
+  }
+  sender_->send({[send_to, response = std::move(response)] { return send_to(response.get()); },
+                 std::move(send_replacement),
+                 [self, done = std::move(done)](rcl_ret_t code) {
+                   if (code != RCL_RET_OK) {
+                     RCL_CXX_WARN(self->node()->get_logger(), "{}: a response was not delivered: {}",
+                                  self->name_, take_rcl_error());
+                   }
+                   if (done) {
+                     done(code == RCL_RET_OK);
+                   }
+                 }});
+}
+
 void ActionServerImpl::take_goal()
 {
-  const std::shared_ptr<void> request = ops_.make_goal_request();
+  const std::shared_ptr<void> request = erased_.make_goal_request();
   rmw_request_id_t request_id;
   const rcl_ret_t code = rcl_action_take_goal_request(&server_, &request_id, request.get());
   if (nothing_to_take(code)) {
     return;
   }
   check_rcl(code, name_, "cannot take a goal");
-  const GoalUUID id = ops_.goal_id_of_goal_request(request.get());
-  if (is_known(id)) {
-    return reject(id, request_id, "there is a goal of this id already");
+  const GoalUUID id = erased_.goal_id_of_goal_request(request.get());
+  const auto reject = [&](const std::string & reason) {
+    RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
+    respond(&rcl_action_send_goal_response, request_id, erased_.make_goal_response(false, 0, 0));
+  };
+  // rcl_action checks this only after handle_goal.
+  if (find(id)) {
+    return reject("a goal with this id exists already");
   }
-  DeferredGoal goal{request_id, request};
-  const GoalDecision decision = decide_goal(id, request.get());
-  if (const auto * const deferred = std::get_if<DeferredGoalResponse>(&decision)) {
-    defer(id, std::move(goal), *deferred);
-  } else {
-    respond(id, goal, std::get<GoalResponse>(decision));
+  if (const auto decision = handle_goal(id, request.get()); !decision) {
+    return reject(decision.error());
   }
-}
-
-bool ActionServerImpl::is_known(const GoalUUID & id) const
-{
-  const std::lock_guard lock(mutex_);
-  return goals_.count(id) != 0 || deferred_goals_.count(id) != 0;
-}
-
-void ActionServerImpl::reject(const GoalUUID & id, const rmw_request_id_t & request_id,
-                              const std::string & reason)
-{
-  RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
-  answer(&rcl_action_send_goal_response, request_id, ops_.make_goal_response(false, 0, 0));
-}
-
-void ActionServerImpl::respond(const GoalUUID & id, const DeferredGoal & goal, const GoalResponse & response)
-{
-  if (!response) {
-    return reject(id, goal.request_id, response.error());
-  }
-  if (auto accepted = accept(id, goal.request)) {
-    announce(goal.request_id, std::move(*accepted));
+  if (auto handle = accept(id, request)) {
+    send_acceptance(request_id, std::move(*handle));
   } else {
     discard(id);
-    reject(id, goal.request_id, accepted.error());
+    reject(handle.error());
   }
 }
 
 void ActionServerImpl::discard(const GoalUUID & id) noexcept
 {
-  call("discarded", id, [&] {
-    if (erased_.discarded) {
-      erased_.discarded(id);
-    }
-  });
+  if (erased_.on_goal_discarded) {
+    call("on_goal_discarded", id, [&] { erased_.on_goal_discarded(id); });
+  }
 }
 
-void ActionServerImpl::announce(const rmw_request_id_t & request,
-                                std::shared_ptr<ServerGoalHandleBase> accepted)
+void ActionServerImpl::send_acceptance(const rmw_request_id_t & request,
+                                       std::shared_ptr<ServerGoalHandleBase> handle)
 {
-  const std::int64_t stamp = accepted->accepted_ns();
-  auto response = ops_.make_goal_response(true, static_cast<std::int32_t>(stamp / kNsPerSecond),
-                                          static_cast<std::uint32_t>(stamp % kNsPerSecond));
-  answer(&rcl_action_send_goal_response, request, std::move(response),
-         [this, request, accepted](bool delivered) {
-           const auto goal = find(accepted->get_goal_id());
-           if (!delivered || !goal || !accepted->is_active()) {
-             // The client does not know of the goal, and dropping the handle aborts it; or the goal has ended
-             // while its client was looked for.
-             discard(accepted->get_goal_id());
-             return;
-           }
-           watch_client(*goal, request);
-           {
-             const std::lock_guard lock(mutex_);
-             publish_status_locked();
-           }
-           run_accepted(accepted);
-           check_clients();  // the sooner a client is discovered, the sooner its end is noticed
-         });
+  const std::int64_t stamp = handle->get_goal_stamp();
+  auto response = erased_.make_goal_response(true, static_cast<std::int32_t>(stamp / kNsPerSecond),
+                                             static_cast<std::uint32_t>(stamp % kNsPerSecond));
+  respond(&rcl_action_send_goal_response, request, std::move(response), {},
+          [this, request, handle](bool delivered) {
+            const auto goal = find(handle->get_goal_id());
+            if (!delivered || !goal || !handle->is_active()) {
+              // The client does not know of the goal; releasing the handle aborts it. Or the goal was aborted
+              // while the response was being delivered.
+              discard(handle->get_goal_id());
+              return;
+            }
+            watch_client(*goal, request);
+            {
+              const std::lock_guard lock(mutex_);
+              publish_status_locked();
+            }
+            run_accepted(handle);
+            check_clients();  // a client has to be discovered before its end can be noticed
+          });
 }
 
-GoalDecision ActionServerImpl::decide_goal(const GoalUUID & id, const void * request) noexcept
+tl::expected<void, std::string> ActionServerImpl::handle_goal(const GoalUUID & id,
+                                                              const void * request) noexcept
 {
   try {
-    return erased_.goal ? erased_.goal(id, request) : GoalResponse{};
+    return erased_.handle_goal ? erased_.handle_goal(id, request) : tl::expected<void, std::string>{};
   } catch (const std::exception & error) {
-    return GoalResponse{tl::unexpect, error.what()};
+    return tl::make_unexpected(std::string(error.what()));
   } catch (...) {
-    return GoalResponse{tl::unexpect, "the goal handler threw something that is no std::exception"};
+    return tl::make_unexpected(std::string("handle_goal threw an unknown exception"));
   }
 }
 
@@ -129,60 +152,21 @@ tl::expected<std::shared_ptr<ServerGoalHandleBase>, std::string> ActionServerImp
   const auto goal = std::make_shared<ServerGoalImpl>(self, id, *rcl_handle);
   goals_.emplace(id, goal);
   goal->update(GOAL_EVENT_EXECUTE);
-  std::shared_ptr<ServerGoalHandleBase> handle = ops_.make_handle(goal, request);
+  std::shared_ptr<ServerGoalHandleBase> handle = erased_.make_handle(goal, request);
   goal->handle = handle;
   return handle;
 }
 
-void ActionServerImpl::answer(Send send, const rmw_request_id_t & request, std::shared_ptr<void> response,
-                              std::function<void(bool)> done, std::shared_ptr<void> instead)
+void ActionServerImpl::run_accepted(const std::shared_ptr<ServerGoalHandleBase> & handle) noexcept
 {
-  const auto self = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
-  answers_->send(
-      [self, send, request, response, instead]() -> rcl_ret_t {
-        rmw_request_id_t to = request;
-        try {
-          return send(&self->server_, &to, response.get());
-        } catch (...) {
-          RCL_CXX_ERROR(self->node()->get_logger(),
-                        "{}: the middleware cannot send an answer{}: has a text a zero byte?", self->name_,
-                        instead ? ", its client gets another one" : "");
-          return instead ? send(&self->server_, &to, instead.get()) : RCL_RET_ERROR;
-        }
-      },
-      [self, done = std::move(done)](rcl_ret_t code) {
-        if (code != RCL_RET_OK) {
-          RCL_CXX_WARN(self->node()->get_logger(), "{}: an answer did not reach its client: {}", self->name_,
-                       take_rcl_error());
-        }
-        if (done) {
-          done(code == RCL_RET_OK);
-        }
-      });
-}
-
-void ActionServerImpl::send_result(const rmw_request_id_t & request, ServerGoalImpl & goal)
-{
-  answer(&rcl_action_send_result_response, request, goal.result_response, {},
-         missing_result(goal.get_status()));
-  goal.result_sent = true;
-}
-
-void ActionServerImpl::run_accepted(std::shared_ptr<ServerGoalHandleBase> handle) noexcept
-{
-  const std::string id = handle->get_goal_id().short_string();
-  try {
-    erased_.accepted(handle);
-    return;
-  } catch (const std::exception & error) {
-    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {}", name_, id, error.what());
-  } catch (...) {
-    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: its handler threw something that is no std::exception",
-                  name_, id);
-  }
-  if (handle->is_active()) {
+  bool returned = false;
+  call("handle_accepted", handle->get_goal_id(), [&] {
+    erased_.handle_accepted(handle);
+    returned = true;
+  });
+  if (!returned) {
     if (const auto goal = find(handle->get_goal_id())) {
-      finish(*goal, GoalStatus::aborted, missing_result(GoalStatus::aborted));
+      abort(*goal);
     }
   }
 }
@@ -195,10 +179,10 @@ void ActionServerImpl::take_cancel()
   if (nothing_to_take(code)) {
     return;
   }
-  check_rcl(code, name_, "cannot take a request to cancel");
+  check_rcl(code, name_, "cannot take a cancel request");
   const auto response = std::make_shared<action_msgs::srv::CancelGoal::Response>();
   process_cancel(request, *response);
-  answer(&rcl_action_send_cancel_response, request_id, response);
+  respond(&rcl_action_send_cancel_response, request_id, response);
 }
 
 void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Request & request,
@@ -211,13 +195,8 @@ void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Reques
   std::vector<action_msgs::msg::GoalInfo> candidates;
   {
     const std::lock_guard lock(mutex_);
-    if (request.goal_info == action_msgs::msg::GoalInfo()) {  // all goals
-      for (auto & [id, goal] : deferred_goals_) {
-        goal.canceled = true;
-      }
-    }
     check_rcl(rcl_action_process_cancel_request(&server_, &rcl_request, &rcl_response), name_,
-              "cannot cancel");
+              "cannot process a cancel request");
     for (std::size_t i = 0; i < rcl_response.msg.goals_canceling.size; ++i) {
       candidates.push_back(to_cpp(rcl_response.msg.goals_canceling.data[i]));
     }
@@ -227,7 +206,7 @@ void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Reques
   bool all_ended = true;
   for (const auto & info : candidates) {
     const auto goal = find(GoalUUID{info.goal_id.uuid});
-    if (goal && decide_cancel(*goal)) {
+    if (goal && try_to_cancel(*goal)) {
       response.goals_canceling.push_back(info);
     } else if (goal && !is_terminal(goal->get_status())) {
       all_ended = false;
@@ -242,7 +221,7 @@ void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Reques
   }
 }
 
-bool ActionServerImpl::decide_cancel(ServerGoalImpl & goal)
+bool ActionServerImpl::try_to_cancel(ServerGoalImpl & goal)
 {
   std::shared_ptr<ServerGoalHandleBase> handle;
   {
@@ -251,68 +230,61 @@ bool ActionServerImpl::decide_cancel(ServerGoalImpl & goal)
     if (!handle || is_terminal(goal.get_status())) {
       return false;
     }
-    goal.cancel_being_decided = true;
+    goal.in_handle_cancel = true;
   }
-  const bool granted = ask_cancel(*handle);
+  bool accepted = false;
+  if (erased_.handle_cancel) {
+    call("handle_cancel", goal.id(), [&] { accepted = erased_.handle_cancel(*handle); });
+  }
   {
     const std::lock_guard lock(mutex_);
-    goal.cancel_being_decided = false;
+    goal.in_handle_cancel = false;
     if (goal.get_status() == GoalStatus::canceled) {
-      return true;  // its worker was quicker than its handler
+      return true;  // the goal's thread has finished it meanwhile
     }
-    if (!granted || !goal.update(GOAL_EVENT_CANCEL_GOAL)) {
+    if (!accepted || !goal.update(GOAL_EVENT_CANCEL_GOAL)) {
       return false;
     }
   }
-  if (erased_.canceling) {
-    call("canceling", handle->get_goal_id(), [&] { erased_.canceling(*handle); });
+  if (erased_.on_canceling) {
+    call("on_canceling", goal.id(), [&] { erased_.on_canceling(*handle); });
   }
   return true;
 }
 
-bool ActionServerImpl::ask_cancel(ServerGoalHandleBase & handle) noexcept
-{
-  bool granted = false;
-  if (erased_.cancel) {
-    call("cancel", handle.get_goal_id(), [&] { granted = erased_.cancel(handle); });
-  }
-  return granted;
-}
-
-void ActionServerImpl::call(const char * name, const GoalUUID & id,
-                            const std::function<void()> & handler) const noexcept
-{
-  try {
-    handler();
-  } catch (const std::exception & error) {
-    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {} handler: {}", name_, id.short_string(), name,
-                  error.what());
-  } catch (...) {
-    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {} handler threw something that is no std::exception",
-                  name_, id.short_string(), name);
-  }
-}
-
 bool ActionServerImpl::take_result()
 {
-  const std::shared_ptr<void> request = ops_.make_result_request();
+  const std::shared_ptr<void> request = erased_.make_result_request();
   rmw_request_id_t request_id;
   const rcl_ret_t code = rcl_action_take_result_request(&server_, &request_id, request.get());
   if (nothing_to_take(code)) {
     return false;
   }
-  check_rcl(code, name_, "cannot take a request for a result");
-  const GoalUUID id = ops_.goal_id_of_result_request(request.get());
-  const std::lock_guard lock(mutex_);
-  const auto found = goals_.find(id);
-  if (found == goals_.end()) {
-    answer(&rcl_action_send_result_response, request_id, missing_result(GoalStatus::unknown));
-  } else if (found->second->result_response) {
-    send_result(request_id, *found->second);
-  } else {
-    found->second->result_requests.push_back(request_id);
+  check_rcl(code, name_, "cannot take a result request");
+  const GoalUUID id = erased_.goal_id_of_result_request(request.get());
+  const auto goal = find(id);
+  if (!goal) {
+    respond(&rcl_action_send_result_response, request_id, make_missing_result(id, GoalStatus::unknown));
+    return true;
   }
+  {
+    const std::lock_guard lock(mutex_);
+    if (!goal->result_response) {
+      goal->result_requests.push_back(request_id);
+      return true;
+    }
+  }
+  send_result(request_id, *goal);
   return true;
+}
+
+void ActionServerImpl::send_result(const rmw_request_id_t & request, ServerGoalImpl & goal)
+{
+  const GoalUUID id = goal.id();
+  const GoalStatus status = goal.get_status();
+  respond(&rcl_action_send_result_response, request, goal.result_response,
+          [this, id, status] { return make_missing_result(id, status); });
+  goal.result_sent = true;
 }
 
 }  // namespace rcl_cxx::detail

@@ -28,7 +28,7 @@ bool contains(const std::vector<Gid> & gids, const Gid & gid)
 
 using ListEndpoints = decltype(&rcl_get_subscriptions_info_by_topic);
 
-/// Appends the endpoints of a topic that is named as the middleware names it.
+/// Appends the endpoints of a topic, which has the middleware's name.
 bool list_endpoints(ListEndpoints list, NodeImpl & node, const std::string & topic, std::vector<Gid> & gids)
 {
   rcutils_allocator_t allocator = rcutils_get_default_allocator();
@@ -53,7 +53,7 @@ Gid client_of(const rmw_request_id_t & request) noexcept
 std::optional<ServiceClients> find_clients(NodeImpl & node, const std::string & service)
 {
   ServiceClients clients;
-  // The names that every middleware on DDS gives to the topics of a service.
+  // The names of the topics of a service in every DDS middleware.
   if (!list_endpoints(&rcl_get_subscriptions_info_by_topic, node, "rr" + service + "Reply",
                       clients.endpoints) ||
       !list_endpoints(&rcl_get_publishers_info_by_topic, node, "rq" + service + "Request",

@@ -13,29 +13,29 @@
 namespace rcl_cxx::detail {
 class NodeImpl;
 
-/// The id of an endpoint, as the graph and the header of a request give it.
+/// The id of an endpoint, as in the graph and in the header of a request.
 using Gid = std::array<std::uint8_t, 16>;
 
 Gid client_of(const rmw_request_id_t & request) noexcept;
 
-/// The clients of a service that are discovered.
+/// The discovered clients of a service.
 struct ServiceClients {
-  /// Writers of requests and readers of responses. Empty with a middleware that does not build services on
-  /// topics (Zenoh).
+  /// Writers of requests and readers of responses. Empty if the middleware does not build services on topics
+  /// (Zenoh).
   std::vector<Gid> endpoints{};
-  /// Counted only when no endpoints are listed. At least 1 where that cannot be counted (Humble).
+  /// The number of clients if no endpoints are listed. 1 if clients cannot be counted (Humble).
   std::size_t unlisted = 0;
 };
 
-/// Asks the middleware. Nothing if it does not answer.
+/// Returns nothing if the middleware cannot tell.
 std::optional<ServiceClients> find_clients(NodeImpl & node, const std::string & service);
 
-/// Whether the id in a request's header is that of an endpoint of the client. It is with rmw_fastrtps.
-/// rmw_cyclonedds puts an id of its own there.
+/// Returns whether the header of a request contains the id of an endpoint of the client, as with
+/// rmw_fastrtps. rmw_cyclonedds uses a different id.
 bool requests_carry_endpoints() noexcept;
 
-/// Decides whether the client that sent one request still exists. A client that is not discovered yet has
-/// kDiscoveryLimit to be discovered.
+/// Determines whether the client that sent a request still exists. A client counts as lost if it has not been
+/// discovered within kDiscoveryLimit.
 class ClientWatch {
  public:
   using Clock = std::chrono::steady_clock;
@@ -53,7 +53,7 @@ class ClientWatch {
   const bool client_is_endpoint_;
   const Clock::time_point decides_from_;
   bool discovered_ = false;
-  /// Of a client that cannot be told from the others: the endpoints one of which is its own.
+  /// If the request does not contain an endpoint: the endpoints one of which may be the client's.
   std::vector<Gid> candidates_;
   bool endpoints_are_listed_ = false;
 };

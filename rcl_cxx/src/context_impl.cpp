@@ -1,7 +1,6 @@
 #include "context_impl.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <rcl/arguments.h>
 #include <rcl/init.h>
 #include <rcl/init_options.h>
@@ -20,29 +19,19 @@ const Logger & context_logger()
   static const Logger logger("rcl_cxx");
   return logger;
 }
-
-class RclInitOptions {
- public:
-  RclInitOptions()
-  {
-    check_rcl(rcl_init_options_init(&options_, rcl_get_default_allocator()), "context", "no options");
-  }
-  ~RclInitOptions() { ignore_rcl(rcl_init_options_fini(&options_)); }
-  RclInitOptions(const RclInitOptions &) = delete;
-  RclInitOptions & operator=(const RclInitOptions &) = delete;
-  rcl_init_options_t * get() { return &options_; }
-
- private:
-  rcl_init_options_t options_ = rcl_get_zero_initialized_init_options();
-};
 }  // namespace
 
-ContextImpl::ContextImpl(int argc, const char * const * argv, const InitOptions & options)
-    : context_(rcl_get_zero_initialized_context()), signal_grace_(options.signal_grace)
+ContextImpl::ContextImpl(const std::vector<std::string> & arguments, const InitOptions & options)
+    : signal_grace_(options.signal_grace)
 {
-  init(argc, argv, options);
+  std::vector<const char *> argv;
+  for (const std::string & argument : arguments) {
+    argv.push_back(argument.c_str());
+  }
+  init(argv);
   try {
-    read_arguments(argv);
+    check_ros_arguments(context_.global_arguments, argv.data());
+    non_ros_arguments_ = remove_ros_arguments(context_.global_arguments, argv.data());
     if (options.auto_initialize_logging) {
       logging_ = configure_logging(context_.global_arguments);
     }
@@ -53,34 +42,27 @@ ContextImpl::ContextImpl(int argc, const char * const * argv, const InitOptions 
   }
 }
 
-void ContextImpl::init(int argc, const char * const * argv, const InitOptions & options)
+void ContextImpl::init(const std::vector<const char *> & argv)
 {
-  RclInitOptions init_options;
-  if (options.domain_id) {
-    check_rcl(rcl_init_options_set_domain_id(init_options.get(), *options.domain_id), "context",
-              "domain id cannot be set");
-  }
-  const rcl_ret_t code = rcl_init(argc, argv, init_options.get(), &context_);
+  rcl_init_options_t options = rcl_get_zero_initialized_init_options();
+  check_rcl(rcl_init_options_init(&options, rcl_get_default_allocator()), "context", "cannot be created");
+  const rcl_ret_t code = rcl_init(static_cast<int>(argv.size()), argv.data(), &options, &context_);
+  const std::string details = code == RCL_RET_OK ? "" : take_rcl_error();
+  ignore_rcl(rcl_init_options_fini(&options));
   if (code != RCL_RET_OK) {
-    const std::string details = take_rcl_error();
     if (context_.impl != nullptr) {
       ignore_rcl(rcl_context_fini(&context_));
     }
     throw Error(
-        fmt::format("context: rcl cannot start, see its --ros-args and environment variables: {}", details),
+        fmt::format("context: rcl cannot start, check the ROS arguments and environment variables: {}",
+                    details),
         code);
   }
 }
 
-void ContextImpl::read_arguments(const char * const * argv)
-{
-  refuse_unknown_ros_arguments(context_.global_arguments, argv);
-  non_ros_arguments_ = without_ros_arguments(context_.global_arguments, argv);
-}
-
 ContextImpl::~ContextImpl()
 {
-  // A Context that was never wrapped, or whose owner is gone, has been shut down by then.
+  // The constructor of Context may have failed.
   if (rcl_context_is_valid(&context_)) {
     ignore_rcl(rcl_shutdown(&context_));
   }
@@ -90,7 +72,7 @@ ContextImpl::~ContextImpl()
 void ContextImpl::watch_signals()
 {
   signals_ = SignalWatcher::instance();
-  // Through a weak pointer: the watcher may call until it has been told not to.
+  // A weak pointer: the watcher may call until remove() has returned.
   signal_id_ = signals_->add([weak = weak_from_this()](int signal) {
     if (const auto impl = weak.lock()) {
       impl->on_signal(signal);
@@ -110,7 +92,7 @@ void ContextImpl::join_signal_thread()
   }
   if (thread.joinable()) {
     if (thread.get_id() == std::this_thread::get_id()) {
-      thread.detach();  // a shutdown callback released the Context; the thread holds what it needs
+      thread.detach();  // a shutdown callback has released the Context; the thread holds a reference to this
     } else {
       thread.join();
     }
@@ -129,13 +111,13 @@ void ContextImpl::on_signal(int signal)
   } else if (now - *first_signal_ > signal_grace_) {
     take_default_action(signal);
   } else {
-    RCL_CXX_INFO(context_logger(), "{} again, the shutdown is under way", name);
+    RCL_CXX_INFO(context_logger(), "{} ignored: the shutdown is in progress", name);
   }
 }
 
 bool ContextImpl::shutdown(const std::string & reason)
 {
-  // A callback may let go of the Context, and spin() returns before the end of this.
+  // A callback may release the Context, and spin() returns before this function does.
   const auto self = shared_from_this();
   {
     const std::lock_guard lock(mutex_);
@@ -145,14 +127,14 @@ bool ContextImpl::shutdown(const std::string & reason)
     reason_ = reason;
   }
   set_state(State::shutting_down);
-  run_callbacks(Phase::user_before);
-  run_callbacks(Phase::library_before);
+  run_callbacks(Phase::pre_shutdown);
+  run_callbacks(Phase::action_servers);
   run_callbacks(Phase::rosout);
   const rcl_ret_t code = rcl_shutdown(&context_);
   if (code != RCL_RET_OK) {
     RCL_CXX_ERROR(context_logger(), "shutdown: {}", take_rcl_error());
   }
-  run_callbacks(Phase::after);
+  run_callbacks(Phase::on_shutdown);
   set_state(State::shut_down);
   return true;
 }
@@ -198,7 +180,7 @@ std::size_t ContextImpl::add_callback(Phase phase, Context::Callback callback)
 
 void ContextImpl::remove_callback(std::size_t id)
 {
-  // Not under the other mutex: a callback that is running may want that.
+  // Without mutex_, which a running callback may need.
   const std::lock_guard wait_for_running(running_callback_);
   const std::lock_guard lock(mutex_);
   std::erase_if(callbacks_, [id](const auto & entry) { return entry.first.second == id; });
@@ -229,9 +211,9 @@ void ContextImpl::run_callback(const Context::Callback & callback) noexcept
   try {
     callback();
   } catch (const std::exception & error) {
-    RCL_CXX_ERROR(context_logger(), "shutdown callback: {}", error.what());
+    RCL_CXX_ERROR(context_logger(), "a shutdown callback failed: {}", error.what());
   } catch (...) {
-    RCL_CXX_ERROR(context_logger(), "shutdown callback: unknown exception");
+    RCL_CXX_ERROR(context_logger(), "a shutdown callback threw an unknown exception");
   }
 }
 

@@ -18,25 +18,25 @@
 #include "signals.hpp"
 
 namespace rcl_cxx::detail {
-/// Owns the rcl context, and lives as long as anything made from it.
+/// Owns the rcl context. Lives as long as any node of it.
 class ContextImpl : public std::enable_shared_from_this<ContextImpl> {
  public:
-  /// In this order, and in order of registration within one: what the user does while communication works,
-  /// what action servers do after that, the end of /rosout, what is done when rcl has been shut down.
-  enum class Phase { user_before, library_before, rosout, after };
+  /// The phases of a shutdown, in their order. The callbacks of a phase run in order of registration.
+  /// pre_shutdown: callbacks of the user, communication works. action_servers: abort the remaining goals.
+  /// rosout: ends /rosout. on_shutdown: rcl is shut down.
+  enum class Phase { pre_shutdown, action_servers, rosout, on_shutdown };
 
-  ContextImpl(int argc, const char * const * argv, const InitOptions & options);
+  ContextImpl(const std::vector<std::string> & arguments, const InitOptions & options);
   ~ContextImpl();
   ContextImpl(const ContextImpl &) = delete;
   ContextImpl & operator=(const ContextImpl &) = delete;
 
-  /// Second half of construction: it needs shared_from_this.
+  /// Not in the constructor: it needs shared_from_this().
   void watch_signals();
-  /// The thread in which a signal shuts down holds a reference: the owning Context ends it.
+  /// The thread that shuts down after a signal holds a reference to this object.
   void join_signal_thread();
 
   bool ok() const noexcept { return state_.load() == State::running; }
-  bool is_shut_down() const noexcept { return state_.load() == State::shut_down; }
   bool shutdown(const std::string & reason);
   std::string shutdown_reason() const;
   bool wait_for(std::chrono::nanoseconds timeout, bool complete) const;
@@ -51,14 +51,13 @@ class ContextImpl : public std::enable_shared_from_this<ContextImpl> {
   enum class State { running, shutting_down, shut_down };
   using Key = std::pair<Phase, std::size_t>;
 
-  void init(int argc, const char * const * argv, const InitOptions & options);
-  void read_arguments(const char * const * argv);
+  void init(const std::vector<const char *> & argv);
   void on_signal(int signal);
   void run_callbacks(Phase phase);
   void run_callback(const Context::Callback & callback) noexcept;
   void set_state(State state);
 
-  rcl_context_t context_;
+  rcl_context_t context_ = rcl_get_zero_initialized_context();
   std::vector<std::string> non_ros_arguments_;
   std::shared_ptr<void> logging_;
   const std::chrono::milliseconds signal_grace_;
@@ -68,9 +67,9 @@ class ContextImpl : public std::enable_shared_from_this<ContextImpl> {
   mutable std::condition_variable state_changed_;
   std::string reason_;
   std::map<Key, Context::Callback> callbacks_;
-  Phase reached_ = Phase::user_before;
+  Phase reached_ = Phase::pre_shutdown;
   std::size_t next_id_ = 0;
-  std::recursive_mutex running_callback_;  // held while a callback runs, so that its removal can wait
+  std::recursive_mutex running_callback_;  // held while a callback runs: remove_callback() waits for it
 
   std::shared_ptr<SignalWatcher> signals_;
   std::size_t signal_id_ = 0;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -12,67 +13,76 @@
 
 namespace rcl_cxx::detail {
 class Waitable;
-class PendingEvents;
-class TimerImpl;
 
-/// One thing for the executor's thread to do: serve an entity, run a timer, or run a task. Of an entity that
-/// is gone meanwhile nothing is left to do.
+/// One item of work for the executor's thread: a source of a waitable, or a task.
 struct Event {
   std::weak_ptr<Waitable> waitable;
   std::size_t source = 0;
   std::function<void()> task;
 };
 
-/// A timer's next call; void if the timer's generation is another one by then. The number lives outside of
-/// the timer so that looking at it never holds the last reference to a timer.
-struct TimedEvent {
-  std::chrono::steady_clock::time_point due;
-  std::weak_ptr<TimerImpl> timer;
-  std::size_t generation = 0;
-  std::shared_ptr<const std::atomic<std::size_t>> current_generation;
+/// The next due time of a timer. It lives outside of the timer, so that the queue never holds the last
+/// reference to a timer.
+struct TimerSchedule {
+  using Clock = std::chrono::steady_clock;
+  static constexpr Clock::time_point kNever = Clock::time_point::max();
 
-  bool is_void() const noexcept { return current_generation->load() != generation; }
+  std::weak_ptr<Waitable> timer;
+  std::atomic<Clock::time_point> due{kNever};
 };
 
-/// What an executor serves: events in the order of their arrival, and timers when they are due, in turn.
+/// The work of one executor, in order of arrival. A timer is appended when it is due.
 class EventQueue {
  public:
   using Clock = std::chrono::steady_clock;
 
   void push(Event event);
-  void schedule(TimedEvent event);
+  void add_timer(std::shared_ptr<TimerSchedule> timer);
+  /// To call after a timer has become due earlier.
+  void wake();
 
-  /// The next thing to do. Waits for it until `deadline`; nothing then, or if stopped or ended.
+  /// Waits for the next event until `deadline`. Returns nothing on timeout, cancel() and end().
   std::optional<Event> next(Clock::time_point deadline);
 
-  /// One call of next() by one spin, the current or the next, sees it: take_stop().
-  void stop();
-  bool take_stop();
-  bool stop_requested() const;
-  /// No more spinning: the context is shut down.
+  /// Cancels the current spin, or the next one if no thread spins. Reset by take_cancel().
+  void cancel();
+  bool take_cancel();
+  /// The context is shut down: no thread spins any more.
   void end();
-  bool ended() const;
+  bool is_canceled_or_ended() const;
 
-  /// Removes and returns the events of a node's entities, and forgets its timers.
-  std::vector<Event> extract(const PendingEvents & events);
-
-  /// The queue whose callback runs in this thread, if any.
+  /// The queue whose event is being executed in this thread, if any.
   static const EventQueue *& current() noexcept;
 
  private:
-  std::optional<Event> pop_due_timer(Clock::time_point now);
-  std::optional<Event> pop_event();
-  void forget_dead_timers();
+  /// Appends the timers that are due and returns when the next one is.
+  Clock::time_point push_due_timers();
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::vector<Event> events_;  // the first served_ of them are done; keeps its capacity
-  std::size_t served_ = 0;
-  std::vector<TimedEvent> timers_;  // a heap, earliest first
-  std::size_t timers_to_clean_ = 64;
-  bool timer_had_its_turn_ = false;
-  bool stop_ = false;
+  std::deque<Event> events_;
+  std::vector<std::shared_ptr<TimerSchedule>> timers_;
+  bool canceled_ = false;
   bool ended_ = false;
+};
+
+/// Passes the events of a node to the queue of its executor. Events that arrive before the node has an
+/// executor are kept.
+class PendingEvents {
+ public:
+  void push(Event event);
+  void add_timer(std::shared_ptr<TimerSchedule> timer);
+  void wake();
+
+  /// Returns false if the node has an executor already.
+  bool attach(std::shared_ptr<EventQueue> queue);
+  std::shared_ptr<EventQueue> queue() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<EventQueue> queue_;
+  std::vector<Event> events_;
+  std::vector<std::shared_ptr<TimerSchedule>> timers_;
 };
 
 }  // namespace rcl_cxx::detail

@@ -57,10 +57,3 @@ const char * to_string(GoalStatus status) noexcept
 }
 
 }  // namespace rcl_cxx
-
-std::size_t std::hash<rcl_cxx::GoalUUID>::operator()(const rcl_cxx::GoalUUID & id) const noexcept
-{
-  std::size_t value = 0;  // the bytes are random, any of them will do
-  std::memcpy(&value, id.bytes.data() + 8, sizeof(value));
-  return value;
-}

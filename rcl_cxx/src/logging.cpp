@@ -6,7 +6,6 @@
 #include <rcutils/logging.h>
 
 #include "logging_impl.hpp"
-#include "rcl_compat.hpp"
 #include "rcl_error.hpp"
 
 namespace rcl_cxx {
@@ -33,8 +32,8 @@ struct LoggingInUse {
     configured =
         rcl_logging_configure_with_output_handler(&arguments, &allocator, &write_locked) == RCL_RET_OK;
     if (!configured) {
-      // No folder for the log file, mostly. A robot can be driven without one: the console works anyway.
-      rcutils_log(nullptr, RCUTILS_LOG_SEVERITY_WARN, "rcl_cxx", "only the console gets log messages: %s",
+      // For instance: the folder of the log file cannot be written. The console works without it.
+      rcutils_log(nullptr, RCUTILS_LOG_SEVERITY_WARN, "rcl_cxx", "log messages go to the console only: %s",
                   take_rcl_error().c_str());
     }
   }
@@ -74,54 +73,14 @@ bool throttle_passes(std::atomic<std::int64_t> & last_ns, std::chrono::nanosecon
   return last_ns.compare_exchange_strong(last, now);
 }
 
-namespace {
-/// The entry of a child logger in its node's /rosout.
-struct RosoutChild {
-  RosoutChild(std::string logger_name, std::string child_name)
-      : logger(std::move(logger_name)), child(std::move(child_name))
-  {
-    const std::lock_guard lock(logging_mutex());
-    registered = compat::rosout_add_child(logger.c_str(), child.c_str());
-    rcl_reset_error();  // a logger of no node, or one whose node has no /rosout
-  }
-  ~RosoutChild()
-  {
-    const std::lock_guard lock(logging_mutex());
-    if (registered) {
-      ignore_rcl(compat::rosout_remove_child(logger.c_str(), child.c_str()));
-    }
-  }
-  RosoutChild(const RosoutChild &) = delete;
-  RosoutChild & operator=(const RosoutChild &) = delete;
-
-  std::string logger;
-  std::string child;
-  bool registered = false;
-};
-}  // namespace
 }  // namespace detail
 
 Logger::Logger(std::string name) : name_(std::make_shared<const std::string>(std::move(name))) {}
-
-Logger Logger::get_child(std::string_view suffix) const
-{
-  Logger logger(fmt::format("{}.{}", *name_, suffix));
-  logger.registration_ = std::make_shared<const detail::RosoutChild>(*name_, std::string(suffix));
-  return logger;
-}
 
 bool Logger::is_enabled(LogLevel level) const noexcept
 {
   const std::lock_guard lock(detail::logging_mutex());
   return rcutils_logging_logger_is_enabled_for(name_->c_str(), static_cast<int>(level));
-}
-
-void Logger::set_level(LogLevel level) const
-{
-  const std::lock_guard lock(detail::logging_mutex());
-  if (rcutils_logging_set_logger_level(name_->c_str(), static_cast<int>(level)) != RCUTILS_RET_OK) {
-    throw Error(fmt::format("logger {}: level cannot be set ({})", *name_, detail::take_rcl_error()));
-  }
 }
 
 void Logger::write(LogLevel level, const LogLocation & location, std::string_view text) const noexcept
@@ -132,7 +91,7 @@ void Logger::write(LogLevel level, const LogLocation & location, std::string_vie
     const std::lock_guard lock(detail::logging_mutex());
     rcutils_log(&place, static_cast<int>(level), name_->c_str(), "%s", terminated.c_str());
   } catch (const std::exception &) {
-    // out of memory: there is no way left to tell
+    // out of memory
   }
 }
 

@@ -6,11 +6,12 @@
 #include <mutex>
 
 namespace rcl_cxx::detail {
-/// rcl's and rcutils' logging is one per process and not thread-safe: whoever touches it (also by creating a
-/// node, which adds a /rosout publisher) holds this.
+/// Guards the logging of rcl and rcutils, which is global and not thread-safe. Creating a node adds a /rosout
+/// publisher and needs it, too.
 std::recursive_mutex & logging_mutex();
 
-/// rcl logging, configured from `arguments` by the first caller, shut down when the last copy is released.
+/// The first caller configures rcl logging from `arguments`. It is shut down with the last copy of the
+/// result.
 std::shared_ptr<void> configure_logging(const rcl_arguments_t & arguments);
 
 }  // namespace rcl_cxx::detail

@@ -25,6 +25,17 @@ std::vector<rcl_interfaces::msg::Parameter> to_messages(const std::vector<Parame
   }
   return messages;
 }
+
+template <typename Range, typename Messages>
+void add_range(const std::optional<Range> & range, Messages & messages)
+{
+  if (range) {
+    auto & message = messages.emplace_back();
+    message.from_value = range->from_value;
+    message.to_value = range->to_value;
+    message.step = range->step;
+  }
+}
 }  // namespace
 
 rcl_interfaces::msg::ParameterValue to_message(const ParameterValue & value)
@@ -79,25 +90,12 @@ rcl_interfaces::msg::ParameterDescriptor to_message(const std::string & name, co
 {
   rcl_interfaces::msg::ParameterDescriptor message;
   message.name = name;
-  message.type = static_cast<std::uint8_t>(entry.type);
-  message.description = entry.options.description;
-  message.additional_constraints = entry.options.additional_constraints;
-  message.read_only = entry.options.read_only;
-  message.dynamic_typing = entry.options.dynamic_typing;
-  if (const auto & range = entry.options.floating_point_range) {
-    rcl_interfaces::msg::FloatingPointRange limits;
-    limits.from_value = range->from_value;
-    limits.to_value = range->to_value;
-    limits.step = range->step;
-    message.floating_point_range.push_back(limits);
-  }
-  if (const auto & range = entry.options.integer_range) {
-    rcl_interfaces::msg::IntegerRange limits;
-    limits.from_value = range->from_value;
-    limits.to_value = range->to_value;
-    limits.step = range->step;
-    message.integer_range.push_back(limits);
-  }
+  message.type = static_cast<std::uint8_t>(entry.value.get_type());
+  message.description = entry.descriptor.description;
+  message.additional_constraints = entry.descriptor.additional_constraints;
+  message.read_only = entry.descriptor.read_only;
+  add_range(entry.descriptor.floating_point_range, message.floating_point_range);
+  add_range(entry.descriptor.integer_range, message.integer_range);
   return message;
 }
 
@@ -106,7 +104,6 @@ rcl_interfaces::msg::ParameterEvent to_message(const ParameterChanges & changes)
   rcl_interfaces::msg::ParameterEvent message;
   message.new_parameters = to_messages(changes.added);
   message.changed_parameters = to_messages(changes.changed);
-  message.deleted_parameters = to_messages(changes.deleted);
   return message;
 }
 

@@ -10,7 +10,7 @@ namespace rcl_cxx::detail {
 namespace {
 bool nearly_equal(double a, double b)
 {
-  // As rclcpp: the steps of a range are computed, their sums carry rounding errors.
+  // As in rclcpp: multiples of the step carry rounding errors.
   return a == b || (std::isfinite(a) && std::isfinite(b) &&
                     std::abs(a - b) <= std::numeric_limits<double>::epsilon() * 100.0 * std::abs(a + b));
 }
@@ -20,7 +20,7 @@ bool within(double value, const FloatingPointRange & range)
   if (nearly_equal(value, range.from_value) || nearly_equal(value, range.to_value)) {
     return true;
   }
-  if (!(value >= range.from_value && value <= range.to_value)) {  // also refuses NaN
+  if (!(value >= range.from_value && value <= range.to_value)) {  // refuses NaN, too
     return false;
   }
   return range.step == 0.0 ||
@@ -60,20 +60,21 @@ SetParametersResult check_range(const std::string & name, const ParameterValue &
 }
 }  // namespace
 
-SetParametersResult check_value(const std::string & name, ParameterType type,
-                                const ParameterDescriptor & options, const ParameterValue & value)
+SetParametersResult check_value(const Parameter & parameter, ParameterType type,
+                                const ParameterDescriptor & descriptor)
 {
-  if (!options.dynamic_typing && value.get_type() != type) {
+  const auto & [name, value] = parameter;
+  if (value.get_type() != type) {
     return tl::make_unexpected(
         fmt::format("Wrong parameter type: parameter '{}' is of type {}, it cannot be {} ({})", name,
                     to_string(type), value.to_string(), to_string(value.get_type())));
   }
   SetParametersResult result;
-  if (options.floating_point_range) {
-    result = check_range<double>(name, value, *options.floating_point_range);
+  if (descriptor.floating_point_range) {
+    result = check_range<double>(name, value, *descriptor.floating_point_range);
   }
-  if (result && options.integer_range) {
-    result = check_range<std::int64_t>(name, value, *options.integer_range);
+  if (result && descriptor.integer_range) {
+    result = check_range<std::int64_t>(name, value, *descriptor.integer_range);
   }
   return result;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "parameter_messages.hpp"
+#include "rcl_cxx/error.hpp"
 
 namespace rcl_cxx::detail {
 namespace {
@@ -28,7 +29,7 @@ bool is_listed(const std::string & name, const std::vector<std::string> & prefix
   });
 }
 
-rcl_interfaces::msg::SetParametersResult to_result(const SetParametersResult & result)
+rcl_interfaces::msg::SetParametersResult to_message(const SetParametersResult & result)
 {
   rcl_interfaces::msg::SetParametersResult message;
   message.successful = result.has_value();
@@ -36,7 +37,7 @@ rcl_interfaces::msg::SetParametersResult to_result(const SetParametersResult & r
   return message;
 }
 
-/// The answer on unknown names is empty, as rclcpp's; the log says why.
+/// If a name is unknown, the response is empty, as in rclcpp, and a warning names the parameter.
 template <typename Function>
 auto for_each_known(const Logger & logger, const std::vector<std::string> & names, Function function)
 {
@@ -46,7 +47,7 @@ auto for_each_known(const Logger & logger, const std::vector<std::string> & name
       results.push_back(function(name));
     }
   } catch (const ParameterError & error) {
-    RCL_CXX_WARN(logger, "request for parameters: {}", error.what());
+    RCL_CXX_WARN(logger, "parameter request: {}", error.what());
     results.clear();
   }
   return results;
@@ -106,17 +107,16 @@ ParameterServices::ParameterServices(Node & node, std::shared_ptr<Parameters> pa
   add.template operator()<srv::SetParameters>(
       "set_parameters", [parameters](const auto & request, auto & response) {
         for (const auto & parameter : request.parameters) {
-          response.results.push_back(to_result(parameters->set({from_message(parameter)})));
+          response.results.push_back(to_message(parameters->set({from_message(parameter)})));
         }
       });
-  add.template operator()<srv::SetParametersAtomically>("set_parameters_atomically",
-                                                        [parameters](const auto & request, auto & response) {
-                                                          std::vector<Parameter> all;
-                                                          for (const auto & parameter : request.parameters) {
-                                                            all.push_back(from_message(parameter));
-                                                          }
-                                                          response.result = to_result(parameters->set(all));
-                                                        });
+  add.template operator()<srv::SetParametersAtomically>(
+      "set_parameters_atomically", [parameters](const auto & request, auto & response) {
+        std::vector<Parameter> all;
+        std::transform(request.parameters.begin(), request.parameters.end(), std::back_inserter(all),
+                       [](const auto & parameter) { return from_message(parameter); });
+        response.result = to_message(parameters->set(all));
+      });
 }
 
 }  // namespace rcl_cxx::detail

@@ -3,108 +3,41 @@
 #include <fmt/format.h>
 
 #include "parameter_rules.hpp"
+#include "rcl_cxx/error.hpp"
 
 namespace rcl_cxx::detail {
-namespace {
-constexpr const char * kNotInCallbacks = "parameters cannot be declared or set from a parameter callback";
-
-ParameterError not_declared(const std::string & name)
-{
-  return {name, fmt::format("parameter '{}' is not declared", name)};
-}
-
-void check_declaration(const std::string & name, const ParameterValue & value,
-                       const ParameterDescriptor & options)
-{
-  if (name.empty()) {
-    throw ParameterError(name, "a parameter needs a name");
-  }
-  if (!options.dynamic_typing && value.get_type() == ParameterType::not_set) {
-    throw ParameterError(name, fmt::format("parameter '{}' has neither a default nor dynamic typing", name));
-  }
-}
-}  // namespace
-
-/// A callback that changes parameters would change what is just being decided.
-class Parameters::NoSettingInCallbacks {
- public:
-  explicit NoSettingInCallbacks(Parameters & parameters) : parameters_(parameters)
-  {
-    if (parameters_.in_callback_) {
-      throw Error(kNotInCallbacks);
-    }
-    parameters_.in_callback_ = true;
-  }
-  ~NoSettingInCallbacks() { parameters_.in_callback_ = false; }
-  NoSettingInCallbacks(const NoSettingInCallbacks &) = delete;
-  NoSettingInCallbacks & operator=(const NoSettingInCallbacks &) = delete;
-
- private:
-  Parameters & parameters_;
-};
-
-Parameters::Parameters(Logger logger, std::map<std::string, ParameterValue> overrides)
-    : logger_(std::move(logger)), overrides_(std::move(overrides))
-{
-}
-
-void Parameters::observe(Observer observer)
+void Parameters::add_on_change(OnChange callback)
 {
   const std::lock_guard lock(mutex_);
-  observer_ = std::move(observer);
+  on_change_.push_back(std::move(callback));
+}
+
+void Parameters::remove_on_change()
+{
+  const std::lock_guard lock(mutex_);
+  on_change_.clear();
 }
 
 ParameterValue Parameters::declare(const std::string & name, const ParameterValue & default_value,
-                                   const ParameterDescriptor & options)
+                                   const ParameterDescriptor & descriptor)
 {
-  check_declaration(name, default_value, options);
+  if (name.empty() || default_value.get_type() == ParameterType::not_set) {
+    throw ParameterError(name, fmt::format("parameter '{}' needs a name and a default value", name));
+  }
   const std::lock_guard lock(mutex_);
-  const NoSettingInCallbacks guard(*this);
   if (entries_.contains(name)) {
     throw ParameterError(name, fmt::format("parameter '{}' is declared already", name));
   }
   const ParameterType type = default_value.get_type();
-  ParameterValue value = default_value;
   const auto override = overrides_.find(name);
-  if (override != overrides_.end() && !options.ignore_override) {
-    value = options.dynamic_typing ? override->second : as_type(override->second, type);
-  }
-  const Parameter parameter{name, value};
-  const SetParametersResult result =
-      check_value(name, type, options, value).and_then([&] { return ask_callbacks({parameter}); });
-  if (!result) {
+  const Parameter parameter{name,
+                            override == overrides_.end() ? default_value : as_type(override->second, type)};
+  if (const SetParametersResult result = check_value(parameter, type, descriptor); !result) {
     throw ParameterError(name, result.error());
   }
-  entries_.emplace(name, Entry{value, options, value.get_type()});
-  tell({parameter}, ParameterChanges{{parameter}, {}, {}});
-  return value;
-}
-
-void Parameters::declare_all_overrides()
-{
-  ParameterDescriptor options;
-  options.dynamic_typing = true;
-  for (const auto & [name, value] : overrides_) {
-    if (!has(name)) {
-      declare(name, value, options);
-    }
-  }
-}
-
-void Parameters::undeclare(const std::string & name)
-{
-  const std::lock_guard lock(mutex_);
-  const NoSettingInCallbacks guard(*this);
-  const auto found = entries_.find(name);
-  if (found == entries_.end()) {
-    throw not_declared(name);
-  }
-  if (found->second.options.read_only || !found->second.options.dynamic_typing) {
-    throw ParameterError(name,
-                         fmt::format("parameter '{}' cannot be undeclared, it is {}", name,
-                                     found->second.options.read_only ? "read-only" : "statically typed"));
-  }
-  entries_.erase(found);
+  entries_.emplace(name, Entry{parameter.value, descriptor});
+  notify({.added = {parameter}, .changed = {}});
+  return parameter.value;
 }
 
 bool Parameters::has(const std::string & name) const
@@ -118,7 +51,7 @@ Parameters::Entry Parameters::get(const std::string & name) const
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(name);
   if (found == entries_.end()) {
-    throw not_declared(name);
+    throw ParameterError(name, fmt::format("parameter '{}' is not declared", name));
   }
   return found->second;
 }
@@ -136,28 +69,19 @@ std::vector<Parameter> Parameters::all() const
 SetParametersResult Parameters::set(const std::vector<Parameter> & parameters)
 {
   const std::lock_guard lock(mutex_);
-  if (in_callback_) {
-    return tl::make_unexpected(std::string(kNotInCallbacks));
-  }
-  const NoSettingInCallbacks guard(*this);
-  const SetParametersResult result = check(parameters).and_then([&] { return ask_callbacks(parameters); });
-  if (result) {
-    tell(parameters, apply(parameters));
-  }
-  return result;
-}
-
-SetParametersResult Parameters::check(const std::vector<Parameter> & parameters) const
-{
   for (const Parameter & parameter : parameters) {
-    if (SetParametersResult result = check_one(parameter); !result) {
+    if (SetParametersResult result = check(parameter); !result) {
       return result;
     }
   }
+  for (const Parameter & parameter : parameters) {
+    entries_.at(parameter.name).value = parameter.value;
+  }
+  notify({.added = {}, .changed = parameters});
   return {};
 }
 
-SetParametersResult Parameters::check_one(const Parameter & parameter) const
+SetParametersResult Parameters::check(const Parameter & parameter) const
 {
   const auto found = entries_.find(parameter.name);
   if (found == entries_.end()) {
@@ -165,88 +89,18 @@ SetParametersResult Parameters::check_one(const Parameter & parameter) const
         fmt::format("parameter '{}' cannot be set because it was not declared", parameter.name));
   }
   const Entry & entry = found->second;
-  if (entry.options.read_only) {
+  if (entry.descriptor.read_only) {
     return tl::make_unexpected(
         fmt::format("parameter '{}' cannot be set because it is read-only", parameter.name));
   }
-  return check_value(parameter.name, entry.type, entry.options, parameter.value);
+  return check_value(parameter, entry.value.get_type(), entry.descriptor);
 }
 
-SetParametersResult Parameters::ask_callbacks(const std::vector<Parameter> & parameters) const
+void Parameters::notify(const ParameterChanges & changes) const
 {
-  for (const auto & weak : on_set_) {
-    const auto callback = weak.lock();
-    if (!callback) {
-      continue;
-    }
-    try {
-      if (SetParametersResult result = (*callback)(parameters); !result) {
-        return result;
-      }
-    } catch (const std::exception & error) {
-      return tl::make_unexpected(std::string(error.what()));
-    }
+  for (const OnChange & callback : on_change_) {
+    callback(changes);
   }
-  return {};
-}
-
-ParameterChanges Parameters::apply(const std::vector<Parameter> & parameters)
-{
-  ParameterChanges changes;
-  for (const Parameter & parameter : parameters) {
-    const auto found = entries_.find(parameter.name);
-    if (found == entries_.end()) {
-      continue;  // deleted by an earlier one of the same set
-    }
-    Entry & entry = found->second;
-    if (parameter.value.get_type() == ParameterType::not_set &&
-        entry.value.get_type() != ParameterType::not_set) {
-      // As in rclcpp: unsetting a parameter of dynamic type undeclares it.
-      changes.deleted.push_back({parameter.name, entry.value});
-      entries_.erase(found);
-      continue;
-    }
-    entry.value = parameter.value;
-    entry.type = parameter.value.get_type();
-    changes.changed.push_back(parameter);
-  }
-  return changes;
-}
-
-void Parameters::tell(const std::vector<Parameter> & parameters, const ParameterChanges & changes) const
-{
-  for (const auto & weak : after_set_) {
-    const auto callback = weak.lock();
-    if (!callback) {
-      continue;
-    }
-    try {
-      (*callback)(parameters);
-    } catch (const std::exception & error) {
-      RCL_CXX_ERROR(logger_, "callback of set parameters: {}", error.what());
-    }
-  }
-  if (observer_) {
-    observer_(changes);
-  }
-}
-
-ParameterCallbackHandle Parameters::add_on_set(OnSetParametersCallback callback)
-{
-  const std::lock_guard lock(mutex_);
-  on_set_.remove_if([](const auto & other) { return other.expired(); });
-  auto handle = std::make_shared<OnSetParametersCallback>(std::move(callback));
-  on_set_.push_front(handle);
-  return handle;
-}
-
-ParameterCallbackHandle Parameters::add_after_set(PostSetParametersCallback callback)
-{
-  const std::lock_guard lock(mutex_);
-  after_set_.remove_if([](const auto & other) { return other.expired(); });
-  auto handle = std::make_shared<PostSetParametersCallback>(std::move(callback));
-  after_set_.push_front(handle);
-  return handle;
 }
 
 }  // namespace rcl_cxx::detail

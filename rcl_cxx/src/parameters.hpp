@@ -1,74 +1,56 @@
 #pragma once
 
 #include <functional>
-#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
-#include "rcl_cxx/error.hpp"
-#include "rcl_cxx/logging.hpp"
 #include "rcl_cxx/parameter.hpp"
 
 namespace rcl_cxx::detail {
-/// What has happened to a node's parameters in one go; parameters of /parameter_events.
+/// The parameters that one call has declared or set.
 struct ParameterChanges {
   std::vector<Parameter> added;
   std::vector<Parameter> changed;
-  std::vector<Parameter> deleted;
 };
 
-/// The parameters of a node. Thread-safe; callbacks and the observer run under its lock, and may read but not
-/// set.
-class Parameters : public std::enable_shared_from_this<Parameters> {
+/// The parameters of a node. Thread-safe.
+class Parameters {
  public:
   struct Entry {
     ParameterValue value;
-    ParameterDescriptor options;
-    ParameterType type;  // of the value, or the only one allowed
+    ParameterDescriptor descriptor;
   };
-  using Observer = std::function<void(const ParameterChanges &)>;
+  /// Runs under the lock, after a change has taken effect. May read parameters, must not set any.
+  using OnChange = std::function<void(const ParameterChanges &)>;
 
-  Parameters(Logger logger, std::map<std::string, ParameterValue> overrides);
+  explicit Parameters(std::map<std::string, ParameterValue> overrides) : overrides_(std::move(overrides)) {}
 
-  /// Told of every change, after it.
-  void observe(Observer observer);
+  void add_on_change(OnChange callback);
+  /// Waits for running callbacks.
+  void remove_on_change();
 
+  /// @throws ParameterError
   ParameterValue declare(const std::string & name, const ParameterValue & default_value,
-                         const ParameterDescriptor & options);
-  void declare_all_overrides();
-  void undeclare(const std::string & name);
+                         const ParameterDescriptor & descriptor);
 
   bool has(const std::string & name) const;
   /// @throws ParameterError if not declared
   Entry get(const std::string & name) const;
   std::vector<Parameter> all() const;
-  /// All or nothing.
+  /// Sets all parameters or none.
   SetParametersResult set(const std::vector<Parameter> & parameters);
 
-  ParameterCallbackHandle add_on_set(OnSetParametersCallback callback);
-  ParameterCallbackHandle add_after_set(PostSetParametersCallback callback);
-
  private:
-  class NoSettingInCallbacks;
+  SetParametersResult check(const Parameter & parameter) const;
+  void notify(const ParameterChanges & changes) const;
 
-  SetParametersResult check(const std::vector<Parameter> & parameters) const;
-  SetParametersResult check_one(const Parameter & parameter) const;
-  SetParametersResult ask_callbacks(const std::vector<Parameter> & parameters) const;
-  ParameterChanges apply(const std::vector<Parameter> & parameters);
-  void tell(const std::vector<Parameter> & parameters, const ParameterChanges & changes) const;
-
-  const Logger logger_;
   mutable std::recursive_mutex mutex_;
-  bool in_callback_ = false;
   const std::map<std::string, ParameterValue> overrides_;
   std::map<std::string, Entry> entries_;
-  // Newest first. Pointers, so that one may unregister while it runs.
-  std::list<std::weak_ptr<OnSetParametersCallback>> on_set_;
-  std::list<std::weak_ptr<PostSetParametersCallback>> after_set_;
-  Observer observer_;
+  std::vector<OnChange> on_change_;
 };
 
 }  // namespace rcl_cxx::detail

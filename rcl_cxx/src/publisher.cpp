@@ -1,11 +1,15 @@
 #include "rcl_cxx/publisher.hpp"
 
 #include <fmt/format.h>
+#include <rcl/publisher.h>
+
+#include <atomic>
+#include <cstdint>
 
 #include "node_impl.hpp"
-#include "publisher_impl.hpp"
-#include "qos_rmw.hpp"
+#include "qos_event.hpp"
 #include "rcl_error.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx {
 namespace detail {
@@ -13,24 +17,40 @@ namespace {
 constexpr std::chrono::seconds kFailureLogPeriod{1};
 }
 
-std::shared_ptr<PublisherImpl> PublisherImpl::create(std::shared_ptr<NodeImpl> node,
-                                                     const rosidl_message_type_support_t * type_support,
-                                                     const std::string & topic, const QoS & qos)
-{
-  auto impl = std::make_shared<PublisherImpl>(std::move(node), type_support, topic, qos);
-  impl->warning_ = std::make_unique<QosWarning>();
-  impl->warning_->start(impl->publisher_, &on_event, impl->source(0));
-  return impl;
-}
+class PublisherImpl : public Waitable {
+ public:
+  PublisherImpl(std::shared_ptr<NodeImpl> node, const rosidl_message_type_support_t * type_support,
+                const std::string & topic, const QoS & qos);
+  ~PublisherImpl() override;
+
+  bool publish(const void * message) noexcept;
+  std::size_t get_subscription_count() const;
+  const std::string & get_topic_name() const noexcept { return topic_; }
+
+  void set_on_ready_callbacks() override
+  {
+    incompatible_qos_.start(rcl_publisher_event_init, publisher_, RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS,
+                            [this](rcl_event_t & event) { set_callback(rcl_event_set_callback, event, 0); });
+  }
+
+ protected:
+  void execute(std::size_t source) override;
+  void clear_on_ready_callbacks() noexcept override { incompatible_qos_.stop(); }
+
+ private:
+  rcl_publisher_t publisher_ = rcl_get_zero_initialized_publisher();
+  std::string topic_;
+  IncompatibleQosEvent incompatible_qos_;
+  std::atomic<std::int64_t> last_failure_ns_{INT64_MIN};
+};
 
 PublisherImpl::PublisherImpl(std::shared_ptr<NodeImpl> node,
                              const rosidl_message_type_support_t * type_support, const std::string & topic,
                              const QoS & qos)
-    : Waitable(std::move(node), fmt::format("publisher {}", topic)),
-      publisher_(rcl_get_zero_initialized_publisher())
+    : Waitable(std::move(node), fmt::format("publisher {}", topic))
 {
   rcl_publisher_options_t options = rcl_publisher_get_default_options();
-  options.qos = to_rmw(qos);
+  options.qos = qos.get_rmw_qos_profile();
   const std::lock_guard lock(this->node()->mutex());
   check_rcl(rcl_publisher_init(&publisher_, this->node()->handle(), type_support, topic.c_str(), &options),
             label(), "cannot be created");
@@ -40,13 +60,13 @@ PublisherImpl::PublisherImpl(std::shared_ptr<NodeImpl> node,
 PublisherImpl::~PublisherImpl()
 {
   const std::lock_guard lock(node()->mutex());
-  warning_.reset();
+  incompatible_qos_.fini();
   ignore_rcl(rcl_publisher_fini(&publisher_, node()->handle()));
 }
 
 bool PublisherImpl::publish(const void * message) noexcept
 {
-  const rcl_ret_t code = rcl_publish(&publisher_, message, nullptr);
+  const rcl_ret_t code = guard_serialization([&] { return rcl_publish(&publisher_, message, nullptr); });
   if (code == RCL_RET_OK) {
     return true;
   }
@@ -73,21 +93,21 @@ std::size_t PublisherImpl::get_subscription_count() const
 
 void PublisherImpl::execute(std::size_t /*source*/)
 {
-  const std::string policy = warning_->take_policy();
-  if (!policy.empty()) {
-    RCL_CXX_WARN(node()->get_logger(),
-                 "{}: a subscription asks for another quality of service ({}), it gets no messages", topic_,
-                 policy);
+  if (const auto policy = incompatible_qos_.take_policy()) {
+    RCL_CXX_WARN(
+        node()->get_logger(),
+        "{}: a subscription requests an incompatible quality of service ({}), it receives no messages",
+        topic_, *policy);
   }
-}
-
-void PublisherImpl::stop() noexcept
-{
-  warning_->stop();
 }
 }  // namespace detail
 
-PublisherBase::PublisherBase(std::shared_ptr<detail::PublisherImpl> impl) : impl_(std::move(impl)) {}
+PublisherBase::PublisherBase(std::shared_ptr<detail::NodeImpl> node,
+                             const rosidl_message_type_support_t * type_support, const std::string & topic,
+                             const QoS & qos)
+    : impl_(detail::make_waitable<detail::PublisherImpl>(std::move(node), type_support, topic, qos))
+{
+}
 PublisherBase::~PublisherBase()
 {
   impl_->close();

@@ -1,7 +1,6 @@
 #pragma once
 
-/// Everything in which the versions of rcl differ (Humble 5.3, Jazzy 9.2, Kilted 10.1, Rolling). The only
-/// place that looks at a version.
+/// The differences between versions of rcl (Humble 5.3, Jazzy 9.2, Kilted 10.1, Rolling).
 
 #include <rcl/graph.h>
 #include <rcl/logging_rosout.h>
@@ -21,15 +20,8 @@
 #include <rmw/incompatible_qos_events_statuses.h>  // Humble
 #endif
 
-#if RCL_VERSION_MAJOR >= 6
-#define RCL_CXX_HAS_TYPE_DESCRIPTION_SERVICE 1
-#include <type_description_interfaces/srv/get_type_description.h>
-#else
-#define RCL_CXX_HAS_TYPE_DESCRIPTION_SERVICE 0
-#endif
-
 namespace rcl_cxx::detail::compat {
-/// A timer that does not run yet.
+/// Initializes a canceled timer.
 inline rcl_ret_t timer_init_canceled(rcl_timer_t * timer, rcl_clock_t * clock, rcl_context_t * context,
                                      std::int64_t period_ns)
 {
@@ -42,7 +34,7 @@ inline rcl_ret_t timer_init_canceled(rcl_timer_t * timer, rcl_clock_t * clock, r
 #endif
 }
 
-/// From Kilted on the server's timer of expiry comes from outside, before it made its own from `clock`.
+/// Since Kilted, the caller provides the expire timer. Before, the server made its own from `clock`.
 inline rcl_ret_t action_server_init(rcl_action_server_t * server, rcl_node_t * node,
                                     const rcl_timer_t * expire_timer, rcl_clock_t * clock,
                                     const rosidl_action_type_support_t * type_support, const char * name,
@@ -57,7 +49,7 @@ inline rcl_ret_t action_server_init(rcl_action_server_t * server, rcl_node_t * n
 #endif
 }
 
-/// Clients cannot be counted before Jazzy: 1, because one may be there.
+/// Clients cannot be counted before Jazzy. 1, because there may be a client.
 inline rcl_ret_t count_clients(const rcl_node_t * node, const char * service, std::size_t * count)
 {
 #if RCL_VERSION_MAJOR >= 9
@@ -68,7 +60,7 @@ inline rcl_ret_t count_clients(const rcl_node_t * node, const char * service, st
 #endif
 }
 
-/// The node's publisher on /rosout. rcl itself makes it up to Iron, the client libraries do from Jazzy on.
+/// The node's publisher on /rosout. rcl creates it up to Iron, the client library since Jazzy.
 inline rcl_ret_t rosout_start(rcl_node_t * node)
 {
 #if RCL_VERSION_MAJOR >= 9
@@ -78,29 +70,10 @@ inline rcl_ret_t rosout_start(rcl_node_t * node)
 #endif
 }
 
-/// Where rcl itself made it, rcl finds later that there is nothing left to end.
+/// Before Jazzy, rcl finds later that the publisher is gone.
 inline rcl_ret_t rosout_stop(rcl_node_t * node)
 {
   return rcl_logging_rosout_fini_publisher_for_node(node);
-}
-
-/// Lets messages of logger "<logger>.<child>" appear in the /rosout of `logger`'s node. Since Jazzy.
-inline bool rosout_add_child(const char * logger, const char * child)
-{
-#if RCL_VERSION_MAJOR >= 6
-  return rcl_logging_rosout_add_sublogger(logger, child) == RCL_RET_OK;
-#else
-  return logger == nullptr && child == nullptr;
-#endif
-}
-
-inline rcl_ret_t rosout_remove_child(const char * logger, const char * child)
-{
-#if RCL_VERSION_MAJOR >= 6
-  return rcl_logging_rosout_remove_sublogger(logger, child);
-#else
-  return logger != nullptr && child != nullptr ? RCL_RET_OK : RCL_RET_ERROR;
-#endif
 }
 
 }  // namespace rcl_cxx::detail::compat

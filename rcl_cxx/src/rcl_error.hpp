@@ -10,7 +10,7 @@
 #include "rcl_cxx/error.hpp"
 
 namespace rcl_cxx::detail {
-/// rcl's text of the last error of this thread, which is then reset.
+/// The text of rcl's error state, which is reset.
 inline std::string take_rcl_error()
 {
   std::string text = rcl_error_is_set() ? rcl_get_error_string().str : "no details";
@@ -18,24 +18,35 @@ inline std::string take_rcl_error()
   return text;
 }
 
-[[noreturn]] inline void throw_rcl_error(rcl_ret_t code, std::string_view entity, std::string_view action)
-{
-  throw Error(fmt::format("{}: {} (rcl error {}: {})", entity, action, code, take_rcl_error()), code);
-}
-
-/// Nothing is composed unless the call has failed.
+/// @throws Error if `code` is not RCL_RET_OK
 inline void check_rcl(rcl_ret_t code, std::string_view entity, std::string_view action)
 {
   if (code != RCL_RET_OK) {
-    throw_rcl_error(code, entity, action);
+    throw Error(fmt::format("{}: {} (rcl error {}: {})", entity, action, code, take_rcl_error()), code);
   }
 }
 
-/// For destructors: an rcl object that cannot be finalised is leaked, there is nobody to tell.
+/// For destructors: an rcl object that cannot be finalized is leaked.
 inline void ignore_rcl(rcl_ret_t code) noexcept
 {
   if (code != RCL_RET_OK) {
     rcl_reset_error();
+  }
+}
+
+/// Returned by guard_serialization().
+constexpr rcl_ret_t kCannotSerialize = -1;
+
+/// Calls an rcl function that serializes a message. The middleware throws if a string contains a null
+/// character; its exceptions are not derived from std::exception for this library.
+template <typename Send>
+rcl_ret_t guard_serialization(const Send & send) noexcept
+{
+  try {
+    return send();
+  } catch (...) {
+    RCL_SET_ERROR_MSG("the middleware cannot serialize the message: does a string contain a null character?");
+    return kCannotSerialize;
   }
 }
 

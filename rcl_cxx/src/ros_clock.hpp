@@ -7,7 +7,7 @@
 #include <optional>
 
 namespace rcl_cxx::detail {
-/// ROS time: the system's clock, unless overridden (use_sim_time). Thread-safe.
+/// ROS time: the system clock, unless overridden (use_sim_time). Thread-safe.
 class RosClock {
  public:
   RosClock();
@@ -17,7 +17,7 @@ class RosClock {
 
   /// Nanoseconds since the epoch.
   std::int64_t now_ns() const;
-  /// From now on this time, or without one the system's.
+  /// Sets the time; without a value, returns to the system clock.
   void override_with(std::optional<std::int64_t> now_ns);
 
   rcl_clock_t * handle() noexcept { return &clock_; }

@@ -3,6 +3,7 @@
 #include "action_server_impl.hpp"
 #include "node_impl.hpp"
 #include "rcl_error.hpp"
+#include "to_time.hpp"
 
 namespace rcl_cxx {
 namespace detail {
@@ -12,7 +13,7 @@ ServerGoalImpl::ServerGoalImpl(std::weak_ptr<ActionServerImpl> server, GoalUUID 
 {
   rcl_action_goal_info_t info = rcl_action_get_zero_initialized_goal_info();
   if (rcl_action_goal_handle_get_info(&rcl_handle_, &info) == RCL_RET_OK) {
-    accepted_ns_ = std::int64_t{info.stamp.sec} * 1'000'000'000 + info.stamp.nanosec;
+    stamp_ = to_ns(info.stamp);
   } else {
     rcl_reset_error();
   }
@@ -71,9 +72,9 @@ bool ServerGoalHandleBase::is_canceling() const noexcept
   return get_status() == GoalStatus::canceling;
 }
 
-std::int64_t ServerGoalHandleBase::accepted_ns() const noexcept
+std::int64_t ServerGoalHandleBase::get_goal_stamp() const noexcept
 {
-  return impl_->accepted_ns();
+  return impl_->get_goal_stamp();
 }
 
 bool ServerGoalHandleBase::finish(GoalStatus status, std::shared_ptr<void> result_response) noexcept
@@ -88,7 +89,7 @@ bool ServerGoalHandleBase::send_feedback(void * feedback_message) noexcept
   return server && server->publish_feedback(*impl_, feedback_message);
 }
 
-void ServerGoalHandleBase::report_exception(const char * what) const noexcept
+void ServerGoalHandleBase::log_exception(const char * what) const noexcept
 {
   if (const auto server = impl_->server()) {
     RCL_CXX_ERROR(server->node()->get_logger(), "{}: goal {}: {}", server->get_action_name(),

@@ -17,11 +17,12 @@
 namespace rcl_cxx::detail {
 class ActionServerImpl;
 
-/// A goal as the server keeps it, from its acceptance until its result expires. GoalHandles share it.
+/// A goal of an action server, from its acceptance until its result expires. Shared with the
+/// ServerGoalHandle.
 class ServerGoalImpl {
  public:
-  /// Takes over the state that rcl_action_accept_new_goal has made: rcl keeps a list of such structs, but
-  /// frees nothing that they point to.
+  /// Copies the handle of rcl_action_accept_new_goal and takes over what it points to: rcl_action frees the
+  /// handle itself, but not its contents.
   ServerGoalImpl(std::weak_ptr<ActionServerImpl> server, GoalUUID id,
                  const rcl_action_goal_handle_t & handle);
   ~ServerGoalImpl();
@@ -29,33 +30,31 @@ class ServerGoalImpl {
   ServerGoalImpl & operator=(const ServerGoalImpl &) = delete;
 
   const GoalUUID & id() const noexcept { return id_; }
-  std::int64_t accepted_ns() const noexcept { return accepted_ns_; }
-  /// Readable without the server's lock.
+  std::int64_t get_goal_stamp() const noexcept { return stamp_; }
   GoalStatus get_status() const noexcept { return status_.load(); }
   std::shared_ptr<ActionServerImpl> server() const noexcept { return server_.lock(); }
 
-  /// Its result has been sent to someone.
   std::atomic<bool> result_sent{false};
 
-  // --- the rest only under the server's lock ---
+  // --- guarded by the server's mutex ---
 
-  /// False if the state machine has no such transition now.
+  /// Returns false if the state machine has no such transition.
   bool update(rcl_action_goal_event_t event);
-  /// The server is gone: nothing can be done with the goal any more.
+  /// The server is gone: the goal is no longer active.
   void orphan() noexcept { status_ = GoalStatus::aborted; }
 
-  std::weak_ptr<ServerGoalHandleBase> handle;     // the user's
-  bool cancel_being_decided = false;              // its cancel handler runs
-  std::shared_ptr<void> result_response;          // set with a terminal state
-  std::vector<rmw_request_id_t> result_requests;  // to be answered with it
+  std::weak_ptr<ServerGoalHandleBase> handle;
+  bool in_handle_cancel = false;
+  std::shared_ptr<void> result_response;          // set with a terminal status, constant from then on
+  std::vector<rmw_request_id_t> result_requests;  // waiting for the result
   std::chrono::steady_clock::time_point ended{};
-  std::optional<ClientWatch> client;  // while it is watched
+  std::optional<ClientWatch> client;  // while the client is watched
 
  private:
   const std::weak_ptr<ActionServerImpl> server_;
   const GoalUUID id_;
   rcl_action_goal_handle_t rcl_handle_;
-  std::int64_t accepted_ns_ = 0;
+  std::int64_t stamp_ = 0;
   std::atomic<GoalStatus> status_{GoalStatus::accepted};
 };
 

@@ -1,32 +1,50 @@
 #include "rcl_cxx/service.hpp"
 
 #include <fmt/format.h>
+#include <rcl/service.h>
 
 #include "node_impl.hpp"
-#include "qos_rmw.hpp"
 #include "rcl_error.hpp"
-#include "service_impl.hpp"
+#include "response_sender.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx {
 namespace detail {
-std::shared_ptr<ServiceImpl> ServiceImpl::create(std::shared_ptr<NodeImpl> node, ErasedService erased,
-                                                 const std::string & name, const QoS & qos)
-{
-  auto impl = std::make_shared<ServiceImpl>(std::move(node), std::move(erased), name, qos);
-  check_rcl(rcl_service_set_on_new_request_callback(&impl->service_, &on_event, impl->source(0)),
-            impl->label(), "its middleware does not report new requests");
-  return impl;
-}
+class ServiceImpl : public Waitable {
+ public:
+  ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, const std::string & name,
+              const QoS & qos);
+  ~ServiceImpl() override;
+
+  const std::string & get_service_name() const noexcept { return name_; }
+
+  void set_on_ready_callbacks() override
+  {
+    set_callback(rcl_service_set_on_new_request_callback, service_, 0);
+  }
+
+ protected:
+  void execute(std::size_t source) override;
+  void clear_on_ready_callbacks() noexcept override;
+
+ private:
+  void respond(const rmw_request_id_t & id, const std::shared_ptr<void> & response);
+  rcl_ret_t send(rmw_request_id_t id, void * response) { return rcl_send_response(&service_, &id, response); }
+
+  const ErasedService erased_;
+  const std::shared_ptr<ResponseSender> sender_;
+  rcl_service_t service_ = rcl_get_zero_initialized_service();
+  std::string name_;
+};
 
 ServiceImpl::ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, const std::string & name,
                          const QoS & qos)
     : Waitable(std::move(node), fmt::format("service {}", name)),
       erased_(std::move(erased)),
-      answers_(std::make_shared<ResponseRetry>(this->node())),
-      service_(rcl_get_zero_initialized_service())
+      sender_(std::make_shared<ResponseSender>(this->node()))
 {
   rcl_service_options_t options = rcl_service_get_default_options();
-  options.qos = to_rmw(qos);
+  options.qos = qos.get_rmw_qos_profile();
   const std::lock_guard lock(this->node()->mutex());
   check_rcl(rcl_service_init(&service_, this->node()->handle(), erased_.type_support, name.c_str(), &options),
             label(), "cannot be created");
@@ -53,7 +71,7 @@ void ServiceImpl::execute(std::size_t /*source*/)
   try {
     erased_.callback(request.get(), response.get());
   } catch (...) {
-    respond(id, response);  // a client must not hang because a server failed
+    respond(id, response);
     throw;
   }
   respond(id, response);
@@ -62,27 +80,28 @@ void ServiceImpl::execute(std::size_t /*source*/)
 void ServiceImpl::respond(const rmw_request_id_t & id, const std::shared_ptr<void> & response)
 {
   const auto self = std::static_pointer_cast<ServiceImpl>(shared_from_this());
-  answers_->send(
-      [self, id, response] {
-        rmw_request_id_t to = id;
-        return rcl_send_response(&self->service_, &to, response.get());
-      },
-      [self](rcl_ret_t code) {
-        if (code != RCL_RET_OK) {
-          RCL_CXX_WARN(self->node()->get_logger(), "{}: a response did not reach its client: {}", self->name_,
-                       take_rcl_error());
-        }
-      });
+  sender_->send({[self, id, response] { return self->send(id, response.get()); },
+                 [self, id] { return self->send(id, self->erased_.make_response().get()); },
+                 [self](rcl_ret_t code) {
+                   if (code != RCL_RET_OK) {
+                     RCL_CXX_WARN(self->node()->get_logger(), "{}: a response was not delivered: {}",
+                                  self->name_, take_rcl_error());
+                   }
+                 }});
 }
 
-void ServiceImpl::stop() noexcept
+void ServiceImpl::clear_on_ready_callbacks() noexcept
 {
-  ignore_rcl(rcl_service_set_on_new_request_callback(&service_, nullptr, nullptr));
-  answers_->stop();
+  clear_callback(rcl_service_set_on_new_request_callback, service_);
+  sender_->stop();
 }
 }  // namespace detail
 
-ServiceBase::ServiceBase(std::shared_ptr<detail::ServiceImpl> impl) : impl_(std::move(impl)) {}
+ServiceBase::ServiceBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedService erased,
+                         const std::string & name, const QoS & qos)
+    : impl_(detail::make_waitable<detail::ServiceImpl>(std::move(node), std::move(erased), name, qos))
+{
+}
 ServiceBase::~ServiceBase()
 {
   impl_->close();

@@ -15,7 +15,7 @@ namespace {
 constexpr int kSignals[] = {SIGINT, SIGTERM};
 constexpr unsigned char kQuit = 0;
 
-// What a signal handler may touch: lock-free atomics and write(2).
+// A signal handler may use lock-free atomics and write(2) only.
 std::atomic<int> g_write_end{-1};
 static_assert(std::atomic<int>::is_always_lock_free);
 
@@ -27,7 +27,7 @@ extern "C" void rcl_cxx_on_signal(int signal)
   const auto byte = static_cast<unsigned char>(signal);
   const int fd = g_write_end.load();
   if (fd >= 0 && ::write(fd, &byte, 1) < 0) {
-    // The pipe is full: thousands of signals wait already.
+    // The pipe is full of signals that have not been handled yet.
   }
   errno = saved_errno;
 }
@@ -73,7 +73,7 @@ SignalWatcher::~SignalWatcher()
     ::sigaction(kSignals[i], &g_previous[i], nullptr);
   }
   g_write_end = -1;
-  // The pipe may be full of signals; its reader makes room.
+  // The pipe may be full of signals; the thread empties it.
   while (::write(write_end_, &kQuit, 1) < 0 && (errno == EAGAIN || errno == EINTR)) {
     std::this_thread::yield();
   }
@@ -86,8 +86,8 @@ std::size_t SignalWatcher::add(Callback callback)
 {
   const std::lock_guard lock(mutex_);
   callbacks_.emplace(++next_id_, std::move(callback));
-  if (unheard_ != 0 && ::write(write_end_, &unheard_, 1) == 1) {
-    unheard_ = 0;
+  if (undelivered_ != 0 && ::write(write_end_, &undelivered_, 1) == 1) {
+    undelivered_ = 0;
   }
   return next_id_;
 }
@@ -111,7 +111,7 @@ void SignalWatcher::run()
     }
     const std::lock_guard lock(mutex_);
     if (callbacks_.empty()) {
-      unheard_ = byte;
+      undelivered_ = byte;
     }
     for (const auto & [id, callback] : callbacks_) {
       callback(byte);

@@ -8,8 +8,8 @@
 #include <thread>
 
 namespace rcl_cxx::detail {
-/// SIGINT and SIGTERM, delivered as calls in an ordinary thread. One per process, shared by all contexts; the
-/// previous handlers come back when the last one lets go.
+/// Delivers SIGINT and SIGTERM as calls in an ordinary thread. There is one per process, shared by all
+/// contexts. The previous handlers are restored with its destruction.
 class SignalWatcher {
  public:
   using Callback = std::function<void(int signal)>;
@@ -19,10 +19,10 @@ class SignalWatcher {
   SignalWatcher(const SignalWatcher &) = delete;
   SignalWatcher & operator=(const SignalWatcher &) = delete;
 
-  /// `callback` is told of every signal, in the watcher's thread, and returns soon; also of one that came
-  /// before there was any callback.
+  /// Calls `callback` for every signal, in the watcher's thread; it must return soon. A signal that arrived
+  /// before there was a callback is delivered, too.
   std::size_t add(Callback callback);
-  /// After it `callback` does not run any more.
+  /// The callback does not run afterwards.
   void remove(std::size_t id);
 
  private:
@@ -34,11 +34,11 @@ class SignalWatcher {
   std::mutex mutex_;
   std::map<std::size_t, Callback> callbacks_;
   std::size_t next_id_ = 0;
-  unsigned char unheard_ = 0;  ///< the last signal that came while there was no callback; 0: none
+  unsigned char undelivered_ = 0;  ///< the last signal without a callback; 0: none
   std::thread thread_;
 };
 
-/// The default action of `signal`, on the whole process.
+/// Performs the default action of `signal` on the process.
 void take_default_action(int signal);
 
 }  // namespace rcl_cxx::detail

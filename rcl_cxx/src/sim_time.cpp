@@ -1,6 +1,7 @@
 #include "sim_time.hpp"
 
 #include "node_impl.hpp"
+#include "to_time.hpp"
 
 namespace rcl_cxx::detail {
 namespace {
@@ -10,8 +11,8 @@ constexpr const char * kName = "use_sim_time";
 SimTime::SimTime(Node & node, Parameters & parameters) : node_(node)
 {
   follow(parameters.declare(kName, false, {}).get<bool>());
-  callback_ = parameters.add_after_set([this](const std::vector<Parameter> & changed) {
-    for (const Parameter & parameter : changed) {
+  parameters.add_on_change([this](const ParameterChanges & changes) {
+    for (const Parameter & parameter : changes.changed) {
       if (parameter.name == kName) {
         follow(parameter.value.get<bool>());
       }
@@ -21,7 +22,6 @@ SimTime::SimTime(Node & node, Parameters & parameters) : node_(node)
 
 void SimTime::follow(bool use_sim_time)
 {
-  const std::lock_guard lock(mutex_);
   if (use_sim_time == (clock_ != nullptr)) {
     return;
   }
@@ -31,8 +31,7 @@ void SimTime::follow(bool use_sim_time)
     clock_ = node_.create_subscription<rosgraph_msgs::msg::Clock>(
         "/clock", QoS::best_effort(1), [weak](const rosgraph_msgs::msg::Clock & message) {
           if (const auto impl = weak.lock()) {
-            impl->get_clock().override_with(std::int64_t{message.clock.sec} * 1'000'000'000 +
-                                            message.clock.nanosec);
+            impl->get_clock().override_with(to_ns(message.clock));
           }
         });
   } else {

@@ -1,14 +1,13 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <rosgraph_msgs/msg/clock.hpp>
 
 #include "parameters.hpp"
 #include "rcl_cxx/node.hpp"
 
 namespace rcl_cxx::detail {
-/// The parameter use_sim_time: while it is true the node's time is that of /clock.
+/// The parameter use_sim_time: while it is true, the node's clock follows /clock.
 class SimTime {
  public:
   SimTime(Node & node, Parameters & parameters);
@@ -17,9 +16,7 @@ class SimTime {
   void follow(bool use_sim_time);
 
   Node & node_;
-  std::mutex mutex_;
   std::shared_ptr<Subscription<rosgraph_msgs::msg::Clock>> clock_;
-  ParameterCallbackHandle callback_;
 };
 
 }  // namespace rcl_cxx::detail

@@ -1,39 +1,46 @@
 #include "rcl_cxx/subscription.hpp"
 
 #include <fmt/format.h>
+#include <rcl/subscription.h>
 
 #include "node_impl.hpp"
-#include "qos_rmw.hpp"
+#include "qos_event.hpp"
 #include "rcl_error.hpp"
-#include "subscription_impl.hpp"
+#include "waitable.hpp"
 
 namespace rcl_cxx {
 namespace detail {
-namespace {
-enum SubscriptionEvent : std::size_t { kMessage, kQos };
-}
+class SubscriptionImpl : public Waitable {
+ public:
+  SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscription erased, const std::string & topic,
+                   const QoS & qos);
+  ~SubscriptionImpl() override;
 
-std::shared_ptr<SubscriptionImpl> SubscriptionImpl::create(std::shared_ptr<NodeImpl> node,
-                                                           ErasedSubscription erased,
-                                                           const std::string & topic, const QoS & qos)
-{
-  auto impl = std::make_shared<SubscriptionImpl>(std::move(node), std::move(erased), topic, qos);
-  check_rcl(
-      rcl_subscription_set_on_new_message_callback(&impl->subscription_, &on_event, impl->source(kMessage)),
-      impl->label(), "its middleware does not report new messages");
-  impl->warning_ = std::make_unique<QosWarning>();
-  impl->warning_->start(impl->subscription_, &on_event, impl->source(kQos));
-  return impl;
-}
+  std::size_t get_publisher_count() const;
+  const std::string & get_topic_name() const noexcept { return topic_; }
+
+  void set_on_ready_callbacks() override;
+
+ protected:
+  void execute(std::size_t source) override;
+  void clear_on_ready_callbacks() noexcept override;
+
+ private:
+  enum Source : std::size_t { kMessage, kQosEvent };
+
+  const ErasedSubscription erased_;
+  rcl_subscription_t subscription_ = rcl_get_zero_initialized_subscription();
+  std::string topic_;
+  IncompatibleQosEvent incompatible_qos_;
+  std::shared_ptr<void> message_;  // reused unless a callback has kept it
+};
 
 SubscriptionImpl::SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscription erased,
                                    const std::string & topic, const QoS & qos)
-    : Waitable(std::move(node), fmt::format("subscription {}", topic)),
-      erased_(std::move(erased)),
-      subscription_(rcl_get_zero_initialized_subscription())
+    : Waitable(std::move(node), fmt::format("subscription {}", topic)), erased_(std::move(erased))
 {
   rcl_subscription_options_t options = rcl_subscription_get_default_options();
-  options.qos = to_rmw(qos);
+  options.qos = qos.get_rmw_qos_profile();
   const std::lock_guard lock(this->node()->mutex());
   const rcl_ret_t code = rcl_subscription_init(&subscription_, this->node()->handle(), erased_.type_support,
                                                topic.c_str(), &options);
@@ -45,8 +52,22 @@ SubscriptionImpl::SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscri
 SubscriptionImpl::~SubscriptionImpl()
 {
   const std::lock_guard lock(node()->mutex());
-  warning_.reset();
+  incompatible_qos_.fini();
   ignore_rcl(rcl_subscription_fini(&subscription_, node()->handle()));
+}
+
+void SubscriptionImpl::set_on_ready_callbacks()
+{
+  set_callback(rcl_subscription_set_on_new_message_callback, subscription_, kMessage);
+  incompatible_qos_.start(
+      rcl_subscription_event_init, subscription_, RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS,
+      [this](rcl_event_t & event) { set_callback(rcl_event_set_callback, event, kQosEvent); });
+}
+
+void SubscriptionImpl::clear_on_ready_callbacks() noexcept
+{
+  clear_callback(rcl_subscription_set_on_new_message_callback, subscription_);
+  incompatible_qos_.stop();
 }
 
 std::size_t SubscriptionImpl::get_publisher_count() const
@@ -61,8 +82,13 @@ std::size_t SubscriptionImpl::get_publisher_count() const
 
 void SubscriptionImpl::execute(std::size_t source)
 {
-  if (source == kQos) {
-    warn_of_qos();
+  if (source == kQosEvent) {
+    if (const auto policy = incompatible_qos_.take_policy()) {
+      RCL_CXX_WARN(
+          node()->get_logger(),
+          "{}: a publisher offers an incompatible quality of service ({}), its messages are not received",
+          topic_, *policy);
+    }
     return;
   }
   if (!message_ || message_.use_count() > 1) {
@@ -77,27 +103,13 @@ void SubscriptionImpl::execute(std::size_t source)
   check_rcl(code, label(), "cannot take a message");
   erased_.callback(message_);
 }
-
-void SubscriptionImpl::warn_of_qos()
-{
-  const std::string policy = warning_->take_policy();
-  if (!policy.empty()) {
-    RCL_CXX_WARN(node()->get_logger(),
-                 "{}: a publisher offers another quality of service ({}), its messages are not received",
-                 topic_, policy);
-  }
-}
-
-void SubscriptionImpl::stop() noexcept
-{
-  ignore_rcl(rcl_subscription_set_on_new_message_callback(&subscription_, nullptr, nullptr));
-  if (warning_) {
-    warning_->stop();
-  }
-}
 }  // namespace detail
 
-SubscriptionBase::SubscriptionBase(std::shared_ptr<detail::SubscriptionImpl> impl) : impl_(std::move(impl)) {}
+SubscriptionBase::SubscriptionBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedSubscription erased,
+                                   const std::string & topic, const QoS & qos)
+    : impl_(detail::make_waitable<detail::SubscriptionImpl>(std::move(node), std::move(erased), topic, qos))
+{
+}
 SubscriptionBase::~SubscriptionBase()
 {
   impl_->close();

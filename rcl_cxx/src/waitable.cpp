@@ -3,7 +3,6 @@
 #include <exception>
 
 #include "node_impl.hpp"
-#include "pending_events.hpp"
 #include "rcl_cxx/logging.hpp"
 
 namespace rcl_cxx::detail {
@@ -15,27 +14,25 @@ Waitable::Waitable(std::shared_ptr<NodeImpl> node, std::string label)
   }
 }
 
-void Waitable::on_event(const void * source, std::size_t count) noexcept
+void Waitable::on_ready(const void * source, std::size_t count) noexcept
 {
-  // rcl carries the pointer as const, it comes from source().
-  auto * const origin = static_cast<Source *>(const_cast<void *>(source));
-  const auto index = static_cast<std::size_t>(origin - origin->waitable->sources_.data());
-  origin->waitable->notify(index, count);
-}
-
-void Waitable::notify(std::size_t source, std::size_t count) noexcept
-{
-  // One event in the queue stands for all that is pending: the queue's length is bounded by the number of
-  // entities.
-  if (count > 0 && sources_[source].pending.fetch_add(count) == 0) {
-    node_->pending_events().push(Event{weak_from_this(), source, {}});
+  // rcl passes on the pointer that set_callback() has given to it.
+  auto & origin = *static_cast<Source *>(const_cast<void *>(source));
+  // One event in the queue represents all pending data of a source: this bounds the length of the queue.
+  if (count > 0 && origin.pending.fetch_add(count) == 0) {
+    origin.waitable->push_event(static_cast<std::size_t>(&origin - origin.waitable->sources_.data()));
   }
 }
 
-void Waitable::serve(std::size_t source) noexcept
+void Waitable::push_event(std::size_t source) noexcept
+{
+  node_->pending_events().push(Event{weak_from_this(), source, {}});
+}
+
+void Waitable::take_and_execute(std::size_t source) noexcept
 {
   {
-    const std::lock_guard lock(callback_);
+    const std::lock_guard lock(callback_mutex_);
     if (closed_) {
       return;
     }
@@ -44,22 +41,21 @@ void Waitable::serve(std::size_t source) noexcept
     } catch (const std::exception & error) {
       RCL_CXX_ERROR(node_->get_logger(), "{}: {}", label_, error.what());
     } catch (...) {
-      RCL_CXX_ERROR(node_->get_logger(), "{}: the callback threw something that is no std::exception",
-                    label_);
+      RCL_CXX_ERROR(node_->get_logger(), "{}: the callback threw an unknown exception", label_);
     }
   }
-  // The rest goes to the end of the queue: nobody starves the others.
-  if (source < kSources && sources_[source].pending.fetch_sub(1) > 1) {
-    node_->pending_events().push(Event{weak_from_this(), source, {}});
+  // The rest goes to the end of the queue, so that every waitable has its turn. A timer has no pending data.
+  if (sources_[source].pending > 0 && sources_[source].pending.fetch_sub(1) > 1) {
+    push_event(source);
   }
 }
 
 void Waitable::close() noexcept
 {
-  const std::lock_guard lock(callback_);
+  const std::lock_guard lock(callback_mutex_);
   if (!closed_) {
     closed_ = true;
-    stop();
+    clear_on_ready_callbacks();
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rcl/types.h>
+
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -7,50 +9,52 @@
 #include <mutex>
 #include <string>
 
+#include "rcl_error.hpp"
+
 namespace rcl_cxx::detail {
 class NodeImpl;
 
-/// Something of a node that has callbacks: its middleware side tells notify() what has arrived, the
-/// executor's thread calls serve() for each of them, the user's handle calls close().
+/// A part of a node that has callbacks: subscription, service, timer, … The middleware reports new data to
+/// on_ready(), the executor's thread calls take_and_execute() for each, the user's handle calls close().
 ///
-/// The middleware keeps raw pointers to `sources_`: a class that has registered them takes them back in
-/// stop().
+/// The middleware keeps raw pointers to `sources_`, until clear_on_ready_callbacks().
 class Waitable : public std::enable_shared_from_this<Waitable> {
  public:
-  /// As many sources of events as an entity has at most (an action client: five).
-  static constexpr std::size_t kSources = 5;
-
   virtual ~Waitable() = default;
   Waitable(const Waitable &) = delete;
   Waitable & operator=(const Waitable &) = delete;
 
-  /// For messages: "subscription /robot/joint_states".
+  /// For log messages: "subscription /robot/joint_states".
   const std::string & label() const noexcept { return label_; }
   const std::shared_ptr<NodeImpl> & node() const noexcept { return node_; }
 
-  /// Handles one event. Never throws: what the user's callback throws is logged.
-  void serve(std::size_t source) noexcept;
+  /// Handles one event of `source`. An exception that leaves the user's callback is logged.
+  void take_and_execute(std::size_t source) noexcept;
 
-  /// Waits for a callback that runs in another thread, then no further one runs.
+  /// Waits for a callback that runs in another thread. No callback runs afterwards.
   void close() noexcept;
 
-  /// For the executor: something has arrived that was not served yet.
-  void notify(std::size_t source, std::size_t count) noexcept;
+  virtual void set_on_ready_callbacks() = 0;
 
  protected:
   Waitable(std::shared_ptr<NodeImpl> node, std::string label);
 
-  /// Takes one message (request, …) from `source` and runs its callback; nothing if nothing is there, which
-  /// is normal: the middleware counts what has arrived, not what its history has kept.
+  /// Takes one message or request from `source` and runs its callback. There may be nothing to take: the
+  /// middleware counts what has arrived, not what its history has kept.
   virtual void execute(std::size_t source) = 0;
-  /// Unregisters from the middleware. In close(), once.
-  virtual void stop() noexcept = 0;
+  virtual void clear_on_ready_callbacks() noexcept = 0;
 
-  /// What to give to rcl_…_set_on_new_…_callback, with &on_event as the function.
-  const void * source(std::size_t index) const noexcept { return &sources_[index]; }
-  static void on_event(const void * source, std::size_t count) noexcept;
-
-  bool closed() const noexcept { return closed_; }
+  /// `set` is one of the functions rcl_…_set_on_new_…_callback.
+  template <typename Set, typename Handle>
+  void set_callback(Set set, Handle & handle, std::size_t source)
+  {
+    check_rcl(set(&handle, &on_ready, &sources_[source]), label_, "the middleware does not report new data");
+  }
+  template <typename Set, typename Handle>
+  static void clear_callback(Set set, Handle & handle) noexcept
+  {
+    ignore_rcl(set(&handle, nullptr, nullptr));
+  }
 
  private:
   struct Source {
@@ -58,11 +62,22 @@ class Waitable : public std::enable_shared_from_this<Waitable> {
     std::atomic<std::size_t> pending{0};
   };
 
+  static void on_ready(const void * source, std::size_t count) noexcept;
+  void push_event(std::size_t source) noexcept;
+
   const std::shared_ptr<NodeImpl> node_;
   const std::string label_;
-  std::array<Source, kSources> sources_;
-  std::recursive_mutex callback_;  // held while a callback runs; it may close its own entity
-  bool closed_ = false;            // guarded by callback_
+  std::array<Source, 5> sources_;        // an action client has five
+  std::recursive_mutex callback_mutex_;  // held while a callback runs; the callback may call close()
+  bool closed_ = false;                  // guarded by callback_mutex_
 };
+
+template <typename T, typename... Arguments>
+std::shared_ptr<T> make_waitable(Arguments &&... arguments)
+{
+  auto waitable = std::make_shared<T>(std::forward<Arguments>(arguments)...);
+  static_cast<Waitable &>(*waitable).set_on_ready_callbacks();
+  return waitable;
+}
 
 }  // namespace rcl_cxx::detail

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rcl_cxx/rcl_cxx.hpp"
+#include "rcl_cxx_test/action_client.hpp"
 #include "ros_fixture.hpp"
 
 using Fibonacci = test_msgs::action::Fibonacci;
@@ -60,7 +61,7 @@ class Actions : public Spinning {
     };
     handlers.fill_missing_result = on_missing_result;
     server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers), options);
-    client = node->create_action_client<Fibonacci>("fibonacci");
+    client = rcl_cxx::create_action_client<Fibonacci>(*node, "fibonacci");
     ASSERT_TRUE(client->wait_for_action_server(kLimit));
   }
 

@@ -10,10 +10,10 @@ using testing::ElementsAre;
 using testing::UnorderedElementsAre;
 
 namespace {
-using ActionCancel = Actions;
+using ActionCancelTest = Actions;
 }  // namespace
 
-TEST_F(ActionCancel, is_granted_and_ends_as_canceled)
+TEST_F(ActionCancelTest, CancelsGoal)
 {
   serve();
   const auto goal = send(5);
@@ -27,7 +27,7 @@ TEST_F(ActionCancel, is_granted_and_ends_as_canceled)
   EXPECT_THAT(result(goal).result.sequence, ElementsAre(1));
 }
 
-TEST_F(ActionCancel, that_is_refused_leaves_the_goal_alone)
+TEST_F(ActionCancelTest, LeavesGoalExecutingWhenRejected)
 {
   serve();
   on_cancel = [](Handle &) { return false; };
@@ -40,7 +40,7 @@ TEST_F(ActionCancel, that_is_refused_leaves_the_goal_alone)
   EXPECT_TRUE(handle->succeed());
 }
 
-TEST_F(ActionCancel, whose_handler_throws_is_refused)
+TEST_F(ActionCancelTest, IsRejectedWhenHandleCancelThrows)
 {
   serve();
   on_cancel = [](Handle &) -> bool { throw std::runtime_error("is logged"); };
@@ -49,7 +49,7 @@ TEST_F(ActionCancel, whose_handler_throws_is_refused)
   EXPECT_TRUE(accepted(0)->is_active());
 }
 
-TEST_F(ActionCancel, may_be_carried_out_by_its_handler)
+TEST_F(ActionCancelTest, MayBeCompletedInHandleCancel)
 {
   serve();
   on_cancel = [](Handle & handle) { return handle.canceled(result_of({3})); };
@@ -59,7 +59,7 @@ TEST_F(ActionCancel, may_be_carried_out_by_its_handler)
   EXPECT_EQ(result(goal).status, GoalStatus::canceled);
 }
 
-TEST_F(ActionCancel, loses_against_a_result_that_comes_first)
+TEST_F(ActionCancelTest, IsTooLateAfterResult)
 {
   serve();
   on_cancel = [](Handle & handle) {
@@ -74,19 +74,19 @@ TEST_F(ActionCancel, loses_against_a_result_that_comes_first)
   EXPECT_EQ(get(goal->async_cancel()).code, CancelCode::goal_terminated);
 }
 
-TEST_F(ActionCancel, of_an_unknown_goal_says_so)
+TEST_F(ActionCancelTest, ReportsUnknownGoal)
 {
   serve();
   EXPECT_EQ(get(client->async_cancel_goal(rcl_cxx::GoalUUID::random())).code, CancelCode::unknown_goal);
 }
 
-TEST_F(ActionCancel, of_all_or_of_earlier_goals)
+TEST_F(ActionCancelTest, CancelsAllOrEarlierGoals)
 {
   serve();
   const auto one = send(1);
   const auto two = send(2);
   const auto three = send(3);
-  EXPECT_THAT(get(client->async_cancel_goals_before(accepted(1)->accepted_ns())).goals,
+  EXPECT_THAT(get(client->async_cancel_goals_before(accepted(1)->get_goal_stamp())).goals,
               UnorderedElementsAre(one->get_goal_id(), two->get_goal_id()));
   EXPECT_FALSE(accepted(2)->is_canceling());
   EXPECT_THAT(get(client->async_cancel_all_goals()).goals, ElementsAre(three->get_goal_id()));
@@ -98,7 +98,7 @@ TEST_F(ActionCancel, of_all_or_of_earlier_goals)
   EXPECT_TRUE(nothing.goals.empty());
 }
 
-TEST_F(ActionCancel, races_with_results_without_losing_a_goal)
+TEST_F(ActionCancelTest, LosesNoGoalInRaceWithResults)
 {
   serve();
   for (std::size_t round = 0; round < 20; ++round) {

@@ -6,6 +6,7 @@
 
 #include "../src/client_watch.hpp"
 #include "action_fixture.hpp"
+#include "rcl_cxx_test/client.hpp"
 
 using rcl_cxx::detail::ClientWatch;
 using rcl_cxx::detail::Gid;
@@ -89,7 +90,7 @@ class OtherProcess {
   {
     executor_.add_node(node_);
     thread_ = std::thread([this] { executor_.spin(); });
-    client = node_->create_action_client<Fibonacci>("fibonacci");
+    client = rcl_cxx::create_action_client<Fibonacci>(*node_, "fibonacci");
     EXPECT_TRUE(client->wait_for_action_server(kLimit));
   }
   ~OtherProcess()
@@ -243,7 +244,7 @@ TEST_F(ClientLostTest, LeavesOtherGoalsToBeWatchedWhenTheHandlerThrows)
 
 using GoalIdTest = Actions;
 
-TEST_F(GoalIdTest, OfRunningGoalIsRefusedWithoutAskingTheHandler)
+TEST_F(GoalIdTest, IsRefusedWithoutCallingHandleGoalWhileInUse)
 {
   serve();
   std::atomic<int> asked{0};
@@ -255,7 +256,7 @@ TEST_F(GoalIdTest, OfRunningGoalIsRefusedWithoutAskingTheHandler)
   ASSERT_TRUE(goal);
   const auto handle = accepted(0);
   using SendGoal = Fibonacci::Impl::SendGoalService;
-  const auto sender = node->create_client<SendGoal>("fibonacci/_action/send_goal");
+  const auto sender = rcl_cxx::create_client<SendGoal>(*node, "fibonacci/_action/send_goal");
   ASSERT_TRUE(sender->wait_for_service(kLimit));
   SendGoal::Request again;
   again.goal_id.uuid = goal->get_goal_id().bytes;

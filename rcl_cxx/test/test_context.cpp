@@ -25,34 +25,26 @@ std::string error_of(const std::function<void()> & action)
 }
 }  // namespace
 
-TEST(ContextArguments, that_are_not_for_ros_are_returned)
+TEST(ContextArgumentsTest, ReturnsNonRosArguments)
 {
   const auto context = make_context({"--speed", "1", "--ros-args", "-r", "a:=b", "--", "rest"});
   EXPECT_THAT(context->non_ros_arguments(), ElementsAre("test", "--speed", "1", "rest"));
 }
 
-TEST(ContextArguments, that_ros_does_not_know_are_refused_by_name)
+TEST(ContextArgumentsTest, NamesUnknownRosArguments)
 {
   EXPECT_THAT(error_of([] { make_context({"--ros-args", "--sped", "1"}); }),
               HasSubstr("unknown ROS arguments: --sped 1"));
 }
 
-TEST(ContextArguments, that_are_malformed_are_refused)
+TEST(ContextArgumentsTest, NamesMalformedRosArguments)
 {
   EXPECT_THAT(error_of([] { make_context({"--ros-args", "-r", "no remap"}); }), HasSubstr("no remap"));
   EXPECT_THAT(error_of([] { make_context({"--ros-args", "--params-file", "/does/not/exist.yaml"}); }),
               HasSubstr("/does/not/exist.yaml"));
 }
 
-TEST(ContextArguments, choose_the_domain_by_option)
-{
-  InitOptions options;
-  options.shutdown_on_signal = false;
-  options.domain_id = 42;
-  EXPECT_EQ(Context({"test"}, options).get_domain_id(), 42U);
-}
-
-TEST(ContextShutdown, happens_once_and_keeps_its_reason)
+TEST(ContextShutdownTest, HappensOnceAndKeepsItsReason)
 {
   const auto context = make_context();
   EXPECT_TRUE(context->ok());
@@ -64,7 +56,7 @@ TEST(ContextShutdown, happens_once_and_keeps_its_reason)
   EXPECT_TRUE(context->wait_for_shutdown(std::chrono::seconds(0)));
 }
 
-TEST(ContextShutdown, runs_callbacks_in_their_order)
+TEST(ContextShutdownTest, RunsCallbacksInOrder)
 {
   const auto context = make_context();
   std::vector<std::string> calls;
@@ -79,7 +71,7 @@ TEST(ContextShutdown, runs_callbacks_in_their_order)
   EXPECT_THAT(calls, ElementsAre("before 1", "before 2", "after", "late"));
 }
 
-TEST(ContextShutdown, wakes_who_waits_for_its_beginning_before_its_end)
+TEST(ContextShutdownTest, WakesWaitersForItsBeginBeforeItsEnd)
 {
   const auto context = make_context();
   std::promise<void> go_on;
@@ -91,7 +83,7 @@ TEST(ContextShutdown, wakes_who_waits_for_its_beginning_before_its_end)
   EXPECT_TRUE(context->wait_for_shutdown(kLimit));
 }
 
-TEST(ContextShutdown, leaves_other_contexts_alone)
+TEST(ContextShutdownTest, LeavesOtherContextsAlone)
 {
   const auto one = make_context();
   const auto other = make_context();
@@ -100,7 +92,7 @@ TEST(ContextShutdown, leaves_other_contexts_alone)
   EXPECT_NO_THROW(rcl_cxx::Node(other, "node"));
 }
 
-TEST(ContextShutdown, LaterLogMessagesGoToTheConsoleOnly)
+TEST(ContextShutdownTest, LaterLogMessagesGoToTheConsoleOnly)
 {
   const auto context = make_context();
   const rcl_cxx::Node node(context, "node");
@@ -112,21 +104,21 @@ TEST(ContextShutdown, LaterLogMessagesGoToTheConsoleOnly)
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
 }
 
-TEST(ContextShutdown, makes_new_nodes_impossible_and_says_so)
+TEST(ContextShutdownTest, PreventsNewNodes)
 {
   const auto context = make_context();
   context->shutdown("test");
   EXPECT_THAT(error_of([&] { rcl_cxx::Node(context, "node"); }), HasSubstr("node 'node'"));
 }
 
-TEST(NodeNames, that_are_invalid_are_refused_with_the_reason)
+TEST(NodeNameTest, NamesInvalidName)
 {
   const auto context = make_context();
   EXPECT_THAT(error_of([&] { rcl_cxx::Node(context, "my-node"); }), HasSubstr("'my-node'"));
   EXPECT_THAT(error_of([&] { rcl_cxx::Node(context, "node", "bad space"); }), HasSubstr("'bad space'"));
 }
 
-TEST(NodeNames, follow_namespace_and_remaps)
+TEST(NodeNameTest, FollowsNamespaceAndRemaps)
 {
   const auto context =
       make_context({"--ros-args", "-r", "__ns:=/left", "-r", "chatter:=talk", "-r", "__node:=arm"});
@@ -140,15 +132,7 @@ TEST(NodeNames, follow_namespace_and_remaps)
   EXPECT_THAT(error_of([&] { node.resolve_topic_name("not valid"); }), HasSubstr("'not valid'"));
 }
 
-TEST(NodeNames, may_ignore_the_command_line)
-{
-  const auto context = make_context({"--ros-args", "-r", "__node:=arm"});
-  EXPECT_EQ(rcl_cxx::Node(context, "node", "", {.use_global_arguments = false}).get_name(), "node");
-  EXPECT_EQ(rcl_cxx::Node(context, "node", "", {.arguments = {"--ros-args", "-r", "__node:=leg"}}).get_name(),
-            "leg");
-}
-
-TEST(ContextSignalHandlers, are_gone_with_the_last_context)
+TEST(SignalHandlerTest, IsRestoredWithTheLastContext)
 {
   struct sigaction before = {};
   struct sigaction during = {};

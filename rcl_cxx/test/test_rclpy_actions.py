@@ -236,7 +236,7 @@ def test_misuse_is_logged(client, test_node):
     client.run(DROP_HANDLE)
     eventually(lambda: any("second result: false" in line for line in test_node.errors))
     eventually(lambda: any("is succeeded, it cannot become aborted" in line for line in test_node.errors))
-    eventually(lambda: any("was given up without a result" in line for line in test_node.errors))
+    eventually(lambda: any("its handle was released without a result" in line for line in test_node.errors))
 
 
 def test_the_status_of_goals_is_published_for_late_comers_too(ros, client):

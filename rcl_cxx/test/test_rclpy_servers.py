@@ -104,5 +104,5 @@ def test_a_refused_goal_is_told_apart(servers, outcome):
 
 
 def test_a_goal_that_takes_too_long_is_canceled(servers, outcome):
-    assert "no result within the time given, cancel requested" in outcome("action", 1000)
+    assert "no result within the timeout, cancel requested" in outcome("action", 1000)
     assert servers.canceled.wait(LIMIT)

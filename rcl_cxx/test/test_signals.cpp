@@ -60,9 +60,9 @@ bool succeeded(int status)
 }
 }  // namespace
 
-class ContextSignals : public testing::TestWithParam<int> {};
+class SignalTest : public testing::TestWithParam<int> {};
 
-TEST_P(ContextSignals, shut_down_and_spin_returns)
+TEST_P(SignalTest, ShutsDownAndEndsSpin)
 {
   const Child child("spins_until", GetParam() == SIGINT ? "SIGINT" : "SIGTERM");
   child.wait_until_it_tells();
@@ -70,15 +70,15 @@ TEST_P(ContextSignals, shut_down_and_spin_returns)
   EXPECT_TRUE(succeeded(child.status_at_its_end()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, ContextSignals, testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(Both, SignalTest, testing::Values(SIGINT, SIGTERM));
 
-TEST(EarlySignals, that_come_before_the_context_listens_are_not_lost)
+TEST(EarlySignalTest, IsNotLostBeforeTheContextListens)
 {
   const Child child("hears_early_signals", "");
   EXPECT_TRUE(succeeded(child.status_at_its_end()));
 }
 
-TEST(ContextSecondSignal, within_the_grace_does_not_disturb_the_shutdown)
+TEST(SecondSignalTest, HasNoEffectWithinTheGracePeriod)
 {
   const Child child("shuts_down_slowly", "60000");
   child.wait_until_it_tells();
@@ -90,7 +90,7 @@ TEST(ContextSecondSignal, within_the_grace_does_not_disturb_the_shutdown)
   EXPECT_TRUE(succeeded(child.status_at_its_end()));
 }
 
-TEST(ContextSecondSignal, after_the_grace_ends_a_process_that_hangs)
+TEST(SecondSignalTest, EndsHangingProcessAfterTheGracePeriod)
 {
   const Child child("shuts_down_slowly", "-1");
   child.wait_until_it_tells();

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-TEST(QosByName, knows_every_name_it_lists)
+TEST(QosTest, KnowsEveryNameItLists)
 {
   for (const std::string & name : QoS::names()) {
     EXPECT_NO_THROW(QoS::from_name(name)) << name;
@@ -33,7 +33,7 @@ TEST(QosByName, knows_every_name_it_lists)
   EXPECT_EQ(QoS::from_name("default"), QoS::reliable(10));
 }
 
-TEST(QosByName, names_the_known_ones_when_it_does_not_know_one)
+TEST(QosTest, ListsKnownNamesWhenNameIsUnknown)
 {
   try {
     QoS::from_name("sensordata");
@@ -44,14 +44,14 @@ TEST(QosByName, names_the_known_ones_when_it_does_not_know_one)
   }
 }
 
-TEST(QosByName, keeps_everything_but_the_depth_when_the_depth_changes)
+TEST(QosTest, KeepLastChangesTheDepthOnly)
 {
   const QoS qos = QoS::sensor_data().keep_last(1);
-  EXPECT_EQ(qos.depth, 1U);
-  EXPECT_EQ(qos.reliability, rcl_cxx::ReliabilityPolicy::best_effort);
+  EXPECT_EQ(qos.get_rmw_qos_profile().depth, 1U);
+  EXPECT_EQ(qos.get_rmw_qos_profile().reliability, RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT);
 }
 
-TEST(ParameterValues, have_the_type_of_what_they_are_made_from)
+TEST(ParameterValueTest, HasTypeOfItsSource)
 {
   EXPECT_EQ(ParameterValue().get_type(), ParameterType::not_set);
   EXPECT_EQ(ParameterValue(true).get_type(), ParameterType::boolean);
@@ -61,12 +61,12 @@ TEST(ParameterValues, have_the_type_of_what_they_are_made_from)
   EXPECT_EQ(ParameterValue("text").get_type(), ParameterType::string);
   EXPECT_EQ(ParameterValue(std::vector<std::uint8_t>{1}).get_type(), ParameterType::byte_array);
   EXPECT_EQ(ParameterValue(std::vector<bool>{true}).get_type(), ParameterType::boolean_array);
-  EXPECT_EQ(ParameterValue(std::vector<int>{1}).get_type(), ParameterType::integer_array);
+  EXPECT_EQ(ParameterValue(std::vector<std::int64_t>{1}).get_type(), ParameterType::integer_array);
   EXPECT_EQ(ParameterValue(std::vector<double>{1.0}).get_type(), ParameterType::floating_point_array);
   EXPECT_EQ(ParameterValue(std::vector<std::string>{"a"}).get_type(), ParameterType::string_array);
 }
 
-TEST(ParameterValues, refuse_to_be_read_as_another_type)
+TEST(ParameterValueTest, CannotBeReadAsAnotherType)
 {
   try {
     ParameterValue(3).get<std::string>();
@@ -77,16 +77,15 @@ TEST(ParameterValues, refuse_to_be_read_as_another_type)
   EXPECT_THROW(ParameterValue(3).get<double>(), rcl_cxx::Error);
 }
 
-TEST(ParameterValues, refuse_integers_that_do_not_fit)
+TEST(ParameterValueTest, RefusesIntegersThatDoNotFit)
 {
   EXPECT_EQ(ParameterValue(255).get<std::uint8_t>(), 255);
   EXPECT_THROW(ParameterValue(256).get<std::uint8_t>(), rcl_cxx::Error);
   EXPECT_THROW(ParameterValue(-1).get<unsigned>(), rcl_cxx::Error);
-  EXPECT_THROW(ParameterValue(std::vector<std::int64_t>{1LL << 40}).get<std::vector<int>>(), rcl_cxx::Error);
   EXPECT_THROW(ParameterValue{std::numeric_limits<std::uint64_t>::max()}, rcl_cxx::Error);
 }
 
-TEST(ParameterValues, are_written_for_people)
+TEST(ParameterValueTest, IsFormatted)
 {
   EXPECT_EQ(ParameterValue().to_string(), "not set");
   EXPECT_EQ(ParameterValue(2.0).to_string(), "2.0");
@@ -95,7 +94,7 @@ TEST(ParameterValues, are_written_for_people)
   EXPECT_EQ(ParameterValue(std::vector<std::uint8_t>{1, 255}).to_string(), "[0x01, 0xff]");
 }
 
-TEST(ParameterValues, survive_the_way_through_a_message)
+TEST(ParameterValueTest, SurvivesConversionToMessage)
 {
   const std::vector<ParameterValue> values = {{},
                                               true,
@@ -112,7 +111,7 @@ TEST(ParameterValues, survive_the_way_through_a_message)
   }
 }
 
-TEST(ParameterValues, of_an_unknown_type_count_as_not_set)
+TEST(ParameterValueTest, OfUnknownTypeIsNotSet)
 {
   rcl_interfaces::msg::ParameterValue message;
   message.type = 77;
@@ -124,11 +123,11 @@ rcl_cxx::SetParametersResult check(const ParameterDescriptor & options, const Pa
 {
   const ParameterType type =
       options.floating_point_range ? ParameterType::floating_point : ParameterType::integer;
-  return rcl_cxx::detail::check_value("p", type, options, value);
+  return rcl_cxx::detail::check_value({"p", value}, type, options);
 }
 }  // namespace
 
-TEST(ParameterRanges, include_their_limits)
+TEST(ParameterRangeTest, IncludesItsLimits)
 {
   const ParameterDescriptor options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.5}};
   EXPECT_TRUE(check(options, 0.0));
@@ -137,14 +136,14 @@ TEST(ParameterRanges, include_their_limits)
   EXPECT_EQ(check(options, 1.6).error(), "parameter 'p' is limited to the range 0 to 1.5, it cannot be 1.6");
 }
 
-TEST(ParameterRanges, refuse_what_is_no_number)
+TEST(ParameterRangeTest, RefusesNanAndInfinity)
 {
   const ParameterDescriptor options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.0}};
   EXPECT_FALSE(check(options, std::nan("")));
   EXPECT_FALSE(check(options, std::numeric_limits<double>::infinity()));
 }
 
-TEST(ParameterRanges, with_a_step_allow_its_multiples_and_the_end)
+TEST(ParameterRangeTest, WithStepAllowsMultiplesAndTheEnd)
 {
   const ParameterDescriptor options{.floating_point_range = rcl_cxx::FloatingPointRange{0.1, 1.0, 0.2}};
   EXPECT_TRUE(check(options, 0.1 + 0.2 + 0.2));
@@ -156,7 +155,7 @@ TEST(ParameterRanges, with_a_step_allow_its_multiples_and_the_end)
   EXPECT_FALSE(check(integers, -4));
 }
 
-TEST(ParameterRanges, of_the_whole_width_of_integers_do_not_overflow)
+TEST(ParameterRangeTest, OfAllIntegersDoesNotOverflow)
 {
   const ParameterDescriptor options{.integer_range = rcl_cxx::IntegerRange{INT64_MIN, INT64_MAX, 2}};
   EXPECT_TRUE(check(options, std::int64_t{INT64_MAX - 1}));
@@ -164,25 +163,24 @@ TEST(ParameterRanges, of_the_whole_width_of_integers_do_not_overflow)
   EXPECT_FALSE(check(options, std::int64_t{INT64_MAX - 2}));
 }
 
-TEST(ParameterRanges, hold_for_each_element_of_an_array)
+TEST(ParameterRangeTest, AppliesToEachElementOfAnArray)
 {
   const ParameterDescriptor options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.0}};
   const auto check_array = [&](std::vector<double> values) {
-    return rcl_cxx::detail::check_value("p", ParameterType::floating_point_array, options, values)
+    return rcl_cxx::detail::check_value({"p", values}, ParameterType::floating_point_array, options)
         .has_value();
   };
   EXPECT_TRUE(check_array({0.0, 1.0}));
   EXPECT_FALSE(check_array({0.0, 1.1}));
 }
 
-TEST(ParameterTypes, are_fixed_unless_typing_is_dynamic)
+TEST(ParameterTypeTest, IsFixed)
 {
   EXPECT_EQ(check({}, "x").error(),
             "Wrong parameter type: parameter 'p' is of type integer, it cannot be 'x' (string)");
-  EXPECT_TRUE(check({.dynamic_typing = true}, "x"));
 }
 
-TEST(ListedParameters, follow_prefixes_and_depth)
+TEST(ListParametersTest, FollowsPrefixesAndDepth)
 {
   const std::vector<rcl_cxx::Parameter> all = {{"a", 1}, {"b.c", 1}, {"b.d.e", 1}, {"bc.x", 1}};
   const auto names = [&](const std::vector<std::string> & prefixes, std::uint64_t depth) {
@@ -198,22 +196,24 @@ TEST(ListedParameters, follow_prefixes_and_depth)
   EXPECT_THAT(rcl_cxx::detail::list_parameters(all, {}, 0).prefixes, UnorderedElementsAre("b", "b.d", "bc"));
 }
 
-TEST(NodeNamesOfParameterFiles, may_have_wildcards)
+TEST(ParameterFileTest, NodeNameMayHaveWildcards)
 {
-  using rcl_cxx::detail::names_node;
-  EXPECT_TRUE(names_node("/robot/driver", "/robot/driver"));
-  EXPECT_TRUE(names_node("driver", "/driver"));
-  EXPECT_FALSE(names_node("driver", "/robot/driver"));
-  EXPECT_TRUE(names_node("/**", "/robot/left/driver"));
-  EXPECT_TRUE(names_node("/**/driver", "/driver"));
-  EXPECT_TRUE(names_node("/**/driver", "/robot/left/driver"));
-  EXPECT_FALSE(names_node("/**/driver", "/robot/left/other"));
-  EXPECT_TRUE(names_node("/*/driver", "/robot/driver"));
-  EXPECT_FALSE(names_node("/*/driver", "/robot/left/driver"));
-  EXPECT_FALSE(names_node("/*", "/robot/driver"));
+  using rcl_cxx::detail::matches_node;
+  EXPECT_TRUE(matches_node("/robot/driver", "/robot/driver"));
+  EXPECT_TRUE(matches_node("driver", "/driver"));
+  EXPECT_FALSE(matches_node("driver", "/robot/driver"));
+  EXPECT_TRUE(matches_node("/**", "/robot/left/driver"));
+  EXPECT_TRUE(matches_node("/**/driver", "/driver"));
+  EXPECT_TRUE(matches_node("/**/driver", "/robot/left/driver"));
+  EXPECT_FALSE(matches_node("/**/driver", "/robot/left/other"));
+  EXPECT_TRUE(matches_node("/*/driver", "/robot/driver"));
+  EXPECT_FALSE(matches_node("/*/driver", "/robot/left/driver"));
+  EXPECT_FALSE(matches_node("/*", "/robot/driver"));
+  EXPECT_TRUE(matches_node("/**/left/**", "/robot/left/driver"));
+  EXPECT_FALSE(matches_node("/robot", "/robot/driver"));
 }
 
-TEST(GoalIds, are_random_version_4_uuids)
+TEST(GoalUuidTest, IsRandomVersion4Uuid)
 {
   std::set<rcl_cxx::GoalUUID> ids;
   for (int i = 0; i < 100; ++i) {
@@ -227,7 +227,7 @@ TEST(GoalIds, are_random_version_4_uuids)
   EXPECT_EQ(ids.size(), 100U);
 }
 
-TEST(GoalIds, are_written_as_usual)
+TEST(GoalUuidTest, IsFormatted)
 {
   rcl_cxx::GoalUUID id;
   for (std::uint8_t i = 0; i < 16; ++i) {
@@ -235,6 +235,4 @@ TEST(GoalIds, are_written_as_usual)
   }
   EXPECT_EQ(id.to_string(), "00010203-0405-0607-0809-0a0b0c0d0e0f");
   EXPECT_EQ(id.short_string(), "00010203");
-  EXPECT_FALSE(id.is_zero());
-  EXPECT_TRUE(rcl_cxx::GoalUUID{}.is_zero());
 }

@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <mutex>
 #include <rcl_cxx/rcl_cxx.hpp>
+#include <rcl_cxx_test/action_client.hpp>
 #include <thread>
 #include <ur_ros_rtde_msgs/action/move_j.hpp>
 #include <ur_ros_rtde_msgs/action/set_speed_slider.hpp>
@@ -113,8 +114,8 @@ int client(int repetitions, int pipe)
   executor.add_node(node);
   std::jthread spinner([&executor] { executor.spin(); });
   {
-    auto timed = node.create_action_client<SetSpeedSlider>("bench_timed");
-    auto swing = node.create_action_client<MoveJ>("bench_swing");
+    auto timed = rcl_cxx::create_action_client<SetSpeedSlider>(node, "bench_timed");
+    auto swing = rcl_cxx::create_action_client<MoveJ>(node, "bench_swing");
     if (!timed->wait_for_action_server(20s) || !swing->wait_for_action_server(20s)) {
       fmt::print(stderr, "the servers do not show up\n");
       std::_Exit(1);
@@ -122,7 +123,7 @@ int client(int repetitions, int pipe)
     for (int i = 0; i < repetitions; ++i) {
       SetSpeedSlider::Goal goal;
       goal.fraction = now();
-      timed->call(goal, 5s);
+      timed->send_goal(goal, 5s);
       std::this_thread::sleep_for(5ms);
     }
     for (int i = 0; i < std::max(repetitions / 20, 3); ++i) {

@@ -39,7 +39,7 @@ int main(int argc, char ** argv)
       });
   executor.spin_until([&] { return !received.empty(); }, std::chrono::seconds(15));
   received.clear();
-  executor.spin_for(std::chrono::seconds(seconds));
+  executor.spin_until([] { return false; }, std::chrono::seconds(seconds));
   for (const auto & [stamp, when] : received) {
     std::printf("%lld %lld\n", static_cast<long long>(stamp), static_cast<long long>(when));
   }

@@ -31,7 +31,8 @@ int main(int argc, char ** argv)
       });
   rcl_cxx::Executor executor(context);
   executor.add_node(node);
-  executor.spin_for(std::chrono::nanoseconds(static_cast<std::int64_t>(duration * 1e9)));
+  executor.spin_until([] { return false; },
+                      std::chrono::nanoseconds(static_cast<std::int64_t>(duration * 1e9)));
   if (milliseconds.empty()) {
     fmt::print(stderr, "nothing came on {}\n", subscription->get_topic_name());
     return 1;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <rcl_cxx/executor.hpp>
+#include <rcl_cxx_test/action_client.hpp>
 #include <ur_ros_rtde_msgs/action/trigger.hpp>
 
 #include "ur_ros_rtde/detail/goal_server.hpp"
@@ -91,7 +92,7 @@ class GoalServerClientTest : public testing::Test {
       ended = command.ended.get_future();
       {
         SpinningNode other("client");
-        const auto client = other.node.create_action_client<Trigger>("endless");
+        const auto client = rcl_cxx::create_action_client<Trigger>(other.node, "endless");
         EXPECT_TRUE(client->wait_for_action_server(seconds(10)));
         const auto response = client->async_send_goal(Trigger::Goal());
         EXPECT_EQ(command.started.get_future().wait_for(seconds(10)), std::future_status::ready);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <rcl_cxx/executor.hpp>
+#include <rcl_cxx_test/action_client.hpp>
 #include <thread>
 #include <ur_ros_rtde_msgs/action/trigger.hpp>
 
@@ -57,11 +58,11 @@ TEST_F(GoalServerTest, ExceptionInFillResultAbortsTheGoal)
 {
   PluginHost host(node_);
   FaultyServer server(node_, host);
-  const auto client = node_.create_action_client<Trigger>("faulty");
+  const auto client = rcl_cxx::create_action_client<Trigger>(node_, "faulty");
   rcl_cxx::Executor executor(context_);
   executor.add_node(node_);
   std::jthread spinning([&executor] { executor.spin(); });
-  const auto end = client->call(Trigger::Goal(), std::chrono::seconds(20));
+  const auto end = client->send_goal(Trigger::Goal(), std::chrono::seconds(20));
   executor.cancel();
   ASSERT_TRUE(end) << end.error();
   EXPECT_EQ(end->status, rcl_cxx::GoalStatus::aborted);

@@ -9,58 +9,49 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "rcl_cxx/goal_response.hpp"
-#include "rcl_cxx/qos.hpp"
 #include "rcl_cxx/server_goal_handle.hpp"
 
 namespace rcl_cxx {
 struct ActionServerOptions {
-  QoS goal_service_qos = QoS::services_default();
-  QoS result_service_qos = QoS::services_default();
-  QoS cancel_service_qos = QoS::services_default();
-  QoS feedback_qos = QoS::reliable(10);
-  QoS status_qos = QoS::transient_local(1);
-  /// How long the result of an ended goal can be asked for; unset: rcl_action's default (10 s; Humble: 15
-  /// min); negative: for ever.
+  /// How long the result of a finished goal is kept. Unset: rcl_action's default (10 s; Humble: 15 min).
+  /// Negative: for ever.
   std::optional<std::chrono::nanoseconds> result_timeout{};
 };
 
-/// What a server does with its goals. All run in the executor's thread and must return soon: a goal is
-/// carried out in a thread of the user's.
+/// The callbacks of an action server. They run in the executor's thread and must return soon: a goal is
+/// executed in a thread of the user. Only handle_accepted is mandatory.
 template <typename A>
 struct ActionServerCallbacks {
-  using Goal = typename A::Goal;
-
-  /// Accepts or rejects a goal, or defers the response. Empty: accepts every goal. An exception rejects the
-  /// goal with its text.
-  std::function<GoalDecision(const GoalUUID &, const Goal &)> handle_goal{};
-  /// Gets the goal, EXECUTING already. Whoever keeps the handle owes the goal a result. An exception aborts
-  /// it.
+  /// Accepts a goal, or rejects it with a reason, which is logged as a warning. An exception rejects the
+  /// goal. Default: accepts every goal.
+  std::function<tl::expected<void, std::string>(const GoalUUID &, const typename A::Goal &)> handle_goal{};
+  /// Receives an accepted goal; its status is EXECUTING. The holder of the handle has to finish the goal. An
+  /// exception aborts it.
   std::function<void(std::shared_ptr<ServerGoalHandle<A>>)> handle_accepted{};
-  /// Grants (true) or refuses a request to cancel an active goal. Empty: refuses. An exception refuses.
+  /// Returns whether to accept a request to cancel an active goal. An exception rejects the request. Default:
+  /// rejects every request.
   std::function<bool(ServerGoalHandle<A> &)> handle_cancel{};
-  /// Runs when the goal has become CANCELING (is_canceling() is true): the place to wake its worker.
-  /// Optional.
+  /// Called when the goal has become CANCELING, for instance to wake the thread that executes it.
   std::function<void(ServerGoalHandle<A> &)> on_canceling{};
-  /// Runs once when the client that sent an active goal has disappeared: its process has ended, or it has
-  /// destroyed its action client. The goal goes on unless this ends it. Optional: without it clients are not
-  /// watched. A process that was killed disappears when its participant's lease ends.
+  /// Called once when the client of an active goal has disappeared: its process has ended, or it has
+  /// destroyed its action client. A process that was killed disappears when the lease of its participant
+  /// expires. The goal remains active. Clients are watched only if this is set.
   std::function<void(ServerGoalHandle<A> &)> on_client_lost{};
-  /// Runs when a goal that `handle_goal` accepted will not be accepted after all: its client could not be
-  /// told. Optional.
+  /// Called when a goal that handle_goal accepted is not executed: the acceptance could not be delivered to
+  /// the client.
   std::function<void(const GoalUUID &)> on_goal_discarded{};
-  /// Fills in a result that the server gives by itself: for a goal that it does not know
-  /// (GoalStatus::unknown) or that ended without a result that can be sent. Any thread; must not throw.
-  /// Optional: it is empty then.
+  /// Fills in a result of the server itself: for an unknown goal (GoalStatus::unknown), and for a goal
+  /// without a result that can be sent. Runs in any thread. Default: an empty result.
   std::function<void(GoalStatus, typename A::Result &)> fill_missing_result{};
 };
 
 namespace detail {
 class ActionServerImpl;
+class NodeImpl;
 
-/// What the server needs to know of an action's types; one constant table per action.
-struct ActionServerOps {
-  const rosidl_action_type_support_t * (*type_support)();
+/// ActionServerCallbacks, and what the server has to know about the types of an action.
+struct ErasedActionServer {
+  const rosidl_action_type_support_t * type_support;
   std::shared_ptr<void> (*make_goal_request)();
   GoalUUID (*goal_id_of_goal_request)(const void *);
   std::shared_ptr<void> (*make_goal_response)(bool accepted, std::int32_t sec, std::uint32_t nanosec);
@@ -69,133 +60,112 @@ struct ActionServerOps {
   std::shared_ptr<void> (*make_result_response)(GoalStatus);
   std::shared_ptr<ServerGoalHandleBase> (*make_handle)(std::shared_ptr<ServerGoalImpl>,
                                                        std::shared_ptr<void> goal_request);
-};
 
-struct ErasedActionServer {
-  const ActionServerOps * ops;
-  std::function<GoalDecision(const GoalUUID &, const void * goal_request)> goal{};
-  std::function<void(std::shared_ptr<ServerGoalHandleBase>)> accepted{};
-  std::function<bool(ServerGoalHandleBase &)> cancel{};
-  std::function<void(ServerGoalHandleBase &)> canceling{};
-  std::function<void(ServerGoalHandleBase &)> client_lost{};
-  std::function<void(const GoalUUID &)> discarded{};
-  std::function<void(GoalStatus, void * result_response)> missing_result{};
+  std::function<tl::expected<void, std::string>(const GoalUUID &, const void * goal_request)> handle_goal{};
+  std::function<void(std::shared_ptr<ServerGoalHandleBase>)> handle_accepted{};
+  std::function<bool(ServerGoalHandleBase &)> handle_cancel{};
+  std::function<void(ServerGoalHandleBase &)> on_canceling{};
+  std::function<void(ServerGoalHandleBase &)> on_client_lost{};
+  std::function<void(const GoalUUID &)> on_goal_discarded{};
+  std::function<void(GoalStatus, void * result_response)> fill_missing_result{};
 };
 
 template <typename A>
-struct ActionServerOpsOf {
+ErasedActionServer erase_action_server(ActionServerCallbacks<A> callbacks)
+{
   using GoalRequest = typename A::Impl::SendGoalService::Request;
   using GoalResponse = typename A::Impl::SendGoalService::Response;
   using ResultRequest = typename A::Impl::GetResultService::Request;
   using ResultResponse = typename A::Impl::GetResultService::Response;
+  using Handle = ServerGoalHandle<A>;
 
-  static std::shared_ptr<void> goal_response(bool accepted, std::int32_t sec, std::uint32_t nanosec)
-  {
-    auto response = std::make_shared<GoalResponse>();
-    response->accepted = accepted;
-    response->stamp.sec = sec;
-    response->stamp.nanosec = nanosec;
-    return response;
-  }
-
-  static std::shared_ptr<void> result_response(GoalStatus status)
-  {
-    auto response = std::make_shared<ResultResponse>();
-    response->status = static_cast<std::int8_t>(status);
-    return response;
-  }
-
-  static constexpr ActionServerOps ops{
-      &rosidl_typesupport_cpp::get_action_type_support_handle<A>,
+  ErasedActionServer erased{
+      rosidl_typesupport_cpp::get_action_type_support_handle<A>(),
       []() -> std::shared_ptr<void> { return std::make_shared<GoalRequest>(); },
       [](const void * request) { return GoalUUID{static_cast<const GoalRequest *>(request)->goal_id.uuid}; },
-      &goal_response,
+      [](bool accepted, std::int32_t sec, std::uint32_t nanosec) -> std::shared_ptr<void> {
+        auto response = std::make_shared<GoalResponse>();
+        response->accepted = accepted;
+        response->stamp.sec = sec;
+        response->stamp.nanosec = nanosec;
+        return response;
+      },
       []() -> std::shared_ptr<void> { return std::make_shared<ResultRequest>(); },
       [](const void * request) {
         return GoalUUID{static_cast<const ResultRequest *>(request)->goal_id.uuid};
       },
-      &result_response,
+      [](GoalStatus status) -> std::shared_ptr<void> {
+        auto response = std::make_shared<ResultResponse>();
+        response->status = static_cast<std::int8_t>(status);
+        return response;
+      },
       [](std::shared_ptr<ServerGoalImpl> impl,
          std::shared_ptr<void> request) -> std::shared_ptr<ServerGoalHandleBase> {
-        return std::make_shared<ServerGoalHandle<A>>(std::move(impl),
-                                                     std::static_pointer_cast<const GoalRequest>(request));
+        return std::make_shared<Handle>(std::move(impl),
+                                        std::static_pointer_cast<const GoalRequest>(request));
       }};
-};
+  const auto erase_handle = [](auto callback) -> std::function<void(ServerGoalHandleBase &)> {
+    if (!callback) {
+      return {};
+    }
+    return [f = std::move(callback)](ServerGoalHandleBase & handle) { f(static_cast<Handle &>(handle)); };
+  };
+  if (callbacks.handle_goal) {
+    erased.handle_goal = [f = std::move(callbacks.handle_goal)](const GoalUUID & id, const void * request) {
+      return f(id, static_cast<const GoalRequest *>(request)->goal);
+    };
+  }
+  if (callbacks.handle_accepted) {
+    erased.handle_accepted =
+        [f = std::move(callbacks.handle_accepted)](std::shared_ptr<ServerGoalHandleBase> handle) {
+          f(std::static_pointer_cast<Handle>(std::move(handle)));
+        };
+  }
+  if (callbacks.handle_cancel) {
+    erased.handle_cancel = [f = std::move(callbacks.handle_cancel)](ServerGoalHandleBase & handle) {
+      return f(static_cast<Handle &>(handle));
+    };
+  }
+  erased.on_canceling = erase_handle(std::move(callbacks.on_canceling));
+  erased.on_client_lost = erase_handle(std::move(callbacks.on_client_lost));
+  erased.on_goal_discarded = std::move(callbacks.on_goal_discarded);
+  if (callbacks.fill_missing_result) {
+    erased.fill_missing_result = [f = std::move(callbacks.fill_missing_result)](GoalStatus status,
+                                                                                void * response) {
+      f(status, static_cast<ResultResponse *>(response)->result);
+    };
+  }
+  return erased;
+}
 }  // namespace detail
 
 class ActionServerBase {
  public:
-  /// Aborts, with empty results, the goals that have none; after that no handler runs any more. Handles that
-  /// are still held stay valid and inactive.
+  ActionServerBase(std::shared_ptr<detail::NodeImpl> node, const std::string & action,
+                   detail::ErasedActionServer erased, const ActionServerOptions & options);
+  /// Aborts the active goals. No callback runs afterwards. Handles that are still held remain valid and
+  /// inactive.
   virtual ~ActionServerBase();
   ActionServerBase(const ActionServerBase &) = delete;
   ActionServerBase & operator=(const ActionServerBase &) = delete;
-
-  /// The resolved name, "/robot/move_l".
-  const std::string & get_action_name() const noexcept;
-  /// Goals without a result.
-  std::size_t active_goal_count() const;
-
- protected:
-  explicit ActionServerBase(std::shared_ptr<detail::ActionServerImpl> impl);
 
  private:
   std::shared_ptr<detail::ActionServerImpl> impl_;
 };
 
-/// From Node::create_action_server. Results are cached for ActionServerOptions::result_timeout after a goal's
-/// end. When the context shuts down, what is active after its add_pre_shutdown_callback callbacks is aborted.
+/// Created by Node::create_action_server. Every accepted goal gets exactly one result, which is kept for
+/// ActionServerOptions::result_timeout. At the shutdown of the context, the goals that are active after the
+/// pre-shutdown callbacks are aborted.
 template <typename A>
 class ActionServer : public ActionServerBase {
  public:
   using SharedPtr = std::shared_ptr<ActionServer<A>>;
 
-  explicit ActionServer(std::shared_ptr<detail::ActionServerImpl> impl) : ActionServerBase(std::move(impl)) {}
-
-  static detail::ErasedActionServer erase(ActionServerCallbacks<A> handlers)
+  ActionServer(std::shared_ptr<detail::NodeImpl> node, const std::string & action,
+               ActionServerCallbacks<A> callbacks, const ActionServerOptions & options)
+      : ActionServerBase(std::move(node), action, detail::erase_action_server<A>(std::move(callbacks)),
+                         options)
   {
-    using GoalRequest = typename A::Impl::SendGoalService::Request;
-    using Handle = ServerGoalHandle<A>;
-    detail::ErasedActionServer erased{.ops = &detail::ActionServerOpsOf<A>::ops};
-    if (handlers.handle_goal) {
-      erased.goal = [f = std::move(handlers.handle_goal)](const GoalUUID & id, const void * request) {
-        return f(id, static_cast<const GoalRequest *>(request)->goal);
-      };
-    }
-    if (handlers.handle_accepted) {
-      erased.accepted =
-          [f = std::move(handlers.handle_accepted)](std::shared_ptr<ServerGoalHandleBase> handle) {
-            f(std::static_pointer_cast<Handle>(std::move(handle)));
-          };
-    }
-    if (handlers.handle_cancel) {
-      erased.cancel = [f = std::move(handlers.handle_cancel)](ServerGoalHandleBase & handle) {
-        return f(static_cast<Handle &>(handle));
-      };
-    }
-    erased.canceling = erase_handle(std::move(handlers.on_canceling));
-    erased.client_lost = erase_handle(std::move(handlers.on_client_lost));
-    erased.discarded = std::move(handlers.on_goal_discarded);
-    if (handlers.fill_missing_result) {
-      using ResultResponse = typename A::Impl::GetResultService::Response;
-      erased.missing_result = [f = std::move(handlers.fill_missing_result)](GoalStatus status,
-                                                                            void * response) {
-        f(status, static_cast<ResultResponse *>(response)->result);
-      };
-    }
-    return erased;
-  }
-
- private:
-  static std::function<void(ServerGoalHandleBase &)> erase_handle(
-      std::function<void(ServerGoalHandle<A> &)> handler)
-  {
-    if (!handler) {
-      return {};
-    }
-    return [f = std::move(handler)](ServerGoalHandleBase & handle) {
-      f(static_cast<ServerGoalHandle<A> &>(handle));
-    };
   }
 };
 

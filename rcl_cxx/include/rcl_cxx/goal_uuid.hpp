@@ -3,27 +3,25 @@
 #include <array>
 #include <compare>
 #include <cstdint>
-#include <functional>
 #include <string>
 
 namespace rcl_cxx {
-/// The UUID of an action goal.
+/// The id of an action goal.
 struct GoalUUID {
   std::array<std::uint8_t, 16> bytes{};
 
-  /// A random (version 4) one.
+  /// A random (version 4) UUID.
   static GoalUUID random();
 
-  bool is_zero() const noexcept { return *this == GoalUUID{}; }
   /// "3f0c…-…", 36 characters.
   std::string to_string() const;
-  /// The first 8 characters: enough for a log line.
+  /// The first 8 characters, for log messages.
   std::string short_string() const;
 
   auto operator<=>(const GoalUUID &) const = default;
 };
 
-/// Numbers are those of action_msgs/msg/GoalStatus.
+/// The numbers are those of action_msgs/msg/GoalStatus.
 enum class GoalStatus : std::int8_t {
   unknown = 0,
   accepted = 1,
@@ -42,8 +40,3 @@ constexpr bool is_terminal(GoalStatus status) noexcept
 }
 
 }  // namespace rcl_cxx
-
-template <>
-struct std::hash<rcl_cxx::GoalUUID> {
-  std::size_t operator()(const rcl_cxx::GoalUUID & id) const noexcept;
-};

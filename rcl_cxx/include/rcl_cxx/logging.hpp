@@ -13,16 +13,15 @@ namespace rcl_cxx {
 /// Values are rcutils' severities.
 enum class LogLevel { debug = 10, info = 20, warn = 30, error = 40, fatal = 50 };
 
-/// Where a log statement stands.
+/// The position of a log statement.
 struct LogLocation {
   const char * function;
   const char * file;
   std::size_t line;
 };
 
-/// A named logger. Messages go to console, log file and /rosout, as --log-level and rcl's settings say;
-/// /rosout only for a node's logger and its children. Cheap to copy, thread-safe. Use through the RCL_CXX_…
-/// macros:
+/// A named logger. Messages go to the console and the log file; those of a node's logger to /rosout, too.
+/// Cheap to copy, thread-safe. Use it through the RCL_CXX_… macros:
 ///
 ///     RCL_CXX_INFO(node->get_logger(), "connected to {} in {:.1f} s", host, seconds);
 ///     RCL_CXX_WARN_THROTTLE(logger, std::chrono::seconds(1), "{} packages lost", n);
@@ -32,15 +31,11 @@ class Logger {
 
   const std::string & get_name() const noexcept { return *name_; }
 
-  /// "<name>.<suffix>"; keeps appearing in the node's /rosout while any copy of it lives.
-  Logger get_child(std::string_view suffix) const;
-
   bool is_enabled(LogLevel level) const noexcept;
-  void set_level(LogLevel level) const;
 
   /// Writes `text` if the level is enabled. Never throws.
   void write(LogLevel level, const LogLocation & location, std::string_view text) const noexcept;
-  /// Formats and writes; a formatting error is written in place of the text. Never throws.
+  /// Formats and writes. If formatting fails, its error is written instead. Never throws.
   void write_formatted(LogLevel level, const LogLocation & location, fmt::string_view format,
                        fmt::format_args arguments) const noexcept;
 
@@ -53,11 +48,10 @@ class Logger {
 
  private:
   std::shared_ptr<const std::string> name_;
-  std::shared_ptr<const void> registration_;  // the child's entry in the node's /rosout
 };
 
 namespace detail {
-/// True at most once a `period` (steady clock), over all threads.
+/// Returns true at most once per `period` (steady clock), over all threads.
 bool throttle_passes(std::atomic<std::int64_t> & last_ns, std::chrono::nanoseconds period) noexcept;
 }  // namespace detail
 
@@ -93,13 +87,8 @@ bool throttle_passes(std::atomic<std::int64_t> & last_ns, std::chrono::nanosecon
 #define RCL_CXX_ERROR(logger, ...) RCL_CXX_LOG(::rcl_cxx::LogLevel::error, logger, __VA_ARGS__)
 #define RCL_CXX_FATAL(logger, ...) RCL_CXX_LOG(::rcl_cxx::LogLevel::fatal, logger, __VA_ARGS__)
 
-#define RCL_CXX_INFO_ONCE(logger, ...) RCL_CXX_LOG_ONCE(::rcl_cxx::LogLevel::info, logger, __VA_ARGS__)
 #define RCL_CXX_WARN_ONCE(logger, ...) RCL_CXX_LOG_ONCE(::rcl_cxx::LogLevel::warn, logger, __VA_ARGS__)
 
 /// `period` is a std::chrono duration.
-#define RCL_CXX_INFO_THROTTLE(logger, period, ...) \
-  RCL_CXX_LOG_THROTTLE(::rcl_cxx::LogLevel::info, logger, period, __VA_ARGS__)
 #define RCL_CXX_WARN_THROTTLE(logger, period, ...) \
   RCL_CXX_LOG_THROTTLE(::rcl_cxx::LogLevel::warn, logger, period, __VA_ARGS__)
-#define RCL_CXX_ERROR_THROTTLE(logger, period, ...) \
-  RCL_CXX_LOG_THROTTLE(::rcl_cxx::LogLevel::error, logger, period, __VA_ARGS__)

@@ -1,12 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
-#include <vector>
 
 #include "rcl_cxx/parameter_value.hpp"
 
@@ -32,28 +29,16 @@ struct IntegerRange {
   std::uint64_t step = 0;
 };
 
-/// What rcl_interfaces/msg/ParameterDescriptor says about a parameter.
+/// The part of rcl_interfaces/msg/ParameterDescriptor that the user of a node chooses.
 struct ParameterDescriptor {
   std::string description{};
   std::string additional_constraints{};
   bool read_only = false;
   std::optional<FloatingPointRange> floating_point_range{};
   std::optional<IntegerRange> integer_range{};
-  /// The type may change by setting. Otherwise it is that of the default.
-  bool dynamic_typing = false;
-  /// Take the default even if command line or parameter file say otherwise.
-  bool ignore_override = false;
 };
 
-/// Nothing, or the reason of a refusal.
+/// The error is the reason why the parameters were not set.
 using SetParametersResult = tl::expected<void, std::string>;
-
-/// Looks at a set of parameters before any of them is set; a refusal refuses all of them, with its reason.
-using OnSetParametersCallback = std::function<SetParametersResult(const std::vector<Parameter> &)>;
-/// Told of parameters that have been set.
-using PostSetParametersCallback = std::function<void(const std::vector<Parameter> &)>;
-
-/// Keeps a parameter callback registered. Destroying it unregisters.
-using ParameterCallbackHandle = std::shared_ptr<void>;
 
 }  // namespace rcl_cxx

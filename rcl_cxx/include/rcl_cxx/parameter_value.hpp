@@ -5,13 +5,12 @@
 #include <limits>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 namespace rcl_cxx {
-/// Numbers are those of rcl_interfaces/msg/ParameterType.
+/// The numbers are those of rcl_interfaces/msg/ParameterType.
 enum class ParameterType : std::uint8_t {
   not_set = 0,
   boolean = 1,
@@ -25,10 +24,10 @@ enum class ParameterType : std::uint8_t {
   string_array = 9
 };
 
-/// As rclcpp writes them in messages: "not set", "bool", "integer", "double", "string", "byte_array", …
+/// As in rclcpp: "not set", "bool", "integer", "double", "string", "byte_array", …
 std::string_view to_string(ParameterType type) noexcept;
 
-/// The value of a parameter; empty means not set.
+/// The value of a parameter, or not set.
 class ParameterValue {
  public:
   /// In the order of ParameterType.
@@ -55,22 +54,15 @@ class ParameterValue {
   ParameterValue(std::vector<std::int64_t> value) : value_(std::move(value)) {}
   ParameterValue(std::vector<double> value) : value_(std::move(value)) {}
   ParameterValue(std::vector<std::string> value) : value_(std::move(value)) {}
-  ParameterValue(const std::vector<int> & value)
-      : value_(std::vector<std::int64_t>(value.begin(), value.end()))
-  {
-  }
-  ParameterValue(const std::vector<float> & value) : value_(std::vector<double>(value.begin(), value.end()))
-  {
-  }
 
   ParameterType get_type() const noexcept { return static_cast<ParameterType>(value_.index()); }
   const Variant & variant() const noexcept { return value_; }
   /// For messages: `12`, `'text'`, `[1.0, 2.0]`, `not set`.
   std::string to_string() const;
 
-  /// T is bool, an integer or floating-point type, std::string, or a vector of bool, std::uint8_t, int,
-  /// std::int64_t, float, double, std::string.
-  /// @throws Error that names both types, or an integer that does not fit into T.
+  /// T is bool, an integer or floating-point type, std::string, or a vector of bool, std::uint8_t,
+  /// std::int64_t, double, std::string.
+  /// @throws Error if the value has another type, or is an integer that does not fit into T.
   template <typename T>
   T get() const;
 
@@ -93,12 +85,12 @@ class ParameterValue {
   }
 
   template <typename V>
-  const V & as(ParameterType wanted) const
+  const V & as() const
   {
     if (const V * value = std::get_if<V>(&value_)) {
       return *value;
     }
-    throw_wrong_type(wanted);
+    throw_wrong_type(ParameterValue(V()).get_type());
   }
 
   template <typename T>
@@ -114,51 +106,15 @@ class ParameterValue {
   Variant value_;
 };
 
-/// The ParameterType of a C++ type.
-template <typename T>
-constexpr ParameterType parameter_type_of()
-{
-  if constexpr (std::is_same_v<T, bool>) {
-    return ParameterType::boolean;
-  } else if constexpr (std::is_integral_v<T>) {
-    return ParameterType::integer;
-  } else if constexpr (std::is_floating_point_v<T>) {
-    return ParameterType::floating_point;
-  } else if constexpr (std::is_same_v<T, std::string>) {
-    return ParameterType::string;
-  } else if constexpr (std::is_same_v<T, std::vector<std::uint8_t>>) {
-    return ParameterType::byte_array;
-  } else if constexpr (std::is_same_v<T, std::vector<bool>>) {
-    return ParameterType::boolean_array;
-  } else if constexpr (std::is_same_v<T, std::vector<int>> || std::is_same_v<T, std::vector<std::int64_t>>) {
-    return ParameterType::integer_array;
-  } else if constexpr (std::is_same_v<T, std::vector<float>> || std::is_same_v<T, std::vector<double>>) {
-    return ParameterType::floating_point_array;
-  } else {
-    static_assert(std::is_same_v<T, std::vector<std::string>>, "not a type that a ROS parameter can have");
-    return ParameterType::string_array;
-  }
-}
-
 template <typename T>
 T ParameterValue::get() const
 {
-  constexpr ParameterType wanted = parameter_type_of<T>();
-  if constexpr (wanted == ParameterType::integer) {
-    return narrow<T>(as<std::int64_t>(wanted));
-  } else if constexpr (wanted == ParameterType::floating_point) {
-    return static_cast<T>(as<double>(wanted));
-  } else if constexpr (std::is_same_v<T, std::vector<int>>) {
-    std::vector<int> values;
-    for (const std::int64_t value : as<std::vector<std::int64_t>>(wanted)) {
-      values.push_back(narrow<int>(value));
-    }
-    return values;
-  } else if constexpr (std::is_same_v<T, std::vector<float>>) {
-    const auto & values = as<std::vector<double>>(wanted);
-    return std::vector<float>(values.begin(), values.end());
+  if constexpr (std::integral<T> && !std::same_as<T, bool>) {
+    return narrow<T>(as<std::int64_t>());
+  } else if constexpr (std::floating_point<T>) {
+    return static_cast<T>(as<double>());
   } else {
-    return as<T>(wanted);
+    return as<T>();
   }
 }
 

@@ -1,10 +1,8 @@
 #pragma once
 
-/// rcl_cxx: a small C++20 client layer on rcl and rcl_action. Everything; or include what you use.
+/// All of rcl_cxx, a small C++20 client library on rcl and rcl_action.
 
-#include "rcl_cxx/action_client.hpp"
 #include "rcl_cxx/action_server.hpp"
-#include "rcl_cxx/client.hpp"
 #include "rcl_cxx/context.hpp"
 #include "rcl_cxx/error.hpp"
 #include "rcl_cxx/executor.hpp"

@@ -12,38 +12,36 @@ namespace detail {
 class ServerGoalImpl;
 }
 
-/// A goal that a server has accepted. All members are thread-safe, never throw, and may be called after the
-/// server is gone.
+/// A goal that an action server has accepted. All members are thread-safe, do not throw, and may be called
+/// when the server has been destroyed.
 class ServerGoalHandleBase {
  public:
-  /// A goal that has no result yet is aborted with an empty one, and that is logged.
+  /// Aborts a goal that has no result yet, with an empty result, and logs that.
   virtual ~ServerGoalHandleBase();
   ServerGoalHandleBase(const ServerGoalHandleBase &) = delete;
   ServerGoalHandleBase & operator=(const ServerGoalHandleBase &) = delete;
 
   const GoalUUID & get_goal_id() const noexcept;
   GoalStatus get_status() const noexcept;
-  /// It has no result yet. Turns false also if the server or the context ends first.
+  /// True until the goal has a result, or the server or the context ends.
   bool is_active() const noexcept;
-  /// A cancel request has been granted; the goal still waits for its result.
+  /// True if a cancel request has been accepted and the goal has no result yet.
   bool is_canceling() const noexcept;
-  /// When it was accepted, nanoseconds since the epoch, ROS time: the stamp that cancel requests compare
-  /// with.
-  std::int64_t accepted_ns() const noexcept;
+  /// The time of the acceptance in nanoseconds since the epoch, ROS time. Cancel requests compare with it.
+  std::int64_t get_goal_stamp() const noexcept;
 
  protected:
   explicit ServerGoalHandleBase(std::shared_ptr<detail::ServerGoalImpl> impl);
   bool finish(GoalStatus status, std::shared_ptr<void> result_response) noexcept;
-  /// False after the goal's end: then nothing is sent.
   bool send_feedback(void * feedback_message) noexcept;
-  void report_exception(const char * what) const noexcept;
+  void log_exception(const char * what) const noexcept;
 
  private:
   std::shared_ptr<detail::ServerGoalImpl> impl_;
 };
 
-/// See ServerGoalHandleBase. Exactly one of succeed, abort and canceled takes effect: the first. They return
-/// whether it was this one; a refused one is logged.
+/// See ServerGoalHandleBase. The first call of succeed, abort or canceled takes effect and returns true.
+/// Further calls return false and are logged.
 template <typename A>
 class ServerGoalHandle : public ServerGoalHandleBase {
  public:
@@ -61,15 +59,15 @@ class ServerGoalHandle : public ServerGoalHandleBase {
 
   const Goal & get_goal() const noexcept { return request_->goal; }
 
-  /// To every subscriber of the feedback topic. False, and nothing is sent, after the goal's end.
+  /// Returns false and publishes nothing when the goal has a result. A failure is logged.
   bool publish_feedback(const Feedback & feedback) noexcept
   {
     try {
       const std::lock_guard lock(feedback_mutex_);
-      feedback_.feedback = feedback;  // into the same message every time: its vectors keep their capacity
+      feedback_.feedback = feedback;  // the message is reused: its vectors keep their capacity
       return send_feedback(&feedback_);
     } catch (const std::exception & error) {
-      report_exception(error.what());
+      log_exception(error.what());
       return false;
     }
   }
@@ -79,8 +77,7 @@ class ServerGoalHandle : public ServerGoalHandleBase {
     return finish_with(GoalStatus::succeeded, result);
   }
   bool abort(const Result & result = Result()) noexcept { return finish_with(GoalStatus::aborted, result); }
-  /// Only for a goal that is_canceling() (or whose cancel handler is running): a goal that nobody asked to
-  /// cancel cannot be canceled, abort it.
+  /// Only for a goal that is_canceling() or whose handle_cancel is running. Abort other goals.
   bool canceled(const Result & result = Result()) noexcept
   {
     return finish_with(GoalStatus::canceled, result);
@@ -95,7 +92,7 @@ class ServerGoalHandle : public ServerGoalHandleBase {
       response->result = result;
       return finish(status, std::move(response));
     } catch (const std::exception & error) {
-      report_exception(error.what());
+      log_exception(error.what());
       return false;
     }
   }

@@ -5,8 +5,11 @@
 #include <rosidl_typesupport_cpp/service_type_support.hpp>
 #include <string>
 
+#include "rcl_cxx/qos.hpp"
+
 namespace rcl_cxx {
 namespace detail {
+class NodeImpl;
 class ServiceImpl;
 
 struct ErasedService {
@@ -19,22 +22,21 @@ struct ErasedService {
 
 class ServiceBase {
  public:
-  /// No callback runs once this has returned (see SubscriptionBase).
+  ServiceBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedService erased, const std::string & name,
+              const QoS & qos);
+  /// Waits for a running callback (see SubscriptionBase).
   virtual ~ServiceBase();
   ServiceBase(const ServiceBase &) = delete;
   ServiceBase & operator=(const ServiceBase &) = delete;
 
   const std::string & get_service_name() const noexcept;
 
- protected:
-  explicit ServiceBase(std::shared_ptr<detail::ServiceImpl> impl);
-
  private:
   std::shared_ptr<detail::ServiceImpl> impl_;
 };
 
-/// From Node::create_service. The callback fills the response, in the executor's thread. If it throws, the
-/// exception is logged and the response is sent as far as it was filled, so that no client hangs.
+/// Created by Node::create_service. The callback fills the response, in the executor's thread. If it throws,
+/// the exception is logged and the response is sent as far as it has been filled.
 template <typename S>
 class Service : public ServiceBase {
  public:
@@ -42,17 +44,17 @@ class Service : public ServiceBase {
   using Request = typename S::Request;
   using Response = typename S::Response;
 
-  explicit Service(std::shared_ptr<detail::ServiceImpl> impl) : ServiceBase(std::move(impl)) {}
-
   template <typename F>
-  static detail::ErasedService erase(F && callback)
+  Service(std::shared_ptr<detail::NodeImpl> node, F && callback, const std::string & name, const QoS & qos)
+      : ServiceBase(std::move(node),
+                    {rosidl_typesupport_cpp::get_service_type_support_handle<S>(),
+                     []() -> std::shared_ptr<void> { return std::make_shared<Request>(); },
+                     []() -> std::shared_ptr<void> { return std::make_shared<Response>(); },
+                     [f = std::forward<F>(callback)](const void * request, void * response) mutable {
+                       f(*static_cast<const Request *>(request), *static_cast<Response *>(response));
+                     }},
+                    name, qos)
   {
-    return {rosidl_typesupport_cpp::get_service_type_support_handle<S>(),
-            []() -> std::shared_ptr<void> { return std::make_shared<Request>(); },
-            []() -> std::shared_ptr<void> { return std::make_shared<Response>(); },
-            [f = std::forward<F>(callback)](const void * request, void * response) mutable {
-              f(*static_cast<const Request *>(request), *static_cast<Response *>(response));
-            }};
   }
 };
 

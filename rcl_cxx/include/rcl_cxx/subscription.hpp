@@ -8,8 +8,11 @@
 #include <string>
 #include <type_traits>
 
+#include "rcl_cxx/qos.hpp"
+
 namespace rcl_cxx {
 namespace detail {
+class NodeImpl;
 class SubscriptionImpl;
 
 struct ErasedSubscription {
@@ -21,51 +24,55 @@ struct ErasedSubscription {
 
 class SubscriptionBase {
  public:
-  /// No callback runs once this has returned: it waits for one that is running in the executor's thread,
-  /// unless it is called from there.
+  SubscriptionBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedSubscription erased,
+                   const std::string & topic, const QoS & qos);
+  /// Waits for a callback that is running in the executor's thread, unless it is called from there. No
+  /// callback runs afterwards.
   virtual ~SubscriptionBase();
   SubscriptionBase(const SubscriptionBase &) = delete;
   SubscriptionBase & operator=(const SubscriptionBase &) = delete;
 
   const std::string & get_topic_name() const noexcept;
-  /// Matched publishers.
+  /// The number of matched publishers; 0 after the shutdown.
   std::size_t get_publisher_count() const;
-
- protected:
-  explicit SubscriptionBase(std::shared_ptr<detail::SubscriptionImpl> impl);
 
  private:
   std::shared_ptr<detail::SubscriptionImpl> impl_;
 };
 
-/// From Node::create_subscription. The callback takes `const M &` (valid during the call; the message is
-/// reused) or `std::shared_ptr<const M>` (to keep), and runs in the thread of the executor that the node was
-/// added to.
+/// Created by Node::create_subscription. The callback takes `const M &` (valid during the call; the message
+/// is reused) or `std::shared_ptr<const M>` (may be kept). It runs in the executor's thread.
 template <typename M>
 class Subscription : public SubscriptionBase {
  public:
   using SharedPtr = std::shared_ptr<Subscription<M>>;
 
-  explicit Subscription(std::shared_ptr<detail::SubscriptionImpl> impl) : SubscriptionBase(std::move(impl)) {}
-
   template <typename F>
-  static detail::ErasedSubscription erase(F && callback)
+  Subscription(std::shared_ptr<detail::NodeImpl> node, const std::string & topic, const QoS & qos,
+               F && callback)
+      : SubscriptionBase(std::move(node),
+                         {rosidl_typesupport_cpp::get_message_type_support_handle<M>(),
+                          []() -> std::shared_ptr<void> { return std::make_shared<M>(); },
+                          erase(std::forward<F>(callback))},
+                         topic, qos)
   {
-    detail::ErasedSubscription erased{rosidl_typesupport_cpp::get_message_type_support_handle<M>(),
-                                      []() -> std::shared_ptr<void> { return std::make_shared<M>(); },
-                                      {}};
+  }
+
+ private:
+  template <typename F>
+  static std::function<void(const std::shared_ptr<void> &)> erase(F && callback)
+  {
     if constexpr (std::invocable<std::decay_t<F> &, const M &>) {
-      erased.callback = [f = std::forward<F>(callback)](const std::shared_ptr<void> & message) mutable {
+      return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message) mutable {
         f(*static_cast<const M *>(message.get()));
       };
     } else {
       static_assert(std::invocable<std::decay_t<F> &, std::shared_ptr<const M>>,
                     "the callback takes const M & or std::shared_ptr<const M>");
-      erased.callback = [f = std::forward<F>(callback)](const std::shared_ptr<void> & message) mutable {
+      return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message) mutable {
         f(std::static_pointer_cast<const M>(message));
       };
     }
-    return erased;
   }
 };
 

@@ -1,33 +1,34 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 
 namespace rcl_cxx {
 namespace detail {
+class NodeImpl;
 class TimerImpl;
-}
+}  // namespace detail
 
-/// From Node::create_wall_timer. Steady clock; due times are start + n * period, so they do not drift;
-/// periods that were missed altogether are skipped. Runs in the executor's thread. Thread-safe.
+/// A periodic callback by the steady clock, created by Node::create_wall_timer. The callback is due at start
+/// + n * period, without drift; periods that have been missed are skipped. It runs in the executor's thread.
+/// All members are thread-safe.
 class Timer {
  public:
   using SharedPtr = std::shared_ptr<Timer>;
 
-  explicit Timer(std::shared_ptr<detail::TimerImpl> impl);
-  /// No callback runs once this has returned (see SubscriptionBase).
+  Timer(std::shared_ptr<detail::NodeImpl> node, std::chrono::nanoseconds period,
+        std::function<void()> callback);
+  /// Waits for a running callback (see SubscriptionBase).
   ~Timer();
   Timer(const Timer &) = delete;
   Timer & operator=(const Timer &) = delete;
 
-  /// Not called again until reset().
+  /// Stops the timer until reset().
   void cancel();
   bool is_canceled() const;
-  /// Starts anew: the next call is one period from now.
+  /// Restarts the timer: the next call is one period from now.
   void reset();
-  std::chrono::nanoseconds period() const;
-  /// Changes the period and starts anew. @throws Error for a period <= 0.
-  void set_period(std::chrono::nanoseconds period);
 
  private:
   std::shared_ptr<detail::TimerImpl> impl_;

@@ -14,7 +14,7 @@ from ur_ros_rtde import launch_arguments
 from ur_ros_rtde.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_name, to_values
 
 CONFIG = pathlib.Path(__file__).resolve().parents[3] / "ur_ros_rtde" / "config" / "driver.yaml"
-OF_ROS = {"use_sim_time", "start_type_description_service"}
+OF_ROS = {"use_sim_time"}
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@
 #include <mutex>
 #include <string>
 
-#include "rcl_cxx/action_client.hpp"
+#include "rcl_cxx_test/action_client.hpp"
 #include "waitable.hpp"
 
 namespace rcl_cxx::detail {
@@ -39,11 +39,7 @@ class ClientGoalImpl {
 
 class ActionClientImpl : public Waitable {
  public:
-  static std::shared_ptr<ActionClientImpl> create(std::shared_ptr<NodeImpl> node, const ActionClientOps & ops,
-                                                  const std::string & name,
-                                                  const ActionClientOptions & options);
-  ActionClientImpl(std::shared_ptr<NodeImpl> node, const ActionClientOps & ops, const std::string & name,
-                   const ActionClientOptions & options);
+  ActionClientImpl(std::shared_ptr<NodeImpl> node, const ActionClientOps & ops, const std::string & name);
   ~ActionClientImpl() override;
 
   const std::string & get_action_name() const noexcept { return name_; }
@@ -55,14 +51,15 @@ class ActionClientImpl : public Waitable {
   /// The user's client object is destroyed: drops all that waits for an answer, and sends nothing any more.
   void retire();
 
+  void set_on_ready_callbacks() override;
+
  protected:
   void execute(std::size_t source) override;
-  void stop() noexcept override;
+  void clear_on_ready_callbacks() noexcept override;
 
  private:
   using Goal = std::shared_ptr<ClientGoalImpl>;
 
-  void start();
   void take_goal_response();
   void take_cancel_response();
   void take_result_response();
@@ -74,7 +71,7 @@ class ActionClientImpl : public Waitable {
 
   const ActionClientOps & ops_;
   std::string name_;
-  rcl_action_client_t client_;
+  rcl_action_client_t client_ = rcl_action_get_zero_initialized_client();
 
   mutable std::mutex mutex_;
   bool retired_ = false;

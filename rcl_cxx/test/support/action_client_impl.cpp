@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "node_impl.hpp"
-#include "ns_per_second.hpp"
-#include "qos_rmw.hpp"
 #include "rcl_error.hpp"
+#include "to_time.hpp"
 
 namespace rcl_cxx::detail {
 namespace {
@@ -25,41 +24,18 @@ bool taken(rcl_ret_t code, const std::string & name, const char * what)
   check_rcl(code, name, fmt::format("cannot take {}", what));
   return true;
 }
-
-rcl_action_client_options_t to_rcl(const ActionClientOptions & options)
-{
-  rcl_action_client_options_t result = rcl_action_client_get_default_options();
-  result.goal_service_qos = to_rmw(options.goal_service_qos);
-  result.result_service_qos = to_rmw(options.result_service_qos);
-  result.cancel_service_qos = to_rmw(options.cancel_service_qos);
-  result.feedback_topic_qos = to_rmw(options.feedback_qos);
-  result.status_topic_qos = to_rmw(options.status_qos);
-  return result;
-}
 }  // namespace
 
-std::shared_ptr<ActionClientImpl> ActionClientImpl::create(std::shared_ptr<NodeImpl> node,
-                                                           const ActionClientOps & ops,
-                                                           const std::string & name,
-                                                           const ActionClientOptions & options)
-{
-  auto impl = std::make_shared<ActionClientImpl>(std::move(node), ops, name, options);
-  impl->start();
-  return impl;
-}
-
 ActionClientImpl::ActionClientImpl(std::shared_ptr<NodeImpl> node, const ActionClientOps & ops,
-                                   const std::string & name, const ActionClientOptions & options)
-    : Waitable(std::move(node), fmt::format("action client of {}", name)),
-      ops_(ops),
-      client_(rcl_action_get_zero_initialized_client())
+                                   const std::string & name)
+    : Waitable(std::move(node), fmt::format("action client of {}", name)), ops_(ops)
 {
-  const rcl_action_client_options_t rcl_options = to_rcl(options);
+  const rcl_action_client_options_t options = rcl_action_client_get_default_options();
   name_ = this->node()->resolve(name, false);
   const std::lock_guard lock(this->node()->mutex());
-  check_rcl(rcl_action_client_init(&client_, this->node()->handle(), ops_.type_support(), name.c_str(),
-                                   &rcl_options),
-            label(), "cannot be created");
+  check_rcl(
+      rcl_action_client_init(&client_, this->node()->handle(), ops_.type_support(), name.c_str(), &options),
+      label(), "cannot be created");
 }
 
 ActionClientImpl::~ActionClientImpl()
@@ -68,25 +44,22 @@ ActionClientImpl::~ActionClientImpl()
   ignore_rcl(rcl_action_client_fini(&client_, node()->handle()));
 }
 
-void ActionClientImpl::start()
+void ActionClientImpl::set_on_ready_callbacks()
 {
-  const auto check = [this](rcl_ret_t code) {
-    check_rcl(code, label(), "its middleware does not report new data");
-  };
-  check(rcl_action_client_set_goal_client_callback(&client_, &on_event, source(kGoal)));
-  check(rcl_action_client_set_cancel_client_callback(&client_, &on_event, source(kCancel)));
-  check(rcl_action_client_set_result_client_callback(&client_, &on_event, source(kResult)));
-  check(rcl_action_client_set_feedback_subscription_callback(&client_, &on_event, source(kFeedback)));
-  check(rcl_action_client_set_status_subscription_callback(&client_, &on_event, source(kStatus)));
+  set_callback(rcl_action_client_set_goal_client_callback, client_, kGoal);
+  set_callback(rcl_action_client_set_cancel_client_callback, client_, kCancel);
+  set_callback(rcl_action_client_set_result_client_callback, client_, kResult);
+  set_callback(rcl_action_client_set_feedback_subscription_callback, client_, kFeedback);
+  set_callback(rcl_action_client_set_status_subscription_callback, client_, kStatus);
 }
 
-void ActionClientImpl::stop() noexcept
+void ActionClientImpl::clear_on_ready_callbacks() noexcept
 {
-  ignore_rcl(rcl_action_client_set_goal_client_callback(&client_, nullptr, nullptr));
-  ignore_rcl(rcl_action_client_set_cancel_client_callback(&client_, nullptr, nullptr));
-  ignore_rcl(rcl_action_client_set_result_client_callback(&client_, nullptr, nullptr));
-  ignore_rcl(rcl_action_client_set_feedback_subscription_callback(&client_, nullptr, nullptr));
-  ignore_rcl(rcl_action_client_set_status_subscription_callback(&client_, nullptr, nullptr));
+  clear_callback(rcl_action_client_set_goal_client_callback, client_);
+  clear_callback(rcl_action_client_set_cancel_client_callback, client_);
+  clear_callback(rcl_action_client_set_result_client_callback, client_);
+  clear_callback(rcl_action_client_set_feedback_subscription_callback, client_);
+  clear_callback(rcl_action_client_set_status_subscription_callback, client_);
 }
 
 void ActionClientImpl::retire()
@@ -159,8 +132,7 @@ std::future<CancelResponse> ActionClientImpl::cancel(const GoalUUID & id, std::i
 {
   action_msgs::srv::CancelGoal::Request request;
   request.goal_info.goal_id.uuid = id.bytes;
-  request.goal_info.stamp.sec = static_cast<std::int32_t>(stamp_ns / kNsPerSecond);
-  request.goal_info.stamp.nanosec = static_cast<std::uint32_t>(stamp_ns % kNsPerSecond);
+  request.goal_info.stamp = to_time(stamp_ns);
   std::promise<CancelResponse> promise;
   auto future = promise.get_future();
   std::int64_t sequence = 0;

@@ -9,6 +9,9 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "rcl_cxx/node.hpp"
+#include "rcl_cxx/qos.hpp"
+
 namespace rcl_cxx {
 namespace detail {
 class ClientImpl;
@@ -21,22 +24,23 @@ struct ErasedClient {
 
 class ClientBase {
  public:
-  /// Requests without an answer are dropped: their futures report std::future_errc::broken_promise.
+  ClientBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedClient erased, const std::string & name,
+             const QoS & qos);
+  /// Drops the pending requests: their futures report std::future_errc::broken_promise.
   virtual ~ClientBase();
   ClientBase(const ClientBase &) = delete;
   ClientBase & operator=(const ClientBase &) = delete;
 
   const std::string & get_service_name() const noexcept;
   bool service_is_ready() const;
-  /// False on timeout or shutdown.
+  /// Returns false on timeout and shutdown.
   bool wait_for_service(std::chrono::nanoseconds timeout) const;
-  /// Requests that have no answer yet.
+  /// The number of requests without a response.
   std::size_t pending_count() const;
 
  protected:
   using OnResponse = std::function<void(const std::shared_ptr<void> &)>;
 
-  explicit ClientBase(std::shared_ptr<detail::ClientImpl> impl);
   std::int64_t send(const void * request, OnResponse on_response);
   tl::expected<std::shared_ptr<void>, std::string> call_and_wait(const void * request,
                                                                  std::chrono::nanoseconds timeout);
@@ -45,7 +49,8 @@ class ClientBase {
   std::shared_ptr<detail::ClientImpl> impl_;
 };
 
-/// From Node::create_client. Thread-safe. Answers arrive through the executor that the node was added to.
+/// A service client for tests, created by create_client. Thread-safe. Responses arrive in the executor's
+/// thread.
 template <typename S>
 class Client : public ClientBase {
  public:
@@ -53,7 +58,13 @@ class Client : public ClientBase {
   using Request = typename S::Request;
   using Response = typename S::Response;
 
-  explicit Client(std::shared_ptr<detail::ClientImpl> impl) : ClientBase(std::move(impl)) {}
+  Client(std::shared_ptr<detail::NodeImpl> node, const std::string & name, const QoS & qos)
+      : ClientBase(std::move(node),
+                   {rosidl_typesupport_cpp::get_service_type_support_handle<S>(),
+                    []() -> std::shared_ptr<void> { return std::make_shared<Response>(); }},
+                   name, qos)
+  {
+  }
 
   /// `callback` runs in the executor's thread. @throws Error if the request cannot be sent.
   void async_send_request(const Request & request, std::function<void(const Response &)> callback)
@@ -74,9 +85,9 @@ class Client : public ClientBase {
     return future;
   }
 
-  /// Waits for service and answer together at most `timeout`; the executor must be spinning in another
-  /// thread. The error says what was missing: no such service, no answer, shutdown, or called from the
-  /// executor's own thread.
+  /// Waits for the service and the response at most `timeout`. The executor has to spin in another thread.
+  /// The error is the reason: no such service, no response, shutdown, or called from a callback of the
+  /// executor.
   tl::expected<Response, std::string> call(const Request & request, std::chrono::nanoseconds timeout)
   {
     auto response = call_and_wait(&request, timeout);
@@ -88,10 +99,10 @@ class Client : public ClientBase {
 };
 
 template <typename S>
-constexpr detail::ErasedClient erase_client()
+std::shared_ptr<Client<S>> create_client(const Node & node, const std::string & service,
+                                         const QoS & qos = QoS::services_default())
 {
-  return {rosidl_typesupport_cpp::get_service_type_support_handle<S>(),
-          []() -> std::shared_ptr<void> { return std::make_shared<typename S::Response>(); }};
+  return std::make_shared<Client<S>>(node.impl(), service, qos);
 }
 
 }  // namespace rcl_cxx

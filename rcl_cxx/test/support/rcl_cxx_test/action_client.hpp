@@ -12,21 +12,11 @@
 #include <vector>
 
 #include "rcl_cxx/goal_uuid.hpp"
-#include "rcl_cxx/qos.hpp"
+#include "rcl_cxx/node.hpp"
 
 namespace rcl_cxx {
-struct ActionClientOptions {
-  QoS goal_service_qos = QoS::services_default();
-  QoS result_service_qos = QoS::services_default();
-  QoS cancel_service_qos = QoS::services_default();
-  QoS feedback_qos = QoS::reliable(10);
-  QoS status_qos = QoS::transient_local(1);
-};
-
-/// Numbers are those of action_msgs/srv/CancelGoal.
+/// The numbers are those of action_msgs/srv/CancelGoal.
 enum class CancelCode : std::int8_t { none = 0, rejected = 1, unknown_goal = 2, goal_terminated = 3 };
-
-const char * to_string(CancelCode code) noexcept;
 
 struct CancelResponse {
   CancelCode code = CancelCode::none;
@@ -46,7 +36,7 @@ namespace detail {
 class ActionClientImpl;
 class ClientGoalImpl;
 
-/// What the client needs to know of an action's types; one constant table per action.
+/// What the client has to know about the types of an action.
 struct ActionClientOps {
   const rosidl_action_type_support_t * (*type_support)();
   std::shared_ptr<void> (*make_goal_request)(const GoalUUID &, const void * goal);
@@ -59,9 +49,9 @@ struct ActionClientOps {
   GoalUUID (*goal_id_of_feedback)(const void * feedback_message);
 };
 
-/// All run in the executor's thread.
+/// Run in the executor's thread.
 struct ErasedGoalCallbacks {
-  std::function<void(const std::shared_ptr<ClientGoalImpl> & or_null_if_refused)> response;
+  std::function<void(const std::shared_ptr<ClientGoalImpl> & or_null_if_rejected)> response;
   std::function<void(const void * feedback_message)> feedback;
   std::function<void(const GoalUUID &, const void * result_response)> result;
 };
@@ -106,7 +96,7 @@ struct ActionClientOpsOf {
 };
 }  // namespace detail
 
-/// A goal as its client sees it, once it has been accepted.
+/// An accepted goal of a client.
 class ClientGoalHandleBase {
  public:
   explicit ClientGoalHandleBase(std::shared_ptr<detail::ClientGoalImpl> impl);
@@ -115,10 +105,10 @@ class ClientGoalHandleBase {
   ClientGoalHandleBase & operator=(const ClientGoalHandleBase &) = delete;
 
   const GoalUUID & get_goal_id() const noexcept;
-  /// The latest that the server has told.
+  /// The last known status.
   GoalStatus get_status() const noexcept;
 
-  /// Asks to cancel; the future holds the answer. @throws Error if the request cannot be sent.
+  /// Requests to cancel the goal. @throws Error if the request cannot be sent.
   std::future<CancelResponse> async_cancel();
 
  private:
@@ -135,17 +125,17 @@ class ClientGoalHandle : public ClientGoalHandleBase {
   {
   }
 
-  /// Ready when the goal has ended. Broken (std::future_error) if the action client is destroyed first.
+  /// Ready when the goal has a result. Broken (std::future_error) if the action client is destroyed first.
   const std::shared_future<WrappedResult<A>> & async_get_result() const noexcept { return result_; }
 
  private:
   std::shared_future<WrappedResult<A>> result_;
 };
 
-/// All optional, all run in the executor's thread.
+/// Optional callbacks, which run in the executor's thread.
 template <typename A>
 struct SendGoalOptions {
-  /// A null pointer if the goal was refused.
+  /// Receives a null pointer if the goal was rejected.
   std::function<void(const std::shared_ptr<ClientGoalHandle<A>> &)> goal_response_callback{};
   std::function<void(const typename A::Feedback &)> feedback_callback{};
   std::function<void(const WrappedResult<A> &)> result_callback{};
@@ -159,21 +149,22 @@ class ActionClientBase {
 
   const std::string & get_action_name() const noexcept;
   bool action_server_is_ready() const;
-  /// False on timeout or shutdown.
+  /// Returns false on timeout and shutdown.
   bool wait_for_action_server(std::chrono::nanoseconds timeout) const;
 
-  /// Cancels a goal of anyone. @throws Error if the request cannot be sent; the same below.
+  /// Requests to cancel the goal of any client. @throws Error if the request cannot be sent; the same below.
   std::future<CancelResponse> async_cancel_goal(const GoalUUID & id);
   std::future<CancelResponse> async_cancel_all_goals();
   /// All goals accepted at or before `stamp_ns` (nanoseconds since the epoch, ROS time).
   std::future<CancelResponse> async_cancel_goals_before(std::int64_t stamp_ns);
 
  protected:
-  explicit ActionClientBase(std::shared_ptr<detail::ActionClientImpl> impl);
+  ActionClientBase(std::shared_ptr<detail::NodeImpl> node, const detail::ActionClientOps & ops,
+                   const std::string & action);
   GoalUUID send(const void * goal, detail::ErasedGoalCallbacks callbacks);
-  /// Nobody waits for this goal any more: it is asked to cancel, now or when it turns out to be accepted.
+  /// Cancels a goal that is no longer waited for, now or when it is accepted.
   void abandon(const GoalUUID & id) noexcept;
-  /// False at `deadline` or on shutdown.
+  /// Returns false at `deadline` and on shutdown.
   template <typename Future>
   bool wait(const Future & future, std::chrono::steady_clock::time_point deadline) const
   {
@@ -183,7 +174,7 @@ class ActionClientBase {
         },
         deadline);
   }
-  /// Why a blocking call cannot be made from here, or does not find its server.
+  /// The error is the reason why a blocking call is impossible.
   tl::expected<void, std::string> check_blocking_call(std::chrono::nanoseconds timeout) const;
 
  private:
@@ -193,8 +184,8 @@ class ActionClientBase {
   std::shared_ptr<detail::ActionClientImpl> impl_;
 };
 
-/// From Node::create_action_client. Thread-safe. Answers arrive through the executor that the node was added
-/// to. The result is asked for as soon as a goal is accepted.
+/// An action client for tests, created by create_action_client. Thread-safe. Responses arrive in the
+/// executor's thread. The result is requested as soon as a goal is accepted.
 template <typename A>
 class ActionClient : public ActionClientBase {
  public:
@@ -203,20 +194,24 @@ class ActionClient : public ActionClientBase {
   using Feedback = typename A::Feedback;
   using Handle = ClientGoalHandle<A>;
 
-  explicit ActionClient(std::shared_ptr<detail::ActionClientImpl> impl) : ActionClientBase(std::move(impl)) {}
+  ActionClient(std::shared_ptr<detail::NodeImpl> node, const std::string & action)
+      : ActionClientBase(std::move(node), detail::ActionClientOpsOf<A>::ops, action)
+  {
+  }
 
-  /// The future holds the goal's handle, or a null pointer if the goal was refused.
+  /// The future holds the goal's handle, or a null pointer if the goal was rejected.
   /// @throws Error if the request cannot be sent.
   std::future<std::shared_ptr<Handle>> async_send_goal(const Goal & goal, SendGoalOptions<A> options = {})
   {
     return start(goal, std::move(options)).response;
   }
 
-  /// Sends and waits for the result, at most `timeout` in all; the executor must be spinning in another
-  /// thread. A goal that is running when the time is over is asked to cancel. The error says what went wrong:
-  /// no server, refused, no answer, no result, shutdown, or called from the executor's own thread.
-  tl::expected<WrappedResult<A>, std::string> call(const Goal & goal, std::chrono::nanoseconds timeout,
-                                                   std::function<void(const Feedback &)> on_feedback = {});
+  /// Sends a goal and waits for its result, at most `timeout`. The executor has to spin in another thread. A
+  /// goal that is active at the timeout is canceled. The error is the reason: no server, rejected, no
+  /// response, no result, shutdown, or called from a callback of the executor.
+  tl::expected<WrappedResult<A>, std::string> send_goal(
+      const Goal & goal, std::chrono::nanoseconds timeout,
+      std::function<void(const Feedback &)> on_feedback = {});
 
  private:
   using ResultResponse = typename A::Impl::GetResultService::Response;
@@ -228,9 +223,9 @@ class ActionClient : public ActionClientBase {
   };
 
   Started start(const Goal & goal, SendGoalOptions<A> options);
-  tl::expected<WrappedResult<A>, std::string> call_until(const Goal & goal,
-                                                         std::chrono::steady_clock::time_point deadline,
-                                                         std::function<void(const Feedback &)> on_feedback);
+  tl::expected<WrappedResult<A>, std::string> send_goal_until(
+      const Goal & goal, std::chrono::steady_clock::time_point deadline,
+      std::function<void(const Feedback &)> on_feedback);
 };
 
 template <typename A>
@@ -269,7 +264,7 @@ typename ActionClient<A>::Started ActionClient<A>::start(const Goal & goal, Send
 }
 
 template <typename A>
-tl::expected<WrappedResult<A>, std::string> ActionClient<A>::call(
+tl::expected<WrappedResult<A>, std::string> ActionClient<A>::send_goal(
     const Goal & goal, std::chrono::nanoseconds timeout, std::function<void(const Feedback &)> on_feedback)
 {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
@@ -277,14 +272,14 @@ tl::expected<WrappedResult<A>, std::string> ActionClient<A>::call(
     return tl::make_unexpected(ready.error());
   }
   try {
-    return call_until(goal, deadline, std::move(on_feedback));
+    return send_goal_until(goal, deadline, std::move(on_feedback));
   } catch (const std::exception & error) {  // not sent, or the client was destroyed
     return tl::make_unexpected(get_action_name() + ": " + error.what());
   }
 }
 
 template <typename A>
-tl::expected<WrappedResult<A>, std::string> ActionClient<A>::call_until(
+tl::expected<WrappedResult<A>, std::string> ActionClient<A>::send_goal_until(
     const Goal & goal, std::chrono::steady_clock::time_point deadline,
     std::function<void(const Feedback &)> on_feedback)
 {
@@ -293,17 +288,23 @@ tl::expected<WrappedResult<A>, std::string> ActionClient<A>::call_until(
   Started started = start(goal, std::move(options));
   if (!wait(started.response, deadline)) {
     abandon(started.id);
-    return tl::make_unexpected(get_action_name() + ": no answer to the goal within the time given");
+    return tl::make_unexpected(get_action_name() + ": no response to the goal within the timeout");
   }
   const std::shared_ptr<Handle> handle = started.response.get();
   if (!handle) {
-    return tl::make_unexpected(get_action_name() + ": goal refused (the server's log says why)");
+    return tl::make_unexpected(get_action_name() + ": goal refused, see the server's log");
   }
   if (!wait(handle->async_get_result(), deadline)) {
     abandon(started.id);
-    return tl::make_unexpected(get_action_name() + ": no result within the time given, cancel requested");
+    return tl::make_unexpected(get_action_name() + ": no result within the timeout, cancel requested");
   }
   return handle->async_get_result().get();
+}
+
+template <typename A>
+std::shared_ptr<ActionClient<A>> create_action_client(const Node & node, const std::string & action)
+{
+  return std::make_shared<ActionClient<A>>(node.impl(), action);
 }
 
 }  // namespace rcl_cxx

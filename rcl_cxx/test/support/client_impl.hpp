@@ -11,8 +11,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "rcl_cxx/client.hpp"
-#include "rcl_cxx/qos.hpp"
+#include "rcl_cxx_test/client.hpp"
 #include "waitable.hpp"
 
 namespace rcl_cxx::detail {
@@ -20,8 +19,6 @@ class ClientImpl : public Waitable {
  public:
   using OnResponse = std::function<void(const std::shared_ptr<void> &)>;
 
-  static std::shared_ptr<ClientImpl> create(std::shared_ptr<NodeImpl> node, ErasedClient erased,
-                                            const std::string & name, const QoS & qos);
   ClientImpl(std::shared_ptr<NodeImpl> node, ErasedClient erased, const std::string & name, const QoS & qos);
   ~ClientImpl() override;
 
@@ -35,15 +32,17 @@ class ClientImpl : public Waitable {
 
   const std::string & get_service_name() const noexcept { return name_; }
 
+  void set_on_ready_callbacks() override;
+
  protected:
   void execute(std::size_t source) override;
-  void stop() noexcept override;
+  void clear_on_ready_callbacks() noexcept override;
 
  private:
   OnResponse take_pending(std::int64_t sequence);
 
   const ErasedClient erased_;
-  rcl_client_t client_;
+  rcl_client_t client_ = rcl_get_zero_initialized_client();
   std::string name_;
   mutable std::mutex mutex_;
   std::map<std::int64_t, OnResponse> pending_;

@@ -1,37 +1,26 @@
-#include "rcl_cxx/client.hpp"
+#include "rcl_cxx_test/client.hpp"
 
 #include <fmt/format.h>
 #include <rcl/graph.h>
 
 #include "client_impl.hpp"
 #include "node_impl.hpp"
-#include "qos_rmw.hpp"
 #include "rcl_error.hpp"
+#include "wait.hpp"
 
 namespace rcl_cxx {
 namespace detail {
 namespace {
-// A wait for an answer looks this often whether the context still runs.
+// A wait for a response checks for a shutdown this often.
 constexpr std::chrono::milliseconds kShutdownCheckPeriod{20};
 }  // namespace
 
-std::shared_ptr<ClientImpl> ClientImpl::create(std::shared_ptr<NodeImpl> node, ErasedClient erased,
-                                               const std::string & name, const QoS & qos)
-{
-  auto impl = std::make_shared<ClientImpl>(std::move(node), erased, name, qos);
-  check_rcl(rcl_client_set_on_new_response_callback(&impl->client_, &on_event, impl->source(0)),
-            impl->label(), "its middleware does not report new responses");
-  return impl;
-}
-
 ClientImpl::ClientImpl(std::shared_ptr<NodeImpl> node, ErasedClient erased, const std::string & name,
                        const QoS & qos)
-    : Waitable(std::move(node), fmt::format("client of {}", name)),
-      erased_(erased),
-      client_(rcl_get_zero_initialized_client())
+    : Waitable(std::move(node), fmt::format("client of {}", name)), erased_(erased)
 {
   rcl_client_options_t options = rcl_client_get_default_options();
-  options.qos = to_rmw(qos);
+  options.qos = qos.get_rmw_qos_profile();
   const std::lock_guard lock(this->node()->mutex());
   check_rcl(rcl_client_init(&client_, this->node()->handle(), erased_.type_support, name.c_str(), &options),
             label(), "cannot be created");
@@ -56,7 +45,7 @@ bool ClientImpl::service_is_ready() const
 
 bool ClientImpl::wait_for_service(std::chrono::nanoseconds timeout) const
 {
-  return node()->wait_for([this] { return service_is_ready(); }, timeout);
+  return wait_for(*node(), [this] { return service_is_ready(); }, timeout);
 }
 
 std::int64_t ClientImpl::send(const void * request, OnResponse on_response)
@@ -73,8 +62,8 @@ tl::expected<std::shared_ptr<void>, std::string> ClientImpl::call(const void * r
 {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   if (node()->in_own_callback()) {
-    return tl::make_unexpected(fmt::format(
-        "{}: a blocking call from a callback would wait for ever, use async_send_request", name_));
+    return tl::make_unexpected(
+        fmt::format("{}: a blocking call from a callback never returns, use async_send_request", name_));
   }
   if (!wait_for_service(timeout)) {
     return tl::make_unexpected(fmt::format("{}: there is no such service", name_));
@@ -94,8 +83,7 @@ tl::expected<std::shared_ptr<void>, std::string> ClientImpl::call(const void * r
     }
     take_pending(sequence);
     return tl::make_unexpected(fmt::format(
-        "{}: {}{}", name_, node()->get_context().ok() ? "no answer within the time given" : "shutting down",
-        node()->executor_hint()));
+        "{}: {}", name_, node()->get_context().ok() ? "no response within the timeout" : "shutting down"));
   }
   try {
     return answer.get();
@@ -139,13 +127,22 @@ void ClientImpl::execute(std::size_t /*source*/)
   }
 }
 
-void ClientImpl::stop() noexcept
+void ClientImpl::set_on_ready_callbacks()
 {
-  ignore_rcl(rcl_client_set_on_new_response_callback(&client_, nullptr, nullptr));
+  set_callback(rcl_client_set_on_new_response_callback, client_, 0);
+}
+
+void ClientImpl::clear_on_ready_callbacks() noexcept
+{
+  clear_callback(rcl_client_set_on_new_response_callback, client_);
 }
 }  // namespace detail
 
-ClientBase::ClientBase(std::shared_ptr<detail::ClientImpl> impl) : impl_(std::move(impl)) {}
+ClientBase::ClientBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedClient erased,
+                       const std::string & name, const QoS & qos)
+    : impl_(detail::make_waitable<detail::ClientImpl>(std::move(node), erased, name, qos))
+{
+}
 
 ClientBase::~ClientBase()
 {

@@ -1,31 +1,17 @@
-#include "rcl_cxx/action_client.hpp"
+#include "rcl_cxx_test/action_client.hpp"
 
 #include <algorithm>
 
 #include "action_client_impl.hpp"
 #include "node_impl.hpp"
 #include "rcl_cxx/error.hpp"
+#include "wait.hpp"
 
 namespace rcl_cxx {
 namespace {
-// A wait for an answer looks this often whether the context still runs.
-constexpr std::chrono::nanoseconds kShutdownCheckPeriod = std::chrono::milliseconds(20);
+// A wait for a response checks for a shutdown this often.
+constexpr std::chrono::nanoseconds kActionShutdownCheckPeriod = std::chrono::milliseconds(20);
 }  // namespace
-
-const char * to_string(CancelCode code) noexcept
-{
-  switch (code) {
-    case CancelCode::none:
-      return "canceling";
-    case CancelCode::rejected:
-      return "rejected";
-    case CancelCode::unknown_goal:
-      return "unknown goal";
-    case CancelCode::goal_terminated:
-      return "the goal has ended";
-  }
-  return "invalid";
-}
 
 ClientGoalHandleBase::ClientGoalHandleBase(std::shared_ptr<detail::ClientGoalImpl> impl)
     : impl_(std::move(impl))
@@ -50,7 +36,11 @@ std::future<CancelResponse> ClientGoalHandleBase::async_cancel()
   return client->cancel(impl_->id(), 0);
 }
 
-ActionClientBase::ActionClientBase(std::shared_ptr<detail::ActionClientImpl> impl) : impl_(std::move(impl)) {}
+ActionClientBase::ActionClientBase(std::shared_ptr<detail::NodeImpl> node,
+                                   const detail::ActionClientOps & ops, const std::string & action)
+    : impl_(detail::make_waitable<detail::ActionClientImpl>(std::move(node), ops, action))
+{
+}
 
 ActionClientBase::~ActionClientBase()
 {
@@ -70,7 +60,7 @@ bool ActionClientBase::action_server_is_ready() const
 
 bool ActionClientBase::wait_for_action_server(std::chrono::nanoseconds timeout) const
 {
-  return impl_->node()->wait_for([this] { return action_server_is_ready(); }, timeout);
+  return detail::wait_for(*impl_->node(), [this] { return action_server_is_ready(); }, timeout);
 }
 
 std::future<CancelResponse> ActionClientBase::async_cancel_goal(const GoalUUID & id)
@@ -102,7 +92,7 @@ tl::expected<void, std::string> ActionClientBase::check_blocking_call(std::chron
 {
   if (impl_->node()->in_own_callback()) {
     return tl::make_unexpected(get_action_name() +
-                               ": a blocking call from a callback would wait for ever, use send_goal");
+                               ": a blocking call from a callback never returns, use async_send_goal");
   }
   if (!wait_for_action_server(timeout)) {
     return tl::make_unexpected(get_action_name() + ": there is no such action server");
@@ -115,7 +105,7 @@ bool ActionClientBase::wait_until_ready(const std::function<bool(std::chrono::na
 {
   while (impl_->node()->get_context().ok()) {
     const std::chrono::nanoseconds left = deadline - std::chrono::steady_clock::now();
-    if (ready_within(std::clamp(left, std::chrono::nanoseconds::zero(), kShutdownCheckPeriod))) {
+    if (ready_within(std::clamp(left, std::chrono::nanoseconds::zero(), kActionShutdownCheckPeriod))) {
       return true;
     }
     if (left <= std::chrono::nanoseconds::zero()) {
