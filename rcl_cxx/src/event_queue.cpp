@@ -27,7 +27,7 @@ void EventQueue::add_timer(std::shared_ptr<TimerSchedule> timer)
 void EventQueue::wake()
 {
   {
-    const std::lock_guard lock(mutex_);  // next() is not between its look at the timers and its wait
+    const std::lock_guard lock(mutex_);  // next() may be between reading the timers and waiting
   }
   wake_.notify_one();
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <iterator>
 #include <random>
 
 namespace rcl_cxx {
@@ -37,23 +38,10 @@ std::string GoalUUID::short_string() const
 
 const char * to_string(GoalStatus status) noexcept
 {
-  switch (status) {
-    case GoalStatus::unknown:
-      return "unknown";
-    case GoalStatus::accepted:
-      return "accepted";
-    case GoalStatus::executing:
-      return "executing";
-    case GoalStatus::canceling:
-      return "canceling";
-    case GoalStatus::succeeded:
-      return "succeeded";
-    case GoalStatus::canceled:
-      return "canceled";
-    case GoalStatus::aborted:
-      return "aborted";
-  }
-  return "invalid";
+  constexpr const char * names[] = {"unknown",   "accepted", "executing", "canceling",
+                                    "succeeded", "canceled", "aborted"};
+  const auto index = static_cast<std::size_t>(status);
+  return index < std::size(names) ? names[index] : "invalid";
 }
 
 }  // namespace rcl_cxx

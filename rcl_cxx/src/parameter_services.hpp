@@ -14,13 +14,12 @@
 #include "rcl_cxx/node.hpp"
 
 namespace rcl_cxx::detail {
-/// The names that a request of ~/list_parameters asks for: `depth` counts the parts between dots, 0 is
-/// without limit; prefixes are themselves parts.
+/// The response of ~/list_parameters. `depth` limits the number of parts between dots; 0 is no limit.
 rcl_interfaces::msg::ListParametersResult list_parameters(const std::vector<Parameter> & parameters,
                                                           const std::vector<std::string> & prefixes,
                                                           std::uint64_t depth);
 
-/// The six services through which others see and set a node's parameters.
+/// The six parameter services of a node.
 class ParameterServices {
  public:
   ParameterServices(Node & node, std::shared_ptr<Parameters> parameters);

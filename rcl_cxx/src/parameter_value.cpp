@@ -37,29 +37,11 @@ struct ToText {
 
 std::string_view to_string(ParameterType type) noexcept
 {
-  switch (type) {
-    case ParameterType::not_set:
-      return "not set";
-    case ParameterType::boolean:
-      return "bool";
-    case ParameterType::integer:
-      return "integer";
-    case ParameterType::floating_point:
-      return "double";
-    case ParameterType::string:
-      return "string";
-    case ParameterType::byte_array:
-      return "byte_array";
-    case ParameterType::boolean_array:
-      return "bool_array";
-    case ParameterType::integer_array:
-      return "integer_array";
-    case ParameterType::floating_point_array:
-      return "double_array";
-    case ParameterType::string_array:
-      return "string_array";
-  }
-  return "invalid";
+  constexpr std::string_view names[] = {"not set",      "bool",        "integer",    "double",
+                                        "string",       "byte_array",  "bool_array", "integer_array",
+                                        "double_array", "string_array"};
+  const auto index = static_cast<std::size_t>(type);
+  return index < std::size(names) ? names[index] : "invalid";
 }
 
 std::string ParameterValue::to_string() const
@@ -73,14 +55,9 @@ void ParameterValue::throw_wrong_type(ParameterType wanted) const
                           rcl_cxx::to_string(wanted)));
 }
 
-void ParameterValue::throw_does_not_fit(std::int64_t value, std::int64_t low, std::uint64_t high)
+void ParameterValue::throw_does_not_fit(const std::string & value)
 {
-  throw Error(fmt::format("the value {} is not within {} and {}", value, low, high));
-}
-
-void ParameterValue::throw_too_large(std::uint64_t value)
-{
-  throw Error(fmt::format("the value {} does not fit into a parameter, integers go up to 2^63 - 1", value));
+  throw Error(fmt::format("the value {} does not fit into the requested integer type", value));
 }
 
 }  // namespace rcl_cxx

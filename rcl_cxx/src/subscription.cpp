@@ -16,7 +16,6 @@ class SubscriptionImpl : public Waitable {
                    const QoS & qos);
   ~SubscriptionImpl() override;
 
-  std::size_t get_publisher_count() const;
   const std::string & get_topic_name() const noexcept { return topic_; }
 
   void set_on_ready_callbacks() override;
@@ -70,16 +69,6 @@ void SubscriptionImpl::clear_on_ready_callbacks() noexcept
   incompatible_qos_.stop();
 }
 
-std::size_t SubscriptionImpl::get_publisher_count() const
-{
-  std::size_t count = 0;
-  if (rcl_subscription_get_publisher_count(&subscription_, &count) != RCL_RET_OK) {
-    rcl_reset_error();  // after the shutdown
-    return 0;
-  }
-  return count;
-}
-
 void SubscriptionImpl::execute(std::size_t source)
 {
   if (source == kQosEvent) {
@@ -117,10 +106,6 @@ SubscriptionBase::~SubscriptionBase()
 const std::string & SubscriptionBase::get_topic_name() const noexcept
 {
   return impl_->get_topic_name();
-}
-std::size_t SubscriptionBase::get_publisher_count() const
-{
-  return impl_->get_publisher_count();
 }
 
 }  // namespace rcl_cxx

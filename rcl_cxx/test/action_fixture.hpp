@@ -31,7 +31,7 @@ inline Fibonacci::Result result_of(std::vector<int> sequence)
   return result;
 }
 
-/// A server that only keeps the handles: the test does what a worker would.
+/// A server that keeps the goal handles; the test finishes the goals.
 class Actions : public Spinning {
  protected:
   ~Actions() override { context->shutdown("end of the test"); }
@@ -72,7 +72,7 @@ class Actions : public Spinning {
     return response.wait_for(kLimit) == std::future_status::ready ? response.get() : nullptr;
   }
 
-  /// The server's side of the n-th goal.
+  /// The server's handle of the n-th goal.
   std::shared_ptr<Handle> accepted(std::size_t n)
   {
     EXPECT_TRUE(eventually([&] {

@@ -1,4 +1,4 @@
-"""A node of rcl_cxx in a process of its own, and rclpy to look at it. Waits are for conditions, for at most LIMIT."""
+"""Starts a node of rcl_cxx in a process of its own and checks it with rclpy."""
 
 import fcntl
 import os
@@ -15,9 +15,9 @@ _own_domain = None
 
 
 def _take_own_domain():
-    """A ROS domain that no other test of this machine has: whoever has locked its file owns it, until the process ends.
+    """Takes a ROS domain that no other test on this machine uses, by locking a file until the process ends.
 
-    The project's test runner does the same, and then names the domain in the environment.
+    The project's test runner does the same and sets the domain in the environment.
     """
     global _own_domain
     folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
@@ -45,20 +45,20 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 
 
 def eventually(condition, limit=LIMIT):
-    """The condition's value as soon as it is true; fails if that takes longer than the limit."""
+    """Returns the value of the condition as soon as it is true; fails after the limit."""
     end = time.monotonic() + limit
     while True:
         value = condition()
         if value:
             return value
-        assert time.monotonic() < end, "it did not come true in time"
+        assert time.monotonic() < end, "the condition did not become true in time"
         time.sleep(0.005)
 
 
 def result_of(future, limit=LIMIT):
     done = threading.Event()
     future.add_done_callback(lambda _: done.set())
-    assert done.wait(limit), "no answer in time"
+    assert done.wait(limit), "no response in time"
     return future.result()
 
 
@@ -85,7 +85,7 @@ class NodeProcess:
             lines.append(line)
 
     def stop(self, sig=signal.SIGINT):
-        """Its exit code. The seconds it took are in `self.seconds_to_stop`."""
+        """Returns the exit code and sets `self.seconds_to_stop`."""
         start = time.monotonic()
         if self.process.poll() is None:
             self.process.send_signal(sig)
@@ -149,7 +149,7 @@ class Ros:
             self.node.destroy_client(client)
 
     def listen(self, message_type, topic, qos):
-        """A list that grows with the messages of the topic; returned once the publisher is matched."""
+        """Returns a list that grows with the messages of the topic, once the publisher is matched."""
         messages = []
         self.node.create_subscription(message_type, topic, messages.append, qos)
         eventually(lambda: self.node.count_publishers(topic) > 0)
@@ -165,7 +165,7 @@ def ros():
 
 @pytest.fixture
 def start_node():
-    """Starts further ones; those that a failed test leaves behind are killed, and what they said is shown."""
+    """Starts further nodes. After a failed test they are killed and their output is printed."""
     processes = []
 
     def start(*arguments, **options):
@@ -181,7 +181,7 @@ def start_node():
 
 @pytest.fixture(scope="module")
 def test_node():
-    """One for all tests of a file; those that need a special one start their own."""
+    """The node that all tests of a file share."""
     process = NodeProcess()
     yield process
     assert process.stop() == 0

@@ -2,5 +2,5 @@
 
 #include <cstddef>
 
-/// How often operator new has been called in this thread, by anyone: the whole program's is replaced.
+/// The number of calls of operator new in this thread. The operator of the program is replaced.
 std::size_t allocations_of_this_thread();

@@ -1,6 +1,6 @@
 #pragma once
 
-/// While one exists, everything that its thread publishes fails: the program's rcl_publish() is replaced.
+/// While an object exists, publishing fails in its thread. rcl_publish() of the program is replaced.
 class FailingPublish {
  public:
   FailingPublish();

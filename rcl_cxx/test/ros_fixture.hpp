@@ -11,10 +11,10 @@
 
 #include "rcl_cxx/rcl_cxx.hpp"
 
-/// The longest that a test waits for anything: discovery takes up to 3 s, more on a busy machine.
+/// The longest wait of a test. Discovery takes up to 3 s, more on a busy machine.
 constexpr std::chrono::seconds kLimit{10};
 
-/// Waits for a condition that another thread brings about.
+/// Waits for a condition that another thread makes true.
 inline bool eventually(const std::function<bool()> & condition, std::chrono::nanoseconds limit = kLimit)
 {
   const auto deadline = std::chrono::steady_clock::now() + limit;

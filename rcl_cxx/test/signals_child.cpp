@@ -1,5 +1,5 @@
-// What test_signals.cpp sends signals to: a signal is for a whole process. Each byte on the standard output
-// tells that a point is reached; the exit status is 0 when all went as it should.
+// The process that test_signals.cpp sends signals to. Each byte on the standard output reports progress; the
+// exit status is 0 on success.
 #include <unistd.h>
 
 #include <cerrno>
@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 namespace {
 constexpr std::chrono::seconds kLimit{10};
 
-void tell()
+void report()
 {
   if (::write(STDOUT_FILENO, "r", 1) != 1) {
     std::_Exit(2);
@@ -32,12 +32,12 @@ bool spins_until(const std::string & signal)
 {
   const auto context = std::make_shared<Context>(std::vector<std::string>{"test"});
   rcl_cxx::Executor executor(context);
-  executor.post([] { tell(); });
+  executor.post([] { report(); });
   executor.spin();
   return context->shutdown_reason() == signal;
 }
 
-/// Signals that come while the watcher begins, at various moments.
+/// Raises a signal before the watcher has a callback, with various delays.
 bool hears_early_signals()
 {
   for (int round = 0; round < 100; ++round) {
@@ -45,7 +45,7 @@ bool hears_early_signals()
     auto signal = told.get_future();
     const auto watcher = rcl_cxx::detail::SignalWatcher::instance();
     ::raise(SIGINT);
-    std::this_thread::sleep_for(std::chrono::microseconds(10 * round));  // the moment is the variation
+    std::this_thread::sleep_for(std::chrono::microseconds(10 * round));
     watcher->add([&told](int number) { told.set_value(number); });
     if (signal.wait_for(kLimit) != std::future_status::ready || signal.get() != SIGINT) {
       return false;
@@ -54,10 +54,10 @@ bool hears_early_signals()
   return true;
 }
 
-/// A shutdown that takes until its end is asked for by SIGUSR1, and reports its beginning.
+/// Reports the begin of a shutdown, and ends it on SIGUSR1.
 bool shuts_down_slowly(milliseconds grace)
 {
-  // Blocked before any thread exists, so that only sigtimedwait takes it.
+  // Blocked before any thread exists, so that only sigtimedwait() receives it.
   sigset_t set;
   sigemptyset(&set);
   sigaddset(&set, SIGUSR1);
@@ -66,13 +66,13 @@ bool shuts_down_slowly(milliseconds grace)
   options.signal_grace = grace;
   const auto context = std::make_shared<Context>(std::vector<std::string>{"test"}, options);
   context->add_pre_shutdown_callback([&] {
-    tell();
+    report();
     const timespec limit{10, 0};
     while (::sigtimedwait(&set, nullptr, &limit) < 0 && errno == EINTR) {
-      // The handler of one of the other signals ran in this thread.
+      // interrupted by the handler of another signal
     }
   });
-  tell();
+  report();
   return context->wait_for_shutdown(kLimit);
 }
 

@@ -159,7 +159,7 @@ TEST_F(ActionServerTest, FillsMissingResult)
   on_missing_result = [](GoalStatus status, Fibonacci::Result & result) {
     result.sequence = {static_cast<int>(status), 7};
   };
-  on_accepted = [](const std::shared_ptr<Handle> &) {};  // nobody keeps it
+  on_accepted = [](const std::shared_ptr<Handle> &) {};  // releases the handle
   serve();
   const auto end = result(send(5));
   EXPECT_EQ(end.status, GoalStatus::aborted);

@@ -23,7 +23,7 @@ constexpr Gid kOther{2};
 constexpr Gid kThird{3};
 const ServiceClients kNobody{};
 
-/// Watches from time zero.
+/// The clients are watched from time zero.
 class ClientWatchTest : public testing::Test {
  protected:
   static ClientWatch::Clock::time_point at(double fraction_of_limit)
@@ -83,7 +83,7 @@ TEST_F(ClientWatchTest, CountsClientsWhereNoEndpointsAreListed)
   EXPECT_TRUE(opaque.is_lost(kNobody, at(1.2)));
 }
 
-/// A client with a participant of its own, as another process has it.
+/// A client with a context of its own, as in another process.
 class OtherProcess {
  public:
   OtherProcess()
@@ -103,7 +103,7 @@ class OtherProcess {
   {
     auto response = client->async_send_goal(goal_of(1));
     if (response.wait_for(kLimit) != std::future_status::ready) {
-      ADD_FAILURE() << "no answer to the goal";
+      ADD_FAILURE() << "no response to the goal";
       return {};
     }
     handles_.push_back(response.get());
@@ -143,14 +143,14 @@ TEST_F(ClientLostTest, IsReportedWhenItsContextEnds)
   auto other = std::make_unique<OtherProcess>();
   const auto goal = other->send_accepted_goal();
   const auto handle = accepted(0);
-  std::promise<void> served;  // the acceptance, and with it the first look for the client
+  std::promise<void> served;  // set after the acceptance and the first check of the client
   executor->post([&] { served.set_value(); });
   get(served.get_future());
   other.reset();
   EXPECT_TRUE(
       eventually([&] { return is_lost(goal); }, std::chrono::milliseconds(ClientWatch::kDiscoveryLimit) / 2))
-      << "it was discovered";
-  EXPECT_TRUE(handle->is_active()) << "ending the goal is left to the handler";
+      << "it had been discovered";
+  EXPECT_TRUE(handle->is_active()) << "only the callback may finish the goal";
   EXPECT_TRUE(handle->abort());
 }
 
@@ -172,15 +172,15 @@ TEST_F(ClientLostTest, IsReportedOnceForEachOfItsGoalsAndNotForThoseOfOthers)
   const auto kept = living.send_accepted_goal();
   const auto first = other->send_accepted_goal();
   const auto second = other->send_accepted_goal();
-  other->send_accepted_goal();  // ends before its client does
+  other->send_accepted_goal();  // finished before its client ends
   ASSERT_TRUE(accepted(3)->succeed());
-  // Long enough for a client to be taken for one that was never discovered.
+  // A client that has not been discovered by now counts as lost.
   std::this_thread::sleep_for(1.2 * ClientWatch::kDiscoveryLimit);
   EXPECT_THAT(lost(), IsEmpty());
   other.reset();
   EXPECT_TRUE(eventually([&] { return is_lost(first) && is_lost(second); }));
   const auto last = std::make_unique<OtherProcess>()->send_accepted_goal();
-  EXPECT_TRUE(eventually([&] { return is_lost(last); })) << "the server still watches";
+  EXPECT_TRUE(eventually([&] { return is_lost(last); })) << "the server still watches clients";
   EXPECT_THAT(lost(), UnorderedElementsAre(first, second, last));
   EXPECT_THAT(lost(), Not(Contains(kept)));
 }

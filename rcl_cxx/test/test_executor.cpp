@@ -16,7 +16,7 @@ using testing::HasSubstr;
 namespace {
 constexpr std::chrono::milliseconds kPeriod{5};
 
-/// An executor in the test's own thread.
+/// An executor that spins in the test's thread.
 class InThread : public ::testing::Test {
  protected:
   InThread() { executor.add_node(node); }
@@ -69,7 +69,7 @@ TEST_F(ExecutorTaskTest, MayPostTasksButNotSpin)
 TEST_F(ExecutorCancelTest, IsNotLostBeforeSpin)
 {
   executor.cancel();
-  executor.spin();  // would not return
+  executor.spin();  // returns at once
   bool ran = false;
   executor.post([&] { ran = true; });
   EXPECT_TRUE(executor.spin_until([&] { return ran; }, kLimit)) << "one cancel cancels one spin";
@@ -133,8 +133,7 @@ TEST_F(TimerTest, KeepsItsRateWithoutDrift)
   const auto timer =
       node.create_wall_timer(kPeriod, [&] { calls.push_back(std::chrono::steady_clock::now()); });
   ASSERT_TRUE(executor.spin_until([&] { return calls.size() == 50; }, kLimit));
-  // None may come before its time, and all times are multiples of the period from the start: however late
-  // single calls are on a busy machine, the phase stays.
+  // No call is early, and all due times are start + n * period, even if single calls are late.
   for (std::size_t i = 0; i < calls.size(); ++i) {
     EXPECT_GE(calls[i] - start, kPeriod * (i + 1));
   }
@@ -151,7 +150,7 @@ TEST_F(TimerTest, SkipsMissedPeriods)
     }
   });
   ASSERT_TRUE(executor.spin_until([&] { return calls.size() == 5; }, kLimit));
-  // The second makes good for all that were missed, the others wait for their time.
+  // The second call stands for all missed periods; the others are at their due times.
   EXPECT_GE(calls[1] - start, 11 * kPeriod);
   EXPECT_GE(calls[4] - start, 14 * kPeriod);
 }
@@ -289,7 +288,7 @@ TEST_F(SpinningExecutorTest, NeverRunsTwoCallbacksAtOnce)
     }
   });
   poster.join();
-  // All of the posted ones, which refer to this function: nothing takes them back.
+  // Posted tasks refer to this function and cannot be removed: wait for all of them.
   ASSERT_TRUE(eventually([&] { return posted == 200 && timed > 50; }));
   EXPECT_FALSE(overlapped);
 }

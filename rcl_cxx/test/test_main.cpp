@@ -10,8 +10,8 @@
 namespace {
 constexpr int kLastDomain = 101;
 
-/// A ROS domain that no other test of this machine has: whoever has locked its file owns it, until the
-/// process ends. The project's test runner does the same, and then names the domain in the environment.
+/// Takes a ROS domain that no other test on this machine uses, by locking a file until the process ends. The
+/// project's test runner does the same and sets the domain in the environment.
 void take_own_domain()
 {
   const auto folder = std::filesystem::temp_directory_path() / ("ur-domains-" + std::to_string(::getuid()));

@@ -1,5 +1,4 @@
-/// A node with something of everything, for the tests with rclpy clients (test_*.py). Its worker threads,
-/// cancel handlers and odd goals stand for what drivers do.
+/// A node with topics, services, actions and parameters, for the tests with rclpy (test_*.py).
 
 #include <chrono>
 #include <condition_variable>
@@ -23,7 +22,7 @@ using Fibonacci = test_msgs::action::Fibonacci;
 using Handle = rcl_cxx::ServerGoalHandle<Fibonacci>;
 using String = std_msgs::msg::String;
 
-// Orders that mean something else than a number of elements.
+// Orders with a special meaning instead of a number of elements.
 constexpr int kRunUntilCanceled = 1000;
 constexpr int kRefuseCancel = 1001;
 constexpr int kSucceedOnCancel = 1002;
@@ -35,10 +34,10 @@ constexpr int kFinishTwice = 1007;
 constexpr int kCanceledUnasked = 1008;
 constexpr int kCancelInHandler = 1009;
 
-// So many elements are computed, the next ones would not fit.
+// The next element would not fit into its type.
 constexpr std::size_t kLongest = 40;
 
-/// Carries out each goal in a thread of its own.
+/// Executes each goal in a thread of its own.
 class Counting {
  public:
   Counting(rcl_cxx::Node & node, const std::string & name, const rcl_cxx::ActionServerOptions & options = {})
@@ -143,7 +142,7 @@ class Counting {
     }
   }
 
-  /// True if the node goes down: the goal is left to the server's destructor.
+  /// Returns true if the node stops: the server's destructor aborts the goal.
   bool sleep(Handle & handle)
   {
     std::unique_lock lock(mutex_);
@@ -166,8 +165,8 @@ class Counting {
   std::shared_ptr<rcl_cxx::ActionServer<Fibonacci>> server_;
 };
 
-/// Lets a Python server be called from C++: each service call runs one action or service call in a thread and
-/// answers on topic `outcome`.
+/// Calls servers of rclpy: each message starts an action or service call in a thread, which publishes its
+/// result on the topic `outcome`.
 class Caller {
  public:
   explicit Caller(rcl_cxx::Node & node)

@@ -16,7 +16,7 @@ RUN_UNTIL_CANCELED, REFUSE_CANCEL, SUCCEED_ON_CANCEL, ABORT, DROP_HANDLE, THROW,
 
 
 class Client:
-    """rclpy's action client, and the hidden services under it."""
+    """rclpy's action client and its services."""
 
     def __init__(self, ros, name):
         self.ros = ros
@@ -264,7 +264,7 @@ def test_results_expire(ros, test_node):
     eventually(lambda: client.result_by_id(goal.goal_id).status == GoalStatus.STATUS_UNKNOWN)
 
 
-def test_goals_without_an_end_do_not_expire(ros, test_node):
+def test_active_goals_do_not_expire(ros, test_node):
     client = Client(ros, "/forgetful")
     goal = client.send(RUN_UNTIL_CANCELED)
     short = client.send(2)

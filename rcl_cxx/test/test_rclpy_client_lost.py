@@ -1,4 +1,4 @@
-"""The client of a running goal is a process that ends."""
+"""The client of an active goal is a process that ends."""
 
 import os
 import signal

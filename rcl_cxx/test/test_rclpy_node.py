@@ -21,7 +21,7 @@ PARAMETER_SERVICES = {"describe_parameters": "DescribeParameters", "get_paramete
 
 
 def of_node(query, name="test_node", namespace="/"):
-    """What the node has of something, once discovery has it complete: when it has not changed for a while."""
+    """Returns the result of the query once discovery is complete: when it has not changed for a while."""
     def stable():
         try:
             first = dict(query(name, namespace))
@@ -36,7 +36,7 @@ def test_the_node_has_its_name(ros, test_node):
     eventually(lambda: ("test_node", "/") in ros.node.get_node_names_and_namespaces())
 
 
-def test_it_has_its_services_with_their_types(ros, test_node):
+def test_the_node_has_its_services_with_their_types(ros, test_node):
     services = of_node(ros.node.get_service_names_and_types_by_node)
     expected = {"/set_bool": ["std_srvs/srv/SetBool"], "/failing": ["std_srvs/srv/Trigger"],
                 "/test_node/log": ["std_srvs/srv/Trigger"],
@@ -48,7 +48,7 @@ def test_it_has_its_services_with_their_types(ros, test_node):
     assert services == expected
 
 
-def test_it_has_its_topics_with_their_types(ros, test_node):
+def test_the_node_has_its_topics_with_their_types(ros, test_node):
     published = of_node(ros.node.get_publisher_names_and_types_by_node)
     assert published["/rosout"] == ["rcl_interfaces/msg/Log"]
     assert published["/parameter_events"] == ["rcl_interfaces/msg/ParameterEvent"]
@@ -149,7 +149,7 @@ def test_a_signal_ends_it_soon_with_success(sig, name, start_node):
     assert process.seconds_to_stop < LIMIT / 2
 
 
-def test_it_leaves_the_graph(ros, start_node):
+def test_the_node_leaves_the_graph(ros, start_node):
     process = start_node("--ros-args", "-r", "__node:=leaving")
     eventually(lambda: ("leaving", "/") in ros.node.get_node_names_and_namespaces())
     assert process.stop() == 0

@@ -14,7 +14,7 @@ from test_msgs.action import Fibonacci
 
 
 class Servers:
-    """An action server and a service in rclpy, of odd behaviour for some orders."""
+    """An action server and a service of rclpy, with special behaviour for some orders."""
 
     def __init__(self, node):
         group = ReentrantCallbackGroup()
@@ -71,7 +71,7 @@ def servers(test_node):
 
 @pytest.fixture
 def outcome(ros, test_node):
-    """Lets the node make one call, and returns what it says of it."""
+    """Lets the node make one call and returns its outcome."""
     messages = ros.listen(String, "/outcome", 10)
 
     def call(kind, number):

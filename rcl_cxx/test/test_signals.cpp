@@ -7,7 +7,7 @@
 
 #include "ros_fixture.hpp"
 
-// In processes of their own (signals_child.cpp): a signal is for a whole process.
+// The signals are sent to a process of their own (signals_child.cpp).
 namespace {
 
 class Child {
@@ -25,20 +25,20 @@ class Child {
       ::_exit(127);
     }
     ::close(ends[1]);
-    told_ = ends[0];
+    reports_ = ends[0];
   }
-  ~Child() { ::close(told_); }
+  ~Child() { ::close(reports_); }
   Child(const Child &) = delete;
   Child & operator=(const Child &) = delete;
 
-  void wait_until_it_tells() const
+  void wait_for_report() const
   {
     char byte = 0;
-    ASSERT_EQ(::read(told_, &byte, 1), 1);
+    ASSERT_EQ(::read(reports_, &byte, 1), 1);
   }
   void send(int signal) const { ::kill(pid_, signal); }
-  /// As waitpid() tells it.
-  int status_at_its_end() const
+  /// The status of waitpid().
+  int wait_for_exit() const
   {
     int status = 0;
     if (!eventually([&] { return ::waitpid(pid_, &status, WNOHANG) == pid_; })) {
@@ -51,7 +51,7 @@ class Child {
 
  private:
   pid_t pid_ = -1;
-  int told_ = -1;
+  int reports_ = -1;
 };
 
 bool succeeded(int status)
@@ -65,9 +65,9 @@ class SignalTest : public testing::TestWithParam<int> {};
 TEST_P(SignalTest, ShutsDownAndEndsSpin)
 {
   const Child child("spins_until", GetParam() == SIGINT ? "SIGINT" : "SIGTERM");
-  child.wait_until_it_tells();
+  child.wait_for_report();
   child.send(GetParam());
-  EXPECT_TRUE(succeeded(child.status_at_its_end()));
+  EXPECT_TRUE(succeeded(child.wait_for_exit()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, SignalTest, testing::Values(SIGINT, SIGTERM));
@@ -75,29 +75,29 @@ INSTANTIATE_TEST_SUITE_P(Both, SignalTest, testing::Values(SIGINT, SIGTERM));
 TEST(EarlySignalTest, IsNotLostBeforeTheContextListens)
 {
   const Child child("hears_early_signals", "");
-  EXPECT_TRUE(succeeded(child.status_at_its_end()));
+  EXPECT_TRUE(succeeded(child.wait_for_exit()));
 }
 
 TEST(SecondSignalTest, HasNoEffectWithinTheGracePeriod)
 {
   const Child child("shuts_down_slowly", "60000");
-  child.wait_until_it_tells();
+  child.wait_for_report();
   child.send(SIGINT);
-  child.wait_until_it_tells();
+  child.wait_for_report();
   child.send(SIGINT);
   child.send(SIGTERM);
   child.send(SIGUSR1);
-  EXPECT_TRUE(succeeded(child.status_at_its_end()));
+  EXPECT_TRUE(succeeded(child.wait_for_exit()));
 }
 
 TEST(SecondSignalTest, EndsHangingProcessAfterTheGracePeriod)
 {
   const Child child("shuts_down_slowly", "-1");
-  child.wait_until_it_tells();
+  child.wait_for_report();
   child.send(SIGINT);
-  child.wait_until_it_tells();
+  child.wait_for_report();
   child.send(SIGTERM);
-  const int status = child.status_at_its_end();
+  const int status = child.wait_for_exit();
   ASSERT_TRUE(WIFSIGNALED(status));
   EXPECT_EQ(WTERMSIG(status), SIGTERM);
 }

@@ -4,20 +4,20 @@
 #include <string>
 
 namespace rcl_cxx {
-/// A call into rcl, rcl_action or rmw failed, or an argument was refused. what() names the entity and carries
-/// rcl's own text; rcl's error state has been reset by the time this is thrown.
+/// A function of rcl, rcl_action or rmw failed, or an argument is invalid. what() names the entity and
+/// contains rcl's error message; rcl's error state is reset.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string & what, int code = 1) : std::runtime_error(what), code_(code) {}
 
-  /// rcl_ret_t of the failed call (rcl/types.h); 1 (RCL_RET_ERROR) where no rcl call was involved.
+  /// The rcl_ret_t of the failed function; RCL_RET_ERROR (1) if no rcl function was involved.
   int code() const noexcept { return code_; }
 
  private:
   int code_;
 };
 
-/// A parameter was used against its declaration: unknown, declared twice, wrong type, out of range, refused.
+/// A parameter is not declared, declared twice, of the wrong type or out of range.
 class ParameterError : public Error {
  public:
   ParameterError(std::string parameter, const std::string & what)

@@ -10,7 +10,7 @@
 #include <string_view>
 
 namespace rcl_cxx {
-/// Values are rcutils' severities.
+/// The values are the severities of rcutils.
 enum class LogLevel { debug = 10, info = 20, warn = 30, error = 40, fatal = 50 };
 
 /// The position of a log statement.

@@ -2,7 +2,6 @@
 
 #include <concepts>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,7 +38,7 @@ class ParameterValue {
   ParameterValue(bool value) : value_(value) {}
   template <std::integral T>
     requires(!std::same_as<T, bool>)
-  ParameterValue(T value) : value_(to_integer(value))
+  ParameterValue(T value) : value_(narrow<std::int64_t>(value))
   {
   }
   template <std::floating_point T>
@@ -70,19 +69,7 @@ class ParameterValue {
 
  private:
   [[noreturn]] void throw_wrong_type(ParameterType wanted) const;
-  [[noreturn]] static void throw_does_not_fit(std::int64_t value, std::int64_t low, std::uint64_t high);
-  [[noreturn]] static void throw_too_large(std::uint64_t value);
-
-  template <std::integral T>
-  static std::int64_t to_integer(T value)
-  {
-    if constexpr (std::is_unsigned_v<T> && sizeof(T) == 8) {
-      if (value > static_cast<T>(std::numeric_limits<std::int64_t>::max())) {
-        throw_too_large(value);
-      }
-    }
-    return static_cast<std::int64_t>(value);
-  }
+  [[noreturn]] static void throw_does_not_fit(const std::string & value);
 
   template <typename V>
   const V & as() const
@@ -93,14 +80,13 @@ class ParameterValue {
     throw_wrong_type(ParameterValue(V()).get_type());
   }
 
-  template <typename T>
-  static T narrow(std::int64_t value)
+  template <std::integral To, std::integral From>
+  static To narrow(From value)
   {
-    if (!std::in_range<T>(value)) {
-      throw_does_not_fit(value, static_cast<std::int64_t>(std::numeric_limits<T>::min()),
-                         static_cast<std::uint64_t>(std::numeric_limits<T>::max()));
+    if (!std::in_range<To>(value)) {
+      throw_does_not_fit(std::to_string(value));
     }
-    return static_cast<T>(value);
+    return static_cast<To>(value);
   }
 
   Variant value_;

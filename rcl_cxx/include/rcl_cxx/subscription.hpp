@@ -1,7 +1,6 @@
 #pragma once
 
 #include <concepts>
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <rosidl_typesupport_cpp/message_type_support.hpp>
@@ -33,8 +32,6 @@ class SubscriptionBase {
   SubscriptionBase & operator=(const SubscriptionBase &) = delete;
 
   const std::string & get_topic_name() const noexcept;
-  /// The number of matched publishers; 0 after the shutdown.
-  std::size_t get_publisher_count() const;
 
  private:
   std::shared_ptr<detail::SubscriptionImpl> impl_;

@@ -14,7 +14,7 @@ namespace rcl_cxx::detail {
 namespace {
 enum Source : std::size_t { kGoal, kCancel, kResult, kFeedback, kStatus };
 
-/// Takes what is there; false if nothing is.
+/// Returns false if there is nothing to take.
 bool taken(rcl_ret_t code, const std::string & name, const char * what)
 {
   if (code == RCL_RET_ACTION_CLIENT_TAKE_FAILED) {
@@ -64,7 +64,7 @@ void ActionClientImpl::clear_on_ready_callbacks() noexcept
 
 void ActionClientImpl::retire()
 {
-  // Destroyed after the lock is released: their futures break, and whoever waits for them wakes up.
+  // Destroyed after the lock is released: their futures break and wake the threads that wait.
   std::map<std::int64_t, Goal> unanswered;
   std::map<std::int64_t, Goal> without_result;
   std::map<GoalUUID, Goal> goals;
@@ -73,7 +73,7 @@ void ActionClientImpl::retire()
   const std::lock_guard lock(mutex_);
   retired_ = true;
   for (const auto & [id, goal] : goals_) {
-    callbacks.push_back(std::exchange(goal->callbacks, {}));  // a user's handle keeps the goal itself
+    callbacks.push_back(std::exchange(goal->callbacks, {}));  // the user's handle may hold the goal
   }
   unanswered.swap(unanswered_);
   without_result.swap(without_result_);
@@ -99,7 +99,7 @@ GoalUUID ActionClientImpl::send(const void * goal, ErasedGoalCallbacks callbacks
   const auto impl = std::make_shared<ClientGoalImpl>(self, id);
   impl->callbacks = std::move(callbacks);
   std::int64_t sequence = 0;
-  const std::lock_guard lock(mutex_);  // the answer may be here before the call returns
+  const std::lock_guard lock(mutex_);  // the response may arrive before the call returns
   check_rcl(rcl_action_send_goal_request(&client_, request.get(), &sequence), name_, "cannot send a goal");
   unanswered_.emplace(sequence, impl);
   goals_.emplace(id, impl);
@@ -140,7 +140,8 @@ std::future<CancelResponse> ActionClientImpl::cancel(const GoalUUID & id, std::i
   if (retired_) {
     throw Error(fmt::format("goal {} cannot be canceled: its action client is gone", id.short_string()));
   }
-  check_rcl(rcl_action_send_cancel_request(&client_, &request, &sequence), name_, "cannot ask to cancel");
+  check_rcl(rcl_action_send_cancel_request(&client_, &request, &sequence), name_,
+            "cannot send a cancel request");
   cancellations_.emplace(sequence, std::move(promise));
   return future;
 }
@@ -172,7 +173,7 @@ void ActionClientImpl::take_goal_response()
 {
   const std::shared_ptr<void> response = ops_.make_goal_response();
   rmw_request_id_t id;
-  if (!taken(rcl_action_take_goal_response(&client_, &id, response.get()), name_, "the answer to a goal")) {
+  if (!taken(rcl_action_take_goal_response(&client_, &id, response.get()), name_, "a goal response")) {
     return;
   }
   Goal goal;
@@ -198,14 +199,14 @@ void ActionClientImpl::on_accepted(const Goal & goal)
   bool abandoned = false;
   {
     const std::lock_guard lock(mutex_);
-    GoalStatus unknown = GoalStatus::unknown;  // unless a status message was quicker
+    GoalStatus unknown = GoalStatus::unknown;  // unless a status message has arrived earlier
     goal->status.compare_exchange_strong(unknown, GoalStatus::accepted);
     abandoned = goal->abandoned;
     respond = std::exchange(goal->callbacks.response, nullptr);
     const std::shared_ptr<void> request = ops_.make_result_request(goal->id());
     std::int64_t sequence = 0;
     check_rcl(rcl_action_send_result_request(&client_, request.get(), &sequence), name_,
-              "cannot ask for a result");
+              "cannot request a result");
     without_result_.emplace(sequence, goal);
   }
   if (abandoned) {
@@ -232,8 +233,7 @@ void ActionClientImpl::take_cancel_response()
 {
   action_msgs::srv::CancelGoal::Response response;
   rmw_request_id_t id;
-  if (!taken(rcl_action_take_cancel_response(&client_, &id, &response), name_,
-             "the answer to a cancellation")) {
+  if (!taken(rcl_action_take_cancel_response(&client_, &id, &response), name_, "a cancel response")) {
     return;
   }
   CancelResponse result;
@@ -278,8 +278,7 @@ void ActionClientImpl::take_feedback()
   if (!taken(rcl_action_take_feedback(&client_, message.get()), name_, "feedback")) {
     return;
   }
-  decltype(ErasedGoalCallbacks::feedback)
-      callback;  // a copy: it may destroy the client, and with it the original
+  decltype(ErasedGoalCallbacks::feedback) callback;  // a copy: it may destroy the client
   {
     const std::lock_guard lock(mutex_);
     const auto found = goals_.find(ops_.goal_id_of_feedback(message.get()));
@@ -301,7 +300,7 @@ void ActionClientImpl::take_status()
   for (const auto & entry : message.status_list) {
     const auto status = static_cast<GoalStatus>(entry.status);
     const Goal goal = find(GoalUUID{entry.goal_info.goal_id.uuid});
-    if (goal && !is_terminal(status)) {  // the end comes with the result
+    if (goal && !is_terminal(status)) {  // the terminal status arrives with the result
       goal->status = status;
     }
   }

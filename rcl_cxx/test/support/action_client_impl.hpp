@@ -17,7 +17,7 @@
 #include "waitable.hpp"
 
 namespace rcl_cxx::detail {
-/// A goal that was sent, until its result is here. The user's handle shares it.
+/// A goal from its sending until its result has arrived. Shared with the user's handle.
 class ClientGoalImpl {
  public:
   ClientGoalImpl(std::weak_ptr<ActionClientImpl> client, GoalUUID id) : client_(std::move(client)), id_(id) {}
@@ -27,8 +27,8 @@ class ClientGoalImpl {
 
   std::atomic<GoalStatus> status{GoalStatus::unknown};
 
-  // Guarded by the client's lock. Each callback is moved away as it is used up: they hold promises whose
-  // values hold this.
+  // Guarded by the client's mutex. A callback is removed when it is called: it holds a promise whose value
+  // holds this object.
   ErasedGoalCallbacks callbacks;
   bool abandoned = false;
 
@@ -48,7 +48,7 @@ class ActionClientImpl : public Waitable {
   GoalUUID send(const void * goal, ErasedGoalCallbacks callbacks);
   void abandon(const GoalUUID & id) noexcept;
   std::future<CancelResponse> cancel(const GoalUUID & id, std::int64_t stamp_ns);
-  /// The user's client object is destroyed: drops all that waits for an answer, and sends nothing any more.
+  /// Drops everything that waits for a response. Sends nothing afterwards.
   void retire();
 
   void set_on_ready_callbacks() override;
@@ -77,7 +77,7 @@ class ActionClientImpl : public Waitable {
   bool retired_ = false;
   std::map<std::int64_t, Goal> unanswered_;      // by sequence number of the goal request
   std::map<std::int64_t, Goal> without_result_;  // by sequence number of the result request
-  std::map<GoalUUID, Goal> goals_;               // sent and not ended
+  std::map<GoalUUID, Goal> goals_;               // without a result
   std::map<std::int64_t, std::promise<CancelResponse>> cancellations_;
 };
 

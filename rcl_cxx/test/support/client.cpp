@@ -51,7 +51,7 @@ bool ClientImpl::wait_for_service(std::chrono::nanoseconds timeout) const
 std::int64_t ClientImpl::send(const void * request, OnResponse on_response)
 {
   std::int64_t sequence = 0;
-  const std::lock_guard lock(mutex_);  // the response may be here before the call returns
+  const std::lock_guard lock(mutex_);  // the response may arrive before the call returns
   check_rcl(rcl_send_request(&client_, request, &sequence), label(), "cannot send a request");
   pending_.emplace(sequence, std::move(on_response));
   return sequence;
