@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <exception>
 
 #include "rcl_cxx/error.hpp"
 
@@ -114,7 +115,11 @@ void SignalWatcher::run()
       undelivered_ = byte;
     }
     for (const auto & [id, callback] : callbacks_) {
-      callback(byte);
+      try {
+        callback(byte);
+      } catch (const std::exception &) {  // for instance, no thread can be started
+        take_default_action(byte);
+      }
     }
   }
 }
