@@ -237,6 +237,10 @@ bool ActionServerImpl::finish(ServerGoalImpl & goal, GoalStatus status,
     if (try_to_finish(goal, status, std::move(result_response))) {
       return true;
     }
+    const std::lock_guard lock(mutex_);
+    if (retired_) {
+      return false;
+    }
     RCL_CXX_WARN(node()->get_logger(), "{}: goal {} is {}, it cannot become {}", name_,
                  goal.id().short_string(), to_string(goal.get_status()), to_string(status));
   } catch (const std::exception & error) {
