@@ -20,11 +20,11 @@ class DeferredResponder {
 };
 }  // namespace
 
-void ActionServerImpl::defer(const GoalUUID & id, DeferredGoal goal, const DeferredGoalResponse & response)
+void ActionServerImpl::defer(const GoalUUID & id, GoalRequest request, const DeferredGoalResponse & response)
 {
   {
     const std::lock_guard lock(mutex_);
-    deferred_goals_.emplace(id, std::move(goal));
+    deferred_goals_.emplace(id, DeferredGoal{std::move(request)});
   }
   const std::weak_ptr<ActionServerImpl> weak = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
   const auto responder = std::make_shared<const DeferredResponder>([weak, id](GoalResponse decision) {
@@ -32,7 +32,7 @@ void ActionServerImpl::defer(const GoalUUID & id, DeferredGoal goal, const Defer
       self->set_response(id, std::move(decision));
     }
   });
-  call("goal", id,
+  call("handle_goal", id,
        [&] { response.start([responder](GoalResponse decision) { responder->send(std::move(decision)); }); });
 }
 
@@ -64,9 +64,9 @@ void ActionServerImpl::send_deferred_response()
   const DeferredGoal & goal = node.mapped();
   if (*goal.response && goal.canceled) {
     discard(node.key());
-    return reject(node.key(), goal.request_id, "canceled before it was accepted");
+    return reject(node.key(), goal.request.id, "canceled before it was accepted");
   }
-  respond(node.key(), goal, *goal.response);
+  send_decision(node.key(), goal.request, *goal.response);
 }
 
 void ActionServerImpl::reject_deferred_goals(const char * reason) noexcept
@@ -77,7 +77,7 @@ void ActionServerImpl::reject_deferred_goals(const char * reason) noexcept
     goals.swap(deferred_goals_);
   }
   for (const auto & [id, goal] : goals) {
-    call("goal", id, [&, &id = id, &goal = goal] { reject(id, goal.request_id, reason); });
+    call("handle_goal", id, [&, &id = id, &goal = goal] { reject(id, goal.request.id, reason); });
     discard(id);
   }
 }

@@ -14,7 +14,6 @@
 namespace rcl_cxx {
 namespace detail {
 namespace {
-enum Source : std::size_t { kGoal, kCancel, kResult };
 
 // "For ever", but small enough that rcl can add it to the time of day.
 constexpr std::int64_t kCenturyNs = 100LL * 365 * 24 * 3600 * 1'000'000'000;
@@ -113,6 +112,8 @@ void ActionServerImpl::execute(std::size_t source)
       return take_goal();
     case kCancel:
       return take_cancel();
+    case kDeferredResponse:
+      return send_deferred_response();
     default:
       take_result();
   }
@@ -148,6 +149,7 @@ std::shared_ptr<void> ActionServerImpl::make_missing_result(const GoalUUID & id,
 
 void ActionServerImpl::abort_all(const char * reason, bool take_requests) noexcept
 {
+  reject_deferred_goals(reason);
   try {
     Goals goals = get_active_goals();
     std::erase_if(goals, [this](const auto & goal) {

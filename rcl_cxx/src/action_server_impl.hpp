@@ -46,8 +46,21 @@ class ActionServerImpl : public Waitable {
   void clear_on_ready_callbacks() noexcept override;
 
  private:
+  enum Source : std::size_t { kGoal, kCancel, kResult, kDeferredResponse };
   using ResponseFunction = rcl_ret_t (*)(const rcl_action_server_t *, rmw_request_id_t *, void *);
   using Goals = std::vector<std::shared_ptr<ServerGoalImpl>>;
+
+  struct GoalRequest {
+    rmw_request_id_t id;
+    std::shared_ptr<void> message;
+  };
+
+  /// A goal request whose response is sent later.
+  struct DeferredGoal {
+    GoalRequest request;
+    std::optional<GoalResponse> response{};  ///< to be sent by the executor's thread
+    bool canceled = false;
+  };
 
   std::shared_ptr<ServerGoalImpl> find(const GoalUUID & id) const;
   Goals get_active_goals() const;
@@ -56,7 +69,10 @@ class ActionServerImpl : public Waitable {
 
   // Requests of clients, in the executor's thread.
   void take_goal();
-  tl::expected<void, std::string> handle_goal(const GoalUUID & id, const void * request) noexcept;
+  bool is_known(const GoalUUID & id) const;
+  GoalDecision handle_goal(const GoalUUID & id, const void * request) noexcept;
+  void send_decision(const GoalUUID & id, const GoalRequest & request, const GoalResponse & response);
+  void reject(const GoalUUID & id, const rmw_request_id_t & request_id, const std::string & reason);
   tl::expected<std::shared_ptr<ServerGoalHandleBase>, std::string> accept(
       const GoalUUID & id, const std::shared_ptr<void> & request);
   void send_acceptance(const rmw_request_id_t & request, std::shared_ptr<ServerGoalHandleBase> handle);
@@ -71,6 +87,13 @@ class ActionServerImpl : public Waitable {
   /// delivered; that may be seconds later.
   void respond(ResponseFunction send, const rmw_request_id_t & request, std::shared_ptr<void> response,
                std::function<std::shared_ptr<void>()> replacement = {}, std::function<void(bool)> done = {});
+
+  // Goal requests with a deferred response.
+  void defer(const GoalUUID & id, GoalRequest request, const DeferredGoalResponse & response);
+  /// For SendGoalResponse, from any thread.
+  void set_response(const GoalUUID & id, GoalResponse response) noexcept;
+  void send_deferred_response();
+  void reject_deferred_goals(const char * reason) noexcept;
 
   // The end of goals.
   bool try_to_finish(ServerGoalImpl & goal, GoalStatus status, std::shared_ptr<void> result_response);
@@ -100,6 +123,7 @@ class ActionServerImpl : public Waitable {
   rcl_timer_t rcl_timer_ = rcl_get_zero_initialized_timer();  // rcl_action reads its clock; it never runs
   rcl_action_server_t server_ = rcl_action_get_zero_initialized_server();
   std::map<GoalUUID, std::shared_ptr<ServerGoalImpl>> goals_;
+  std::map<GoalUUID, DeferredGoal> deferred_goals_;
   std::shared_ptr<TimerImpl> expiry_timer_;
   std::shared_ptr<TimerImpl> client_timer_;  // runs while clients are watched
   bool retired_ = false;

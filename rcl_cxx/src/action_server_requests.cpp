@@ -72,22 +72,42 @@ void ActionServerImpl::take_goal()
   }
   check_rcl(code, name_, "cannot take a goal");
   const GoalUUID id = erased_.goal_id_of_goal_request(request.get());
-  const auto reject = [&](const std::string & reason) {
-    RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
-    respond(&rcl_action_send_goal_response, request_id, erased_.make_goal_response(false, 0, 0));
-  };
   // rcl_action checks this only after handle_goal.
-  if (find(id)) {
-    return reject("a goal with this id exists already");
+  if (is_known(id)) {
+    return reject(id, request_id, "a goal with this id exists already");
   }
-  if (const auto decision = handle_goal(id, request.get()); !decision) {
-    return reject(decision.error());
+  const GoalDecision decision = handle_goal(id, request.get());
+  if (const auto * const deferred = std::get_if<DeferredGoalResponse>(&decision)) {
+    defer(id, {request_id, request}, *deferred);
+  } else {
+    send_decision(id, {request_id, request}, std::get<GoalResponse>(decision));
   }
-  if (auto handle = accept(id, request)) {
-    send_acceptance(request_id, std::move(*handle));
+}
+
+bool ActionServerImpl::is_known(const GoalUUID & id) const
+{
+  const std::lock_guard lock(mutex_);
+  return goals_.count(id) != 0 || deferred_goals_.count(id) != 0;
+}
+
+void ActionServerImpl::reject(const GoalUUID & id, const rmw_request_id_t & request_id,
+                              const std::string & reason)
+{
+  RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
+  respond(&rcl_action_send_goal_response, request_id, erased_.make_goal_response(false, 0, 0));
+}
+
+void ActionServerImpl::send_decision(const GoalUUID & id, const GoalRequest & request,
+                                     const GoalResponse & response)
+{
+  if (!response) {
+    return reject(id, request.id, response.error());
+  }
+  if (auto handle = accept(id, request.message)) {
+    send_acceptance(request.id, std::move(*handle));
   } else {
     discard(id);
-    reject(handle.error());
+    reject(id, request.id, handle.error());
   }
 }
 
@@ -123,15 +143,14 @@ void ActionServerImpl::send_acceptance(const rmw_request_id_t & request,
           });
 }
 
-tl::expected<void, std::string> ActionServerImpl::handle_goal(const GoalUUID & id,
-                                                              const void * request) noexcept
+GoalDecision ActionServerImpl::handle_goal(const GoalUUID & id, const void * request) noexcept
 {
   try {
-    return erased_.handle_goal ? erased_.handle_goal(id, request) : tl::expected<void, std::string>{};
+    return erased_.handle_goal ? erased_.handle_goal(id, request) : GoalResponse{};
   } catch (const std::exception & error) {
-    return tl::make_unexpected(std::string(error.what()));
+    return GoalResponse{tl::unexpect, error.what()};
   } catch (...) {
-    return tl::make_unexpected(std::string("handle_goal threw an unknown exception"));
+    return GoalResponse{tl::unexpect, "handle_goal threw an unknown exception"};
   }
 }
 
@@ -195,6 +214,11 @@ void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Reques
   std::vector<action_msgs::msg::GoalInfo> candidates;
   {
     const std::lock_guard lock(mutex_);
+    if (request.goal_info == action_msgs::msg::GoalInfo()) {  // all goals
+      for (auto & [id, goal] : deferred_goals_) {
+        goal.canceled = true;
+      }
+    }
     check_rcl(rcl_action_process_cancel_request(&server_, &rcl_request, &rcl_response), name_,
               "cannot process a cancel request");
     for (std::size_t i = 0; i < rcl_response.msg.goals_canceling.size; ++i) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "rcl_cxx/goal_response.hpp"
 #include "rcl_cxx/server_goal_handle.hpp"
 
 namespace rcl_cxx {
@@ -22,9 +23,9 @@ struct ActionServerOptions {
 /// executed in a thread of the user. Only handle_accepted is mandatory.
 template <typename A>
 struct ActionServerCallbacks {
-  /// Accepts a goal, or rejects it with a reason, which is logged as a warning. An exception rejects the
-  /// goal. Default: accepts every goal.
-  std::function<tl::expected<void, std::string>(const GoalUUID &, const typename A::Goal &)> handle_goal{};
+  /// Accepts a goal, rejects it with a reason, which is logged as a warning, or defers the response. An
+  /// exception rejects the goal. Default: accepts every goal.
+  std::function<GoalDecision(const GoalUUID &, const typename A::Goal &)> handle_goal{};
   /// Receives an accepted goal; its status is EXECUTING. The holder of the handle has to finish the goal. An
   /// exception aborts it.
   std::function<void(std::shared_ptr<ServerGoalHandle<A>>)> handle_accepted{};
@@ -61,7 +62,7 @@ struct ErasedActionServer {
   std::shared_ptr<ServerGoalHandleBase> (*make_handle)(std::shared_ptr<ServerGoalImpl>,
                                                        std::shared_ptr<void> goal_request);
 
-  std::function<tl::expected<void, std::string>(const GoalUUID &, const void * goal_request)> handle_goal{};
+  std::function<GoalDecision(const GoalUUID &, const void * goal_request)> handle_goal{};
   std::function<void(std::shared_ptr<ServerGoalHandleBase>)> handle_accepted{};
   std::function<bool(ServerGoalHandleBase &)> handle_cancel{};
   std::function<void(ServerGoalHandleBase &)> on_canceling{};
