@@ -18,7 +18,7 @@ Robot::~Robot() = default;
 
 void Robot::on_status(std::function<void(const RobotStatus &)> function)
 {
-  impl_->supervisor.status_function = std::move(function);
+  impl_->manager.status_function = std::move(function);
 }
 
 void Robot::on_sample(std::function<void(const Sample &)> function)
@@ -33,12 +33,12 @@ void Robot::start()
   if (impl_->options.control_mode == ControlMode::control_urcap) {
     impl_->server.start();
   }
-  impl_->supervisor.start();
+  impl_->manager.start();
 }
 
 RobotStatus Robot::status() const
 {
-  return impl_->supervisor.status();
+  return impl_->manager.status();
 }
 
 Status Robot::ready_to_move() const
@@ -52,7 +52,7 @@ Status Robot::ready_to_move() const
 
 Status Robot::wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop) const
 {
-  return impl_->supervisor.wait_until_ready(limit, std::move(stop));
+  return impl_->manager.wait_until_ready(limit, std::move(stop));
 }
 
 std::optional<ControllerVersion> Robot::version() const
@@ -72,7 +72,7 @@ int Robot::realtime_priority() const
 
 Locked<ur_rtde::RTDEControlInterface> Robot::control() const
 {
-  if (auto control = impl_->links.control()) {
+  if (auto control = impl_->interfaces.control()) {
     return *control;
   }
   throw RobotError(impl_->why_not());
@@ -85,7 +85,7 @@ Locked<ur_rtde::RTDEReceiveInterface> Robot::receive() const
 
 Locked<ur_rtde::RTDEIOInterface> Robot::io() const
 {
-  if (auto io = impl_->links.io()) {
+  if (auto io = impl_->interfaces.io()) {
     return *io;
   }
   throw RobotError(impl_->why_not());
@@ -123,7 +123,7 @@ Status Robot::motion_possible() const
   if (const auto condition = robot_condition(*sample)) {
     return tl::unexpected(*condition);
   }
-  if (impl_->supervisor.gave_way()) {
+  if (impl_->manager.control_owner() == ControlOwner::script) {
     return {};
   }
   if (!sample->program_running()) {
@@ -135,7 +135,7 @@ Status Robot::motion_possible() const
                    fmt::format("the control program was stopped (runtime state {}); {}",
                                to_string(sample->runtime_state), then));
   }
-  const auto control = impl_->links.control_pointer();
+  const auto control = impl_->interfaces.control_interface();
   if (!control) {
     auto why = impl_->why_not();
     if (why.code == ErrorCode::not_ready) {  // it was there, and is being made anew already
@@ -177,7 +177,7 @@ bool Robot::moving() const
 bool Robot::guided() const
 {
   using Control = ur_rtde::RTDEControlInterface;
-  const auto control = impl_->links.control_pointer();
+  const auto control = impl_->interfaces.control_interface();
   return control && (control->getStartedMotions() & (Control::MOTION_FREEDRIVE | Control::MOTION_TEACH)) != 0;
 }
 

@@ -55,28 +55,28 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       dashboard(dashboard_options(options), log),
       model(options.address, options.model, log),
       control_scripts(options.upper_range_registers),
-      links(options, control_scripts, log),
-      stopper(options.address, state, links, tracker),
+      interfaces(options, control_scripts, log),
+      stopper(options.address, state, interfaces, tracker),
       server(options.urcap_port, options.retry_interval,
              {[this] { return state.version(); },
               [this](const ControllerVersion & version) { return control_scripts.program(version); }},
              log),
-      supervisor(options, state, dashboard, model, links, log, &server),
-      scripts(options, state, tracker, links, supervisor),
-      extensions(options, state, tracker, links, control_scripts),
+      manager(options, state, dashboard, model, interfaces, server, log),
+      scripts(options, state, tracker, interfaces, manager),
+      extensions(options, state, tracker, interfaces, control_scripts),
       kicked_for_(options.watchdog_frequency)
 {
-  state.on_link([this](const LinkStatus &) { supervisor.look_now(); });
+  state.on_link([this](const LinkStatus &) { manager.wake(); });
   state.on_sample([this](const Sample & sample) { add(sample); });
-  dashboard.on_link([this](const LinkStatus &) { supervisor.look_now(); });
-  server.status_function = [this] { supervisor.look_now(); };
+  dashboard.on_link([this](const LinkStatus &) { manager.wake(); });
+  server.status_function = [this] { manager.wake(); };
 }
 
 void Robot::Impl::add(const Sample & sample)
 {
   feed_watchdog(sample);
   tracker.add(sample);
-  supervisor.add(sample);
+  manager.on_sample(sample);
   if (sample_function) {
     sample_function(sample);
   }
@@ -93,7 +93,7 @@ void Robot::Impl::feed_watchdog(const Sample & sample)
   const std::chrono::duration<double> interval(1.0 / (kicks_a_period * frequency));
   if (sample.received - last_kick_ >= interval) {
     last_kick_ = sample.received;
-    links.kick_watchdog();
+    interfaces.kick_watchdog();
   }
 }
 
@@ -104,7 +104,7 @@ Status Robot::Impl::set_watchdog(double frequency)
                    fmt::format("the watchdog's frequency is {} Hz: it must be from {} to {} Hz", frequency,
                                min_watchdog_frequency, max_watchdog_frequency));
   }
-  const auto control = links.control();
+  const auto control = interfaces.control();
   if (!control) {
     return tl::unexpected(why_not());
   }
@@ -119,10 +119,10 @@ Status Robot::Impl::set_watchdog(double frequency)
 
 Error Robot::Impl::why_not() const
 {
-  if (supervisor.gave_way()) {
+  if (manager.control_owner() == ControlOwner::script) {
     return {ErrorCode::busy, "a script runs in place of the control program: wait for its end, or cancel it"};
   }
-  const auto status = supervisor.status();
+  const auto status = manager.status();
   if (status.state != RobotState::ready) {
     return {status.cause, status.message};
   }
@@ -131,7 +131,7 @@ Error Robot::Impl::why_not() const
 
 void Robot::Impl::end_program()
 {
-  const auto control = links.control();
+  const auto control = interfaces.control();
   if (!control) {
     return;
   }
@@ -153,8 +153,8 @@ void Robot::Impl::end_program()
 
 Robot::Impl::~Impl()
 {
-  supervisor.stop();
-  if (links.control_pointer()) {
+  manager.stop();
+  if (interfaces.control_interface()) {
     stopper.stop({});
     end_program();
   }
@@ -162,7 +162,7 @@ Robot::Impl::~Impl()
   server.stop();
   state.stop();
   dashboard.stop();
-  links.drop();
+  interfaces.close();
 }
 
 }  // namespace ur_ros_rtde

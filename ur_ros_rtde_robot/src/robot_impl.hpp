@@ -4,14 +4,14 @@
 #include <chrono>
 #include <functional>
 
-#include "connection/interface_links.hpp"
+#include "connection/rtde_interfaces.hpp"
 #include "motion/motion_stopper.hpp"
 #include "motion/motion_tracker.hpp"
+#include "program/control_program_manager.hpp"
 #include "program/control_scripts.hpp"
 #include "program/extension_runner.hpp"
 #include "program/script_runner.hpp"
 #include "program/script_server.hpp"
-#include "program/supervisor.hpp"
 #include "state/arm_model.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
@@ -38,10 +38,10 @@ class Robot::Impl {
   DashboardLink dashboard;
   ArmModel model;
   ControlScripts control_scripts;
-  InterfaceLinks links;
+  RtdeInterfaces interfaces;
   MotionStopper stopper;
   ScriptServer server;  ///< for ControlMode::control_urcap
-  Supervisor supervisor;
+  ControlProgramManager manager;
   ScriptRunner scripts;
   ExtensionRunner extensions;
 

@@ -101,7 +101,7 @@ bool MotionStopper::under_way() const
   if (!view.at_rest || view.operating()) {
     return true;
   }
-  const auto control = links_.control_pointer();
+  const auto control = interfaces_.control_interface();
   if (!control) {
     return false;
   }
@@ -116,22 +116,22 @@ bool MotionStopper::under_way() const
 
 bool MotionStopper::command_stop(const StopOptions & options)
 {
-  const auto control = links_.control_pointer();
+  const auto control = interfaces_.control_interface();
   if (!control) {
     return false;
   }
   // A command that blocks holds the lock, and the control program with it: it gives up the lock at once, the
   // program perhaps not.
-  bool held = links_.control_lock()->try_lock_for(milliseconds(20));
+  bool held = interfaces_.control_lock()->try_lock_for(milliseconds(20));
   for (int attempt = 0; !held && attempt < 10; ++attempt) {
     control->abandonCommand();
-    held = links_.control_lock()->try_lock_for(milliseconds(20));
+    held = interfaces_.control_lock()->try_lock_for(milliseconds(20));
   }
   if (!held) {
     return false;
   }
   const std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> unlock(
-      links_.control_lock().get(), [](InterfaceLock * lock) { lock->unlock(); });
+      interfaces_.control_lock().get(), [](InterfaceLock * lock) { lock->unlock(); });
   try {
     const CommandLimit limit(*control, options.limit);
     send_stops(*control, options);
@@ -183,7 +183,7 @@ Expected<StopReport> MotionStopper::stop(const StopOptions & options)
   if (stopped && wait_for_standstill(options.program_stop_limit)) {
     return report(StopMeans::program_stopped);
   }
-  links_.drop_control();  // no more signs of life: the watchdog's turn
+  interfaces_.close_control();  // no more signs of life: the watchdog's turn
   if (wait_for_standstill(options.program_stop_limit)) {
     return report(StopMeans::program_stopped);
   }

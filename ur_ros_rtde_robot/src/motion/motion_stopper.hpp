@@ -4,7 +4,7 @@
 #include <mutex>
 #include <string>
 
-#include "connection/interface_links.hpp"
+#include "connection/rtde_interfaces.hpp"
 #include "motion/motion_tracker.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
@@ -15,9 +15,9 @@ namespace ur_ros_rtde {
 /// robot program, else by leaving it to the program's watchdog. One stop at a time.
 class MotionStopper {
  public:
-  MotionStopper(std::string address, const StateReceiver & state, InterfaceLinks & links,
+  MotionStopper(std::string address, const StateReceiver & state, RtdeInterfaces & interfaces,
                 const MotionTracker & tracker)
-      : address_(std::move(address)), state_(state), links_(links), tracker_(tracker)
+      : address_(std::move(address)), state_(state), interfaces_(interfaces), tracker_(tracker)
   {
   }
 
@@ -33,7 +33,7 @@ class MotionStopper {
 
   const std::string address_;
   const StateReceiver & state_;
-  InterfaceLinks & links_;
+  RtdeInterfaces & interfaces_;
   const MotionTracker & tracker_;
   std::mutex mutex_;
 };

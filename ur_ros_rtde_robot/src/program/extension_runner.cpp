@@ -33,9 +33,9 @@ struct ExtensionRunner::Run {
 };
 
 ExtensionRunner::ExtensionRunner(const RobotOptions & options, const StateReceiver & state,
-                                 const MotionTracker & tracker, InterfaceLinks & links,
+                                 const MotionTracker & tracker, RtdeInterfaces & interfaces,
                                  const ControlScripts & scripts)
-    : options_(options), state_(state), tracker_(tracker), links_(links), scripts_(scripts)
+    : options_(options), state_(state), tracker_(tracker), interfaces_(interfaces), scripts_(scripts)
 {
 }
 
@@ -53,7 +53,7 @@ Status ExtensionRunner::set_input(int index, std::int32_t value)
   if (auto ok = check_input(index); !ok) {
     return ok;
   }
-  const auto io = links_.io();
+  const auto io = interfaces_.io();
   if (!io || !(*io)->setInputIntRegister(index + register_offset(options_), value)) {
     return failure(ErrorCode::link_lost, fmt::format("input integer register {} was not sent", index));
   }
@@ -65,7 +65,7 @@ Status ExtensionRunner::set_input(int index, double value)
   if (auto ok = check_input(index); !ok) {
     return ok;
   }
-  const auto io = links_.io();
+  const auto io = interfaces_.io();
   if (!io || !(*io)->setInputDoubleRegister(index + register_offset(options_), value)) {
     return failure(ErrorCode::link_lost, fmt::format("input float register {} was not sent", index));
   }
@@ -74,7 +74,7 @@ Status ExtensionRunner::set_input(int index, double value)
 
 Status ExtensionRunner::set_trigger(int id)
 {
-  const auto io = links_.io();
+  const auto io = interfaces_.io();
   if (!io || !(*io)->setInputDoubleRegister(trigger_register + register_offset(options_), id)) {
     return failure(ErrorCode::link_lost, "the trigger of the extension was not sent");
   }

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "connection/interface_links.hpp"
 #include "connection/primary_link.hpp"
+#include "connection/rtde_interfaces.hpp"
 #include "motion/motion_tracker.hpp"
 #include "program/control_scripts.hpp"
 #include "ur_ros_rtde_robot/program/extension_options.hpp"
@@ -18,7 +18,7 @@ namespace ur_ros_rtde {
 class ExtensionRunner {
  public:
   ExtensionRunner(const RobotOptions & options, const StateReceiver & state, const MotionTracker & tracker,
-                  InterfaceLinks & links, const ControlScripts & scripts);
+                  RtdeInterfaces & interfaces, const ControlScripts & scripts);
 
   /// Returns when it is done, or has been ended: by the options, by an error in it, by a stop of the robot.
   Status run(const std::string & name, const ExtensionOptions & options);
@@ -40,7 +40,7 @@ class ExtensionRunner {
   const RobotOptions options_;
   const StateReceiver & state_;
   const MotionTracker & tracker_;
-  InterfaceLinks & links_;
+  RtdeInterfaces & interfaces_;
   const ControlScripts & scripts_;
   std::mutex running_;
 };

@@ -15,8 +15,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds give_way_limit(5000);
-constexpr milliseconds take_back_limit(5000);
+constexpr milliseconds yield_limit(5000);
+constexpr milliseconds resume_limit(5000);
 constexpr milliseconds program_end_limit(2000);
 constexpr milliseconds rest_limit(500);
 constexpr milliseconds longest_secondary(10'000);
@@ -51,28 +51,38 @@ std::optional<Error> check(const ScriptOptions & options)
   return std::nullopt;
 }
 
-/// The control program's absence, whatever ends it.
-class GivenWay {
+/// Resumes the control program at the end of its life.
+class ResumeGuard {
  public:
-  GivenWay(Supervisor & supervisor, const ScriptWatch & watch) : supervisor_(supervisor), watch_(watch) {}
-  ~GivenWay() { supervisor_.take_back(take_back_limit, watch_.replaced()); }
-  GivenWay(const GivenWay &) = delete;
-  GivenWay & operator=(const GivenWay &) = delete;
+  ResumeGuard(ControlProgramManager & manager, const ScriptWatch & watch) : manager_(manager), watch_(watch)
+  {
+  }
+  ~ResumeGuard()
+  {
+    if (watch_.replaced()) {
+      manager_.resume_after_replacement(resume_limit);
+    } else {
+      manager_.resume(resume_limit);
+    }
+  }
+  ResumeGuard(const ResumeGuard &) = delete;
+  ResumeGuard & operator=(const ResumeGuard &) = delete;
 
  private:
-  Supervisor & supervisor_;
+  ControlProgramManager & manager_;
   const ScriptWatch & watch_;
 };
 
 }  // namespace
 
 ScriptRunner::ScriptRunner(const RobotOptions & options, const StateReceiver & state,
-                           const MotionTracker & tracker, InterfaceLinks & links, Supervisor & supervisor)
+                           const MotionTracker & tracker, RtdeInterfaces & interfaces,
+                           ControlProgramManager & manager)
     : options_(options),
       state_(state),
       tracker_(tracker),
-      links_(links),
-      supervisor_(supervisor),
+      interfaces_(interfaces),
+      manager_(manager),
       next_id_(std::random_device()())
 {
 }
@@ -106,7 +116,7 @@ Status ScriptRunner::stop() const
   if (stopped && wait_for_standstill(true)) {
     return {};
   }
-  links_.drop_control();  // no more signs of life: the watchdog's turn
+  interfaces_.close_control();  // no more signs of life: the watchdog's turn
   if (wait_for_standstill(true)) {
     return {};
   }
@@ -150,10 +160,10 @@ ScriptReport ScriptRunner::run_program(const script::Program & program, ScriptWa
   if (!wait_for_standstill(false)) {
     return refused(Error{ErrorCode::busy, "the arm moves: a script begins when it stands still"});
   }
-  if (const auto given = supervisor_.give_way(give_way_limit); !given) {
-    return refused(given.error());
+  if (const auto yielded = manager_.yield(yield_limit); !yielded) {
+    return refused(yielded.error());
   }
-  const GivenWay until_the_end(supervisor_, watch);
+  const ResumeGuard resume(manager_, watch);
   try {
     watch.follow(program);
   } catch (...) {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "motion/motion_tracker.hpp"
+#include "program/control_program_manager.hpp"
 #include "program/script_watch.hpp"
-#include "program/supervisor.hpp"
 #include "ur_ros_rtde_robot/program/script.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
@@ -16,7 +16,7 @@ namespace ur_ros_rtde {
 class ScriptRunner {
  public:
   ScriptRunner(const RobotOptions & options, const StateReceiver & state, const MotionTracker & tracker,
-               InterfaceLinks & links, Supervisor & supervisor);
+               RtdeInterfaces & interfaces, ControlProgramManager & manager);
 
   ScriptReport run(const std::string & script, const ScriptOptions & options);
 
@@ -31,8 +31,8 @@ class ScriptRunner {
   const RobotOptions options_;
   const StateReceiver & state_;
   const MotionTracker & tracker_;
-  InterfaceLinks & links_;
-  Supervisor & supervisor_;
+  RtdeInterfaces & interfaces_;
+  ControlProgramManager & manager_;
   /// Tells the scripts of this process from each other and from those of others.
   std::atomic<std::uint32_t> next_id_;
 };

@@ -1,4 +1,4 @@
-#include "connection/interface_links.hpp"
+#include "connection/rtde_interfaces.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,7 +23,7 @@ using ur_rtde::RTDEControlInterface;
 using ur_rtde::RTDEIOInterface;
 
 constexpr double controllers_frequency = -1.0;
-/// A control program that runs answers its first command within some cycles.
+/// A running control program answers its first command within some cycles.
 constexpr std::chrono::seconds answer_limit(1);
 
 std::uint16_t control_flags(const RobotOptions & options)
@@ -31,7 +31,7 @@ std::uint16_t control_flags(const RobotOptions & options)
   unsigned flags = options.control_mode == ControlMode::upload
                        ? RTDEControlInterface::FLAG_UPLOAD_SCRIPT
                        : RTDEControlInterface::FLAG_NO_WAIT;  // the program comes from a ScriptServer
-  // Looked at before by the supervisor, whose message says more.
+  // ControlProgramManager has checked it, with a better message.
   flags |= RTDEControlInterface::FLAG_DISABLE_REMOTE_CONTROL_CHECK;
   if (options.upper_range_registers) {
     flags |= RTDEControlInterface::FLAG_UPPER_RANGE_REGISTERS;
@@ -41,8 +41,8 @@ std::uint16_t control_flags(const RobotOptions & options)
 
 constexpr std::string_view register_names = "input_";
 
-/// Of inputs that somebody else has; what to do depends on which they are.
-std::string in_use(const RobotOptions & options, const std::vector<std::string> & names)
+/// Explains that another client has the inputs; the remedy depends on which inputs they are.
+std::string inputs_in_use_message(const RobotOptions & options, const std::vector<std::string> & names)
 {
   const bool registers_only = std::all_of(
       names.begin(), names.end(), [](const std::string & name) { return name.starts_with(register_names); });
@@ -54,25 +54,25 @@ std::string in_use(const RobotOptions & options, const std::vector<std::string> 
         "driver with register_range:={} (now {})",
         options.upper_range_registers ? "lower" : "upper", options.upper_range_registers ? "upper" : "lower");
   }
-  constexpr std::size_t enough = 4;
+  constexpr std::size_t listed = 4;
   const std::vector<std::string> first(
-      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), enough)));
-  const std::string more = names.size() > enough ? fmt::format(" and {} more", names.size() - enough) : "";
+      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), listed)));
+  const std::string more = names.size() > listed ? fmt::format(" and {} more", names.size() - listed) : "";
   return fmt::format("inputs of the robot at {} are in use ({}{}): {}", options.address,
                      fmt::join(first, ", "), more, who);
 }
 
 }  // namespace
 
-Error InterfaceLinks::refused(std::string_view what, const std::exception & error) const
+Error RtdeInterfaces::connection_error(std::string_view what, const std::exception & error) const
 {
   if (const auto * used = dynamic_cast<const ur_rtde::InputsInUseError *>(&error)) {
-    return {ErrorCode::robot_in_use, in_use(options_, used->names())};
+    return {ErrorCode::robot_in_use, inputs_in_use_message(options_, used->names())};
   }
   return {ErrorCode::not_ready, fmt::format("{}: {}", what, printable(error.what()))};
 }
 
-Status InterfaceLinks::ensure_io()
+Status RtdeInterfaces::ensure_io()
 {
   {
     const std::lock_guard lock(mutex_);
@@ -91,13 +91,13 @@ Status InterfaceLinks::ensure_io()
       const std::lock_guard lock(mutex_);
       io_.swap(io);
     }
-    return {};  // the one before is closed here
+    return {};  // the previous interface is closed here
   } catch (const std::exception & error) {
-    return tl::unexpected(refused("the robot refuses the IO interface", error));
+    return tl::unexpected(connection_error("the robot refuses the IO interface", error));
   }
 }
 
-Status InterfaceLinks::start_watchdog(RTDEControlInterface & control) const
+Status RtdeInterfaces::start_watchdog(RTDEControlInterface & control) const
 {
   control.setCommandTimeout(answer_limit);
   const bool started = options_.watchdog_frequency == 0.0 || control.setWatchdog(options_.watchdog_frequency);
@@ -109,21 +109,21 @@ Status InterfaceLinks::start_watchdog(RTDEControlInterface & control) const
   return {};
 }
 
-Status InterfaceLinks::check_extensions(const ControllerVersion & version)
+Status RtdeInterfaces::check_extensions(const ControllerVersion & version)
 {
   while (!extensions_checked_ && scripts_.has_extensions()) {
-    const auto complaint =
+    const auto rejection =
         check_definitions(options_.address, scripts_.text(version), options_.connect_timeout);
-    if (!complaint) {
-      return tl::unexpected(complaint.error());
+    if (!rejection) {
+      return tl::unexpected(rejection.error());
     }
-    if (!*complaint) {
+    if (!*rejection) {
       break;
     }
-    const auto left_out = scripts_.leave_out(version, (*complaint)->line, (*complaint)->text);
+    const auto left_out = scripts_.leave_out(version, (*rejection)->line, (*rejection)->text);
     if (!left_out) {
       return failure(ErrorCode::not_ready,
-                     fmt::format("the controller does not take the control program: {}", (*complaint)->text));
+                     fmt::format("the controller does not take the control program: {}", (*rejection)->text));
     }
     if (left_out->urcap.empty()) {
       log_(LogLevel::error, fmt::format("the extension {} is left out: {}", left_out->name, left_out->why));
@@ -134,7 +134,7 @@ Status InterfaceLinks::check_extensions(const ControllerVersion & version)
   return {};
 }
 
-Status InterfaceLinks::reach_control_ports() const
+Status RtdeInterfaces::probe_control_ports() const
 {
   for (const auto port : {rtde_port, script_port}) {
     if (const auto reachable = TcpStream::connect(options_.address, port, options_.connect_timeout);
@@ -145,19 +145,19 @@ Status InterfaceLinks::reach_control_ports() const
   return {};
 }
 
-std::shared_ptr<RTDEControlInterface> InterfaceLinks::connect_control(const std::string & script) const
+std::shared_ptr<RTDEControlInterface> RtdeInterfaces::connect_control(const std::string & script) const
 {
   return std::make_shared<RTDEControlInterface>(options_.address, controllers_frequency,
                                                 control_flags(options_), options_.urcap_port, keep_priority,
                                                 script);
 }
 
-Status InterfaceLinks::start_control(const ControllerVersion & version)
+Status RtdeInterfaces::start_control(const ControllerVersion & version, const std::stop_token & stop)
 {
-  if (resume_parked()) {
+  if (resume_suspended(stop)) {
     return {};
   }
-  if (const auto reachable = reach_control_ports(); !reachable) {
+  if (const auto reachable = probe_control_ports(); !reachable) {
     return reachable;
   }
   if (const auto checked = check_extensions(version); !checked) {
@@ -166,23 +166,23 @@ Status InterfaceLinks::start_control(const ControllerVersion & version)
   try {
     auto control = connect_control(scripts_.text(version));
     {
-      // From here on the watchdog is fed, which must have begun when the program starts to watch.
+      // From here on the watchdog is fed. That must have begun before start_watchdog().
       const std::lock_guard lock(mutex_);
       control_ = control;
     }
     auto started = start_watchdog(*control);
     if (!started) {
-      drop_control();
+      close_control();
     }
     return started;
   } catch (const std::exception & error) {
-    drop_control();
-    extensions_checked_ = false;  // perhaps a URCap is gone
-    return tl::unexpected(refused("the control program cannot be started", error));
+    close_control();
+    extensions_checked_ = false;  // a URCap may have been removed
+    return tl::unexpected(connection_error("the control program cannot be started", error));
   }
 }
 
-bool InterfaceLinks::take_control_lock(RTDEControlInterface & control, int attempts)
+bool RtdeInterfaces::take_control_lock(RTDEControlInterface & control, int attempts)
 {
   for (int attempt = 0; attempt < attempts; ++attempt) {
     control.abandonCommand();
@@ -193,12 +193,12 @@ bool InterfaceLinks::take_control_lock(RTDEControlInterface & control, int attem
   return false;
 }
 
-void InterfaceLinks::park_control()
+void RtdeInterfaces::suspend_control()
 {
   std::shared_ptr<RTDEControlInterface> control;
   {
     const std::lock_guard lock(mutex_);
-    control = parked_ = std::exchange(control_, nullptr);
+    control = pending_ = std::exchange(control_, nullptr);
   }
   if (!control || !take_control_lock(*control, 25)) {
     return;
@@ -207,31 +207,32 @@ void InterfaceLinks::park_control()
     control->setCommandTimeout(std::chrono::milliseconds(500));
     control->stopScript();
   } catch (const std::exception &) {
-    // It is stopped by other means, then.
+    // The caller stops it by other means.
   }
   control->setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
   control_lock_->unlock();
 }
 
-bool InterfaceLinks::control_parked() const
+bool RtdeInterfaces::control_suspended() const
 {
   const std::lock_guard lock(mutex_);
-  return parked_ != nullptr;
+  return pending_ != nullptr;
 }
 
-bool InterfaceLinks::resume_parked()
+bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
 {
   std::shared_ptr<RTDEControlInterface> control;
   {
     const std::lock_guard lock(mutex_);
-    control = parked_;
+    control = pending_;
   }
   bool works = false;
   try {
     works = control && control->isConnected() && control->reuploadScript();
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     while (works && !control->isProgramRunning()) {
-      works = control->waitForNextState() && std::chrono::steady_clock::now() < deadline;
+      works = !stop.stop_requested() && control->waitForNextState() &&
+              std::chrono::steady_clock::now() < deadline;
     }
     works = works && start_watchdog(*control);
   } catch (const std::exception &) {
@@ -239,7 +240,7 @@ bool InterfaceLinks::resume_parked()
   }
   {
     const std::lock_guard lock(mutex_);
-    parked_.reset();
+    pending_.reset();
     if (works) {
       control_ = control;
     }
@@ -250,62 +251,62 @@ bool InterfaceLinks::resume_parked()
   return works;
 }
 
-void InterfaceLinks::drop_control()
+void RtdeInterfaces::close_control()
 {
   std::shared_ptr<RTDEControlInterface> control;
   {
     const std::lock_guard lock(mutex_);
-    control = control_ ? control_ : parked_;
+    control = control_ ? control_ : pending_;
     control_.reset();
-    parked_.reset();
+    pending_.reset();
   }
-  // The robot lets each input register have one client: the connection must be gone before the next one, even
-  // if somebody else still holds the interface.
+  // The robot gives each input register to one client: this connection must be closed before the next one is
+  // opened, even if another thread still holds the interface.
   if (control && take_control_lock(*control, 50)) {
     control->disconnect();
     control_lock_->unlock();
   }
 }
 
-void InterfaceLinks::drop()
+void RtdeInterfaces::close()
 {
-  drop_control();
+  close_control();
   std::shared_ptr<RTDEIOInterface> io;  // closed after the lock is released
   const std::lock_guard lock(mutex_);
   io.swap(io_);
 }
 
-std::shared_ptr<RTDEControlInterface> InterfaceLinks::control_pointer() const
+std::shared_ptr<RTDEControlInterface> RtdeInterfaces::control_interface() const
 {
   const std::lock_guard lock(mutex_);
   return control_;
 }
 
-std::optional<Locked<RTDEControlInterface>> InterfaceLinks::control() const
+std::optional<Locked<RTDEControlInterface>> RtdeInterfaces::control() const
 {
   const std::lock_guard lock(mutex_);
   return control_ ? std::optional(Locked(control_, control_lock_, "control interface")) : std::nullopt;
 }
 
-std::optional<Locked<RTDEIOInterface>> InterfaceLinks::io() const
+std::optional<Locked<RTDEIOInterface>> RtdeInterfaces::io() const
 {
   const std::lock_guard lock(mutex_);
   return io_ ? std::optional(Locked(io_, io_lock_, "IO interface")) : std::nullopt;
 }
 
-bool InterfaceLinks::control_silent() const
+bool RtdeInterfaces::control_silent() const
 {
-  constexpr std::chrono::milliseconds patience(50);
-  const auto control = control_pointer();
-  return control && control->getTimeSinceHeartbeat() > patience;
+  constexpr std::chrono::milliseconds heartbeat_limit(50);
+  const auto control = control_interface();
+  return control && control->getTimeSinceHeartbeat() > heartbeat_limit;
 }
 
-void InterfaceLinks::kick_watchdog()
+void RtdeInterfaces::kick_watchdog()
 {
   std::shared_ptr<RTDEControlInterface> control;
   {
     const std::lock_guard lock(mutex_);
-    control = control_ ? control_ : parked_;
+    control = control_ ? control_ : pending_;
   }
   if (control) {
     control->kickWatchdog();

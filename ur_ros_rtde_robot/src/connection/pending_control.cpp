@@ -1,10 +1,10 @@
-// The control interface of a program that the External Control URCap fetches and somebody else starts.
+// The control interface of a program that the External Control URCap fetches and the operator starts.
 #include <fmt/format.h>
 #include <ur_rtde/rtde_control_interface.h>
 
 #include <utility>
 
-#include "connection/interface_links.hpp"
+#include "connection/rtde_interfaces.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {
@@ -15,59 +15,60 @@ using ur_rtde::RTDEControlInterface;
 
 }  // namespace
 
-Status InterfaceLinks::prepare_control()
+Status RtdeInterfaces::connect_pending_control()
 {
   {
     const std::lock_guard lock(mutex_);
-    if (parked_ && parked_->isConnected()) {
+    if (pending_ && pending_->isConnected()) {
       return {};
     }
   }
-  drop_control();
-  if (const auto reachable = reach_control_ports(); !reachable) {
+  close_control();
+  if (const auto reachable = probe_control_ports(); !reachable) {
     return reachable;
   }
   try {
     auto control = connect_control({});
     const std::lock_guard lock(mutex_);
-    parked_ = std::move(control);
+    pending_ = std::move(control);
     return {};
   } catch (const std::exception & error) {
-    return tl::unexpected(refused("the robot refuses the control interface", error));
+    return tl::unexpected(connection_error("the robot refuses the control interface", error));
   }
 }
 
-bool InterfaceLinks::prepared_program_lives(std::chrono::milliseconds limit) const
+bool RtdeInterfaces::pending_program_alive(std::chrono::milliseconds limit,
+                                           const std::stop_token & stop) const
 {
   std::shared_ptr<RTDEControlInterface> control;
   {
     const std::lock_guard lock(mutex_);
-    control = parked_;
+    control = pending_;
   }
-  // The first state that an interface receives counts as a sign of life: what comes after that tells.
-  constexpr int states_in_patience = 15;
-  constexpr std::chrono::milliseconds patience(50);
+  // The first state that an interface receives counts as a heartbeat: only later ones are evidence.
+  constexpr int ignored_states = 15;
+  constexpr std::chrono::milliseconds heartbeat_limit(50);
   const auto deadline = Clock::now() + limit;
   for (int states = 0; control && control->waitForNextState(); ++states) {
-    if (states < states_in_patience) {
+    if (states < ignored_states) {
       continue;
     }
-    if (control->getTimeSinceHeartbeat() < patience) {
+    if (control->getTimeSinceHeartbeat() < heartbeat_limit) {
       return true;
     }
-    if (Clock::now() > deadline) {
+    if (stop.stop_requested() || Clock::now() > deadline) {
       return false;
     }
   }
   return false;
 }
 
-Status InterfaceLinks::take_prepared()
+Status RtdeInterfaces::adopt_control()
 {
   std::shared_ptr<RTDEControlInterface> control;
   {
     const std::lock_guard lock(mutex_);
-    control = parked_;
+    control = pending_;
   }
   Status taken = failure(ErrorCode::not_ready, "the connection to the control program was lost");
   try {
@@ -79,11 +80,11 @@ Status InterfaceLinks::take_prepared()
                     fmt::format("the control program cannot be taken over: {}", printable(error.what())));
   }
   if (!taken) {
-    drop_control();
+    close_control();
     return taken;
   }
   const std::lock_guard lock(mutex_);
-  control_ = std::exchange(parked_, nullptr);
+  control_ = std::exchange(pending_, nullptr);
   return {};
 }
 

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "program/control_scripts.hpp"
+#include "ur_ros_rtde_robot/connection/log.hpp"
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
+
+namespace ur_ros_rtde {
+
+/// Index of the first general purpose register that the driver uses.
+constexpr int register_offset(const RobotOptions & options)
+{
+  return options.upper_range_registers ? 24 : 0;
+}
+
+/// Opens and closes ur_rtde's control and IO interfaces. Each interface is constructed outside of locks,
+/// after its ports have been probed. Exceptions of its constructor are returned as Error. Thread-safe.
+///
+/// A control interface is active or pending. Only an active one is returned by control(). The control program
+/// of a pending one does not run: it was suspended, or the External Control URCap has not started it yet.
+/// Both receive the watchdog's signs of life.
+class RtdeInterfaces {
+ public:
+  /// `scripts` must outlive this object.
+  RtdeInterfaces(const RobotOptions & options, ControlScripts & scripts, LogFunction log)
+      : options_(options), scripts_(scripts), log_(std::move(log))
+  {
+  }
+  ~RtdeInterfaces() { close(); }
+
+  /// Opens the IO interface unless it is open. Takes up to the connect timeout.
+  Status ensure_io();
+  /// Uploads and starts the control program, then its watchdog. Reuses the pending connection if it works.
+  /// Takes up to some seconds if the robot does not start the program. The previous program must have been
+  /// stopped.
+  Status start_control(const ControllerVersion & version, const std::stop_token & stop);
+  /// Opens a pending connection for a program that the URCap will start. Does nothing if there is one.
+  Status connect_pending_control();
+  /// Whether the running program is the control program, judged by its heartbeat; waits for it up to `limit`.
+  bool pending_program_alive(std::chrono::milliseconds limit, const std::stop_token & stop) const;
+  /// Starts the watchdog of the pending connection's program and makes the connection active.
+  Status adopt_control();
+  /// Ends the control program and makes its connection pending, until start_control().
+  void suspend_control();
+  /// There is a pending connection.
+  bool control_suspended() const;
+  /// Closes the active or pending connection. A command that waits in it returns. When this returns, the
+  /// robot accepts another control interface.
+  void close_control();
+  /// Closes the control and the IO interface.
+  void close();
+
+  std::shared_ptr<ur_rtde::RTDEControlInterface> control_interface() const;
+  std::optional<Locked<ur_rtde::RTDEControlInterface>> control() const;
+  std::optional<Locked<ur_rtde::RTDEIOInterface>> io() const;
+  const std::shared_ptr<InterfaceLock> & control_lock() const { return control_lock_; }
+  /// The control program of the active connection has missed its heartbeat although no command delays it:
+  /// another program runs in its place.
+  bool control_silent() const;
+  /// Sends a sign of life to the control program's watchdog. Does not wait for a command under way.
+  void kick_watchdog();
+
+ private:
+  Status probe_control_ports() const;
+  /// Converts the exception of an interface's constructor; `what` begins the message.
+  Error connection_error(std::string_view what, const std::exception & error) const;
+  std::shared_ptr<ur_rtde::RTDEControlInterface> connect_control(const std::string & script) const;
+  Status start_watchdog(ur_rtde::RTDEControlInterface & control) const;
+  /// Excludes the extensions that the controller does not compile.
+  Status check_extensions(const ControllerVersion & version);
+  /// Locks the control interface, abandoning a command that holds the lock. False if that does not help.
+  bool take_control_lock(ur_rtde::RTDEControlInterface & control, int attempts);
+  bool resume_suspended(const std::stop_token & stop);
+
+  const RobotOptions options_;
+  ControlScripts & scripts_;
+  const LogFunction log_;
+  // Used by the thread of ControlProgramManager only.
+  bool extensions_checked_ = false;
+  Reporter extensions_reporter_{log_};
+  mutable std::mutex mutex_;
+  std::shared_ptr<ur_rtde::RTDEControlInterface> control_;  ///< active
+  std::shared_ptr<ur_rtde::RTDEControlInterface> pending_;
+  std::shared_ptr<ur_rtde::RTDEIOInterface> io_;
+  std::shared_ptr<InterfaceLock> control_lock_ = std::make_shared<InterfaceLock>();
+  std::shared_ptr<InterfaceLock> io_lock_ = std::make_shared<InterfaceLock>();
+};
+
+}  // namespace ur_ros_rtde

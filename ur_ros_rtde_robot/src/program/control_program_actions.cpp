@@ -1,0 +1,278 @@
+// The actions of the control program's state machine, and the status in states without an action.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "motion/motion_stopper.hpp"
+#include "program/control_program_manager.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds program_begin_limit(500);
+constexpr milliseconds program_stop_limit(1000);
+constexpr milliseconds heartbeat_wait_limit(500);
+
+RobotStatus program_stopped(std::string message)
+{
+  return {RobotState::stopped, ErrorCode::program_stopped, std::move(message)};
+}
+
+/// The table asks for `action` in this state. The receiving thread may have left the state that asked for it.
+bool permits(ProgramState state, ProgramAction action)
+{
+  const auto table = program_transitions();
+  return std::any_of(table.begin(), table.end(), [&](const ProgramTransition & transition) {
+    return transition.to == state && transition.action == action;
+  });
+}
+
+}  // namespace
+
+std::optional<ProgramAction> ControlProgramManager::next_action()
+{
+  const std::lock_guard lock(mutex_);
+  if (actions_.empty()) {
+    return std::nullopt;
+  }
+  const auto action = actions_.front();
+  actions_.erase(actions_.begin());
+  return action;
+}
+
+ControlProgramManager::Outcome ControlProgramManager::execute_actions()
+{
+  Outcome failed;
+  while (const auto action = next_action()) {
+    if (auto outcome = execute(*action)) {
+      failed = std::move(outcome);
+    }
+  }
+  return failed;
+}
+
+ControlProgramManager::Outcome ControlProgramManager::execute(ProgramAction action)
+{
+  switch (action) {
+    case ProgramAction::none:
+      return std::nullopt;
+    case ProgramAction::close_control:
+      interfaces_.close_control();
+      return std::nullopt;
+    case ProgramAction::close_interfaces:
+      interfaces_.close();
+      return std::nullopt;
+    default:
+      break;
+  }
+  if (!permits(state_, action)) {
+    return std::nullopt;
+  }
+  switch (action) {
+    case ProgramAction::stop_program:
+      return stop_program_on_robot();
+    case ProgramAction::start_program:
+      return start_program();
+    case ProgramAction::connect_control:
+      return connect_control();
+    case ProgramAction::adopt_program:
+      return adopt_program();
+    case ProgramAction::suspend_program:
+      suspend_program();
+      return std::nullopt;
+    default:
+      return std::nullopt;
+  }
+}
+
+RobotStatus ControlProgramManager::interface_failed(const Error & error)
+{
+  if (error.code != ErrorCode::robot_in_use) {
+    return {RobotState::connecting, error.code, error.message};
+  }
+  dispatch(ProgramEvent::inputs_in_use);
+  return {RobotState::stopped, error.code, error.message};
+}
+
+ControlProgramManager::Outcome ControlProgramManager::start_program()
+{
+  if (!interfaces_.control_suspended()) {
+    set_status({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
+  }
+  const auto started =
+      interfaces_.start_control(receiver_.version().value_or(ControllerVersion{}), stop_.get_token());
+  if (!started) {
+    auto failed = interface_failed(started.error());
+    // No effect after inputs_in_use.
+    dispatch(started.error().code == ErrorCode::not_ready ? ProgramEvent::start_failed
+                                                          : ProgramEvent::start_aborted);
+    return failed;
+  }
+  if (!wait_for_program(ProgramActivity::playing, program_begin_limit)) {
+    interfaces_.close_control();
+    dispatch(ProgramEvent::start_failed);
+    return RobotStatus{RobotState::connecting, ErrorCode::not_ready,
+                       "the control program ended at once: look at the pendant's log"};
+  }
+  dispatch(ProgramEvent::program_started);
+  return std::nullopt;
+}
+
+ControlProgramManager::Outcome ControlProgramManager::stop_program_on_robot()
+{
+  const auto ended = end_program();
+  if (ended) {
+    return std::nullopt;
+  }
+  if (options_.control_mode == ControlMode::upload || state_ != ProgramState::orphaned) {
+    return RobotStatus{RobotState::stopped, ended.error().code, ended.error().message};
+  }
+  // In local control, its watchdog has to end it. A link that is lost meanwhile says nothing about the stop.
+  const bool connected = receiver_.link().connected;
+  const auto latest = receiver_.latest();
+  const std::lock_guard lock(mutex_);
+  if (connected && latest && latest->link == link_) {
+    return std::nullopt;
+  }
+  return RobotStatus{RobotState::connecting, ErrorCode::not_ready,
+                     "stopping the program that the lost link left"};
+}
+
+Status ControlProgramManager::end_program()
+{
+  const auto runtime = receiver_.latest().value_or(Sample{}).runtime_state;
+  if (runtime != RuntimeState::stopped) {
+    if (auto sent = stop_program(options_.address, milliseconds(500)); !sent) {
+      return failure(ErrorCode::program_stopped,
+                     fmt::format("a program of the robot ({}) cannot be stopped: {}", to_string(runtime),
+                                 sent.error().message));
+    }
+  }
+  if (!wait_for_program(ProgramActivity::stopped, program_stop_limit)) {
+    return failure(ErrorCode::program_stopped, "the robot does not stop its program: stop it on the pendant");
+  }
+  if (runtime == RuntimeState::playing) {
+    report_.say(LogLevel::warn,
+                "a program was running on the robot: stopped it to start the control program");
+  }
+  return {};
+}
+
+bool ControlProgramManager::wait_for_program(ProgramActivity program, milliseconds limit) const
+{
+  constexpr milliseconds link_check_interval(50);
+  const auto stop = stop_.get_token();
+  const auto deadline = Clock::now() + limit;
+  const auto reached = [&] { return observation_.program == program; };
+  while (Clock::now() < deadline && !stop.stop_requested() && receiver_.link().connected) {
+    std::unique_lock lock(mutex_);
+    if (changed_.wait_for(lock, stop, link_check_interval, reached)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void ControlProgramManager::suspend_program()
+{
+  interfaces_.suspend_control();
+  const bool ended = wait_for_program(ProgramActivity::stopped, program_stop_limit) || end_program();
+  dispatch(ended ? ProgramEvent::program_yielded : ProgramEvent::yield_failed);
+}
+
+ControlProgramManager::Outcome ControlProgramManager::connect_control()
+{
+  if (const auto connected = interfaces_.connect_pending_control(); !connected) {
+    return interface_failed(connected.error());
+  }
+  return std::nullopt;
+}
+
+ControlProgramManager::Outcome ControlProgramManager::adopt_program()
+{
+  if (auto failed = connect_control()) {
+    return failed;
+  }
+  if (!interfaces_.pending_program_alive(heartbeat_wait_limit, stop_.get_token())) {
+    return program_stopped(fmt::format(
+        "a program runs on the robot, but not the control program: {}",
+        server_.fetched() == 0
+            ? fmt::format("nobody has fetched it from port {}. Is the host in the URCap's installation this "
+                          "one, and has the program an External Control node?",
+                          options_.urcap_port)
+            : std::string(
+                  "it has not come to its External Control node, or is past it; or it is another one")));
+  }
+  if (const auto adopted = interfaces_.adopt_control(); !adopted) {
+    return RobotStatus{RobotState::connecting, adopted.error().code, adopted.error().message};
+  }
+  dispatch(ProgramEvent::program_adopted);
+  return std::nullopt;
+}
+
+RobotStatus ControlProgramManager::explain() const
+{
+  const auto [state, observation] = snapshot();
+  return options_.control_mode == ControlMode::upload ? explain_upload(state, observation)
+                                                      : explain_urcap(state, observation);
+}
+
+RobotStatus ControlProgramManager::explain_upload(ProgramState state,
+                                                  const ProgramObservation & observation) const
+{
+  const bool in_use = state == ProgramState::in_use || state == ProgramState::in_use_after_end;
+  if (in_use && observation.program != ProgramActivity::stopped) {
+    return {RobotState::stopped, ErrorCode::robot_in_use,
+            "another driver has left the robot, but not its program: if that does not end by itself, stop it "
+            "(dashboard/stop, or on the pendant)"};
+  }
+  if (!observation.remote_control) {
+    return {RobotState::stopped, ErrorCode::not_ready,
+            "the robot is in local control and takes no program from here: choose remote control on the "
+            "pendant (enabled under Settings, System, Remote Control)"};
+  }
+  if (state == ProgramState::foreign) {
+    return program_stopped(
+        fmt::format("another program {} on the robot and has replaced the control program: stop it "
+                    "(dashboard/stop)",
+                    observation.program == ProgramActivity::playing ? "runs" : "is paused"));
+  }
+  if (state == ProgramState::idle && !options_.restart_program) {
+    return program_stopped(
+        "the control program was stopped, and restart_program is off: start the driver again");
+  }
+  return {RobotState::connecting, ErrorCode::not_ready, "starting the control program"};
+}
+
+RobotStatus ControlProgramManager::explain_urcap(ProgramState state,
+                                                 const ProgramObservation & observation) const
+{
+  constexpr const char * remedy =
+      "stop it, and start the one with the External Control node (on the pendant, or dashboard/play)";
+  switch (observation.program) {
+    case ProgramActivity::playing:
+      return program_stopped(
+          state == ProgramState::foreign
+              ? fmt::format("another program runs on the robot and has replaced the control program: {}",
+                            remedy)
+              : fmt::format(
+                    "a program runs on the robot that was started before the driver was connected: {}",
+                    remedy));
+    case ProgramActivity::paused:
+      return program_stopped(fmt::format("a program of the robot is {} and will not be resumed: {}",
+                                         to_string(receiver_.latest().value_or(Sample{}).runtime_state),
+                                         remedy));
+    case ProgramActivity::stopped:
+      break;
+  }
+  return program_stopped(
+      fmt::format("the control program does not run: start the program with the External Control node on the "
+                  "pendant, or dashboard/play (in the URCap's installation: this host's address, port {})",
+                  options_.urcap_port));
+}
+
+}  // namespace ur_ros_rtde

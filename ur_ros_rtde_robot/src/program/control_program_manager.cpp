@@ -1,0 +1,405 @@
+// The thread that keeps the control program running, and its interface to other threads.
+#include "program/control_program_manager.hpp"
+
+#include <fmt/format.h>
+#include <ur_rtde/rtde_control_interface.h>
+
+#include <utility>
+
+#include "program/condition.hpp"
+#include "ur_ros_rtde_robot/connection/text.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds first_package_limit(100);
+/// Stop, start and the check of the result take three passes.
+constexpr int passes_per_cycle = 8;
+
+RobotStatus stopped_by(const Error & error)
+{
+  return {RobotState::stopped, error.code, error.message};
+}
+
+/// Everything that triggers a cycle, in one number.
+std::uint64_t modes_of(const Sample & sample)
+{
+  return static_cast<std::uint64_t>(sample.safety_status_bits) << 32U |
+         static_cast<std::uint64_t>(static_cast<std::uint32_t>(sample.robot_mode) & 0xFFU) << 16U |
+         static_cast<std::uint64_t>(sample.runtime_state) << 8U | (sample.link & 0xFFU);
+}
+
+}  // namespace
+
+const char * to_string(RobotState state)
+{
+  switch (state) {
+    case RobotState::disconnected:
+      return "disconnected";
+    case RobotState::connecting:
+      return "connecting";
+    case RobotState::ready:
+      return "ready";
+    case RobotState::stopped:
+      return "stopped";
+  }
+  return "unknown";
+}
+
+ControlProgramManager::ControlProgramManager(const RobotOptions & options, StateReceiver & receiver,
+                                             DashboardLink & dashboard, ArmModel & model,
+                                             RtdeInterfaces & interfaces, const ScriptServer & server,
+                                             LogFunction log)
+    : options_(options),
+      receiver_(receiver),
+      dashboard_(dashboard),
+      model_(model),
+      interfaces_(interfaces),
+      server_(server),
+      report_(std::move(log)),
+      machine_(options.control_mode, options.restart_program),
+      status_{RobotState::disconnected, ErrorCode::link_lost,
+              fmt::format("connecting to {}", options_.address)},
+      state_(machine_.state())
+{
+}
+
+void ControlProgramManager::start()
+{
+  thread_ = std::jthread([this] { run(); });
+}
+
+void ControlProgramManager::stop()
+{
+  stop_.request_stop();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+}
+
+RobotStatus ControlProgramManager::status() const
+{
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+Status ControlProgramManager::wait_until_ready(milliseconds limit, std::stop_token stop) const
+{
+  std::unique_lock lock(mutex_);
+  if (changed_.wait_for(lock, stop, limit, [this] { return status_.state == RobotState::ready; })) {
+    return {};
+  }
+  return failure(stop.stop_requested() ? ErrorCode::canceled : status_.cause, status_.message);
+}
+
+ControlOwner ControlProgramManager::control_owner() const
+{
+  return ur_ros_rtde::control_owner(state_);
+}
+
+std::pair<ProgramState, ProgramObservation> ControlProgramManager::snapshot() const
+{
+  const std::lock_guard lock(mutex_);
+  return {machine_.state(), observation_};
+}
+
+void ControlProgramManager::process(ProgramEvent event)
+{
+  if (const auto action = machine_.process(event, observation_); action != ProgramAction::none) {
+    actions_.push_back(action);
+  }
+  state_ = machine_.state();
+}
+
+void ControlProgramManager::dispatch(ProgramEvent event)
+{
+  const std::lock_guard lock(mutex_);
+  process(event);
+}
+
+void ControlProgramManager::on_sample(const Sample & sample)
+{
+  const Processed now{sample.link, state_, program_activity(sample.runtime_state)};
+  // A program that replaces another one leaves no trace in the runtime state.
+  const bool heartbeat_lost =
+      now.state == ProgramState::running && sample.program_running() && interfaces_.control_silent();
+  if (now != processed_ || heartbeat_lost) {
+    const std::lock_guard lock(mutex_);
+    if (sample.link == link_) {
+      observation_.program = now.program;
+      process(heartbeat_lost ? ProgramEvent::heartbeat_lost : ProgramEvent::sample);
+      processed_ = {now.link, machine_.state(), now.program};
+    }
+    wake_ = wake_ || machine_.state() != now.state;
+    changed_.notify_all();
+  }
+  if (const auto modes = modes_of(sample); modes != modes_) {
+    modes_ = modes;
+    wake();
+  }
+}
+
+void ControlProgramManager::wake()
+{
+  {
+    const std::lock_guard lock(mutex_);
+    wake_ = true;
+  }
+  changed_.notify_all();
+}
+
+void ControlProgramManager::set_status(const RobotStatus & status)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    if (status_.state == status.state && status_.cause == status.cause && status_.message == status.message) {
+      return;
+    }
+    status_ = status;
+  }
+  changed_.notify_all();
+  if (status.state == RobotState::ready) {
+    report_.say(LogLevel::info, "the robot is ready");
+  } else if (status.state == RobotState::stopped) {
+    report_.say(LogLevel::warn, fmt::format("the robot cannot move: {}", status.message));
+  }
+  if (status_function) {
+    status_function(status);
+  }
+}
+
+std::uint64_t ControlProgramManager::begin_cycle()
+{
+  const std::lock_guard lock(mutex_);
+  wake_ = false;
+  return requests_;
+}
+
+void ControlProgramManager::finish_cycle(std::uint64_t requests)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    if (requests == requests_) {
+      process(ProgramEvent::resume_blocked);
+    }
+    handled_ = requests;
+  }
+  changed_.notify_all();
+}
+
+void ControlProgramManager::run()
+{
+  const auto stop = stop_.get_token();
+  while (!stop.stop_requested()) {
+    const auto requests = begin_cycle();
+    const auto now = examine_guarded();
+    if (stop.stop_requested()) {
+      return;
+    }
+    set_status(now);
+    finish_cycle(requests);
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, options_.retry_interval, [this] { return wake_; });
+  }
+}
+
+RobotStatus ControlProgramManager::examine_guarded()
+{
+  try {
+    return examine();
+  } catch (const std::exception & error) {
+    dispatch(ProgramEvent::start_aborted);
+    dispatch(ProgramEvent::yield_failed);
+    return {RobotState::connecting, ErrorCode::exception, printable(error.what())};
+  }
+}
+
+RobotStatus ControlProgramManager::examine()
+{
+  for (int pass = 0; pass < passes_per_cycle; ++pass) {
+    if (auto status = examine_once()) {
+      return std::move(*status);
+    }
+  }
+  wake();
+  return {RobotState::connecting, ErrorCode::not_ready, "the program on the robot changes all the time"};
+}
+
+ControlProgramManager::Outcome ControlProgramManager::examine_once()
+{
+  const auto sample = follow_link();
+  if (!sample) {
+    execute_actions();
+    return sample.error();
+  }
+  const auto blocker = robot_condition(*sample);
+  if (blocker) {
+    dispatch(ProgramEvent::yield_rejected);
+  }
+  if (auto failed = follow_program(!blocker)) {
+    return failed;
+  }
+  if (auto status = check_robot(blocker)) {
+    return status;
+  }
+  return claim_robot();
+}
+
+tl::expected<Sample, RobotStatus> ControlProgramManager::follow_link()
+{
+  const auto link = receiver_.link();
+  auto sample = receiver_.latest();
+  // A new connection may not have delivered its first package: then the newest sample is of the lost one.
+  if (link.connected && sample && sample->link == lost_link_ &&
+      !receiver_.wait_for_next(*sample, first_package_limit, stop_.get_token())) {
+    return tl::unexpected(RobotStatus{RobotState::connecting, ErrorCode::link_lost,
+                                      "nothing has come over the new connection yet"});
+  }
+  if (!link.connected || !sample) {
+    lost_link_ = sample ? sample->link : lost_link_;
+    const std::lock_guard lock(mutex_);
+    link_ = 0;
+    process(ProgramEvent::link_lost);
+    return tl::unexpected(
+        RobotStatus{RobotState::disconnected, ErrorCode::link_lost,
+                    link.connected ? "nothing has come from the controller yet" : link.error.message});
+  }
+  std::unique_lock lock(mutex_);
+  if (link_ != sample->link) {
+    process(ProgramEvent::link_lost);
+    link_ = sample->link;
+    observation_.program = program_activity(sample->runtime_state);
+    process(ProgramEvent::link_established);
+    process(ProgramEvent::sample);
+    lock.unlock();
+    execute_actions();
+    model_.detect(receiver_.version().value_or(ControllerVersion{}), options_.connect_timeout);
+  }
+  return *sample;
+}
+
+ControlProgramManager::Outcome ControlProgramManager::follow_program(bool robot_can_move)
+{
+  execute_actions();
+  if (const auto control = interfaces_.control_interface();
+      state_ == ProgramState::running && control && !control->isConnected()) {
+    dispatch(ProgramEvent::control_link_lost);
+  }
+  // A paused control program must not continue: not after a protective stop has been unlocked, not when the
+  // operator presses play.
+  dispatch(ProgramEvent::inspection);
+  auto failed = execute_actions();
+  return robot_can_move ? failed : std::nullopt;
+}
+
+ControlProgramManager::Outcome ControlProgramManager::check_robot(const std::optional<Error> & blocker)
+{
+  if (const auto io = interfaces_.ensure_io(); !io) {
+    auto failed = interface_failed(io.error());
+    execute_actions();
+    return failed;
+  }
+  const ProgramState state = state_;
+  const auto mismatch = model_.mismatch();
+  if (mismatch && state != ProgramState::yielded) {
+    return stopped_by(*mismatch);
+  }
+  if (blocker) {
+    return stopped_by(*blocker);
+  }
+  if (state == ProgramState::running || state == ProgramState::yielded) {
+    return RobotStatus{RobotState::ready, ErrorCode::none, {}};
+  }
+  if (const auto dashboard = dashboard_.link(); !dashboard.connected) {
+    return RobotStatus{RobotState::connecting, dashboard.error.code, dashboard.error.message};
+  }
+  if (options_.control_mode == ControlMode::control_urcap) {
+    if (const auto serves = server_.status(); !serves) {
+      return stopped_by(serves.error());
+    }
+  }
+  return std::nullopt;
+}
+
+ControlProgramManager::Outcome ControlProgramManager::claim_robot()
+{
+  const bool remote_control = dashboard_.in_remote_control() != false;
+  std::pair<ProgramState, ProgramObservation> before;
+  {
+    const std::lock_guard lock(mutex_);
+    observation_.remote_control = remote_control;
+    before = {machine_.state(), observation_};
+    process(ProgramEvent::robot_ready);
+  }
+  if (auto failed = execute_actions()) {
+    return failed;
+  }
+  if (snapshot() != before) {
+    return std::nullopt;
+  }
+  return explain();
+}
+
+std::uint64_t ControlProgramManager::request_cycle()
+{
+  wake_ = true;
+  changed_.notify_all();
+  return ++requests_;
+}
+
+Status ControlProgramManager::yield(milliseconds limit)
+{
+  const auto stop = stop_.get_token();
+  const auto deadline = Clock::now() + limit;
+  std::unique_lock lock(mutex_);
+  // After an end of the control program the status is still ready for a moment.
+  changed_.wait_until(lock, stop, deadline, [this] {
+    const auto state = machine_.state();
+    return state == ProgramState::running || ur_ros_rtde::control_owner(state) == ControlOwner::script ||
+           status_.state != RobotState::ready;
+  });
+  if (ur_ros_rtde::control_owner(machine_.state()) == ControlOwner::script) {
+    return failure(ErrorCode::busy, "a script is running in place of the control program: wait for its end");
+  }
+  if (status_.state != RobotState::ready) {
+    return failure(status_.cause, status_.message);
+  }
+  process(ProgramEvent::yield_requested);
+  const auto request = request_cycle();
+  changed_.wait_until(lock, stop, deadline, [&] { return handled_ >= request; });
+  if (machine_.state() == ProgramState::yielded) {
+    return {};
+  }
+  process(ProgramEvent::yield_canceled);
+  request_cycle();
+  if (status_.state != RobotState::ready) {
+    return failure(status_.cause, status_.message);
+  }
+  return failure(ErrorCode::not_ready, "the control program does not yield to the script");
+}
+
+Status ControlProgramManager::resume(milliseconds limit)
+{
+  return resume_by(ProgramEvent::resume_requested, limit);
+}
+
+Status ControlProgramManager::resume_after_replacement(milliseconds limit)
+{
+  return resume_by(ProgramEvent::script_replaced, limit);
+}
+
+Status ControlProgramManager::resume_by(ProgramEvent event, milliseconds limit)
+{
+  std::unique_lock lock(mutex_);
+  process(event);
+  const auto request = request_cycle();
+  if (!changed_.wait_for(lock, stop_.get_token(), limit, [&] { return handled_ >= request; })) {
+    return failure(ErrorCode::timeout, "the control program is still being started");
+  }
+  return status_.state == RobotState::ready ? Status() : failure(status_.cause, status_.message);
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <tl/expected.hpp>
+#include <utility>
+#include <vector>
+
+#include "connection/rtde_interfaces.hpp"
+#include "program/program_state_machine.hpp"
+#include "program/script_server.hpp"
+#include "state/arm_model.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde_robot/connection/reporter.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_robot/state/state_receiver.hpp"
+
+namespace ur_ros_rtde {
+
+/// Keeps the control program running and reports why it does not run. Feeds ProgramStateMachine with events
+/// and executes its actions on a thread of its own, which works when something changes and at every retry
+/// interval. No lock is held during an action. Thread-safe.
+class ControlProgramManager {
+ public:
+  /// `server` serves the program in ControlMode::control_urcap. All references must outlive this object.
+  ControlProgramManager(const RobotOptions & options, StateReceiver & receiver, DashboardLink & dashboard,
+                        ArmModel & model, RtdeInterfaces & interfaces, const ScriptServer & server,
+                        LogFunction log);
+  ~ControlProgramManager() { stop(); }
+
+  /// Called on the manager's thread at each change of status. Set before start().
+  std::function<void(const RobotStatus &)> status_function;
+  void start();
+  /// Ends the thread and every wait in this object.
+  void stop();
+
+  RobotStatus status() const;
+  Status wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop) const;
+  ControlOwner control_owner() const;
+
+  /// To be called with each sample on the receiving thread.
+  void on_sample(const Sample & sample);
+  /// Wakes the thread.
+  void wake();
+
+  /// Ends the control program so that a script can run in its place, until resume(). Fails unless the control
+  /// program runs.
+  Status yield(std::chrono::milliseconds limit);
+  /// Starts the control program again after the script. Returns when it runs or cannot run.
+  Status resume(std::chrono::milliseconds limit);
+  /// The same, after a script that another program has replaced. That program is left alone.
+  Status resume_after_replacement(std::chrono::milliseconds limit);
+
+ private:
+  /// What the receiving thread has processed last.
+  struct Processed {
+    std::uint32_t link = 0;
+    ProgramState state = ProgramState::disconnected;
+    ProgramActivity program = ProgramActivity::stopped;
+    bool operator==(const Processed &) const = default;
+  };
+
+  using Outcome = std::optional<RobotStatus>;  ///< the status that a failure leads to
+
+  void run();
+  RobotStatus examine_guarded();
+  /// Feeds the state machine with what is true now, and executes its actions.
+  RobotStatus examine();
+  /// One pass; empty if something has changed, so that another pass is needed.
+  Outcome examine_once();
+  /// The newest sample of the current connection.
+  tl::expected<Sample, RobotStatus> follow_link();
+  /// The connection to the control program alone, and a program that must not continue.
+  Outcome follow_program(bool robot_can_move);
+  /// What prevents the control program from running, except the program on the robot.
+  Outcome check_robot(const std::optional<Error> & blocker);
+  Outcome claim_robot();
+  /// Why nothing is done in this state.
+  RobotStatus explain() const;
+  RobotStatus explain_upload(ProgramState state, const ProgramObservation & observation) const;
+  RobotStatus explain_urcap(ProgramState state, const ProgramObservation & observation) const;
+
+  /// The only place where the state changes. Queues the action of the transition. Hold mutex_.
+  void process(ProgramEvent event);
+  void dispatch(ProgramEvent event);
+  /// Executes the queued actions and those that their results lead to.
+  Outcome execute_actions();
+  std::optional<ProgramAction> next_action();
+  Outcome execute(ProgramAction action);
+  Outcome start_program();
+  Outcome stop_program_on_robot();
+  Outcome connect_control();
+  Outcome adopt_program();
+  void suspend_program();
+  RobotStatus interface_failed(const Error & error);
+  Status end_program();
+  bool wait_for_program(ProgramActivity program, std::chrono::milliseconds limit) const;
+
+  Status resume_by(ProgramEvent event, std::chrono::milliseconds limit);
+  /// Hold mutex_.
+  std::uint64_t request_cycle();
+  std::uint64_t begin_cycle();
+  void finish_cycle(std::uint64_t requests);
+  void set_status(const RobotStatus & status);
+  std::pair<ProgramState, ProgramObservation> snapshot() const;
+
+  const RobotOptions options_;
+  StateReceiver & receiver_;
+  DashboardLink & dashboard_;
+  ArmModel & model_;
+  RtdeInterfaces & interfaces_;
+  const ScriptServer & server_;
+  Reporter report_;
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable_any changed_;
+  ProgramStateMachine machine_;
+  ProgramObservation observation_;
+  std::uint32_t link_ = 0;  ///< Sample::link of the samples that count; 0 while disconnected
+  std::vector<ProgramAction> actions_;
+  RobotStatus status_;
+  bool wake_ = false;
+  std::uint64_t requests_ = 0;  ///< of yield() and resume()
+  std::uint64_t handled_ = 0;   ///< requests that a whole cycle has handled
+
+  std::atomic<ProgramState> state_;  ///< machine_.state(), for the receiving thread
+  // Receiving thread only.
+  Processed processed_;
+  std::uint64_t modes_ = 0;
+  // The manager's thread only.
+  std::uint32_t lost_link_ = 0;  ///< Sample::link of the connection that was lost last
+
+  std::stop_source stop_;
+  std::jthread thread_;
+};
+
+}  // namespace ur_ros_rtde
