@@ -26,7 +26,7 @@ std::uint16_t free_port()
   return ntohs(address.sin_port);
 }
 
-struct AnExternalControlProgram : RobotFixture {
+struct ExternalControlTest : RobotFixture {
   const std::uint16_t port = free_port();
 
   RobotOptions options() const
@@ -83,7 +83,7 @@ struct AnExternalControlProgram : RobotFixture {
   }
 };
 
-TEST_F(AnExternalControlProgram, makes_the_robot_ready_when_it_is_played)
+TEST_F(ExternalControlTest, BecomesReadyWhenTheProgramIsPlayed)
 {
   start(options());
   EXPECT_NE(robot->status().message.find(std::to_string(port)), std::string::npos) << robot->status().message;
@@ -102,7 +102,7 @@ TEST_F(AnExternalControlProgram, makes_the_robot_ready_when_it_is_played)
   EXPECT_TRUE(works());
 }
 
-TEST_F(AnExternalControlProgram, that_is_stopped_on_the_pendant_ends_the_motion_and_waits_for_play)
+TEST_F(ExternalControlTest, EndsTheMotionAndWaitsForPlayWhenStoppedOnThePendant)
 {
   start(options());
   play();
@@ -121,7 +121,7 @@ TEST_F(AnExternalControlProgram, that_is_stopped_on_the_pendant_ends_the_motion_
   EXPECT_TRUE(works());
 }
 
-TEST_F(AnExternalControlProgram, that_is_paused_on_the_pendant_does_not_go_on_with_its_motion)
+TEST_F(ExternalControlTest, DoesNotResumeTheMotionOfAPausedProgram)
 {
   start(options());
   play();
@@ -134,7 +134,7 @@ TEST_F(AnExternalControlProgram, that_is_paused_on_the_pendant_does_not_go_on_wi
   EXPECT_TRUE(keeps_still());
 }
 
-TEST_F(AnExternalControlProgram, that_is_paused_in_local_control_is_ended_by_its_watchdog)
+TEST_F(ExternalControlTest, LeavesAPausedProgramToItsWatchdogInLocalControl)
 {
   start(options(), false);
   play();
@@ -147,7 +147,7 @@ TEST_F(AnExternalControlProgram, that_is_paused_in_local_control_is_ended_by_its
   EXPECT_TRUE(keeps_still());
 }
 
-TEST_F(AnExternalControlProgram, is_waited_for_after_lost_links_and_does_not_go_on_with_its_motion)
+TEST_F(ExternalControlTest, WaitsForPlayAfterLostLinksWithoutResumingTheMotion)
 {
   start(options());
   play();
@@ -166,7 +166,7 @@ TEST_F(AnExternalControlProgram, is_waited_for_after_lost_links_and_does_not_go_
   }
 }
 
-TEST_F(AnExternalControlProgram, is_waited_for_after_only_the_control_link_was_lost)
+TEST_F(ExternalControlTest, WaitsForPlayAfterOnlyTheControlLinkWasLost)
 {
   start(options());
   play();
@@ -178,7 +178,7 @@ TEST_F(AnExternalControlProgram, is_waited_for_after_only_the_control_link_was_l
   EXPECT_TRUE(works());
 }
 
-TEST_F(AnExternalControlProgram, does_not_go_on_after_a_protective_stop)
+TEST_F(ExternalControlTest, DoesNotResumeTheMotionAfterAProtectiveStop)
 {
   start(options());
   play();
@@ -203,7 +203,7 @@ TEST_F(AnExternalControlProgram, does_not_go_on_after_a_protective_stop)
   EXPECT_TRUE(works());
 }
 
-TEST_F(AnExternalControlProgram, is_waited_for_after_a_reboot)
+TEST_F(ExternalControlTest, WaitsForPlayAfterAReboot)
 {
   start(options());
   play();
@@ -219,7 +219,7 @@ TEST_F(AnExternalControlProgram, is_waited_for_after_a_reboot)
   EXPECT_TRUE(works());
 }
 
-TEST_F(AnExternalControlProgram, is_told_from_another_program)
+TEST_F(ExternalControlTest, DistinguishesTheControlProgramFromAnotherOne)
 {
   start(options());
   controller.control(
@@ -235,7 +235,7 @@ TEST_F(AnExternalControlProgram, is_told_from_another_program)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(AnExternalControlProgram, is_not_taken_over_in_the_middle)
+TEST_F(ExternalControlTest, DoesNotAdoptAProgramInTheMiddleOfAMotion)
 {
   auto robot_side = options();
   robot_side.watchdog_frequency = 0.0;
@@ -257,7 +257,7 @@ TEST_F(AnExternalControlProgram, is_not_taken_over_in_the_middle)
   EXPECT_TRUE(keeps_still());
 }
 
-TEST_F(AnExternalControlProgram, gives_no_place_to_scripts)
+TEST_F(ExternalControlTest, RefusesScriptsThatWouldReplaceTheProgram)
 {
   start(options());
   play();
@@ -274,7 +274,7 @@ TEST_F(AnExternalControlProgram, gives_no_place_to_scripts)
   EXPECT_TRUE(robot->ready_to_move());
 }
 
-TEST_F(AnExternalControlProgram, ends_with_the_driver)
+TEST_F(ExternalControlTest, StopsTheProgramWhenTheDriverEnds)
 {
   start(options());
   play();
@@ -285,7 +285,7 @@ TEST_F(AnExternalControlProgram, ends_with_the_driver)
   EXPECT_TRUE(eventually([&] { return controller.state().at("at_rest") == true; }));
 }
 
-TEST_F(AnExternalControlProgram, cannot_be_fetched_while_its_port_is_in_use)
+TEST_F(ExternalControlTest, ReportsThatItsPortIsInUse)
 {
   controller.start();
   ScriptServer other(port, 50ms, {[] { return std::nullopt; }, [](const auto &) { return ""; }}, {});
@@ -302,7 +302,7 @@ TEST_F(AnExternalControlProgram, cannot_be_fetched_while_its_port_is_in_use)
   EXPECT_TRUE(waits_for_play());
 }
 
-struct AScriptServer : testing::Test {
+struct ScriptServerTest : testing::Test {
   const std::uint16_t port = free_port();
   Log log;
   std::atomic<bool> known{true};
@@ -324,7 +324,7 @@ struct AScriptServer : testing::Test {
   TcpStream connect() { return std::move(TcpStream::connect(own_address(), port, 1s).value()); }
 };
 
-TEST_F(AScriptServer, gives_the_whole_program_for_the_controller_to_each_that_asks)
+TEST_F(ScriptServerTest, SendsTheWholeProgramToEachClient)
 {
   TcpStream silent = connect();
   for (int i = 0; i < 2; ++i) {
@@ -338,7 +338,7 @@ TEST_F(AScriptServer, gives_the_whole_program_for_the_controller_to_each_that_as
   EXPECT_EQ(server.fetched(), 2U);
 }
 
-TEST_F(AScriptServer, closes_the_connection_to_whoever_wants_something_else)
+TEST_F(ScriptServerTest, ClosesTheConnectionAfterAnUnknownRequest)
 {
   for (const std::string request : {"GET / HTTP/1.1\r\n", "request_program_or_whatever\n"}) {
     TcpStream client = connect();
@@ -351,7 +351,7 @@ TEST_F(AScriptServer, closes_the_connection_to_whoever_wants_something_else)
   EXPECT_EQ(server.fetched(), 0U);
 }
 
-TEST_F(AScriptServer, gives_nothing_as_long_as_the_controller_is_not_known)
+TEST_F(ScriptServerTest, SendsNothingWhileTheControllerIsUnknown)
 {
   known = false;
   TcpStream client = connect();

@@ -7,14 +7,14 @@ namespace ur_ros_rtde::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using ARobot = RobotFixture;
+using RobotConnectionTest = RobotFixture;
 
 double seconds_since(Clock::time_point begin)
 {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-TEST_F(ARobot, becomes_ready_within_two_seconds)
+TEST_F(RobotConnectionTest, BecomesReadyWithinTwoSeconds)
 {
   controller.start();
   const auto begin = Clock::now();
@@ -29,7 +29,7 @@ TEST_F(ARobot, becomes_ready_within_two_seconds)
   EXPECT_NE(robot->dashboard()->robotmode().find("RUNNING"), std::string::npos);
 }
 
-TEST_F(ARobot, waits_for_a_controller_that_starts_later)
+TEST_F(RobotConnectionTest, WaitsForControllerThatStartsLater)
 {
   make_robot();
   ASSERT_TRUE(eventually([&] { return log.count("Trying again") > 0; }));
@@ -41,7 +41,7 @@ TEST_F(ARobot, waits_for_a_controller_that_starts_later)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(ARobot, follows_the_arm_through_power_up)
+TEST_F(RobotConnectionTest, FollowsPowerUpOfTheArm)
 {
   auto options = Controller::options();
   options.start_running = false;
@@ -57,7 +57,7 @@ TEST_F(ARobot, follows_the_arm_through_power_up)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(ARobot, says_that_the_robot_is_in_local_control_and_goes_on_when_it_is_not)
+TEST_F(RobotConnectionTest, ReportsLocalControlAndBecomesReadyInRemoteControl)
 {
   auto options = Controller::options();
   options.remote_control = false;
@@ -70,7 +70,7 @@ TEST_F(ARobot, says_that_the_robot_is_in_local_control_and_goes_on_when_it_is_no
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(ARobot, tells_each_change_of_its_status_once)
+TEST_F(RobotConnectionTest, ReportsEachStatusChangeOnce)
 {
   make_both();
   controller.control({{"command", "protective_stop"}, {"reason", "test"}});
@@ -84,7 +84,7 @@ TEST_F(ARobot, tells_each_change_of_its_status_once)
   EXPECT_EQ(statuses.back().cause, ErrorCode::protective_stop);
 }
 
-TEST_F(ARobot, starts_the_control_program_again_after_it_was_stopped_on_the_pendant)
+TEST_F(RobotConnectionTest, RestartsControlProgramStoppedOnThePendant)
 {
   make_both();
   controller.control({{"command", "stop_program"}});
@@ -94,7 +94,7 @@ TEST_F(ARobot, starts_the_control_program_again_after_it_was_stopped_on_the_pend
   EXPECT_TRUE(robot->control()->isSteady());
 }
 
-TEST_F(ARobot, never_takes_its_own_program_that_ends_for_somebody_elses)
+TEST_F(RobotConnectionTest, NeverTakesItsEndingProgramForAForeignOne)
 {
   auto options = Controller::options();
   options.real_time_factor = 0.05;  // the robot's states between running and stopped last for 40 ms
@@ -108,7 +108,7 @@ TEST_F(ARobot, never_takes_its_own_program_that_ends_for_somebody_elses)
   EXPECT_EQ(log.count("another program"), 0U) << log.text();
 }
 
-TEST_F(ARobot, takes_its_own_program_that_runs_after_a_failed_start_for_its_own)
+TEST_F(RobotConnectionTest, TakesProgramThatRunsAfterAFailedStartForItsOwn)
 {
   make_both();
   for (int i = 0; i < 5; ++i) {
@@ -125,7 +125,7 @@ TEST_F(ARobot, takes_its_own_program_that_runs_after_a_failed_start_for_its_own)
   EXPECT_EQ(log.count("another program"), 0U) << log.text();
 }
 
-TEST_F(ARobot, leaves_the_program_stopped_where_restarting_is_off)
+TEST_F(RobotConnectionTest, LeavesProgramStoppedWhenRestartingIsOff)
 {
   controller.start();
   auto options = robot_options();
@@ -137,7 +137,7 @@ TEST_F(ARobot, leaves_the_program_stopped_where_restarting_is_off)
   EXPECT_FALSE(eventually([&] { return robot->status().state == RobotState::ready; }, 700ms));
 }
 
-TEST_F(ARobot, takes_over_from_a_program_that_runs_when_it_comes)
+TEST_F(RobotConnectionTest, StopsProgramThatRunsWhenItConnects)
 {
   controller.start();
   controller.control(
@@ -148,7 +148,7 @@ TEST_F(ARobot, takes_over_from_a_program_that_runs_when_it_comes)
   EXPECT_EQ(log.count("a program was running on the robot"), 1U) << log.text();
 }
 
-TEST_F(ARobot, leaves_a_program_alone_that_somebody_else_starts_later)
+TEST_F(RobotConnectionTest, LeavesForeignProgramAloneThatStartsLater)
 {
   make_both();
   controller.control(
@@ -159,7 +159,7 @@ TEST_F(ARobot, leaves_a_program_alone_that_somebody_else_starts_later)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(ARobot, leaves_a_program_alone_that_somebody_else_starts_and_pauses)
+TEST_F(RobotConnectionTest, LeavesForeignProgramAloneThatIsPaused)
 {
   make_both();
   const auto says = [&](const char * text) {
@@ -175,7 +175,7 @@ TEST_F(ARobot, leaves_a_program_alone_that_somebody_else_starts_and_pauses)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(ARobot, notices_at_once_when_another_program_takes_over_in_the_middle_of_a_motion)
+TEST_F(RobotConnectionTest, NoticesReplacementOfItsProgramDuringAMotion)
 {
   make_both();
   move_joints();
@@ -191,7 +191,7 @@ TEST_F(ARobot, notices_at_once_when_another_program_takes_over_in_the_middle_of_
   EXPECT_NE(robot->status().message.find("another program"), std::string::npos) << robot->status().message;
 }
 
-TEST_F(ARobot, comes_back_after_a_reboot_once_the_arm_is_powered)
+TEST_F(RobotConnectionTest, BecomesReadyAfterARebootOnceTheArmIsPowered)
 {
   make_both();
   controller.control({{"command", "reboot"}, {"duration", 0.3}});
@@ -201,7 +201,7 @@ TEST_F(ARobot, comes_back_after_a_reboot_once_the_arm_is_powered)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(ARobot, comes_back_within_a_second_after_its_links_were_dropped)
+TEST_F(RobotConnectionTest, BecomesReadyWithinASecondAfterDroppedLinks)
 {
   make_both();
   std::size_t times = 1;
@@ -214,14 +214,14 @@ TEST_F(ARobot, comes_back_within_a_second_after_its_links_were_dropped)
   }
 }
 
-TEST_F(ARobot, notices_that_only_the_control_link_was_dropped)
+TEST_F(RobotConnectionTest, NoticesThatOnlyTheControlLinkWasDropped)
 {
   make_both();
   controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "control"}});
   EXPECT_TRUE(becomes_ready_again());
 }
 
-TEST_F(ARobot, brings_io_back_after_only_its_link_was_dropped)
+TEST_F(RobotConnectionTest, ReconnectsIoAfterOnlyItsLinkWasDropped)
 {
   make_both();
   controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "io"}});
@@ -231,7 +231,7 @@ TEST_F(ARobot, brings_io_back_after_only_its_link_was_dropped)
   })) << log.text();
 }
 
-TEST_F(ARobot, survives_a_controller_that_dies_for_good)
+TEST_F(RobotConnectionTest, SurvivesControllerThatNeverReturns)
 {
   make_both();
   controller.stop();
@@ -266,7 +266,7 @@ constexpr bool keeps_freed_memory = true;  // the sanitizer does
 constexpr bool keeps_freed_memory = false;
 #endif
 
-TEST_F(ARobot, leaks_nothing_over_many_reconnections)
+TEST_F(RobotConnectionTest, LeaksNothingOverManyReconnections)
 {
   controller.start();
   auto options = robot_options();
@@ -309,7 +309,7 @@ TEST_F(ARobot, leaks_nothing_over_many_reconnections)
   }
 }
 
-TEST_F(ARobot, ends_at_any_moment_of_its_start)
+TEST_F(RobotConnectionTest, EndsAtAnyMomentOfItsStart)
 {
   controller.start();
   for (const auto delay : {0ms, 5ms, 20ms, 60ms, 150ms}) {
@@ -321,7 +321,7 @@ TEST_F(ARobot, ends_at_any_moment_of_its_start)
   }
 }
 
-TEST_F(ARobot, refuses_options_out_of_range)
+TEST_F(RobotConnectionTest, RefusesOptionsOutOfRange)
 {
   auto options = robot_options();
   options.watchdog_frequency = 0.5;

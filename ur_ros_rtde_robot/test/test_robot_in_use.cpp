@@ -4,7 +4,7 @@ namespace ur_ros_rtde::test {
 namespace {
 
 /// A driver that has the robot, and another one that comes later.
-struct ASecondDriver : RobotFixture {
+struct SecondDriverTest : RobotFixture {
   Log log_of_second;
   std::unique_ptr<Robot> second;
 
@@ -23,7 +23,7 @@ struct ASecondDriver : RobotFixture {
   std::string told() const { return second->status().message + "\n" + log_of_second.text(); }
 };
 
-TEST_F(ASecondDriver, is_refused_with_what_is_in_use_and_takes_over_when_the_first_ends)
+TEST_F(SecondDriverTest, IsRefusedWithTheInputsInUseUntilTheFirstEnds)
 {
   make_both();
   move_joints();
@@ -42,7 +42,7 @@ TEST_F(ASecondDriver, is_refused_with_what_is_in_use_and_takes_over_when_the_fir
   EXPECT_TRUE(second_is(RobotState::ready)) << told();
 }
 
-TEST_F(ASecondDriver, is_refused_in_the_other_register_range_too)
+TEST_F(SecondDriverTest, IsRefusedInTheOtherRegisterRange)
 {
   make_both();
   make_second(true);
@@ -51,7 +51,7 @@ TEST_F(ASecondDriver, is_refused_in_the_other_register_range_too)
   EXPECT_EQ(told().find("register_range"), std::string::npos) << "that would not help: " << told();
 }
 
-TEST_F(ASecondDriver, does_not_stop_the_first_one_when_that_loses_a_connection)
+TEST_F(SecondDriverTest, DoesNotStopTheFirstWhenThatLosesAConnection)
 {
   make_both();
   make_second();
@@ -66,7 +66,7 @@ TEST_F(ASecondDriver, does_not_stop_the_first_one_when_that_loses_a_connection)
   EXPECT_EQ(controller.state().at("program").at("state"), "PLAYING");
 }
 
-TEST_F(ASecondDriver, leaves_a_program_alone_that_the_first_has_left)
+TEST_F(SecondDriverTest, LeavesTheProgramOfTheFirstAlone)
 {
   controller.start();
   controller.control({{"command", "fieldbus"}});
@@ -84,9 +84,9 @@ TEST_F(ASecondDriver, leaves_a_program_alone_that_the_first_has_left)
   EXPECT_TRUE(becomes_ready());
 }
 
-using AFieldbus = RobotFixture;
+using FieldbusTest = RobotFixture;
 
-TEST_F(AFieldbus, that_has_the_lower_registers_is_named_with_the_way_out)
+TEST_F(FieldbusTest, IsReportedWithARemedyWhenItHasTheLowerRegisters)
 {
   controller.start();
   controller.control({{"command", "fieldbus"}});
@@ -101,7 +101,7 @@ TEST_F(AFieldbus, that_has_the_lower_registers_is_named_with_the_way_out)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(AFieldbus, leaves_the_upper_registers)
+TEST_F(FieldbusTest, LeavesTheUpperRegistersToTheDriver)
 {
   controller.start();
   controller.control({{"command", "fieldbus"}});

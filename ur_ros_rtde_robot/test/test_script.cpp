@@ -8,7 +8,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct AScript : RobotFixture {
+struct ScriptTest : RobotFixture {
   static ScriptOptions secondary()
   {
     ScriptOptions options;
@@ -47,7 +47,7 @@ struct AScript : RobotFixture {
   }
 };
 
-TEST_F(AScript, runs_to_its_end_and_tells_what_it_wrote)
+TEST_F(ScriptTest, RunsToItsEndAndReportsItsText)
 {
   make_both();
   const auto report = robot->run_script(
@@ -60,7 +60,7 @@ TEST_F(AScript, runs_to_its_end_and_tells_what_it_wrote)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, is_followed_even_if_it_takes_no_time_at_all)
+TEST_F(ScriptTest, FollowsScriptsOfAnyDuration)
 {
   make_both();
   for (int i = 0; i < 3; ++i) {
@@ -71,7 +71,7 @@ TEST_F(AScript, is_followed_even_if_it_takes_no_time_at_all)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, gives_the_robot_back_within_a_second)
+TEST_F(ScriptTest, RestartsTheControlProgramWithinASecond)
 {
   make_both();
   std::vector<Clock::time_point> text;
@@ -88,7 +88,7 @@ TEST_F(AScript, gives_the_robot_back_within_a_second)
   EXPECT_EQ(log.count("a program was running"), 0U) << log.text();
 }
 
-TEST_F(AScript, that_does_not_compile_is_reported_with_its_line)
+TEST_F(ScriptTest, ReportsTheLineOfACompileError)
 {
   make_both();
   const auto report = robot->run_script("def f():\n  sync()\n\n  sync(1, 2, 3) nonsense\nend\n");
@@ -99,7 +99,7 @@ TEST_F(AScript, that_does_not_compile_is_reported_with_its_line)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, that_fails_is_reported_with_its_line)
+TEST_F(ScriptTest, ReportsTheLineOfARuntimeError)
 {
   make_both();
   const auto report = robot->run_script("def f():\n  textmsg(\"so far\")\n  a = [1, 2]\n  b = a[7]\nend\n");
@@ -109,7 +109,7 @@ TEST_F(AScript, that_fails_is_reported_with_its_line)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, with_blocks_that_do_not_match_is_not_even_sent)
+TEST_F(ScriptTest, RefusesUnbalancedBlocksWithoutSending)
 {
   make_both();
   const auto report = robot->run_script("def f():\n  while True:\n  sync()\nend\n");
@@ -119,7 +119,7 @@ TEST_F(AScript, with_blocks_that_do_not_match_is_not_even_sent)
   EXPECT_TRUE(robot->control()->isProgramRunning()) << "the control program was not disturbed";
 }
 
-TEST_F(AScript, that_is_canceled_is_stopped_with_the_arm)
+TEST_F(ScriptTest, StopsTheArmWhenCanceled)
 {
   make_both();
   ScriptOptions options;
@@ -137,7 +137,7 @@ TEST_F(AScript, that_is_canceled_is_stopped_with_the_arm)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, that_takes_too_long_is_stopped_with_the_arm)
+TEST_F(ScriptTest, StopsTheArmAtItsTimeLimit)
 {
   make_both();
   ScriptOptions options;
@@ -149,7 +149,7 @@ TEST_F(AScript, that_takes_too_long_is_stopped_with_the_arm)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, that_somebody_stops_does_not_count_as_finished)
+TEST_F(ScriptTest, DoesNotCountAsFinishedWhenStoppedOnThePendant)
 {
   make_both();
   ScriptOptions options;
@@ -166,7 +166,7 @@ TEST_F(AScript, that_somebody_stops_does_not_count_as_finished)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, that_another_program_replaces_leaves_that_one_alone)
+TEST_F(ScriptTest, LeavesAProgramAloneThatReplacesTheScript)
 {
   make_both();
   ScriptOptions options;
@@ -188,7 +188,7 @@ TEST_F(AScript, that_another_program_replaces_leaves_that_one_alone)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, ends_with_a_protective_stop_and_does_not_go_on)
+TEST_F(ScriptTest, EndsInAProtectiveStopWithoutResuming)
 {
   make_both();
   ScriptOptions options;
@@ -219,7 +219,7 @@ TEST_F(AScript, ends_with_a_protective_stop_and_does_not_go_on)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, ends_with_the_link_and_is_not_left_running)
+TEST_F(ScriptTest, EndsWithTheLink)
 {
   make_both();
   ScriptOptions options;
@@ -238,7 +238,7 @@ TEST_F(AScript, ends_with_the_link_and_is_not_left_running)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, is_stopped_by_its_watchdog_when_the_driver_gives_no_sign_of_life)
+TEST_F(ScriptTest, IsStoppedByItsWatchdogWithoutSignsOfLife)
 {
   make_both();
   ScriptOptions options;
@@ -256,7 +256,7 @@ TEST_F(AScript, is_stopped_by_its_watchdog_when_the_driver_gives_no_sign_of_life
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(AScript, keeps_the_control_interface_to_itself)
+TEST_F(ScriptTest, KeepsTheControlInterfaceToItself)
 {
   make_both();
   ScriptOptions options;
@@ -275,7 +275,7 @@ TEST_F(AScript, keeps_the_control_interface_to_itself)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, is_refused_while_the_robot_is_not_ready)
+TEST_F(ScriptTest, IsRefusedWhileTheRobotIsNotReady)
 {
   make_both();
   controller.control({{"command", "protective_stop"}, {"reason", "test"}});
@@ -285,7 +285,7 @@ TEST_F(AScript, is_refused_while_the_robot_is_not_ready)
   EXPECT_EQ(report.error.code, ErrorCode::protective_stop);
 }
 
-TEST_F(AScript, leaves_the_robot_usable_when_a_callback_throws)
+TEST_F(ScriptTest, LeavesTheRobotUsableWhenACallbackThrows)
 {
   make_both();
   ScriptOptions options;
@@ -300,7 +300,7 @@ TEST_F(AScript, leaves_the_robot_usable_when_a_callback_throws)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(AScript, runs_beside_a_motion_if_it_is_a_secondary_program)
+TEST_F(ScriptTest, RunsDuringAMotionAsSecondaryProgram)
 {
   make_both();
   move_joints();
@@ -311,7 +311,7 @@ TEST_F(AScript, runs_beside_a_motion_if_it_is_a_secondary_program)
   EXPECT_TRUE(robot->stop_motion());
 }
 
-TEST_F(AScript, that_is_secondary_is_reported_with_its_errors_lines)
+TEST_F(ScriptTest, ReportsTheLinesOfErrorsInSecondaryPrograms)
 {
   make_both();
   const auto wrong = robot->run_script("sec s():\n  nonsense nonsense\nend\n", secondary());

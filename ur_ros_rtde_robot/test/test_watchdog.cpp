@@ -61,7 +61,7 @@ bool program_stops(Controller & controller)
   return eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; });
 }
 
-TEST(TheWatchdog, stops_the_arm_when_the_driver_is_killed)
+TEST(WatchdogTest, StopsTheArmWhenTheDriverIsKilled)
 {
   const DriverProcess driver;
   Controller controller(Controller::options());
@@ -73,7 +73,7 @@ TEST(TheWatchdog, stops_the_arm_when_the_driver_is_killed)
   EXPECT_TRUE(program_stops(controller));
 }
 
-TEST(TheWatchdog, stops_the_arm_when_the_driver_hangs)
+TEST(WatchdogTest, StopsTheArmWhenTheDriverHangs)
 {
   const DriverProcess driver;
   Controller controller(Controller::options());
@@ -83,7 +83,7 @@ TEST(TheWatchdog, stops_the_arm_when_the_driver_hangs)
   EXPECT_TRUE(program_stops(controller));
 }
 
-TEST(TheWatchdog, lets_a_living_driver_move_on)
+TEST(WatchdogTest, LetsALiveDriverContinue)
 {
   const DriverProcess driver;
   Controller controller(Controller::options());
