@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "program/condition.hpp"
+#include "program/motion_blocker.hpp"
 #include "robot_impl.hpp"
 
 namespace ur_ros_rtde {
@@ -75,7 +75,7 @@ Locked<ur_rtde::RTDEControlInterface> Robot::control() const
   if (auto control = impl_->interfaces.control()) {
     return *control;
   }
-  throw RobotError(impl_->why_not());
+  throw RobotError(impl_->unavailable_error());
 }
 
 Locked<ur_rtde::RTDEReceiveInterface> Robot::receive() const
@@ -88,7 +88,7 @@ Locked<ur_rtde::RTDEIOInterface> Robot::io() const
   if (auto io = impl_->interfaces.io()) {
     return *io;
   }
-  throw RobotError(impl_->why_not());
+  throw RobotError(impl_->unavailable_error());
 }
 
 Locked<ur_rtde::DashboardClient> Robot::dashboard() const
@@ -120,7 +120,7 @@ Status Robot::motion_possible() const
     return failure(ErrorCode::link_lost,
                    link.connected ? "nothing has come from the controller yet" : link.error.message);
   }
-  if (const auto condition = robot_condition(*sample)) {
+  if (const auto condition = motion_blocker(*sample)) {
     return tl::unexpected(*condition);
   }
   if (impl_->manager.control_owner() == ControlOwner::script) {
@@ -137,7 +137,7 @@ Status Robot::motion_possible() const
   }
   const auto control = impl_->interfaces.control_interface();
   if (!control) {
-    auto why = impl_->why_not();
+    auto why = impl_->unavailable_error();
     if (why.code == ErrorCode::not_ready) {  // it was there, and is being made anew already
       why = {ErrorCode::link_lost, "the connection to the control program was lost; it is made anew"};
     }

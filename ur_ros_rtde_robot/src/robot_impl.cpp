@@ -64,7 +64,7 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       manager(options, state, dashboard, model, interfaces, server, log),
       scripts(options, state, tracker, interfaces, manager),
       extensions(options, state, tracker, interfaces, control_scripts),
-      kicked_for_(options.watchdog_frequency)
+      watchdog_frequency_(options.watchdog_frequency)
 {
   state.on_link([this](const LinkStatus &) { manager.wake(); });
   state.on_sample([this](const Sample & sample) { add(sample); });
@@ -82,15 +82,15 @@ void Robot::Impl::add(const Sample & sample)
   }
 }
 
-/// Driven by the packages: a link on which nothing comes any more gives no sign of life either.
+/// Driven by the packages, so that a half-open connection gives no sign of life.
 void Robot::Impl::feed_watchdog(const Sample & sample)
 {
-  const double frequency = kicked_for_;
+  const double frequency = watchdog_frequency_;
   if (frequency == 0.0) {
     return;
   }
-  constexpr double kicks_a_period = 5.0;
-  const std::chrono::duration<double> interval(1.0 / (kicks_a_period * frequency));
+  constexpr double kicks_per_period = 5.0;
+  const std::chrono::duration<double> interval(1.0 / (kicks_per_period * frequency));
   if (sample.received - last_kick_ >= interval) {
     last_kick_ = sample.received;
     interfaces.kick_watchdog();
@@ -106,18 +106,18 @@ Status Robot::Impl::set_watchdog(double frequency)
   }
   const auto control = interfaces.control();
   if (!control) {
-    return tl::unexpected(why_not());
+    return tl::unexpected(unavailable_error());
   }
-  kicked_for_ = std::max(kicked_for_.load(), frequency);  // before it is needed
+  watchdog_frequency_ = std::max(watchdog_frequency_.load(), frequency);  // before the program needs it
   if (!(*control)->setWatchdog(frequency)) {
     return failure(ErrorCode::rejected_by_robot, "the control program did not set its watchdog");
   }
-  // A program that is started anew has the watchdog of the options.
-  kicked_for_ = std::max(options.watchdog_frequency, frequency);
+  // A restarted program has the watchdog of the options.
+  watchdog_frequency_ = std::max(options.watchdog_frequency, frequency);
   return {};
 }
 
-Error Robot::Impl::why_not() const
+Error Robot::Impl::unavailable_error() const
 {
   if (manager.control_owner() == ControlOwner::script) {
     return {ErrorCode::busy, "a script runs in place of the control program: wait for its end, or cancel it"};
@@ -136,7 +136,7 @@ void Robot::Impl::end_program()
     return;
   }
   if (options.control_mode == ControlMode::control_urcap) {
-    // What comes behind its External Control node might move the arm.
+    // The program must not continue after its External Control node: that might move the arm.
     const auto ended = stop_program(options.address, std::chrono::milliseconds(500));
     if (ended || options.watchdog_frequency > 0.0) {
       return;
@@ -147,7 +147,7 @@ void Robot::Impl::end_program()
     held->setCommandTimeout(std::chrono::milliseconds(500));
     held->stopScript();
   } catch (const std::exception &) {
-    // The watchdog ends it, then.
+    // The watchdog ends it.
   }
 }
 
@@ -158,7 +158,7 @@ Robot::Impl::~Impl()
     stopper.stop({});
     end_program();
   }
-  // Their threads call into the members that are destroyed before them.
+  // Their threads use members that are destroyed before them.
   server.stop();
   state.stop();
   dashboard.stop();

@@ -19,7 +19,7 @@
 
 namespace ur_ros_rtde {
 
-/// The parts of the robot side, and the threads that carry samples from one to the other.
+/// The parts of a Robot and the flow of samples between them.
 class Robot::Impl {
  public:
   Impl(RobotOptions robot_options, const LogFunction & log);
@@ -28,7 +28,8 @@ class Robot::Impl {
   void add(const Sample & sample);
   void feed_watchdog(const Sample & sample);
   Status set_watchdog(double frequency);
-  Error why_not() const;
+  /// Why there is no control or IO interface.
+  Error unavailable_error() const;
 
   const RobotOptions options;
   Arbiter arbiter;
@@ -48,7 +49,7 @@ class Robot::Impl {
  private:
   void end_program();
   std::chrono::steady_clock::time_point last_kick_{};  ///< receiving thread only
-  std::atomic<double> kicked_for_;                     ///< Hz, of the fastest watchdog that may be running
+  std::atomic<double> watchdog_frequency_;             ///< Hz, of the fastest watchdog that may be running
 };
 
 }  // namespace ur_ros_rtde

@@ -13,7 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// One that nobody listens on at the moment.
+/// A port on which no process listens.
 std::uint16_t free_port()
 {
   const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -49,7 +49,7 @@ struct ExternalControlTest : RobotFixture {
 
   void play() { controller.control({{"command", "play"}}); }
 
-  /// It says what to do.
+  /// The status tells the operator what to do.
   testing::AssertionResult waits_for_play()
   {
     if (!eventually(
@@ -63,7 +63,7 @@ struct ExternalControlTest : RobotFixture {
     return comes_to(RobotState::stopped, ErrorCode::program_stopped);
   }
 
-  /// Nothing moves for a while, though the control program could.
+  /// The arm does not move for a while although the control program runs.
   testing::AssertionResult keeps_still()
   {
     const bool moves = eventually([&] { return !at_rest(); }, 400ms);
@@ -229,6 +229,27 @@ TEST_F(ExternalControlTest, DistinguishesTheControlProgramFromAnotherOne)
   })) << robot->status().message;
   EXPECT_NE(robot->status().message.find("nobody has fetched it"), std::string::npos);
   EXPECT_TRUE(robot->latest()->program_running()) << "it is left alone";
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(waits_for_play());
+  play();
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(ExternalControlTest, LeavesAForeignProgramAloneThatIsPaused)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  ASSERT_TRUE(eventually([&] {
+    return robot->status().message.find("has replaced the control program") != std::string::npos;
+  })) << robot->status().message;
+  controller.control({{"command", "pause_program"}});
+  ASSERT_TRUE(eventually([&] {
+    return robot->status().message.find("will not be resumed") != std::string::npos;
+  })) << robot->status().message;
+  EXPECT_FALSE(eventually([&] { return controller.state().at("program").at("state") != "PAUSED"; }, 700ms));
   controller.control({{"command", "stop_program"}});
   ASSERT_TRUE(waits_for_play());
   play();

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "program/condition.hpp"
+#include "program/motion_blocker.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 
 namespace ur_ros_rtde {
@@ -78,10 +78,10 @@ Sample running_robot()
 
 TEST(RobotCondition, finds_nothing_wrong_with_a_running_robot)
 {
-  EXPECT_FALSE(robot_condition(running_robot()));
+  EXPECT_FALSE(motion_blocker(running_robot()));
   auto reduced = running_robot();
   reduced.safety_status_bits = 2;
-  EXPECT_FALSE(robot_condition(reduced));
+  EXPECT_FALSE(motion_blocker(reduced));
 }
 
 TEST(RobotCondition, names_every_safety_stop_and_what_to_do)
@@ -98,7 +98,7 @@ TEST(RobotCondition, names_every_safety_stop_and_what_to_do)
   for (const auto & [bit, code, advice] : table) {
     auto sample = running_robot();
     sample.safety_status_bits = 1U << bit;
-    const auto condition = robot_condition(sample);
+    const auto condition = motion_blocker(sample);
     ASSERT_TRUE(condition) << "bit " << bit;
     EXPECT_EQ(condition->code, code) << "bit " << bit;
     EXPECT_NE(condition->message.find(advice), std::string::npos) << condition->message;
@@ -109,9 +109,9 @@ TEST(RobotCondition, tells_how_to_power_the_arm)
 {
   auto sample = running_robot();
   sample.robot_mode = RobotMode::power_off;
-  EXPECT_NE(robot_condition(sample)->message.find("make_ready (or dashboard/power_on"), std::string::npos);
+  EXPECT_NE(motion_blocker(sample)->message.find("make_ready (or dashboard/power_on"), std::string::npos);
   sample.robot_mode = RobotMode::idle;
-  EXPECT_NE(robot_condition(sample)->message.find("make_ready (or dashboard/brake_release"),
+  EXPECT_NE(motion_blocker(sample)->message.find("make_ready (or dashboard/brake_release"),
             std::string::npos);
 }
 

@@ -116,7 +116,7 @@ TEST_F(RobotConnectionTest, TakesProgramThatRunsAfterAFailedStartForItsOwn)
     ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") != "PLAYING"; }));
     ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "PLAYING"; }))
         << log.text();
-    // It has been uploaded, and what it is told first is lost: nearly always the start fails.
+    // It has been uploaded and its first commands are lost, so that the start fails nearly always.
     controller.control(
         {{"command", "lose_commands"}, {"which", "rtde"}, {"clients", "control"}, {"count", 100000}});
     ASSERT_TRUE(eventually([&] { return robot->status().state != RobotState::ready; })) << log.text();
@@ -243,7 +243,7 @@ TEST_F(RobotConnectionTest, SurvivesControllerThatNeverReturns)
   EXPECT_TRUE(becomes_ready());
 }
 
-/// kB of memory that is held.
+/// Resident memory in kB.
 std::size_t resident_memory()
 {
   std::ifstream file("/proc/self/statm");
@@ -304,7 +304,7 @@ TEST_F(RobotConnectionTest, LeaksNothingOverManyReconnections)
   const auto grown = static_cast<double>(resident_memory()) - static_cast<double>(memory);
   RecordProperty("grown_by_kB", std::to_string(grown));
   if (!keeps_freed_memory) {
-    // The log that the test keeps is in it.
+    // Includes the test's log.
     EXPECT_LT(grown, 4000.0 + 2.0 * reconnections()) << "kB";
   }
 }

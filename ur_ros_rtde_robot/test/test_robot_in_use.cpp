@@ -3,7 +3,7 @@
 namespace ur_ros_rtde::test {
 namespace {
 
-/// A driver that has the robot, and another one that comes later.
+/// A driver that has the robot, and a second one that starts later.
 struct SecondDriverTest : RobotFixture {
   Log log_of_second;
   std::unique_ptr<Robot> second;

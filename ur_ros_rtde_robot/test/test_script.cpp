@@ -29,7 +29,7 @@ struct ScriptTest : RobotFixture {
 
   bool turns() { return std::abs(robot->latest()->actual_qd[0]) > 0.7; }
 
-  /// The control program is back, and works.
+  /// The control program runs again and accepts commands.
   testing::AssertionResult is_back()
   {
     if (const auto ready = robot->ready_to_move(); !ready) {

@@ -9,7 +9,7 @@
 namespace ur_ros_rtde::test {
 namespace {
 
-/// The driver in a process of its own, which moves the arm until it is killed. Made before the test starts a
+/// A process with a driver that moves the arm until it is killed. Construct it before the test starts a
 /// thread.
 class DriverProcess {
  public:
@@ -48,7 +48,7 @@ double base_speed(Controller & controller)
   return std::abs(controller.state().at("actual").at("velocity").at(0).get<double>());
 }
 
-/// s of simulator time until the arm stands.
+/// Simulator time until the arm is at standstill, in s.
 double time_to_rest(Controller & controller)
 {
   const double begin = controller.state().at("timestamp").get<double>();

@@ -213,7 +213,7 @@ void RtdeInterfaces::suspend_control()
   control_lock_->unlock();
 }
 
-bool RtdeInterfaces::control_suspended() const
+bool RtdeInterfaces::has_pending_control() const
 {
   const std::lock_guard lock(mutex_);
   return pending_ != nullptr;
@@ -294,7 +294,7 @@ std::optional<Locked<RTDEIOInterface>> RtdeInterfaces::io() const
   return io_ ? std::optional(Locked(io_, io_lock_, "IO interface")) : std::nullopt;
 }
 
-bool RtdeInterfaces::control_silent() const
+bool RtdeInterfaces::control_heartbeat_lost() const
 {
   constexpr std::chrono::milliseconds heartbeat_limit(50);
   const auto control = control_interface();

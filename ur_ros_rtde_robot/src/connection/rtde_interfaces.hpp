@@ -52,7 +52,7 @@ class RtdeInterfaces {
   /// Ends the control program and makes its connection pending, until start_control().
   void suspend_control();
   /// There is a pending connection.
-  bool control_suspended() const;
+  bool has_pending_control() const;
   /// Closes the active or pending connection. A command that waits in it returns. When this returns, the
   /// robot accepts another control interface.
   void close_control();
@@ -65,7 +65,7 @@ class RtdeInterfaces {
   const std::shared_ptr<InterfaceLock> & control_lock() const { return control_lock_; }
   /// The control program of the active connection has missed its heartbeat although no command delays it:
   /// another program runs in its place.
-  bool control_silent() const;
+  bool control_heartbeat_lost() const;
   /// Sends a sign of life to the control program's watchdog. Does not wait for a command under way.
   void kick_watchdog();
 

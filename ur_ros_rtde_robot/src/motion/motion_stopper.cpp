@@ -7,7 +7,7 @@
 
 #include "connection/ports.hpp"
 #include "connection/tcp_stream.hpp"
-#include "program/condition.hpp"
+#include "program/motion_blocker.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -172,7 +172,7 @@ Expected<StopReport> MotionStopper::stop(const StopOptions & options)
   if (!under_way()) {
     return report(StopMeans::nothing_moved);
   }
-  if (robot_condition(*sample) || !sample->program_running()) {
+  if (motion_blocker(*sample) || !sample->program_running()) {
     if (wait_for_standstill(options.program_stop_limit)) {
       return report(StopMeans::stopped_by_robot);
     }

@@ -1,4 +1,4 @@
-// The actions of the control program's state machine, and the status in states without an action.
+// The actions of the control program's state machine.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 
 #include "motion/motion_stopper.hpp"
 #include "program/control_program_manager.hpp"
+#include "program/program_status.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -17,9 +18,9 @@ constexpr milliseconds program_begin_limit(500);
 constexpr milliseconds program_stop_limit(1000);
 constexpr milliseconds heartbeat_wait_limit(500);
 
-RobotStatus program_stopped(std::string message)
+bool closes_interface(ProgramAction action)
 {
-  return {RobotState::stopped, ErrorCode::program_stopped, std::move(message)};
+  return action == ProgramAction::close_control || action == ProgramAction::close_interfaces;
 }
 
 /// The table asks for `action` in this state. The receiving thread may have left the state that asked for it.
@@ -48,8 +49,16 @@ ControlProgramManager::Outcome ControlProgramManager::execute_actions()
 {
   Outcome failed;
   while (const auto action = next_action()) {
-    if (auto outcome = execute(*action)) {
-      failed = std::move(outcome);
+    try {
+      if (auto outcome = execute(*action)) {
+        failed = std::move(outcome);
+      }
+    } catch (...) {
+      if (closes_interface(*action)) {  // has to be done before anything else
+        const std::lock_guard lock(mutex_);
+        actions_.insert(actions_.begin(), *action);
+      }
+      throw;
     }
   }
   return failed;
@@ -100,7 +109,7 @@ RobotStatus ControlProgramManager::interface_failed(const Error & error)
 
 ControlProgramManager::Outcome ControlProgramManager::start_program()
 {
-  if (!interfaces_.control_suspended()) {
+  if (!interfaces_.has_pending_control()) {
     set_status({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
   }
   const auto started =
@@ -212,67 +221,6 @@ ControlProgramManager::Outcome ControlProgramManager::adopt_program()
   }
   dispatch(ProgramEvent::program_adopted);
   return std::nullopt;
-}
-
-RobotStatus ControlProgramManager::explain() const
-{
-  const auto [state, observation] = snapshot();
-  return options_.control_mode == ControlMode::upload ? explain_upload(state, observation)
-                                                      : explain_urcap(state, observation);
-}
-
-RobotStatus ControlProgramManager::explain_upload(ProgramState state,
-                                                  const ProgramObservation & observation) const
-{
-  const bool in_use = state == ProgramState::in_use || state == ProgramState::in_use_after_end;
-  if (in_use && observation.program != ProgramActivity::stopped) {
-    return {RobotState::stopped, ErrorCode::robot_in_use,
-            "another driver has left the robot, but not its program: if that does not end by itself, stop it "
-            "(dashboard/stop, or on the pendant)"};
-  }
-  if (!observation.remote_control) {
-    return {RobotState::stopped, ErrorCode::not_ready,
-            "the robot is in local control and takes no program from here: choose remote control on the "
-            "pendant (enabled under Settings, System, Remote Control)"};
-  }
-  if (state == ProgramState::foreign) {
-    return program_stopped(
-        fmt::format("another program {} on the robot and has replaced the control program: stop it "
-                    "(dashboard/stop)",
-                    observation.program == ProgramActivity::playing ? "runs" : "is paused"));
-  }
-  if (state == ProgramState::idle && !options_.restart_program) {
-    return program_stopped(
-        "the control program was stopped, and restart_program is off: start the driver again");
-  }
-  return {RobotState::connecting, ErrorCode::not_ready, "starting the control program"};
-}
-
-RobotStatus ControlProgramManager::explain_urcap(ProgramState state,
-                                                 const ProgramObservation & observation) const
-{
-  constexpr const char * remedy =
-      "stop it, and start the one with the External Control node (on the pendant, or dashboard/play)";
-  switch (observation.program) {
-    case ProgramActivity::playing:
-      return program_stopped(
-          state == ProgramState::foreign
-              ? fmt::format("another program runs on the robot and has replaced the control program: {}",
-                            remedy)
-              : fmt::format(
-                    "a program runs on the robot that was started before the driver was connected: {}",
-                    remedy));
-    case ProgramActivity::paused:
-      return program_stopped(fmt::format("a program of the robot is {} and will not be resumed: {}",
-                                         to_string(receiver_.latest().value_or(Sample{}).runtime_state),
-                                         remedy));
-    case ProgramActivity::stopped:
-      break;
-  }
-  return program_stopped(
-      fmt::format("the control program does not run: start the program with the External Control node on the "
-                  "pendant, or dashboard/play (in the URCap's installation: this host's address, port {})",
-                  options_.urcap_port));
 }
 
 }  // namespace ur_ros_rtde

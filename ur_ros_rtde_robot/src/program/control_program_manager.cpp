@@ -6,7 +6,8 @@
 
 #include <utility>
 
-#include "program/condition.hpp"
+#include "program/motion_blocker.hpp"
+#include "program/program_status.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {
@@ -125,7 +126,7 @@ void ControlProgramManager::on_sample(const Sample & sample)
   const Processed now{sample.link, state_, program_activity(sample.runtime_state)};
   // A program that replaces another one leaves no trace in the runtime state.
   const bool heartbeat_lost =
-      now.state == ProgramState::running && sample.program_running() && interfaces_.control_silent();
+      now.state == ProgramState::running && sample.program_running() && interfaces_.control_heartbeat_lost();
   if (now != processed_ || heartbeat_lost) {
     const std::lock_guard lock(mutex_);
     if (sample.link == link_) {
@@ -235,7 +236,7 @@ ControlProgramManager::Outcome ControlProgramManager::examine_once()
     execute_actions();
     return sample.error();
   }
-  const auto blocker = robot_condition(*sample);
+  const auto blocker = motion_blocker(*sample);
   if (blocker) {
     dispatch(ProgramEvent::yield_rejected);
   }
@@ -310,7 +311,7 @@ ControlProgramManager::Outcome ControlProgramManager::check_robot(const std::opt
   if (blocker) {
     return stopped_by(*blocker);
   }
-  if (state == ProgramState::running || state == ProgramState::yielded) {
+  if (state == ProgramState::running || state == ProgramState::yielding || state == ProgramState::yielded) {
     return RobotStatus{RobotState::ready, ErrorCode::none, {}};
   }
   if (const auto dashboard = dashboard_.link(); !dashboard.connected) {
@@ -337,10 +338,12 @@ ControlProgramManager::Outcome ControlProgramManager::claim_robot()
   if (auto failed = execute_actions()) {
     return failed;
   }
-  if (snapshot() != before) {
+  const auto after = snapshot();
+  if (after != before) {
     return std::nullopt;
   }
-  return explain();
+  return program_status(after.first, after.second, receiver_.latest().value_or(Sample{}).runtime_state,
+                        options_);
 }
 
 std::uint64_t ControlProgramManager::request_cycle()

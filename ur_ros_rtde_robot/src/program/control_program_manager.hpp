@@ -37,7 +37,7 @@ class ControlProgramManager {
   /// Called on the manager's thread at each change of status. Set before start().
   std::function<void(const RobotStatus &)> status_function;
   void start();
-  /// Ends the thread and every wait in this object.
+  /// Ends the thread, and yield() and resume() in other threads.
   void stop();
 
   RobotStatus status() const;
@@ -78,13 +78,10 @@ class ControlProgramManager {
   tl::expected<Sample, RobotStatus> follow_link();
   /// The connection to the control program alone, and a program that must not continue.
   Outcome follow_program(bool robot_can_move);
-  /// What prevents the control program from running, except the program on the robot.
+  /// What prevents the control program from running, except the program on the robot; or that it runs.
   Outcome check_robot(const std::optional<Error> & blocker);
+  /// Starts or adopts the control program, or explains why not.
   Outcome claim_robot();
-  /// Why nothing is done in this state.
-  RobotStatus explain() const;
-  RobotStatus explain_upload(ProgramState state, const ProgramObservation & observation) const;
-  RobotStatus explain_urcap(ProgramState state, const ProgramObservation & observation) const;
 
   /// The only place where the state changes. Queues the action of the transition. Hold mutex_.
   void process(ProgramEvent event);

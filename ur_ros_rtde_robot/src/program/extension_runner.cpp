@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "program/condition.hpp"
+#include "program/motion_blocker.hpp"
 #include "ur_ros_rtde_robot/program/extension_registers.hpp"
 
 namespace ur_ros_rtde {
@@ -122,7 +122,7 @@ std::optional<Status> ExtensionRunner::look(Run & run, const ExtensionOptions & 
   if (!link.connected || !sample) {
     return failure(ErrorCode::link_lost, link.error.message);
   }
-  if (const auto condition = robot_condition(*sample)) {
+  if (const auto condition = motion_blocker(*sample)) {
     return Status(tl::unexpected(*condition));
   }
   const auto view = tracker_.view();

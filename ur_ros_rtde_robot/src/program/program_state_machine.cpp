@@ -3,131 +3,133 @@
 #include <array>
 
 namespace ur_ros_rtde {
-namespace {
+namespace program_table {
 
+// Short names for the columns of the table.
 using S = ProgramState;
 using E = ProgramEvent;
-using A = ProgramAction;
 using G = ProgramGuard;
+using A = ProgramAction;
 
-constexpr std::array transitions{
+constexpr auto transitions = std::to_array<ProgramTransition>({
     // The RTDE connection of the samples.
-    ProgramTransition{S::disconnected, E::link_established, G::always, S::unclaimed, A::none},
-    ProgramTransition{S::program_lost, E::link_established, G::always, S::orphaned, A::none},
-    ProgramTransition{S::unclaimed, E::link_lost, G::always, S::disconnected, A::close_interfaces},
-    ProgramTransition{S::orphaned, E::link_lost, G::always, S::program_lost, A::close_interfaces},
-    ProgramTransition{S::starting, E::link_lost, G::always, S::disconnected, A::close_interfaces},
-    ProgramTransition{S::running, E::link_lost, G::always, S::program_lost, A::close_interfaces},
-    ProgramTransition{S::yielding, E::link_lost, G::always, S::program_lost, A::close_interfaces},
-    ProgramTransition{S::yielded, E::link_lost, G::always, S::yielded, A::close_interfaces},
-    ProgramTransition{S::resuming, E::link_lost, G::always, S::disconnected, A::close_interfaces},
-    ProgramTransition{S::ended, E::link_lost, G::always, S::disconnected, A::close_interfaces},
-    ProgramTransition{S::idle, E::link_lost, G::always, S::disconnected, A::close_interfaces},
-    ProgramTransition{S::foreign, E::link_lost, G::always, S::disconnected, A::close_interfaces},
-    ProgramTransition{S::restarting, E::link_lost, G::always, S::disconnected, A::close_interfaces},
-    ProgramTransition{S::restart_failed, E::link_lost, G::always, S::disconnected, A::close_interfaces},
-    ProgramTransition{S::in_use, E::link_lost, G::always, S::in_use, A::close_interfaces},
-    ProgramTransition{S::in_use_after_end, E::link_lost, G::always, S::in_use, A::close_interfaces},
+    {S::disconnected, E::link_established, G::always, S::unclaimed, A::none},
+    {S::program_lost, E::link_established, G::always, S::orphaned, A::none},
+    {S::unclaimed, E::link_lost, G::always, S::disconnected, A::close_interfaces},
+    {S::orphaned, E::link_lost, G::always, S::program_lost, A::close_interfaces},
+    {S::starting, E::link_lost, G::always, S::disconnected, A::close_interfaces},
+    {S::running, E::link_lost, G::always, S::program_lost, A::close_interfaces},
+    {S::yielding, E::link_lost, G::always, S::program_lost, A::close_interfaces},
+    {S::yielded, E::link_lost, G::always, S::yielded, A::close_interfaces},
+    {S::resuming, E::link_lost, G::always, S::disconnected, A::close_interfaces},
+    {S::ended, E::link_lost, G::always, S::disconnected, A::close_interfaces},
+    {S::idle, E::link_lost, G::always, S::disconnected, A::close_interfaces},
+    {S::foreign, E::link_lost, G::always, S::disconnected, A::close_interfaces},
+    {S::restarting, E::link_lost, G::always, S::disconnected, A::close_interfaces},
+    {S::restart_failed, E::link_lost, G::always, S::disconnected, A::close_interfaces},
+    {S::in_use, E::link_lost, G::always, S::in_use, A::close_interfaces},
+    {S::in_use_after_end, E::link_lost, G::always, S::in_use, A::close_interfaces},
 
     // The control program has not run since the connection was established.
-    ProgramTransition{S::unclaimed, E::sample, G::urcap | G::stopped, S::idle, A::none},
-    ProgramTransition{S::unclaimed, E::robot_ready, G::upload | G::remote | G::stopped, S::starting,
-                      A::start_program},
-    ProgramTransition{S::unclaimed, E::robot_ready, G::upload | G::remote | G::not_stopped, S::unclaimed,
-                      A::stop_program},
-    ProgramTransition{S::unclaimed, E::inputs_in_use, G::upload, S::in_use, A::close_interfaces},
-    ProgramTransition{S::orphaned, E::sample, G::urcap | G::stopped, S::idle, A::none},
-    ProgramTransition{S::orphaned, E::robot_ready, G::upload | G::remote | G::stopped, S::starting,
-                      A::start_program},
-    ProgramTransition{S::orphaned, E::robot_ready, G::upload | G::remote | G::not_stopped, S::orphaned,
-                      A::stop_program},
-    ProgramTransition{S::orphaned, E::robot_ready, G::urcap | G::playing, S::orphaned, A::stop_program},
-    ProgramTransition{S::orphaned, E::inputs_in_use, G::upload, S::in_use, A::close_interfaces},
+    {S::unclaimed, E::sample, G::urcap | G::stopped, S::idle, A::none},
+    {S::unclaimed, E::robot_ready, G::upload | G::remote | G::stopped, S::starting, A::start_program},
+    {S::unclaimed, E::robot_ready, G::upload | G::remote | G::not_stopped, S::unclaimed, A::stop_program},
+    {S::unclaimed, E::inputs_in_use, G::upload, S::in_use, A::close_interfaces},
+    {S::orphaned, E::sample, G::urcap | G::stopped, S::idle, A::none},
+    {S::orphaned, E::robot_ready, G::upload | G::remote | G::stopped, S::starting, A::start_program},
+    {S::orphaned, E::robot_ready, G::upload | G::remote | G::not_stopped, S::orphaned, A::stop_program},
+    {S::orphaned, E::robot_ready, G::urcap | G::playing, S::orphaned, A::stop_program},
+    {S::orphaned, E::inputs_in_use, G::upload, S::in_use, A::close_interfaces},
 
     // The start.
-    ProgramTransition{S::starting, E::program_started, G::always, S::running, A::none},
-    ProgramTransition{S::starting, E::start_failed, G::always, S::unclaimed, A::none},
-    ProgramTransition{S::starting, E::start_aborted, G::always, S::unclaimed, A::none},
-    ProgramTransition{S::starting, E::inputs_in_use, G::always, S::in_use, A::close_interfaces},
+    {S::starting, E::program_started, G::always, S::running, A::none},
+    {S::starting, E::start_failed, G::always, S::unclaimed, A::none},
+    {S::starting, E::start_aborted, G::always, S::unclaimed, A::none},
+    {S::starting, E::inputs_in_use, G::always, S::in_use, A::close_interfaces},
 
     // The control program runs.
-    ProgramTransition{S::running, E::control_link_lost, G::always, S::orphaned, A::close_control},
-    ProgramTransition{S::running, E::sample, G::stopped, S::idle, A::close_control},
-    ProgramTransition{S::running, E::sample, G::paused, S::ended, A::close_control},
-    ProgramTransition{S::running, E::heartbeat_lost, G::always, S::foreign, A::close_control},
+    {S::running, E::control_link_lost, G::always, S::orphaned, A::close_control},
+    {S::running, E::sample, G::stopped, S::idle, A::close_control},
+    {S::running, E::sample, G::paused, S::ended, A::close_control},
+    {S::running, E::heartbeat_lost, G::always, S::foreign, A::close_control},
 
     // A script runs in its place.
-    ProgramTransition{S::running, E::yield_requested, G::upload, S::yielding, A::suspend_program},
-    ProgramTransition{S::yielding, E::yield_rejected, G::always, S::running, A::none},
-    ProgramTransition{S::yielding, E::yield_failed, G::always, S::unclaimed, A::close_control},
-    ProgramTransition{S::yielding, E::yield_canceled, G::always, S::unclaimed, A::close_control},
-    ProgramTransition{S::yielding, E::program_yielded, G::always, S::yielded, A::none},
-    ProgramTransition{S::yielded, E::resume_requested, G::always, S::resuming, A::none},
-    ProgramTransition{S::yielded, E::script_replaced, G::stopped, S::idle, A::close_control},
-    ProgramTransition{S::yielded, E::script_replaced, G::not_stopped, S::foreign, A::close_control},
-    ProgramTransition{S::resuming, E::robot_ready, G::remote | G::stopped, S::resuming, A::start_program},
-    ProgramTransition{S::resuming, E::robot_ready, G::remote | G::not_stopped, S::resuming, A::stop_program},
-    ProgramTransition{S::resuming, E::program_started, G::always, S::running, A::none},
-    ProgramTransition{S::resuming, E::start_failed, G::always, S::unclaimed, A::none},
-    ProgramTransition{S::resuming, E::start_aborted, G::always, S::unclaimed, A::none},
-    ProgramTransition{S::resuming, E::resume_blocked, G::always, S::unclaimed, A::none},
-    ProgramTransition{S::resuming, E::inputs_in_use, G::always, S::in_use, A::close_interfaces},
+    {S::running, E::yield_requested, G::upload, S::yielding, A::suspend_program},
+    {S::yielding, E::yield_rejected, G::always, S::running, A::none},
+    {S::yielding, E::yield_failed, G::always, S::unclaimed, A::close_control},
+    {S::yielding, E::yield_canceled, G::always, S::unclaimed, A::close_control},
+    {S::yielding, E::program_yielded, G::always, S::yielded, A::none},
+    {S::yielded, E::resume_requested, G::always, S::resuming, A::none},
+    {S::yielded, E::script_replaced, G::stopped, S::idle, A::close_control},
+    {S::yielded, E::script_replaced, G::not_stopped, S::foreign, A::close_control},
+    {S::resuming, E::robot_ready, G::remote | G::stopped, S::resuming, A::start_program},
+    {S::resuming, E::robot_ready, G::remote | G::not_stopped, S::resuming, A::stop_program},
+    {S::resuming, E::program_started, G::always, S::running, A::none},
+    {S::resuming, E::start_failed, G::always, S::unclaimed, A::none},
+    {S::resuming, E::start_aborted, G::always, S::unclaimed, A::none},
+    {S::resuming, E::resume_blocked, G::always, S::unclaimed, A::none},
+    {S::resuming, E::inputs_in_use, G::always, S::in_use, A::close_interfaces},
 
     // The control program has ended.
-    ProgramTransition{S::ended, E::sample, G::stopped, S::idle, A::none},
-    ProgramTransition{S::ended, E::sample, G::playing, S::foreign, A::none},
-    ProgramTransition{S::ended, E::inspection, G::paused, S::ended, A::stop_program},
-    ProgramTransition{S::idle, E::sample, G::upload | G::not_stopped, S::foreign, A::none},
-    ProgramTransition{S::idle, E::robot_ready, G::upload | G::restart | G::remote | G::stopped, S::restarting,
-                      A::start_program},
-    ProgramTransition{S::idle, E::inputs_in_use, G::upload, S::in_use_after_end, A::close_interfaces},
-    ProgramTransition{S::foreign, E::sample, G::stopped, S::idle, A::none},
-    ProgramTransition{S::foreign, E::inputs_in_use, G::upload, S::in_use_after_end, A::close_interfaces},
+    {S::ended, E::sample, G::stopped, S::idle, A::none},
+    {S::ended, E::sample, G::playing, S::foreign, A::none},
+    {S::ended, E::inspection, G::paused, S::ended, A::stop_program},
+    {S::idle, E::sample, G::upload | G::not_stopped, S::foreign, A::none},
+    {S::idle, E::robot_ready, G::upload | G::restart | G::remote | G::stopped, S::restarting,
+     A::start_program},
+    {S::idle, E::inputs_in_use, G::upload, S::in_use_after_end, A::close_interfaces},
+    {S::foreign, E::sample, G::stopped, S::idle, A::none},
+    {S::foreign, E::inputs_in_use, G::upload, S::in_use_after_end, A::close_interfaces},
 
     // The restart.
-    ProgramTransition{S::restarting, E::program_started, G::always, S::running, A::none},
-    ProgramTransition{S::restarting, E::start_failed, G::always, S::restart_failed, A::none},
-    ProgramTransition{S::restarting, E::start_aborted, G::always, S::idle, A::none},
-    ProgramTransition{S::restarting, E::inputs_in_use, G::always, S::in_use_after_end, A::close_interfaces},
-    ProgramTransition{S::restart_failed, E::inspection, G::stopped, S::idle, A::none},
-    ProgramTransition{S::restart_failed, E::robot_ready, G::remote | G::not_stopped, S::restart_failed,
-                      A::stop_program},
-    ProgramTransition{S::restart_failed, E::inputs_in_use, G::always, S::in_use_after_end,
-                      A::close_interfaces},
+    {S::restarting, E::program_started, G::always, S::running, A::none},
+    {S::restarting, E::start_failed, G::always, S::restart_failed, A::none},
+    {S::restarting, E::start_aborted, G::always, S::idle, A::none},
+    {S::restarting, E::inputs_in_use, G::always, S::in_use_after_end, A::close_interfaces},
+    {S::restart_failed, E::inspection, G::stopped, S::idle, A::none},
+    {S::restart_failed, E::robot_ready, G::remote | G::not_stopped, S::restart_failed, A::stop_program},
+    {S::restart_failed, E::inputs_in_use, G::always, S::in_use_after_end, A::close_interfaces},
 
     // The External Control URCap fetches the control program; the operator starts it.
-    ProgramTransition{S::idle, E::robot_ready, G::urcap | G::stopped, S::idle, A::connect_control},
-    ProgramTransition{S::idle, E::robot_ready, G::urcap | G::playing, S::idle, A::adopt_program},
-    ProgramTransition{S::idle, E::program_adopted, G::urcap, S::running, A::none},
+    {S::idle, E::robot_ready, G::urcap | G::stopped, S::idle, A::connect_control},
+    {S::idle, E::robot_ready, G::urcap | G::playing, S::idle, A::adopt_program},
+    {S::idle, E::program_adopted, G::urcap, S::running, A::none},
 
     // Another driver has the robot, or has left its program.
-    ProgramTransition{S::in_use, E::robot_ready, G::remote | G::stopped, S::starting, A::start_program},
-    ProgramTransition{S::in_use, E::robot_ready, G::not_stopped, S::in_use, A::close_interfaces},
-    ProgramTransition{S::in_use_after_end, E::robot_ready, G::restart | G::remote | G::stopped, S::restarting,
-                      A::start_program},
-    ProgramTransition{S::in_use_after_end, E::robot_ready, G::no_restart | G::stopped, S::idle, A::none},
-    ProgramTransition{S::in_use_after_end, E::robot_ready, G::not_stopped, S::in_use_after_end,
-                      A::close_interfaces},
-};
+    {S::in_use, E::robot_ready, G::remote | G::stopped, S::starting, A::start_program},
+    {S::in_use, E::robot_ready, G::not_stopped, S::in_use, A::close_interfaces},
+    {S::in_use_after_end, E::robot_ready, G::restart | G::remote | G::stopped, S::restarting,
+     A::start_program},
+    {S::in_use_after_end, E::robot_ready, G::no_restart | G::stopped, S::idle, A::none},
+    {S::in_use_after_end, E::robot_ready, G::not_stopped, S::in_use_after_end, A::close_interfaces},
+});
+
+}  // namespace program_table
+
+namespace {
 
 struct ConditionName {
-  G::Condition condition;
+  ProgramGuard::Condition condition;
   const char * name;
 };
 
 constexpr std::array condition_names{
-    ConditionName{G::upload, "upload"},           ConditionName{G::urcap, "control_urcap"},
-    ConditionName{G::restart, "restart_program"}, ConditionName{G::no_restart, "no restart_program"},
-    ConditionName{G::remote, "remote control"},   ConditionName{G::stopped, "stopped"},
-    ConditionName{G::paused, "paused"},           ConditionName{G::playing, "playing"},
-    ConditionName{G::not_stopped, "not stopped"},
+    ConditionName{ProgramGuard::upload, "upload"},
+    ConditionName{ProgramGuard::urcap, "control_urcap"},
+    ConditionName{ProgramGuard::restart, "restart_program"},
+    ConditionName{ProgramGuard::no_restart, "no restart_program"},
+    ConditionName{ProgramGuard::remote, "remote control"},
+    ConditionName{ProgramGuard::stopped, "stopped"},
+    ConditionName{ProgramGuard::paused, "paused"},
+    ConditionName{ProgramGuard::playing, "playing"},
+    ConditionName{ProgramGuard::not_stopped, "not stopped"},
 };
 
 }  // namespace
 
 std::span<const ProgramTransition> program_transitions()
 {
-  return transitions;
+  return program_table::transitions;
 }
 
 ProgramActivity program_activity(RuntimeState state)
@@ -146,18 +148,20 @@ bool ProgramStateMachine::allows(ProgramGuard guard, const ProgramObservation & 
 {
   const bool stopped = observation.program == ProgramActivity::stopped;
   const unsigned met =
-      static_cast<unsigned>(mode_ == ControlMode::upload ? G::upload : G::urcap) |
-      static_cast<unsigned>(restart_program_ ? G::restart : G::no_restart) |
-      static_cast<unsigned>(observation.remote_control ? G::remote : G::always) |
-      static_cast<unsigned>(stopped ? G::stopped : G::not_stopped) |
-      static_cast<unsigned>(observation.program == ProgramActivity::paused ? G::paused : G::always) |
-      static_cast<unsigned>(observation.program == ProgramActivity::playing ? G::playing : G::always);
+      static_cast<unsigned>(mode_ == ControlMode::upload ? ProgramGuard::upload : ProgramGuard::urcap) |
+      static_cast<unsigned>(restart_program_ ? ProgramGuard::restart : ProgramGuard::no_restart) |
+      static_cast<unsigned>(observation.remote_control ? ProgramGuard::remote : ProgramGuard::always) |
+      static_cast<unsigned>(stopped ? ProgramGuard::stopped : ProgramGuard::not_stopped) |
+      static_cast<unsigned>(observation.program == ProgramActivity::paused ? ProgramGuard::paused
+                                                                           : ProgramGuard::always) |
+      static_cast<unsigned>(observation.program == ProgramActivity::playing ? ProgramGuard::playing
+                                                                            : ProgramGuard::always);
   return (guard.conditions & ~met) == 0;
 }
 
 ProgramAction ProgramStateMachine::process(ProgramEvent event, const ProgramObservation & observation)
 {
-  for (const auto & transition : transitions) {
+  for (const auto & transition : program_table::transitions) {
     if (transition.from == state_ && transition.event == event && allows(transition.guard, observation)) {
       state_ = transition.to;
       return transition.action;
@@ -169,37 +173,37 @@ ProgramAction ProgramStateMachine::process(ProgramEvent event, const ProgramObse
 const char * to_string(ProgramState state)
 {
   switch (state) {
-    case S::disconnected:
+    case ProgramState::disconnected:
       return "disconnected";
-    case S::program_lost:
+    case ProgramState::program_lost:
       return "program_lost";
-    case S::unclaimed:
+    case ProgramState::unclaimed:
       return "unclaimed";
-    case S::orphaned:
+    case ProgramState::orphaned:
       return "orphaned";
-    case S::starting:
+    case ProgramState::starting:
       return "starting";
-    case S::running:
+    case ProgramState::running:
       return "running";
-    case S::yielding:
+    case ProgramState::yielding:
       return "yielding";
-    case S::yielded:
+    case ProgramState::yielded:
       return "yielded";
-    case S::resuming:
+    case ProgramState::resuming:
       return "resuming";
-    case S::ended:
+    case ProgramState::ended:
       return "ended";
-    case S::idle:
+    case ProgramState::idle:
       return "idle";
-    case S::foreign:
+    case ProgramState::foreign:
       return "foreign";
-    case S::restarting:
+    case ProgramState::restarting:
       return "restarting";
-    case S::restart_failed:
+    case ProgramState::restart_failed:
       return "restart_failed";
-    case S::in_use:
+    case ProgramState::in_use:
       return "in_use";
-    case S::in_use_after_end:
+    case ProgramState::in_use_after_end:
       return "in_use_after_end";
   }
   return "unknown";
@@ -208,45 +212,45 @@ const char * to_string(ProgramState state)
 const char * to_string(ProgramEvent event)
 {
   switch (event) {
-    case E::link_established:
+    case ProgramEvent::link_established:
       return "link_established";
-    case E::link_lost:
+    case ProgramEvent::link_lost:
       return "link_lost";
-    case E::control_link_lost:
+    case ProgramEvent::control_link_lost:
       return "control_link_lost";
-    case E::sample:
+    case ProgramEvent::sample:
       return "sample";
-    case E::heartbeat_lost:
+    case ProgramEvent::heartbeat_lost:
       return "heartbeat_lost";
-    case E::inspection:
+    case ProgramEvent::inspection:
       return "inspection";
-    case E::robot_ready:
+    case ProgramEvent::robot_ready:
       return "robot_ready";
-    case E::program_started:
+    case ProgramEvent::program_started:
       return "program_started";
-    case E::start_failed:
+    case ProgramEvent::start_failed:
       return "start_failed";
-    case E::start_aborted:
+    case ProgramEvent::start_aborted:
       return "start_aborted";
-    case E::program_adopted:
+    case ProgramEvent::program_adopted:
       return "program_adopted";
-    case E::inputs_in_use:
+    case ProgramEvent::inputs_in_use:
       return "inputs_in_use";
-    case E::yield_requested:
+    case ProgramEvent::yield_requested:
       return "yield_requested";
-    case E::yield_rejected:
+    case ProgramEvent::yield_rejected:
       return "yield_rejected";
-    case E::yield_failed:
+    case ProgramEvent::yield_failed:
       return "yield_failed";
-    case E::yield_canceled:
+    case ProgramEvent::yield_canceled:
       return "yield_canceled";
-    case E::program_yielded:
+    case ProgramEvent::program_yielded:
       return "program_yielded";
-    case E::resume_requested:
+    case ProgramEvent::resume_requested:
       return "resume_requested";
-    case E::resume_blocked:
+    case ProgramEvent::resume_blocked:
       return "resume_blocked";
-    case E::script_replaced:
+    case ProgramEvent::script_replaced:
       return "script_replaced";
   }
   return "unknown";
@@ -255,21 +259,21 @@ const char * to_string(ProgramEvent event)
 const char * to_string(ProgramAction action)
 {
   switch (action) {
-    case A::none:
+    case ProgramAction::none:
       return "none";
-    case A::close_control:
+    case ProgramAction::close_control:
       return "close_control";
-    case A::close_interfaces:
+    case ProgramAction::close_interfaces:
       return "close_interfaces";
-    case A::stop_program:
+    case ProgramAction::stop_program:
       return "stop_program";
-    case A::start_program:
+    case ProgramAction::start_program:
       return "start_program";
-    case A::connect_control:
+    case ProgramAction::connect_control:
       return "connect_control";
-    case A::adopt_program:
+    case ProgramAction::adopt_program:
       return "adopt_program";
-    case A::suspend_program:
+    case ProgramAction::suspend_program:
       return "suspend_program";
   }
   return "unknown";

@@ -51,7 +51,7 @@ std::optional<Error> check(const ScriptOptions & options)
   return std::nullopt;
 }
 
-/// Resumes the control program at the end of its life.
+/// Resumes the control program on destruction.
 class ResumeGuard {
  public:
   ResumeGuard(ControlProgramManager & manager, const ScriptWatch & watch) : manager_(manager), watch_(watch)
@@ -87,7 +87,7 @@ ScriptRunner::ScriptRunner(const RobotOptions & options, const StateReceiver & s
 {
 }
 
-/// The watchdog of the control program, for this one.
+/// The script gets the watchdog of the control program.
 std::string ScriptRunner::preamble() const
 {
   if (options_.watchdog_frequency == 0.0) {
@@ -116,7 +116,7 @@ Status ScriptRunner::stop() const
   if (stopped && wait_for_standstill(true)) {
     return {};
   }
-  interfaces_.close_control();  // no more signs of life: the watchdog's turn
+  interfaces_.close_control();  // ends the signs of life: the watchdog stops the program
   if (wait_for_standstill(true)) {
     return {};
   }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "program/condition.hpp"
+#include "program/motion_blocker.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -229,7 +229,7 @@ bool ScriptWatch::has_to_end()
         fmt::format("another program, `{}`, took the script's place", replaced_by_));
     return true;
   }
-  const auto condition = options_.kind == ScriptKind::program ? robot_condition(*sample) : std::nullopt;
+  const auto condition = options_.kind == ScriptKind::program ? motion_blocker(*sample) : std::nullopt;
   if (condition) {
     end(ScriptEnd::robot_stopped, condition->code, condition->message);
     return true;

@@ -1,11 +1,11 @@
-#include "program/condition.hpp"
+#include "program/motion_blocker.hpp"
 
 #include <fmt/format.h>
 
 namespace ur_ros_rtde {
 namespace {
 
-std::optional<Error> safety_condition(const Sample & sample)
+std::optional<Error> safety_blocker(const Sample & sample)
 {
   const auto safety = sample.safety();
   if (safety.emergency_stopped || safety.robot_emergency_stopped || safety.system_emergency_stopped) {
@@ -42,9 +42,9 @@ std::optional<Error> safety_condition(const Sample & sample)
 
 }  // namespace
 
-std::optional<Error> robot_condition(const Sample & sample)
+std::optional<Error> motion_blocker(const Sample & sample)
 {
-  if (auto safety = safety_condition(sample)) {
+  if (auto safety = safety_blocker(sample)) {
     return safety;
   }
   switch (sample.robot_mode) {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "program/program_state_machine.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
+
+namespace ur_ros_rtde {
+
+/// Why the control program does not run although the robot could run it: what the program on the robot
+/// prevents, and the remedy. `runtime` is the runtime state of the newest sample.
+RobotStatus program_status(ProgramState state, const ProgramObservation & observation, RuntimeState runtime,
+                           const RobotOptions & options);
+
+/// RobotState::stopped with ErrorCode::program_stopped.
+RobotStatus program_stopped(std::string message);
+
+}  // namespace ur_ros_rtde
