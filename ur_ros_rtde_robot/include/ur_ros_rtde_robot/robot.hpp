@@ -125,7 +125,7 @@ class Robot {
   bool wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop = {}) const;
 
   /// What keeps a motion from going on, now: a safety stop, a stopped program, a lost link; success when
-  /// nothing does. From the newest package, without waiting for the supervisor's next look.
+  /// nothing does. From the newest package, without waiting for the next change of status().
   Status motion_possible() const;
 
   /// Taken before a motion command …
