@@ -96,8 +96,8 @@ Locked<ur_rtde::DashboardClient> Robot::dashboard() const
   return impl_->dashboard.dashboard();
 }
 
-Expected<std::string> Robot::ask_dashboard(const std::string & line, std::chrono::milliseconds limit,
-                                           const std::stop_token & stop) const
+Expected<std::string> Robot::query_dashboard(const std::string & line, std::chrono::milliseconds limit,
+                                             const std::stop_token & stop) const
 {
   return impl_->dashboard.request(line, limit, stop);
 }
@@ -174,7 +174,7 @@ bool Robot::moving() const
   return !view.at_rest || view.operating();
 }
 
-bool Robot::guided() const
+bool Robot::in_freedrive() const
 {
   using Control = ur_rtde::RTDEControlInterface;
   const auto control = impl_->interfaces.control_interface();

@@ -65,7 +65,7 @@ TEST_P(TheUpperRange, carries_extensions_with_parameters_and_results)
 TEST_P(TheUpperRange, ends_an_extension_that_moves_the_arm)
 {
   ExtensionOptions options;
-  options.interrupted = [&]() -> std::optional<Error> {
+  options.stop_reason = [&]() -> std::optional<Error> {
     return turning() ? std::optional(Error{ErrorCode::canceled, "enough"}) : std::nullopt;
   };
   EXPECT_EQ(robot->run_extension("turns", options).error().code, ErrorCode::canceled);

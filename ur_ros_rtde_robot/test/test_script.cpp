@@ -123,7 +123,7 @@ TEST_F(ScriptTest, StopsTheArmWhenCanceled)
 {
   make_both();
   ScriptOptions options;
-  options.interrupted = [&]() -> std::optional<Error> {
+  options.stop_reason = [&]() -> std::optional<Error> {
     return turns() ? std::optional(Error{ErrorCode::canceled, "enough"}) : std::nullopt;
   };
   recording = true;
@@ -154,7 +154,7 @@ TEST_F(ScriptTest, DoesNotCountAsFinishedWhenStoppedOnThePendant)
   make_both();
   ScriptOptions options;
   std::atomic<bool> told{false};
-  options.interrupted = [&]() -> std::optional<Error> {
+  options.stop_reason = [&]() -> std::optional<Error> {
     if (turns() && !told.exchange(true)) {
       controller.control({{"command", "stop_program"}});
     }
@@ -171,7 +171,7 @@ TEST_F(ScriptTest, LeavesAProgramAloneThatReplacesTheScript)
   make_both();
   ScriptOptions options;
   std::atomic<bool> told{false};
-  options.interrupted = [&]() -> std::optional<Error> {
+  options.stop_reason = [&]() -> std::optional<Error> {
     if (turns() && !told.exchange(true)) {
       controller.control(
           {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
@@ -193,7 +193,7 @@ TEST_F(ScriptTest, EndsInAProtectiveStopWithoutResuming)
   make_both();
   ScriptOptions options;
   std::atomic<bool> told{false};
-  options.interrupted = [&]() -> std::optional<Error> {
+  options.stop_reason = [&]() -> std::optional<Error> {
     if (turns() && !told.exchange(true)) {
       controller.control({{"command", "protective_stop"}, {"reason", "test"}});
     }
@@ -224,7 +224,7 @@ TEST_F(ScriptTest, EndsWithTheLink)
   make_both();
   ScriptOptions options;
   std::atomic<bool> told{false};
-  options.interrupted = [&]() -> std::optional<Error> {
+  options.stop_reason = [&]() -> std::optional<Error> {
     if (turns() && !told.exchange(true)) {
       controller.control({{"command", "drop_links"}});
     }
@@ -243,7 +243,7 @@ TEST_F(ScriptTest, IsStoppedByItsWatchdogWithoutSignsOfLife)
   make_both();
   ScriptOptions options;
   std::atomic<bool> told{false};
-  options.interrupted = [&]() -> std::optional<Error> {
+  options.stop_reason = [&]() -> std::optional<Error> {
     if (turns() && !told.exchange(true)) {
       controller.control({{"command", "stall_links"}, {"which", "rtde"}});
       EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
@@ -289,7 +289,7 @@ TEST_F(ScriptTest, LeavesTheRobotUsableWhenACallbackThrows)
 {
   make_both();
   ScriptOptions options;
-  options.interrupted = [&]() -> std::optional<Error> {
+  options.stop_reason = [&]() -> std::optional<Error> {
     if (turns()) {
       throw std::runtime_error("thrown");
     }

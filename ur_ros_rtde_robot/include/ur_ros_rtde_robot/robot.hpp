@@ -31,45 +31,46 @@ class RTDEReceiveInterface;
 namespace ur_ros_rtde {
 
 enum class ControlMode {
-  upload,         ///< ur_rtde's control script is sent to the controller; needs remote control (e-Series)
-  control_urcap,  ///< the External Control URCap fetches it when its program is played on the robot
+  upload,         ///< the driver sends ur_rtde's control script; requires remote control on e-Series
+  control_urcap,  ///< the External Control URCap fetches the script when its program is played on the robot
 };
 
 constexpr double min_watchdog_frequency = 1.0;  // Hz
-/// A CB3 controller sends a package, and gets a sign of life, every 8 ms: two within 1/50 s.
+/// A CB3 controller sends a package, and receives a heartbeat, every 8 ms: two within 1/50 s.
 constexpr double max_watchdog_frequency = 50.0;  // Hz
 
 struct RobotOptions {
   std::string address;
-  /// Hz, of the samples; see StateReceiverOptions.
+  /// Hz, rate of the samples; see StateReceiverOptions.
   double frequency = 0.0;
   ControlMode control_mode = ControlMode::upload;
   std::uint16_t urcap_port = 50002;
-  /// General purpose registers 24-47 instead of 0-23: beside a fieldbus, which has the lower ones. From
-  /// PolyScope 5.23 on without the mass matrix and the Jacobians, which need registers of both ranges.
+  /// Use the general purpose registers 24-47 instead of 0-23, for example if a fieldbus uses the lower range.
+  /// The mass matrix and the Jacobians of PolyScope 5.23 and later need registers of both ranges and are not
+  /// available then.
   bool upper_range_registers = false;
-  /// Of the arm, see arm_limits(); empty: as the controller says. One that contradicts the controller keeps
-  /// the arm from being moved.
+  /// Model of the arm, see arm_limits(); empty: as reported by the controller. If it contradicts the
+  /// controller, motions are refused.
   std::string model;
   std::chrono::milliseconds connect_timeout{500};
   std::chrono::milliseconds retry_interval{250};
   std::chrono::milliseconds silence_limit{100};
-  /// The robot program stops the arm when it has had no sign of life from here for 1/watchdog_frequency s.
-  /// Hz, min_watchdog_frequency to max_watchdog_frequency; 0: no watchdog.
+  /// Hz, min_watchdog_frequency to max_watchdog_frequency; 0: no watchdog. The robot program stops the arm if
+  /// it receives no heartbeat from this process for 1/watchdog_frequency s.
   double watchdog_frequency = 10.0;
-  /// Start the control program again when it was stopped (with control_urcap: by a lost link) and the robot
-  /// is ready for it; never what it was doing.
+  /// Restart the control program after it was stopped (with control_urcap: by a lost connection), as soon as
+  /// the robot is ready. An interrupted motion is never resumed.
   bool restart_program = true;
-  /// SCHED_FIFO, 1 to 99, of what answers each package with a target: the thread that follows the packages,
-  /// and those that send streams of targets; 0: none. Said in the log when not allowed.
+  /// SCHED_FIFO priority, 1 to 99, of the threads that answer each package with a target: the receiving
+  /// thread and the threads that send a sequence of targets. 0: none. Logs a warning if not permitted.
   int realtime_priority = 0;
 };
 
 enum class RobotState {
   disconnected,  ///< no controller at the address
-  connecting,    ///< there is one; interfaces and control program are being set up
-  ready,         ///< takes motion commands, or runs a script that was sent in their place
-  stopped,       ///< connected, but it cannot move: see the cause
+  connecting,    ///< controller found; interfaces and control program are being set up
+  ready,         ///< accepts motion commands, or runs a script in place of the control program
+  stopped,       ///< connected, but unable to move; see the cause
 };
 
 const char * to_string(RobotState state);
@@ -77,100 +78,101 @@ const char * to_string(RobotState state);
 struct RobotStatus {
   RobotState state = RobotState::disconnected;
   ErrorCode cause = ErrorCode::none;
-  /// What is the matter and what to do about it; empty when ready.
+  /// The problem and its remedy; empty if ready.
   std::string message;
 };
 
-/// The robot: ur_rtde's four interfaces, connected in the background in any power-up order and again after a
-/// reboot, a pulled cable, a stopped program; and what the commands share: lock, motion tracking, stop,
-/// arbiter. All methods are thread-safe. Destruction stops a motion under way, ends the control program and
-/// joins all threads.
+/// One robot. Connects ur_rtde's four interfaces in the background, in any power-up order, and reconnects
+/// them after a reboot, a pulled cable or a stopped program. Provides the functions that commands share:
+/// locking, motion tracking, stopping and arbitration. All methods are thread-safe. The destructor stops the
+/// current motion, ends the control program and joins all threads.
 class Robot {
  public:
-  /// Throws std::invalid_argument for options out of range; never for the network's sake.
+  /// Throws std::invalid_argument if an option is out of range. Network problems do not throw.
   explicit Robot(RobotOptions options, LogFunction log = {});
   ~Robot();
   Robot(const Robot &) = delete;
   Robot & operator=(const Robot &) = delete;
 
-  /// Each change of status once, in order, on a thread of the robot. Set before start().
+  /// Called once per change of status, in order, on a thread of the robot. Set before start().
   void on_status(std::function<void(const RobotStatus &)> function);
-  /// Each package on the receiving thread: be brief. Set before start().
+  /// Called with each package on the receiving thread; must return quickly. Set before start().
   void on_sample(std::function<void(const Sample &)> function);
   void start();
 
   RobotStatus status() const;
-  /// Refused with the status' cause and message.
+  /// Success if the robot accepts motion commands; else cause and message of the status.
   Status ready_to_move() const;
   Status wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop = {}) const;
   std::optional<ControllerVersion> version() const;
-  /// Of the arm's model. Before the controller has told which that is, and when it does not: what every model
-  /// can do.
+  /// Limits of the arm's model. While the model is unknown: the limits that all models have in common.
   ArmLimits limits() const;
   int realtime_priority() const;
 
-  /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) when the interface is
-  /// not there.
+  /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) if the interface is
+  /// unavailable.
   Locked<ur_rtde::RTDEControlInterface> control() const;
   Locked<ur_rtde::RTDEReceiveInterface> receive() const;
   Locked<ur_rtde::RTDEIOInterface> io() const;
   Locked<ur_rtde::DashboardClient> dashboard() const;
 
-  /// The answer of the dashboard server to one line, without its end. Over a connection of its own: one that
-  /// is kept may have been closed by the robot meanwhile.
-  Expected<std::string> ask_dashboard(const std::string & line, std::chrono::milliseconds limit,
-                                      const std::stop_token & stop = {}) const;
+  /// Sends a line to the dashboard server and returns its answer without the line end. Uses a separate
+  /// connection, since the robot may have closed a persistent one.
+  Expected<std::string> query_dashboard(const std::string & line, std::chrono::milliseconds limit,
+                                        const std::stop_token & stop = {}) const;
 
+  /// The newest sample; none before the first.
   std::optional<Sample> latest() const;
+  /// See StateReceiver::wait_for_next().
   bool wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop = {}) const;
 
-  /// What keeps a motion from going on, now: a safety stop, a stopped program, a lost link; success when
-  /// nothing does. From the newest package, without waiting for the next change of status().
+  /// Success if a motion can continue now; else the reason why not: a safety stop, a stopped program, a lost
+  /// connection. Evaluates the newest package, so it may be ahead of status().
   Status motion_possible() const;
 
-  /// Taken before a motion command …
+  /// The motion state before a command, for motion_progress().
   MotionMark mark_motion() const;
-  /// … tells afterwards how far it is. For commands without an asynchronous operation (speed_l, servo_j) only
-  /// at_rest counts.
+  /// Progress of the motion since `mark`. Commands without an asynchronous operation (speed_l, servo_j) only
+  /// change at_rest.
   MotionProgress motion_progress(const MotionMark & mark) const;
-  /// Any joint moves, or an asynchronous operation is under way.
+  /// True if a joint moves or an asynchronous operation is running.
   bool moving() const;
-  /// Freedrive or teach mode is on: somebody may be moving the arm by hand.
-  bool guided() const;
-  /// From now on the control program stops the arm when it has had no sign of life for 1/frequency s (Hz,
-  /// min_watchdog_frequency to max_watchdog_frequency), until it is started again: then the limit is
+  /// True in freedrive or teach mode, in which an operator may move the arm by hand.
+  bool in_freedrive() const;
+  /// Makes the control program stop the arm if it receives no heartbeat for 1/frequency s (Hz,
+  /// min_watchdog_frequency to max_watchdog_frequency). A restarted control program uses
   /// RobotOptions::watchdog_frequency again.
   Status set_watchdog(double frequency);
 
-  /// Whatever moves: decelerates, waits for standstill by actual joint velocities. If that does not work,
-  /// stops the program by way of the dashboard server. An error means that nobody knows whether the arm
-  /// stands.
+  /// Decelerates any motion and waits for standstill, determined from the actual joint velocities. If that
+  /// fails, stops the program through the dashboard server. On error, standstill is not confirmed.
   Expected<StopReport> stop_motion(const StopOptions & options = {});
 
-  /// Sends `script` to the controller and waits for its end, however that comes. `script` is a whole program
-  /// (`def … end`, or `sec … end` for a secondary one) or the body of one, which is put into a function of
-  /// its own. A script that must end early, or late, is stopped: the arm decelerates.
+  /// Sends `script` to the controller and waits until it has ended. `script` is a complete program
+  /// (`def … end`, or `sec … end` for a secondary one) or a function body, which is wrapped in a function. If
+  /// ScriptOptions::stop_reason or the limit ends the script, it is stopped and the arm decelerates.
   ///
-  /// A program replaces the control program (with control_urcap: not_supported): hold Resource::script.
-  /// Meanwhile status() stays ready, control() throws RobotError (busy), and the controller ends the program
-  /// when this process gives no sign of life (RobotOptions::watchdog_frequency). On return the control
-  /// program runs again, unless the robot is stopped or the link is lost.
+  /// A program replaces the control program (with control_urcap: not_supported); the caller must hold
+  /// Resource::script. While it runs, status() stays ready, control() throws RobotError (busy), and the
+  /// controller ends the program if this process sends no heartbeat (RobotOptions::watchdog_frequency). The
+  /// control program runs again on return, unless the robot is stopped or the connection is lost.
   ScriptReport run_script(const std::string & script, const ScriptOptions & options = {});
 
-  /// What the control program gets in addition. Set before start(). The sentences tell of each that is left
-  /// out, and why; one that the controller does not take (a function that it does not have, …) is left out
-  /// later, with a message in the log.
+  /// Adds extensions to the control program. Set before start(). Returns one message per omitted extension,
+  /// with the reason. An extension that the controller rejects later (for example because it lacks a
+  /// function) is omitted then, with a log message.
   std::vector<std::string> set_extensions(const std::vector<ScriptExtension> & extensions);
-  /// not_supported, with the reason, when it was left out.
+  /// not_supported, with the reason, if the extension was omitted.
   Status has_extension(const std::string & name) const;
-  /// Runs an extension and waits for its end. One that has to end early is ended: a motion of its
-  /// decelerates. Hold Resource::motion. rejected_by_robot names the line of its snippet that failed.
+  /// Runs an extension and waits for its end. If ExtensionOptions::stop_reason or the limit ends it, its
+  /// motion decelerates. The caller must hold Resource::motion. If the snippet fails, the error is
+  /// rejected_by_robot and names the line.
   Status run_extension(const std::string & name, const ExtensionOptions & options = {});
-  /// General purpose registers 19 to 22, without the offset of the upper range: an extension's parameters.
-  /// Its results: Sample::output_int_registers, output_double_registers.
+  /// Writes a parameter of an extension: general purpose register 19 to 22, without the offset of the upper
+  /// range. Sample::output_int_registers and output_double_registers contain the results.
   Status set_input_register(int index, std::int32_t value);
   Status set_input_register(int index, double value);
-  /// What the numbers of registers begin at: 24 in the upper range, else 0.
+  /// Number of the first register in use: 24 in the upper range, else 0.
   int register_offset() const;
 
   Arbiter & arbiter();

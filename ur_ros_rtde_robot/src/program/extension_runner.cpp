@@ -132,8 +132,8 @@ std::optional<Status> ExtensionRunner::look(Run & run, const ExtensionOptions & 
   if (sample->output_double_registers[acknowledgement] == run.id) {
     return Status();
   }
-  if (options.interrupted) {
-    if (const auto why = options.interrupted()) {
+  if (options.stop_reason) {
+    if (const auto why = options.stop_reason()) {
       return Status(tl::unexpected(*why));
     }
   }

@@ -234,8 +234,8 @@ bool ScriptWatch::has_to_end()
     end(ScriptEnd::robot_stopped, condition->code, condition->message);
     return true;
   }
-  if (options_.interrupted) {
-    if (const auto why = options_.interrupted()) {
+  if (options_.stop_reason) {
+    if (const auto why = options_.stop_reason()) {
       end(ScriptEnd::interrupted, why->code, why->message);
       return true;
     }

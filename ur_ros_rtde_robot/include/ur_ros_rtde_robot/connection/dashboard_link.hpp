@@ -21,41 +21,42 @@ struct DashboardLinkOptions {
   std::string address;
   std::chrono::milliseconds connect_timeout{500};
   std::chrono::milliseconds retry_interval{500};
-  /// How often an idle connection is asked for a sign of life.
+  /// Interval at which the connection is checked with a query.
   std::chrono::milliseconds heartbeat{1000};
 };
 
-/// A connection to the dashboard server that comes back by itself. All methods are thread-safe.
+/// A connection to the dashboard server that reconnects by itself. All methods are thread-safe.
 class DashboardLink {
  public:
-  /// Throws std::invalid_argument for an empty address; never for the network's sake.
+  /// Throws std::invalid_argument for an empty address. Network problems do not throw.
   explicit DashboardLink(DashboardLinkOptions options, LogFunction log = {});
   ~DashboardLink();
   DashboardLink(const DashboardLink &) = delete;
   DashboardLink & operator=(const DashboardLink &) = delete;
 
-  /// Called on the link's thread when the connection comes or goes. Set before start().
+  /// Called on the background thread when the connection is established or lost. Must not throw. Set before
+  /// start().
   void on_link(std::function<void(const LinkStatus &)> function);
   void start();
-  /// Ends the thread and with it all callbacks; takes as long as a step of connecting at most. The destructor
-  /// does it, too.
+  /// Joins the background thread; no callback runs afterwards. Takes at most as long as one
+  /// connection attempt. Called by the destructor.
   void stop();
 
   LinkStatus link() const;
-  /// From PolyScope 5.6 on; refreshed with each heartbeat. None: unknown, or the controller has no such
-  /// setting.
+  /// Updated with each heartbeat. None if unknown or if the controller has no such setting (before PolyScope
+  /// 5.6).
   std::optional<bool> in_remote_control() const;
-  /// PolyScope's; of the controller last connected to.
+  /// PolyScope version of the last connected controller.
   std::optional<ControllerVersion> version() const;
 
   /// Throws RobotError (link_lost, with the cause) without a connection.
   Locked<ur_rtde::DashboardClient> dashboard() const;
-  /// Runs `function`; whatever it throws becomes the error: rejected_by_robot with the robot's answer, or
-  /// link_lost (and the connection is made anew).
+  /// Runs `function`. An exception becomes the error: rejected_by_robot with the robot's answer, or link_lost
+  /// after which the connection is re-established.
   Status call(const std::function<void(ur_rtde::DashboardClient &)> & function);
-  /// Sends a line and returns the answer, on a connection of its own: for what takes the robot its time
-  /// (loading a program, a report) while others ask on. Errors: link_lost; timeout, when `limit` has passed;
-  /// canceled, when stop is requested.
+  /// Sends a line on a separate connection and returns the answer, so that requests which take long (loading
+  /// a program, a report) do not block others. Errors: link_lost; timeout after `limit`; canceled if a stop
+  /// is requested.
   Expected<std::string> request(const std::string & line, std::chrono::milliseconds limit,
                                 const std::stop_token & stop = {}) const;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Definitions of ur_rtde's interfaces, for calls through Robot::control(), Robot::io() and the like.
+// Complete types of ur_rtde's interfaces. Include this to call functions through Robot::control() etc.
 #include <ur_rtde/dashboard_client.h>
 #include <ur_rtde/rtde_control_interface.h>
 #include <ur_rtde/rtde_io_interface.h>

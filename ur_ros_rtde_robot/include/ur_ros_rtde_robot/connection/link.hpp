@@ -6,14 +6,14 @@
 
 namespace ur_ros_rtde {
 
-/// One connection to the controller, looked after in the background.
+/// Status of a connection to the controller that is kept up in the background.
 struct LinkStatus {
   bool connected = false;
-  /// Why not: what happened, with the address; empty while connected or before the first try has ended.
+  /// Reason for the missing connection, with the address; empty while connected.
   Error error;
 };
 
-/// What a controller says of itself over RTDE.
+/// Version of the controller software, as reported over RTDE.
 struct ControllerVersion {
   unsigned major = 0;  ///< 3: CB3, 5: e-Series and UR-Series, 10: PolyScope X
   unsigned minor = 0;
@@ -21,7 +21,7 @@ struct ControllerVersion {
   unsigned build = 0;
 
   bool cb3() const { return major == 3; }
-  /// Hz, of the control cycle and therefore of RTDE.
+  /// Hz, rate of the control cycle, which is the highest RTDE rate.
   double frequency() const { return cb3() ? 125.0 : 500.0; }
 };
 

@@ -10,12 +10,12 @@
 
 namespace ur_ros_rtde {
 
-/// A recursive lock whose wait has a limit, given in the order of asking: a thread that calls in a loop does
-/// not keep the others out. (std::recursive_timed_mutex waits with pthread_mutex_clocklock, which
-/// ThreadSanitizer of the compilers we support does not know.)
+/// A recursive mutex with timeout that is granted in order of request, so that a thread which locks it in a
+/// loop does not starve others. (std::recursive_timed_mutex uses pthread_mutex_clocklock, which the
+/// ThreadSanitizer of the supported compilers does not know.)
 class InterfaceLock {
  public:
-  /// False when another thread still held it after `limit`.
+  /// False if another thread still holds the lock after `limit`.
   bool try_lock_for(std::chrono::milliseconds limit);
   void unlock();
 
@@ -27,15 +27,15 @@ class InterfaceLock {
   unsigned depth_ = 0;
 };
 
-/// Takes `lock`, waiting up to `limit`; throws RobotError (busy) naming `what` when it cannot be had.
+/// Locks `lock`; throws RobotError (busy), which names `what`, if that takes longer than `limit`.
 std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> acquire(InterfaceLock & lock, const char * what,
                                                                   std::chrono::milliseconds limit);
 
-/// One of ur_rtde's interfaces, none of which is thread-safe. `operator->` holds the interface's lock for one
-/// call (execute-around pointer): `robot.control()->moveL(pose, speed, acceleration, true);` A call that
-/// finds another thread's call still running after `limit` throws RobotError (busy). The interface stays
-/// alive while a Locked refers to it, but may lose its connection: get a new one from the robot for each use,
-/// do not keep it.
+/// Thread-safe access to one of ur_rtde's interfaces, which are not thread-safe themselves. `operator->`
+/// holds the interface's lock for one call (execute-around pointer): `robot.control()->moveL(pose, speed,
+/// acceleration, true);` A call throws RobotError (busy) if the call of another thread is still running after
+/// `limit`. The interface stays alive while a Locked refers to it, but may lose its connection: get a Locked
+/// from the robot for each use instead of storing it.
 template <class T>
 class Locked {
  public:
@@ -60,8 +60,8 @@ class Locked {
   }
 
   Call operator->() const { return Call(*this); }
-  /// Holds the lock for as long as the returned value lives, for several calls that belong together. Never
-  /// wait meanwhile.
+  /// Holds the lock for the lifetime of the returned value, for several calls that belong together. Do not
+  /// wait while holding it.
   Call hold() const { return Call(*this); }
 
  private:

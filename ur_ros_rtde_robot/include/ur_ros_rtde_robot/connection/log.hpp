@@ -7,7 +7,7 @@ namespace ur_ros_rtde {
 
 enum class LogLevel { debug, info, warn, error };
 
-/// Receives what the robot side has to say, from any of its threads. It says each thing once, not once a
+/// Receives log messages from any thread of this package. A lasting condition is logged once, not once per
 /// cycle.
 using LogFunction = std::function<void(LogLevel, const std::string &)>;
 

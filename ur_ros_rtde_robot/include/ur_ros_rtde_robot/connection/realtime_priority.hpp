@@ -6,15 +6,16 @@
 
 namespace ur_ros_rtde {
 
-/// For ur_rtde's constructors: they must not change the priority of our thread, as they would, to SCHED_FIFO
-/// 90, on a real-time kernel.
+/// Argument for ur_rtde's constructors: without it they set the priority of the calling thread to SCHED_FIFO
+/// 90 on a real-time kernel.
 inline constexpr int keep_priority = -1;
 
-/// The calling thread, and the threads that it starts from now on, under SCHED_FIFO (sched(7)) with
-/// `priority`, 1 to 99; 0 changes nothing. Refused when this process may not: the error tells what to do.
+/// Schedules the calling thread, and the threads that it starts later, under SCHED_FIFO (sched(7)) with
+/// `priority`, 1 to 99; 0 changes nothing. not_supported, with the remedy, if this process lacks permission.
 Status set_realtime_priority(int priority);
 
-/// The same for the calling thread alone, while this lives; it goes on as it was when it may not.
+/// Raises the priority of the calling thread alone, for the lifetime of this object. Changes nothing if this
+/// process lacks permission.
 class RealtimePriority {
  public:
   explicit RealtimePriority(int priority);

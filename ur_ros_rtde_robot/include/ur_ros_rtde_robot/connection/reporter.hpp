@@ -7,7 +7,7 @@
 
 namespace ur_ros_rtde {
 
-/// Logs, and logs a condition that lasts only once: when it begins, and when its text changes.
+/// Writes log messages. once() logs a lasting condition when it begins and when its text changes.
 class Reporter {
  public:
   explicit Reporter(LogFunction log) : log_(std::move(log)) {}
@@ -20,17 +20,17 @@ class Reporter {
   }
   void once(LogLevel level, const std::string & text)
   {
-    if (text != said_) {
-      said_ = text;
+    if (text != last_) {
+      last_ = text;
       say(level, text);
     }
   }
-  /// The condition is over: the next `once` is said even if its text is the same.
-  void forget() { said_.clear(); }
+  /// Ends the condition: the next once() logs even if the text is the same.
+  void forget() { last_.clear(); }
 
  private:
   LogFunction log_;
-  std::string said_;
+  std::string last_;
 };
 
 }  // namespace ur_ros_rtde

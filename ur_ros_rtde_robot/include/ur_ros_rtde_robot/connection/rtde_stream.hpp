@@ -11,19 +11,20 @@
 
 namespace ur_ros_rtde {
 
-/// Any RTDE outputs of a controller, on a connection of their own: also those that a Sample does not hold.
-/// Numbers of all types are given as doubles, which is exact but for integers beyond 2^53; BOOL is 0 or 1.
+/// Receives arbitrary RTDE outputs of a controller, including those that are not part of Sample, over a
+/// separate connection. Values of all types are returned as doubles, which is exact except for integers
+/// beyond 2^53; BOOL is 0 or 1.
 class RtdeStream {
  public:
   using Clock = std::chrono::steady_clock;
 
   struct Field {
     std::string name;
-    std::size_t size;  ///< numbers: 6 of "actual_q"
+    std::size_t size;  ///< number of values: 6 for "actual_q"
   };
 
-  /// `frequency`: Hz; 0, or more than the controller can: what it can. `limit`: for each step of connecting.
-  /// Errors: link_lost; not_supported, naming the fields that this controller does not have.
+  /// `frequency`: Hz; 0 or a rate above the controller's maximum selects the maximum. `limit`: timeout of
+  /// each step of connecting. Errors: link_lost; not_supported, naming the fields that this controller lacks.
   static Expected<RtdeStream> open(const std::string & address, const std::vector<std::string> & fields,
                                    double frequency,
                                    std::chrono::milliseconds limit = std::chrono::milliseconds(500));
@@ -31,15 +32,15 @@ class RtdeStream {
   RtdeStream & operator=(RtdeStream &&) noexcept;
   ~RtdeStream();
 
-  /// In the order in which they were asked for.
+  /// In the requested order.
   const std::vector<Field> & fields() const;
-  /// Numbers in a package.
+  /// Number of values in a package.
   std::size_t width() const;
-  /// Hz, agreed.
+  /// Hz, as agreed with the controller.
   double frequency() const;
 
-  /// Waits for the next package and writes its numbers, width() of them, one field after the other; false
-  /// when there was none until the deadline. Allocates nothing once it runs. Errors: link_lost.
+  /// Waits for the next package and writes its width() values, one field after the other; false if none
+  /// arrives before the deadline. Does not allocate in steady state. Errors: link_lost.
   Expected<bool> next(std::span<double> numbers, Clock::time_point deadline);
 
  private:

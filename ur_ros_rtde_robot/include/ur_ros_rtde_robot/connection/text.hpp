@@ -5,9 +5,9 @@
 
 namespace ur_ros_rtde {
 
-/// What came over a link as text that can be sent on: UTF-8 without control characters but line ends and
-/// tabs; '?' for all else. A ROS message with a zero byte in a text cannot be sent, and one that is no UTF-8
-/// cannot be read in Python.
+/// Makes text received from the network safe to forward: UTF-8 without control characters other than line
+/// feed and tab; every other byte becomes '?'. A ROS message cannot hold a zero byte in a string, and Python
+/// cannot read a string that is not UTF-8.
 std::string printable(std::string_view text);
 
 }  // namespace ur_ros_rtde

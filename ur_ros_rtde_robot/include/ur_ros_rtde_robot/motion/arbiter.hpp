@@ -11,24 +11,24 @@
 
 namespace ur_ros_rtde {
 
-/// What a command needs for itself while it runs. `script` replaces the control program and so excludes
-/// motion, too; `none` excludes nothing.
+/// Resource that a command holds exclusively while it runs. `script` replaces the control program and
+/// therefore excludes motion as well; `none` excludes nothing.
 enum class Resource { none, motion, io, script };
 
 const char * to_string(Resource resource);
 
 struct Claim {
   Resource resource = Resource::motion;
-  std::string owner;  ///< as users know it: "move_l"
-  std::string id;     ///< tells it from others of the same name: the goal's id
-  /// Asks this holder to give way; `by` names who wants to go on. Called from the other's thread: request a
-  /// stop, do not wait. None: this holder does not give way.
+  std::string owner;  ///< name shown to users: "move_l"
+  std::string id;     ///< goal id; distinguishes commands of the same name
+  /// Asks this holder to release the resource; `by` names the new claimant. Called on the claimant's thread:
+  /// must request a stop without waiting. Empty: this holder cannot be preempted.
   std::function<void(const std::string & by)> preempt;
 };
 
 class Arbiter;
 
-/// The right to use a resource, given back on destruction. Movable.
+/// The right to use a resource. Released on destruction; movable.
 class Lease {
  public:
   Lease() = default;
@@ -45,7 +45,7 @@ class Lease {
   std::shared_ptr<State> state_;
 };
 
-/// One user of a resource at a time. Thread-safe. Leases may outlive the arbiter.
+/// Grants each resource to one holder at a time. Thread-safe. Leases may outlive the arbiter.
 class Arbiter {
  public:
   struct Holder {
@@ -54,9 +54,9 @@ class Arbiter {
   };
 
   Arbiter();
-  /// Refused (busy) with the holder's name and id.
+  /// busy, with the holder's name and id, if a conflicting resource is held.
   Expected<Lease> acquire(Claim claim);
-  /// Asks whoever is in the way to give way and waits for it up to `limit`; then refused as above.
+  /// Preempts the current holders and waits up to `limit` for them; then busy as above.
   Expected<Lease> acquire_preempting(Claim claim, std::chrono::milliseconds limit);
   std::optional<Holder> holder(Resource resource) const;
 

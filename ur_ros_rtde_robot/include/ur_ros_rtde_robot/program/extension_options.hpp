@@ -8,11 +8,13 @@
 
 namespace ur_ros_rtde {
 
-/// How long Robot::run_extension may take.
+/// Options of Robot::run_extension().
 struct ExtensionOptions {
+  /// Time after which the extension is stopped.
   std::chrono::milliseconds limit{10'000};
-  /// Asked with each package: why it has to end early, if it has to.
-  std::function<std::optional<Error>()> interrupted;
+  /// Called every few milliseconds in the calling thread: the reason to stop the extension early, if there
+  /// is one.
+  std::function<std::optional<Error>()> stop_reason;
 };
 
 }  // namespace ur_ros_rtde

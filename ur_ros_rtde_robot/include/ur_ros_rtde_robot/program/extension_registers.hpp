@@ -8,14 +8,17 @@ namespace ur_ros_rtde::script {
 struct RegisterRange {
   int first;
   int last;
-  int without = -1;  ///< one between them
+  int excluded = -1;  ///< a number between first and last; -1: none
 
-  constexpr bool contains(int number) const { return number >= first && number <= last && number != without; }
+  constexpr bool contains(int number) const
+  {
+    return number >= first && number <= last && number != excluded;
+  }
 };
 
-/// What extensions may use; docs/writing_a_plugin.md says who uses the others. The float registers 18 are the
-/// trigger and its acknowledgement; ur_rtde's IO interface writes the inputs 18 to 22, its receive interface
-/// reads the outputs 12 to 19.
+/// Registers available to extensions; docs/writing_a_plugin.md lists the users of all others. The float
+/// registers 18 are the trigger and its acknowledgement. ur_rtde's IO interface writes the inputs 18 to 22,
+/// its receive interface reads the outputs 12 to 19.
 inline constexpr RegisterRange free_inputs{19, 22};  ///< integer and float
 inline constexpr RegisterRange free_int_outputs{12, 19};
 inline constexpr RegisterRange free_float_outputs{12, 19, 18};
@@ -24,7 +27,7 @@ inline constexpr RegisterRange free_float_outputs{12, 19, 18};
 inline std::string to_string(const RegisterRange & range)
 {
   return std::to_string(range.first) + " to " + std::to_string(range.last) +
-         (range.without < 0 ? std::string() : " except " + std::to_string(range.without));
+         (range.excluded < 0 ? std::string() : " except " + std::to_string(range.excluded));
 }
 
 }  // namespace ur_ros_rtde::script

@@ -11,49 +11,48 @@
 namespace ur_ros_rtde {
 
 enum class ScriptKind {
-  /// `def name(): … end`. Takes the place of the control program while it runs; may move the arm.
+  /// `def name(): … end`. Replaces the control program while it runs; may move the arm.
   program,
-  /// `sec name(): … end`. Runs beside the control program and does not disturb it; must not take physical
-  /// time.
+  /// `sec name(): … end`. Runs beside the control program without disturbing it; must not take physical time.
   secondary,
 };
 
 /// How a script ended.
 enum class ScriptEnd {
-  finished,       ///< it ran to its end (or to a `return` or `halt` of its own)
-  refused,        ///< nothing was sent: see the error
-  compile_error,  ///< the controller did not take it: nothing of it ran
-  runtime_error,  ///< the controller ended it for an error in it
-  stopped,        ///< somebody stopped it: on the pendant, by the dashboard, by another program
-  robot_stopped,  ///< a protective, safeguard or emergency stop, a powered off arm
-  interrupted,    ///< ScriptOptions::interrupted said so
-  timeout,        ///< the limit was over
-  link_lost,      ///< what became of it is not known
+  finished,       ///< reached its end, or a `return` or `halt` of its own
+  refused,        ///< not sent; see the error
+  compile_error,  ///< rejected by the controller's compiler; no part of it ran
+  runtime_error,  ///< aborted by the controller because of an error in the script
+  stopped,        ///< stopped on the pendant, by a dashboard command or by another program
+  robot_stopped,  ///< protective, safeguard or emergency stop, or the arm was powered off
+  interrupted,    ///< ScriptOptions::stop_reason returned a reason
+  timeout,        ///< ScriptOptions::limit was exceeded
+  link_lost,      ///< the connection was lost; the outcome is unknown
 };
 
 const char * to_string(ScriptEnd end);
 
 struct ScriptOptions {
   ScriptKind kind = ScriptKind::program;
-  /// From the sending to the end; at least 1 ms. Longest for a secondary program: 10 s.
+  /// Time from sending the script to its end: at least 1 ms; at most 10 s for a secondary program.
   std::chrono::milliseconds limit = std::chrono::minutes(10);
-  /// Asked every few milliseconds: why the script has to end early, if it has to. For a command:
-  /// `[&run] { return run.stop_reason(); }`.
-  std::function<std::optional<Error>()> interrupted;
-  /// Each line of `textmsg` when it comes, in the calling thread.
+  /// Called every few milliseconds in the calling thread: the reason to stop the script early, if there is
+  /// one. In a command: `[&run] { return run.stop_reason(); }`.
+  std::function<std::optional<Error>()> stop_reason;
+  /// Called in the calling thread with each line of `textmsg` as it arrives.
   std::function<void(const std::string & text)> on_text;
 };
 
 struct ScriptReport {
   ScriptEnd end = ScriptEnd::refused;
-  /// ErrorCode::none when it finished. A compile or run-time error is rejected_by_robot, with line and text
-  /// in the message.
+  /// ErrorCode::none if the script finished. A compile or run-time error is rejected_by_robot, with line and
+  /// text in the message.
   Error error;
-  /// Of the compile or run-time error: line of the script as it was given, from 1; 0: not known.
+  /// Line of the compile or run-time error in the script as passed to run_script(), from 1; 0: unknown.
   int line = 0;
-  /// What the script wrote with `textmsg`, in order; of more than 1,000 lines the first 1,000.
+  /// The first 1,000 lines that the script wrote with `textmsg`, in order.
   std::vector<std::string> text;
-  /// s of this host's time, from the sending to the end.
+  /// s, from sending the script to its end, in this host's time.
   double duration = 0.0;
 
   explicit operator bool() const { return end == ScriptEnd::finished; }

@@ -5,36 +5,36 @@
 
 namespace ur_ros_rtde {
 
-/// General purpose registers of the controller, by their numbers (without the offset of the upper range).
+/// General purpose registers of the controller, by number, without the offset of the upper range.
 struct ScriptRegisters {
   std::vector<int> input_int, input_double, output_int, output_double;
 };
 
-/// What an extension adds to the control script.
+/// URScript code that an extension adds to the control script.
 ///
-/// The snippet runs on the robot, in a thread of its own beside ur_rtde's commands, when it is triggered
-/// (Robot::run_extension). It reads its parameters from input registers and leaves its results in output
-/// registers, written for short: `$in19i` and `$in19f` are the values of input registers, `$out19i(x)` and
-/// `$out19f(x)` write output registers (i: integer, f: float). A line that begins with `$5.10 ` is kept from
-/// PolyScope 5.10 on, and left out before.
+/// Robot::run_extension() triggers the snippet. It runs on the robot, in its own thread beside ur_rtde's
+/// commands, reads its parameters from input registers and writes its results to output registers. Snippets
+/// use short forms for registers: `$in19i` and `$in19f` are the values of input registers, `$out19i(x)` and
+/// `$out19f(x)` write output registers (i: integer, f: float). A line that begins with `$5.10 ` is used from
+/// PolyScope 5.10 on and omitted for earlier versions.
 ///
-/// Free for extensions are the inputs 19 to 22, the integer outputs 12 to 19, and the float outputs 12 to 17
-/// and 19; the float registers 18 are the trigger and its acknowledgement, all others ur_rtde's own.
+/// Extensions may use the inputs 19 to 22, the integer outputs 12 to 19, and the float outputs 12 to 17 and
+/// 19. The float registers 18 are the trigger and its acknowledgement. All other registers belong to ur_rtde.
 struct ScriptExtension {
   // Initialized, so that g++ 11 does not warn when designated initializers leave members out.
   std::string name{};           ///< of the plugin: lower case letters, digits, underscores
   std::string snippet{};        ///< statements
-  std::string preamble_name{};  ///< extensions that share definitions give them the same name and text
-  std::string preamble{};       ///< definitions (def, thread, global), once per preamble_name
-  /// Used besides those that the short forms in snippet and preamble name.
+  std::string preamble_name{};  ///< extensions that share definitions use the same name and the same text
+  std::string preamble{};       ///< definitions (def, thread, global), included once per preamble_name
+  /// Registers used in addition to those of the short forms in snippet and preamble.
   ScriptRegisters registers{};
-  /// What has to be installed on the robot for the snippet ("the URCap of …"), and functions that it brings.
-  /// A controller that does not know one of these lacks it: that is no fault, and goals are refused with what
-  /// to install.
+  /// Software that the snippet requires on the robot ("the URCap of …"), and the script functions that this
+  /// software provides. If the controller does not know one of these functions, the software is missing. This
+  /// is not an error; goals are rejected with a message that names what to install.
   std::string urcap{};
   std::vector<std::string> urcap_functions{};
-  /// Its registers hold values between its runs: no other extension may use them. Otherwise registers are
-  /// shared, since extensions run one at a time.
+  /// The registers keep their values between runs, so no other extension may use them. Otherwise extensions
+  /// share registers, since only one runs at a time.
   bool exclusive = false;
 };
 

@@ -8,11 +8,11 @@
 
 namespace ur_ros_rtde {
 
-/// Whether some controller has an RTDE output of this name (UR, "Real-Time Data Exchange (RTDE) Guide",
-/// "Robot controller outputs"). Which of them a controller has depends on its version: it says so itself.
+/// True if there is an RTDE output with this name (UR, "Real-Time Data Exchange (RTDE) Guide", "Robot
+/// controller outputs"). Older controller versions lack some of them.
 bool is_rtde_output(std::string_view name);
 
-/// The first of `names` that is none, or is there twice, as an error that names it.
+/// invalid_goal, naming the first of `names` that is unknown or occurs twice.
 Status check_rtde_outputs(const std::vector<std::string> & names);
 
 }  // namespace ur_ros_rtde

@@ -10,7 +10,7 @@
 
 namespace ur_ros_rtde {
 
-/// Numbers as RTDE reports them (UR, "Real-Time Data Exchange (RTDE) Guide", robot_mode).
+/// RTDE's robot_mode (UR, "Real-Time Data Exchange (RTDE) Guide").
 enum class RobotMode : std::int32_t {
   no_controller = -1,
   disconnected = 0,
@@ -39,7 +39,7 @@ enum class SafetyMode : std::int32_t {
   undefined = 11,
 };
 
-/// RTDE's runtime_state: what the robot program does.
+/// RTDE's runtime_state: state of the robot program.
 enum class RuntimeState : std::uint32_t {
   stopping = 0,
   stopped = 1,
@@ -60,30 +60,30 @@ struct SafetyBits {
       stopped_due_to_safety;
 };
 
-/// The word that ur_rtde's control script writes into output integer register 2 about asynchronous moves.
+/// Status of asynchronous moves, which ur_rtde's control script writes into output integer register 2.
 struct AsyncStatus {
   std::uint32_t word = 0;
 
   bool running() const { return (word & 0x8000U) != 0; }
-  /// 0..127, increases with each operation that begins (twice for an asynchronous path).
+  /// 0..127, incremented when an operation begins (twice for an asynchronous path).
   unsigned operation() const { return (word >> 24U) & 0x7FU; }
-  /// 0..127, increases with each write: two different values mean that something happened in between.
+  /// 0..127, incremented with each write: two different values mean that the status was written in between.
   unsigned changes() const { return (word >> 16U) & 0xFFU; }
-  /// Of a path: index of the waypoint under way; of other moves 0.
+  /// Index of the current waypoint of a path; 0 for other moves.
   unsigned progress() const { return word & 0x7FFFU; }
   bool operator==(const AsyncStatus & other) const { return word == other.word; }
 };
 
-/// Everything of one RTDE package, of the same control cycle. Copied without allocation. Fields that the
-/// controller's version does not offer are NaN.
+/// All fields of one RTDE package, which belong to the same control cycle. Copied without allocation. Fields
+/// that the controller's version does not provide are NaN.
 struct Sample {
-  /// Packages since this receiver was made, across reconnections; 0: no package yet.
+  /// Number of packages since the receiver was created, across reconnections; 0: no package yet.
   std::uint64_t sequence = 0;
-  /// Increases when the link was made anew: controller_time may have begun again (a reboot).
+  /// Incremented with each reconnection. controller_time may have restarted (reboot).
   std::uint32_t link = 0;
   /// s since the controller started.
   double controller_time = 0.0;
-  /// When this host had the package: for durations, and for stamps.
+  /// Arrival of the package at this host: steady time for durations, system time for stamps.
   std::chrono::steady_clock::time_point received;
   std::chrono::system_clock::time_point stamp;
 
@@ -95,10 +95,10 @@ struct Sample {
   Vector6 actual_joint_voltage;
   std::array<std::int32_t, 6> joint_mode;
 
-  /// Of the active TCP, in the robot's base frame.
+  /// Pose and velocity of the active TCP in the base frame.
   Vector6 actual_tcp_pose, actual_tcp_speed, target_tcp_pose, target_tcp_speed;
-  /// What the surroundings exert on the tool, at the TCP, in the base frame's orientation; compensated for
-  /// the payload.
+  /// Wrench that the environment exerts on the tool, at the TCP, in the orientation of the base frame;
+  /// compensated for the payload.
   Vector6 actual_tcp_force;
   Vector6 ft_raw_wrench;  ///< of the force/torque sensor, in the flange frame, not compensated; PolyScope 5.9
                           ///< and later
@@ -110,7 +110,7 @@ struct Sample {
   std::uint32_t robot_status_bits;  ///< 0 power on, 1 program running, 2 teach button, 3 power button
   std::uint32_t safety_status_bits;
 
-  double speed_scaling;          ///< 0..1, of the trajectory, as it is now
+  double speed_scaling;          ///< 0..1, current speed of the trajectory
   double target_speed_fraction;  ///< 0..1, the speed slider
   double actual_execution_time;  ///< ms
   double actual_momentum, actual_main_voltage, actual_robot_voltage, actual_robot_current;

@@ -21,60 +21,62 @@ namespace ur_ros_rtde {
 
 struct StateReceiverOptions {
   std::string address;
-  /// Hz, 1 to 500; more than the controller can (CB3: 125) is reduced to that with a message. 0: what the
-  /// controller can.
+  /// Hz, 1 to 500; 0: the controller's maximum. A rate above the maximum (CB3: 125) is reduced to it with a
+  /// warning.
   double frequency = 0.0;
-  /// For one step of connecting. A controller answers in milliseconds.
+  /// Timeout of each step of connecting. A controller answers within milliseconds.
   std::chrono::milliseconds connect_timeout{500};
-  /// From one failed try to the next.
+  /// Delay between connection attempts.
   std::chrono::milliseconds retry_interval{250};
-  /// Silence after which the link counts as lost though the socket is open; at rates below 50 Hz, five
-  /// periods instead.
+  /// Time without a package after which the connection counts as lost although the socket is open; at rates
+  /// below 50 Hz, five periods instead.
   std::chrono::milliseconds silence_limit{100};
+  /// Read the general purpose registers 24-47 instead of 0-23.
   bool upper_range_registers = false;
-  /// SCHED_FIFO, 1 to 99, of the thread that follows the packages; 0: none. Said in the log when not allowed.
+  /// SCHED_FIFO priority of the receiving thread, 1 to 99; 0: none. Logs a warning if not permitted.
   int realtime_priority = 0;
 };
 
-/// Follows a controller's RTDE packages, connecting in the background whenever there is a controller at the
-/// address: before it is there, through its reboots, until this object is destroyed. Any number of receivers
-/// may follow one controller. All methods are thread-safe.
+/// Receives the RTDE packages of a controller. Connects in the background as soon as there is a controller at
+/// the address, and again after reboots, until this object is destroyed. Any number of receivers may use one
+/// controller. All methods are thread-safe.
 class StateReceiver {
  public:
   using SampleFunction = std::function<void(const Sample &)>;
   using LinkFunction = std::function<void(const LinkStatus &)>;
 
-  /// Throws std::invalid_argument for an empty address or a frequency outside 1-500 Hz (0 excepted); never
-  /// for the network's sake.
+  /// Throws std::invalid_argument for an empty address or an option out of range. Network problems do not
+  /// throw.
   explicit StateReceiver(StateReceiverOptions options, LogFunction log = {});
-  /// Ends the thread; takes as long as a step of connecting at most.
+  /// Calls stop().
   ~StateReceiver();
   StateReceiver(const StateReceiver &) = delete;
   StateReceiver & operator=(const StateReceiver &) = delete;
 
-  /// Called with every package on the thread that has received it, in order, and never at the same time as
-  /// on_link's function: be brief. What it throws ends the link, which is then made anew. Set before start().
+  /// Called with each package, in order, on the receiving thread; must return quickly. Never runs
+  /// concurrently with the function of on_link(). If it throws, the connection is closed and re-established.
+  /// Set before start().
   void on_sample(SampleFunction function);
-  /// Called on a thread of the receiver when the link comes or goes. Set before start().
+  /// Called on a thread of the receiver when the connection is established or lost. Must not throw. Set
+  /// before start().
   void on_link(LinkFunction function);
   void start();
-  /// Ends the thread and with it all callbacks; takes as long as a step of connecting at most. The destructor
-  /// does it, too.
+  /// Joins all threads; no callback runs afterwards. Takes at most as long as one connection attempt.
   void stop();
 
   LinkStatus link() const;
-  /// Of the controller last connected to.
+  /// Version of the last connected controller.
   std::optional<ControllerVersion> version() const;
-  /// Hz agreed with the controller; 0 before the first connection.
+  /// Hz, as agreed with the controller; 0 before the first connection.
   double frequency() const;
 
-  /// The newest sample, whether or not the link still stands; none before the first.
+  /// The newest sample, even if the connection has been lost; none before the first.
   std::optional<Sample> latest() const;
-  /// Waits for a sample newer than `last` (by its sequence) and writes it there. False after `limit`, or when
-  /// stop is requested.
+  /// Waits for a sample newer than `last` (by its sequence) and writes it to `last`. False after `limit` or
+  /// if a stop is requested.
   bool wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop = {}) const;
 
-  /// ur_rtde's own interface, for what a Sample does not hold. Throws RobotError (link_lost) without a
+  /// ur_rtde's interface, for data that a Sample does not contain. Throws RobotError (link_lost) without a
   /// connection.
   Locked<ur_rtde::RTDEReceiveInterface> receive() const;
 
