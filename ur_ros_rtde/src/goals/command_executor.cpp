@@ -18,7 +18,7 @@ constexpr std::chrono::milliseconds dashboard_timeout{500};
 /// The dashboard server answers.
 Status query_dashboard(Robot & robot)
 {
-  const auto mode = robot.ask_dashboard("robotmode", dashboard_timeout);
+  const auto mode = robot.query_dashboard("robotmode", dashboard_timeout);
   return mode ? Status() : tl::unexpected(mode.error());
 }
 }  // namespace
@@ -92,7 +92,7 @@ Status CommandExecutor::check_state() const
     }
   }
   if (moves_arm() && !traits_.preempts_all) {
-    if (const Status ready = robot.ready_to_move(); !ready || traits_.leaves_mode_active || !robot.guided()) {
+    if (const Status ready = robot.ready_to_move(); !ready || traits_.leaves_mode_active || !robot.in_freedrive()) {
       return ready;
     }
     return failure(ErrorCode::busy,

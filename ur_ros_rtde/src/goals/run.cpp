@@ -297,7 +297,7 @@ Outcome Run::until_at_pose(const std::vector<double> & pose)
 
 ScriptReport Run::run_script(const std::string & script, ScriptOptions options)
 {
-  options.interrupted = [this] {
+  options.stop_reason = [this] {
     feed_back();
     return stop_reason();
   };
@@ -349,7 +349,7 @@ Outcome Run::trigger(double timeout)
   ExtensionOptions options;
   options.limit =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
-  options.interrupted = [this] {
+  options.stop_reason = [this] {
     feed_back();
     return stop_reason();
   };
