@@ -117,8 +117,9 @@ Status Robot::motion_possible() const
   const auto link = impl_->state.link();
   const auto sample = latest();
   if (!link.connected || !sample) {
-    return failure(ErrorCode::link_lost,
-                   link.connected ? "nothing has come from the controller yet" : link.error.message);
+    return failure(ErrorCode::link_lost, link.connected
+                                             ? "no package from the controller has been received yet"
+                                             : link.error.message);
   }
   if (const auto condition = motion_blocker(*sample)) {
     return tl::unexpected(*condition);
@@ -127,10 +128,9 @@ Status Robot::motion_possible() const
     return {};
   }
   if (!sample->program_running()) {
-    const char * then =
-        impl_->options.control_mode == ControlMode::upload
-            ? "it is started again, without what it was doing, as soon as the robot is ready for it"
-            : "start the program with the External Control node again";
+    const char * then = impl_->options.control_mode == ControlMode::upload
+                            ? "it is restarted, without resuming the motion, as soon as the robot is ready"
+                            : "restart the program with the External Control node";
     return failure(ErrorCode::program_stopped,
                    fmt::format("the control program was stopped (runtime state {}); {}",
                                to_string(sample->runtime_state), then));
@@ -138,14 +138,15 @@ Status Robot::motion_possible() const
   const auto control = impl_->interfaces.control_interface();
   if (!control) {
     auto why = impl_->unavailable_error();
-    if (why.code == ErrorCode::not_ready) {  // it was there, and is being made anew already
-      why = {ErrorCode::link_lost, "the connection to the control program was lost; it is made anew"};
+    if (why.code == ErrorCode::not_ready) {  // the connection is being re-established
+      why = {ErrorCode::link_lost,
+             "the connection to the control program was lost; it is being re-established"};
     }
     return tl::unexpected(std::move(why));
   }
   if (!control->isConnected()) {
     return failure(ErrorCode::link_lost,
-                   "the robot closed the connection to the control program; it is made anew");
+                   "the robot closed the connection to the control program; it is being re-established");
   }
   return {};
 }

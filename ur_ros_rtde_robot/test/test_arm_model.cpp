@@ -149,7 +149,7 @@ TEST_F(AnUnknownModel, limits_motions_to_what_every_arm_can_do)
   make_robot();
   ASSERT_TRUE(becomes_ready());
   EXPECT_EQ(robot->limits().velocity, common_arm_limits().velocity);
-  EXPECT_EQ(log.count("does not tell the model"), 1U) << log.text();
+  EXPECT_EQ(log.count("does not report the model"), 1U) << log.text();
   EXPECT_EQ(log.count("set the parameter ur_type"), 1U) << log.text();
 }
 
@@ -162,7 +162,7 @@ TEST_F(AnUnknownModel, is_the_stated_one_with_a_warning)
   make_robot(options);
   ASSERT_TRUE(becomes_ready());
   EXPECT_EQ(robot->limits().velocity, arm_limits("ur3e")->velocity);
-  EXPECT_EQ(log.count("as the parameter ur_type says, is not checked"), 1U) << log.text();
+  EXPECT_EQ(log.count("the parameter ur_type (ur3e) cannot be verified"), 1U) << log.text();
 }
 
 }  // namespace

@@ -1,4 +1,7 @@
-// Extensions that the controller does not take: what is said of them, and what their goals are refused with.
+// Extensions that the controller rejects, with the log messages and the errors of their goals; failing
+// extensions.
+#include <stdexcept>
+
 #include "robot_fixture.hpp"
 #include "ur_ros_rtde_robot/program/script_extension.hpp"
 
@@ -56,6 +59,23 @@ TEST_F(ExtensionsTest, ATypoBesideAMissingUrcapIsToldApartFromIt)
   start_with({of_urcap("open", "feeder_open(1)"), of_urcap("typo", "x = feeder_opened")});
   EXPECT_EQ(log.count("[error] the extension typo is left out"), 1U) << log.text();
   EXPECT_EQ(log.count("the Feeder URCap (for open)"), 1U) << log.text();
+}
+
+TEST_F(ExtensionsTest, AnExtensionIsStoppedWhenACallbackThrows)
+{
+  ScriptExtension turn;
+  turn.name = "turn";
+  turn.snippet = "speedj([0.05, 0, 0, 0, 0, 0], 2.0, 60.0)\n";
+  start_with({turn});
+  ExtensionOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {
+    if (robot->moving()) {
+      throw std::runtime_error("thrown");
+    }
+    return std::nullopt;
+  };
+  EXPECT_THROW(robot->run_extension("turn", options), std::runtime_error);
+  EXPECT_TRUE(eventually([&] { return at_rest(); }));
 }
 
 TEST_F(ExtensionsTest, OnlyTheirInputRegistersAreWritten)

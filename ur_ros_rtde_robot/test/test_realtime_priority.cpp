@@ -114,7 +114,7 @@ TEST(ARealtimePriority, that_is_not_allowed_keeps_no_receiver_from_its_work)
     StateReceiver receiver(options, log.function());
     receiver.start();
     EXPECT_TRUE(eventually([&] { return receiver.link().connected && receiver.latest(); })) << log.text();
-    EXPECT_EQ(log.count("realtime_priority 20 is not allowed"), 1U) << log.text();
+    EXPECT_EQ(log.count("realtime_priority 20 is not permitted"), 1U) << log.text();
   });
 }
 

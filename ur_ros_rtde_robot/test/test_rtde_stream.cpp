@@ -99,6 +99,22 @@ TEST_F(AnRtdeStream, has_no_patience_with_a_service_of_another_kind)
   EXPECT_EQ(stream.error().code, ErrorCode::link_lost);
 }
 
+TEST_F(AnRtdeStream, ends_at_its_limit_while_text_messages_flood_the_connection)
+{
+  constexpr std::size_t messages = 10'000'000;
+  std::string flood;
+  flood.reserve(4 * messages);
+  for (std::size_t i = 0; i < messages; ++i) {
+    flood.append("\0\4Mx", 4);
+  }
+  const OtherService other(30004, std::move(flood));
+  const auto begin = Clock::now();
+  const auto stream = RtdeStream::open(own_address(), {"timestamp"}, 0.0, 300ms);
+  ASSERT_FALSE(stream);
+  EXPECT_EQ(stream.error().code, ErrorCode::link_lost);
+  EXPECT_LT(Clock::now() - begin, 3s);
+}
+
 TEST(RtdeOutputs, are_known_by_name)
 {
   for (const char * name : {"timestamp", "actual_TCP_pose", "output_int_register_0",

@@ -285,6 +285,23 @@ TEST_F(ScriptTest, IsRefusedWhileTheRobotIsNotReady)
   EXPECT_EQ(report.error.code, ErrorCode::protective_stop);
 }
 
+TEST_F(ScriptTest, StopsAtItsTimeLimitWhileItWritesFasterThanTheCallbackReturns)
+{
+  make_both();
+  ScriptOptions options;
+  options.limit = 1s;
+  const auto begin = Clock::now();
+  options.on_text = [&](const std::string &) {
+    if (Clock::now() - begin < 20s) {
+      std::this_thread::sleep_for(20ms);
+    }
+  };
+  const auto report =
+      robot->run_script("def f():\n  while True:\n    textmsg(\"x\")\n    sync()\n  end\nend\n", options);
+  EXPECT_EQ(report.end, ScriptEnd::timeout) << report.error.message;
+  EXPECT_LT(Clock::now() - begin, 10s);
+}
+
 TEST_F(ScriptTest, LeavesTheRobotUsableWhenACallbackThrows)
 {
   make_both();

@@ -281,8 +281,32 @@ TEST_F(AStateReceiver, makes_the_link_anew_after_a_package_that_could_not_be_han
   });
   receiver.start();
   ASSERT_TRUE(eventually([&] { return receiver.latest() && receiver.latest()->link == 2; })) << log.text();
-  EXPECT_EQ(log.count("a package could not be handed on: the disk is full"), 1U) << log.text();
+  EXPECT_EQ(log.count("a callback could not process a package: the disk is full"), 1U) << log.text();
   EXPECT_TRUE(connected(receiver)) << log.text();
+}
+
+TEST_F(AStateReceiver, has_a_sample_of_each_connection_when_it_reports_the_connection)
+{
+  controller.start();
+  StateReceiver receiver(receiver_options(), log.function());
+  std::mutex mutex;
+  std::vector<std::uint32_t> links;
+  receiver.on_link([&](const LinkStatus & status) {
+    if (status.connected) {
+      const auto sample = receiver.latest();
+      const std::lock_guard lock(mutex);
+      links.push_back(sample ? sample->link : 0U);
+    }
+  });
+  const auto connections = [&] {
+    const std::lock_guard lock(mutex);
+    return links;
+  };
+  receiver.start();
+  ASSERT_TRUE(eventually([&] { return connections().size() == 1; })) << log.text();
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+  ASSERT_TRUE(eventually([&] { return connections().size() == 2; })) << log.text();
+  EXPECT_EQ(connections(), (std::vector<std::uint32_t>{1, 2}));
 }
 
 TEST_F(AStateReceiver, survives_garbage)

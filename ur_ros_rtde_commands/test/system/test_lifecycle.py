@@ -57,7 +57,7 @@ def threads_with_priority(pid, priority):
 def test_a_realtime_priority_is_of_the_threads_that_follow_the_packages_or_its_refusal_is_said(name, simulator, processes):
     process = processes(node(name, simulator.address, "realtime_priority:=20"))
     process.wait_for_output("connected to")
-    if "realtime_priority 20 is not allowed" in process.output():
+    if "realtime_priority 20 is not permitted" in process.output():
         assert not threads_with_priority(process.pid, 20)
     else:
         # The receiver's own and ur_rtde's, which it starts.

@@ -99,8 +99,8 @@ def test_a_slower_rate_can_be_chosen(receiver, simulator, client, tmp_path):
     assert round((stamps[-1] - stamps[0]) * 50.0) + 1 == pytest.approx(answer.rows + answer.lost, abs=1)
 
 
-@pytest.mark.parametrize("fields, said", [(["actual_position"], '"actual_position" is no RTDE output'),
-                                          (["actual_q", "actual_q"], '"actual_q" is there twice')])
+@pytest.mark.parametrize("fields, said", [(["actual_position"], '"actual_position" is not an RTDE output'),
+                                          (["actual_q", "actual_q"], '"actual_q" occurs twice')])
 def test_a_field_that_there_is_not_is_refused_by_its_name(receiver, client, tmp_path, fields, said):
     answer = start(client, tmp_path / "none.csv", fields)
     assert not answer.success and said in answer.message

@@ -118,9 +118,9 @@ def test_there_is_no_robot_state_without_fields(simulator, state, processes):
     assert state.node.count_publishers("/plain/robot_state") == 0
 
 
-@pytest.mark.parametrize("names, said", [('["actual_q", "actual_position"]', '"actual_position" is no RTDE output'),
-                                         ('["actual_q", "actual_q"]', '"actual_q" is there twice'),
-                                         ('["output_int_register_48"]', '"output_int_register_48" is no RTDE output')])
+@pytest.mark.parametrize("names, said", [('["actual_q", "actual_position"]', '"actual_position" is not an RTDE output'),
+                                         ('["actual_q", "actual_q"]', '"actual_q" occurs twice'),
+                                         ('["output_int_register_48"]', '"output_int_register_48" is not an RTDE output')])
 def test_a_field_that_there_is_not_ends_the_start_with_its_name(simulator, processes, names, said):
     receiver = processes(node("robot_state_receiver", simulator.address, f"robot_state_fields:={names}", namespace="wrong"))
     assert receiver.wait(15.0) == 2

@@ -30,8 +30,8 @@ std::optional<ControllerVersion> parse_version(const std::string & text)
   return found >= 2 ? std::optional(version) : std::nullopt;
 }
 
-/// "is in remote control" came with PolyScope 5.6; a CB3 has no such setting.
-bool knows_remote_control(const std::optional<ControllerVersion> & version)
+/// PolyScope 5.6 introduced "is in remote control". CB3 has no such setting.
+bool supports_remote_control(const std::optional<ControllerVersion> & version)
 {
   return version && version->major == 5 && version->minor >= 6;
 }
@@ -64,17 +64,17 @@ class DashboardLink::Impl {
  private:
   Status connect();
   Status heartbeat();
-  /// Until the connection is lost, the reason for which it returns, or stop is requested.
-  Status watch(const std::stop_token & stop);
-  [[noreturn]] static void out_of_step(const std::string & question, const std::string & answer);
+  /// Returns the reason when the connection is lost, or success if a stop is requested.
+  Status monitor(const std::stop_token & stop);
+  [[noreturn]] static void throw_protocol_error(const std::string & query, const std::string & answer);
   void set_link(LinkStatus status);
-  void broken(const std::shared_ptr<DashboardClient> & client, const std::string & why);
+  void report_failure(const std::shared_ptr<DashboardClient> & client, const std::string & why);
   void wait(const std::stop_token & stop, std::chrono::milliseconds duration);
 
   Reporter report_;
   std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
   std::shared_ptr<DashboardClient> client_;
-  bool knows_remote_ = false;
+  bool supports_remote_ = false;
   bool broken_ = false;
   std::condition_variable_any wake_;
 };
@@ -84,24 +84,25 @@ Status DashboardLink::Impl::connect()
   if (auto status = probe_dashboard(options_.address, options_.connect_timeout); !status) {
     return status;
   }
+  std::shared_ptr<DashboardClient> previous;  // closed without the lock
   try {
     auto client = std::make_shared<DashboardClient>(options_.address, dashboard_port);
     client->connect(static_cast<std::uint32_t>(options_.connect_timeout.count()));
     const auto version = parse_version(client->polyscopeVersion());
-    knows_remote_ = knows_remote_control(version);
+    supports_remote_ = supports_remote_control(version);
     std::optional<bool> remote;
-    if (knows_remote_) {
+    if (supports_remote_) {
       remote = client->isInRemoteControl();
     }
     const std::lock_guard lock(mutex_);
-    client_ = std::move(client);
+    previous = std::exchange(client_, std::move(client));
     version_ = version;
     remote_ = remote;
     broken_ = false;
     return {};
   } catch (const std::exception & error) {
     return failure(ErrorCode::link_lost,
-                   fmt::format("the dashboard server at {}:{} does not do what it should: {}",
+                   fmt::format("the dashboard server at {}:{} does not follow the protocol: {}",
                                options_.address, dashboard_port, printable(error.what())));
   }
 }
@@ -115,7 +116,8 @@ Locked<DashboardClient> DashboardLink::Impl::dashboard() const
   return {client_, lock_, "dashboard client"};
 }
 
-void DashboardLink::Impl::broken(const std::shared_ptr<DashboardClient> & client, const std::string & why)
+void DashboardLink::Impl::report_failure(const std::shared_ptr<DashboardClient> & client,
+                                         const std::string & why)
 {
   {
     const std::lock_guard lock(mutex_);
@@ -146,37 +148,38 @@ Status DashboardLink::Impl::call(const std::function<void(DashboardClient &)> & 
   } catch (const RobotError & error) {
     return tl::unexpected(error.error());
   } catch (const boost::system::system_error & error) {
-    broken(client, error.what());
+    report_failure(client, error.what());
     return failure(ErrorCode::link_lost, fmt::format("the dashboard server at {} did not answer: {}",
                                                      options_.address, error.what()));
   } catch (const std::exception & error) {
     if (!client->isConnected()) {
-      broken(client, error.what());
+      report_failure(client, error.what());
     }
     return failure(ErrorCode::rejected_by_robot,
                    fmt::format("the robot answered: {}", printable(error.what())));
   }
 }
 
-/// An answer that does not fit its question: those that follow would not, either.
-[[noreturn]] void DashboardLink::Impl::out_of_step(const std::string & question, const std::string & answer)
+/// The answer belongs to another query, so that the following answers would be wrong, too.
+[[noreturn]] void DashboardLink::Impl::throw_protocol_error(const std::string & query,
+                                                            const std::string & answer)
 {
   throw boost::system::system_error(make_error_code(boost::system::errc::protocol_error),
-                                    fmt::format("\"{}\" was answered \"{}\"", question, printable(answer)));
+                                    fmt::format("\"{}\" was answered \"{}\"", query, printable(answer)));
 }
 
 Status DashboardLink::Impl::heartbeat()
 {
   std::optional<bool> remote;
   const auto status = call([&](DashboardClient & client) {
-    const std::string question = knows_remote_ ? "is in remote control" : "running";
-    client.send(question + "\n");
+    const std::string query = supports_remote_ ? "is in remote control" : "running";
+    client.send(query + "\n");
     const std::string answer = client.receive();
     const bool yes = answer.find("true") != std::string::npos;
     if (!yes && answer.find("false") == std::string::npos) {
-      out_of_step(question, answer);
+      throw_protocol_error(query, answer);
     }
-    if (knows_remote_) {
+    if (supports_remote_) {
       remote = yes;
     }
   });
@@ -184,7 +187,7 @@ Status DashboardLink::Impl::heartbeat()
     const std::lock_guard lock(mutex_);
     remote_ = remote;
   } else if (status.error().code == ErrorCode::busy) {
-    return {};  // a long call of somebody else: it will tell
+    return {};  // another thread's call is running and will detect a lost connection
   }
   return status;
 }
@@ -192,12 +195,13 @@ Status DashboardLink::Impl::heartbeat()
 void DashboardLink::Impl::set_link(LinkStatus status)
 {
   bool changed = false;
+  std::shared_ptr<DashboardClient> dropped;  // closed without the lock
   {
     const std::lock_guard lock(mutex_);
     changed = link_.connected != status.connected || link_.error.message != status.error.message;
     link_ = status;
     if (!status.connected) {
-      client_.reset();
+      dropped = std::exchange(client_, nullptr);
       remote_.reset();
     }
   }
@@ -212,7 +216,7 @@ void DashboardLink::Impl::wait(const std::stop_token & stop, std::chrono::millis
   wake_.wait_for(lock, stop, duration, [this] { return broken_; });
 }
 
-Status DashboardLink::Impl::watch(const std::stop_token & stop)
+Status DashboardLink::Impl::monitor(const std::stop_token & stop)
 {
   Status alive;
   while (alive && !stop.stop_requested()) {
@@ -235,8 +239,7 @@ void DashboardLink::Impl::run(const std::stop_token & stop)
       }
       report_.forget();
       set_link({true, {}});
-      // A robot that only closed the connection accepts a new one at once.
-      lost = watch(stop);
+      lost = monitor(stop);
       continue;
     }
     lost = {};
@@ -246,7 +249,7 @@ void DashboardLink::Impl::run(const std::stop_token & stop)
       broken_ = false;
     }
     wait(stop, options_.retry_interval);
-    if (!stop.stop_requested()) {  // a driver that is shut down together with the controller reports nothing
+    if (!stop.stop_requested()) {  // no error message if driver and controller are shut down together
       report_.once(LogLevel::error,
                    fmt::format("{}. Trying again every {} s", connected.error().message,
                                std::chrono::duration<double>(options_.retry_interval).count()));

@@ -15,16 +15,16 @@ namespace {
 
 using Clock = TcpStream::Clock;
 constexpr std::chrono::milliseconds connect_limit{5000};
-constexpr std::chrono::milliseconds step{50};
+constexpr std::chrono::milliseconds poll_interval{50};
 constexpr std::size_t longest_answer = 64 * 1024;
 
-struct Patience {
+struct WaitLimit {
   Clock::time_point deadline;
   std::stop_token stop;
 };
 
-/// The line that `received` begins with, reading on until there is one; it is taken out of `received`.
-Expected<std::string> next_line(TcpStream & stream, std::string & received, const Patience & patience)
+/// Removes the first line from `received` and returns it, reading from `stream` until there is one.
+Expected<std::string> next_line(TcpStream & stream, std::string & received, const WaitLimit & wait_limit)
 {
   std::array<std::byte, 512> bytes;
   for (auto end = received.find('\n'); true; end = received.find('\n')) {
@@ -34,14 +34,14 @@ Expected<std::string> next_line(TcpStream & stream, std::string & received, cons
       line.erase(line.find_last_not_of(" \t\r") + 1);
       return printable(line);
     }
-    if (patience.stop.stop_requested()) {
-      return failure(ErrorCode::canceled, "nobody waits for the answer of the dashboard server any more");
+    if (wait_limit.stop.stop_requested()) {
+      return failure(ErrorCode::canceled, "the request to the dashboard server was canceled");
     }
     const auto now = Clock::now();
-    if (now >= patience.deadline) {
+    if (now >= wait_limit.deadline) {
       return failure(ErrorCode::timeout, "the dashboard server has not answered");
     }
-    const auto got = stream.read_some(bytes, std::min(patience.deadline, now + step));
+    const auto got = stream.read_some(bytes, std::min(wait_limit.deadline, now + poll_interval));
     if (!got) {
       return tl::unexpected(got.error());
     }

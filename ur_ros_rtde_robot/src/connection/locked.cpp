@@ -24,7 +24,7 @@ bool InterfaceLock::try_lock_for(std::chrono::milliseconds limit)
     depth_ = 1;
   } else {
     lock.unlock();
-    released_.notify_all();  // the next in line may have waited for this thread
+    released_.notify_all();  // the next thread in the queue may have waited for this one
   }
   return mine;
 }

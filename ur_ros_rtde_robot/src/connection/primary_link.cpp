@@ -13,7 +13,7 @@
 namespace ur_ros_rtde {
 namespace {
 
-// UR, "Client Interface": size, type, timestamp (uint64), source, kind of message.
+// UR, "Client Interface": size, type, timestamp (uint64), source, message type.
 constexpr std::size_t shortest_package = 5;
 constexpr std::size_t longest_primary_package = 1U << 20U;
 constexpr std::size_t message_header = 15;
@@ -50,7 +50,7 @@ int line_in(std::string_view text)
   if (found == std::string_view::npos) {
     return 0;
   }
-  auto digit = found + 5;  // behind a blank or colon
+  auto digit = found + 5;  // after a blank or colon
   int line = 0;
   while (digit < text.size() && std::isdigit(static_cast<unsigned char>(text[digit])) != 0 &&
          line < 1'000'000) {
@@ -61,7 +61,7 @@ int line_in(std::string_view text)
 
 std::optional<PrimaryMessage> key_message(std::span<const std::byte> body)
 {
-  constexpr std::size_t title_begin = 9;  // behind code, argument, and the title's length
+  constexpr std::size_t title_begin = 9;  // after code, argument and length of the title
   if (body.size() < title_begin) {
     return std::nullopt;
   }
@@ -82,7 +82,7 @@ std::optional<PrimaryMessage> key_message(std::span<const std::byte> body)
 
 std::optional<PrimaryMessage> exception_message(std::span<const std::byte> body)
 {
-  constexpr std::size_t text_begin = 8;  // behind line and column
+  constexpr std::size_t text_begin = 8;  // after line and column
   if (body.size() < text_begin) {
     return std::nullopt;
   }
@@ -109,7 +109,7 @@ std::optional<PrimaryMessage> message_of(std::span<const std::byte> package)
   return std::nullopt;
 }
 
-/// The robot state is made of packages with a size of the whole and a type each.
+/// The robot state consists of packages with a total size and a type each.
 std::optional<std::int32_t> robot_type_of(std::span<const std::byte> package)
 {
   constexpr std::size_t header = 5;
@@ -195,7 +195,7 @@ Expected<std::size_t> PrimaryLink::read(std::chrono::milliseconds wait)
   std::array<std::byte, 4096> bytes{};
   const auto got = stream_.read_some(bytes, TcpStream::Clock::now() + wait);
   if (got && !reader_.feed(std::span(bytes).first(*got))) {
-    return failure(ErrorCode::link_lost, "what comes from port 30001 is not the primary interface");
+    return failure(ErrorCode::link_lost, "port 30001 does not follow the protocol of the primary interface");
   }
   return got;
 }
@@ -207,7 +207,7 @@ Expected<std::int32_t> PrimaryLink::robot_type(std::chrono::milliseconds limit)
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - TcpStream::Clock::now());
     if (left <= std::chrono::milliseconds(0)) {
       return failure(ErrorCode::timeout,
-                     fmt::format("port {} sends no configuration of the robot", primary_port));
+                     fmt::format("port {} did not send the configuration of the robot", primary_port));
     }
     if (const auto got = read(left); !got) {
       return tl::unexpected(got.error());

@@ -14,28 +14,28 @@
 
 namespace ur_ros_rtde {
 
-/// What the primary interface tells about programs.
+/// A message of the primary interface about programs.
 struct PrimaryMessage {
   enum class Kind {
-    text,             ///< of `textmsg`
-    error,            ///< a script was not taken, or ended by an error
+    text,             ///< from `textmsg`
+    error,            ///< a script was rejected or aborted
     program_started,  ///< `text` is its name
-    program_stopped,  ///< likewise; also when it came to its end
+    program_stopped,  ///< likewise, also after a regular end
   };
 
   Kind kind;
   std::string text;
-  int line = 0;  ///< of the script as it was sent, from 1; 0: not told
+  int line = 0;  ///< line of the script as sent, from 1; 0: unknown
 };
 
-/// Takes the byte stream of the primary interface to pieces (UR, "Client Interface": packages of a big-endian
-/// int32 size of the whole and a type; robot messages are of type 20).
+/// Parses the byte stream of the primary interface (UR, "Client Interface"): packages with a big-endian int32
+/// total size and a type, of which 20 is a robot message.
 class PrimaryReader {
  public:
-  /// False when this is no stream of packages.
+  /// False if the bytes are not a stream of packages.
   bool feed(std::span<const std::byte> bytes);
   std::optional<PrimaryMessage> next();
-  /// The arm's type number, from the configuration data of the robot state; none before it has come.
+  /// Type number of the arm, from the configuration data of the robot state; none before its arrival.
   std::optional<std::int32_t> robot_type() const { return robot_type_; }
 
  private:
@@ -44,14 +44,14 @@ class PrimaryReader {
   std::deque<PrimaryMessage> messages_;
 };
 
-/// A connection to the primary interface (port 30001): sends scripts, and hears what becomes of them.
+/// A connection to the primary interface (port 30001), which executes scripts and reports about them.
 class PrimaryLink {
  public:
-  /// Returns when the controller has greeted: what happens from then on is heard.
+  /// Returns after the first data from the controller, so that all later messages are received.
   static Expected<PrimaryLink> connect(const std::string & address, std::chrono::milliseconds limit);
 
   Status send(std::string_view script, std::chrono::milliseconds limit);
-  /// The next message; none, if none came within `wait`.
+  /// The next message; none if none arrives within `wait`.
   Expected<std::optional<PrimaryMessage>> next(std::chrono::milliseconds wait);
   /// Waits for PrimaryReader::robot_type().
   Expected<std::int32_t> robot_type(std::chrono::milliseconds limit);

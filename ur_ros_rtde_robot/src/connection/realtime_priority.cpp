@@ -3,17 +3,18 @@
 #include <fmt/format.h>
 #include <pthread.h>
 
+#include <cerrno>
 #include <cstring>
 
 namespace ur_ros_rtde {
 namespace {
 
-/// 0, or an errno.
+/// Returns 0 or an errno value.
 int set_fifo(int priority, int flags)
 {
   sched_param wanted{};
   wanted.sched_priority = priority;
-  // Not pthread_setschedparam(), which knows no flags; 0 is the calling thread.
+  // pthread_setschedparam() does not support flags. Thread id 0 is the calling thread.
   return sched_setscheduler(0, SCHED_FIFO | flags, &wanted) == 0 ? 0 : errno;
 }
 
@@ -27,7 +28,7 @@ Status set_realtime_priority(int priority)
   if (const int error = set_fifo(priority, 0); error != 0) {
     return failure(
         ErrorCode::not_supported,
-        fmt::format("realtime_priority {} is not allowed to this process ({}), it goes on without: "
+        fmt::format("realtime_priority {} is not permitted to this process ({}) and is ignored: "
                     "give its user rtprio {} or more in /etc/security/limits.conf, or its container "
                     "--cap-add=sys_nice",
                     priority, std::strerror(error), priority));

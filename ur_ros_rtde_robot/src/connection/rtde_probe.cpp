@@ -16,7 +16,7 @@ namespace {
 constexpr char request_protocol_version = 'V';
 constexpr char get_urcontrol_version = 'v';
 constexpr char text_message = 'M';
-/// No answer to these two requests is longer; a text message may be.
+/// Longest accepted package. The answers to the two requests are shorter.
 constexpr std::size_t longest_package = 2048;
 
 std::uint32_t big_endian(const std::vector<std::byte> & data, std::size_t offset)
@@ -39,7 +39,7 @@ Error not_rtde(const std::string & address, const std::string & why)
 Expected<std::vector<std::byte>> reply(TcpStream & stream, const std::string & address, char type,
                                        TcpStream::Clock::time_point deadline)
 {
-  while (true) {
+  while (TcpStream::Clock::now() < deadline) {
     std::array<std::byte, rtde_header_size> header{};
     if (const auto status = stream.read(header, deadline); !status) {
       return tl::unexpected(not_rtde(address, status.error().message));
@@ -57,6 +57,7 @@ Expected<std::vector<std::byte>> reply(TcpStream & stream, const std::string & a
       return body;
     }
   }
+  return tl::unexpected(not_rtde(address, "it sends text messages instead of an answer"));
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono:
     return tl::unexpected(numbers.error());
   }
   if (numbers->size() < 16) {
-    return tl::unexpected(not_rtde(address, "it does not tell its version"));
+    return tl::unexpected(not_rtde(address, "its answer does not contain a version"));
   }
   return ControllerVersion{big_endian(*numbers, 0), big_endian(*numbers, 4), big_endian(*numbers, 8),
                            big_endian(*numbers, 12)};

@@ -8,12 +8,12 @@
 
 namespace ur_ros_rtde {
 
-/// Asks whatever listens at the address' RTDE port for the protocol version and the controller's version,
-/// within `limit` each. ur_rtde's constructors wait for such answers without a limit, and take anything for
-/// an answer.
+/// Queries the version of the controller at `address` over RTDE protocol version 2, within `limit` for
+/// connecting and for the queries. Use this before ur_rtde's constructors, which wait without a limit and do
+/// not validate the answers.
 Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono::milliseconds limit);
 
-/// The same for the dashboard server: does it greet as one?
+/// Checks that a UR dashboard server answers at `address`.
 Status probe_dashboard(const std::string & address, std::chrono::milliseconds limit);
 
 }  // namespace ur_ros_rtde

@@ -21,7 +21,7 @@ namespace {
 using Clock = RtdeStream::Clock;
 using Bytes = std::span<const std::byte>;
 
-/// Types of packages: the ASCII letters of the protocol (UR, "RTDE Guide", "Protocol").
+/// Package types (UR, "RTDE Guide", "Protocol").
 constexpr char protocol_version = 'V';
 constexpr char setup_outputs = 'O';
 constexpr char start = 'S';
@@ -120,12 +120,12 @@ class RtdeStream::Impl {
  private:
   struct Package {
     char type;
-    Bytes payload;  ///< until the next call
+    Bytes payload;  ///< valid until the next call of package()
   };
   Expected<std::optional<Package>> package(Clock::time_point deadline);
   Expected<std::string> reply(char type, std::string_view payload, std::chrono::milliseconds limit);
-  Status lay_out(const std::vector<std::string> & names, const std::vector<std::string> & types);
-  tl::unexpected<Error> nonsense(const std::string & what) const
+  Status set_layout(const std::vector<std::string> & names, const std::vector<std::string> & types);
+  tl::unexpected<Error> protocol_error(const std::string & what) const
   {
     return failure(ErrorCode::link_lost, fmt::format("{} does not speak RTDE: {}", name_, what));
   }
@@ -135,22 +135,22 @@ class RtdeStream::Impl {
   std::vector<Layout> layouts_;
   std::size_t package_bytes_ = 0;
   std::vector<std::byte> buffer_;
-  std::size_t taken_ = 0;  ///< bytes at its beginning that are done with
+  std::size_t consumed_ = 0;  ///< bytes at the begin of buffer_ that have been processed
 };
 
 Expected<std::optional<RtdeStream::Impl::Package>> RtdeStream::Impl::package(Clock::time_point deadline)
 {
-  buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(taken_));
-  taken_ = 0;
+  buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(consumed_));
+  consumed_ = 0;
   std::array<std::byte, 2048> bytes;
   while (true) {
     if (buffer_.size() >= rtde_header_size) {
       const auto size = static_cast<std::size_t>(big_endian(Bytes(buffer_).first(2)));
       if (size < rtde_header_size) {
-        return nonsense(fmt::format("a package of {} bytes", size));
+        return protocol_error(fmt::format("a package of {} bytes", size));
       }
       if (buffer_.size() >= size) {
-        taken_ = size;
+        consumed_ = size;
         return Package{std::to_integer<char>(buffer_[2]),
                        Bytes(buffer_).subspan(rtde_header_size, size - rtde_header_size)};
       }
@@ -166,7 +166,7 @@ Expected<std::optional<RtdeStream::Impl::Package>> RtdeStream::Impl::package(Clo
   }
 }
 
-/// Text messages may come before it.
+/// Sends a request and waits for the reply, skipping text messages.
 Expected<std::string> RtdeStream::Impl::reply(char type, std::string_view payload,
                                               std::chrono::milliseconds limit)
 {
@@ -174,26 +174,24 @@ Expected<std::string> RtdeStream::Impl::reply(char type, std::string_view payloa
   if (const auto sent = stream_.write(request(type, payload), deadline); !sent) {
     return tl::unexpected(sent.error());
   }
-  while (true) {
+  while (Clock::now() < deadline) {
     const auto answer = package(deadline);
     if (!answer) {
       return tl::unexpected(answer.error());
     }
-    if (!*answer) {
-      return failure(ErrorCode::link_lost, fmt::format("{} does not answer", name_));
-    }
-    if ((*answer)->type == type) {
+    if (*answer && (*answer)->type == type) {
       const Bytes bytes = (*answer)->payload;
       return std::string(reinterpret_cast<const char *>(bytes.data()), bytes.size());
     }
   }
+  return failure(ErrorCode::link_lost, fmt::format("{} does not answer", name_));
 }
 
-Status RtdeStream::Impl::lay_out(const std::vector<std::string> & names,
-                                 const std::vector<std::string> & types)
+Status RtdeStream::Impl::set_layout(const std::vector<std::string> & names,
+                                    const std::vector<std::string> & types)
 {
   if (types.size() != names.size()) {
-    return nonsense(fmt::format("{} types for {} fields", types.size(), names.size()));
+    return protocol_error(fmt::format("{} types for {} fields", types.size(), names.size()));
   }
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -201,7 +199,7 @@ Status RtdeStream::Impl::lay_out(const std::vector<std::string> & names,
     if (types[i] == "NOT_FOUND") {
       missing.push_back(names[i]);
     } else if (known == layouts.end()) {
-      return nonsense(fmt::format("{} is of type \"{}\"", names[i], types[i]));
+      return protocol_error(fmt::format("{} is of type \"{}\"", names[i], types[i]));
     } else {
       layouts_.push_back(known->layout);
       fields_.push_back({names[i], known->layout.count});
@@ -223,7 +221,7 @@ Status RtdeStream::Impl::set_up(const std::vector<std::string> & names, double f
   if (const auto answer = reply(protocol_version, std::string_view("\0\2", 2), limit); !answer) {
     return tl::unexpected(answer.error());
   } else if (*answer != "\1") {
-    return nonsense("it refuses protocol version 2, which PolyScope has had since 3.3");
+    return protocol_error("it refuses protocol version 2, which PolyScope has had since 3.3");
   }
   std::string recipe(8, '\0');
   const auto bits = std::bit_cast<std::uint64_t>(frequency);
@@ -235,36 +233,36 @@ Status RtdeStream::Impl::set_up(const std::vector<std::string> & names, double f
     return tl::unexpected(types.error());
   }
   if (types->empty()) {
-    return nonsense("an empty answer to the fields");
+    return protocol_error("the list of field types is empty");
   }
-  if (Status laid_out = lay_out(names, split(std::string_view(*types).substr(1))); !laid_out) {
-    return laid_out;
+  if (Status layout_set = set_layout(names, split(std::string_view(*types).substr(1))); !layout_set) {
+    return layout_set;
   }
   const auto started = reply(start, {}, limit);
   if (!started) {
     return tl::unexpected(started.error());
   }
-  return *started == "\1" ? Status() : nonsense("it does not start");
+  return *started == "\1" ? Status() : protocol_error("it refuses to start");
 }
 
 Expected<bool> RtdeStream::Impl::next(std::span<double> numbers, Clock::time_point deadline)
 {
   auto got = package(deadline);
-  while (got && *got && (*got)->type != data) {
+  while (got && *got && (*got)->type != data && Clock::now() < deadline) {
     got = package(deadline);
   }
   if (!got) {
     return tl::unexpected(got.error());
   }
-  if (!*got) {
+  if (!*got || (*got)->type != data) {
     return false;
   }
   Bytes bytes = (*got)->payload;
   if (bytes.size() != 1 + package_bytes_ || numbers.size() < width_) {
-    return nonsense(
-        fmt::format("a package of {} bytes in the place of {}", bytes.size(), 1 + package_bytes_));
+    return protocol_error(
+        fmt::format("a package has {} bytes instead of {}", bytes.size(), 1 + package_bytes_));
   }
-  bytes = bytes.subspan(1);  // the recipe's number
+  bytes = bytes.subspan(1);  // recipe id
   std::size_t at = 0;
   for (const Layout & layout : layouts_) {
     for (std::size_t i = 0; i < layout.count; ++i) {
@@ -287,8 +285,9 @@ Expected<RtdeStream> RtdeStream::open(const std::string & address, const std::ve
     return tl::unexpected(stream.error());
   }
   auto impl = std::make_unique<Impl>(std::move(*stream), fmt::format("{}:{}", address, rtde_port));
-  const double most = version->frequency();
-  if (const auto ready = impl->set_up(fields, frequency > 0.0 ? std::min(frequency, most) : most, limit);
+  const double maximum = version->frequency();
+  if (const auto ready =
+          impl->set_up(fields, frequency > 0.0 ? std::min(frequency, maximum) : maximum, limit);
       !ready) {
     return tl::unexpected(ready.error());
   }

@@ -26,7 +26,7 @@ std::string system_text(int error)
   return std::generic_category().message(error);
 }
 
-/// IPv4 only, as ur_rtde. Takes as long as the name servers do.
+/// IPv4 only, like ur_rtde. Blocks until the name server answers.
 Expected<in_addr> look_up(const std::string & name)
 {
   addrinfo hints{};
@@ -45,8 +45,8 @@ Expected<in_addr> look_up(const std::string & name)
   return result.sin_addr;
 }
 
-/// A name is resolved once in the life of the process: a later connection, such as that of the last-resort
-/// stop, never waits for a name server.
+/// A host name is resolved once per process, so that later connections, such as that of the last-resort stop,
+/// never wait for a name server.
 Expected<in_addr> resolve(const std::string & address)
 {
   in_addr number{};
@@ -131,10 +131,9 @@ Expected<TcpStream> TcpStream::connect(const std::string & address, std::uint16_
       return refused(errno);
     }
     if (!stream.wait_for(POLLOUT, deadline)) {
-      return failure(ErrorCode::link_lost,
-                     fmt::format("no connection to {}: nobody answered within {} ms: check "
-                                 "the address, and that the robot is on",
-                                 stream.name_, limit.count()));
+      return failure(ErrorCode::link_lost, fmt::format("no connection to {}: no answer within {} ms: check "
+                                                       "the address, and that the robot is on",
+                                                       stream.name_, limit.count()));
     }
     int error = 0;
     socklen_t size = sizeof(error);

@@ -11,9 +11,9 @@
 
 namespace ur_ros_rtde {
 
-/// A TCP connection every step of which has a limit, except the first look-up of a host name: for looking at
-/// an address before ur_rtde, whose constructors can block, is let near it, and for the dashboard command of
-/// last resort. Errors are link_lost and name address and port.
+/// A TCP connection whose operations all have a time limit, except for the first look-up of a host name. Used
+/// to probe an address before calling ur_rtde's constructors, which can block, and for the dashboard command
+/// that stops the arm as a last resort. Errors are link_lost and name address and port.
 class TcpStream {
  public:
   using Clock = std::chrono::steady_clock;
@@ -28,11 +28,12 @@ class TcpStream {
 
   Status write(std::span<const std::byte> data, Clock::time_point deadline);
   Status write(std::string_view text, Clock::time_point deadline);
-  /// Exactly data.size() bytes.
+  /// Reads exactly data.size() bytes.
   Status read(std::span<std::byte> data, Clock::time_point deadline);
-  /// What has come, at most data.size() bytes, waiting for the first until the deadline: 0, if nothing came.
+  /// Reads the available bytes, at most data.size(), and waits for the first one until the deadline. 0 if
+  /// none arrived.
   Expected<std::size_t> read_some(std::span<std::byte> data, Clock::time_point deadline);
-  /// Up to and without the line feed; at most 1,000 bytes.
+  /// Reads up to the line feed, which is not returned; at most 1,000 bytes.
   Expected<std::string> read_line(Clock::time_point deadline);
 
  private:

@@ -24,8 +24,8 @@ struct Arbiter::Table {
     return a != Resource::none && (a == b || (moves(a) && moves(b)));
   }
 
-  /// The entry in the way; the mutex is held.
-  const Entry * in_the_way(Resource resource) const
+  /// The mutex must be held.
+  const Entry * conflicting_entry(Resource resource) const
   {
     const auto found = std::find_if(entries.begin(), entries.end(),
                                     [&](const Entry & e) { return conflict(resource, e.claim.resource); });
@@ -98,9 +98,9 @@ Arbiter::Arbiter() : table_(std::make_shared<Table>()) {}
 Expected<Lease> Arbiter::acquire(Claim claim)
 {
   const std::lock_guard lock(table_->mutex);
-  if (const auto * entry = table_->in_the_way(claim.resource)) {
+  if (const auto * entry = table_->conflicting_entry(claim.resource)) {
     return failure(ErrorCode::busy,
-                   fmt::format("{} is running and has the {} for itself: wait for it or cancel it",
+                   fmt::format("{} is running and holds the resource {}: wait for its end, or cancel it",
                                name(entry->claim), to_string(entry->claim.resource)));
   }
   const auto key = table_->next_key++;
@@ -113,7 +113,7 @@ Expected<Lease> Arbiter::acquire_preempting(Claim claim, std::chrono::millisecon
   const auto deadline = std::chrono::steady_clock::now() + limit;
   std::vector<std::uint64_t> asked;
   std::unique_lock lock(table_->mutex);
-  while (const auto * entry = table_->in_the_way(claim.resource)) {
+  while (const auto * entry = table_->conflicting_entry(claim.resource)) {
     if (!entry->claim.preempt) {
       break;
     }
@@ -137,7 +137,7 @@ Expected<Lease> Arbiter::acquire_preempting(Claim claim, std::chrono::millisecon
 std::optional<Arbiter::Holder> Arbiter::holder(Resource resource) const
 {
   const std::lock_guard lock(table_->mutex);
-  if (const auto * entry = table_->in_the_way(resource)) {
+  if (const auto * entry = table_->conflicting_entry(resource)) {
     return Holder{entry->claim.owner, entry->claim.id};
   }
   return std::nullopt;

@@ -22,7 +22,7 @@ const char * to_string(StopMeans means)
 
 void StandstillDetector::add(const Sample & sample)
 {
-  // Written so that NaN counts as motion.
+  // This comparison makes NaN count as motion.
   const bool quiet = std::all_of(sample.actual_qd.begin(), sample.actual_qd.end(),
                                  [](double joint_velocity) { return std::abs(joint_velocity) < velocity; });
   if (!quiet || sample.link != link_) {

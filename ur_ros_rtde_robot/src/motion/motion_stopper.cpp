@@ -8,6 +8,7 @@
 #include "connection/ports.hpp"
 #include "connection/tcp_stream.hpp"
 #include "program/motion_blocker.hpp"
+#include "state/wait_until.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -17,7 +18,7 @@ using std::chrono::milliseconds;
 
 constexpr std::uint32_t moves = Control::MOTION_MOVE_JOINT | Control::MOTION_MOVE_LINEAR;
 
-/// Gives the commands of a stop a limit of their own; the default would let them wait for minutes.
+/// Limits the time of a stop command, which is minutes by default.
 class CommandLimit {
  public:
   CommandLimit(Control & control, milliseconds limit) : control_(control)
@@ -32,8 +33,8 @@ class CommandLimit {
   Control & control_;
 };
 
-/// One stop for each kind of motion that was started. Whoever follows a stream must be ended before anything
-/// else moves the arm.
+/// Sends the stop command of each kind of motion that was started. Servo and speed motions must end before
+/// another command moves the arm.
 void send_stops(Control & control, const StopOptions & options)
 {
   const auto started = control.getStartedMotions();
@@ -90,12 +91,12 @@ Status stop_program(const std::string & address, milliseconds limit)
     return tl::unexpected(answer.error());
   }
   if (answer->find("Stopped") == std::string::npos) {
-    return failure(ErrorCode::rejected_by_robot, fmt::format("the robot answered to `stop`: {}", *answer));
+    return failure(ErrorCode::rejected_by_robot, fmt::format("the robot answered `stop` with: {}", *answer));
   }
   return {};
 }
 
-bool MotionStopper::under_way() const
+bool MotionStopper::is_moving() const
 {
   const auto view = tracker_.view();
   if (!view.at_rest || view.operating()) {
@@ -106,11 +107,9 @@ bool MotionStopper::under_way() const
     return false;
   }
   const auto started = control->getStartedMotions();
-  // A move that was sent but of which nothing has been heard yet is under way, too; one that has ended is
-  // not.
-  const bool move_pending =
-      (started & moves) != 0 &&
-      view.async.word == static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove());
+  // Includes a move that was sent but has not been acknowledged. Excludes a move that has ended.
+  const bool move_pending = (started & moves) != 0 &&
+                            view.async.word == static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove());
   return move_pending || (started & ~moves) != 0;
 }
 
@@ -120,8 +119,8 @@ bool MotionStopper::command_stop(const StopOptions & options)
   if (!control) {
     return false;
   }
-  // A command that blocks holds the lock, and the control program with it: it gives up the lock at once, the
-  // program perhaps not.
+  // A blocking command holds the lock. When abandoned, it releases the lock at once, but the control program
+  // may still be blocked.
   bool held = interfaces_.control_lock()->try_lock_for(milliseconds(20));
   for (int attempt = 0; !held && attempt < 10; ++attempt) {
     control->abandonCommand();
@@ -143,19 +142,13 @@ bool MotionStopper::command_stop(const StopOptions & options)
 
 bool MotionStopper::wait_for_standstill(milliseconds limit) const
 {
-  // What was under way when the stop was sent shows in the samples some cycles later.
+  // The samples reflect commands with a delay of some cycles.
   constexpr std::uint64_t cycles = 5;
   const auto begin = tracker_.view().sequence;
-  const auto deadline = std::chrono::steady_clock::now() + limit;
-  Sample sample{};
-  while (std::chrono::steady_clock::now() < deadline && state_.link().connected) {
-    state_.wait_for_next(sample, milliseconds(20));
+  return wait_until(state_, limit, [&](const Sample &) {
     const auto view = tracker_.view();
-    if (view.sequence >= begin + cycles && view.at_rest && !view.operating()) {
-      return true;
-    }
-  }
-  return false;
+    return view.sequence >= begin + cycles && view.at_rest && !view.operating();
+  });
 }
 
 Expected<StopReport> MotionStopper::stop(const StopOptions & options)
@@ -169,7 +162,7 @@ Expected<StopReport> MotionStopper::stop(const StopOptions & options)
   const auto report = [&](StopMeans means) {
     return StopReport{means, tracker_.view().controller_time - begin};
   };
-  if (!under_way()) {
+  if (!is_moving()) {
     return report(StopMeans::nothing_moved);
   }
   if (motion_blocker(*sample) || !sample->program_running()) {
@@ -183,7 +176,7 @@ Expected<StopReport> MotionStopper::stop(const StopOptions & options)
   if (stopped && wait_for_standstill(options.program_stop_limit)) {
     return report(StopMeans::program_stopped);
   }
-  interfaces_.close_control();  // no more signs of life: the watchdog's turn
+  interfaces_.close_control();  // ends the heartbeat, so that the watchdog stops the program
   if (wait_for_standstill(options.program_stop_limit)) {
     return report(StopMeans::program_stopped);
   }
@@ -191,8 +184,7 @@ Expected<StopReport> MotionStopper::stop(const StopOptions & options)
     return link_lost();
   }
   return failure(ErrorCode::timeout,
-                 fmt::format("the arm still moves after every way to stop it was tried{}: use the "
-                             "emergency stop",
+                 fmt::format("all attempts to stop the arm have failed{}: use the emergency stop",
                              stopped ? "" : " (" + stopped.error().message + ")"));
 }
 

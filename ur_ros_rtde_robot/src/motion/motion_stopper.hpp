@@ -11,8 +11,8 @@
 
 namespace ur_ros_rtde {
 
-/// Brings the arm to rest: by the stop that belongs to each kind of motion under way, else by stopping the
-/// robot program, else by leaving it to the program's watchdog. One stop at a time.
+/// Stops the arm: with the stop command of each kind of motion, else by stopping the robot program, else by
+/// ending the heartbeat, so that the program's watchdog stops it. Concurrent stops run one after the other.
 class MotionStopper {
  public:
   MotionStopper(std::string address, const StateReceiver & state, RtdeInterfaces & interfaces,
@@ -24,10 +24,10 @@ class MotionStopper {
   Expected<StopReport> stop(const StopOptions & options);
 
  private:
-  bool under_way() const;
-  /// True when the control program has taken every stop it needed.
+  bool is_moving() const;
+  /// True if the control program has executed all stop commands.
   bool command_stop(const StopOptions & options);
-  /// False also when the link is lost meanwhile.
+  /// False after `limit` or if the connection is lost.
   bool wait_for_standstill(std::chrono::milliseconds limit) const;
   tl::unexpected<Error> link_lost() const;
 
@@ -38,8 +38,8 @@ class MotionStopper {
   std::mutex mutex_;
 };
 
-/// The dashboard command `stop`, over a connection of its own: it works while the shared client waits for
-/// something. Fails with the robot's answer.
+/// Sends the dashboard command `stop` on a separate connection, so that it works while the shared client is
+/// waiting. Fails with the robot's answer.
 Status stop_program(const std::string & address, std::chrono::milliseconds limit);
 
 }  // namespace ur_ros_rtde

@@ -6,24 +6,26 @@
 
 namespace ur_ros_rtde {
 
-/// What the samples tell about motion. Thread-safe.
+/// Tracks the motion state from the samples. Thread-safe.
 class MotionTracker {
  public:
   struct View {
     bool at_rest = false;
     AsyncStatus async;
     bool program_running = false;
-    /// Increases when the robot program ends or the link is made anew: what was under way before is over.
+    /// Incremented when the robot program ends or the connection is re-established, either of which ends all
+    /// motions.
     std::uint32_t program = 0;
     std::uint64_t sequence = 0;
     double controller_time = 0.0;
     std::uint32_t link = 0;
 
-    /// The word of the program before: it stays as it was, "running" perhaps, until this one writes it.
-    bool async_is_old = false;
+    /// `async` was written by the previous program. The register keeps its value, possibly "running", until
+    /// the current program writes it.
+    bool async_is_stale = false;
 
-    /// An asynchronous operation.
-    bool operating() const { return program_running && !async_is_old && async.running(); }
+    /// An asynchronous operation is running.
+    bool operating() const { return program_running && !async_is_stale && async.running(); }
   };
 
   void add(const Sample & sample)
@@ -39,7 +41,7 @@ class MotionTracker {
              sample.sequence,
              sample.controller_time,
              sample.link,
-             !sample.program_running() || ended || (view_.async_is_old && same_word)};
+             !sample.program_running() || ended || (view_.async_is_stale && same_word)};
   }
   View view() const
   {

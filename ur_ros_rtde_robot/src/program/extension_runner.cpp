@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "program/motion_blocker.hpp"
+#include "state/wait_until.hpp"
+#include "ur_ros_rtde_robot/connection/text.hpp"
 #include "ur_ros_rtde_robot/program/extension_registers.hpp"
 
 namespace ur_ros_rtde {
@@ -18,9 +20,9 @@ constexpr int trigger_register = 18;
 constexpr std::size_t acknowledgement = 18 - 12;  // in Sample::output_double_registers
 constexpr milliseconds acknowledgement_limit(1000);
 constexpr milliseconds stop_limit(3000);
-constexpr milliseconds unseen_limit(30);
-constexpr milliseconds message_limit(300);  // for the reason, after the program was seen to end
-constexpr int lines_before_extensions = 1;  // of the text: `def rtde_control():`
+constexpr milliseconds max_latency(30);     // until the samples reflect a change of the trigger
+constexpr milliseconds message_limit(300);  // from the end of the program to the error message
+constexpr int lines_before_extensions = 1;  // `def rtde_control():`
 
 }  // namespace
 
@@ -28,7 +30,7 @@ struct ExtensionRunner::Run {
   std::string name;
   int id;
   PrimaryLink primary;
-  std::uint32_t program;  ///< MotionTracker::View::program when it began
+  std::uint32_t program;  ///< MotionTracker::View::program at the begin
   Clock::time_point begin = Clock::now();
 };
 
@@ -48,16 +50,31 @@ Status ExtensionRunner::check_input(int index) const
                                                       script::to_string(script::free_inputs)));
 }
 
+/// Calls `write` with the locked IO interface. `what` names the value in the error.
+template <class Write>
+Status ExtensionRunner::write_register(const std::string & what, Write write)
+{
+  try {
+    const auto io = interfaces_.io();
+    if (io && write(*io->hold())) {
+      return {};
+    }
+    return failure(ErrorCode::link_lost, fmt::format("{} was not sent", what));
+  } catch (const RobotError & error) {
+    return tl::unexpected(error.error());
+  } catch (const std::exception & error) {
+    return failure(ErrorCode::link_lost, fmt::format("{} was not sent: {}", what, printable(error.what())));
+  }
+}
+
 Status ExtensionRunner::set_input(int index, std::int32_t value)
 {
   if (auto ok = check_input(index); !ok) {
     return ok;
   }
-  const auto io = interfaces_.io();
-  if (!io || !(*io)->setInputIntRegister(index + register_offset(options_), value)) {
-    return failure(ErrorCode::link_lost, fmt::format("input integer register {} was not sent", index));
-  }
-  return {};
+  return write_register(fmt::format("input integer register {}", index), [&](ur_rtde::RTDEIOInterface & io) {
+    return io.setInputIntRegister(index + register_offset(options_), value);
+  });
 }
 
 Status ExtensionRunner::set_input(int index, double value)
@@ -65,37 +82,27 @@ Status ExtensionRunner::set_input(int index, double value)
   if (auto ok = check_input(index); !ok) {
     return ok;
   }
-  const auto io = interfaces_.io();
-  if (!io || !(*io)->setInputDoubleRegister(index + register_offset(options_), value)) {
-    return failure(ErrorCode::link_lost, fmt::format("input float register {} was not sent", index));
-  }
-  return {};
+  return write_register(fmt::format("input float register {}", index), [&](ur_rtde::RTDEIOInterface & io) {
+    return io.setInputDoubleRegister(index + register_offset(options_), value);
+  });
 }
 
 Status ExtensionRunner::set_trigger(int id)
 {
-  const auto io = interfaces_.io();
-  if (!io || !(*io)->setInputDoubleRegister(trigger_register + register_offset(options_), id)) {
-    return failure(ErrorCode::link_lost, "the trigger of the extension was not sent");
-  }
-  return {};
+  return write_register("the trigger of the extension", [&](ur_rtde::RTDEIOInterface & io) {
+    return io.setInputDoubleRegister(trigger_register + register_offset(options_), id);
+  });
 }
 
-bool ExtensionRunner::wait_for_acknowledgement(double value, milliseconds limit) const
+bool ExtensionRunner::wait_for_acknowledgement(double value) const
 {
-  const auto deadline = Clock::now() + limit;
-  Sample sample = state_.latest().value_or(Sample{});
-  while (sample.sequence == 0 || sample.output_double_registers[acknowledgement] != value) {
-    if (!state_.link().connected || Clock::now() > deadline) {
-      return false;
-    }
-    state_.wait_for_next(sample, milliseconds(20));
-  }
-  return true;
+  return wait_until(state_, acknowledgement_limit, [value](const Sample & sample) {
+    return sample.sequence != 0 && sample.output_double_registers[acknowledgement] == value;
+  });
 }
 
-/// The program has ended while the extension ran: the primary interface says why.
-Status ExtensionRunner::failed(Run & run) const
+/// Reads from the primary interface why the program has ended while the extension ran.
+Status ExtensionRunner::failure_of(Run & run) const
 {
   const auto version = state_.version().value_or(ControllerVersion{});
   const auto deadline = Clock::now() + message_limit;
@@ -115,26 +122,26 @@ Status ExtensionRunner::failed(Run & run) const
                  fmt::format("the control program was stopped while the extension {} ran", run.name));
 }
 
-std::optional<Status> ExtensionRunner::look(Run & run, const ExtensionOptions & options)
+std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions & options) const
 {
   const auto link = state_.link();
   const auto sample = state_.latest();
   if (!link.connected || !sample) {
     return failure(ErrorCode::link_lost, link.error.message);
   }
-  if (const auto condition = motion_blocker(*sample)) {
-    return Status(tl::unexpected(*condition));
+  if (const auto blocker = motion_blocker(*sample)) {
+    return Status(tl::unexpected(*blocker));
   }
   const auto view = tracker_.view();
   if (view.program != run.program || !view.program_running) {
-    return failed(run);
+    return failure_of(run);
   }
   if (sample->output_double_registers[acknowledgement] == run.id) {
     return Status();
   }
   if (options.stop_reason) {
-    if (const auto why = options.stop_reason()) {
-      return Status(tl::unexpected(*why));
+    if (const auto reason = options.stop_reason()) {
+      return Status(tl::unexpected(*reason));
     }
   }
   if (Clock::now() - run.begin > options.limit) {
@@ -144,26 +151,31 @@ std::optional<Status> ExtensionRunner::look(Run & run, const ExtensionOptions & 
   return std::nullopt;
 }
 
-/// The trigger has been taken back: the control program ends the extension, and the arm's motion with it, and
-/// says so, if it still runs.
-void ExtensionRunner::end_early(Error & why)
+Status ExtensionRunner::wait_for_result(Run & run, const ExtensionOptions & options)
 {
-  const auto begin = Clock::now();
-  const auto deadline = begin + stop_limit;
+  if (auto triggered = set_trigger(run.id); !triggered) {
+    return triggered;
+  }
   Sample sample = state_.latest().value_or(Sample{});
-  const auto ended = [&] {
-    const bool seen = Clock::now() - begin > unseen_limit;  // what comes before may be older than the trigger
-    const bool program = tracker_.view().program_running;
-    return seen && tracker_.view().at_rest &&
-           (!program || sample.output_double_registers[acknowledgement] == 0.0);
-  };
-  while (!ended()) {
-    if (!state_.link().connected || Clock::now() > deadline) {
-      why.message += "; standstill is not confirmed";
-      return;
+  while (true) {
+    if (auto result = this->result(run, options)) {
+      return *result;
     }
     state_.wait_for_next(sample, milliseconds(20));
   }
+}
+
+/// Clears the trigger, so that the control program ends the extension and its motion, and waits for
+/// standstill.
+bool ExtensionRunner::stop_extension()
+{
+  set_trigger(0);
+  const auto begin = Clock::now();
+  return wait_until(state_, stop_limit, [&](const Sample & sample) {
+    const auto view = tracker_.view();
+    return Clock::now() - begin > max_latency && view.at_rest &&
+           (!view.program_running || sample.output_double_registers[acknowledgement] == 0.0);
+  });
 }
 
 Status ExtensionRunner::run(const std::string & name, const ExtensionOptions & options)
@@ -176,29 +188,29 @@ Status ExtensionRunner::run(const std::string & name, const ExtensionOptions & o
   if (!id) {
     return tl::unexpected(id.error());
   }
-  if (!wait_for_acknowledgement(0.0, acknowledgement_limit)) {
-    return failure(ErrorCode::not_ready, "the control program is still busy with the extension before");
+  if (!wait_for_acknowledgement(0.0)) {
+    return failure(ErrorCode::not_ready, "the control program has not finished the previous extension");
   }
   auto primary = PrimaryLink::connect(options_.address, options_.connect_timeout);
   if (!primary) {
     return tl::unexpected(primary.error());
   }
   Run run{name, *id, std::move(*primary), tracker_.view().program};
-  std::optional<Status> end;
-  if (const auto set = set_trigger(*id); !set) {
-    end = set;
+  Status result;
+  try {
+    result = wait_for_result(run, options);
+  } catch (...) {  // from ExtensionOptions::stop_reason
+    stop_extension();
+    throw;
   }
-  Sample sample = state_.latest().value_or(Sample{});
-  while (!end && !(end = look(run, options))) {
-    state_.wait_for_next(sample, milliseconds(20));
+  if (result) {
+    if (set_trigger(0)) {
+      wait_for_acknowledgement(0.0);
+    }
+  } else if (!stop_extension()) {
+    result.error().message += "; standstill is not confirmed";
   }
-  const Status taken_back = set_trigger(0);
-  if (!*end) {
-    end_early(end->error());
-  } else if (taken_back) {
-    wait_for_acknowledgement(0.0, acknowledgement_limit);
-  }
-  return *end;
+  return result;
 }
 
 }  // namespace ur_ros_rtde

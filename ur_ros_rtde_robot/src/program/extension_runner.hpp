@@ -13,29 +13,33 @@
 
 namespace ur_ros_rtde {
 
-/// Runs the extensions of the control program, one at a time: sets the trigger, follows the acknowledgement
-/// (float registers 18, see script_extension.hpp), and takes the trigger back, which ends what still runs.
+/// Runs the extensions of the control program, one at a time: sets the trigger, waits for the acknowledgement
+/// (float registers 18, see script_extension.hpp) and clears the trigger, which ends an extension that still
+/// runs.
 class ExtensionRunner {
  public:
   ExtensionRunner(const RobotOptions & options, const StateReceiver & state, const MotionTracker & tracker,
                   RtdeInterfaces & interfaces, const ControlScripts & scripts);
 
-  /// Returns when it is done, or has been ended: by the options, by an error in it, by a stop of the robot.
+  /// Returns when the extension has finished, or was ended by the options, an error or a stop of the robot.
   Status run(const std::string & name, const ExtensionOptions & options);
-  /// General purpose input registers, by their numbers without the offset of the upper range: 19 to 22.
+  /// Writes general purpose input register 19 to 22, without the offset of the upper range.
   Status set_input(int index, std::int32_t value);
   Status set_input(int index, double value);
 
  private:
   struct Run;
 
-  Status set_trigger(int id);
   Status check_input(int index) const;
-  /// Done, or why not; nothing while it is under way.
-  std::optional<Status> look(Run & run, const ExtensionOptions & options);
-  Status failed(Run & run) const;
-  bool wait_for_acknowledgement(double value, std::chrono::milliseconds limit) const;
-  void end_early(Error & why);
+  template <class Write>
+  Status write_register(const std::string & what, Write write);
+  Status set_trigger(int id);
+  bool wait_for_acknowledgement(double value) const;
+  Status wait_for_result(Run & run, const ExtensionOptions & options);
+  /// None while the extension is running.
+  std::optional<Status> result(Run & run, const ExtensionOptions & options) const;
+  Status failure_of(Run & run) const;
+  bool stop_extension();
 
   const RobotOptions options_;
   const StateReceiver & state_;

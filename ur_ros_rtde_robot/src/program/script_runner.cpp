@@ -7,8 +7,9 @@
 
 #include "connection/primary_link.hpp"
 #include "motion/motion_stopper.hpp"
-#include "program/script_watch.hpp"
+#include "program/script_monitor.hpp"
 #include "script/program.hpp"
+#include "state/wait_until.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -18,7 +19,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds yield_limit(5000);
 constexpr milliseconds resume_limit(5000);
 constexpr milliseconds program_end_limit(2000);
-constexpr milliseconds rest_limit(500);
+constexpr milliseconds standstill_limit(500);
 constexpr milliseconds longest_secondary(10'000);
 
 ScriptReport refused(Error error)
@@ -54,12 +55,13 @@ std::optional<Error> check(const ScriptOptions & options)
 /// Resumes the control program on destruction.
 class ResumeGuard {
  public:
-  ResumeGuard(ControlProgramManager & manager, const ScriptWatch & watch) : manager_(manager), watch_(watch)
+  ResumeGuard(ControlProgramManager & manager, const ScriptMonitor & monitor)
+      : manager_(manager), monitor_(monitor)
   {
   }
   ~ResumeGuard()
   {
-    if (watch_.replaced()) {
+    if (monitor_.replaced()) {
       manager_.resume_after_replacement(resume_limit);
     } else {
       manager_.resume(resume_limit);
@@ -70,7 +72,7 @@ class ResumeGuard {
 
  private:
   ControlProgramManager & manager_;
-  const ScriptWatch & watch_;
+  const ScriptMonitor & monitor_;
 };
 
 }  // namespace
@@ -97,27 +99,21 @@ std::string ScriptRunner::preamble() const
                      register_offset(options_), options_.watchdog_frequency);
 }
 
-bool ScriptRunner::wait_for_standstill(bool of_program) const
+bool ScriptRunner::wait_for_program_end() const
 {
-  const auto deadline = std::chrono::steady_clock::now() + (of_program ? program_end_limit : rest_limit);
-  Sample sample = state_.latest().value_or(Sample{});
-  while (!tracker_.view().at_rest || (of_program && sample.runtime_state != RuntimeState::stopped)) {
-    if (!state_.link().connected || std::chrono::steady_clock::now() > deadline) {
-      return false;
-    }
-    state_.wait_for_next(sample, milliseconds(20));
-  }
-  return true;
+  return wait_until(state_, program_end_limit, [this](const Sample & sample) {
+    return tracker_.view().at_rest && sample.runtime_state == RuntimeState::stopped;
+  });
 }
 
 Status ScriptRunner::stop() const
 {
   auto stopped = stop_program(options_.address, milliseconds(500));
-  if (stopped && wait_for_standstill(true)) {
+  if (stopped && wait_for_program_end()) {
     return {};
   }
-  interfaces_.close_control();  // ends the signs of life: the watchdog stops the program
-  if (wait_for_standstill(true)) {
+  interfaces_.close_control();  // ends the heartbeat, so that the watchdog stops the program
+  if (wait_for_program_end()) {
     return {};
   }
   return stopped ? failure(ErrorCode::timeout, "the program does not end") : stopped;
@@ -132,14 +128,14 @@ ScriptReport ScriptRunner::run(const std::string & script, const ScriptOptions &
   if (!secondary && options_.control_mode == ControlMode::control_urcap) {
     return refused(Error{ErrorCode::not_supported,
                          "not with control_mode control_urcap: the script would end the program of the "
-                         "robot, and nobody but the operator starts that again. Use control_mode upload, or "
+                         "robot, which only the operator can restart. Use control_mode upload, or "
                          "a script of kind `sec`"});
   }
   const auto id = next_id_++;
-  const ScriptWatch::Marks marks{fmt::format("ur_ros_rtde: script {:08x} begins", id),
-                                 fmt::format("ur_ros_rtde: script {:08x} ends", id)};
+  const ScriptMonitor::Markers markers{fmt::format("ur_ros_rtde: script {:08x} begins", id),
+                                       fmt::format("ur_ros_rtde: script {:08x} ends", id)};
   const auto program =
-      script::make_program(script, {secondary, marks.begin, marks.end, secondary ? "" : preamble()});
+      script::make_program(script, {secondary, markers.begin, markers.end, secondary ? "" : preamble()});
   if (!program) {
     return refused(program.error());
   }
@@ -147,31 +143,33 @@ ScriptReport ScriptRunner::run(const std::string & script, const ScriptOptions &
   if (!primary) {
     return refused(primary.error());
   }
-  ScriptWatch watch(std::move(*primary), state_, marks, options);
+  ScriptMonitor monitor(std::move(*primary), state_, markers, options);
   if (secondary) {
-    watch.follow(*program);
-    return watch.report();
+    monitor.run(*program);
+    return monitor.report();
   }
-  return run_program(*program, watch);
+  return run_program(*program, monitor);
 }
 
-ScriptReport ScriptRunner::run_program(const script::Program & program, ScriptWatch & watch)
+ScriptReport ScriptRunner::run_program(const script::Program & program, ScriptMonitor & monitor)
 {
-  if (!wait_for_standstill(false)) {
+  const bool at_rest =
+      wait_until(state_, standstill_limit, [this](const Sample &) { return tracker_.view().at_rest; });
+  if (!at_rest) {
     return refused(Error{ErrorCode::busy, "the arm moves: a script begins when it stands still"});
   }
   if (const auto yielded = manager_.yield(yield_limit); !yielded) {
     return refused(yielded.error());
   }
-  const ResumeGuard resume(manager_, watch);
+  const ResumeGuard resume(manager_, monitor);
   try {
-    watch.follow(program);
+    monitor.run(program);
   } catch (...) {
     stop();
     throw;
   }
-  ScriptReport report = watch.report();
-  if (watch.running() && state_.link().connected) {
+  ScriptReport report = monitor.report();
+  if (monitor.may_be_running() && state_.link().connected) {
     if (const auto stopped = stop(); !stopped) {
       report.error.message += fmt::format("; standstill is not confirmed: {}", stopped.error().message);
     }

@@ -6,13 +6,13 @@
 
 #include "motion/motion_tracker.hpp"
 #include "program/control_program_manager.hpp"
-#include "program/script_watch.hpp"
+#include "program/script_monitor.hpp"
 #include "ur_ros_rtde_robot/program/script.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
 namespace ur_ros_rtde {
 
-/// Runs scripts: programs in the place of the control program, secondary programs beside it.
+/// Runs scripts: programs in place of the control program, secondary programs beside it.
 class ScriptRunner {
  public:
   ScriptRunner(const RobotOptions & options, const StateReceiver & state, const MotionTracker & tracker,
@@ -21,11 +21,10 @@ class ScriptRunner {
   ScriptReport run(const std::string & script, const ScriptOptions & options);
 
  private:
-  ScriptReport run_program(const script::Program & program, ScriptWatch & watch);
-  /// Stops the program, which decelerates the arm, and waits until both stand still.
+  ScriptReport run_program(const script::Program & program, ScriptMonitor & monitor);
+  /// Stops the program, which decelerates the arm, and waits until program and arm have stopped.
   Status stop() const;
-  /// Of the arm; of the program, too.
-  bool wait_for_standstill(bool of_program) const;
+  bool wait_for_program_end() const;
   std::string preamble() const;
 
   const RobotOptions options_;
@@ -33,7 +32,7 @@ class ScriptRunner {
   const MotionTracker & tracker_;
   RtdeInterfaces & interfaces_;
   ControlProgramManager & manager_;
-  /// Tells the scripts of this process from each other and from those of others.
+  /// Makes the markers of scripts unique; starts at random to differ from those of other processes.
   std::atomic<std::uint32_t> next_id_;
 };
 

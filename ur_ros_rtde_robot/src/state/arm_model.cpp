@@ -26,14 +26,14 @@ constexpr std::array types{
     Type{7, "", "ur20"},    Type{8, "", "ur30"},      Type{9, "", "ur15"},
 };
 
-/// What the controller calls a model that has another's arm.
-std::string as_detected(const std::string & model)
+/// The model that the controller reports for `model`.
+std::string reported_model(const std::string & model)
 {
   return model == "ur7e" ? "ur5e" : model == "ur12e" ? "ur10e" : model;
 }
 
-/// For people: which models it may be.
-std::string described(const std::string & detected)
+/// Text for messages: the possible models.
+std::string describe(const std::string & detected)
 {
   return detected == "ur5e" ? "ur5e (or ur7e)" : detected == "ur10e" ? "ur10e (or ur12e)" : detected;
 }
@@ -71,7 +71,7 @@ ArmModel::ArmModel(std::string address, std::string stated, LogFunction log)
 {
 }
 
-void ArmModel::could_not_detect(const std::string & why)
+void ArmModel::report_undetected(const std::string & why)
 {
   {
     const std::lock_guard lock(mutex_);
@@ -79,12 +79,12 @@ void ArmModel::could_not_detect(const std::string & why)
     limits_ = limits_of_stated(stated_);
   }
   const std::string consequence =
-      stated_.empty()
-          ? "motions are limited to what every model can do: set the parameter ur_type to the "
-            "model on the arm's base"
-          : fmt::format("that it is a {}, as the parameter ur_type says, is not checked", stated_);
-  report_.once(LogLevel::warn, fmt::format("the controller at {} does not tell the model of the arm ({}); {}",
-                                           address_, why, consequence));
+      stated_.empty() ? "motions are limited to what every model can do: set the parameter ur_type to the "
+                        "model on the arm's base"
+                      : fmt::format("the parameter ur_type ({}) cannot be verified", stated_);
+  report_.once(LogLevel::warn,
+               fmt::format("the controller at {} does not report the model of the arm ({}); {}", address_,
+                           why, consequence));
 }
 
 void ArmModel::detect(const ControllerVersion & version, std::chrono::milliseconds limit)
@@ -92,19 +92,18 @@ void ArmModel::detect(const ControllerVersion & version, std::chrono::millisecon
   auto primary = PrimaryLink::connect(address_, limit);
   const auto type = primary.and_then([&](PrimaryLink & link) { return link.robot_type(limit); });
   if (!type) {
-    return could_not_detect(type.error().message);
+    return report_undetected(type.error().message);
   }
   const auto model = model_of_type(*type, version.cb3());
   if (!model) {
-    return could_not_detect(
-        fmt::format("type {} with PolyScope {} is not known here", *type, to_string(version)));
+    return report_undetected(fmt::format("type {} with PolyScope {} is unknown", *type, to_string(version)));
   }
   {
     const std::lock_guard lock(mutex_);
     detected_ = model;
     limits_ = stated_.empty() ? arm_limits(*model).value_or(common_arm_limits()) : limits_of_stated(stated_);
   }
-  report_.once(LogLevel::info, fmt::format("the arm at {} is a {}", address_, described(*model)));
+  report_.once(LogLevel::info, fmt::format("the arm at {} is a {}", address_, describe(*model)));
 }
 
 ArmLimits ArmModel::limits() const
@@ -116,15 +115,15 @@ ArmLimits ArmModel::limits() const
 std::optional<Error> ArmModel::mismatch() const
 {
   const std::lock_guard lock(mutex_);
-  if (stated_.empty() || !detected_ || as_detected(stated_) == *detected_) {
+  if (stated_.empty() || !detected_ || reported_model(stated_) == *detected_) {
     return std::nullopt;
   }
   return Error{
       ErrorCode::model_mismatch,
       fmt::format("ur_type is {}, but the arm at {} is a {}: start the driver again with ur_type:={}, "
-                  "or with an empty one to take the controller's word, or with the address of the "
+                  "or with an empty one to use the detected model, or with the address of the "
                   "right robot",
-                  stated_, address_, described(*detected_), *detected_)};
+                  stated_, address_, describe(*detected_), *detected_)};
 }
 
 }  // namespace ur_ros_rtde

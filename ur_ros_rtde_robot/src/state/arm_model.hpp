@@ -13,26 +13,27 @@
 
 namespace ur_ros_rtde {
 
-/// The model with this type number in the primary interface; none for a number that is not known. A UR7e
-/// says that it is a UR5e, a UR12e that it is a UR10e: the arms are the same.
+/// The model with this type number in the primary interface; none if the number is unknown. A UR7e reports
+/// the number of the UR5e, a UR12e that of the UR10e, since the arms are identical.
 std::optional<std::string> model_of_type(std::int32_t type, bool cb3);
 
-/// Which model the arm is, by the user and by the controller, and what it can do. Thread-safe.
+/// Model of the arm, as stated by the user and as detected from the controller, and its limits. Thread-safe.
 class ArmModel {
  public:
-  /// `stated` by the user; empty: the detected one. Throws std::invalid_argument for an unknown
-  /// model.
+  /// `stated`: model given by the user; empty: use the detected one. Throws std::invalid_argument if it is
+  /// unknown.
   ArmModel(std::string address, std::string stated, LogFunction log);
 
-  /// Asks the controller, within some `limit`s. Says in the log what is new.
+  /// Queries the controller; `limit` applies to each step. Logs changes.
   void detect(const ControllerVersion & version, std::chrono::milliseconds limit);
-  /// Of the stated model, or the detected one. When the controller has not told: what every model can do.
+  /// Limits of the stated or else the detected model. If both are unknown: the limits that all models have in
+  /// common.
   ArmLimits limits() const;
-  /// The controller has another model than the stated one.
+  /// Error if the detected model differs from the stated one.
   std::optional<Error> mismatch() const;
 
  private:
-  void could_not_detect(const std::string & why);
+  void report_undetected(const std::string & why);
 
   const std::string address_;
   const std::string stated_;

@@ -41,8 +41,8 @@ Quaternion conjugate(const Quaternion & q)
   return {-q.x, -q.y, -q.z, q.w};
 }
 
-/// Of a unit quaternion. The angle comes from atan2, which is exact to rounding at both ends: acos(w) loses
-/// half the digits near w = 1, asin(|v|) near pi.
+/// Converts a unit quaternion. The angle is computed with atan2, which is accurate over the whole range:
+/// acos(w) loses half the digits near angle 0, asin(|v|) near pi.
 Vector3 to_rotation_vector(const Quaternion & q)
 {
   const double sign = q.w < 0.0 ? -1.0 : 1.0;
@@ -60,14 +60,14 @@ Expected<Vector3> rotation_vector(const Quaternion & rotation)
   const double length = std::hypot(std::hypot(rotation.x, rotation.y), std::hypot(rotation.z, rotation.w));
   if (!std::isfinite(length)) {
     return failure(ErrorCode::invalid_goal,
-                   fmt::format("orientation is ({}, {}, {}, {}): its parts must be finite numbers",
+                   fmt::format("orientation is ({}, {}, {}, {}): its components must be finite numbers",
                                rotation.x, rotation.y, rotation.z, rotation.w));
   }
   if (length < shortest_quaternion) {
     return failure(
         ErrorCode::invalid_goal,
-        fmt::format("orientation is ({}, {}, {}, {}), which is no rotation: a quaternion has length 1, and "
-                    "w = 1 where nothing is rotated",
+        fmt::format("orientation is ({}, {}, {}, {}), which is not a rotation: a quaternion has norm 1; no "
+                    "rotation is w = 1",
                     rotation.x, rotation.y, rotation.z, rotation.w));
   }
   return to_rotation_vector(

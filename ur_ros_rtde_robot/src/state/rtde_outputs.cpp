@@ -101,7 +101,7 @@ constexpr std::array numbered{
     Numbered{"input_double_register_", 0, 47}, Numbered{"output_double_register_", 0, 47},
 };
 
-bool is_of(const Numbered & field, std::string_view name)
+bool matches(const Numbered & field, std::string_view name)
 {
   if (!name.starts_with(field.stem)) {
     return false;
@@ -118,7 +118,7 @@ bool is_of(const Numbered & field, std::string_view name)
 bool is_rtde_output(std::string_view name)
 {
   return std::ranges::find(single, name) != single.end() ||
-         std::ranges::any_of(numbered, [&](const Numbered & field) { return is_of(field, name); });
+         std::ranges::any_of(numbered, [&](const Numbered & field) { return matches(field, name); });
 }
 
 Status check_rtde_outputs(const std::vector<std::string> & names)
@@ -127,12 +127,12 @@ Status check_rtde_outputs(const std::vector<std::string> & names)
     if (!is_rtde_output(*name)) {
       return failure(
           ErrorCode::invalid_goal,
-          fmt::format("\"{}\" is no RTDE output: the names are those of the table \"Robot controller "
+          fmt::format("\"{}\" is not an RTDE output: the names are those of the table \"Robot controller "
                       "outputs\" in UR's \"Real-Time Data Exchange (RTDE) Guide\"",
                       *name));
     }
     if (std::find(names.begin(), name, *name) != name) {
-      return failure(ErrorCode::invalid_goal, fmt::format("\"{}\" is there twice", *name));
+      return failure(ErrorCode::invalid_goal, fmt::format("\"{}\" occurs twice", *name));
     }
   }
   return {};

@@ -15,7 +15,7 @@ using ur_rtde::rtde_type_variant_;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// What a Sample holds where the controller offers nothing.
+/// Values of the fields that the controller does not provide.
 Sample empty_sample()
 {
   Sample sample{};
@@ -33,8 +33,8 @@ Sample empty_sample()
   return sample;
 }
 
-/// Collects one copying function a variable, skipping those that the state does not hold or holds in another
-/// type.
+/// Creates one copy function per variable. Skips variables that the state lacks; values of another type are
+/// not copied.
 class Binder {
  public:
   Binder(const ur_rtde::RobotState & state, std::vector<std::function<void(Sample &)>> & copies)

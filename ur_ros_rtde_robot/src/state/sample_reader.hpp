@@ -13,16 +13,16 @@ class RobotState;
 
 namespace ur_ros_rtde {
 
-/// Copies the package that ur_rtde received last into a Sample, all of it under one lock. The names are
-/// looked up once, so that a package costs no allocation here.
+/// Copies the last package that ur_rtde received into a Sample, under one lock. The constructor looks up the
+/// names, so that reading does not allocate.
 class SampleReader {
  public:
-  /// Variables that `state` does not hold are NaN or 0 in the samples. `register_offset`: 0, or 24 for the
-  /// upper range.
+  /// Variables that `state` lacks are NaN or 0 in the samples. `register_offset`: 0, or 24 for the upper
+  /// range.
   SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset);
   ~SampleReader();
 
-  /// When the package arrived.
+  /// Returns the arrival time of the package.
   std::chrono::steady_clock::time_point read(Sample & sample) const;
 
  private:

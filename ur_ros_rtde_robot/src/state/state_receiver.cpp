@@ -60,7 +60,7 @@ class StateReceiver::Impl {
 
   mutable std::mutex mutex_;
   mutable std::condition_variable_any changed_;
-  std::condition_variable_any pause_;  ///< nobody notifies it, packages least of all
+  std::condition_variable_any pause_;  ///< never notified, only for waits with a stop token
   LinkStatus link_;
   std::optional<ControllerVersion> version_;
   double frequency_ = 0.0;
@@ -71,11 +71,12 @@ class StateReceiver::Impl {
 
  private:
   Status connect();
-  Error connect_and_follow(const std::stop_token & stop);
-  Error follow(const std::stop_token & stop);
-  Error watch(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface);
-  Clock::time_point silent_since(ur_rtde::RobotState & state) const;
-  void take(Sample & sample, const SampleReader & reader);
+  Error connect_and_receive(const std::stop_token & stop);
+  Error receive_packages(const std::stop_token & stop);
+  /// Returns when the connection fails or a stop is requested.
+  Error monitor(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface);
+  Clock::time_point last_activity(ur_rtde::RobotState & state) const;
+  void on_package(Sample & sample, const SampleReader & reader);
   void publish(Sample & sample, const SampleReader & reader);
   void pause(const std::stop_token & stop, Clock::duration limit);
   std::optional<std::string> take_failure();
@@ -83,9 +84,9 @@ class StateReceiver::Impl {
   double choose_frequency(const ControllerVersion & version);
 
   const StateReceiverOptions options_;
-  std::optional<std::string> failure_;  ///< of on_sample's function
-  std::atomic<bool> taking_ = false;
-  std::atomic<Clock::time_point> taken_{};
+  std::optional<std::string> failure_;  ///< exception of sample_function_
+  std::atomic<bool> processing_ = false;
+  std::atomic<Clock::time_point> processed_{};
   Reporter report_;
   bool frequency_reported_ = false;
   std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
@@ -98,7 +99,7 @@ double StateReceiver::Impl::choose_frequency(const ControllerVersion & version)
   }
   if (options_.frequency > version.frequency() && !std::exchange(frequency_reported_, true)) {
     report_.say(LogLevel::warn,
-                fmt::format("frequency {} Hz is more than a controller of version {} can: using {} Hz",
+                fmt::format("frequency {} Hz exceeds the maximum of a controller of version {}: using {} Hz",
                             options_.frequency, to_string(version), version.frequency()));
   }
   return std::min(options_.frequency, version.frequency());
@@ -116,8 +117,8 @@ Status StateReceiver::Impl::connect()
         options_.address, frequency, std::vector<std::string>{}, false, options_.upper_range_registers,
         keep_priority);
     if (!interface->isConnected()) {
-      return failure(ErrorCode::link_lost,
-                     fmt::format("{}:{} accepts the set-up but sends no data", options_.address, rtde_port));
+      return failure(ErrorCode::link_lost, fmt::format("{}:{} accepts the RTDE set-up but sends no data",
+                                                       options_.address, rtde_port));
     }
     const std::lock_guard lock(mutex_);
     interface_ = std::move(interface);
@@ -126,7 +127,7 @@ Status StateReceiver::Impl::connect()
     return {};
   } catch (const std::exception & error) {
     return failure(ErrorCode::link_lost,
-                   fmt::format("the RTDE server at {}:{} does not do what it should: {}", options_.address,
+                   fmt::format("the RTDE server at {}:{} does not follow the protocol: {}", options_.address,
                                rtde_port, printable(error.what())));
   }
 }
@@ -148,41 +149,44 @@ void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader)
   }
 }
 
-/// On ur_rtde's thread, which an exception must not reach.
-void StateReceiver::Impl::take(Sample & sample, const SampleReader & reader)
+/// Runs on ur_rtde's thread, which must not see an exception.
+void StateReceiver::Impl::on_package(Sample & sample, const SampleReader & reader)
 {
-  taking_ = true;
+  processing_ = true;
   try {
     publish(sample, reader);
   } catch (const std::exception & error) {
     const std::lock_guard lock(mutex_);
     failure_ = error.what();
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = "unknown exception";
   }
-  taken_ = Clock::now();
-  taking_ = false;
+  processed_ = Clock::now();
+  processing_ = false;
 }
 
-/// While a package is being taken no other can be read: that is this host's silence, not the controller's.
-Clock::time_point StateReceiver::Impl::silent_since(ur_rtde::RobotState & state) const
+/// ur_rtde cannot read packages while one is being processed; this must not count as silence of the
+/// controller.
+Clock::time_point StateReceiver::Impl::last_activity(ur_rtde::RobotState & state) const
 {
-  return taking_ ? Clock::now() : std::max(state.getPackageTime(), taken_.load());
+  return processing_ ? Clock::now() : std::max(state.getPackageTime(), processed_.load());
 }
 
-/// Until the link ends, or it shall.
-Error StateReceiver::Impl::watch(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface)
+Error StateReceiver::Impl::monitor(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface)
 {
   const auto state = interface.getRobotState();
   const auto silence_limit =
       std::max(options_.silence_limit,
                std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
-  // This host may have been busy, not the controller: the last of the time is for ur_rtde's thread to read
-  // what may lie there.
+  // If this host was busy, packages may be waiting in the socket: the last part of the limit is reserved for
+  // ur_rtde's thread to read them.
   const auto last_wait = std::min(longest_wait, silence_limit / 2);
-  const auto left = [&] { return silent_since(*state) + silence_limit - last_wait - Clock::now(); };
+  const auto left = [&] { return last_activity(*state) + silence_limit - last_wait - Clock::now(); };
   while (!stop.stop_requested()) {
     pause(stop, std::clamp<Clock::duration>(left(), std::chrono::milliseconds(1), longest_wait));
     if (const auto failed = take_failure()) {
-      return {ErrorCode::exception, fmt::format("a package could not be handed on: {}", *failed)};
+      return {ErrorCode::exception, fmt::format("a callback could not process a package: {}", *failed)};
     }
     if (!interface.isConnected()) {
       return {ErrorCode::link_lost, fmt::format("{} closed the RTDE connection", options_.address)};
@@ -191,7 +195,7 @@ Error StateReceiver::Impl::watch(const std::stop_token & stop, ur_rtde::RTDERece
       pause(stop, last_wait);
       if (left() <= Clock::duration::zero()) {
         return {ErrorCode::link_lost,
-                fmt::format("no RTDE package from {} for {} ms: the link or the controller hangs",
+                fmt::format("no RTDE package from {} for {} ms: the connection or the controller hangs",
                             options_.address, silence_limit.count())};
       }
     }
@@ -211,24 +215,25 @@ std::optional<std::string> StateReceiver::Impl::take_failure()
   return std::exchange(failure_, std::nullopt);
 }
 
-Error StateReceiver::Impl::follow(const std::stop_token & stop)
+Error StateReceiver::Impl::receive_packages(const std::stop_token & stop)
 {
   const auto interface = interface_;
   const auto state = interface->getRobotState();
   const SampleReader reader(state, options_.upper_range_registers ? 24 : 0);
   Sample sample = latest_;
   ++sample.link;
-  take(sample, reader);
-  state->setPackageCallback([&] { take(sample, reader); });
-  const Error end = watch(stop, *interface);
-  state->setPackageCallback({});
+  on_package(sample, reader);
+  set_link({true, {}});  // when there is a sample of this connection
+  state->onPackage([&] { on_package(sample, reader); });
+  const Error end = monitor(stop, *interface);
+  state->onPackage({});
   return end;
 }
 
 void StateReceiver::Impl::set_link(LinkStatus status)
 {
   bool changed = false;
-  // Closes its connection and joins its thread, which must not happen under the lock.
+  // Destroyed without the lock, since this closes the connection and joins a thread.
   std::shared_ptr<ur_rtde::RTDEReceiveInterface> dropped;
   {
     const std::lock_guard lock(mutex_);
@@ -247,22 +252,22 @@ void StateReceiver::Impl::set_link(LinkStatus status)
 
 void StateReceiver::Impl::run(const std::stop_token & stop)
 {
-  // ur_rtde's threads inherit it.
+  // ur_rtde's threads inherit the priority.
   if (const Status allowed = set_realtime_priority(options_.realtime_priority); !allowed) {
     report_.say(LogLevel::warn, allowed.error().message);
   }
   const auto retry_seconds = std::chrono::duration<double>(options_.retry_interval).count();
   while (!stop.stop_requested()) {
-    const Error end = connect_and_follow(stop);
+    const Error end = connect_and_receive(stop);
     set_link({false, end});
     pause(stop, options_.retry_interval);
-    if (!stop.stop_requested()) {  // a driver that is shut down together with the controller reports nothing
+    if (!stop.stop_requested()) {  // no error message if driver and controller are shut down together
       report_.once(LogLevel::error, fmt::format("{}. Trying again every {} s", end.message, retry_seconds));
     }
   }
 }
 
-Error StateReceiver::Impl::connect_and_follow(const std::stop_token & stop)
+Error StateReceiver::Impl::connect_and_receive(const std::stop_token & stop)
 {
   if (const auto connected = connect(); !connected) {
     return connected.error();
@@ -270,8 +275,7 @@ Error StateReceiver::Impl::connect_and_follow(const std::stop_token & stop)
   report_.forget();
   report_.say(LogLevel::info, fmt::format("connected to {}: PolyScope {}, {} Hz", options_.address,
                                           to_string(*version_), frequency_));
-  set_link({true, {}});
-  return follow(stop);
+  return receive_packages(stop);
 }
 
 Locked<ur_rtde::RTDEReceiveInterface> StateReceiver::Impl::receive() const

@@ -1,0 +1,267 @@
+#include "program/script_monitor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+#include <utility>
+
+#include "program/motion_blocker.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t most_lines = 1000;
+constexpr milliseconds send_limit(1000);
+constexpr milliseconds begin_limit(3000);  // from sending to the begin marker
+/// Longest delay between the primary interface and RTDE, which are separate connections, for events of the
+/// same control cycle.
+constexpr milliseconds max_skew(100);
+constexpr milliseconds poll_interval(4);
+
+double seconds(std::chrono::steady_clock::duration duration)
+{
+  return std::chrono::duration<double>(duration).count();
+}
+
+/// Replaces the line number in the controller's error text, which counts the added lines, by that of the
+/// original script.
+std::string with_original_line(std::string text, int sent_line, int original_line)
+{
+  const std::string sent = std::to_string(sent_line);
+  const auto found = text.find(sent, std::min(text.find("line"), text.size()));
+  if (original_line > 0 && found != std::string::npos) {
+    text.replace(found, sent.size(), std::to_string(original_line));
+  }
+  return text;
+}
+
+/// The controller labels errors of secondary programs, which may run beside the monitored program.
+bool is_from_secondary_program(const std::string & text)
+{
+  constexpr std::string_view word = "secondary";
+  return text.size() >= word.size() && std::equal(word.begin(), word.end(), text.begin(), [](char a, char b) {
+           return a == std::tolower(static_cast<unsigned char>(b));
+         });
+}
+
+}  // namespace
+
+const char * to_string(ScriptEnd end)
+{
+  switch (end) {
+    case ScriptEnd::finished:
+      return "finished";
+    case ScriptEnd::refused:
+      return "refused";
+    case ScriptEnd::compile_error:
+      return "compile error";
+    case ScriptEnd::runtime_error:
+      return "run-time error";
+    case ScriptEnd::stopped:
+      return "stopped";
+    case ScriptEnd::robot_stopped:
+      return "robot stopped";
+    case ScriptEnd::interrupted:
+      return "interrupted";
+    case ScriptEnd::timeout:
+      return "timeout";
+    case ScriptEnd::link_lost:
+      return "link lost";
+  }
+  return "unknown";
+}
+
+ScriptMonitor::ScriptMonitor(PrimaryLink primary, const StateReceiver & state, Markers markers,
+                             const ScriptOptions & options)
+    : primary_(std::move(primary)), state_(state), markers_(std::move(markers)), options_(options)
+{
+}
+
+ScriptReport ScriptMonitor::report() const
+{
+  return report_;
+}
+
+bool ScriptMonitor::complete(ScriptEnd end, ErrorCode code, std::string message)
+{
+  may_be_running_ = end == ScriptEnd::robot_stopped || end == ScriptEnd::interrupted ||
+                    end == ScriptEnd::timeout || end == ScriptEnd::link_lost;
+  report_.end = end;
+  report_.error = {code, std::move(message)};
+  report_.duration = seconds(Clock::now() - sent_);
+  return true;
+}
+
+void ScriptMonitor::run(const script::Program & program)
+{
+  program_ = &program;
+  sent_ = Clock::now();
+  if (const auto sent = primary_.send(program.text.text(), send_limit); !sent) {
+    complete(ScriptEnd::link_lost, sent.error().code,
+             "the script could not be sent: " + sent.error().message);
+    return;
+  }
+  while (!update()) {
+  }
+}
+
+bool ScriptMonitor::update()
+{
+  return read_messages() || (!messages_left_ && (has_failed() || has_ended())) || must_stop();
+}
+
+/// Bounded in time, so that a script that writes faster than ScriptOptions::on_text returns can be stopped.
+bool ScriptMonitor::read_messages()
+{
+  const auto deadline = Clock::now() + poll_interval;
+  auto wait = poll_interval;
+  do {
+    const auto message = primary_.next(wait);
+    if (!message) {
+      return complete(ScriptEnd::link_lost, message.error().code,
+                      "the outcome of the script is unknown: " + message.error().message);
+    }
+    messages_left_ = message->has_value();
+    if (messages_left_) {
+      on_message(**message);
+    }
+    wait = milliseconds(0);
+  } while (messages_left_ && Clock::now() < deadline);
+  return false;
+}
+
+void ScriptMonitor::on_text(const std::string & text)
+{
+  if (text == markers_.begin) {
+    begin_seen_ = Clock::now();
+  } else if (text == markers_.end) {
+    end_seen_ = Clock::now();
+  } else if (begin_seen_ && !end_seen_) {
+    if (report_.text.size() < most_lines) {
+      report_.text.push_back(text);
+    }
+    if (options_.on_text) {
+      options_.on_text(text);
+    }
+  }
+}
+
+void ScriptMonitor::on_message(const PrimaryMessage & message)
+{
+  switch (message.kind) {
+    case PrimaryMessage::Kind::text:
+      on_text(message.text);
+      break;
+    case PrimaryMessage::Kind::error:
+      if (!error_seen_ &&
+          (options_.kind == ScriptKind::secondary || !is_from_secondary_program(message.text))) {
+        error_seen_ = Clock::now();
+        error_ = message;
+      }
+      break;
+    case PrimaryMessage::Kind::program_started:
+      if (begin_seen_ && message.text != program_->name) {
+        replaced_by_ = message.text;
+      }
+      break;
+    case PrimaryMessage::Kind::program_stopped:
+      break;
+  }
+}
+
+/// A compile error arrives without a begin marker. Errors of other programs can arrive at any time.
+bool ScriptMonitor::has_failed()
+{
+  if (!error_seen_ || Clock::now() - *error_seen_ <= max_skew) {
+    return false;
+  }
+  const bool compile_error = !begin_seen_;
+  const bool secondary_failed = options_.kind == ScriptKind::secondary && begin_seen_ && !end_seen_;
+  return (compile_error || secondary_failed) && complete_with_error();
+}
+
+bool ScriptMonitor::complete_with_error()
+{
+  report_.line = error_.line > 0 ? program_->text.origin(error_.line).line : 0;
+  const std::string text = with_original_line(error_.text, error_.line, report_.line);
+  if (begin_seen_) {
+    return complete(ScriptEnd::runtime_error, ErrorCode::rejected_by_robot,
+                    fmt::format("the controller ended the script: {}", text));
+  }
+  return complete(ScriptEnd::compile_error, ErrorCode::rejected_by_robot,
+                  fmt::format("the controller does not take the script: {}", text));
+}
+
+bool ScriptMonitor::has_ended()
+{
+  const auto now = Clock::now();
+  if (options_.kind == ScriptKind::secondary) {
+    return end_seen_ && complete(ScriptEnd::finished, ErrorCode::none, {});
+  }
+  const auto sample = state_.latest();
+  if (!begin_seen_ || !sample || sample->received <= *begin_seen_) {
+    return false;
+  }
+  has_played_ = has_played_ || sample->program_running();
+  const bool stopped = sample->runtime_state == RuntimeState::stopped &&
+                       (has_played_ || now - *begin_seen_ > (end_seen_ ? max_skew / 5 : max_skew));
+  if (!stopped) {
+    return false;
+  }
+  stop_seen_ = stop_seen_.value_or(now);
+  if (end_seen_ && !(error_seen_ && *error_seen_ >= *end_seen_)) {
+    return complete(ScriptEnd::finished, ErrorCode::none, {});
+  }
+  if (error_seen_) {
+    return complete_with_error();
+  }
+  return now - *stop_seen_ > max_skew &&
+         complete(ScriptEnd::stopped, ErrorCode::program_stopped,
+                  "the script was stopped: on the pendant, by the dashboard, or by another program");
+}
+
+bool ScriptMonitor::must_stop()
+{
+  const auto link = state_.link();
+  const auto sample = state_.latest();
+  if (!link.connected || !sample) {
+    return complete(ScriptEnd::link_lost, ErrorCode::link_lost, link.error.message);
+  }
+  if (!replaced_by_.empty()) {
+    return complete(ScriptEnd::stopped, ErrorCode::program_stopped,
+                    fmt::format("another program, `{}`, took the script's place", replaced_by_));
+  }
+  if (options_.kind == ScriptKind::program) {
+    if (const auto blocker = motion_blocker(*sample)) {
+      return complete(ScriptEnd::robot_stopped, blocker->code, blocker->message);
+    }
+  }
+  if (options_.stop_reason) {
+    if (const auto reason = options_.stop_reason()) {
+      return complete(ScriptEnd::interrupted, reason->code, reason->message);
+    }
+  }
+  return limit_exceeded();
+}
+
+bool ScriptMonitor::limit_exceeded()
+{
+  const auto elapsed = Clock::now() - sent_;
+  if (elapsed > options_.limit) {
+    return complete(ScriptEnd::timeout, ErrorCode::timeout,
+                    fmt::format("the script had not ended after {:.1f} s", seconds(elapsed)));
+  }
+  if (!begin_seen_ && elapsed > begin_limit) {
+    return complete(
+        ScriptEnd::timeout, ErrorCode::timeout,
+        fmt::format("the controller has not begun the script after {:.1f} s: is the robot in remote control?",
+                    seconds(elapsed)));
+  }
+  return false;
+}
+
+}  // namespace ur_ros_rtde

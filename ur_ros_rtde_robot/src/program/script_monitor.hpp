@@ -1,0 +1,66 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "connection/primary_link.hpp"
+#include "script/program.hpp"
+#include "ur_ros_rtde_robot/program/script.hpp"
+#include "ur_ros_rtde_robot/state/state_receiver.hpp"
+
+namespace ur_ros_rtde {
+
+/// Monitors one script from sending to its end, using the messages of the primary interface and, for a
+/// program, the runtime state of the samples. Not thread-safe.
+class ScriptMonitor {
+ public:
+  /// Lines that the script writes with `textmsg` when it begins and when it ends.
+  struct Markers {
+    std::string begin;
+    std::string end;
+  };
+
+  ScriptMonitor(PrimaryLink primary, const StateReceiver & state, Markers markers,
+                const ScriptOptions & options);
+
+  /// Sends the program and waits until it has ended or has to be stopped; see may_be_running().
+  void run(const script::Program & program);
+  /// True if the program may still be running on the controller and has to be stopped.
+  bool may_be_running() const { return may_be_running_; }
+  /// True if another program has replaced this one.
+  bool replaced() const { return !replaced_by_.empty(); }
+  ScriptReport report() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// Each returns true if the report is complete.
+  bool update();
+  bool read_messages();
+  bool has_failed();
+  bool has_ended();
+  bool must_stop();
+  bool limit_exceeded();
+
+  void on_message(const PrimaryMessage & message);
+  void on_text(const std::string & text);
+  bool complete(ScriptEnd end, ErrorCode code, std::string message);
+  bool complete_with_error();
+
+  PrimaryLink primary_;
+  const StateReceiver & state_;
+  const Markers markers_;
+  const ScriptOptions & options_;
+  const script::Program * program_ = nullptr;
+  bool may_be_running_ = false;
+  bool has_played_ = false;     ///< a sample has shown the program running
+  bool messages_left_ = false;  ///< read_messages() has not reached the newest message
+  Clock::time_point sent_{};
+  std::optional<Clock::time_point> begin_seen_, end_seen_, error_seen_, stop_seen_;
+  std::string replaced_by_;
+  PrimaryMessage error_{};
+  ScriptReport report_;
+};
+
+}  // namespace ur_ros_rtde
