@@ -14,7 +14,7 @@ Claim claim(Resource resource, const char * owner = "move_l", const char * id = 
   return {resource, owner, id, {}};
 }
 
-TEST(Arbiter, gives_a_resource_to_one_at_a_time_and_names_who_has_it)
+TEST(ArbiterTest, GrantsAResourceToOneHolderAndNamesIt)
 {
   Arbiter arbiter;
   const auto first = arbiter.acquire(claim(Resource::motion));
@@ -26,7 +26,7 @@ TEST(Arbiter, gives_a_resource_to_one_at_a_time_and_names_who_has_it)
   EXPECT_NE(second.error().message.find("3f2a"), std::string::npos);
 }
 
-TEST(Arbiter, gives_the_resource_on_when_the_lease_ends)
+TEST(ArbiterTest, GrantsTheResourceAgainAfterRelease)
 {
   Arbiter arbiter;
   {
@@ -38,7 +38,7 @@ TEST(Arbiter, gives_the_resource_on_when_the_lease_ends)
   EXPECT_TRUE(arbiter.acquire(claim(Resource::motion)));
 }
 
-TEST(Arbiter, lets_motion_and_io_go_side_by_side_and_none_beside_everything)
+TEST(ArbiterTest, AllowsMotionAndIoConcurrentlyAndNoneAlways)
 {
   Arbiter arbiter;
   const auto motion = arbiter.acquire(claim(Resource::motion));
@@ -48,7 +48,7 @@ TEST(Arbiter, lets_motion_and_io_go_side_by_side_and_none_beside_everything)
   EXPECT_TRUE(motion && io && none && more);
 }
 
-TEST(Arbiter, keeps_a_script_and_a_motion_apart)
+TEST(ArbiterTest, ExcludesScriptAndMotionMutually)
 {
   Arbiter arbiter;
   auto script = arbiter.acquire(claim(Resource::script, "send_script"));
@@ -60,7 +60,7 @@ TEST(Arbiter, keeps_a_script_and_a_motion_apart)
   EXPECT_FALSE(arbiter.acquire(claim(Resource::script)));
 }
 
-TEST(Arbiter, asks_the_holder_to_give_way_and_waits_for_it)
+TEST(ArbiterTest, PreemptsTheHolderAndWaits)
 {
   Arbiter arbiter;
   std::optional<Lease> held;
@@ -77,7 +77,7 @@ TEST(Arbiter, asks_the_holder_to_give_way_and_waits_for_it)
   EXPECT_EQ(asked_by, "move_j, goal 77");
 }
 
-TEST(Arbiter, refuses_when_the_holder_does_not_give_way_in_time)
+TEST(ArbiterTest, RefusesWhenTheHolderDoesNotReleaseInTime)
 {
   Arbiter arbiter;
   int asked = 0;
@@ -90,14 +90,14 @@ TEST(Arbiter, refuses_when_the_holder_does_not_give_way_in_time)
   EXPECT_EQ(asked, 1);
 }
 
-TEST(Arbiter, does_not_ask_a_holder_that_never_gives_way)
+TEST(ArbiterTest, DoesNotPreemptAHolderWithoutCallback)
 {
   Arbiter arbiter;
   const auto held = arbiter.acquire(claim(Resource::motion));
   EXPECT_FALSE(arbiter.acquire_preempting(claim(Resource::motion, "move_j"), 10s));
 }
 
-TEST(Arbiter, may_be_gone_before_its_leases)
+TEST(ArbiterTest, MayBeDestroyedBeforeItsLeases)
 {
   Lease lease;
   {
@@ -109,7 +109,7 @@ TEST(Arbiter, may_be_gone_before_its_leases)
   EXPECT_FALSE(lease);
 }
 
-TEST(Arbiter, gives_a_contested_resource_to_exactly_one)
+TEST(ArbiterTest, GrantsAContestedResourceToExactlyOne)
 {
   Arbiter arbiter;
   std::atomic<int> inside{0};

@@ -4,7 +4,7 @@
 namespace ur_ros_rtde::test {
 namespace {
 
-TEST(ArmModels, are_known_by_their_type_numbers)
+TEST(ArmModelsTest, AreIdentifiedByTypeNumber)
 {
   EXPECT_EQ(model_of_type(1, true), "ur5");
   EXPECT_EQ(model_of_type(1, false), "ur5e");
@@ -14,7 +14,7 @@ TEST(ArmModels, are_known_by_their_type_numbers)
   EXPECT_FALSE(model_of_type(77, false));
 }
 
-TEST(ArmLimits, are_found_in_any_spelling)
+TEST(ArmLimitsTest, AreFoundInAnySpelling)
 {
   EXPECT_TRUE(arm_limits("UR8 Long"));
   EXPECT_TRUE(arm_limits("UR10e"));
@@ -22,7 +22,7 @@ TEST(ArmLimits, are_found_in_any_spelling)
   EXPECT_NE(arm_models().find("ur8long, ur15"), std::string::npos);
 }
 
-TEST(ArmLimits, of_all_models_in_common_are_within_each)
+TEST(ArmLimitsTest, CommonLimitsAreWithinThoseOfEachModel)
 {
   const auto common = common_arm_limits();
   for (const char * model : {"ur3", "ur5e", "ur10", "ur20", "ur30", "ur15"}) {
@@ -39,9 +39,9 @@ struct ModelCase {
   const char * detected;
 };
 
-struct AnArm : RobotFixture, testing::WithParamInterface<ModelCase> {};
+struct DetectedModelTest : RobotFixture, testing::WithParamInterface<ModelCase> {};
 
-TEST_P(AnArm, is_recognised_by_what_its_controller_tells)
+TEST_P(DetectedModelTest, IsIdentifiedFromTheControllersData)
 {
   auto simulator = Controller::options();
   simulator.model = GetParam().simulated;
@@ -56,7 +56,7 @@ TEST_P(AnArm, is_recognised_by_what_its_controller_tells)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    OfModels, AnArm,
+    OfModels, DetectedModelTest,
     testing::Values(ModelCase{"ur3", "3.5.0", "ur3"}, ModelCase{"ur5", "3.12.0", "ur5"},
                     ModelCase{"ur10", "3.15.8", "ur10"}, ModelCase{"ur3e", "5.6.0", "ur3e"},
                     ModelCase{"ur5e", "5.13.0", "ur5e"}, ModelCase{"ur7e", "5.25.1", "ur5e (or ur7e)"},
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
                     ModelCase{"ur30", "5.25.1", "ur30"}),
     [](const auto & one) { return std::string(one.param.simulated); });
 
-struct AStatedModel : RobotFixture {
+struct StatedModelTest : RobotFixture {
   void make_robot_with(const std::string & model)
   {
     auto options = robot_options();
@@ -75,7 +75,7 @@ struct AStatedModel : RobotFixture {
   }
 };
 
-TEST_F(AStatedModel, that_is_unknown_is_refused_with_those_that_are_known)
+TEST_F(StatedModelTest, RefusesAnUnknownModelAndListsTheKnownOnes)
 {
   auto options = robot_options();
   options.model = "ur99";
@@ -88,14 +88,14 @@ TEST_F(AStatedModel, that_is_unknown_is_refused_with_those_that_are_known)
   }
 }
 
-TEST_F(AStatedModel, that_has_the_arm_of_another_one_is_taken)
+TEST_F(StatedModelTest, AcceptsAModelWithTheSameArm)
 {
   controller.start();
   make_robot_with("UR12e");
   EXPECT_TRUE(becomes_ready()) << "a UR12e says that it is a UR10e";
 }
 
-TEST_F(AStatedModel, that_contradicts_the_controller_keeps_the_arm_from_being_moved)
+TEST_F(StatedModelTest, PreventsMotionIfItContradictsTheController)
 {
   controller.start();
   make_robot_with("ur5e");
@@ -113,7 +113,7 @@ TEST_F(AStatedModel, that_contradicts_the_controller_keeps_the_arm_from_being_mo
   EXPECT_EQ(log.count("ur_type is ur5e"), 1U) << log.text();
 }
 
-TEST_F(AStatedModel, of_another_series_contradicts_the_controller)
+TEST_F(StatedModelTest, ContradictsTheControllerOfAnotherSeries)
 {
   auto simulator = Controller::options();
   simulator.model = "ur5";
@@ -123,7 +123,7 @@ TEST_F(AStatedModel, of_another_series_contradicts_the_controller)
   EXPECT_TRUE(comes_to(RobotState::stopped, ErrorCode::model_mismatch));
 }
 
-TEST_F(AStatedModel, is_compared_with_the_arm_of_each_new_connection)
+TEST_F(StatedModelTest, IsComparedOnEachConnection)
 {
   controller.start();
   make_robot_with("ur10e");
@@ -140,9 +140,9 @@ TEST_F(AStatedModel, is_compared_with_the_arm_of_each_new_connection)
   EXPECT_TRUE(becomes_ready());
 }
 
-using AnUnknownModel = RobotFixture;
+using UnknownModelTest = RobotFixture;
 
-TEST_F(AnUnknownModel, limits_motions_to_what_every_arm_can_do)
+TEST_F(UnknownModelTest, LimitsMotionsToTheCommonLimits)
 {
   controller.start();
   controller.control({{"command", "refuse_connections"}, {"which", "primary"}});
@@ -153,7 +153,7 @@ TEST_F(AnUnknownModel, limits_motions_to_what_every_arm_can_do)
   EXPECT_EQ(log.count("set the parameter ur_type"), 1U) << log.text();
 }
 
-TEST_F(AnUnknownModel, is_the_stated_one_with_a_warning)
+TEST_F(UnknownModelTest, IsTheStatedModelWithAWarning)
 {
   controller.start();
   controller.control({{"command", "refuse_connections"}, {"which", "primary"}});

@@ -27,9 +27,9 @@ Eigen::Vector3d to_eigen(const Vector3 & v)
   return {v[0], v[1], v[2]};
 }
 
-class RotationOfAnyAngle : public testing::TestWithParam<double> {};
+class RotationConversionTest : public testing::TestWithParam<double> {};
 
-TEST_P(RotationOfAnyAngle, survives_the_way_to_a_rotation_vector_and_back)
+TEST_P(RotationConversionTest, SurvivesTheRoundTripToARotationVector)
 {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
@@ -46,11 +46,11 @@ TEST_P(RotationOfAnyAngle, survives_the_way_to_a_rotation_vector_and_back)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Angles, RotationOfAnyAngle,
+INSTANTIATE_TEST_SUITE_P(Angles, RotationConversionTest,
                          testing::Values(0.0, 1e-300, 1e-16, 1e-12, 1e-9, 1e-8, 1e-4, 0.3, 1.0, pi / 2, 3.0,
                                          pi - 1e-6, pi - 1e-9, pi - 1e-12));
 
-TEST(RotationVector, is_at_most_half_a_turn_whatever_sign_the_quaternion_has)
+TEST(RotationVectorTest, IsAtMostHalfATurnForEitherSignOfTheQuaternion)
 {
   const Quaternion q{0.1, -0.2, 0.3, -0.9};
   const auto a = rotation_vector(q);
@@ -60,7 +60,7 @@ TEST(RotationVector, is_at_most_half_a_turn_whatever_sign_the_quaternion_has)
   EXPECT_NEAR((to_eigen(*a) - to_eigen(*b)).norm(), 0.0, 1e-15);
 }
 
-TEST(RotationVector, takes_quaternions_of_any_length)
+TEST(RotationVectorTest, AcceptsQuaternionsOfAnyNorm)
 {
   const auto unit = rotation_vector({0.0, 0.0, std::sin(0.25), std::cos(0.25)});
   const auto scaled = rotation_vector({0.0, 0.0, 7.0 * std::sin(0.25), 7.0 * std::cos(0.25)});
@@ -69,7 +69,7 @@ TEST(RotationVector, takes_quaternions_of_any_length)
   EXPECT_NEAR((*scaled)[2], 0.5, 1e-15);
 }
 
-TEST(RotationVector, refuses_a_zero_quaternion_and_says_what_it_should_be)
+TEST(RotationVectorTest, RefusesAZeroQuaternionWithTheRemedy)
 {
   const auto found = rotation_vector({0.0, 0.0, 0.0, 0.0});
   ASSERT_FALSE(found);
@@ -77,7 +77,7 @@ TEST(RotationVector, refuses_a_zero_quaternion_and_says_what_it_should_be)
   EXPECT_NE(found.error().message.find("w = 1"), std::string::npos);
 }
 
-TEST(RotationVector, refuses_what_is_not_finite)
+TEST(RotationVectorTest, RefusesNonFiniteValues)
 {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
@@ -86,7 +86,7 @@ TEST(RotationVector, refuses_what_is_not_finite)
   }
 }
 
-TEST(PoseTrans, agrees_with_matrices)
+TEST(PoseTransTest, AgreesWithMatrixProducts)
 {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> number(-1.5, 1.5);
@@ -108,7 +108,7 @@ TEST(PoseTrans, agrees_with_matrices)
   }
 }
 
-TEST(TcpFrameForce, turns_the_base_frames_force_into_the_tools)
+TEST(TcpFrameForceTest, RotatesTheForceFromTheBaseToTheTcpFrame)
 {
   Sample sample{};
   sample.actual_tcp_pose = {0.3, 0.1, 0.2, pi, 0.0, 0.0};  // the tool points down
@@ -120,7 +120,7 @@ TEST(TcpFrameForce, turns_the_base_frames_force_into_the_tools)
   }
 }
 
-TEST(ArmLimits, are_known_in_any_spelling_and_not_invented)
+TEST(ArmLimitsTest, AreFoundInAnySpellingAndOnlyForKnownModels)
 {
   ASSERT_TRUE(arm_limits("UR10e"));
   EXPECT_DOUBLE_EQ(arm_limits("ur10e")->velocity[0], 2.0 * pi / 3.0);

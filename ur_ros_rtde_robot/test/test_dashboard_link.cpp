@@ -9,7 +9,7 @@
 namespace ur_ros_rtde::test {
 namespace {
 
-struct ADashboardLink : testing::Test {
+struct DashboardLinkTest : testing::Test {
   Log log;
   Controller controller;
   std::atomic<int> lost = 0;
@@ -31,7 +31,7 @@ struct ADashboardLink : testing::Test {
   }
 };
 
-TEST_F(ADashboardLink, comes_up_with_a_controller_that_comes_later)
+TEST_F(DashboardLinkTest, ConnectsToAControllerThatStartsLater)
 {
   connect();
   ASSERT_TRUE(eventually([&] { return log.count(own_address() + ":29999") == 1; })) << log.text();
@@ -41,7 +41,7 @@ TEST_F(ADashboardLink, comes_up_with_a_controller_that_comes_later)
   EXPECT_NE(link->dashboard()->robotmode().find("RUNNING"), std::string::npos);
 }
 
-TEST_F(ADashboardLink, gives_the_robots_refusal_as_an_error)
+TEST_F(DashboardLinkTest, ReturnsTheRobotsRefusalAsAnError)
 {
   controller.start();
   connect();
@@ -53,7 +53,7 @@ TEST_F(ADashboardLink, gives_the_robots_refusal_as_an_error)
   EXPECT_TRUE(link->call([](ur_rtde::DashboardClient & client) { client.robotmode(); }));
 }
 
-TEST_F(ADashboardLink, is_made_anew_at_once_when_the_robot_closes_it)
+TEST_F(DashboardLinkTest, ReconnectsAtOnceWhenTheRobotClosesTheConnection)
 {
   controller.start();
   connect();
@@ -66,7 +66,7 @@ TEST_F(ADashboardLink, is_made_anew_at_once_when_the_robot_closes_it)
   EXPECT_EQ(lost, 0);
 }
 
-TEST_F(ADashboardLink, tells_that_it_is_lost_when_the_robot_takes_no_new_one)
+TEST_F(DashboardLinkTest, ReportsTheLossWhenTheRobotRefusesANewConnection)
 {
   controller.start();
   connect();
@@ -78,7 +78,7 @@ TEST_F(ADashboardLink, tells_that_it_is_lost_when_the_robot_takes_no_new_one)
   EXPECT_TRUE(connected()) << log.text();
 }
 
-TEST_F(ADashboardLink, fails_a_call_that_finds_the_connection_dropped_and_makes_it_anew)
+TEST_F(DashboardLinkTest, FailsACallOnADroppedConnectionAndReconnects)
 {
   controller.start();
   connect();
@@ -90,7 +90,7 @@ TEST_F(ADashboardLink, fails_a_call_that_finds_the_connection_dropped_and_makes_
   })) << log.text();
 }
 
-TEST_F(ADashboardLink, knows_whether_the_robot_is_in_remote_control)
+TEST_F(DashboardLinkTest, ReportsRemoteControl)
 {
   controller.start();
   connect();
@@ -100,7 +100,7 @@ TEST_F(ADashboardLink, knows_whether_the_robot_is_in_remote_control)
   EXPECT_TRUE(eventually([&] { return link->in_remote_control() == false; }));
 }
 
-TEST_F(ADashboardLink, is_made_anew_when_answers_do_not_fit_their_questions)
+TEST_F(DashboardLinkTest, ReconnectsWhenAnswersDoNotMatchTheQueries)
 {
   controller.start();
   connect();
@@ -111,7 +111,7 @@ TEST_F(ADashboardLink, is_made_anew_when_answers_do_not_fit_their_questions)
   EXPECT_EQ(link->in_remote_control(), true);
 }
 
-TEST_F(ADashboardLink, recognises_a_service_of_another_kind)
+TEST_F(DashboardLinkTest, DetectsAnotherService)
 {
   const OtherService other(29999, "220 mail.example.org ESMTP\r\n");
   connect();

@@ -25,13 +25,13 @@ struct Counter {
   }
 };
 
-struct LockedCounter : testing::Test {
+struct LockedTest : testing::Test {
   std::shared_ptr<Counter> counter = std::make_shared<Counter>();
   std::shared_ptr<InterfaceLock> lock = std::make_shared<InterfaceLock>();
   Locked<Counter> locked(std::chrono::milliseconds limit = 5s) { return {counter, lock, "counter", limit}; }
 };
 
-TEST_F(LockedCounter, lets_one_call_in_at_a_time)
+TEST_F(LockedTest, SerializesCalls)
 {
   {
     std::vector<std::jthread> threads;
@@ -47,7 +47,7 @@ TEST_F(LockedCounter, lets_one_call_in_at_a_time)
   EXPECT_EQ(counter->most_inside, 1);
 }
 
-TEST_F(LockedCounter, lets_a_thread_in_though_another_calls_in_a_loop)
+TEST_F(LockedTest, DoesNotStarveAThreadWhileAnotherCallsInALoop)
 {
   std::atomic<bool> done{false};
   std::jthread greedy([&] {
@@ -61,12 +61,12 @@ TEST_F(LockedCounter, lets_a_thread_in_though_another_calls_in_a_loop)
   done = true;
 }
 
-TEST_F(LockedCounter, can_be_used_twice_in_one_expression)
+TEST_F(LockedTest, IsRecursive)
 {
   EXPECT_EQ(locked()->add(locked()->add(2)), 4);
 }
 
-TEST_F(LockedCounter, refuses_after_its_limit_while_another_thread_is_inside)
+TEST_F(LockedTest, RefusesAfterTheLimitWhileAnotherThreadHoldsTheLock)
 {
   const auto held = locked().hold();
   std::jthread([this] {
@@ -82,7 +82,7 @@ TEST_F(LockedCounter, refuses_after_its_limit_while_another_thread_is_inside)
   EXPECT_EQ(counter->value, 1);
 }
 
-TEST_F(LockedCounter, gives_the_lock_back_when_the_call_throws)
+TEST_F(LockedTest, ReleasesTheLockWhenTheCallThrows)
 {
   struct Thrower {
     void fail() { throw std::runtime_error("no"); }
@@ -92,7 +92,7 @@ TEST_F(LockedCounter, gives_the_lock_back_when_the_call_throws)
   std::jthread([this] { EXPECT_EQ(locked(1s)->add(), 1); }).join();
 }
 
-TEST_F(LockedCounter, keeps_the_object_alive)
+TEST_F(LockedTest, KeepsTheObjectAlive)
 {
   auto use = locked();
   counter.reset();

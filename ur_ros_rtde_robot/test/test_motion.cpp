@@ -16,7 +16,7 @@ Sample moving_at(double joint_velocity, double controller_time)
   return sample;
 }
 
-TEST(StandstillDetector, waits_for_some_cycles_of_rest)
+TEST(StandstillDetectorTest, RequiresSeveralCyclesOfRest)
 {
   StandstillDetector detector;
   detector.add(moving_at(0.0, 1.000));
@@ -27,7 +27,7 @@ TEST(StandstillDetector, waits_for_some_cycles_of_rest)
   EXPECT_TRUE(detector.at_rest());
 }
 
-TEST(StandstillDetector, begins_anew_when_a_joint_moves)
+TEST(StandstillDetectorTest, RestartsWhenAJointMoves)
 {
   StandstillDetector detector;
   detector.add(moving_at(0.0, 1.000));
@@ -39,7 +39,7 @@ TEST(StandstillDetector, begins_anew_when_a_joint_moves)
   EXPECT_FALSE(detector.at_rest());
 }
 
-TEST(StandstillDetector, takes_a_velocity_that_is_not_a_number_for_motion)
+TEST(StandstillDetectorTest, TreatsNaNAsMotion)
 {
   StandstillDetector detector;
   detector.add(moving_at(0.0, 1.0));
@@ -47,7 +47,7 @@ TEST(StandstillDetector, takes_a_velocity_that_is_not_a_number_for_motion)
   EXPECT_FALSE(detector.at_rest());
 }
 
-TEST(StandstillDetector, knows_nothing_after_a_reconnection)
+TEST(StandstillDetectorTest, RestartsAfterAReconnection)
 {
   StandstillDetector detector;
   detector.add(moving_at(0.0, 1.0));
@@ -57,7 +57,7 @@ TEST(StandstillDetector, knows_nothing_after_a_reconnection)
   EXPECT_FALSE(detector.at_rest());
 }
 
-TEST(AsyncStatus, reads_the_control_scripts_word)
+TEST(AsyncStatusTest, DecodesTheControlScriptsWord)
 {
   // operation 3, change 5, running, waypoint 2
   const AsyncStatus status{3U << 24U | 5U << 16U | 1U << 15U | 2U};
@@ -76,7 +76,7 @@ Sample running_robot()
   return sample;
 }
 
-TEST(RobotCondition, finds_nothing_wrong_with_a_running_robot)
+TEST(RobotCondition, IsEmptyForARunningRobot)
 {
   EXPECT_FALSE(motion_blocker(running_robot()));
   auto reduced = running_robot();
@@ -84,7 +84,7 @@ TEST(RobotCondition, finds_nothing_wrong_with_a_running_robot)
   EXPECT_FALSE(motion_blocker(reduced));
 }
 
-TEST(RobotCondition, names_every_safety_stop_and_what_to_do)
+TEST(RobotCondition, NamesEverySafetyStopWithTheRemedy)
 {
   const std::vector<std::tuple<unsigned, ErrorCode, const char *>> table{
       {2, ErrorCode::protective_stop, "make_ready (or dashboard/unlock_protective_stop)"},
@@ -105,7 +105,7 @@ TEST(RobotCondition, names_every_safety_stop_and_what_to_do)
   }
 }
 
-TEST(RobotCondition, tells_how_to_power_the_arm)
+TEST(RobotCondition, ExplainsHowToPowerTheArm)
 {
   auto sample = running_robot();
   sample.robot_mode = RobotMode::power_off;

@@ -40,7 +40,7 @@ bool feed(PrimaryReader & reader, const std::string & bytes)
   return reader.feed(std::as_bytes(std::span(bytes.data(), bytes.size())));
 }
 
-TEST(ThePrimaryReader, finds_the_messages_in_a_stream_cut_anywhere)
+TEST(PrimaryReaderTest, FindsMessagesInAStreamSplitAnywhere)
 {
   const std::string stream = package(3, "version") + package(0, "hello") + big_endian(9) + "\x10" + "four" +
                              exception(4, "compile_error_name_not_found:f:") +
@@ -64,7 +64,7 @@ TEST(ThePrimaryReader, finds_the_messages_in_a_stream_cut_anywhere)
   }
 }
 
-TEST(ThePrimaryReader, takes_an_errors_line_from_its_text_where_the_field_is_empty)
+TEST(PrimaryReaderTest, ReadsTheLineFromTheTextIfTheFieldIsEmpty)
 {
   PrimaryReader reader;
   ASSERT_TRUE(feed(reader, exception(0xFFFFFFFFU, "syntax_error_on_line:12:end:") +
@@ -75,7 +75,7 @@ TEST(ThePrimaryReader, takes_an_errors_line_from_its_text_where_the_field_is_emp
   }
 }
 
-TEST(ThePrimaryReader, skips_messages_that_are_too_short)
+TEST(PrimaryReaderTest, SkipsMessagesThatAreTooShort)
 {
   PrimaryReader reader;
   EXPECT_TRUE(feed(reader, package(10, "abc") + package(7, "abc") +
@@ -84,7 +84,7 @@ TEST(ThePrimaryReader, skips_messages_that_are_too_short)
   EXPECT_EQ(reader.next()->text, "still there");
 }
 
-TEST(ThePrimaryReader, refuses_what_is_no_stream_of_packages)
+TEST(PrimaryReaderTest, RefusesOtherStreams)
 {
   for (const std::uint32_t size : {0U, 4U, 2'000'000U, 0xFFFFFFFFU}) {
     PrimaryReader reader;
@@ -92,7 +92,7 @@ TEST(ThePrimaryReader, refuses_what_is_no_stream_of_packages)
   }
 }
 
-TEST(ThePrimaryReader, survives_any_bytes)
+TEST(PrimaryReaderTest, SurvivesArbitraryBytes)
 {
   std::mt19937 random(4);
   for (int round = 0; round < 2000; ++round) {

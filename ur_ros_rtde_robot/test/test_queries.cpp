@@ -19,12 +19,12 @@ double distance(const std::vector<double> & a, const std::vector<double> & b)
   return largest;
 }
 
-struct AQuery : RobotFixture {
+struct QueryTest : RobotFixture {
   Joints now() { return robot->receive()->getActualQ(); }
   Locked<ur_rtde::RTDEControlInterface> control() { return robot->control(); }
 };
 
-TEST_F(AQuery, is_answered_not_the_one_before_it)
+TEST_F(QueryTest, ReturnsItsOwnAnswerNotThePreviousOne)
 {
   make_both();
   EXPECT_NEAR(control()->getStepTime(), 0.002, 1e-9) << "the first of all";
@@ -38,7 +38,7 @@ TEST_F(AQuery, is_answered_not_the_one_before_it)
   }
 }
 
-TEST_F(AQuery, of_the_forward_kinematics_goes_by_the_tcp_that_is_meant)
+TEST_F(QueryTest, ForwardKinematicsUseTheGivenTcp)
 {
   make_both();
   const Joints tcp{0.0, 0.0, 0.1, 0.0, 0.0, 0.0};
@@ -54,7 +54,7 @@ TEST_F(AQuery, of_the_forward_kinematics_goes_by_the_tcp_that_is_meant)
             1e-4);
 }
 
-TEST_F(AQuery, of_the_jacobian_takes_its_arguments)
+TEST_F(QueryTest, JacobianUsesItsArguments)
 {
   make_both();
   const Joints tcp{0.05, 0.0, 0.2, 0.0, 0.0, 0.0};
@@ -78,7 +78,7 @@ TEST_F(AQuery, of_the_jacobian_takes_its_arguments)
   EXPECT_TRUE(robot->ready_to_move()) << "bad arguments cost nothing";
 }
 
-TEST_F(AQuery, of_the_dynamics_takes_its_arguments)
+TEST_F(QueryTest, DynamicsUseTheirArguments)
 {
   make_both();
   const auto here = control()->getMassMatrix();
@@ -115,7 +115,7 @@ TEST_F(AQuery, of_the_dynamics_takes_its_arguments)
   }
 }
 
-TEST_F(AQuery, leaves_the_registers_of_others_alone)
+TEST_F(QueryTest, DoesNotWriteOtherRegisters)
 {
   make_both();
   ScriptOptions secondary;
@@ -131,7 +131,7 @@ TEST_F(AQuery, leaves_the_registers_of_others_alone)
   EXPECT_EQ(sample.output_double_registers[7], 8.5);
 }
 
-TEST_F(AQuery, takes_no_stream_away)
+TEST_F(QueryTest, DoesNotInterruptServoMotion)
 {
   make_both();
   auto q = now();

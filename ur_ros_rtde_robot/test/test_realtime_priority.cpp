@@ -49,7 +49,7 @@ bool allowed()
   return result;
 }
 
-TEST(ARealtimePriority, is_the_threads_while_it_lives)
+TEST(RealtimePriorityTest, AppliesToTheThreadDuringItsLifetime)
 {
   if (!allowed()) {
     GTEST_SKIP() << "this host does not allow it";
@@ -66,7 +66,7 @@ TEST(ARealtimePriority, is_the_threads_while_it_lives)
   });
 }
 
-TEST(ARealtimePriority, that_is_set_passes_to_the_threads_that_are_started)
+TEST(RealtimePriorityTest, IsInheritedByNewThreads)
 {
   if (!allowed()) {
     GTEST_SKIP() << "this host does not allow it";
@@ -77,7 +77,7 @@ TEST(ARealtimePriority, that_is_set_passes_to_the_threads_that_are_started)
   });
 }
 
-TEST(ARealtimePriority, of_zero_changes_nothing)
+TEST(RealtimePriorityTest, ZeroChangesNothing)
 {
   in_a_thread([] {
     ASSERT_TRUE(set_realtime_priority(0));
@@ -86,7 +86,7 @@ TEST(ARealtimePriority, of_zero_changes_nothing)
   });
 }
 
-TEST(ARealtimePriority, that_is_not_allowed_is_refused_with_what_to_do_and_nothing_changes)
+TEST(RealtimePriorityTest, IsRefusedWithTheRemedyIfNotPermitted)
 {
   const rlimit none{0, 0};
   ASSERT_EQ(setrlimit(RLIMIT_RTPRIO, &none), 0);
@@ -101,7 +101,7 @@ TEST(ARealtimePriority, that_is_not_allowed_is_refused_with_what_to_do_and_nothi
   });
 }
 
-TEST(ARealtimePriority, that_is_not_allowed_keeps_no_receiver_from_its_work)
+TEST(RealtimePriorityTest, ReceiverWorksIfNotPermitted)
 {
   const rlimit none{0, 0};
   ASSERT_EQ(setrlimit(RLIMIT_RTPRIO, &none), 0);

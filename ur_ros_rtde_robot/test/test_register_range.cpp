@@ -12,7 +12,7 @@ struct RangeCase {
   const char * polyscope;
 };
 
-struct TheUpperRange : RobotFixture, testing::WithParamInterface<RangeCase> {
+struct UpperRangeTest : RobotFixture, testing::WithParamInterface<RangeCase> {
   void SetUp() override
   {
     auto simulator = Controller::options();
@@ -38,7 +38,7 @@ struct TheUpperRange : RobotFixture, testing::WithParamInterface<RangeCase> {
   bool turning() { return std::abs(robot->latest()->actual_qd[0]) > 0.4; }
 };
 
-TEST_P(TheUpperRange, carries_motions_and_stops)
+TEST_P(UpperRangeTest, SupportsMotionsAndStops)
 {
   const auto mark = robot->mark_motion();
   auto q = robot->receive()->getActualQ();
@@ -52,7 +52,7 @@ TEST_P(TheUpperRange, carries_motions_and_stops)
   EXPECT_THROW(robot->control()->getMassMatrix(), std::logic_error) << "it needs both ranges";
 }
 
-TEST_P(TheUpperRange, carries_extensions_with_parameters_and_results)
+TEST_P(UpperRangeTest, SupportsExtensionsWithParametersAndResults)
 {
   ASSERT_TRUE(robot->set_input_register(19, 41));
   ASSERT_TRUE(robot->set_input_register(20, 1.25));
@@ -62,7 +62,7 @@ TEST_P(TheUpperRange, carries_extensions_with_parameters_and_results)
   EXPECT_EQ(robot->latest()->output_double_registers[2], 2.5);
 }
 
-TEST_P(TheUpperRange, ends_an_extension_that_moves_the_arm)
+TEST_P(UpperRangeTest, EndsAnExtensionThatMovesTheArm)
 {
   ExtensionOptions options;
   options.stop_reason = [&]() -> std::optional<Error> {
@@ -72,13 +72,13 @@ TEST_P(TheUpperRange, ends_an_extension_that_moves_the_arm)
   EXPECT_TRUE(eventually([&] { return at_rest(); }));
 }
 
-TEST_P(TheUpperRange, carries_scripts_with_their_watchdog)
+TEST_P(UpperRangeTest, SupportsScriptsWithTheirWatchdog)
 {
   EXPECT_TRUE(robot->run_script("textmsg(\"here\")"));
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_P(TheUpperRange, carries_the_watchdog)
+TEST_P(UpperRangeTest, SupportsTheWatchdog)
 {
   ASSERT_TRUE(robot->control()->speedJ({0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0));
   ASSERT_TRUE(eventually([&] { return turning(); }));
@@ -95,7 +95,7 @@ TEST_P(TheUpperRange, carries_the_watchdog)
   controller.control({{"command", "stall_links"}, {"stalled", false}});
 }
 
-TEST_P(TheUpperRange, leaves_the_lower_registers_alone)
+TEST_P(UpperRangeTest, DoesNotWriteTheLowerRegisters)
 {
   move_joints();
   ASSERT_TRUE(robot->stop_motion());
@@ -111,7 +111,7 @@ TEST_P(TheUpperRange, leaves_the_lower_registers_alone)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfVersions, TheUpperRange,
+INSTANTIATE_TEST_SUITE_P(OfVersions, UpperRangeTest,
                          testing::Values(RangeCase{"ur10", "3.15.8"}, RangeCase{"ur10e", "5.13.0"},
                                          RangeCase{"ur10e", "5.21.0"}, RangeCase{"ur10e", "5.25.1"}),
                          [](const auto & one) {

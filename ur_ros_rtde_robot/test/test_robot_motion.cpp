@@ -7,9 +7,9 @@ namespace ur_ros_rtde::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using AMotion = RobotFixture;
+using RobotMotionTest = RobotFixture;
 
-TEST_F(AMotion, is_tracked_from_its_start_to_its_end)
+TEST_F(RobotMotionTest, IsTrackedFromStartToEnd)
 {
   make_both();
   auto q = robot->receive()->getActualQ();
@@ -24,7 +24,7 @@ TEST_F(AMotion, is_tracked_from_its_start_to_its_end)
   EXPECT_FALSE(robot->moving());
 }
 
-TEST_F(AMotion, is_not_finished_by_the_end_of_the_one_before)
+TEST_F(RobotMotionTest, IsNotFinishedByTheEndOfThePreviousOne)
 {
   make_both();
   auto q = robot->receive()->getActualQ();
@@ -38,7 +38,7 @@ TEST_F(AMotion, is_not_finished_by_the_end_of_the_one_before)
   }
 }
 
-TEST_F(AMotion, to_where_the_arm_is_already_ends_too)
+TEST_F(RobotMotionTest, ToTheCurrentPositionEnds)
 {
   make_both();
   const auto q = robot->receive()->getActualQ();
@@ -47,7 +47,7 @@ TEST_F(AMotion, to_where_the_arm_is_already_ends_too)
   EXPECT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); })) << log.text();
 }
 
-TEST_F(AMotion, ends_with_the_cause_when_the_robot_goes_into_a_protective_stop)
+TEST_F(RobotMotionTest, EndsWithTheCauseInAProtectiveStop)
 {
   make_both();
   move_joints();
@@ -60,7 +60,7 @@ TEST_F(AMotion, ends_with_the_cause_when_the_robot_goes_into_a_protective_stop)
   EXPECT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
 }
 
-TEST_F(AMotion, is_not_resumed_after_a_protective_stop_is_unlocked)
+TEST_F(RobotMotionTest, IsNotResumedAfterAProtectiveStop)
 {
   make_both();
   move_joints();
@@ -85,7 +85,7 @@ TEST_F(AMotion, is_not_resumed_after_a_protective_stop_is_unlocked)
   move_joints();
 }
 
-TEST_F(AMotion, ends_with_the_cause_in_an_emergency_stop_and_the_way_out_is_named)
+TEST_F(RobotMotionTest, EndsWithCauseAndRemedyInAnEmergencyStop)
 {
   make_both();
   move_joints();
@@ -98,7 +98,7 @@ TEST_F(AMotion, ends_with_the_cause_in_an_emergency_stop_and_the_way_out_is_name
   EXPECT_TRUE(becomes_ready(20s));
 }
 
-TEST_F(AMotion, ends_in_a_safeguard_stop_and_does_not_go_on_when_the_guard_closes)
+TEST_F(RobotMotionTest, EndsInASafeguardStopAndIsNotResumed)
 {
   make_both();
   move_joints();
@@ -111,7 +111,7 @@ TEST_F(AMotion, ends_in_a_safeguard_stop_and_does_not_go_on_when_the_guard_close
   EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3) << "the old motion went on";
 }
 
-TEST_F(AMotion, ends_when_its_program_is_stopped_on_the_pendant)
+TEST_F(RobotMotionTest, EndsWhenItsProgramIsStoppedOnThePendant)
 {
   make_both();
   const auto mark = robot->mark_motion();
@@ -125,7 +125,7 @@ TEST_F(AMotion, ends_when_its_program_is_stopped_on_the_pendant)
   EXPECT_FALSE(robot->motion_progress(mark).finished()) << "it ended, but not where it should";
 }
 
-TEST_F(AMotion, does_not_go_on_when_a_program_paused_on_the_pendant_is_played_again)
+TEST_F(RobotMotionTest, IsNotResumedWithAProgramPausedOnThePendant)
 {
   make_both();
   move_joints();
@@ -138,7 +138,7 @@ TEST_F(AMotion, does_not_go_on_when_a_program_paused_on_the_pendant_is_played_ag
   EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3);
 }
 
-TEST_F(AMotion, ends_when_the_controller_dies_in_the_middle_of_it)
+TEST_F(RobotMotionTest, EndsWhenTheControllerDies)
 {
   make_both();
   move_joints();
@@ -152,7 +152,7 @@ TEST_F(AMotion, ends_when_the_controller_dies_in_the_middle_of_it)
   EXPECT_LT(Clock::now() - begin, 1s);
 }
 
-TEST_F(AMotion, is_stopped_by_the_watchdog_when_the_link_is_half_open)
+TEST_F(RobotMotionTest, IsStoppedByTheWatchdogOnAHalfOpenConnection)
 {
   controller.start();
   auto options = robot_options();
@@ -171,7 +171,7 @@ TEST_F(AMotion, is_stopped_by_the_watchdog_when_the_link_is_half_open)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(AMotion, that_blocks_in_ur_rtde_returns_when_the_link_is_lost)
+TEST_F(RobotMotionTest, BlockingCallReturnsWhenTheConnectionIsLost)
 {
   make_both();
   auto q = robot->receive()->getActualQ();
@@ -187,7 +187,7 @@ TEST_F(AMotion, that_blocks_in_ur_rtde_returns_when_the_link_is_lost)
   EXPECT_TRUE(eventually([&] { return returned.load(); }, 2s));
 }
 
-TEST_F(AMotion, may_block_in_ur_rtde_without_starving_the_watchdog)
+TEST_F(RobotMotionTest, BlockingCallDoesNotStarveTheWatchdog)
 {
   make_both();
   auto q = robot->receive()->getActualQ();
@@ -197,7 +197,7 @@ TEST_F(AMotion, may_block_in_ur_rtde_without_starving_the_watchdog)
   EXPECT_TRUE(robot->ready_to_move());
 }
 
-TEST_F(AMotion, and_queries_of_many_threads_share_the_control_interface)
+TEST_F(RobotMotionTest, SharesTheControlInterfaceWithQueriesOfManyThreads)
 {
   make_both();
   move_joints();

@@ -6,7 +6,7 @@
 namespace ur_ros_rtde::test {
 namespace {
 
-using AStop = RobotFixture;
+using StopTest = RobotFixture;
 
 StopOptions decelerating(double joint, double linear)
 {
@@ -16,7 +16,7 @@ StopOptions decelerating(double joint, double linear)
   return options;
 }
 
-TEST_F(AStop, of_an_arm_at_rest_does_nothing)
+TEST_F(StopTest, DoesNothingWhenArmIsAtRest)
 {
   make_both();
   ASSERT_TRUE(eventually([&] { return at_rest(); })) << "rest takes some cycles to be known";
@@ -26,7 +26,7 @@ TEST_F(AStop, of_an_arm_at_rest_does_nothing)
   EXPECT_TRUE(robot->ready_to_move());
 }
 
-TEST_F(AStop, decelerates_a_joint_motion_as_asked)
+TEST_F(StopTest, DeceleratesAJointMotionAsRequested)
 {
   make_both();
   move_joints();
@@ -42,7 +42,7 @@ TEST_F(AStop, decelerates_a_joint_motion_as_asked)
   EXPECT_TRUE(robot->ready_to_move()) << "the program goes on";
 }
 
-TEST_F(AStop, decelerates_a_linear_motion_along_its_line)
+TEST_F(StopTest, DeceleratesALinearMotionAlongItsLine)
 {
   make_both();
   const auto start = robot->latest()->actual_tcp_pose;
@@ -56,7 +56,7 @@ TEST_F(AStop, decelerates_a_linear_motion_along_its_line)
   EXPECT_NEAR(end[1], start[1], 1e-3);
 }
 
-TEST_F(AStop, ends_a_stream_of_joint_velocities)
+TEST_F(StopTest, EndsSpeedJ)
 {
   make_both();
   ASSERT_TRUE(robot->control()->speedJ({0.4, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0));
@@ -69,7 +69,7 @@ TEST_F(AStop, ends_a_stream_of_joint_velocities)
   EXPECT_TRUE(at_rest());
 }
 
-TEST_F(AStop, ends_a_stream_of_tool_velocities)
+TEST_F(StopTest, EndsSpeedL)
 {
   make_both();
   ASSERT_TRUE(robot->control()->speedL({0.0, 0.0, 0.05, 0.0, 0.0, 0.0}, 0.5, 0.0));
@@ -80,7 +80,7 @@ TEST_F(AStop, ends_a_stream_of_tool_velocities)
   EXPECT_TRUE(at_rest());
 }
 
-TEST_F(AStop, ends_a_stream_of_joint_positions)
+TEST_F(StopTest, EndsServoJ)
 {
   make_both();
   auto q = robot->receive()->getActualQ();
@@ -98,7 +98,7 @@ TEST_F(AStop, ends_a_stream_of_joint_positions)
   EXPECT_TRUE(robot->ready_to_move());
 }
 
-TEST_F(AStop, leaves_the_robot_ready_for_the_next_motion)
+TEST_F(StopTest, LeavesTheRobotReadyForTheNextMotion)
 {
   make_both();
   for (int i = 0; i < 3; ++i) {
@@ -110,7 +110,7 @@ TEST_F(AStop, leaves_the_robot_ready_for_the_next_motion)
   }
 }
 
-TEST_F(AStop, right_after_a_motion_command_stops_that_motion)
+TEST_F(StopTest, StopsAMotionThatWasJustCommanded)
 {
   make_both();
   auto q = robot->receive()->getActualQ();
@@ -124,7 +124,7 @@ TEST_F(AStop, right_after_a_motion_command_stops_that_motion)
   EXPECT_TRUE(at_rest()) << "the motion began after the stop";
 }
 
-TEST_F(AStop, stops_the_program_when_a_blocking_motion_holds_it)
+TEST_F(StopTest, StopsTheProgramDuringABlockingMotion)
 {
   make_both();
   auto q = robot->receive()->getActualQ();
@@ -140,7 +140,7 @@ TEST_F(AStop, stops_the_program_when_a_blocking_motion_holds_it)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(AStop, may_be_asked_for_by_several_threads_at_once)
+TEST_F(StopTest, MayBeRequestedBySeveralThreads)
 {
   make_both();
   move_joints();
@@ -156,7 +156,7 @@ TEST_F(AStop, may_be_asked_for_by_several_threads_at_once)
   EXPECT_TRUE(robot->ready_to_move());
 }
 
-TEST_F(AStop, comes_with_the_end_of_the_driver)
+TEST_F(StopTest, IsPartOfTheDriversShutdown)
 {
   make_both();
   move_joints();

@@ -13,7 +13,7 @@ namespace {
 using Clock = RtdeStream::Clock;
 constexpr std::chrono::milliseconds limit{2000};
 
-struct AnRtdeStream : testing::Test {
+struct RtdeStreamTest : testing::Test {
   Controller controller;
 
   Expected<RtdeStream> open(const std::vector<std::string> & fields, double frequency = 0.0)
@@ -22,7 +22,7 @@ struct AnRtdeStream : testing::Test {
   }
 };
 
-TEST_F(AnRtdeStream, gives_fields_of_every_type_in_the_order_asked_for)
+TEST_F(RtdeStreamTest, ReturnsFieldsOfEveryTypeInTheRequestedOrder)
 {
   controller.start();
   const auto q = controller.state()["actual"]["position"].get<std::vector<double>>();
@@ -44,7 +44,7 @@ TEST_F(AnRtdeStream, gives_fields_of_every_type_in_the_order_asked_for)
   EXPECT_EQ(numbers[12], 0.0);
 }
 
-TEST_F(AnRtdeStream, has_one_package_a_cycle)
+TEST_F(RtdeStreamTest, ReturnsOnePackagePerCycle)
 {
   controller.start();
   auto stream = open({"timestamp"}, 125.0);
@@ -60,7 +60,7 @@ TEST_F(AnRtdeStream, has_one_package_a_cycle)
   }
 }
 
-TEST_F(AnRtdeStream, gives_no_more_than_the_controller_can)
+TEST_F(RtdeStreamTest, LimitsTheFrequencyToTheControllersMaximum)
 {
   controller.start();
   const auto stream = open({"timestamp"}, 2000.0);
@@ -68,7 +68,7 @@ TEST_F(AnRtdeStream, gives_no_more_than_the_controller_can)
   EXPECT_EQ(stream->frequency(), 500.0);
 }
 
-TEST_F(AnRtdeStream, names_the_fields_that_the_controller_does_not_have)
+TEST_F(RtdeStreamTest, NamesTheFieldsThatTheControllerLacks)
 {
   controller.start();
   const auto stream = open({"actual_q", "actual_moment", "encoder0_raw"});
@@ -78,7 +78,7 @@ TEST_F(AnRtdeStream, names_the_fields_that_the_controller_does_not_have)
       << stream.error().message;
 }
 
-TEST_F(AnRtdeStream, tells_when_the_link_is_lost_and_when_nothing_comes)
+TEST_F(RtdeStreamTest, ReportsALostConnectionAndSilence)
 {
   controller.start();
   auto stream = open({"timestamp"});
@@ -91,7 +91,7 @@ TEST_F(AnRtdeStream, tells_when_the_link_is_lost_and_when_nothing_comes)
   EXPECT_TRUE(eventually([&] { return !stream->next(numbers, Clock::now() + 100ms); }));
 }
 
-TEST_F(AnRtdeStream, has_no_patience_with_a_service_of_another_kind)
+TEST_F(RtdeStreamTest, RefusesAnotherService)
 {
   const OtherService other(30004, "220 mail.example.org ESMTP\r\n");
   const auto stream = open({"timestamp"});
@@ -99,7 +99,7 @@ TEST_F(AnRtdeStream, has_no_patience_with_a_service_of_another_kind)
   EXPECT_EQ(stream.error().code, ErrorCode::link_lost);
 }
 
-TEST_F(AnRtdeStream, ends_at_its_limit_while_text_messages_flood_the_connection)
+TEST_F(RtdeStreamTest, EndsAtItsLimitDuringAFloodOfTextMessages)
 {
   constexpr std::size_t messages = 10'000'000;
   std::string flood;
@@ -115,7 +115,7 @@ TEST_F(AnRtdeStream, ends_at_its_limit_while_text_messages_flood_the_connection)
   EXPECT_LT(Clock::now() - begin, 3s);
 }
 
-TEST(RtdeOutputs, are_known_by_name)
+TEST(RtdeOutputsTest, AreKnownByName)
 {
   for (const char * name : {"timestamp", "actual_TCP_pose", "output_int_register_0",
                             "output_bit_register_127", "input_double_register_47"}) {
@@ -128,7 +128,7 @@ TEST(RtdeOutputs, are_known_by_name)
   }
 }
 
-struct ADashboardRequest : testing::Test {
+struct DashboardRequestTest : testing::Test {
   Controller controller;
   Expected<std::string> send(const std::string & line, std::chrono::milliseconds patience = limit)
   {
@@ -136,13 +136,13 @@ struct ADashboardRequest : testing::Test {
   }
 };
 
-TEST_F(ADashboardRequest, has_the_answer_without_its_end)
+TEST_F(DashboardRequestTest, ReturnsTheAnswerWithoutTheLineEnd)
 {
   controller.start();
   EXPECT_EQ(send("robotmode").value_or("nothing"), "Robotmode: RUNNING");
 }
 
-TEST_F(ADashboardRequest, is_made_in_the_control_mode_of_its_own_time)
+TEST_F(DashboardRequestTest, UsesTheCurrentControlMode)
 {
   controller.start();
   controller.control({{"command", "remote_control"}, {"on", false}});
@@ -151,7 +151,7 @@ TEST_F(ADashboardRequest, is_made_in_the_control_mode_of_its_own_time)
   EXPECT_EQ(send("power off").value_or("nothing"), "Powering off");
 }
 
-TEST_F(ADashboardRequest, ends_by_its_limit_and_by_a_request_to_stop)
+TEST_F(DashboardRequestTest, EndsAtItsLimitAndWhenStopped)
 {
   const OtherService silent(29999, "Connected: Universal Robots Dashboard Server\n");
   const auto late = send("robotmode", 200ms);
@@ -164,7 +164,7 @@ TEST_F(ADashboardRequest, ends_by_its_limit_and_by_a_request_to_stop)
   EXPECT_EQ(stopped.error().code, ErrorCode::canceled);
 }
 
-TEST_F(ADashboardRequest, says_that_there_is_nobody)
+TEST_F(DashboardRequestTest, ReportsAMissingServer)
 {
   const auto answer = send("robotmode");
   ASSERT_FALSE(answer);

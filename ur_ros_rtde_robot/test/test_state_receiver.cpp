@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct AStateReceiver : testing::Test {
+struct StateReceiverTest : testing::Test {
   Log log;
   Controller controller;
 
@@ -33,7 +33,7 @@ struct AStateReceiver : testing::Test {
   }
 };
 
-TEST_F(AStateReceiver, starts_before_the_controller_does)
+TEST_F(StateReceiverTest, StartsBeforeTheController)
 {
   const auto receiver = this->receiver();
   ASSERT_TRUE(eventually([&] {
@@ -45,7 +45,7 @@ TEST_F(AStateReceiver, starts_before_the_controller_does)
   EXPECT_TRUE(connected(*receiver)) << log.text();
 }
 
-TEST_F(AStateReceiver, follows_every_package_in_the_controllers_time)
+TEST_F(StateReceiverTest, ReceivesEveryPackageInControllerTime)
 {
   controller.start();
   std::mutex mutex;
@@ -72,7 +72,7 @@ TEST_F(AStateReceiver, follows_every_package_in_the_controllers_time)
   EXPECT_NEAR(intervals[250], 0.002, 1e-9);
 }
 
-TEST_F(AStateReceiver, fills_a_sample_with_what_the_robot_has)
+TEST_F(StateReceiverTest, FillsASampleWithTheRobotsState)
 {
   controller.start();
   const auto receiver = this->receiver();
@@ -94,7 +94,7 @@ TEST_F(AStateReceiver, fills_a_sample_with_what_the_robot_has)
   EXPECT_LT(std::abs(std::chrono::duration<double>(age).count()), 1.0);
 }
 
-TEST_F(AStateReceiver, gets_packages_at_the_frequency_asked_for)
+TEST_F(StateReceiverTest, ReceivesAtTheRequestedFrequency)
 {
   controller.start();
   auto options = receiver_options();
@@ -112,7 +112,7 @@ TEST_F(AStateReceiver, gets_packages_at_the_frequency_asked_for)
   EXPECT_NEAR(shortest, 0.02, 1e-9);
 }
 
-TEST_F(AStateReceiver, takes_a_slow_frequency_for_no_silence)
+TEST_F(StateReceiverTest, DoesNotMistakeALowFrequencyForSilence)
 {
   controller.start();
   auto options = receiver_options();
@@ -126,7 +126,7 @@ TEST_F(AStateReceiver, takes_a_slow_frequency_for_no_silence)
   EXPECT_EQ(sample.link, 1U) << log.text();
 }
 
-TEST_F(AStateReceiver, reduces_a_frequency_that_a_CB3_cannot_have_and_says_so_once)
+TEST_F(StateReceiverTest, ReducesAFrequencyAboveThatOfACb3WithOneWarning)
 {
   auto simulator = Controller::options();
   simulator.model = "ur5";
@@ -141,7 +141,7 @@ TEST_F(AStateReceiver, reduces_a_frequency_that_a_CB3_cannot_have_and_says_so_on
   EXPECT_TRUE(std::isnan(receiver->latest()->ft_raw_wrench[0])) << "a CB3 has no force/torque sensor";
 }
 
-TEST_F(AStateReceiver, refuses_an_impossible_frequency_priority_and_an_empty_address)
+TEST_F(StateReceiverTest, RefusesInvalidOptions)
 {
   for (const int priority : {-1, 100}) {
     auto options = receiver_options();
@@ -156,7 +156,7 @@ TEST_F(AStateReceiver, refuses_an_impossible_frequency_priority_and_an_empty_add
   EXPECT_THROW(StateReceiver{StateReceiverOptions{}}, std::invalid_argument);
 }
 
-TEST_F(AStateReceiver, says_once_that_nobody_is_there_with_address_and_next_try)
+TEST_F(StateReceiverTest, LogsAMissingControllerOnceWithAddressAndRetryInterval)
 {
   auto options = receiver_options();
   options.retry_interval = 10ms;
@@ -173,14 +173,14 @@ TEST_F(AStateReceiver, says_once_that_nobody_is_there_with_address_and_next_try)
   EXPECT_EQ(receiver.link().error.code, ErrorCode::link_lost);
 }
 
-TEST_F(AStateReceiver, recognises_a_service_that_never_answers)
+TEST_F(StateReceiverTest, DetectsAServiceThatNeverAnswers)
 {
   const OtherService silent(30004, "");
   const auto receiver = this->receiver();
   EXPECT_TRUE(eventually([&] { return log.count("does not answer as the RTDE server") == 1; })) << log.text();
 }
 
-TEST_F(AStateReceiver, recognises_a_service_of_another_kind)
+TEST_F(StateReceiverTest, DetectsAnotherService)
 {
   const OtherService secure_shell(30004, "SSH-2.0-OpenSSH_9.2p1 Debian-2+deb12u3\r\n");
   const auto receiver = this->receiver();
@@ -188,7 +188,7 @@ TEST_F(AStateReceiver, recognises_a_service_of_another_kind)
   EXPECT_FALSE(receiver->link().connected);
 }
 
-TEST_F(AStateReceiver, finds_the_controller_after_something_else_at_its_address)
+TEST_F(StateReceiverTest, ConnectsToTheControllerAfterAnotherServiceAtItsAddress)
 {
   auto other = std::make_unique<OtherService>(30004, "HTTP/1.1 400 Bad Request\r\n\r\n");
   const auto receiver = this->receiver();
@@ -198,7 +198,7 @@ TEST_F(AStateReceiver, finds_the_controller_after_something_else_at_its_address)
   EXPECT_TRUE(connected(*receiver)) << log.text();
 }
 
-TEST_F(AStateReceiver, outlives_the_controller_and_comes_back_to_it)
+TEST_F(StateReceiverTest, ReconnectsAfterARestartOfTheController)
 {
   controller.start();
   const auto receiver = this->receiver();
@@ -218,7 +218,7 @@ TEST_F(AStateReceiver, outlives_the_controller_and_comes_back_to_it)
   EXPECT_GT(receiver->latest()->sequence, last->sequence);
 }
 
-TEST_F(AStateReceiver, notices_a_closed_connection_and_a_reset_one)
+TEST_F(StateReceiverTest, DetectsClosedAndResetConnections)
 {
   controller.start();
   const auto receiver = this->receiver();
@@ -230,7 +230,7 @@ TEST_F(AStateReceiver, notices_a_closed_connection_and_a_reset_one)
   }
 }
 
-TEST_F(AStateReceiver, notices_a_half_open_link_by_missing_packages)
+TEST_F(StateReceiverTest, DetectsAHalfOpenConnectionByMissingPackages)
 {
   controller.start();
   auto options = receiver_options();
@@ -248,7 +248,7 @@ TEST_F(AStateReceiver, notices_a_half_open_link_by_missing_packages)
   EXPECT_TRUE(connected(*receiver)) << log.text();
 }
 
-TEST_F(AStateReceiver, takes_no_silence_of_this_host_for_the_controllers)
+TEST_F(StateReceiverTest, DoesNotMistakeADelayOfThisHostForSilence)
 {
   controller.start();
   auto options = receiver_options();
@@ -270,7 +270,7 @@ TEST_F(AStateReceiver, takes_no_silence_of_this_host_for_the_controllers)
   EXPECT_EQ(sample.link, 1U) << log.text();
 }
 
-TEST_F(AStateReceiver, makes_the_link_anew_after_a_package_that_could_not_be_handed_on)
+TEST_F(StateReceiverTest, ReconnectsAfterAnExceptionInACallback)
 {
   controller.start();
   StateReceiver receiver(receiver_options(), log.function());
@@ -285,7 +285,7 @@ TEST_F(AStateReceiver, makes_the_link_anew_after_a_package_that_could_not_be_han
   EXPECT_TRUE(connected(receiver)) << log.text();
 }
 
-TEST_F(AStateReceiver, has_a_sample_of_each_connection_when_it_reports_the_connection)
+TEST_F(StateReceiverTest, HasASampleOfTheConnectionWhenItReportsTheConnection)
 {
   controller.start();
   StateReceiver receiver(receiver_options(), log.function());
@@ -309,7 +309,7 @@ TEST_F(AStateReceiver, has_a_sample_of_each_connection_when_it_reports_the_conne
   EXPECT_EQ(connections(), (std::vector<std::uint32_t>{1, 2}));
 }
 
-TEST_F(AStateReceiver, survives_garbage)
+TEST_F(StateReceiverTest, SurvivesGarbage)
 {
   controller.start();
   const auto receiver = this->receiver();
@@ -325,7 +325,7 @@ TEST_F(AStateReceiver, survives_garbage)
   }
 }
 
-TEST_F(AStateReceiver, ends_a_wait_when_asked_to)
+TEST_F(StateReceiverTest, EndsAWaitWhenStopped)
 {
   const auto receiver = this->receiver();
   std::stop_source source;
@@ -336,7 +336,7 @@ TEST_F(AStateReceiver, ends_a_wait_when_asked_to)
   EXPECT_LT(Clock::now() - begin, 10s);
 }
 
-TEST_F(AStateReceiver, refuses_ur_rtdes_interface_with_the_cause_while_there_is_none)
+TEST_F(StateReceiverTest, RefusesAccessToTheInterfaceWithTheCauseWhileDisconnected)
 {
   const auto receiver = this->receiver();
   ASSERT_TRUE(eventually([&] { return log.count("no connection") > 0; }));
@@ -351,7 +351,7 @@ TEST_F(AStateReceiver, refuses_ur_rtdes_interface_with_the_cause_while_there_is_
   EXPECT_EQ(receiver->receive()->getActualQ().size(), 6U);
 }
 
-TEST_F(AStateReceiver, follows_one_controller_ten_times_at_once)
+TEST_F(StateReceiverTest, SupportsTenReceiversOnOneController)
 {
   controller.start();
   std::vector<std::unique_ptr<StateReceiver>> receivers;
@@ -363,7 +363,7 @@ TEST_F(AStateReceiver, follows_one_controller_ten_times_at_once)
   }
 }
 
-TEST_F(AStateReceiver, leaks_nothing_over_many_reconnections)
+TEST_F(StateReceiverTest, DoesNotLeakOverManyReconnections)
 {
   controller.start();
   auto options = receiver_options();

@@ -29,7 +29,7 @@ extern "C" int getaddrinfo(const char * name, const char * service, const addrin
 namespace ur_ros_rtde::test {
 namespace {
 
-TEST(TheLastResortStop, waits_for_no_name_server)
+TEST(StopProgramTest, DoesNotWaitForANameServer)
 {
   Controller controller(Controller::options());
   ASSERT_TRUE(TcpStream::connect("robot.test", dashboard_port, 1s));  // as when the driver starts
@@ -38,7 +38,7 @@ TEST(TheLastResortStop, waits_for_no_name_server)
   EXPECT_TRUE(stopped) << stopped.error().message;
 }
 
-TEST(ATcpStream, looks_a_name_up_again_that_was_not_found)
+TEST(TcpStreamTest, RepeatsAFailedNameLookup)
 {
   Controller controller(Controller::options());
   name_server_answers = false;

@@ -6,14 +6,14 @@
 
 using ur_ros_rtde::printable;
 
-TEST(TextOfALink, stays_what_it_is_when_it_is_text)
+TEST(PrintableTest, KeepsValidText)
 {
   EXPECT_EQ(printable("Robotmode: RUNNING"), "Robotmode: RUNNING");
   EXPECT_EQ(printable("zwei\n\tGrüße, 2 µm, 手"), "zwei\n\tGrüße, 2 µm, 手");
   EXPECT_EQ(printable(""), "");
 }
 
-TEST(TextOfALink, has_question_marks_for_what_is_none)
+TEST(PrintableTest, ReplacesInvalidBytesByQuestionMarks)
 {
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a?b");
   EXPECT_EQ(printable("\x1b[31m\x7f"), "?[31m?");

@@ -39,7 +39,7 @@ int line_of(const std::string & text, const std::string & part)
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(found), '\n'));
 }
 
-TEST(TheControlScript, is_ur_rtdes_own_without_extensions)
+TEST(ControlScriptTest, IsUnchangedWithoutExtensions)
 {
   const auto composed = compose(base(), {});
   ASSERT_TRUE(composed);
@@ -47,7 +47,7 @@ TEST(TheControlScript, is_ur_rtdes_own_without_extensions)
   EXPECT_TRUE(composed->ids.empty());
 }
 
-TEST(TheControlScript, numbers_extensions_by_their_names)
+TEST(ControlScriptTest, NumbersExtensionsInOrderOfTheirNames)
 {
   const auto composed = compose(
       base(), {extension("sg_release", "sync()"), extension("sg_grip", "sync()"), extension("a1", "")});
@@ -55,7 +55,7 @@ TEST(TheControlScript, numbers_extensions_by_their_names)
   EXPECT_EQ(composed->ids, (std::map<std::string, int>{{"a1", 256}, {"sg_grip", 257}, {"sg_release", 258}}));
 }
 
-TEST(TheControlScript, keeps_every_line_of_ur_rtdes_own)
+TEST(ControlScriptTest, KeepsEveryOriginalLine)
 {
   const auto composed = compose(base(), {extension("a", "sync()")});
   ASSERT_TRUE(composed);
@@ -73,7 +73,7 @@ TEST(TheControlScript, keeps_every_line_of_ur_rtdes_own)
   EXPECT_EQ(own, base());
 }
 
-TEST(TheControlScript, is_made_for_each_version_and_register_range)
+TEST(ControlScriptTest, SupportsEachVersionAndRegisterRange)
 {
   const auto composed = compose(base(), {extension("a", "$5.10 x = 1\n$5.90 y = 1\nz = $in20i\n")});
   ASSERT_TRUE(composed) << composed.error().message;
@@ -92,7 +92,7 @@ TEST(TheControlScript, is_made_for_each_version_and_register_range)
   }
 }
 
-TEST(TheControlScript, has_shared_preambles_once)
+TEST(ControlScriptTest, ContainsSharedPreamblesOnce)
 {
   auto a = extension("a", "grip()");
   a.preamble_name = "gripper";
@@ -113,7 +113,7 @@ TEST(TheControlScript, has_shared_preambles_once)
             "the extensions `a` and `b` define the preamble `gripper` differently");
 }
 
-TEST(AnExtension, that_cannot_be_is_refused_by_its_name)
+TEST(ExtensionCompositionTest, RefusesInvalidExtensionsByName)
 {
   const auto of = [](const std::string & snippet) { return complaint(base(), {extension("x", snippet)}); };
   EXPECT_EQ(of("sync()\nif True:\n  sync()\n"), "extension `x`, line 2: the `if` has no `end`");
@@ -137,7 +137,7 @@ TEST(AnExtension, that_cannot_be_is_refused_by_its_name)
   EXPECT_EQ(complaint(base(), {declared}).find("extension `x`: input float register 40 is not free"), 0U);
 }
 
-TEST(AnExtension, may_share_registers_unless_one_keeps_them)
+TEST(ExtensionCompositionTest, SharesRegistersUnlessOneIsExclusive)
 {
   auto a = extension("a", "$out19i($in19i)");
   auto b = extension("b", "$out19i(1)");
@@ -147,7 +147,7 @@ TEST(AnExtension, may_share_registers_unless_one_keeps_them)
   EXPECT_EQ(complaint(base(), {extension("a", "$out18i(1)"), b}), "none");
 }
 
-TEST(AnExtension, is_refused_where_the_control_script_has_no_place_for_it)
+TEST(ExtensionCompositionTest, RefusesExtensionsWithoutAnAnchor)
 {
   std::string other = base();
   const std::string anchor = "            cmd = rtde_cmd()\n";

@@ -19,13 +19,13 @@ std::string made(std::string_view script, const ProgramOptions & options = marks
                  : std::to_string(program.error().line) + ": " + program.error().message;
 }
 
-TEST(AWholeProgram, says_when_it_begins_and_ends)
+TEST(CompleteProgramTest, WritesMarkersAtBeginAndEnd)
 {
   EXPECT_EQ(made("def f():\n  sync()\nend\n"),
             "def f():\n  textmsg(\"BEGIN\")\n\n  sync()\n  textmsg(\"END\")\nend\n");
 }
 
-TEST(AWholeProgram, keeps_its_name_and_its_arguments_defaults)
+TEST(CompleteProgramTest, KeepsNameAndDefaultArguments)
 {
   const auto program = make_program("# mine\ndef f(a = [1, 2], b=p[0,0,0,0,0,0]):\nsync()\nend", marks());
   ASSERT_TRUE(program) << program.error().message;
@@ -33,7 +33,7 @@ TEST(AWholeProgram, keeps_its_name_and_its_arguments_defaults)
   EXPECT_EQ(program->text.text().substr(0, 47), "# mine\ndef f(a = [1, 2], b=p[0,0,0,0,0,0]):\n  t");
 }
 
-TEST(AWholeProgram, says_that_it_ends_before_each_way_out)
+TEST(CompleteProgramTest, WritesTheEndMarkerBeforeEachExit)
 {
   const std::string text = made(
       "def f():\n"
@@ -51,7 +51,7 @@ TEST(AWholeProgram, says_that_it_ends_before_each_way_out)
             "  textmsg(\"END\")\nend\n");
 }
 
-TEST(AWholeProgram, knows_where_its_lines_were)
+TEST(CompleteProgramTest, MapsLinesToTheOriginal)
 {
   const auto program = make_program("\ndef f():\n  sync()\n  return 1\nend", {false, "B", "E", "  setup()"});
   ASSERT_TRUE(program);
@@ -62,7 +62,7 @@ TEST(AWholeProgram, knows_where_its_lines_were)
   }
 }
 
-TEST(ABody, becomes_a_program)
+TEST(ProgramBodyTest, IsWrappedInAProgram)
 {
   EXPECT_EQ(made("sync()"),
             "def ur_ros_rtde_script():\n  textmsg(\"BEGIN\")\nsync()\n  textmsg(\"END\")\nend\n");
@@ -70,14 +70,14 @@ TEST(ABody, becomes_a_program)
   EXPECT_EQ(make_program("\n\nx = 1\n", marks())->text.origin(5).line, 3);
 }
 
-TEST(ABody, may_define_functions_and_threads_that_it_uses)
+TEST(ProgramBodyTest, MayDefineFunctionsAndThreads)
 {
   const std::string text = made("def f():\n  return 1\nend\nthread t():\n  sync()\nend\nx = f()\nreturn x");
   EXPECT_NE(text.find("x = f()\n  textmsg(\"END\")\nreturn x\n"), std::string::npos) << text;
   EXPECT_NE(text.find("def f():\n  return 1\nend"), std::string::npos) << text;
 }
 
-TEST(AScript, is_read_past_comments_strings_and_labels)
+TEST(ScriptScanTest, IgnoresCommentsStringsAndLabels)
 {
   EXPECT_EQ(made("# if\nx = \"def ( end\" # while\n$ 2 \"end\"\ny = 'if ['\n").substr(0, 4), "def ");
 }
@@ -87,9 +87,9 @@ struct Wrong {
   const char * complaint;
 };
 
-class AWrongScript : public testing::TestWithParam<Wrong> {};
+class InvalidScriptTest : public testing::TestWithParam<Wrong> {};
 
-TEST_P(AWrongScript, is_refused_with_its_line)
+TEST_P(InvalidScriptTest, IsRefusedWithItsLine)
 {
   const auto program = make_program(GetParam().script, marks());
   ASSERT_FALSE(program);
@@ -98,7 +98,7 @@ TEST_P(AWrongScript, is_refused_with_its_line)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Scripts, AWrongScript,
+    Scripts, InvalidScriptTest,
     testing::Values(Wrong{"", "0: the script is empty"}, Wrong{"# only\n\n", "0: the script is empty"},
                     Wrong{"def f():\n  if True:\n    sync()\nend", "1: the `def` has no `end`"},
                     Wrong{"x = 1\nwhile x < 2:\n  sync()\n", "2: the `while` has no `end`"},
@@ -112,13 +112,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"def f():\nend\ndef g():\nend", "0: the script defines functions and calls none"},
                     Wrong{"def f:\n  sync()\nend", "1: a program begins with `def name():`"}));
 
-TEST(AWrongScript, that_is_no_secondary_program_is_refused_as_one)
+TEST(InvalidScriptTest, RefusesTheWrongKindOfProgram)
 {
   EXPECT_EQ(made("def f():\n sync()\nend", marks(true)),
             "1: a secondary program begins with `sec`, not with `def`");
 }
 
-TEST(AWrongScript, is_one_that_is_longer_than_a_megabyte)
+TEST(InvalidScriptTest, RefusesMoreThanOneMegabyte)
 {
   EXPECT_NE(made(std::string(1'100'000, ' ')).find("1100000 bytes"), std::string::npos);
 }
