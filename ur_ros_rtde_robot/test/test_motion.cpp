@@ -76,7 +76,7 @@ Sample running_robot()
   return sample;
 }
 
-TEST(RobotCondition, IsEmptyForARunningRobot)
+TEST(MotionBlockerTest, IsEmptyForARunningRobot)
 {
   EXPECT_FALSE(motion_blocker(running_robot()));
   auto reduced = running_robot();
@@ -84,7 +84,7 @@ TEST(RobotCondition, IsEmptyForARunningRobot)
   EXPECT_FALSE(motion_blocker(reduced));
 }
 
-TEST(RobotCondition, NamesEverySafetyStopWithTheRemedy)
+TEST(MotionBlockerTest, NamesEverySafetyStopWithTheRemedy)
 {
   const std::vector<std::tuple<unsigned, ErrorCode, const char *>> table{
       {2, ErrorCode::protective_stop, "make_ready (or dashboard/unlock_protective_stop)"},
@@ -105,7 +105,7 @@ TEST(RobotCondition, NamesEverySafetyStopWithTheRemedy)
   }
 }
 
-TEST(RobotCondition, ExplainsHowToPowerTheArm)
+TEST(MotionBlockerTest, ExplainsHowToPowerTheArm)
 {
   auto sample = running_robot();
   sample.robot_mode = RobotMode::power_off;

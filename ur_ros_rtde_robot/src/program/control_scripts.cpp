@@ -26,12 +26,15 @@ bool has_word(std::string_view text, std::string_view word)
   return false;
 }
 
-/// The function of the extension's URCap that the controller complains about not knowing: "name 'f' is not
-/// defined" or "compile_error_name_not_found:f:", as versions differ. Empty for any other fault.
+/// The function of the extension's URCap that the controller reports as unknown: "name 'f' is not defined" or
+/// "compile_error_name_not_found:f:", depending on its version. Empty for any other error.
 std::string missing_function(const ScriptExtension & extension, const std::string & complaint)
 {
-  const auto says = [&complaint](std::string_view part) { return complaint.find(part) != std::string::npos; };
-  if (extension.urcap.empty() || (!says("not defined") && !says("not_found") && !says("not found"))) {
+  const auto contains = [&complaint](std::string_view part) {
+    return complaint.find(part) != std::string::npos;
+  };
+  if (extension.urcap.empty() ||
+      (!contains("not defined") && !contains("not_found") && !contains("not found"))) {
     return {};
   }
   const auto function =
@@ -141,7 +144,7 @@ std::optional<ControlScripts::LeftOut> ControlScripts::leave_out(const Controlle
   return left_out;
 }
 
-std::string ControlScripts::without_urcap() const
+std::string ControlScripts::missing_urcaps_message() const
 {
   const std::lock_guard lock(mutex_);
   std::map<std::string, std::vector<std::string>> names;

@@ -13,37 +13,37 @@
 
 namespace ur_ros_rtde {
 
-/// The control script that is to run: ur_rtde's own, with what extensions add to it. Thread-safe.
+/// Composes the control script: that of ur_rtde plus the code of the extensions. Thread-safe.
 class ControlScripts {
  public:
   explicit ControlScripts(bool upper_range_registers) : upper_range_(upper_range_registers) {}
 
-  /// In place of those before. The sentences tell of each that cannot be added, and why; it is left out.
+  /// Replaces the extensions. Returns one message per omitted extension, with the reason.
   std::vector<std::string> set(const std::vector<ScriptExtension> & extensions);
   bool has_extensions() const;
 
-  /// For this controller; without a `def` around it, markers and register offset resolved. Empty when there
-  /// is nothing to add to ur_rtde's own.
+  /// The script for this controller without an enclosing `def`, with version markers and register offset
+  /// resolved. Empty if there are no extensions.
   std::string text(const ControllerVersion & version) const;
-  /// The same, also when there is nothing to add. Throws std::runtime_error.
+  /// Like text(), but also without extensions. Throws std::runtime_error.
   std::string program(const ControllerVersion & version) const;
-  /// The number that triggers the extension; not_supported with the reason when it was left out.
+  /// The number that triggers the extension; not_supported with the reason if it was omitted.
   Expected<int> id(const std::string & name) const;
-  /// "extension `x`, line 3", for a line of text(); empty for a line that is of no extension.
+  /// "extension `x`, line 3" for a line of text(); empty if the line does not belong to an extension.
   std::string place(const ControllerVersion & version, int line) const;
-  /// Why an extension is left out.
+  /// An omitted extension.
   struct LeftOut {
     std::string name;
     std::string why;
-    std::string urcap = {};  ///< that the robot lacks; empty: the extension is at fault
+    std::string urcap = {};  ///< missing on the robot; empty: the extension is faulty
   };
-  /// The controller does not take this line of text(): its extension is left out from now on. None if the
-  /// line is of no extension.
+  /// Omits the extension to which this line of text() belongs, since the controller rejects it. None if the
+  /// line does not belong to an extension.
   std::optional<LeftOut> leave_out(const ControllerVersion & version, int line,
                                    const std::string & complaint);
-  /// A sentence about all extensions that are left out because the robot lacks their URCap; empty if there
-  /// are none.
-  std::string without_urcap() const;
+  /// Message about all extensions that were omitted because their URCap is missing on the robot; empty if
+  /// there are none.
+  std::string missing_urcaps_message() const;
 
  private:
   script::Result<script::ControlScript> resolved(const ControllerVersion & version) const;

@@ -43,7 +43,7 @@ Expected<std::optional<PrimaryMessage>> check_definitions(const std::string & ad
     }
   }
   return tl::unexpected(
-      Error{ErrorCode::timeout, "the controller does not say whether it takes the control program"});
+      Error{ErrorCode::timeout, "the controller does not report whether it accepts the control program"});
 }
 
 }  // namespace ur_ros_rtde

@@ -8,9 +8,9 @@
 
 namespace ur_ros_rtde {
 
-/// Lets the controller compile the definitions of a control script (its text without a `def` around it),
-/// running nothing: the error it finds, its line counted in `text`; none if it takes them. The program that
-/// ran before must have been stopped.
+/// Lets the controller compile the definitions of a control script (its text without an enclosing `def`)
+/// without running them. Returns the compile error, with its line in `text`; none if there is no error. The
+/// current program must have been stopped before.
 Expected<std::optional<PrimaryMessage>> check_definitions(const std::string & address,
                                                           const std::string & text,
                                                           std::chrono::milliseconds limit);

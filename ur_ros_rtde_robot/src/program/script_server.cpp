@@ -22,10 +22,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view request = "request_program";
-constexpr std::size_t longest_request = 64;
-constexpr std::size_t most_clients = 16;
+constexpr std::size_t max_request_size = 64;
+constexpr std::size_t max_clients = 16;
 /// The URCap waits 5 s for the first bytes and 0.5 s for more.
-constexpr std::chrono::seconds patience(10);
+constexpr std::chrono::seconds client_timeout(10);
 
 class Descriptor {
  public:
@@ -67,17 +67,18 @@ Expected<Descriptor> listen_at(std::uint16_t port)
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_ANY);
   if (::bind(listener.get(), reinterpret_cast<const sockaddr *>(&address), sizeof(address)) == 0 &&
-      ::listen(listener.get(), static_cast<int>(most_clients)) == 0) {
+      ::listen(listener.get(), static_cast<int>(max_clients)) == 0) {
     return listener;
   }
   const int error = errno;
   if (error == EADDRINUSE) {
     return failure(
         ErrorCode::not_ready,
-        fmt::format("port {0}, at which the External Control URCap asks for the control program, is in use: "
-                    "end the program that has it (`ss -ltnp sport = :{0}` names it; perhaps another driver), "
-                    "or choose another urcap_port, here and in the URCap's installation on the pendant",
-                    port));
+        fmt::format(
+            "port {0}, at which the External Control URCap asks for the control program, is in use: "
+            "end the program that uses it (`ss -ltnp sport = :{0}` names it; perhaps another driver), "
+            "or choose another urcap_port, here and in the URCap's installation on the pendant",
+            port));
   }
   return failure(ErrorCode::not_ready,
                  fmt::format("port {}, at which the External Control URCap asks for the control program, "
@@ -86,14 +87,14 @@ Expected<Descriptor> listen_at(std::uint16_t port)
                              port, std::generic_category().message(error)));
 }
 
-bool is_over(ssize_t result)
+bool connection_closed(ssize_t result)
 {
   return result == 0 || (result < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
 }
 
 }  // namespace
 
-/// The sockets, and what has come and is to go.
+/// The sockets with their input and output buffers.
 class ScriptServer::Service {
  public:
   Service(ScriptServer & server, const std::stop_token & stop)
@@ -116,8 +117,8 @@ class ScriptServer::Service {
     return {};
   }
 
-  /// Waits, and does what there is to do.
-  void turn(std::chrono::milliseconds limit)
+  /// Waits for events up to `limit` and handles them.
+  void poll_once(std::chrono::milliseconds limit)
   {
     std::vector<pollfd> waiting{{wake_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}};
     for (const Client & client : clients_) {
@@ -145,20 +146,20 @@ class ScriptServer::Service {
     socklen_t size = sizeof(peer);
     Descriptor socket(
         ::accept4(listener_.get(), reinterpret_cast<sockaddr *>(&peer), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
-    if (!socket || clients_.size() >= most_clients) {
+    if (!socket || clients_.size() >= max_clients) {
       return;
     }
     std::array<char, INET_ADDRSTRLEN> text{};
     ::inet_ntop(AF_INET, &peer.sin_addr, text.data(), text.size());
-    clients_.push_back({std::move(socket), text.data(), {}, {}, Clock::now() + patience});
+    clients_.push_back({std::move(socket), text.data(), {}, {}, Clock::now() + client_timeout});
   }
 
-  /// False: the connection is over.
+  /// False if the connection has to be closed.
   bool receive(Client & client)
   {
     std::array<char, 128> bytes{};
     const auto got = ::recv(client.socket.get(), bytes.data(), bytes.size(), 0);
-    if (is_over(got)) {
+    if (connection_closed(got)) {
       return false;
     }
     client.received.append(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
@@ -172,7 +173,7 @@ class ScriptServer::Service {
         client.to_send = std::move(*answer);
       }
     }
-    return client.received.size() <= longest_request;
+    return client.received.size() <= max_request_size;
   }
 
   bool send(Client & client)
@@ -181,7 +182,7 @@ class ScriptServer::Service {
       return true;
     }
     const auto sent = ::send(client.socket.get(), client.to_send.data(), client.to_send.size(), MSG_NOSIGNAL);
-    if (is_over(sent)) {
+    if (connection_closed(sent)) {
       return false;
     }
     client.to_send.erase(0, static_cast<std::size_t>(std::max<ssize_t>(sent, 0)));
@@ -251,9 +252,9 @@ void ScriptServer::run(const std::stop_token & stop)
   while (!stop.stop_requested()) {
     try {
       set(service.listen());
-      service.turn(retry_interval_);
+      service.poll_once(retry_interval_);
     } catch (const std::exception & error) {
-      report_.once(LogLevel::error, fmt::format("giving out the control program: {}", error.what()));
+      report_.once(LogLevel::error, fmt::format("cannot serve the control program: {}", error.what()));
     }
   }
 }

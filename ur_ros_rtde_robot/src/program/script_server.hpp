@@ -14,13 +14,13 @@
 
 namespace ur_ros_rtde {
 
-/// Where the External Control URCap of the robot finds the control program: it connects, sends the line
-/// `request_program` and takes what comes as its program, until nothing comes any more. Listens on all
-/// addresses from start() to stop(), and tries again while it cannot.
+/// Serves the control program to the External Control URCap of the robot, which connects, sends the line
+/// `request_program` and receives the program until no more data arrives. Listens on all addresses from
+/// start() to stop() and retries if the port is not available.
 class ScriptServer {
  public:
-  /// Both are called on the server's thread. `version`: of the controller that asks, none as long as it is
-  /// not known. `program`: for it, without a `def` around it; what it throws is logged.
+  /// Called on the server's thread. `version` returns that of the controller, none while unknown. `program`
+  /// returns the program for this version, without an enclosing `def`; exceptions are logged.
   struct Source {
     std::function<std::optional<ControllerVersion>()> version;
     std::function<std::string(const ControllerVersion &)> program;
@@ -31,13 +31,14 @@ class ScriptServer {
   ScriptServer(const ScriptServer &) = delete;
   ScriptServer & operator=(const ScriptServer &) = delete;
 
-  std::function<void()> status_function;  ///< when status() has changed, on the server's thread; set before
+  /// Called on the server's thread when status() has changed. Set before start().
+  std::function<void()> status_function;
   void start();
   void stop();
 
-  /// Success while it listens; else not_ready, with the way out.
+  /// Success while the server listens; else not_ready, with the remedy.
   Status status() const;
-  /// How often the program has been fetched.
+  /// Number of times that the program has been fetched.
   unsigned fetched() const;
 
  private:

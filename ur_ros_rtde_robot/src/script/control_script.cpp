@@ -15,10 +15,10 @@ constexpr int first_id = 256;
 constexpr std::string_view before_commands = "    def process_cmd(cmd):\n";
 constexpr std::string_view before_loop = "            cmd = rtde_cmd()\n";
 
-/// Runs an extension in a thread when float register 18 is its number. Output float register 18 is minus the
-/// number while it runs, the number when it is done, and 0 when the script is ready for the next: at the end
-/// of the arm's motion, too, if the number was taken back before it was done. A number that stands in the
-/// register when the script begins is from before: nothing is run until it is gone.
+/// Runs an extension in a thread when input float register 18 contains its number. Output float register 18
+/// is minus the number while the extension runs, the number when it has finished, and 0 when the script is
+/// ready for the next one. If the number is cleared before the extension has finished, 0 also means that the
+/// arm has stopped. A number that is in the register when the script begins is ignored until it is cleared.
 constexpr std::string_view dispatcher = R"(
     global extension_id = 0
     global extension_state = 5 # 0 none, 1 under way, 2 done, 3 being stopped, 4 stopped, 5 before the first
@@ -56,7 +56,7 @@ constexpr std::string_view dispatcher = R"(
 
 )";
 
-Fault of(const ScriptExtension & extension, const Fault & fault, const char * part = "")
+Fault extension_fault(const ScriptExtension & extension, const Fault & fault, const char * part = "")
 {
   const std::string where = fault.line > 0 ? fmt::format(", {}line {}", part, fault.line) : "";
   return {fault.line, fmt::format("extension `{}`{}: {}", extension.name, where, fault.message)};
@@ -69,7 +69,7 @@ bool is_name(std::string_view name)
                      [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-/// Version markers are no part of the language.
+/// Replaces version markers, which are not part of the language, by blanks.
 std::string without_markers(std::string text)
 {
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -82,22 +82,23 @@ std::string without_markers(std::string text)
   return text;
 }
 
-/// Writes the registers out and looks for what the controller would not take.
+/// Expands the short forms of registers and checks for code that the controller would reject.
 Result<std::string> prepare(const ScriptExtension & extension, const std::string & text, const char * part,
                             ScriptRegisters & used)
 {
   auto expanded = expand_registers(text, used);
   if (!expanded) {
-    return tl::unexpected(of(extension, expanded.error(), part));
+    return tl::unexpected(extension_fault(extension, expanded.error(), part));
   }
   const std::string plain = without_markers(*expanded);
   const auto scanned = scan(plain);
   if (!scanned) {
-    return tl::unexpected(of(extension, scanned.error(), part));
+    return tl::unexpected(extension_fault(extension, scanned.error(), part));
   }
   for (const Token & token : scanned->tokens) {
     if (token.is("halt")) {
-      return tl::unexpected(of(extension, {token.line, "`halt` would end the control program"}, part));
+      return tl::unexpected(
+          extension_fault(extension, {token.line, "`halt` would end the control program"}, part));
     }
   }
   return expanded;
@@ -118,7 +119,7 @@ class Composer {
       return tl::unexpected(preamble.error());
     }
     if (const auto ok = check_registers(used); !ok) {
-      return tl::unexpected(of(extension, ok.error()));
+      return tl::unexpected(extension_fault(extension, ok.error()));
     }
     extension.registers = used;
     if (const auto ok = check_against_others(extension); !ok) {
@@ -245,7 +246,7 @@ class Composer {
   ControlScript result_;
 };
 
-bool knows(std::string_view marker, unsigned major, unsigned minor)
+bool has_version(std::string_view marker, unsigned major, unsigned minor)
 {
   const auto dot = marker.find('.');
   const auto number = [](std::string_view text) {
@@ -260,15 +261,15 @@ bool knows(std::string_view marker, unsigned major, unsigned minor)
   return major == needed && minor >= needed_minor;
 }
 
-/// `$5.10|3.15 …`: from PolyScope 5.10 on, on a CB3 from 3.15 on. A later major version knows what an earlier
-/// one does.
-bool is_for(std::string_view marker, unsigned major, unsigned minor)
+/// `$5.10|3.15 …`: from PolyScope 5.10 on, on a CB3 from 3.15 on. A later major version includes the earlier
+/// ones.
+bool applies_to(std::string_view marker, unsigned major, unsigned minor)
 {
   const auto bar = marker.find('|');
   const std::string_view first = marker.substr(0, bar);
   const unsigned first_major = static_cast<unsigned>(first.front() - '0');
-  return major > first_major || knows(first, major, minor) ||
-         (bar != std::string_view::npos && knows(marker.substr(bar + 1), major, minor));
+  return major > first_major || has_version(first, major, minor) ||
+         (bar != std::string_view::npos && has_version(marker.substr(bar + 1), major, minor));
 }
 
 }  // namespace
@@ -286,8 +287,10 @@ Result<ControlScript> compose(const std::string & base, std::vector<ScriptExtens
   Composer composer;
   for (ScriptExtension & extension : extensions) {
     if (!is_name(extension.name)) {
-      return fault(0, fmt::format("`{}` is no name of an extension: lower case letters, digits, underscores",
-                                  extension.name));
+      return fault(
+          0,
+          fmt::format("`{}` is not a valid name of an extension: use lower case letters, digits, underscores",
+                      extension.name));
     }
     if (const auto added = composer.add(std::move(extension)); !added) {
       return tl::unexpected(added.error());
@@ -310,7 +313,7 @@ Result<ControlScript> for_controller(const ControlScript & script, unsigned majo
     const Origin origin = script.text.origin(number);
     if (line.front() == '$') {
       const auto marker = line.substr(1, line.find_first_of(" \n") - 1);
-      if (marker.size() < 3 || !is_for(marker, major, minor)) {
+      if (marker.size() < 3 || !applies_to(marker, major, minor)) {
         continue;
       }
       line.replace(0, marker.size() + 1, marker.size() + 1, ' ');

@@ -5,9 +5,9 @@
 
 namespace ur_ros_rtde::script {
 
-/// What is wrong with a script.
+/// An error in a script.
 struct Fault {
-  int line = 0;  ///< from 1; 0: not a matter of one line
+  int line = 0;  ///< from 1; 0: not related to a line
   std::string message;
 };
 

@@ -21,7 +21,7 @@ bool is_function(const Token & token)
   return token.is("def") || token.is("sec") || token.is("thread");
 }
 
-/// Index of the token `:` that ends the head of the function that begins at `first`.
+/// Index of the token `:` after the head of the function that begins at `first`.
 Result<std::size_t> end_of_head(const Scan & scan, std::size_t first)
 {
   for (std::size_t i = first + 2; i < scan.tokens.size(); ++i) {
@@ -33,7 +33,7 @@ Result<std::size_t> end_of_head(const Scan & scan, std::size_t first)
   return fault(head.line, fmt::format("a program begins with `{} name():`", head.text));
 }
 
-/// Copies tokens [first, last) with what lies between them, and says the end mark before each way out.
+/// Copies tokens [first, last) with the text between them and inserts the end mark before each exit.
 class BodyCopy {
  public:
   BodyCopy(std::string_view script, const Scan & scan, const std::string & end_mark, ScriptText & text)
@@ -43,7 +43,7 @@ class BodyCopy {
 
   void copy(std::size_t first, std::size_t last)
   {
-    std::size_t functions_end = first;  // behind the innermost function of the program's own
+    std::size_t functions_end = first;  // token after the current nested function
     for (std::size_t i = first; i < last; ++i) {
       const Token & token = scan_.tokens[i];
       if (is_function(token) && i >= functions_end) {
@@ -61,7 +61,7 @@ class BodyCopy {
     }
   }
 
-  /// All before this has been copied, or is not to be.
+  /// Continues copying at `offset`.
   void go_to(std::size_t offset, int line)
   {
     offset_ = offset;
@@ -98,7 +98,7 @@ Result<Program> mark_whole(std::string_view script, const Scan & scan, const Pro
     return fault(kind.line,
                  options.secondary
                      ? "a secondary program begins with `sec`, not with `def`"
-                     : "a `sec` program runs beside the control program: send it as a secondary one");
+                     : "a `sec` program runs beside the control program: send it as a secondary program");
   }
   const auto head = end_of_head(scan, 0);
   if (!head) {
@@ -149,8 +149,7 @@ Result<Program> wrap_body(std::string_view script, const Scan & scan, const Prog
 Result<Program> make_program(std::string_view script, const ProgramOptions & options)
 {
   if (script.size() > longest_script) {
-    return fault(0, fmt::format("the script has {} bytes: it must not have more than {}", script.size(),
-                                longest_script));
+    return fault(0, fmt::format("the script has {} bytes: the maximum is {}", script.size(), longest_script));
   }
   const auto scanned = scan(script);
   if (!scanned) {

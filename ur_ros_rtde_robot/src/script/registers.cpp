@@ -38,8 +38,7 @@ const std::array<Kind, 4> & kinds()
 
 std::string not_free(const Kind & kind, int number)
 {
-  return fmt::format("{} {} is not free for extensions: they have {}", kind.name, number,
-                     to_string(kind.free));
+  return fmt::format("{} {} is not available to extensions: use {}", kind.name, number, to_string(kind.free));
 }
 
 bool is_digit(char c)
@@ -51,7 +50,7 @@ bool is_digit(char c)
 struct ShortForm {
   const Kind * kind = nullptr;
   int number = 0;
-  std::size_t length = 0;  ///< with the bracket of an output
+  std::size_t length = 0;  ///< including the bracket of an output
 };
 
 ShortForm short_form(std::string_view text)
@@ -101,7 +100,7 @@ Result<std::string> expand_registers(const std::string & text, ScriptRegisters &
     }
     const ShortForm form = short_form(std::string_view(text).substr(i));
     if (form.kind == nullptr) {
-      return fault(line, fmt::format("`{}` is no register: write $in19i, $in19f, $out19i(x) or $out19f(x)",
+      return fault(line, fmt::format("`{}` is not a register: write $in19i, $in19f, $out19i(x) or $out19f(x)",
                                      text.substr(i, std::min<std::size_t>(8, text.find('\n', i) - i))));
     }
     if (!form.kind->free.contains(form.number)) {

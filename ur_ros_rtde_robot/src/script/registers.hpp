@@ -7,13 +7,13 @@
 
 namespace ur_ros_rtde::script {
 
-/// `text` with the short forms of registers (`$in19i`) written out; the registers are added to `used`.
+/// Expands the short forms of registers (`$in19i`) in `text` and adds the registers to `used`.
 Result<std::string> expand_registers(const std::string & text, ScriptRegisters & used);
 
-/// Whether an extension may use these registers.
+/// Checks that extensions may use these registers.
 Result<void> check_registers(const ScriptRegisters & used);
 
-/// A register that both use, "input float register 20"; empty if there is none.
+/// A register that both use, such as "input float register 20"; empty if there is none.
 std::string common_register(const ScriptRegisters & a, const ScriptRegisters & b);
 
 }  // namespace ur_ros_rtde::script

@@ -25,7 +25,7 @@ bool opens_block(const Token & token)
   return is_one_of(token, words);
 }
 
-/// Such a word cannot stand inside brackets: one before it was not closed.
+/// These words cannot occur inside brackets, so that an open bracket before them is not closed.
 bool begins_statement(const Token & token)
 {
   constexpr std::array<std::string_view, 9> words{"end",  "elif",  "else",   "return", "global",
@@ -50,7 +50,7 @@ class Scanner {
       } else if (c == '#') {
         position_ = std::min(text_.find('\n', position_), text_.size());
       } else if (static_cast<unsigned char>(c) < ' ') {
-        return fault(line_, fmt::format("a character with the code {} is no part of a script",
+        return fault(line_, fmt::format("character code {} is not allowed in a script",
                                         static_cast<unsigned>(static_cast<unsigned char>(c))));
       } else if (auto next = token(c)) {
         all.push_back(*next);
@@ -105,7 +105,7 @@ class Brackets {
       open_.push_back(token);
     } else if (const auto which = closing.find(token.text); which != std::string_view::npos) {
       if (open_.empty() || open_.back().text[0] != opening[which]) {
-        return fault(token.line, fmt::format("'{}' closes nothing", token.text));
+        return fault(token.line, fmt::format("'{}' has no opening bracket", token.text));
       }
       open_.pop_back();
     }
@@ -150,7 +150,7 @@ Result<Scan> scan(std::string_view text)
       result.blocks.push_back({i, i});
     } else if (token.is("end")) {
       if (open.empty()) {
-        return fault(token.line, "this `end` ends nothing");
+        return fault(token.line, "this `end` has no block");
       }
       result.blocks[open.back()].last = i;
       open.pop_back();

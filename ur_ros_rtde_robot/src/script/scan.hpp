@@ -19,7 +19,7 @@ struct Token {
   bool is(std::string_view word) const { return kind != Kind::string && text == word; }
 };
 
-/// From the word that opens a block (`def sec thread if while`) to its `end`: indices of tokens.
+/// Token indices of the word that opens a block (`def sec thread if while`) and of its `end`.
 struct Block {
   std::size_t first;
   std::size_t last;
@@ -27,13 +27,13 @@ struct Block {
 
 struct Scan {
   std::vector<Token> tokens;  ///< without comments
-  std::vector<Block> blocks;  ///< in the order of their beginnings
+  std::vector<Block> blocks;  ///< in order of their first tokens
 
   const Block * block_from(std::size_t token) const;
 };
 
-/// Takes URScript to pieces as far as its blocks. Faults: a string or bracket that is not closed, a block
-/// without end, an end without block, a control character. Everything else the controller judges.
+/// Splits URScript into tokens and blocks. Faults: an unclosed string or bracket, a block without `end`, an
+/// `end` without block, a control character. The controller checks everything else.
 Result<Scan> scan(std::string_view text);
 
 }  // namespace ur_ros_rtde::script

@@ -117,18 +117,18 @@ TEST(ExtensionCompositionTest, RefusesInvalidExtensionsByName)
 {
   const auto of = [](const std::string & snippet) { return complaint(base(), {extension("x", snippet)}); };
   EXPECT_EQ(of("sync()\nif True:\n  sync()\n"), "extension `x`, line 2: the `if` has no `end`");
-  EXPECT_EQ(of("end\n"), "extension `x`, line 1: this `end` ends nothing");
+  EXPECT_EQ(of("end\n"), "extension `x`, line 1: this `end` has no block");
   EXPECT_EQ(of("sync()\nhalt"), "extension `x`, line 2: `halt` would end the control program");
-  EXPECT_EQ(of("\ny = $in19"),
-            "extension `x`, line 2: `$in19` is no register: write $in19i, $in19f, $out19i(x) or $out19f(x)");
-  EXPECT_EQ(of("y = $in18f"),
-            "extension `x`, line 1: input float register 18 is not free for extensions: they have 19 to 22");
-  EXPECT_EQ(of("$out18f(1)"),
-            "extension `x`, line 1: output float register 18 is not free for extensions: they have 12 to 19 "
-            "except 18");
   EXPECT_EQ(
-      of("$out3i(1)"),
-      "extension `x`, line 1: output integer register 3 is not free for extensions: they have 12 to 19");
+      of("\ny = $in19"),
+      "extension `x`, line 2: `$in19` is not a register: write $in19i, $in19f, $out19i(x) or $out19f(x)");
+  EXPECT_EQ(of("y = $in18f"),
+            "extension `x`, line 1: input float register 18 is not available to extensions: use 19 to 22");
+  EXPECT_EQ(of("$out18f(1)"),
+            "extension `x`, line 1: output float register 18 is not available to extensions: use 12 to 19 "
+            "except 18");
+  EXPECT_EQ(of("$out3i(1)"),
+            "extension `x`, line 1: output integer register 3 is not available to extensions: use 12 to 19");
   EXPECT_EQ(complaint(base(), {extension("X y", "")}).find("`X y` is no name"), 0U);
   EXPECT_EQ(complaint(base(), {extension("x", ""), extension("x", "")}),
             "there are two extensions `x`: leave one out");
