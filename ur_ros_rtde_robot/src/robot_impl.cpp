@@ -82,7 +82,7 @@ void Robot::Impl::add(const Sample & sample)
   }
 }
 
-/// Driven by the packages, so that a half-open connection gives no sign of life.
+/// Driven by the packages, so that the heartbeat ends on a half-open connection.
 void Robot::Impl::feed_watchdog(const Sample & sample)
 {
   const double frequency = watchdog_frequency_;

@@ -19,7 +19,7 @@ std::string own_address()
 {
   const auto * info = testing::UnitTest::GetInstance()->current_test_info();
   const auto hash = std::hash<std::string>{}(std::string(info->test_suite_name()) + info->name());
-  // Not 127.0.x.y, where people start things by hand.
+  // Not 127.0.x.y, which is common for servers that are started manually.
   return "127." + std::to_string(16 + hash % 200) + "." + std::to_string(hash / 200 % 250) + "." +
          std::to_string(2 + hash / 50000 % 250);
 }

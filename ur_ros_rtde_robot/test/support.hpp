@@ -20,13 +20,13 @@ namespace ur_ros_rtde::test {
 
 using namespace std::chrono_literals;
 
-/// An address in 127.0.0.0/8 that belongs to the running test alone, so that tests run in parallel.
+/// An address in 127.0.0.0/8 that is unique to the running test, so that tests can run in parallel.
 std::string own_address();
 
-/// Waits for a condition; false when it has not come true within `limit`.
+/// Waits for a condition; false if it does not hold within `limit`.
 bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds limit = 5s);
 
-/// A controller on the test's address, or none yet.
+/// A simulated controller at the test's address; initially none.
 class Controller {
  public:
   Controller() = default;
@@ -35,7 +35,7 @@ class Controller {
 
   void start(const ur_simulator::SimulatorOptions & options = Controller::options());
   void stop() { controller_.reset(); }
-  /// Fails the test when the simulator refuses.
+  /// Sends a request to the control port; the test fails if the simulator refuses it.
   nlohmann::json control(const nlohmann::json & request);
   nlohmann::json state() { return controller_->state(); }
 
@@ -43,7 +43,7 @@ class Controller {
   std::unique_ptr<ur_simulator::SimulatedController> controller_;
 };
 
-/// Keeps what was logged.
+/// Records log messages.
 class Log {
  public:
   LogFunction function();
@@ -55,7 +55,7 @@ class Log {
   std::vector<std::string> lines_;
 };
 
-/// A server that accepts connections and answers each with `reply`, whatever it is sent.
+/// A server that sends `reply` on each connection and ignores its input.
 class OtherService {
  public:
   OtherService(std::uint16_t port, std::string reply);
@@ -70,8 +70,8 @@ class OtherService {
 std::size_t open_descriptors();
 std::size_t running_threads();
 
-/// Patient with a host on which many tests run at once; tests of the limits set them to what they are by
-/// default.
+/// Options with time limits for a host that runs many tests in parallel. Tests of these limits use the
+/// defaults.
 RobotOptions robot_options();
 StateReceiverOptions receiver_options();
 

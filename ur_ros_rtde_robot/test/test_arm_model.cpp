@@ -81,7 +81,7 @@ TEST_F(StatedModelTest, RefusesAnUnknownModelAndListsTheKnownOnes)
   options.model = "ur99";
   try {
     Robot(options, {});
-    FAIL() << "it was taken";
+    FAIL() << "the model was accepted";
   } catch (const std::invalid_argument & error) {
     EXPECT_NE(std::string(error.what()).find("ur99"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("ur8long"), std::string::npos);
@@ -92,7 +92,7 @@ TEST_F(StatedModelTest, AcceptsAModelWithTheSameArm)
 {
   controller.start();
   make_robot_with("UR12e");
-  EXPECT_TRUE(becomes_ready()) << "a UR12e says that it is a UR10e";
+  EXPECT_TRUE(becomes_ready()) << "a UR12e reports the type of a UR10e";
 }
 
 TEST_F(StatedModelTest, PreventsMotionIfItContradictsTheController)
@@ -106,7 +106,7 @@ TEST_F(StatedModelTest, PreventsMotionIfItContradictsTheController)
   }
   EXPECT_EQ(robot->ready_to_move().error().code, ErrorCode::model_mismatch);
   EXPECT_THROW(robot->control(), RobotError);
-  EXPECT_TRUE(robot->io()->setStandardDigitalOut(1, true)) << "what moves nothing works";
+  EXPECT_TRUE(robot->io()->setStandardDigitalOut(1, true)) << "commands without motion work";
   EXPECT_TRUE(robot->latest());
   EXPECT_EQ(robot->run_script("textmsg(\"here\")").error.code, ErrorCode::model_mismatch);
   EXPECT_EQ(controller.state().at("program").at("state"), "STOPPED");

@@ -72,7 +72,7 @@ TEST_F(LockedTest, RefusesAfterTheLimitWhileAnotherThreadHoldsTheLock)
   std::jthread([this] {
     try {
       locked(20ms)->add();
-      ADD_FAILURE() << "the lock was not there";
+      ADD_FAILURE() << "the lock was not available";
     } catch (const RobotError & error) {
       EXPECT_EQ(error.error().code, ErrorCode::busy);
       EXPECT_NE(error.error().message.find("counter"), std::string::npos);

@@ -17,7 +17,7 @@ std::string big_endian(std::uint32_t value)
   return text;
 }
 
-/// A robot message: size, type 20, timestamp, source, kind, body.
+/// A robot message: size, type 20, timestamp, source, message type, body.
 std::string package(char kind, const std::string & body)
 {
   std::string rest = std::string(1, 20) + std::string(8, '\0') + "\xff" + std::string(1, kind) + body;

@@ -1,4 +1,4 @@
-// What ur_rtde's getters answer, after our patches: to the question that was asked, with its arguments.
+// The patched getters of ur_rtde return the answer to their own query and use their arguments.
 #include <cmath>
 
 #include "robot_fixture.hpp"
@@ -27,7 +27,7 @@ struct QueryTest : RobotFixture {
 TEST_F(QueryTest, ReturnsItsOwnAnswerNotThePreviousOne)
 {
   make_both();
-  EXPECT_NEAR(control()->getStepTime(), 0.002, 1e-9) << "the first of all";
+  EXPECT_NEAR(control()->getStepTime(), 0.002, 1e-9) << "first query";
   const auto flange = control()->getForwardKinematics(now(), Joints(6, 0.0));
   for (int i = 0; i < 5; ++i) {
     EXPECT_LT(distance(control()->getActualToolFlangePose(), flange), 1e-4);
@@ -60,7 +60,7 @@ TEST_F(QueryTest, JacobianUsesItsArguments)
   const Joints tcp{0.05, 0.0, 0.2, 0.0, 0.0, 0.0};
   const auto jacobian = control()->getJacobian(elsewhere, tcp);
   ASSERT_EQ(jacobian.size(), 36U);
-  // Column by column: against differences of the forward kinematics.
+  // Compares each column with finite differences of the forward kinematics.
   const double step = 1e-4;
   for (std::size_t joint = 0; joint < 6; ++joint) {
     auto before = elsewhere;
@@ -75,7 +75,7 @@ TEST_F(QueryTest, JacobianUsesItsArguments)
   }
   EXPECT_LT(distance(control()->getJacobian(), control()->getJacobian(now(), Joints(6, 0.0))), 1e-3);
   EXPECT_THROW(control()->getJacobian({1.0, 2.0}), std::invalid_argument);
-  EXPECT_TRUE(robot->ready_to_move()) << "bad arguments cost nothing";
+  EXPECT_TRUE(robot->ready_to_move()) << "bad arguments must not stop the program";
 }
 
 TEST_F(QueryTest, DynamicsUseTheirArguments)

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int priority = 20;
 
-/// In a thread of its own, which the test may do anything to.
+/// Runs a function in a separate thread, whose scheduling the test may change.
 void in_a_thread(const std::function<void()> & action)
 {
   std::jthread(action).join();
@@ -33,7 +33,7 @@ std::pair<int, int> policy_and_priority()
 const std::pair<int, int> ordinary{SCHED_OTHER, 0};
 const std::pair<int, int> realtime{SCHED_FIFO, priority};
 
-/// Of the calling thread alone: capabilities belong to threads.
+/// Affects only the calling thread, since capabilities belong to threads.
 void give_up_all_capabilities()
 {
   __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
@@ -41,7 +41,7 @@ void give_up_all_capabilities()
   ASSERT_EQ(syscall(SYS_capset, &header, none.data()), 0);
 }
 
-/// Root may; everybody else with a limit above 0.
+/// True for root and for users with a limit above 0.
 bool allowed()
 {
   bool result = false;
@@ -52,7 +52,7 @@ bool allowed()
 TEST(RealtimePriorityTest, AppliesToTheThreadDuringItsLifetime)
 {
   if (!allowed()) {
-    GTEST_SKIP() << "this host does not allow it";
+    GTEST_SKIP() << "this host does not permit real-time priorities";
   }
   in_a_thread([] {
     {
@@ -60,7 +60,7 @@ TEST(RealtimePriorityTest, AppliesToTheThreadDuringItsLifetime)
       EXPECT_EQ(policy_and_priority(), realtime);
       std::pair<int, int> of_a_child;
       in_a_thread([&] { of_a_child = policy_and_priority(); });
-      EXPECT_EQ(of_a_child, ordinary) << "what it starts is not in a hurry";
+      EXPECT_EQ(of_a_child, ordinary) << "child threads must not inherit the priority";
     }
     EXPECT_EQ(policy_and_priority(), ordinary);
   });
@@ -69,7 +69,7 @@ TEST(RealtimePriorityTest, AppliesToTheThreadDuringItsLifetime)
 TEST(RealtimePriorityTest, IsInheritedByNewThreads)
 {
   if (!allowed()) {
-    GTEST_SKIP() << "this host does not allow it";
+    GTEST_SKIP() << "this host does not permit real-time priorities";
   }
   in_a_thread([] {
     ASSERT_TRUE(set_realtime_priority(priority));

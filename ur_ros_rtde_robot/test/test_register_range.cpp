@@ -1,4 +1,4 @@
-// All that uses registers, with those of the upper range, beside a fieldbus that has the lower ones.
+// All functions that use registers, in the upper range, while a fieldbus uses the lower range.
 #include <algorithm>
 #include <cmath>
 
@@ -49,7 +49,7 @@ TEST_P(UpperRangeTest, SupportsMotionsAndStops)
   move_joints();
   EXPECT_TRUE(robot->stop_motion());
   EXPECT_EQ(robot->control()->getTCPOffset().size(), 6U);
-  EXPECT_THROW(robot->control()->getMassMatrix(), std::logic_error) << "it needs both ranges";
+  EXPECT_THROW(robot->control()->getMassMatrix(), std::logic_error) << "the mass matrix needs both ranges";
 }
 
 TEST_P(UpperRangeTest, SupportsExtensionsWithParametersAndResults)
@@ -83,10 +83,9 @@ TEST_P(UpperRangeTest, SupportsTheWatchdog)
   ASSERT_TRUE(robot->control()->speedJ({0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0));
   ASSERT_TRUE(eventually([&] { return turning(); }));
   const double begin = robot_time();
-  ASSERT_TRUE(eventually([&] { return robot_time() > begin + 1.5; }))
-      << "longer than the watchdog's patience";
+  ASSERT_TRUE(eventually([&] { return robot_time() > begin + 1.5; })) << "longer than the watchdog's timeout";
   ASSERT_TRUE(turning()) << log.text();
-  controller.control({{"command", "stall_links"}});  // no sign of life arrives, no connection is closed
+  controller.control({{"command", "stall_links"}});  // ends the heartbeat without closing a connection
   const auto speed = [&] {
     return std::abs(controller.state().at("actual").at("velocity").at(0).get<double>());
   };

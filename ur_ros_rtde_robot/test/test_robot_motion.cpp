@@ -81,7 +81,7 @@ TEST_F(RobotMotionTest, IsNotResumedAfterAProtectiveStop)
   ASSERT_TRUE(becomes_ready());
   const auto sequence = robot->latest()->sequence;
   ASSERT_TRUE(eventually([&] { return robot->latest()->sequence > sequence + 200; }));
-  EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3) << "the old motion went on";
+  EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3) << "the old motion was resumed";
   move_joints();
 }
 
@@ -108,7 +108,7 @@ TEST_F(RobotMotionTest, EndsInASafeguardStopAndIsNotResumed)
   const auto q = robot->latest()->actual_q;
   controller.control({{"command", "safeguard"}, {"open", false}});
   ASSERT_TRUE(becomes_ready());
-  EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3) << "the old motion went on";
+  EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3) << "the old motion was resumed";
 }
 
 TEST_F(RobotMotionTest, EndsWhenItsProgramIsStoppedOnThePendant)
@@ -122,7 +122,7 @@ TEST_F(RobotMotionTest, EndsWhenItsProgramIsStoppedOnThePendant)
   ASSERT_TRUE(becomes_ready_again());
   EXPECT_TRUE(eventually([&] { return at_rest(); }));
   EXPECT_TRUE(robot->motion_progress(mark).program_ended);
-  EXPECT_FALSE(robot->motion_progress(mark).finished()) << "it ended, but not where it should";
+  EXPECT_FALSE(robot->motion_progress(mark).finished()) << "the motion ended before its target";
 }
 
 TEST_F(RobotMotionTest, IsNotResumedWithAProgramPausedOnThePendant)
@@ -212,7 +212,7 @@ TEST_F(RobotMotionTest, SharesTheControlInterfaceWithQueriesOfManyThreads)
       });
     }
   }
-  EXPECT_EQ(answers, 40) << "each call must be answered, with what is true";
+  EXPECT_EQ(answers, 40) << "each call must return the correct answer";
   EXPECT_TRUE(robot->stop_motion());
 }
 

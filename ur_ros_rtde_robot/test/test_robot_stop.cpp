@@ -19,7 +19,7 @@ StopOptions decelerating(double joint, double linear)
 TEST_F(StopTest, DoesNothingWhenArmIsAtRest)
 {
   make_both();
-  ASSERT_TRUE(eventually([&] { return at_rest(); })) << "rest takes some cycles to be known";
+  ASSERT_TRUE(eventually([&] { return at_rest(); })) << "detecting standstill takes some cycles";
   const auto report = robot->stop_motion();
   ASSERT_TRUE(report);
   EXPECT_EQ(report->means, StopMeans::nothing_moved);
@@ -37,7 +37,7 @@ TEST_F(StopTest, DeceleratesAJointMotionAsRequested)
   EXPECT_EQ(report->means, StopMeans::stop_command);
   EXPECT_TRUE(at_rest());
   EXPECT_NEAR(highest_deceleration(0), 2.0, 0.3);
-  // 0.8 rad/s at 2 rad/s^2 are 0.4 s; and the cycles of the command and of the detection of rest
+  // 0.8 rad/s at 2 rad/s^2 take 0.4 s, plus the cycles for the command and the detection of standstill
   EXPECT_NEAR(report->time_to_standstill, 0.4, 0.12);
   EXPECT_TRUE(robot->ready_to_move()) << "the program goes on";
 }

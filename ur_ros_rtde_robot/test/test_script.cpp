@@ -41,7 +41,7 @@ struct ScriptTest : RobotFixture {
     there[5] += 0.02;
     if (!robot->control()->moveJ(there, 1.0, 2.0, true) ||
         !eventually([&] { return robot->motion_progress(mark).finished(); })) {
-      return testing::AssertionFailure() << "it does not move any more\n" << log.text();
+      return testing::AssertionFailure() << "the arm does not move\n" << log.text();
     }
     return testing::AssertionSuccess();
   }
@@ -133,7 +133,7 @@ TEST_F(ScriptTest, StopsTheArmWhenCanceled)
   EXPECT_EQ(report.error.code, ErrorCode::canceled);
   EXPECT_EQ(report.error.message, "enough");
   EXPECT_TRUE(at_rest());
-  EXPECT_LT(highest_deceleration(0), 20.0) << "it decelerates";
+  EXPECT_LT(highest_deceleration(0), 20.0) << "the arm decelerates";
   EXPECT_TRUE(is_back());
 }
 
@@ -262,7 +262,7 @@ TEST_F(ScriptTest, KeepsTheControlInterfaceToItself)
   ScriptOptions options;
   std::optional<ErrorCode> found;
   options.on_text = [&](const std::string &) {
-    EXPECT_TRUE(robot->ready_to_move()) << "who preempts the script may be admitted";
+    EXPECT_TRUE(robot->ready_to_move()) << "a command that preempts the script can be accepted";
     EXPECT_EQ(robot->run_script("sync()").error.code, ErrorCode::busy);
     try {
       robot->control();
@@ -323,7 +323,7 @@ TEST_F(ScriptTest, RunsDuringAMotionAsSecondaryProgram)
   move_joints();
   const auto report = robot->run_script("sec s():\n  set_standard_digital_out(2, True)\nend\n", secondary());
   EXPECT_TRUE(report) << report.error.message;
-  EXPECT_TRUE(turns()) << "the motion goes on";
+  EXPECT_TRUE(turns()) << "the motion continues";
   EXPECT_TRUE(eventually([&] { return (robot->latest()->digital_outputs & 4U) != 0; }));
   EXPECT_TRUE(robot->stop_motion());
 }

@@ -66,8 +66,8 @@ TEST_F(StateReceiverTest, ReceivesEveryPackageInControllerTime)
     ASSERT_GT(times[i], times[i - 1]);
     intervals.push_back(times[i] - times[i - 1]);
   }
-  // ur_rtde takes the newest of several packages that a busy host was too late for, so not all intervals are
-  // one cycle.
+  // If the host is late, ur_rtde uses the newest of several packages, so that some intervals exceed one
+  // cycle.
   std::nth_element(intervals.begin(), intervals.begin() + 250, intervals.end());
   EXPECT_NEAR(intervals[250], 0.002, 1e-9);
 }
@@ -241,7 +241,7 @@ TEST_F(StateReceiverTest, DetectsAHalfOpenConnectionByMissingPackages)
   ASSERT_TRUE(eventually([&] { return !receiver->link().connected; }));
   const auto silence = std::chrono::duration<double>(Clock::now() - receiver->latest()->received).count();
   RecordProperty("half_open_noticed_after_ms", std::to_string(1000.0 * silence));
-  EXPECT_LT(silence, 0.25) << "100 ms, and what a busy host takes";
+  EXPECT_LT(silence, 0.25) << "100 ms plus the delay of a busy host";
   EXPECT_TRUE(eventually([&] { return log.count("no RTDE package from " + own_address()) == 1; }))
       << log.text();
   controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", false}});
@@ -263,7 +263,7 @@ TEST_F(StateReceiverTest, DoesNotMistakeADelayOfThisHostForSilence)
   receiver.start();
   ASSERT_TRUE(eventually([&] { return receiver.latest().has_value(); })) << log.text();
   Sample sample = *receiver.latest();
-  EXPECT_FALSE(receiver.wait_for_next(sample, 3 * options.silence_limit)) << "nobody takes the packages";
+  EXPECT_FALSE(receiver.wait_for_next(sample, 3 * options.silence_limit)) << "the packages are not processed";
   EXPECT_TRUE(receiver.link().connected) << log.text();
   go_on.set_value();
   EXPECT_TRUE(receiver.wait_for_next(sample, 1s)) << log.text();
@@ -342,7 +342,7 @@ TEST_F(StateReceiverTest, RefusesAccessToTheInterfaceWithTheCauseWhileDisconnect
   ASSERT_TRUE(eventually([&] { return log.count("no connection") > 0; }));
   try {
     receiver->receive()->getActualQ();
-    FAIL() << "there is nobody to ask";
+    FAIL() << "there is no connection";
   } catch (const RobotError & error) {
     EXPECT_EQ(error.error().code, ErrorCode::link_lost);
   }
@@ -380,7 +380,7 @@ TEST_F(StateReceiverTest, DoesNotLeakOverManyReconnections)
       threads = running_threads();
     }
     if (round > 5) {
-      // The simulator closes its ends a little later.
+      // The simulator closes its sockets a little later.
       EXPECT_TRUE(eventually([&] { return open_descriptors() <= descriptors + 2; }))
           << open_descriptors() << " of " << descriptors;
       EXPECT_TRUE(eventually([&] { return running_threads() <= threads; }))

@@ -11,7 +11,7 @@
 #include "support.hpp"
 
 namespace {
-/// The name server of this program knows names that end so: they are the test's controller.
+/// Host names with this ending resolve to the test's controller.
 constexpr std::string_view domain = ".test";
 std::atomic<bool> name_server_answers{true};
 }  // namespace

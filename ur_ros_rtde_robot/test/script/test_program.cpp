@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"sync())", "1: ')' has no opening bracket"},
                     Wrong{"x = [1, 2)", "1: ')' has no opening bracket"},
                     Wrong{"sync()\ntextmsg(\"a)\n", "2: a string is not closed"},
-                    Wrong{"sync()\n\x01", "2: a character with the code 1"},
+                    Wrong{"sync()\n\x01", "2: character code 1 is not allowed"},
                     Wrong{"sec f():\n sync()\nend", "1: a `sec` program runs beside"},
                     Wrong{"def f():\nend\ndef g():\nend", "0: the script defines functions and calls none"},
                     Wrong{"def f:\n  sync()\nend", "1: a program begins with `def name():`"}));

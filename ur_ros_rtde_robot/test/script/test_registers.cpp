@@ -1,4 +1,4 @@
-// The table of registers in docs/writing_a_plugin.md says what the code does.
+// Compares the table of registers in docs/writing_a_plugin.md with the code.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -47,7 +47,7 @@ struct Row {
   Numbers free, free_upper, used;
 };
 
-/// By the kind of register.
+/// Key: kind of register.
 std::map<std::string, Row> table()
 {
   std::ifstream file(DOCUMENT);
