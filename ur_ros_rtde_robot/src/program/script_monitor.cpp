@@ -20,7 +20,7 @@ constexpr milliseconds begin_limit(3000);  // from sending to the begin marker
 /// Longest delay between the primary interface and RTDE, which are separate connections, for events of the
 /// same control cycle.
 constexpr milliseconds max_skew(100);
-constexpr milliseconds poll_interval(4);
+constexpr milliseconds message_wait(4);
 
 double seconds(std::chrono::steady_clock::duration duration)
 {
@@ -117,8 +117,8 @@ bool ScriptMonitor::update()
 /// Bounded in time, so that a script that writes faster than ScriptOptions::on_text returns can be stopped.
 bool ScriptMonitor::read_messages()
 {
-  const auto deadline = Clock::now() + poll_interval;
-  auto wait = poll_interval;
+  const auto deadline = Clock::now() + message_wait;
+  auto wait = message_wait;
   do {
     const auto message = primary_.next(wait);
     if (!message) {
