@@ -224,9 +224,9 @@ Error StateReceiver::Impl::receive_packages(const std::stop_token & stop)
   ++sample.link;
   on_package(sample, reader);
   set_link({true, {}});  // when there is a sample of this connection
-  state->onPackage([&] { on_package(sample, reader); });
+  state->setPackageCallback([&] { on_package(sample, reader); });
   const Error end = monitor(stop, *interface);
-  state->onPackage({});
+  state->setPackageCallback({});
   return end;
 }
 
