@@ -255,13 +255,17 @@ TEST_F(StateReceiverTest, DoesNotMistakeADelayOfThisHostForSilence)
   options.silence_limit = StateReceiverOptions().silence_limit;
   StateReceiver receiver(options, log.function());
   std::promise<void> go_on;
-  receiver.on_sample([&, held = false, wait = go_on.get_future().share()](const Sample &) mutable {
-    if (!std::exchange(held, true)) {
+  constexpr std::uint64_t held_sample = 10;  // received by ur_rtde's thread, unlike the first one
+  receiver.on_sample([wait = go_on.get_future().share()](const Sample & sample) {
+    if (sample.sequence == held_sample) {
       wait.wait();
     }
   });
   receiver.start();
-  ASSERT_TRUE(eventually([&] { return receiver.latest().has_value(); })) << log.text();
+  ASSERT_TRUE(eventually([&] {
+    const auto latest = receiver.latest();
+    return latest && latest->sequence == held_sample;
+  })) << log.text();
   Sample sample = *receiver.latest();
   EXPECT_FALSE(receiver.wait_for_next(sample, 3 * options.silence_limit)) << "the packages are not processed";
   EXPECT_TRUE(receiver.link().connected) << log.text();
