@@ -129,12 +129,14 @@ TEST(ExtensionCompositionTest, RefusesInvalidExtensionsByName)
             "except 18");
   EXPECT_EQ(of("$out3i(1)"),
             "extension `x`, line 1: output integer register 3 is not available to extensions: use 12 to 19");
-  EXPECT_EQ(complaint(base(), {extension("X y", "")}).find("`X y` is no name"), 0U);
+  EXPECT_EQ(complaint(base(), {extension("X y", "")}).find("`X y` is not a valid name"), 0U);
   EXPECT_EQ(complaint(base(), {extension("x", ""), extension("x", "")}),
             "there are two extensions `x`: leave one out");
   auto declared = extension("x", "");
   declared.registers.input_double = {40};
-  EXPECT_EQ(complaint(base(), {declared}).find("extension `x`: input float register 40 is not free"), 0U);
+  EXPECT_EQ(complaint(base(), {declared})
+                .find("extension `x`: input float register 40 is not available to extensions"),
+            0U);
 }
 
 TEST(ExtensionCompositionTest, SharesRegistersUnlessOneIsExclusive)
