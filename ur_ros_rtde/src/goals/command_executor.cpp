@@ -92,7 +92,8 @@ Status CommandExecutor::check_state() const
     }
   }
   if (moves_arm() && !traits_.preempts_all) {
-    if (const Status ready = robot.ready_to_move(); !ready || traits_.leaves_mode_active || !robot.in_freedrive()) {
+    if (const Status ready = robot.ready_to_move();
+        !ready || traits_.leaves_mode_active || !robot.in_freedrive()) {
       return ready;
     }
     return failure(ErrorCode::busy,
