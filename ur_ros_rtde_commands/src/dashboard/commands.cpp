@@ -1,0 +1,43 @@
+#include "dashboard/simple_dashboard_command.hpp"
+
+namespace ur_ros_rtde {
+
+// Arm power
+EXPORT_DASHBOARD_COMMAND(PowerOn, "dashboard/power_on", DashboardCommand,
+                         {"power on", "Powering on", {"robotmode", {"IDLE", "RUNNING"}}})
+EXPORT_DASHBOARD_COMMAND(PowerOff, "dashboard/power_off", DashboardCommand,
+                         {"power off", "Powering off", {"robotmode", {"POWER_OFF"}}})
+EXPORT_DASHBOARD_COMMAND(BrakeRelease, "dashboard/brake_release", DashboardCommand,
+                         {"brake release", "Brake releasing", {"robotmode", {"RUNNING"}}})
+EXPORT_DASHBOARD_COMMAND(Shutdown, "dashboard/shutdown", DashboardCommand, {"shutdown", "Shutting down"})
+
+// Program
+EXPORT_DASHBOARD_COMMAND(Play, "dashboard/play", DashboardCommand,
+                         {"play", "Starting program", {"programState", {"PLAYING"}}})
+EXPORT_DASHBOARD_COMMAND(Pause, "dashboard/pause", DashboardCommand,
+                         {"pause", "Pausing program", {"programState", {"PAUSED"}}})
+EXPORT_DASHBOARD_COMMAND(StopProgram, "dashboard/stop", DashboardCommand,
+                         {"stop", "Stopped", {"programState", {"STOPPED"}}})
+
+// Safety
+EXPORT_DASHBOARD_COMMAND(UnlockProtectiveStop, "dashboard/unlock_protective_stop", DashboardCommand,
+                         {"unlock protective stop",
+                          "Protective stop releasing",
+                          {"safetymode", {"NORMAL", "REDUCED"}}},
+                         {.e_series = {5, 0}, .cb3 = {3, 1}})
+EXPORT_DASHBOARD_COMMAND(RestartSafety, "dashboard/restart_safety", DashboardCommand,
+                         {"restart safety", "Restarting safety", {"safetymode", {"NORMAL", "REDUCED"}}},
+                         {.e_series = {5, 1}, .cb3 = {3, 7}})
+EXPORT_DASHBOARD_COMMAND(ClearOperationalMode, "dashboard/clear_operational_mode", DashboardCommand,
+                         {"clear operational mode", "No longer controlling the operational mode"},
+                         {.e_series = {5, 0}, .cb3 = never})
+
+// Popups and log
+EXPORT_DASHBOARD_COMMAND(ClosePopup, "dashboard/close_popup", DashboardCommand,
+                         {"close popup", "closing popup"})
+EXPORT_DASHBOARD_COMMAND(CloseSafetyPopup, "dashboard/close_safety_popup", DashboardCommand,
+                         {"close safety popup", "closing safety popup"}, {.e_series = {5, 0}, .cb3 = {3, 1}})
+EXPORT_DASHBOARD_COMMAND(SaveLog, "dashboard/save_log", DashboardCommand, {"saveLog", "Log saved to disk"},
+                         {.e_series = {5, 8}, .cb3 = {3, 13}})
+
+}  // namespace ur_ros_rtde
