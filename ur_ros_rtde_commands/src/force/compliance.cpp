@@ -6,52 +6,53 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr double longest = 86400.0;               // s: a day
-constexpr std::chrono::hours for_ever{24 * 365};  // s
-constexpr double patience = 5.0;                  // s, with a controller whose time goes slowly
+constexpr double max_duration = 86400.0;  // s
+constexpr std::chrono::hours unlimited{24 * 365};
+constexpr double clock_reserve = 5.0;  // s, for a controller whose clock is slower than this one
 }  // namespace
 
-std::optional<StopReason> until_over(Run & run, double duration,
-                                     const std::function<void(const Sample &)> & look)
+std::optional<StopReason> wait_for_duration(Run & run, double duration,
+                                            const std::function<void(const Sample &)> & observe)
 {
   const double begin = run.state().controller_time;
-  const bool ends = duration > 0.0;
-  const auto over = [&] {
+  const bool limited = duration > 0.0;
+  const auto elapsed = [&] {
     const Sample now = run.state();
-    const double since = now.controller_time - begin;
-    run.progress(ends ? std::clamp(since / duration, 0.0, 1.0) : 0.0);
-    if (look) {
-      look(now);
+    const double time = now.controller_time - begin;
+    run.progress(limited ? std::clamp(time / duration, 0.0, 1.0) : 0.0);
+    if (observe) {
+      observe(now);
     }
-    return ends && since >= duration;
+    return limited && time >= duration;
   };
-  const std::chrono::duration<double> limit(duration + patience);
-  return run.until(over, ends ? std::chrono::duration_cast<std::chrono::nanoseconds>(limit) : for_ever);
+  const std::chrono::duration<double> limit(duration + clock_reserve);
+  return run.until(elapsed,
+                   limited ? std::chrono::duration_cast<std::chrono::nanoseconds>(limit) : unlimited);
 }
 
-std::optional<StopReason> last_for(Run & run, double duration,
-                                   const std::function<void(const Sample &)> & look)
+std::optional<StopReason> wait_for_duration_or_cancel(Run & run, double duration,
+                                                      const std::function<void(const Sample &)> & observe)
 {
-  auto why = until_over(run, duration, look);
-  return why && why->code == ErrorCode::canceled ? std::nullopt : why;
+  auto stop_reason = wait_for_duration(run, duration, observe);
+  return stop_reason && stop_reason->code == ErrorCode::canceled ? std::nullopt : stop_reason;
 }
 
-void must_not_be_in(Run & run, std::uint32_t modes, const std::string & what)
+void check_modes_inactive(Run & run, std::uint32_t modes, const std::string & requested_mode)
 {
   using Control = ur_rtde::RTDEControlInterface;
-  const std::uint32_t in = run.control()->getStartedMotions() & modes;
-  if (in == 0) {
+  const std::uint32_t active = run.control()->getStartedMotions() & modes;
+  if (active == 0) {
     return;
   }
-  const char * mode = (in & Control::MOTION_FREEDRIVE) != 0 ? "freedrive (end it: freedrive_stop)"
-                      : (in & Control::MOTION_TEACH) != 0   ? "teach mode (end it: end_teach_mode)"
-                                                            : "force mode (end it: force_mode_stop)";
-  throw RobotError({ErrorCode::busy, fmt::format("no {} while the arm is in {}", what, mode)});
+  const char * mode = (active & Control::MOTION_FREEDRIVE) != 0 ? "freedrive (end it: freedrive_stop)"
+                      : (active & Control::MOTION_TEACH) != 0   ? "teach mode (end it: end_teach_mode)"
+                                                                : "force mode (end it: force_mode_stop)";
+  throw RobotError({ErrorCode::busy, fmt::format("no {} while the arm is in {}", requested_mode, mode)});
 }
 
-Check & duration_of(Check & check, double duration, bool goal_ends_it)
+Check & check_duration(Check & check, double duration, bool ends_with_goal)
 {
-  return check.in_range("duration", duration, 0.0, goal_ends_it ? longest : 0.0, "s");
+  return check.in_range("duration", duration, 0.0, ends_with_goal ? max_duration : 0.0, "s");
 }
 
 }  // namespace ur_ros_rtde

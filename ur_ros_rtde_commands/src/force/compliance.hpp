@@ -4,29 +4,29 @@
 #include <string>
 #include <vector>
 
-#include "must_do.hpp"
+#include "check_result.hpp"
 #include "ur_ros_rtde/command.hpp"
 
 namespace ur_ros_rtde {
 
-/// Until `duration` s of the controller's time are over; with 0 only what ends the goal ends it. `look` sees
-/// every package.
-std::optional<StopReason> until_over(Run & run, double duration,
-                                     const std::function<void(const Sample &)> & look = {});
-/// The same for what lasts as long as its goal: a cancel is its end, not a failure.
-std::optional<StopReason> last_for(Run & run, double duration,
-                                   const std::function<void(const Sample &)> & look = {});
+/// Waits for `duration` (s of the controller's clock), or until the goal has to stop if it is 0. Calls
+/// `observe` with every sample.
+std::optional<StopReason> wait_for_duration(Run & run, double duration,
+                                            const std::function<void(const Sample &)> & observe = {});
+/// The same for a mode that lasts as long as its goal: a cancel ends the wait successfully.
+std::optional<StopReason> wait_for_duration_or_cancel(
+    Run & run, double duration, const std::function<void(const Sample &)> & observe = {});
 
-/// Throws RobotError (busy) when the arm is in one of ur_rtde's `modes` (RTDEControlInterface::MOTION_…):
-/// `what` cannot be had besides.
-void must_not_be_in(Run & run, std::uint32_t modes, const std::string & what);
+/// Throws RobotError (busy) if one of ur_rtde's `modes` (RTDEControlInterface::MOTION_…) is active, which
+/// excludes `requested_mode`.
+void check_modes_inactive(Run & run, std::uint32_t modes, const std::string & requested_mode);
 
-/// Of a goal that may last; of one that switches a mode on, 0.
-Check & duration_of(Check & check, double duration, bool goal_ends_it);
+/// Checks the field `duration`: 0 s to 1 day if the mode ends with its goal, otherwise exactly 0.
+Check & check_duration(Check & check, double duration, bool ends_with_goal);
 
-/// As ur_rtde has it: 1 for true.
+/// Converts flags to the format of ur_rtde: 1 for true.
 template <typename Flags>
-std::vector<int> to_ints(const Flags & flags)
+std::vector<int> to_int_flags(const Flags & flags)
 {
   return {flags.begin(), flags.end()};
 }

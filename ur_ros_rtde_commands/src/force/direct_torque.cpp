@@ -8,10 +8,10 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// Nm, of the joints of the largest arm; what each can, its controller sees to.
-constexpr Vector6 highest_torques{738.0, 738.0, 433.0, 107.0, 107.0, 107.0};
+/// Nm, of the largest arm. The controller enforces the limits of its own arm.
+constexpr Vector6 max_torques{738.0, 738.0, 433.0, 107.0, 107.0, 107.0};
 
-double fastest_joint(const Sample & sample)
+double max_joint_speed(const Sample & sample)
 {
   double fastest = 0.0;
   for (const double velocity : sample.actual_qd) {
@@ -20,9 +20,9 @@ double fastest_joint(const Sample & sample)
   return fastest;
 }
 
-void must_be_slow(const Sample & sample, double limit)
+void check_joint_speed(const Sample & sample, double limit)
 {
-  if (const double speed = fastest_joint(sample); speed > limit) {
+  if (const double speed = max_joint_speed(sample); speed > limit) {
     throw RobotError({ErrorCode::safety_violation,
                       fmt::format("a joint turned at {:.2f} rad/s, more than max_joint_speed ({:.2f} rad/s)",
                                   speed, limit)});
@@ -45,7 +45,7 @@ std::vector<double> to_vector(const std::array<double, 6> & values)
 class DirectTorque : public Command<ur_ros_rtde_msgs::action::DirectTorque> {
   void check(const Goal & goal, Check & check) const override
   {
-    check.each_joint("joint_torques", goal.joint_torques, highest_torques, "Nm")
+    check.each_joint("joint_torques", goal.joint_torques, max_torques, "Nm")
         .in_range("duration", goal.duration, 0.01, 60.0, "s")
         .above_zero("max_joint_speed", goal.max_joint_speed, 3.14, "rad/s");
     check_scale(check, "viscous_scale", goal.viscous_scale);
@@ -55,13 +55,13 @@ class DirectTorque : public Command<ur_ros_rtde_msgs::action::DirectTorque> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    // The control program repeats it each cycle until the next command.
-    must_do(run.control()->directTorque(goal.joint_torques, to_vector(goal.viscous_scale),
-                                        to_vector(goal.coulomb_scale)),
-            "apply the torques");
-    if (auto why = until_over(run, goal.duration,
-                              [&](const Sample & now) { must_be_slow(now, goal.max_joint_speed); })) {
-      return *why;
+    // The control program repeats the command in each cycle until the next one.
+    check_result(run.control()->directTorque(goal.joint_torques, to_vector(goal.viscous_scale),
+                                             to_vector(goal.coulomb_scale)),
+                 "apply the torques");
+    if (auto stop_reason = wait_for_duration(
+            run, goal.duration, [&](const Sample & now) { check_joint_speed(now, goal.max_joint_speed); })) {
+      return *stop_reason;
     }
     const auto stopped = run.robot().stop_motion(stop_options(goal));
     return stopped ? Outcome::success() : Outcome(stopped.error());

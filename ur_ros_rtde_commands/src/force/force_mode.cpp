@@ -8,16 +8,16 @@ class ForceMode : public Command<ur_ros_rtde_msgs::action::ForceMode> {
   Outcome run(const Goal & goal, Run & run) override
   {
     start_force_mode(goal, run);
-    const auto why = last_for(run, goal.duration, [&](const Sample & now) {
-      const Vector6 & felt = now.actual_tcp_force;
+    const auto stop_reason = wait_for_duration_or_cancel(run, goal.duration, [&](const Sample & now) {
+      const Vector6 & measured = now.actual_tcp_force;
       auto & wrench = run.feedback().wrench;
-      wrench.force.x = felt[0], wrench.force.y = felt[1], wrench.force.z = felt[2];
-      wrench.torque.x = felt[3], wrench.torque.y = felt[4], wrench.torque.z = felt[5];
+      wrench.force.x = measured[0], wrench.force.y = measured[1], wrench.force.z = measured[2];
+      wrench.torque.x = measured[3], wrench.torque.y = measured[4], wrench.torque.z = measured[5];
     });
-    if (why) {
-      return *why;
+    if (stop_reason) {
+      return *stop_reason;
     }
-    must_do(run.control()->forceModeStop(), "end force mode");
+    check_result(run.control()->forceModeStop(), "end force mode");
     return Outcome::success();
   }
 };

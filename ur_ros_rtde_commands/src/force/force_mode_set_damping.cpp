@@ -14,7 +14,7 @@ class ForceModeSetDamping : public Command<ur_ros_rtde_msgs::action::SetForceMod
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    must_do(run.control()->forceModeSetDamping(goal.value), "set the damping of force mode");
+    check_result(run.control()->forceModeSetDamping(goal.value), "set the damping of force mode");
     return Outcome::success();
   }
 };

@@ -14,7 +14,7 @@ class ForceModeSetGainScaling : public Command<ur_ros_rtde_msgs::action::SetForc
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    must_do(run.control()->forceModeSetGainScaling(goal.value), "set the gain of force mode");
+    check_result(run.control()->forceModeSetGainScaling(goal.value), "set the gain of force mode");
     return Outcome::success();
   }
 };

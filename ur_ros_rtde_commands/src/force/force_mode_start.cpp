@@ -3,7 +3,7 @@
 namespace ur_ros_rtde {
 
 class ForceModeStart : public Command<ur_ros_rtde_msgs::action::ForceMode> {
-  /// It may be changed while another goal moves the arm.
+  /// Force mode can be changed while another goal moves the arm.
   CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   void check(const Goal & goal, Check & check) const override

@@ -6,11 +6,12 @@
 
 namespace ur_ros_rtde {
 
-/// What force_mode and force_mode_start have in common; `goal_ends_it`: force mode lasts as long as the goal.
-void check_force_mode(const ur_ros_rtde_msgs::action::ForceMode::Goal & goal, bool goal_ends_it,
+/// Checks a goal of force_mode or force_mode_start. `ends_with_goal`: force mode lasts as long as the
+/// goal.
+void check_force_mode(const ur_ros_rtde_msgs::action::ForceMode::Goal & goal, bool ends_with_goal,
                       Check & check);
 
-/// Sets damping and gain, then switches force mode on, or changes it.
+/// Sets damping and gain, then activates force mode or changes its parameters.
 void start_force_mode(const ur_ros_rtde_msgs::action::ForceMode::Goal & goal, Run & run);
 
 }  // namespace ur_ros_rtde

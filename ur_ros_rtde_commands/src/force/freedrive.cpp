@@ -8,10 +8,10 @@ class Freedrive : public Command<ur_ros_rtde_msgs::action::Freedrive> {
   Outcome run(const Goal & goal, Run & run) override
   {
     start_freedrive(goal, run);
-    if (auto why = last_for(run, goal.duration)) {
-      return *why;
+    if (auto stop_reason = wait_for_duration_or_cancel(run, goal.duration)) {
+      return *stop_reason;
     }
-    must_do(run.control()->endFreedriveMode(), "end freedrive");
+    check_result(run.control()->endFreedriveMode(), "end freedrive");
     return Outcome::success();
   }
 };

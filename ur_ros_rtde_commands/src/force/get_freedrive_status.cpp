@@ -1,7 +1,7 @@
 #include <array>
 #include <ur_ros_rtde_msgs/action/get_integer.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -9,12 +9,12 @@ constexpr std::array<const char *, 3> meanings{
     "normal", "near a singularity", "too close to a singularity: the arm is hard to move in freedrive"};
 }  // namespace
 
-class GetFreedriveStatus : public Question<ur_ros_rtde_msgs::action::GetInteger> {
+class GetFreedriveStatus : public QueryCommand<ur_ros_rtde_msgs::action::GetInteger> {
   void check(const Goal &, Check & check) const override { check.polyscope(10).answers(); }
 
   Outcome run(const Goal &, Run & run) override
   {
-    const int status = answer(run, [](auto & control) { return control.getFreedriveStatus(); });
+    const int status = query(run, [](auto & control) { return control.getFreedriveStatus(); });
     run.result().value = status;
     run.result().text = status >= 0 && status <= 2 ? meanings[static_cast<std::size_t>(status)] : "unknown";
     return Outcome::success(run.result().text);

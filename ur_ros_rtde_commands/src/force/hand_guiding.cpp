@@ -12,29 +12,31 @@ bool is_zero(const geometry_msgs::msg::Quaternion & q)
 }
 }  // namespace
 
-void check_freedrive(const ur_ros_rtde_msgs::action::Freedrive::Goal & goal, bool goal_ends_it, Check & check)
+void check_freedrive(const ur_ros_rtde_msgs::action::Freedrive::Goal & goal, bool ends_with_goal,
+                     Check & check)
 {
   check.that(std::any_of(goal.free_axes.begin(), goal.free_axes.end(), [](bool axis) { return axis; }),
-             "free_axes has no true: at least one axis has to be free");
+             "free_axes is false for all axes: at least one axis has to be true");
   if (!is_zero(goal.feature.orientation)) {
     check.frame("feature", goal.feature);
   }
-  duration_of(check, goal.duration, goal_ends_it).polyscope(10);
+  check_duration(check, goal.duration, ends_with_goal).polyscope(10);
 }
 
 void start_freedrive(const ur_ros_rtde_msgs::action::Freedrive::Goal & goal, Run & run)
 {
-  must_not_be_in(run, Control::MOTION_FORCE | Control::MOTION_TEACH | Control::MOTION_FREEDRIVE, "freedrive");
+  check_modes_inactive(run, Control::MOTION_FORCE | Control::MOTION_TEACH | Control::MOTION_FREEDRIVE,
+                       "freedrive");
   const std::vector<double> base(6, 0.0);
   const auto feature = is_zero(goal.feature.orientation) ? base : to_ur(goal.feature);
-  must_do(run.control()->freedriveMode(to_ints(goal.free_axes), feature), "enter freedrive");
+  check_result(run.control()->freedriveMode(to_int_flags(goal.free_axes), feature), "enter freedrive");
 }
 
 void start_teach_mode(Run & run)
 {
-  must_not_be_in(run, Control::MOTION_FORCE | Control::MOTION_TEACH | Control::MOTION_FREEDRIVE,
-                 "teach mode");
-  must_do(run.control()->teachMode(), "enter teach mode");
+  check_modes_inactive(run, Control::MOTION_FORCE | Control::MOTION_TEACH | Control::MOTION_FREEDRIVE,
+                       "teach mode");
+  check_result(run.control()->teachMode(), "enter teach mode");
 }
 
 }  // namespace ur_ros_rtde

@@ -6,11 +6,11 @@
 
 namespace ur_ros_rtde {
 
-/// What freedrive and freedrive_start have in common; `goal_ends_it`: freedrive lasts as long as the goal.
-void check_freedrive(const ur_ros_rtde_msgs::action::Freedrive::Goal & goal, bool goal_ends_it,
+/// Checks a goal of freedrive or freedrive_start. `ends_with_goal`: freedrive lasts as long as the goal.
+void check_freedrive(const ur_ros_rtde_msgs::action::Freedrive::Goal & goal, bool ends_with_goal,
                      Check & check);
 
-/// Lets the arm be moved by hand, in some axes or in all of them (teach mode).
+/// Allows the operator to move the arm by hand: in the axes of the goal, or in all axes (teach mode).
 void start_freedrive(const ur_ros_rtde_msgs::action::Freedrive::Goal & goal, Run & run);
 void start_teach_mode(Run & run);
 

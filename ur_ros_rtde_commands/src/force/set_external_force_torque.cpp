@@ -18,7 +18,7 @@ class SetExternalForceTorque : public Command<ur_ros_rtde_msgs::action::SetExter
   {
     const auto & f = goal.wrench.force;
     const auto & t = goal.wrench.torque;
-    must_do(run.control()->setExternalForceTorque({f.x, f.y, f.z, t.x, t.y, t.z}), "take the reading");
+    check_result(run.control()->setExternalForceTorque({f.x, f.y, f.z, t.x, t.y, t.z}), "take the reading");
     return Outcome::success();
   }
 };

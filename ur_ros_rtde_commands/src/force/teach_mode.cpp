@@ -5,15 +5,15 @@
 namespace ur_ros_rtde {
 
 class TeachMode : public Command<ur_ros_rtde_msgs::action::TeachMode> {
-  void check(const Goal & goal, Check & check) const override { duration_of(check, goal.duration, true); }
+  void check(const Goal & goal, Check & check) const override { check_duration(check, goal.duration, true); }
 
   Outcome run(const Goal & goal, Run & run) override
   {
     start_teach_mode(run);
-    if (auto why = last_for(run, goal.duration)) {
-      return *why;
+    if (auto stop_reason = wait_for_duration_or_cancel(run, goal.duration)) {
+      return *stop_reason;
     }
-    must_do(run.control()->endTeachMode(), "end teach mode");
+    check_result(run.control()->endTeachMode(), "end teach mode");
     return Outcome::success();
   }
 };

@@ -5,16 +5,16 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr double zero_force = 5.0;  // N: above the noise of the sensors, below what anyone would call zero
+constexpr double zero_tolerance = 5.0;  // N, above the noise of the sensors
 }
 
 class ZeroFtSensor : public Command<ur_ros_rtde_msgs::action::ZeroFtSensor> {
   Outcome run(const Goal &, Run & run) override
   {
-    must_do(run.control()->zeroFtSensor(), "zero the sensor");
+    check_result(run.control()->zeroFtSensor(), "zero the sensor");
     const auto reads_zero = [&] {
       const Vector6 f = run.flange_force();
-      return std::hypot(f[0], f[1], f[2]) < zero_force;
+      return std::hypot(f[0], f[1], f[2]) < zero_tolerance;
     };
     const Outcome outcome =
         run.expect(reads_zero, std::chrono::seconds(1), "the sensor does not read zero afterwards");

@@ -10,8 +10,8 @@
 
 namespace ur_ros_rtde {
 
-/// What a command that takes over has to do once nobody else moves the arm: stops what still moves, and says
-/// who was stopped. `Run` has a result with `time_to_standstill`.
+/// Stops the arm for a command that preempts all other goals. Sets `time_to_standstill` of the result; the
+/// message names the preempted goal.
 template <typename Run>
 Outcome decelerate(Run & run, const StopOptions & options)
 {
@@ -24,16 +24,16 @@ Outcome decelerate(Run & run, const StopOptions & options)
                                                        : run.preempted_goal() + " was stopped");
 }
 
-/// The stop of one kind of motion: `deceleration` is that of the kinds it names, any other motion is stopped
-/// with the default.
+/// Stops all motion. The field `deceleration` of the goal applies to the given kinds of motion; other motion
+/// is stopped with the default deceleration.
 class DecelerateCommand : public Command<ur_ros_rtde_msgs::action::Decelerate> {
  public:
   using Kind = double StopOptions::*;
-  static constexpr double highest_joint_deceleration = 40.0;    // rad/s^2
-  static constexpr double highest_linear_deceleration = 150.0;  // m/s^2
+  static constexpr double max_joint_deceleration = 40.0;    // rad/s^2
+  static constexpr double max_linear_deceleration = 150.0;  // m/s^2
 
   DecelerateCommand(std::vector<Kind> kinds, double highest, std::string unit)
-      : kinds_(std::move(kinds)), highest_(highest), unit_(std::move(unit))
+      : kinds_(std::move(kinds)), max_(highest), unit_(std::move(unit))
   {
   }
 
@@ -42,7 +42,7 @@ class DecelerateCommand : public Command<ur_ros_rtde_msgs::action::Decelerate> {
 
   void check(const Goal & goal, Check & check) const override
   {
-    check.in_range("deceleration", goal.deceleration, 0.1, highest_, unit_);
+    check.in_range("deceleration", goal.deceleration, 0.1, max_, unit_);
   }
 
   StopOptions stop_options(const Goal & goal) const override
@@ -51,14 +51,14 @@ class DecelerateCommand : public Command<ur_ros_rtde_msgs::action::Decelerate> {
     for (const Kind kind : kinds_) {
       options.*kind = goal.deceleration;
     }
-    options.joint_deceleration = std::min(options.joint_deceleration, highest_joint_deceleration);
+    options.joint_deceleration = std::min(options.joint_deceleration, max_joint_deceleration);
     return options;
   }
 
   Outcome run(const Goal & goal, Run & run) override { return decelerate(run, stop_options(goal)); }
 
   std::vector<Kind> kinds_;
-  double highest_;
+  double max_;
   std::string unit_;
 };
 

@@ -5,7 +5,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr double forever = 365.0 * 24.0 * 3600.0;  // s
+constexpr double unlimited_time = 365.0 * 24.0 * 3600.0;  // s
 }
 
 class Jog : public Command<ur_ros_rtde_msgs::action::Jog> {
@@ -21,9 +21,9 @@ class Jog : public Command<ur_ros_rtde_msgs::action::Jog> {
   Outcome run(const Goal & goal, Run & run) override
   {
     run.control()->jogStart(to_ur(goal.twist), goal.frame, goal.acceleration, to_ur(goal.custom_frame));
-    const auto why = pass_time(run, goal.time == 0.0 ? forever : goal.time);
-    if (why && why->code != ErrorCode::canceled) {  // which is how one ends jogging
-      return *why;
+    const auto stop_reason = wait_with_progress(run, goal.time == 0.0 ? unlimited_time : goal.time);
+    if (stop_reason && stop_reason->code != ErrorCode::canceled) {  // a cancel is the regular end of jogging
+      return *stop_reason;
     }
     const auto stopped = run.robot().stop_motion();
     return stopped ? Outcome::success() : Outcome(stopped.error());

@@ -5,7 +5,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-Waypoints path(const ur_ros_rtde_msgs::action::MoveC::Goal & goal)
+Waypoints to_waypoints(const ur_ros_rtde_msgs::action::MoveC::Goal & goal)
 {
   Waypoints waypoints(1);
   waypoints[0].type = waypoints[0].MOVE_C;
@@ -33,7 +33,7 @@ class MoveC : public Command<ur_ros_rtde_msgs::action::MoveC> {
   Outcome run(const Goal & goal, Run & run) override
   {
     warn_of_turn_to_identity(run, {{"pose", goal.pose}});
-    return run_path(run, path(goal), [](std::uint32_t) {}, goal.mode);
+    return run_path(run, to_waypoints(goal), [](std::uint32_t) {}, goal.mode);
   }
 };
 

@@ -9,15 +9,16 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr double turn = 2.0 * std::numbers::pi;  // to each side of zero
-constexpr Vector6 longest{2.0 * turn, 2.0 * turn, 2.0 * turn, 2.0 * turn, 2.0 * turn, 2.0 * turn};
+constexpr double joint_limit = 2.0 * std::numbers::pi;  // rad, on both sides of zero
+constexpr double max_offset = 2.0 * joint_limit;
+constexpr Vector6 max_offsets{max_offset, max_offset, max_offset, max_offset, max_offset, max_offset};
 
-/// Finite, and from `start` within the range of the joint.
+/// Checks that the offsets are finite and that each joint, from `start`, stays within its range.
 Check & check_offsets(Check & check, const std::vector<double> & offsets, const Vector6 & start)
 {
   for (std::size_t i = 0; i < start.size() && check.ok(); ++i) {
-    check.in_range(fmt::format("joint_offsets[{}] ({})", i, joint_names()[i]), offsets[i], -turn - start[i],
-                   turn - start[i], "rad");
+    check.in_range(fmt::format("joint_offsets[{}] ({})", i, joint_names()[i]), offsets[i],
+                   -joint_limit - start[i], joint_limit - start[i], "rad");
   }
   return check;
 }
@@ -26,7 +27,7 @@ Check & check_offsets(Check & check, const std::vector<double> & offsets, const 
 class MoveJRelative : public Command<ur_ros_rtde_msgs::action::MoveJRelative> {
   void check(const Goal & goal, Check & check) const override
   {
-    check.each_joint("joint_offsets", goal.joint_offsets, longest, "rad")
+    check.each_joint("joint_offsets", goal.joint_offsets, max_offsets, "rad")
         .above_zero("speed", goal.speed, 3.14, "rad/s")
         .above_zero("acceleration", goal.acceleration, 40.0, "rad/s^2");
     if (const auto start = check.start()) {

@@ -1,22 +1,12 @@
 #include <ur_ros_rtde_msgs/action/move_lfk.hpp>
 
-#include "ur_ros_rtde/command.hpp"
+#include "move_to_target.hpp"
 
 namespace ur_ros_rtde {
 
-class MoveLFK : public Command<ur_ros_rtde_msgs::action::MoveLFK> {
-  void check(const Goal & goal, Check & check) const override
-  {
-    check.joints("joint_positions", goal.joint_positions)
-        .above_zero("speed", goal.speed, 3.0, "m/s")
-        .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2");
-  }
-
-  Outcome run(const Goal & goal, Run & run) override
-  {
-    run.control()->moveL_FK(goal.joint_positions, goal.speed, goal.acceleration, true);
-    return run.until_joints_reached(goal.joint_positions);
-  }
+class MoveLFK : public MoveToJoints<ur_ros_rtde_msgs::action::MoveLFK> {
+ public:
+  MoveLFK() : MoveToJoints(&ur_rtde::RTDEControlInterface::moveL_FK, linear_speed_limits) {}
 };
 
 UR_ROS_RTDE_EXPORT(MoveLFK, "move_l_fk")

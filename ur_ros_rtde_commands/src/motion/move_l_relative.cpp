@@ -7,8 +7,9 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// `start` moved by `goal`: about the TCP, in the axes of the base or of the tool.
-std::vector<double> moved(const Vector6 & start, const ur_ros_rtde_msgs::action::MoveLRelative::Goal & goal)
+/// The pose `start`, translated and rotated about the TCP in the axes of the base or of the tool.
+std::vector<double> relative_target(const Vector6 & start,
+                                    const ur_ros_rtde_msgs::action::MoveLRelative::Goal & goal)
 {
   const auto & t = goal.translation;
   const auto & r = goal.rotation;
@@ -22,7 +23,7 @@ std::vector<double> moved(const Vector6 & start, const ur_ros_rtde_msgs::action:
   return {pose.begin(), pose.end()};
 }
 
-double angle(const geometry_msgs::msg::Vector3 & rotation)
+double rotation_angle(const geometry_msgs::msg::Vector3 & rotation)
 {
   return std::hypot(rotation.x, rotation.y, rotation.z);
 }
@@ -33,18 +34,19 @@ class MoveLRelative : public Command<ur_ros_rtde_msgs::action::MoveLRelative> {
   {
     check.in_range("frame", goal.frame, Goal::BASE, Goal::TOOL)
         .vector("translation", goal.translation, 3.0, "m")
-        .vector("rotation", goal.rotation, std::numbers::pi, "rad")  // std::hypot(0, 0, nan) may be 0
-        .in_range("the length of rotation", angle(goal.rotation), 0.0, std::numbers::pi, "rad")
+        .vector("rotation", goal.rotation, std::numbers::pi, "rad")  // rejects NaN, which std::hypot may lose
+        .in_range("the length of rotation", rotation_angle(goal.rotation), 0.0, std::numbers::pi, "rad")
         .above_zero("speed", goal.speed, 3.0, "m/s")
         .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2");
     if (const auto start = check.start()) {
-      check.reachable("with translation and rotation the target", moved(start->actual_tcp_pose, goal));
+      check.reachable("the target of translation and rotation",
+                      relative_target(start->actual_tcp_pose, goal));
     }
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    const auto target = moved(run.state().actual_tcp_pose, goal);
+    const auto target = relative_target(run.state().actual_tcp_pose, goal);
     run.control()->moveL(target, goal.speed, goal.acceleration, true);
     return run.until_pose_reached(target);
   }

@@ -5,7 +5,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-Waypoints path(const ur_ros_rtde_msgs::action::MoveP::Goal & goal)
+Waypoints to_waypoints(const ur_ros_rtde_msgs::action::MoveP::Goal & goal)
 {
   Waypoints waypoints(goal.poses.size());
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
@@ -27,13 +27,13 @@ class MoveP : public Command<ur_ros_rtde_msgs::action::MoveP> {
     check.above_zero("speed", goal.speed, 3.0, "m/s")
         .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2")
         .in_range("blend_radius", goal.blend_radius, 0.0, 2.0, "m");
-    check_path(check, "poses", path(goal), "");
+    check_path(check, "poses", to_waypoints(goal), "");
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
     warn_of_turn_to_identity(run, path_poses("poses", goal.poses));
-    return run_path(run, path(goal), [&](std::uint32_t index) { run.feedback().waypoint = index; });
+    return run_path(run, to_waypoints(goal), [&](std::uint32_t index) { run.feedback().waypoint = index; });
   }
 };
 

@@ -10,21 +10,21 @@ namespace ur_ros_rtde {
 namespace {
 using Waypoint = ur_ros_rtde_msgs::msg::PathWaypoint;
 
-constexpr std::size_t most = 1000;
-/// The robot takes some milliseconds for each: the rest show when the arm gets there.
-constexpr std::size_t asked_beforehand = 20;
-constexpr std::chrono::hours longest_path{24};
-constexpr std::string_view mark = "ur_ros_rtde: waypoint ";
+constexpr std::size_t max_waypoints = 1000;
+/// Only the first waypoints are checked for reachability, because each check takes some milliseconds.
+constexpr std::size_t reachability_checks = 20;
+constexpr std::chrono::hours max_path_duration{24};
+constexpr std::string_view waypoint_marker = "ur_ros_rtde: waypoint ";
 
 void check_waypoint(Check & check, const std::string & name, std::string_view pose, const Waypoint & waypoint)
 {
-  const bool by_joints = !waypoint.joint_positions.empty();
+  const bool has_joint_positions = !waypoint.joint_positions.empty();
   check.in_range(name + ".type", waypoint.type, Waypoint::MOVE_J, Waypoint::MOVE_C)
       .pose(fmt::format("{}{}", name, pose), waypoint.pose)
       .pose(name + ".via", waypoint.via)
-      .that(!by_joints || waypoint.type <= Waypoint::MOVE_L,
-            name + " has joint_positions, which MOVE_P and MOVE_C do not take: give its pose");
-  if (by_joints) {
+      .that(!has_joint_positions || waypoint.type <= Waypoint::MOVE_L,
+            name + " has joint_positions, which MOVE_P and MOVE_C do not support: set its pose");
+  if (has_joint_positions) {
     check.joints(name + ".joint_positions", waypoint.joint_positions);
   }
   if (waypoint.type == Waypoint::MOVE_J) {
@@ -42,8 +42,8 @@ std::string pose_text(const geometry_msgs::msg::Pose & pose)
   return fmt::format("p[{:.9f}]", fmt::join(to_ur(pose), ", "));
 }
 
-/// The call for one waypoint (UR, Script Manual: movej, movel, movep, movec).
-std::string call(const Waypoint & waypoint, int arc_mode)
+/// The URScript call for one waypoint (UR, Script Manual: movej, movel, movep, movec).
+std::string motion_call(const Waypoint & waypoint, int arc_mode)
 {
   const std::string target = waypoint.joint_positions.empty()
                                  ? pose_text(waypoint.pose)
@@ -62,11 +62,11 @@ std::string call(const Waypoint & waypoint, int arc_mode)
   }
 }
 
-std::string program(const Waypoints & waypoints, int arc_mode)
+std::string path_program(const Waypoints & waypoints, int arc_mode)
 {
   std::string text;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
-    text += fmt::format("textmsg(\"{}{}\")\n{}\n", mark, i, call(waypoints[i], arc_mode));
+    text += fmt::format("textmsg(\"{}{}\")\n{}\n", waypoint_marker, i, motion_call(waypoints[i], arc_mode));
   }
   return text;
 }
@@ -74,17 +74,18 @@ std::string program(const Waypoints & waypoints, int arc_mode)
 
 void check_path(Check & check, std::string_view name, const Waypoints & waypoints, std::string_view pose)
 {
-  check.that(!waypoints.empty() && waypoints.size() <= most,
-             fmt::format("{} has {} entries, it may have 1 to {}", name, waypoints.size(), most));
+  check.that(!waypoints.empty() && waypoints.size() <= max_waypoints,
+             fmt::format("{} has {} entries, it may have 1 to {}", name, waypoints.size(), max_waypoints));
   for (std::size_t i = 0; i < waypoints.size() && check.ok(); ++i) {
     check_waypoint(check, fmt::format("{}[{}]", name, i), pose, waypoints[i]);
   }
   if (check.ok()) {
-    check.that(waypoints.back().blend_radius == 0.0,
-               fmt::format("the last of {} has a blend_radius of {} m, it has to be 0: the arm stops there",
-                           name, waypoints.back().blend_radius));
+    check.that(
+        waypoints.back().blend_radius == 0.0,
+        fmt::format("the last of {} has a blend_radius of {} m: set it to 0, because the arm stops there",
+                    name, waypoints.back().blend_radius));
   }
-  for (std::size_t i = 0; i < std::min(waypoints.size(), asked_beforehand) && check.ok(); ++i) {
+  for (std::size_t i = 0; i < std::min(waypoints.size(), reachability_checks) && check.ok(); ++i) {
     if (waypoints[i].joint_positions.empty()) {
       check.reachable(fmt::format("{}[{}]{}", name, i, pose), waypoints[i].pose);
     }
@@ -95,27 +96,28 @@ std::vector<PathPose> path_poses(const Waypoints & waypoints)
 {
   std::vector<PathPose> poses;
   for (const Waypoint & waypoint : waypoints) {
-    const bool by_joints = !waypoint.joint_positions.empty();
+    const bool has_joint_positions = !waypoint.joint_positions.empty();
     poses.push_back({fmt::format("waypoints[{}].pose", poses.size()),
-                     by_joints ? std::nullopt : std::optional(waypoint.pose)});
+                     has_joint_positions ? std::nullopt : std::optional(waypoint.pose)});
   }
   return poses;
 }
 
 Outcome run_path(Run & run, const Waypoints & waypoints,
-                 const std::function<void(std::uint32_t)> & heading_for, int arc_mode)
+                 const std::function<void(std::uint32_t)> & on_waypoint, int arc_mode)
 {
   ScriptOptions options;
-  options.limit = longest_path;
+  options.limit = max_path_duration;
   options.on_text = [&](const std::string & text) {
     std::uint32_t index = 0;
-    if (text.starts_with(mark) &&
-        std::from_chars(text.data() + mark.size(), text.data() + text.size(), index).ec == std::errc()) {
+    if (text.starts_with(waypoint_marker) &&
+        std::from_chars(text.data() + waypoint_marker.size(), text.data() + text.size(), index).ec ==
+            std::errc()) {
       run.progress(index / static_cast<double>(waypoints.size()));
-      heading_for(index);
+      on_waypoint(index);
     }
   };
-  const ScriptReport report = run.run_script(program(waypoints, arc_mode), options);
+  const ScriptReport report = run.run_script(path_program(waypoints, arc_mode), options);
   if (!report) {
     return report.error;
   }

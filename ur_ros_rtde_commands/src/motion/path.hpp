@@ -12,21 +12,21 @@ namespace ur_ros_rtde {
 
 using Waypoints = std::vector<ur_ros_rtde_msgs::msg::PathWaypoint>;
 
-/// 1 to 1000 waypoints, each right in itself; then the first of them are asked of the robot (reachable).
-/// `name` is the field: "waypoints"; `pose` what leads from an entry of it to its pose.
+/// Checks 1 to 1000 waypoints, and the reachability of the first ones. `name` is the field: "waypoints".
+/// `pose` is the path from one of its entries to the pose.
 void check_path(Check & check, std::string_view name, const Waypoints & waypoints,
                 std::string_view pose = ".pose");
 
-/// Their poses, for warn_of_turn_to_identity().
+/// The poses of the waypoints, for warn_of_turn_to_identity().
 std::vector<PathPose> path_poses(const Waypoints & waypoints);
 
-/// Moves through the waypoints by a program in the place of the control program (hold Resource::script), with
-/// progress, and `heading_for` with each waypoint's index when the arm turns to it. `arc_mode` is movec's
-/// mode.
+/// Moves through the waypoints with a script that replaces the control program (requires Resource::script),
+/// with progress. Calls `on_waypoint` with the index of each waypoint when the arm starts to move to it.
+/// `arc_mode` is the mode of movec.
 ///
-/// Not by ur_rtde's movePath: it sends the control program anew with the path in it, waits for that holding
-/// the interface, has no arcs, and an error in the path ends it in silence.
+/// This does not use movePath of ur_rtde: movePath uploads the control program again with the path in it,
+/// locks the interface while it waits, does not support arcs, and does not report errors in the path.
 Outcome run_path(Run & run, const Waypoints & waypoints,
-                 const std::function<void(std::uint32_t)> & heading_for, int arc_mode = 0);
+                 const std::function<void(std::uint32_t)> & on_waypoint, int arc_mode = 0);
 
 }  // namespace ur_ros_rtde

@@ -8,7 +8,7 @@
 
 namespace ur_ros_rtde {
 
-/// What servo_j and servo_l have in common.
+/// Checks the fields that the goals of servo_j and servo_l have in common.
 template <typename Goal>
 Check & check_servo(const Goal & goal, Check & check)
 {
@@ -20,40 +20,40 @@ Check & check_servo(const Goal & goal, Check & check)
       .in_range("deceleration", goal.deceleration, 0.1, 40.0, "rad/s^2");
 }
 
-/// The control script ends servo control along the TCP's line, hence the linear one.
+/// Includes the linear deceleration, because the control script stops servo motion along the path of the TCP.
 template <typename Goal>
 StopOptions servo_stop_options(const Goal & goal)
 {
   return {.joint_deceleration = goal.deceleration, .linear_deceleration = goal.deceleration};
 }
 
-/// How far along its way a motion is after the share `u` of its time, both 0 to 1: from rest to rest without
-/// a jump in the acceleration (the polynomial of minimum jerk, Flash and Hogan 1985).
+/// The minimum-jerk polynomial (Flash and Hogan 1985): the traveled fraction of the path at the fraction `u`
+/// of the duration, both 0 to 1. It starts and ends at rest with continuous acceleration.
 double smooth_step(double u);
-/// Its highest speed, as a multiple of the mean one.
+/// The peak speed of smooth_step as a multiple of its mean speed.
 constexpr double smooth_step_peak = 15.0 / 8.0;
 
-/// s, that a goal without a time takes: as long as the joints, or the TCP, need with the default speeds and
+/// The duration (s) of a goal without a time: what the joints, or the TCP, need with the default speeds and
 /// accelerations (default_speeds.hpp).
-double slow_joint_time(const Vector6 & from, const std::vector<double> & to);
-double slow_tcp_time(const Vector6 & from, const std::vector<double> & to);
+double default_joint_duration(const Vector6 & from, const std::vector<double> & to);
+double default_tcp_duration(const Vector6 & from, const std::vector<double> & to);
 
-/// A servo motion of `duration` s: calls `send` once each control cycle with the share of the way
-/// (smooth_step) and the length of the cycle (s), paced by the controller's packages; then waits for
-/// `arrival`, and ends servo control. A host that comes late goes on from where it was: the arm is slower
-/// then, never faster.
+/// Executes a servo motion of `duration` s: calls `send` for each package of the controller with the traveled
+/// fraction (smooth_step) and the cycle time (s), then calls `wait_for_arrival`, and ends servo control. If
+/// the host is late, the motion continues where it was: the arm becomes slower, never faster.
 [[nodiscard]] Outcome servo(Run & run, double duration,
-                            const std::function<void(double share, double cycle)> & send,
-                            const std::function<Outcome()> & arrival, double deceleration);
+                            const std::function<void(double fraction, double cycle)> & send,
+                            const std::function<Outcome()> & wait_for_arrival, double deceleration);
 
-/// Ends servo control after an arrival; a failed one is stopped by the base class.
-[[nodiscard]] Outcome end_servo(Run & run, const Outcome & arrival, double deceleration);
+/// Ends servo control after a successful arrival. After a failure, the base class stops the arm.
+[[nodiscard]] Outcome finish_servo(Run & run, const Outcome & arrival, double deceleration);
 
-/// At the share `s` of the way: joint positions; a pose of UR on the straight line, turning about one axis.
-std::vector<double> joints_between(const Vector6 & from, const std::vector<double> & to, double s);
-std::vector<double> pose_between(const Vector6 & from, const std::vector<double> & to, double s);
+/// Linear interpolation at the fraction `s`: of joint positions, and of UR poses, on a straight line with a
+/// rotation about a fixed axis.
+std::vector<double> interpolate_joints(const Vector6 & from, const std::vector<double> & to, double s);
+std::vector<double> interpolate_pose(const Vector6 & from, const std::vector<double> & to, double s);
 
-/// The TCP does not go faster than 3 m/s and 3.14 rad/s when it follows smooth_step from one pose of UR to
+/// Checks that the TCP does not exceed 3 m/s and 3.14 rad/s if it follows smooth_step from one UR pose to
 /// another in `time` s.
 void check_tcp_speed(Check & check, const Vector6 & from, const std::vector<double> & to, double time);
 

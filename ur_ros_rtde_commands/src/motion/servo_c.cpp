@@ -23,7 +23,7 @@ class ServoC : public Command<ur_ros_rtde_msgs::action::ServoC> {
   {
     const auto target = tcp_target(goal, run.state());
     run.control()->servoC(target, goal.speed, goal.acceleration, goal.blend_radius);
-    return end_servo(run, run.until_at_pose(target), goal.deceleration);
+    return finish_servo(run, run.until_at_pose(target), goal.deceleration);
   }
 };
 

@@ -19,13 +19,13 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
   Outcome run(const Goal & goal, Run & run) override
   {
     const Vector6 start = run.state().actual_q;
-    const double time = goal.time > 0.0 ? goal.time : slow_joint_time(start, goal.joint_positions);
-    const auto send = [&](double share, double cycle) {
-      const auto target = joints_between(start, goal.joint_positions, share);
+    const double time = goal.time > 0.0 ? goal.time : default_joint_duration(start, goal.joint_positions);
+    const auto send = [&](double fraction, double cycle) {
+      const auto target = interpolate_joints(start, goal.joint_positions, fraction);
       run.control()->servoJ(target, 0.0, 0.0, cycle, goal.lookahead_time, goal.gain);
     };
-    const auto arrival = [&] { return run.until_at_joints(goal.joint_positions); };
-    return servo(run, time, send, arrival, goal.deceleration);
+    const auto wait_for_arrival = [&] { return run.until_at_joints(goal.joint_positions); };
+    return servo(run, time, send, wait_for_arrival, goal.deceleration);
   }
 };
 

@@ -2,10 +2,10 @@
 
 namespace ur_ros_rtde {
 
-/// The control script ends servo control along the TCP's line.
+/// The control script stops servo motion with a linear deceleration of the TCP.
 class ServoStop : public DecelerateCommand {
  public:
-  ServoStop() : DecelerateCommand({&StopOptions::linear_deceleration}, highest_joint_deceleration, "m/s^2") {}
+  ServoStop() : DecelerateCommand({&StopOptions::linear_deceleration}, max_joint_deceleration, "m/s^2") {}
 };
 
 UR_ROS_RTDE_EXPORT(ServoStop, "servo_stop")

@@ -22,7 +22,7 @@ class SpeedJ : public Command<ur_ros_rtde_msgs::action::SpeedJ> {
   Outcome run(const Goal & goal, Run & run) override
   {
     run.control()->speedJ(goal.joint_velocities, goal.acceleration, 0.0);
-    return hold_velocity(run, goal.time, goal.deceleration);
+    return finish_velocity_motion(run, goal.time, goal.deceleration);
   }
 };
 

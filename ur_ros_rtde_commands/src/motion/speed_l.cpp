@@ -22,7 +22,7 @@ class SpeedL : public Command<ur_ros_rtde_msgs::action::SpeedL> {
   Outcome run(const Goal & goal, Run & run) override
   {
     run.control()->speedL(to_ur(goal.twist), goal.acceleration, 0.0);
-    return hold_velocity(run, goal.time, goal.deceleration);
+    return finish_velocity_motion(run, goal.time, goal.deceleration);
   }
 };
 

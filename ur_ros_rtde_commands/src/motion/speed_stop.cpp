@@ -2,12 +2,12 @@
 
 namespace ur_ros_rtde {
 
-/// Of speed_j as well as speed_l, each in its unit.
+/// Stops speed_j (rad/s^2) as well as speed_l (m/s^2).
 class SpeedStop : public DecelerateCommand {
  public:
   SpeedStop()
       : DecelerateCommand({&StopOptions::joint_deceleration, &StopOptions::linear_deceleration},
-                          highest_linear_deceleration, "m/s^2")
+                          max_linear_deceleration, "m/s^2")
   {
   }
 };

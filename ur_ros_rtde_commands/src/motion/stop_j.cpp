@@ -4,7 +4,7 @@ namespace ur_ros_rtde {
 
 class StopJ : public DecelerateCommand {
  public:
-  StopJ() : DecelerateCommand({&StopOptions::joint_deceleration}, highest_joint_deceleration, "rad/s^2") {}
+  StopJ() : DecelerateCommand({&StopOptions::joint_deceleration}, max_joint_deceleration, "rad/s^2") {}
 };
 
 UR_ROS_RTDE_EXPORT(StopJ, "stop_j")

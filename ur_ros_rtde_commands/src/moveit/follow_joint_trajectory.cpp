@@ -172,7 +172,7 @@ void FollowJointTrajectory::check(const Goal & goal, Check & check) const
   trajectory::begin_at(*waypoints, first);
   require(check, trajectory::check_timed(*waypoints, widest_limits(host_->limits())));
   if (const auto sample = check.start(); sample && begins_there) {
-    require(check, begins_here(first, commanded_joints(*sample), start_tolerance));
+    require(check, check_start_position(first, commanded_joints(*sample), start_tolerance));
   }
 }
 

@@ -1,5 +1,5 @@
-#include "operation/readiness.hpp"
-#include "operation/steps.hpp"
+#include "operation/run_steps.hpp"
+#include "operation/startup_sequence.hpp"
 #include "ur_ros_rtde/command.hpp"
 
 namespace ur_ros_rtde {
@@ -14,8 +14,8 @@ class MakeReady : public Command<ur_ros_rtde_msgs::action::MakeReady> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    Readiness readiness(run.robot(), goal);
-    return take_steps(run, goal.timeout, [&] { return readiness.step(); });
+    StartupSequence startup(run.robot(), goal);
+    return run_steps(run, goal.timeout, [&] { return startup.step(); });
   }
 };
 

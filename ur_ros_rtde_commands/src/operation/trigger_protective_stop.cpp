@@ -5,19 +5,19 @@
 namespace ur_ros_rtde {
 
 class TriggerProtectiveStop : public Command<ur_ros_rtde_msgs::action::Trigger> {
-  /// Whatever moves the arm.
+  /// Allowed during every motion.
   CommandTraits traits() const override { return {.resource = Resource::none}; }
 
   Outcome run(const Goal &, Run & run) override
   {
-    // Beside the control program, so that it works whatever that is doing, and beside scripts.
+    // A secondary program runs in parallel to the control program and to scripts.
     ScriptOptions options;
     options.kind = ScriptKind::secondary;
     options.limit = std::chrono::seconds(1);
     const ScriptReport report = run.run_script("protective_stop()", options);
     const auto stopped = [&] { return run.state().safety().protective_stopped; };
     return run.expect(stopped, std::chrono::seconds(1),
-                      "the robot is in no protective stop; " + report.error.message);
+                      "the robot has not entered a protective stop; " + report.error.message);
   }
 };
 

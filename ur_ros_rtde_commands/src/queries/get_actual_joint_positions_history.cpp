@@ -1,10 +1,11 @@
 #include <ur_ros_rtde_msgs/action/get_joint_positions_history.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class GetActualJointPositionsHistory : public Question<ur_ros_rtde_msgs::action::GetJointPositionsHistory> {
+class GetActualJointPositionsHistory
+    : public QueryCommand<ur_ros_rtde_msgs::action::GetJointPositionsHistory> {
   void check(const Goal & goal, Check & check) const override
   {
     check.in_range("steps", goal.steps, 0, 100).polyscope(4).answers();
@@ -12,8 +13,8 @@ class GetActualJointPositionsHistory : public Question<ur_ros_rtde_msgs::action:
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    run.result().joint_positions = answer(run, [&](auto & control) {
-      return six(control.getActualJointPositionsHistory(static_cast<int>(goal.steps)));
+    run.result().joint_positions = query(run, [&](auto & control) {
+      return to_array6(control.getActualJointPositionsHistory(static_cast<int>(goal.steps)));
     });
     return Outcome::success();
   }

@@ -1,10 +1,10 @@
 #include <ur_ros_rtde_msgs/action/get_integer.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class GetAsyncOperationProgress : public Question<ur_ros_rtde_msgs::action::GetInteger> {
+class GetAsyncOperationProgress : public QueryCommand<ur_ros_rtde_msgs::action::GetInteger> {
   Outcome run(const Goal &, Run & run) override
   {
     const AsyncStatus status = run.state().async;

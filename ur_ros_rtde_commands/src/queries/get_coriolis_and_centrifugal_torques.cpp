@@ -1,23 +1,23 @@
 #include <ur_ros_rtde_msgs/action/get_coriolis_torques.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class GetCoriolisAndCentrifugalTorques : public Question<ur_ros_rtde_msgs::action::GetCoriolisTorques> {
+class GetCoriolisAndCentrifugalTorques : public QueryCommand<ur_ros_rtde_msgs::action::GetCoriolisTorques> {
   void check(const Goal & goal, Check & check) const override
   {
-    joints_or_none(check, "joint_positions", goal.joint_positions);
-    velocities_or_none(check, "joint_velocities", goal.joint_velocities).polyscope(23).answers();
+    check_optional_joints(check, "joint_positions", goal.joint_positions);
+    check_optional_velocities(check, "joint_velocities", goal.joint_velocities).polyscope(23).answers();
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
     const Sample now = run.state();
-    const std::vector<double> q = or_present(goal.joint_positions, now.actual_q);
-    const std::vector<double> qd = or_present(goal.joint_velocities, now.actual_qd);
-    run.result().joint_torques =
-        answer(run, [&](auto & control) { return six(control.getCoriolisAndCentrifugalTorques(q, qd)); });
+    const std::vector<double> q = or_current(goal.joint_positions, now.actual_q);
+    const std::vector<double> qd = or_current(goal.joint_velocities, now.actual_qd);
+    run.result().joint_torques = query(
+        run, [&](auto & control) { return to_array6(control.getCoriolisAndCentrifugalTorques(q, qd)); });
     return Outcome::success();
   }
 };

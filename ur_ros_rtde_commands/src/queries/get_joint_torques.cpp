@@ -1,15 +1,15 @@
 #include <ur_ros_rtde_msgs/action/get_joint_values.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class GetJointTorques : public Question<ur_ros_rtde_msgs::action::GetJointValues> {
+class GetJointTorques : public QueryCommand<ur_ros_rtde_msgs::action::GetJointValues> {
   void check(const Goal &, Check & check) const override { check.answers(); }
 
   Outcome run(const Goal &, Run & run) override
   {
-    run.result().values = answer(run, [](auto & control) { return six(control.getJointTorques()); });
+    run.result().values = query(run, [](auto & control) { return to_array6(control.getJointTorques()); });
     run.result().unit = "Nm";
     return Outcome::success();
   }

@@ -1,10 +1,10 @@
 #include <ur_ros_rtde_msgs/action/get_register.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class GetOutputDoubleRegister : public Question<ur_ros_rtde_msgs::action::GetRegister> {
+class GetOutputDoubleRegister : public QueryCommand<ur_ros_rtde_msgs::action::GetRegister> {
   void check(const Goal & goal, Check & check) const override { check.in_range("index", goal.index, 12, 19); }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -2,16 +2,16 @@
 #include <string>
 #include <ur_ros_rtde_msgs/action/get_integer.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 namespace {
-/// Of RTDE's robot_status_bits.
+/// The bits of the RTDE field robot_status_bits.
 constexpr std::array<const char *, 4> bit_names{"power on", "program running", "teach button pressed",
                                                 "power button pressed"};
 }  // namespace
 
-class GetRobotStatus : public Question<ur_ros_rtde_msgs::action::GetInteger> {
+class GetRobotStatus : public QueryCommand<ur_ros_rtde_msgs::action::GetInteger> {
   Outcome run(const Goal &, Run & run) override
   {
     const std::uint32_t bits = run.state().robot_status_bits;

@@ -1,15 +1,15 @@
 #include <ur_ros_rtde_msgs/action/get_number.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class GetStepTime : public Question<ur_ros_rtde_msgs::action::GetNumber> {
+class GetStepTime : public QueryCommand<ur_ros_rtde_msgs::action::GetNumber> {
   void check(const Goal &, Check & check) const override { check.polyscope(4).answers(); }
 
   Outcome run(const Goal &, Run & run) override
   {
-    run.result().value = answer(run, [](auto & control) { return control.getStepTime(); });
+    run.result().value = query(run, [](auto & control) { return control.getStepTime(); });
     run.result().unit = "s";
     return Outcome::success();
   }

@@ -1,16 +1,16 @@
 #include <ur_ros_rtde_msgs/action/get_joint_values.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class GetTargetJointAccelerations : public Question<ur_ros_rtde_msgs::action::GetJointValues> {
+class GetTargetJointAccelerations : public QueryCommand<ur_ros_rtde_msgs::action::GetJointValues> {
   void check(const Goal &, Check & check) const override { check.polyscope(23).answers(); }
 
   Outcome run(const Goal &, Run & run) override
   {
     run.result().values =
-        answer(run, [](auto & control) { return six(control.getTargetJointAccelerations()); });
+        query(run, [](auto & control) { return to_array6(control.getTargetJointAccelerations()); });
     run.result().unit = "rad/s^2";
     return Outcome::success();
   }

@@ -1,15 +1,15 @@
 #include <ur_ros_rtde_msgs/action/get_pose.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class GetTargetWaypoint : public Question<ur_ros_rtde_msgs::action::GetPose> {
+class GetTargetWaypoint : public QueryCommand<ur_ros_rtde_msgs::action::GetPose> {
   void check(const Goal &, Check & check) const override { check.polyscope(3).answers(); }
 
   Outcome run(const Goal &, Run & run) override
   {
-    run.result().pose = answer(run, [](auto & control) { return to_pose(control.getTargetWaypoint()); });
+    run.result().pose = query(run, [](auto & control) { return to_pose(control.getTargetWaypoint()); });
     run.result().frame = "base";
     return Outcome::success();
   }

@@ -1,15 +1,15 @@
 #include <ur_ros_rtde_msgs/action/get_pose.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class GetTcpOffset : public Question<ur_ros_rtde_msgs::action::GetPose> {
+class GetTcpOffset : public QueryCommand<ur_ros_rtde_msgs::action::GetPose> {
   void check(const Goal &, Check & check) const override { check.polyscope(0, 6).answers(); }
 
   Outcome run(const Goal &, Run & run) override
   {
-    run.result().pose = answer(run, [](auto & control) { return to_pose(control.getTCPOffset()); });
+    run.result().pose = query(run, [](auto & control) { return to_pose(control.getTCPOffset()); });
     run.result().frame = "tool0_controller";
     return Outcome::success();
   }

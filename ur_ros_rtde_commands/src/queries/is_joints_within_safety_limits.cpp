@@ -1,10 +1,10 @@
 #include <ur_ros_rtde_msgs/action/check_joints.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class IsJointsWithinSafetyLimits : public Question<ur_ros_rtde_msgs::action::CheckJoints> {
+class IsJointsWithinSafetyLimits : public QueryCommand<ur_ros_rtde_msgs::action::CheckJoints> {
   void check(const Goal & goal, Check & check) const override
   {
     check.joints("joint_positions", goal.joint_positions).answers();
@@ -13,7 +13,7 @@ class IsJointsWithinSafetyLimits : public Question<ur_ros_rtde_msgs::action::Che
   Outcome run(const Goal & goal, Run & run) override
   {
     run.result().value =
-        answer(run, [&](auto & control) { return control.isJointsWithinSafetyLimits(goal.joint_positions); });
+        query(run, [&](auto & control) { return control.isJointsWithinSafetyLimits(goal.joint_positions); });
     return Outcome::success();
   }
 };

@@ -1,10 +1,10 @@
 #include <ur_ros_rtde_msgs/action/get_flag.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class IsProgramRunning : public Question<ur_ros_rtde_msgs::action::GetFlag> {
+class IsProgramRunning : public QueryCommand<ur_ros_rtde_msgs::action::GetFlag> {
   Outcome run(const Goal &, Run & run) override
   {
     run.result().value = run.state().program_running();

@@ -1,15 +1,15 @@
 #include <ur_ros_rtde_msgs/action/get_flag.hpp>
 
-#include "queries/question.hpp"
+#include "queries/query_command.hpp"
 
 namespace ur_ros_rtde {
 
-class IsSteady : public Question<ur_ros_rtde_msgs::action::GetFlag> {
+class IsSteady : public QueryCommand<ur_ros_rtde_msgs::action::GetFlag> {
   void check(const Goal &, Check & check) const override { check.answers(); }
 
   Outcome run(const Goal &, Run & run) override
   {
-    run.result().value = answer(run, [](auto & control) { return control.isSteady(); });
+    run.result().value = query(run, [](auto & control) { return control.isSteady(); });
     return Outcome::success();
   }
 };

@@ -9,7 +9,7 @@ class ReuploadScript : public Command<ur_ros_rtde_msgs::action::Trigger> {
 
   Outcome run(const Goal &, Run & run) override
   {
-    // Whatever takes the control program's place, it is uploaded afresh afterwards.
+    // The driver uploads the control program again after every script that has replaced it.
     const ScriptReport report = run.run_script("sync()");
     if (!report) {
       return report.error;

@@ -1,15 +1,15 @@
-#include "script/given_script.hpp"
+#include "script/script_goal.hpp"
 
 namespace ur_ros_rtde {
 
 class SendScript : public Command<SendScriptAction> {
   CommandTraits traits() const override { return {.resource = Resource::script}; }
 
-  void check(const Goal & goal, Check & check) const override { check_script(goal, check); }
+  void check(const Goal & goal, Check & check) const override { check_script_goal(goal, check); }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    return run_given(goal, run, ScriptKind::program, goal.timeout);
+    return run_script_goal(goal, run, ScriptKind::program, goal.timeout);
   }
 };
 

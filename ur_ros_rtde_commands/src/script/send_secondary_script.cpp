@@ -1,21 +1,21 @@
 #include <algorithm>
 
-#include "script/given_script.hpp"
+#include "script/script_goal.hpp"
 
 namespace ur_ros_rtde {
 namespace {
-/// A secondary program must not take time: s in which its end, or an error, comes.
-constexpr double longest_wait = 2.0;
+/// s. A secondary program must not take any time of the controller, so its end or an error follows at once.
+constexpr double max_secondary_timeout = 2.0;
 }  // namespace
 
 class SendSecondaryScript : public Command<SendScriptAction> {
   CommandTraits traits() const override { return {.resource = Resource::none}; }
 
-  void check(const Goal & goal, Check & check) const override { check_script(goal, check); }
+  void check(const Goal & goal, Check & check) const override { check_script_goal(goal, check); }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    return run_given(goal, run, ScriptKind::secondary, std::min(goal.timeout, longest_wait));
+    return run_script_goal(goal, run, ScriptKind::secondary, std::min(goal.timeout, max_secondary_timeout));
   }
 };
 

@@ -1,6 +1,6 @@
 #include <ur_ros_rtde_msgs/action/set_gravity.hpp>
 
-#include "settings/await.hpp"
+#include "settings/setting_helpers.hpp"
 
 namespace ur_ros_rtde {
 
@@ -14,7 +14,7 @@ class SetGravity : public Command<ur_ros_rtde_msgs::action::SetGravity> {
   Outcome run(const Goal & goal, Run & run) override
   {
     const auto & d = goal.direction;
-    must_do(run.control()->setGravity({d.x, d.y, d.z}), "set the gravity");
+    check_result(run.control()->setGravity({d.x, d.y, d.z}), "set the gravity");
     return Outcome::success();
   }
 };

@@ -1,6 +1,6 @@
 #include <ur_ros_rtde_msgs/action/set_register.hpp>
 
-#include "settings/await.hpp"
+#include "settings/setting_helpers.hpp"
 
 namespace ur_ros_rtde {
 
@@ -15,7 +15,7 @@ class SetInputDoubleRegister : public Command<ur_ros_rtde_msgs::action::SetRegis
   Outcome run(const Goal & goal, Run & run) override
   {
     if (!run.io()->setInputDoubleRegister(goal.index + run.robot().register_offset(), goal.value)) {
-      return Outcome::failure(ErrorCode::link_lost, "the value could not be sent to the robot: try again");
+      return send_failure();
     }
     return Outcome::success();
   }

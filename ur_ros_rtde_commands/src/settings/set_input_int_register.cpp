@@ -3,7 +3,7 @@
 #include <limits>
 #include <ur_ros_rtde_msgs/action/set_register.hpp>
 
-#include "settings/await.hpp"
+#include "settings/setting_helpers.hpp"
 
 namespace ur_ros_rtde {
 
@@ -15,14 +15,15 @@ class SetInputIntRegister : public Command<ur_ros_rtde_msgs::action::SetRegister
     using Limits = std::numeric_limits<std::int32_t>;
     check.in_range("index", goal.index, 18, 22)
         .in_range("value", goal.value, Limits::min(), Limits::max())
-        .that(goal.value == std::trunc(goal.value), fmt::format("value is {}, it must be whole", goal.value));
+        .that(goal.value == std::trunc(goal.value),
+              fmt::format("value is {}, it must be an integer", goal.value));
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
     if (!run.io()->setInputIntRegister(goal.index + run.robot().register_offset(),
                                        static_cast<int>(goal.value))) {
-      return Outcome::failure(ErrorCode::link_lost, "the value could not be sent to the robot: try again");
+      return send_failure();
     }
     return Outcome::success();
   }

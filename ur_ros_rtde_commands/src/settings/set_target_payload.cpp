@@ -2,17 +2,17 @@
 
 #include <ur_ros_rtde_msgs/action/set_target_payload.hpp>
 
-#include "settings/await.hpp"
+#include "settings/setting_helpers.hpp"
 
 namespace ur_ros_rtde {
 namespace {
-constexpr double inertia_limit = 133.0;     // kg m^2, of the controller
+constexpr double inertia_limit = 133.0;     // kg m^2, limit of the controller
 constexpr double inertia_tolerance = 1e-4;  // kg m^2
 
-bool inertia_is(const Sample & sample, const std::array<double, 6> & inertia)
+bool has_inertia(const Sample & sample, const std::array<double, 6> & inertia)
 {
   for (std::size_t i = 0; i < inertia.size(); ++i) {
-    // Controllers before 5.11 do not report it.
+    // Controllers before PolyScope 5.11 report NaN, which does not fail the comparison.
     if (std::abs(sample.payload_inertia[i] - inertia[i]) > inertia_tolerance) {
       return false;
     }
@@ -24,8 +24,7 @@ bool inertia_is(const Sample & sample, const std::array<double, 6> & inertia)
 class SetTargetPayload : public Command<ur_ros_rtde_msgs::action::SetTargetPayload> {
   void check(const Goal & goal, Check & check) const override
   {
-    check.in_range("mass", goal.mass, 0.0, 50.0, "kg")
-        .vector("center_of_gravity", goal.center_of_gravity, 1.0, "m");
+    check_payload(check, goal.mass, goal.center_of_gravity);
     for (std::size_t i = 0; i < goal.inertia.size(); ++i) {
       check.in_range(fmt::format("inertia[{}]", i), goal.inertia[i], -inertia_limit, inertia_limit, "kg m^2");
     }
@@ -35,13 +34,13 @@ class SetTargetPayload : public Command<ur_ros_rtde_msgs::action::SetTargetPaylo
   Outcome run(const Goal & goal, Run & run) override
   {
     const std::vector<double> inertia(goal.inertia.begin(), goal.inertia.end());
-    const auto cog = center_for_ur(goal.center_of_gravity);
-    must_do(run.control()->setTargetPayload(goal.mass, cog, inertia), "set the payload");
+    const auto cog = to_ur_center_of_gravity(goal.center_of_gravity);
+    check_result(run.control()->setTargetPayload(goal.mass, cog, inertia), "set the payload");
     const auto is_set = [&] {
-      return payload_is(run.state(), goal.mass, goal.center_of_gravity) &&
-             inertia_is(run.state(), goal.inertia);
+      return has_payload(run.state(), goal.mass, goal.center_of_gravity) &&
+             has_inertia(run.state(), goal.inertia);
     };
-    return run.expect(is_set, setting_limit, "the robot still reports another payload");
+    return run.expect(is_set, setting_timeout, "the robot still reports another payload");
   }
 };
 

@@ -1,23 +1,22 @@
 #include <algorithm>
 #include <ur_ros_rtde_msgs/action/set_tcp.hpp>
 
-#include "settings/await.hpp"
+#include "settings/setting_helpers.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 namespace {
 constexpr double tolerance = 1e-5;  // m, rad
 
-/// m or rad, whichever is more, between two poses.
-double difference(const std::vector<double> & a, const std::vector<double> & b)
+/// The distance (m) or the angle (rad) between two poses, whichever is greater.
+double pose_difference(const std::vector<double> & a, const std::vector<double> & b)
 {
   Vector6 first;
   Vector6 second;
   std::copy_n(a.begin(), 6, first.begin());
   std::copy_n(b.begin(), 6, second.begin());
-  const Vector6 between = pose_trans(pose_inverse(first), second);
-  return std::max(std::hypot(between[0], between[1], between[2]),
-                  std::hypot(between[3], between[4], between[5]));
+  const Vector6 offset = pose_trans(pose_inverse(first), second);
+  return std::max(std::hypot(offset[0], offset[1], offset[2]), std::hypot(offset[3], offset[4], offset[5]));
 }
 }  // namespace
 
@@ -34,9 +33,9 @@ class SetTcp : public Command<ur_ros_rtde_msgs::action::SetTcp> {
   Outcome run(const Goal & goal, Run & run) override
   {
     const std::vector<double> offset = to_ur(goal.pose);
-    must_do(run.control()->setTcp(offset), "set the TCP");
-    const auto is_set = [&] { return difference(run.control()->getTCPOffset(), offset) < tolerance; };
-    return run.expect(is_set, setting_limit, "the robot still reports another TCP");
+    check_result(run.control()->setTcp(offset), "set the TCP");
+    const auto is_set = [&] { return pose_difference(run.control()->getTCPOffset(), offset) < tolerance; };
+    return run.expect(is_set, setting_timeout, "the robot still reports another TCP");
   }
 };
 

@@ -39,7 +39,8 @@ Expected<std::optional<Trajectory>> plan_approach(const Joints & start, const Pl
   if ((first - start).abs().maxCoeff() <= same_place) {
     return std::nullopt;
   }
-  if (Status near = begins_here(first, start, execution.start_tolerance); !near && !execution.approach) {
+  if (Status near = check_start_position(first, start, execution.start_tolerance);
+      !near && !execution.approach) {
     return tl::unexpected(near.error());
   }
   const trajectory::PathOptions options{.speed_fraction = execution.speed_fraction};
@@ -55,7 +56,7 @@ Joints commanded_joints(const Sample & sample)
   return Eigen::Map<const Joints>(sample.target_q.data());
 }
 
-Status begins_here(const Joints & first, const Joints & here, double tolerance)
+Status check_start_position(const Joints & first, const Joints & here, double tolerance)
 {
   int joint = 0;
   const double distance = (first - here).abs().maxCoeff(&joint);
@@ -69,7 +70,7 @@ Status begins_here(const Joints & first, const Joints & here, double tolerance)
                   trajectory::joint_name(joint), first[joint], here[joint], distance, tolerance));
 }
 
-Executed execute(Run & run, const Execution & execution)
+ExecutionResult execute(Run & run, const Execution & execution)
 {
   const Joints start = commanded_joints(run.state());
   const auto plan = plan_meanwhile(run, execution, start);

@@ -29,19 +29,20 @@ struct Execution {
   std::function<Outcome()> arrive;
 };
 
-struct Executed {
+struct ExecutionResult {
   Outcome outcome;
   double max_tracking_error = 0.0;  ///< rad
 };
 
 /// Plans, looks whether the arm is where the plan begins, goes the last bit (or the approach) by a plan of
 /// its own within the same limits, but never faster than slow_limits(), and sends both.
-Executed execute(Run & run, const Execution & execution);
+ExecutionResult execute(Run & run, const Execution & execution);
 
 /// Where the controller has the arm: its target, without the noise of measurement.
 trajectory::Joints commanded_joints(const Sample & sample);
 
 /// Refused when `first` is farther than `tolerance` from `here` in any joint.
-Status begins_here(const trajectory::Joints & first, const trajectory::Joints & here, double tolerance);
+Status check_start_position(const trajectory::Joints & first, const trajectory::Joints & here,
+                            double tolerance);
 
 }  // namespace ur_ros_rtde

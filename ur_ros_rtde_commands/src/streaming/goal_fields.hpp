@@ -20,7 +20,7 @@ void check_limits(Check & check, std::string_view field, const std::vector<doubl
 /// What the goals for trajectories have in common: max_velocity, max_acceleration, max_jerk, lookahead_time,
 /// gain, max_tracking_error.
 template <typename Goal>
-void check_common(Check & check, const Goal & goal, const ArmLimits & arm)
+void check_trajectory_goal(Check & check, const Goal & goal, const ArmLimits & arm)
 {
   using trajectory::Joints;
   check_limits(check, "max_velocity", goal.max_velocity, Eigen::Map<const Joints>(arm.velocity.data()),
@@ -32,9 +32,9 @@ void check_common(Check & check, const Goal & goal, const ArmLimits & arm)
       .above_zero("max_tracking_error", goal.max_tracking_error, 3.14, "rad");
 }
 
-/// The goal's limits, which check_common() has passed; `limits` where it gives none.
+/// The goal's limits, which check_trajectory_goal() has passed; `limits` where it gives none.
 template <typename Goal>
-trajectory::Limits limits_of(const Goal & goal, trajectory::Limits limits)
+trajectory::Limits goal_limits(const Goal & goal, trajectory::Limits limits)
 {
   const auto take = [](trajectory::Joints & limit, const std::vector<double> & given) {
     if (!given.empty()) {

@@ -31,7 +31,7 @@ class TrajectoryCommand : public Command<A> {
   /// All but plan.
   Execution execution(const Goal & goal, Run & run) const;
   /// With the result's own fields.
-  static Outcome finish(const Executed & executed, Run & run)
+  static Outcome finish(const ExecutionResult & executed, Run & run)
   {
     run.result().max_tracking_error = executed.max_tracking_error;
     return executed.outcome;

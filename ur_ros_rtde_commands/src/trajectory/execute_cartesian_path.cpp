@@ -43,7 +43,7 @@ Expected<Joints> ask_controller(Robot & robot, const Pose & pose, const Joints &
 class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::ExecuteCartesianPath> {
   void check(const Goal & goal, Check & check) const override
   {
-    check_common(check, goal, arm());
+    check_trajectory_goal(check, goal, arm());
     check.above_zero("speed", goal.speed, 3.0, "m/s")
         .above_zero("rotation_speed", goal.rotation_speed, 6.28, "rad/s")
         .in_range("blend_radius", goal.blend_radius, 0.0, 1.0, "m")
@@ -67,7 +67,7 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
     warn_of_turn_to_identity(run, path_poses("poses", goal.poses));
     Execution execution = this->execution(goal, run);
     execution.plan = [&](const Joints & start, const std::stop_token & stop) {
-      const trajectory::Limits limits = limits_of(goal, slow_limits());
+      const trajectory::Limits limits = goal_limits(goal, slow_limits());
       const auto reference = [&run](const Pose & pose, const Joints & guess) {
         return ask_controller(run.robot(), pose, guess);
       };

@@ -10,7 +10,7 @@ class ExecuteParametrizedTrajectory
     : public TrajectoryCommand<ur_ros_rtde_msgs::action::ExecuteParametrizedTrajectory> {
   void check(const Goal & goal, Check & check) const override
   {
-    check_common(check, goal, arm());
+    check_trajectory_goal(check, goal, arm());
     check.above_zero("start_tolerance", goal.start_tolerance, 3.2, "rad")
         .that(goal.trajectory.points.size() >= 2,
               fmt::format("trajectory.points has {} points, it takes 2 to {}", goal.trajectory.points.size(),
@@ -23,9 +23,9 @@ class ExecuteParametrizedTrajectory
     const trajectory::Joints first = to_joints(waypoints->positions.front());
     const bool begins_there = waypoints->times.front() == 0.0;
     trajectory::begin_at(*waypoints, first);
-    require(check, trajectory::check_timed(*waypoints, limits_of(goal, trajectory::make_limits(arm()))));
+    require(check, trajectory::check_timed(*waypoints, goal_limits(goal, trajectory::make_limits(arm()))));
     if (const auto sample = check.start(); sample && begins_there) {
-      require(check, begins_here(first, commanded_joints(*sample), goal.start_tolerance));
+      require(check, check_start_position(first, commanded_joints(*sample), goal.start_tolerance));
     }
   }
 
@@ -33,7 +33,7 @@ class ExecuteParametrizedTrajectory
   {
     Execution execution = this->execution(goal, run);
     execution.plan = [&](const trajectory::Joints & start, const std::stop_token &) {
-      const trajectory::Limits limits = limits_of(goal, trajectory::make_limits(arm()));
+      const trajectory::Limits limits = goal_limits(goal, trajectory::make_limits(arm()));
       return timed_waypoints(goal.trajectory)
           .and_then([&](trajectory::TimedWaypoints waypoints) {
             trajectory::begin_at(waypoints, start);

@@ -19,16 +19,16 @@ std::vector<std::vector<double>> positions_of(const std::vector<ur_ros_rtde_msgs
 class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::ExecuteTrajectory> {
   void check(const Goal & goal, Check & check) const override
   {
-    check_common(check, goal, arm());
+    check_trajectory_goal(check, goal, arm());
     check.in_range("speed_fraction", goal.speed_fraction, 0.01, 1.0)
         .in_range("blend_tolerance", goal.blend_tolerance, 0.0, 1.0, "rad")
         .above_zero("start_tolerance", goal.start_tolerance, 3.2, "rad");
     if (check.ok()) {
-      require(check, trajectory::check_path(positions_of(goal.waypoints), limits_of(goal, slow_limits())));
+      require(check, trajectory::check_path(positions_of(goal.waypoints), goal_limits(goal, slow_limits())));
     }
     if (const auto sample = check.start(); sample && !goal.approach) {
-      require(check, begins_here(to_joints(goal.waypoints[0].positions), commanded_joints(*sample),
-                                 goal.start_tolerance));
+      require(check, check_start_position(to_joints(goal.waypoints[0].positions), commanded_joints(*sample),
+                                          goal.start_tolerance));
     }
   }
 
@@ -36,7 +36,7 @@ class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::Exe
   {
     Execution execution = this->execution(goal, run);
     execution.plan = [&](const trajectory::Joints &, std::stop_token stop) {
-      const trajectory::Limits limits = limits_of(goal, slow_limits());
+      const trajectory::Limits limits = goal_limits(goal, slow_limits());
       return trajectory::plan_path(positions_of(goal.waypoints), limits,
                                    {goal.blend_tolerance, 0.35, goal.speed_fraction, std::move(stop)})
           .map([&](trajectory::Trajectory plan) { return Planned{std::move(plan), limits}; });

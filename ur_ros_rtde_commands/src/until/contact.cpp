@@ -61,7 +61,7 @@ std::string program(const ContactMotion & motion)
 }
 
 /// The list or pose that follows `mark` in a text message: "… [1, 2, 3, 4, 5, 6]".
-std::optional<Vector6> six_after(std::string_view mark, const std::string & text)
+std::optional<Vector6> parse_vector6(std::string_view mark, const std::string & text)
 {
   const auto bracket = text.find('[');
   if (!text.starts_with(mark) || bracket == std::string::npos) {
@@ -107,8 +107,8 @@ Outcome move_until_contact(Run & run, const ContactMotion & motion,
   options.limit =
       std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(motion.timeout) + reserve);
   options.on_text = [&](const std::string & text) {
-    joints = joints ? joints : six_after(joints_mark, text);
-    pose = pose ? pose : six_after(pose_mark, text);
+    joints = joints ? joints : parse_vector6(joints_mark, text);
+    pose = pose ? pose : parse_vector6(pose_mark, text);
     timed_out = timed_out || text.starts_with(time_mark);
   };
   const ScriptReport report = run.run_script(program(motion), options);

@@ -1,4 +1,4 @@
-#include "wrench.hpp"
+#include "move_until_wrench.hpp"
 
 namespace ur_ros_rtde {
 

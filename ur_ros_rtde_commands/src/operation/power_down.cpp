@@ -1,12 +1,12 @@
 #include <ur_ros_rtde_msgs/action/dashboard_command.hpp>
 
-#include "operation/dashboard_talk.hpp"
-#include "operation/steps.hpp"
+#include "operation/dashboard_helpers.hpp"
+#include "operation/run_steps.hpp"
 #include "ur_ros_rtde/command.hpp"
 
 namespace ur_ros_rtde {
 
-class StandDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
+class PowerDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
   CommandTraits traits() const override { return {.preempts_all = true, .allowed_in_any_state = true}; }
 
   void check(const Goal & goal, Check & check) const override
@@ -21,17 +21,17 @@ class StandDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
     if (!stopped && stopped.error().code != ErrorCode::link_lost) {
       return stopped.error();
     }
-    ask_dashboard(robot, "stop");  // without a program it fails, and that is fine
-    if (const Status told = tell_dashboard(robot, "power off", "Powering off"); !told) {
-      return told;
+    send_to_dashboard(robot, "stop");  // fails if no program is running, which is not an error
+    if (const Status status = command_dashboard(robot, "power off", "Powering off"); !status) {
+      return status;
     }
-    return take_steps(run, goal.timeout, [&]() -> std::string {
-      const std::string mode = dashboard_value(robot, "robotmode");
+    return run_steps(run, goal.timeout, [&]() -> std::string {
+      const std::string mode = query_dashboard(robot, "robotmode");
       return mode == "POWER_OFF" ? "" : "powering off (mode " + mode + ")";
     });
   }
 };
 
-UR_ROS_RTDE_EXPORT(StandDown, "stand_down")
+UR_ROS_RTDE_EXPORT(PowerDown, "stand_down")
 
 }  // namespace ur_ros_rtde

@@ -1,4 +1,4 @@
-#include "wrench.hpp"
+#include "move_until_wrench.hpp"
 
 #include <fmt/format.h>
 

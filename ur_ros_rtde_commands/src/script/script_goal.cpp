@@ -1,4 +1,4 @@
-#include "script/given_script.hpp"
+#include "script/script_goal.hpp"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@ namespace ur_ros_rtde {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest = 1'000'000;  // bytes
-constexpr double longest = 86400.0;            // s
+constexpr std::uintmax_t max_script_size = 1'000'000;  // bytes
+constexpr double max_timeout = 86400.0;                // s
 
 void check_file(const std::string & path, Check & check)
 {
@@ -21,16 +21,16 @@ void check_file(const std::string & path, Check & check)
   std::error_code error;
   check.that(file.is_absolute(), fmt::format("path is \"{}\", it must be absolute", path))
       .that(fs::is_regular_file(file, error),
-            fmt::format("path is \"{}\": there is no such file on the machine of the command server", path));
+            fmt::format("path is \"{}\": no such file on the machine of command_server", path));
   if (check.ok()) {
     const std::uintmax_t size = fs::file_size(file, error);
-    check.that(
-        !error && size > 0 && size <= largest,
-        fmt::format("path is \"{}\": the file has {} bytes, it may have 1 to {}", path, size, largest));
+    check.that(!error && size > 0 && size <= max_script_size,
+               fmt::format("path is \"{}\": the file has {} bytes, it must have 1 to {}", path, size,
+                           max_script_size));
   }
 }
 
-std::string text_of(const SendScriptAction::Goal & goal)
+std::string script_text(const SendScriptAction::Goal & goal)
 {
   if (goal.path.empty()) {
     return goal.script;
@@ -39,32 +39,33 @@ std::string text_of(const SendScriptAction::Goal & goal)
   std::ostringstream text;
   text << file.rdbuf();
   if (!file) {
-    throw RobotError({ErrorCode::invalid_goal, fmt::format("path is \"{}\": it cannot be read", goal.path)});
+    throw RobotError(
+        {ErrorCode::invalid_goal, fmt::format("path is \"{}\": the file cannot be read", goal.path)});
   }
   return text.str();
 }
 }  // namespace
 
-void check_script(const SendScriptAction::Goal & goal, Check & check)
+void check_script_goal(const SendScriptAction::Goal & goal, Check & check)
 {
   check
       .that(goal.script.empty() != goal.path.empty(),
-            fmt::format("script has {} bytes and path {}: one of them, not both, has to be given",
-                        goal.script.size(), goal.path.size()))
-      .that(goal.script.size() <= largest,
-            fmt::format("script has {} bytes, it may have {}", goal.script.size(), largest))
-      .above_zero("timeout", goal.timeout, longest, "s");
+            fmt::format("script has {} bytes and path {}: set exactly one of them", goal.script.size(),
+                        goal.path.size()))
+      .that(goal.script.size() <= max_script_size,
+            fmt::format("script has {} bytes, it may have at most {}", goal.script.size(), max_script_size))
+      .above_zero("timeout", goal.timeout, max_timeout, "s");
   if (check.ok() && !goal.path.empty()) {
     check_file(goal.path, check);
   }
 }
 
-Outcome run_given(const SendScriptAction::Goal & goal, GoalRun<SendScriptAction> & run, ScriptKind kind,
-                  double limit)
+Outcome run_script_goal(const SendScriptAction::Goal & goal, GoalRun<SendScriptAction> & run, ScriptKind kind,
+                        double timeout)
 {
   ScriptOptions options;
   options.kind = kind;
-  options.limit = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(limit));
+  options.limit = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
   options.on_text = [&run](const std::string & text) {
     const auto elapsed = run.elapsed();
     const auto whole = std::chrono::floor<std::chrono::seconds>(elapsed);
@@ -73,7 +74,7 @@ Outcome run_given(const SendScriptAction::Goal & goal, GoalRun<SendScriptAction>
     run.feedback().elapsed.nanosec = static_cast<std::uint32_t>((elapsed - whole).count());
     run.publish();
   };
-  const ScriptReport report = run.run_script(text_of(goal), options);
+  const ScriptReport report = run.run_script(script_text(goal), options);
   run.result().output = report.text;
   run.result().line = report.line;
   run.result().run_time = report.duration;

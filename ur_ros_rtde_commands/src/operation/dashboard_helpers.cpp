@@ -1,15 +1,15 @@
-#include "operation/dashboard_talk.hpp"
+#include "operation/dashboard_helpers.hpp"
 
 #include <fmt/format.h>
 
 namespace ur_ros_rtde {
 namespace {
-constexpr std::chrono::milliseconds answer_limit{2000};
+constexpr std::chrono::milliseconds answer_timeout{2000};
 }  // namespace
 
-std::string ask_dashboard(const Robot & robot, const std::string & line)
+std::string send_to_dashboard(const Robot & robot, const std::string & line)
 {
-  const auto answer = robot.query_dashboard(line, answer_limit);
+  const auto answer = robot.ask_dashboard(line, answer_timeout);
   if (!answer) {
     throw RobotError({answer.error().code, fmt::format("the dashboard server did not answer \"{}\": {}", line,
                                                        answer.error().message)});
@@ -17,16 +17,16 @@ std::string ask_dashboard(const Robot & robot, const std::string & line)
   return *answer;
 }
 
-std::string dashboard_value(const Robot & robot, const std::string & question)
+std::string query_dashboard(const Robot & robot, const std::string & query)
 {
-  const std::string answer = ask_dashboard(robot, question);
+  const std::string answer = send_to_dashboard(robot, query);
   const auto colon = answer.find(": ");
   return colon == std::string::npos ? answer : answer.substr(colon + 2);
 }
 
-Status tell_dashboard(const Robot & robot, const std::string & line, const std::string & reply)
+Status command_dashboard(const Robot & robot, const std::string & line, const std::string & reply)
 {
-  const std::string answer = ask_dashboard(robot, line);
+  const std::string answer = send_to_dashboard(robot, line);
   if (answer.rfind(reply, 0) == 0) {
     return {};
   }

@@ -1,0 +1,47 @@
+#include <ur_ros_rtde_msgs/action/trigger.hpp>
+
+#include "force/compliance.hpp"
+
+namespace ur_ros_rtde {
+
+/// Ends a mode that a previous goal has activated, and waits for standstill.
+class EndModeCommand : public Command<ur_ros_rtde_msgs::action::Trigger> {
+ public:
+  using Function = bool (ur_rtde::RTDEControlInterface::*)();
+  EndModeCommand(Function end, std::string mode) : end_(end), mode_(std::move(mode)) {}
+
+ private:
+  CommandTraits traits() const override { return {.leaves_mode_active = true}; }
+  Outcome run(const Goal &, Run & run) override
+  {
+    check_result(((*run.control().hold()).*end_)(), "end " + mode_);
+    const auto stop_reason = run.until_standstill();
+    return stop_reason ? Outcome(*stop_reason) : Outcome::success();
+  }
+
+  const Function end_;
+  const std::string mode_;
+};
+
+class EndTeachMode : public EndModeCommand {
+ public:
+  EndTeachMode() : EndModeCommand(&ur_rtde::RTDEControlInterface::endTeachMode, "teach mode") {}
+};
+
+UR_ROS_RTDE_EXPORT(EndTeachMode, "end_teach_mode")
+
+class FreedriveStop : public EndModeCommand {
+ public:
+  FreedriveStop() : EndModeCommand(&ur_rtde::RTDEControlInterface::endFreedriveMode, "freedrive") {}
+};
+
+UR_ROS_RTDE_EXPORT(FreedriveStop, "freedrive_stop")
+
+class ForceModeStop : public EndModeCommand {
+ public:
+  ForceModeStop() : EndModeCommand(&ur_rtde::RTDEControlInterface::forceModeStop, "force mode") {}
+};
+
+UR_ROS_RTDE_EXPORT(ForceModeStop, "force_mode_stop")
+
+}  // namespace ur_ros_rtde

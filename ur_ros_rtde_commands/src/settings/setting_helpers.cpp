@@ -1,0 +1,80 @@
+#include "settings/setting_helpers.hpp"
+
+#include <fmt/format.h>
+
+namespace ur_ros_rtde {
+namespace {
+
+bool send_digital_output(ur_rtde::RTDEIOInterface & io, unsigned number, bool state)
+{
+  const auto pin = [number](unsigned first) { return static_cast<std::uint8_t>(number - first); };
+  if (number < first_configurable_output) {
+    return io.setStandardDigitalOut(pin(0), state);
+  }
+  if (number < first_tool_output) {
+    return io.setConfigurableDigitalOut(pin(first_configurable_output), state);
+  }
+  return io.setToolDigitalOut(pin(first_tool_output), state);
+}
+
+}  // namespace
+
+Outcome send_failure()
+{
+  return Outcome::failure(ErrorCode::link_lost, "the value could not be sent to the robot: try again");
+}
+
+Outcome set_digital_output(Run & run, unsigned number, bool state)
+{
+  if (!send_digital_output(*run.io().hold(), number, state)) {
+    return send_failure();
+  }
+  const auto is_set = [&] { return (((run.state().digital_outputs >> number) & 1U) != 0) == state; };
+  return run.expect(is_set, setting_timeout,
+                    fmt::format("digital output {} is still {}: check in the installation on the robot "
+                                "whether another function is assigned to it",
+                                number, state ? "off" : "on"));
+}
+
+Outcome set_analog_output(Run & run, unsigned pin, double value, double tolerance, const char * unit,
+                          const std::function<bool(ur_rtde::RTDEIOInterface &)> & set)
+{
+  if (!set(*run.io().hold())) {
+    return send_failure();
+  }
+  const auto is_set = [&] { return std::abs(run.state().analog_outputs[pin] - value) <= tolerance; };
+  Outcome outcome = run.expect(is_set, setting_timeout, "");
+  if (outcome.code() != ErrorCode::rejected_by_robot) {
+    return outcome;
+  }
+  return Outcome::failure(
+      outcome.code(),
+      fmt::format("analog output {} is {:.4g} {}, not {:.4g} {}: check in the installation on "
+                  "the robot whether another function is assigned to it",
+                  pin, run.state().analog_outputs[pin], unit, value, unit));
+}
+
+Check & check_payload(Check & check, double mass, const geometry_msgs::msg::Vector3 & center_of_gravity)
+{
+  return check.in_range("mass", mass, 0.0, 50.0, "kg")
+      .vector("center_of_gravity", center_of_gravity, 1.0, "m");
+}
+
+bool has_payload(const Sample & sample, double mass, const geometry_msgs::msg::Vector3 & center_of_gravity)
+{
+  constexpr double tolerance = 1e-3;  // kg, m
+  const Vector3 & reported = sample.payload_cog;
+  const auto & expected = center_of_gravity;
+  return std::isnan(sample.payload) || (std::abs(sample.payload - mass) < tolerance &&
+                                        std::hypot(reported[0] - expected.x, reported[1] - expected.y,
+                                                   reported[2] - expected.z) < tolerance);
+}
+
+std::vector<double> to_ur_center_of_gravity(const geometry_msgs::msg::Vector3 & center_of_gravity)
+{
+  const auto & cog = center_of_gravity;
+  const bool zero = cog.x == 0.0 && cog.y == 0.0 && cog.z == 0.0;
+  return {cog.x, cog.y, zero ? 1e-9 : cog.z};
+}
+
+}  // namespace ur_ros_rtde

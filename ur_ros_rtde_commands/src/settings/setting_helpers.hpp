@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "check_result.hpp"
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+
+/// How long it may take until the state of the robot contains a new setting.
+constexpr std::chrono::seconds setting_timeout{1};
+
+/// The digital outputs of the controller: 0-7 standard, 8-15 configurable, 16-17 tool.
+constexpr unsigned first_configurable_output = 8;
+constexpr unsigned first_tool_output = 16;
+
+/// Sets digital output `number` (0-17) and waits until the robot reports its new state.
+Outcome set_digital_output(Run & run, unsigned number, bool state);
+
+/// Calls `set` and waits until the robot reports that analog output `pin` is `value`, in A or V, within
+/// `tolerance`.
+Outcome set_analog_output(Run & run, unsigned pin, double value, double tolerance, const char * unit,
+                          const std::function<bool(ur_rtde::RTDEIOInterface &)> & set);
+
+/// The failure (link_lost) of a value that ur_rtde could not send.
+Outcome send_failure();
+
+/// Checks the mass (kg) and the center of gravity (m) of a payload.
+Check & check_payload(Check & check, double mass, const geometry_msgs::msg::Vector3 & center_of_gravity);
+/// The robot reports this payload. Always true before PolyScope 5.5, which does not report it.
+bool has_payload(const Sample & sample, double mass, const geometry_msgs::msg::Vector3 & center_of_gravity);
+/// The center of gravity for ur_rtde. The control script of ur_rtde keeps the previous center of gravity if
+/// the new one is exactly zero, so that zero is replaced by 1 nm.
+std::vector<double> to_ur_center_of_gravity(const geometry_msgs::msg::Vector3 & center_of_gravity);
+
+}  // namespace ur_ros_rtde
