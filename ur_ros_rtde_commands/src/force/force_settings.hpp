@@ -6,8 +6,7 @@
 
 namespace ur_ros_rtde {
 
-/// Checks a goal of force_mode or force_mode_start. `ends_with_goal`: force mode lasts as long as the
-/// goal.
+/// Checks a goal of force_mode or force_mode_start. `ends_with_goal`: force mode lasts as long as the goal.
 void check_force_mode(const ur_ros_rtde_msgs::action::ForceMode::Goal & goal, bool ends_with_goal,
                       Check & check);
 

@@ -7,6 +7,7 @@
 #include "moveit/tolerances.hpp"
 #include "streaming/execute.hpp"
 #include "streaming/goal_fields.hpp"
+#include "streaming/timed_trajectory.hpp"
 #include "ur_ros_rtde/command.hpp"
 
 namespace ur_ros_rtde {
@@ -17,10 +18,10 @@ using trajectory::Joints;
 
 constexpr double default_goal_tolerance = 0.01;      // rad
 constexpr double default_goal_time_tolerance = 2.0;  // s
-constexpr double start_tolerance = 0.02;             // rad; MoveIt looks, too
-constexpr double latest_start = 60.0;                // s from now
-constexpr double velocity_reserve = 1.05;            // a spline between points at a limit exceeds it a little
-constexpr double highest_acceleration = 40.0;        // rad/s^2
+constexpr double start_tolerance = 0.02;             // rad; MoveIt checks its own, too
+constexpr double max_start_delay = 60.0;             // s from now
+constexpr double velocity_reserve = 1.05;  // a spline between points at the limit exceeds it slightly
+constexpr double max_acceleration = 40.0;  // rad/s^2
 constexpr auto feedback_period = std::chrono::milliseconds(50);
 
 template <typename Stamp>
@@ -34,15 +35,15 @@ bool is_zero(const builtin_interfaces::msg::Time & stamp)
   return stamp.sec == 0 && stamp.nanosec == 0;
 }
 
-/// MoveIt's times come from limits of its own: only what the arm can do at most is a limit here.
+/// MoveIt has computed the times with its own limits. Only the physical limits of the arm are checked here.
 trajectory::Limits widest_limits(const ArmLimits & arm)
 {
-  trajectory::Limits limits = trajectory::make_limits(arm, highest_acceleration, 1e7);
+  trajectory::Limits limits = trajectory::make_limits(arm, max_acceleration, 1e7);
   limits.velocity *= velocity_reserve;
   return limits;
 }
 
-/// For a stop on the way: what the plan itself asks of the arm, at least what is usual.
+/// The limits of a stop during the trajectory: those that the plan itself uses, at least the defaults.
 trajectory::Limits limits_for_stops(const trajectory::Trajectory & plan, trajectory::Limits limits)
 {
   if (const auto use = plan.verify(limits)) {
@@ -52,7 +53,7 @@ trajectory::Limits limits_for_stops(const trajectory::Trajectory & plan, traject
   return limits;
 }
 
-/// Feedback has an index since 2025.
+/// The feedback of control_msgs has the field `index` since 2025.
 template <typename Feedback>
 void set_index(Feedback & feedback, std::size_t index)
 {
@@ -79,8 +80,8 @@ trajectory_msgs::msg::JointTrajectoryPoint to_point(const std::array<std::size_t
 
 }  // namespace
 
-/// As ros2_control's joint trajectory controller, which MoveIt speaks to; where it differs,
-/// docs/trajectory.md says so.
+/// Behaves like the joint trajectory controller of ros2_control, which MoveIt uses. docs/trajectory.md
+/// describes the differences.
 class FollowJointTrajectory : public Command<Action> {
  public:
   void start_action_server(CommandHost & host, const std::string & name) override;
@@ -96,11 +97,12 @@ class FollowJointTrajectory : public Command<Action> {
     return is_zero(stamp) ? 0.0 : seconds(stamp) - seconds(host_->node().now());
   }
   void check_time(const Goal & goal, Check & check) const;
-  Expected<Planned> plan(const Goal & goal, const Joints & start) const;
+  Expected<PlannedTrajectory> plan(const Goal & goal, const Joints & start) const;
   Status watch(const Goal & goal, Run & run, const Tolerances & path,
                const trajectory::Trajectory & trajectory, const StreamState & state) const;
-  void feed_back(const Goal & goal, Run & run, std::size_t index, const StreamState & state) const;
-  static Outcome arrive(const Goal & goal, Run & run, const Tolerances & tolerances, const Joints & end);
+  void publish_feedback_at(const Goal & goal, Run & run, std::size_t index, const StreamState & state) const;
+  static Outcome wait_for_arrival(const Goal & goal, Run & run, const Tolerances & tolerances,
+                                  const Joints & end);
 
   CommandHost * host_ = nullptr;
   ServoSettings servo_;
@@ -118,12 +120,13 @@ void FollowJointTrajectory::start_action_server(CommandHost & host, const std::s
   };
   servo_.lookahead_time =
       declare("lookahead_time", 0.03, 0.03, 0.2,
-              "s: how far ahead the controller smooths; the arm lags behind by about that");
+              "s: lookahead of the smoothing in the controller; the arm lags behind by about this time");
   servo_.gain = declare("gain", 2000.0, 100.0, 2000.0, "of the controller's position control");
-  servo_.max_tracking_error = declare("max_tracking_error", 0.3, 0.001, 3.14,
-                                      "rad: farther behind, the goal ends and the arm stops, whatever its "
-                                      "tolerances are");
-  servo_.stopped_by_another = [&host] { return host.preemption_stop().has_value(); };
+  servo_.max_tracking_error =
+      declare("max_tracking_error", 0.3, 0.001, 3.14,
+              "rad: above this error the goal is aborted and the arm stops, regardless of "
+              "the tolerances of the goal");
+  servo_.preempted_by_stop = [&host] { return host.preemption_stop().has_value(); };
   Command<Action>::start_action_server(host, name);
 }
 
@@ -134,14 +137,14 @@ void FollowJointTrajectory::check_time(const Goal & goal, Check & check) const
   check
       .that(end >= 0.0 || is_zero(goal.trajectory.header.stamp),
             fmt::format(
-                "trajectory.header.stamp is {:.3f} s ago, and the trajectory over: send a stamp of 0 to "
-                "begin at once",
+                "trajectory.header.stamp is {:.3f} s ago, after the end of the trajectory: set the stamp to "
+                "0 to start at once",
                 -begin))
       .that(
-          begin <= latest_start,
+          begin <= max_start_delay,
           fmt::format("trajectory.header.stamp is {:.1f} s ahead, it may be {:.0f} s ahead at most: the arm "
                       "would be taken for so long",
-                      begin, latest_start));
+                      begin, max_start_delay));
 }
 
 void FollowJointTrajectory::check(const Goal & goal, Check & check) const
@@ -151,11 +154,10 @@ void FollowJointTrajectory::check(const Goal & goal, Check & check) const
              "multi_dof_trajectory and its tolerances are not empty: the arm has single joints only",
              ErrorCode::not_supported);
   if (!check.ok() || goal.trajectory.points.empty()) {
-    return;  // an empty trajectory is a stop
+    return;  // an empty trajectory stops the arm
   }
-  check.that(!goal.trajectory.joint_names.empty(), "trajectory.joint_names is empty: name the arm's joints");
-  auto waypoints = timed_waypoints(goal.trajectory);
-  require(check, waypoints.map([](const auto &) {}));
+  check.that(!goal.trajectory.joint_names.empty(),
+             "trajectory.joint_names is empty: set the names of the joints");
   for (const auto & [field, list] : {std::pair{"path_tolerance", &goal.path_tolerance},
                                      std::pair{"goal_tolerance", &goal.goal_tolerance}}) {
     if (check.ok()) {
@@ -167,34 +169,25 @@ void FollowJointTrajectory::check(const Goal & goal, Check & check) const
     return;
   }
   check_time(goal, check);
-  const Joints first = to_joints(waypoints->positions.front());
-  const bool begins_there = waypoints->times.front() == 0.0;
-  trajectory::begin_at(*waypoints, first);
-  require(check, trajectory::check_timed(*waypoints, widest_limits(host_->limits())));
-  if (const auto sample = check.start(); sample && begins_there) {
-    require(check, check_start_position(first, commanded_joints(*sample), start_tolerance));
-  }
+  check_timed_trajectory(check, goal.trajectory, widest_limits(host_->limits()), start_tolerance);
 }
 
-Expected<Planned> FollowJointTrajectory::plan(const Goal & goal, const Joints & start) const
+Expected<PlannedTrajectory> FollowJointTrajectory::plan(const Goal & goal, const Joints & start) const
 {
   const trajectory::Limits limits = widest_limits(host_->limits());
-  return timed_waypoints(goal.trajectory)
-      .and_then([&](trajectory::TimedWaypoints waypoints) {
-        trajectory::begin_at(waypoints, start);
-        return trajectory::plan_timed(waypoints, limits);
-      })
-      .map([&](trajectory::Trajectory plan) { return Planned{plan, limits_for_stops(plan, limits)}; });
+  return plan_timed_trajectory(goal.trajectory, start, limits).map([&](trajectory::Trajectory plan) {
+    return PlannedTrajectory{plan, limits_for_stops(plan, limits)};
+  });
 }
 
 Outcome FollowJointTrajectory::run(const Goal & goal, Run & run)
 {
   if (goal.trajectory.points.empty()) {
-    return Outcome::success("the trajectory is empty: the arm stands");
+    return Outcome::success("the trajectory is empty: the arm is at rest");
   }
   const double wait = std::max(0.0, seconds_until(goal.trajectory.header.stamp));
-  if (auto why = run.sleep_for(std::chrono::nanoseconds(static_cast<std::int64_t>(wait * 1e9)))) {
-    return *why;
+  if (auto stop_reason = run.sleep_for(std::chrono::nanoseconds(static_cast<std::int64_t>(wait * 1e9)))) {
+    return *stop_reason;
   }
   const auto & names = goal.trajectory.joint_names;
   const auto path =
@@ -208,13 +201,13 @@ Outcome FollowJointTrajectory::run(const Goal & goal, Run & run)
   execution.servo = servo_;
   execution.start_tolerance = start_tolerance;
   execution.plan = [&](const Joints & start, const std::stop_token &) { return plan(goal, start); };
-  execution.planned = [&](const trajectory::Trajectory & plan) {
+  execution.on_planned = [&](const trajectory::Trajectory & plan) {
     last = plan.sample(plan.duration()).position;
   };
   execution.watch = [&](const trajectory::Trajectory & plan, const StreamState & state) {
     return watch(goal, run, *path, plan, state);
   };
-  execution.arrive = [&] { return arrive(goal, run, *end, last); };
+  execution.wait_for_arrival = [&] { return wait_for_arrival(goal, run, *end, last); };
   return execute(run, execution).outcome;
 }
 
@@ -223,17 +216,17 @@ Status FollowJointTrajectory::watch(const Goal & goal, Run & run, const Toleranc
                                     const StreamState & state) const
 {
   run.progress(trajectory.progress(state.time));
-  feed_back(goal, run, std::min(trajectory.waypoint_at(state.time) + 1, trajectory.waypoint_count() - 1),
-            state);
-  Status held = path.hold(state.position_error, state.velocity_error);
+  publish_feedback_at(
+      goal, run, std::min(trajectory.waypoint_at(state.time) + 1, trajectory.waypoint_count() - 1), state);
+  Status held = path.check(state.position_error, state.velocity_error);
   if (!held) {
     run.result().error_code = Result::PATH_TOLERANCE_VIOLATED;
   }
   return held;
 }
 
-void FollowJointTrajectory::feed_back(const Goal & goal, Run & run, std::size_t index,
-                                      const StreamState & state) const
+void FollowJointTrajectory::publish_feedback_at(const Goal & goal, Run & run, std::size_t index,
+                                                const StreamState & state) const
 {
   Feedback & feedback = run.feedback();
   const auto now = host_->node().now();
@@ -254,26 +247,27 @@ void FollowJointTrajectory::feed_back(const Goal & goal, Run & run, std::size_t 
   run.publish();
 }
 
-Outcome FollowJointTrajectory::arrive(const Goal & goal, Run & run, const Tolerances & tolerances,
-                                      const Joints & end)
+Outcome FollowJointTrajectory::wait_for_arrival(const Goal & goal, Run & run, const Tolerances & tolerances,
+                                                const Joints & end)
 {
   const double given = seconds(goal.goal_time_tolerance);
   const double limit = given > 0.0 ? given : default_goal_time_tolerance;
   Status held;
   const auto arrived = [&] {
     const Sample sample = run.state();
-    held = tolerances.hold(end - Eigen::Map<const Joints>(sample.actual_q.data()),
-                           -Eigen::Map<const Joints>(sample.actual_qd.data()));
+    held = tolerances.check(end - Eigen::Map<const Joints>(sample.actual_q.data()),
+                            -Eigen::Map<const Joints>(sample.actual_qd.data()));
     return static_cast<bool>(held);
   };
-  if (auto why = run.until(arrived, std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e9)))) {
-    if (why->code != ErrorCode::timeout) {
-      return *why;
+  if (auto stop_reason =
+          run.until(arrived, std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e9)))) {
+    if (stop_reason->code != ErrorCode::timeout) {
+      return *stop_reason;
     }
     run.result().error_code = Result::GOAL_TOLERANCE_VIOLATED;
     return Outcome::failure(ErrorCode::not_reached,
                             fmt::format("{:.2f} s after the end of the trajectory {}", limit,
-                                        held ? "the arm still moved" : held.error().message));
+                                        held ? "the arm was still moving" : held.error().message));
   }
   run.control()->servoStop();
   return Outcome::success();

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-double limit_from(double given, double otherwise)
+double limit_from(double given, double default_limit)
 {
-  return given > 0.0 ? given : given < 0.0 ? no_limit : otherwise;
+  return given > 0.0 ? given : given < 0.0 ? no_limit : default_limit;
 }
 
 }  // namespace
@@ -37,13 +37,14 @@ Expected<Tolerances> Tolerances::read(std::string_view field,
     }
     if (!std::isfinite(tolerance.position) || !std::isfinite(tolerance.velocity)) {
       return failure(ErrorCode::invalid_goal,
-                     fmt::format("{} of {} is {} rad, {} rad/s: give finite numbers", field, tolerance.name,
+                     fmt::format("{} of {} is {} rad, {} rad/s: set finite values", field, tolerance.name,
                                  tolerance.position, tolerance.velocity));
     }
     if (tolerance.acceleration > 0.0 || std::isnan(tolerance.acceleration)) {
-      return failure(ErrorCode::not_supported,
-                     fmt::format("{} of {} limits the acceleration, which the robot does not measure: give 0",
-                                 field, tolerance.name));
+      return failure(
+          ErrorCode::not_supported,
+          fmt::format("{} of {} limits the acceleration, which the robot does not measure: set it to 0",
+                      field, tolerance.name));
     }
     const auto place = static_cast<std::size_t>(found - names.begin());
     const auto joint = std::find(order->begin(), order->end(), place) - order->begin();
@@ -53,18 +54,18 @@ Expected<Tolerances> Tolerances::read(std::string_view field,
   return result;
 }
 
-Status Tolerances::hold(const trajectory::Joints & position_error,
-                        const trajectory::Joints & velocity_error) const
+Status Tolerances::check(const trajectory::Joints & position_error,
+                         const trajectory::Joints & velocity_error) const
 {
   for (int joint = 0; joint < trajectory::joint_count; ++joint) {
     if (std::abs(position_error[joint]) > position[joint]) {
       return failure(ErrorCode::not_reached,
-                     fmt::format("{} is {:.4f} rad off, its tolerance is {:.4f} rad",
+                     fmt::format("{} deviates by {:.4f} rad, its tolerance is {:.4f} rad",
                                  trajectory::joint_name(joint), position_error[joint], position[joint]));
     }
     if (std::abs(velocity_error[joint]) > velocity[joint]) {
       return failure(ErrorCode::not_reached,
-                     fmt::format("{} is {:.4f} rad/s off, its tolerance is {:.4f} rad/s",
+                     fmt::format("{} deviates by {:.4f} rad/s, its tolerance is {:.4f} rad/s",
                                  trajectory::joint_name(joint), velocity_error[joint], velocity[joint]));
     }
   }

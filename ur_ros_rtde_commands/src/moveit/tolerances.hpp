@@ -9,18 +9,19 @@
 
 namespace ur_ros_rtde {
 
-/// What a joint may be away from its trajectory, in UR's order. Infinity: as far as it likes.
+/// The permitted deviation of each joint from its trajectory, in the joint order of UR. Infinity: no limit.
 struct Tolerances {
   trajectory::Joints position, velocity;
 
-  /// By ros2_control's convention: 0 is the default, below 0 is no limit. Refused: a name that `names` does
-  /// not have, a number that is not finite, an acceleration, which the controller does not measure.
+  /// Follows the convention of ros2_control: 0 is the default, a negative value is no limit. Fails for a name
+  /// that is not in `names`, a value that is not finite, and an acceleration, which the robot does not
+  /// measure.
   static Expected<Tolerances> read(std::string_view field,
                                    const std::vector<control_msgs::msg::JointTolerance> & list,
                                    const std::vector<std::string> & names, double default_position);
 
-  /// Which joint is too far off, and by what.
-  Status hold(const trajectory::Joints & position_error, const trajectory::Joints & velocity_error) const;
+  /// Fails with the name and the deviation of the first joint that exceeds its tolerance.
+  Status check(const trajectory::Joints & position_error, const trajectory::Joints & velocity_error) const;
 };
 
 }  // namespace ur_ros_rtde

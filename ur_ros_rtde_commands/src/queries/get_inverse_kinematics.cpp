@@ -22,8 +22,7 @@ class GetInverseKinematics : public QueryCommand<ur_ros_rtde_msgs::action::GetIn
       const double orientation = goal.max_orientation_error;
       // A request for a solution that does not exist would end the control program.
       if (!control.getInverseKinematicsHasSolution(pose, near, position, orientation)) {
-        return Outcome::failure(ErrorCode::unreachable,
-                                "pose is out of reach: no joint positions lead to it");
+        return Outcome::failure(ErrorCode::unreachable, "pose is out of reach");
       }
       run.result().joint_positions =
           to_array6(control.getInverseKinematics(pose, near, position, orientation));

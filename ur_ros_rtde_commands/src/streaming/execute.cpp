@@ -12,31 +12,31 @@ namespace {
 using trajectory::Joints;
 using trajectory::Trajectory;
 
-constexpr std::chrono::minutes planning_limit{2};
-constexpr double same_place = 1e-6;  // rad
+constexpr std::chrono::minutes planning_timeout{2};
+constexpr double same_position_tolerance = 1e-6;  // rad
 
-/// Feedback goes on, and the goal can be ended, while it is planned.
-Expected<Planned> plan_meanwhile(Run & run, const Execution & execution, const Joints & start)
+/// Plans in a separate thread, so that feedback is published and the goal can be stopped meanwhile.
+Expected<PlannedTrajectory> plan_in_background(Run & run, const Execution & execution, const Joints & start)
 {
   std::stop_source stop;
   auto planning = std::async(std::launch::async, [&execution, &start, token = stop.get_token()] {
     return execution.plan(start, token);
   });
   const auto ready = [&] { return planning.wait_for(std::chrono::seconds(0)) == std::future_status::ready; };
-  if (auto why = run.until(ready, planning_limit)) {
+  if (auto stop_reason = run.until(ready, planning_timeout)) {
     stop.request_stop();
     planning.wait();
-    return tl::unexpected(*why);
+    return tl::unexpected(*stop_reason);
   }
   return planning.get();
 }
 
-/// From where the arm is to where the plan begins; none when that is the same.
-Expected<std::optional<Trajectory>> plan_approach(const Joints & start, const Planned & plan,
+/// Plans the motion from `start` to the start of the trajectory. Empty if they are the same.
+Expected<std::optional<Trajectory>> plan_approach(const Joints & start, const PlannedTrajectory & plan,
                                                   const Execution & execution)
 {
   const Joints first = plan.trajectory.sample(0.0).position;
-  if ((first - start).abs().maxCoeff() <= same_place) {
+  if ((first - start).abs().maxCoeff() <= same_position_tolerance) {
     return std::nullopt;
   }
   if (Status near = check_start_position(first, start, execution.start_tolerance);
@@ -56,24 +56,25 @@ Joints commanded_joints(const Sample & sample)
   return Eigen::Map<const Joints>(sample.target_q.data());
 }
 
-Status check_start_position(const Joints & first, const Joints & here, double tolerance)
+Status check_start_position(const Joints & first, const Joints & current, double tolerance)
 {
   int joint = 0;
-  const double distance = (first - here).abs().maxCoeff(&joint);
+  const double distance = (first - current).abs().maxCoeff(&joint);
   if (distance <= tolerance) {
     return {};
   }
   return failure(
       ErrorCode::invalid_goal,
-      fmt::format("the trajectory begins with {} at {:.4f} rad, the arm is at {:.4f} rad, {:.4f} rad "
-                  "away, start_tolerance is {:.4f} rad: plan from where the arm is, or go there first",
-                  trajectory::joint_name(joint), first[joint], here[joint], distance, tolerance));
+      fmt::format("the trajectory starts with {} at {:.4f} rad, but the arm is at {:.4f} rad; the distance "
+                  "{:.4f} rad exceeds start_tolerance ({:.4f} rad): plan from the current positions, or move "
+                  "to the start first",
+                  trajectory::joint_name(joint), first[joint], current[joint], distance, tolerance));
 }
 
 ExecutionResult execute(Run & run, const Execution & execution)
 {
   const Joints start = commanded_joints(run.state());
-  const auto plan = plan_meanwhile(run, execution, start);
+  const auto plan = plan_in_background(run, execution, start);
   if (!plan) {
     return {plan.error(), 0.0};
   }
@@ -81,18 +82,18 @@ ExecutionResult execute(Run & run, const Execution & execution)
   if (!approach) {
     return {approach.error(), 0.0};
   }
-  execution.planned(plan->trajectory);
+  execution.on_planned(plan->trajectory);
   if (*approach) {
     ServoStream stream(run, execution.servo,
                        [](const Trajectory &, const StreamState &) { return Status(); });
-    if (Outcome there = stream.drive(**approach, plan->limits); !there) {
-      return {there, stream.max_tracking_error()};
+    if (Outcome approached = stream.drive(**approach, plan->limits); !approached) {
+      return {approached, stream.max_tracking_error()};
     }
   }
   ServoStream stream(run, execution.servo, execution.watch);
   Outcome outcome = stream.drive(plan->trajectory, plan->limits);
   if (outcome) {
-    outcome = execution.arrive ? execution.arrive() : stream.settle();
+    outcome = execution.wait_for_arrival ? execution.wait_for_arrival() : stream.settle();
   }
   return {outcome, stream.max_tracking_error()};
 }

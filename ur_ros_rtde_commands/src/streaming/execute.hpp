@@ -7,26 +7,26 @@
 
 namespace ur_ros_rtde {
 
-/// A plan and the limits that it keeps, and that a stop or another speed is to keep.
-struct Planned {
+/// A planned trajectory and the limits that it satisfies. Stops and speed changes must satisfy them, too.
+struct PlannedTrajectory {
   trajectory::Trajectory trajectory;
   trajectory::Limits limits;
 };
 
-/// A trajectory from goal to standstill.
+/// How to plan and execute the trajectory of a goal.
 struct Execution {
-  /// Plans, from where the arm stands; in a thread of its own. Looks at the stop_token now and then.
-  std::function<Expected<Planned>(const trajectory::Joints & start, std::stop_token)> plan;
+  /// Plans from the current joint positions, in a separate thread. Has to check the stop_token regularly.
+  std::function<Expected<PlannedTrajectory>(const trajectory::Joints & start, std::stop_token)> plan;
   ServoSettings servo;
-  double start_tolerance = 0.01;  ///< rad, of the plan's beginning from where the arm is
-  bool approach = false;          ///< go to the beginning first, however far it is
-  double speed_fraction = 1.0;    ///< of the approach, as of the plan
-  /// Once, when the plan stands and before anything moves.
-  std::function<void(const trajectory::Trajectory &)> planned = [](const trajectory::Trajectory &) {};
-  /// After each target of the plan; what it refuses ends the goal.
+  double start_tolerance = 0.01;  ///< rad, maximum distance of the arm from the start of the trajectory
+  bool approach = false;          ///< move to the start of the trajectory first, from any distance
+  double speed_fraction = 1.0;    ///< of the approach and of the trajectory
+  /// Called once after planning, before any motion.
+  std::function<void(const trajectory::Trajectory &)> on_planned = [](const trajectory::Trajectory &) {};
+  /// Called after each setpoint. A failure ends the goal.
   ServoStream::Watch watch = [](const trajectory::Trajectory &, const StreamState &) { return Status(); };
-  /// When the plan's last target has been sent: waits until the arm has followed it. None: ServoStream's way.
-  std::function<Outcome()> arrive;
+  /// Waits until the arm has followed the last setpoint. Default: ServoStream::settle().
+  std::function<Outcome()> wait_for_arrival;
 };
 
 struct ExecutionResult {
@@ -34,15 +34,15 @@ struct ExecutionResult {
   double max_tracking_error = 0.0;  ///< rad
 };
 
-/// Plans, looks whether the arm is where the plan begins, goes the last bit (or the approach) by a plan of
-/// its own within the same limits, but never faster than slow_limits(), and sends both.
+/// Plans the trajectory, checks that the arm is at its start, and streams it. A remaining distance to the
+/// start (or the approach) is planned separately within the same limits, and not faster than slow_limits().
 ExecutionResult execute(Run & run, const Execution & execution);
 
-/// Where the controller has the arm: its target, without the noise of measurement.
+/// The target positions of the controller, which contain no measurement noise.
 trajectory::Joints commanded_joints(const Sample & sample);
 
-/// Refused when `first` is farther than `tolerance` from `here` in any joint.
-Status check_start_position(const trajectory::Joints & first, const trajectory::Joints & here,
+/// Fails if `first` differs from `current` by more than `tolerance` (rad) in any joint.
+Status check_start_position(const trajectory::Joints & first, const trajectory::Joints & current,
                             double tolerance);
 
 }  // namespace ur_ros_rtde

@@ -22,7 +22,7 @@ double seconds(const builtin_interfaces::msg::Duration & duration)
   return static_cast<double>(duration.sec) + 1e-9 * static_cast<double>(duration.nanosec);
 }
 
-/// One list of all points, sorted for the arm; empty when no point has it.
+/// One field of all points in the joint order of UR. Empty if it is empty in all points.
 Expected<std::vector<Values>> read_list(const Points & points, const std::array<std::size_t, 6> & order,
                                         std::string_view name,
                                         Values trajectory_msgs::msg::JointTrajectoryPoint::* field)
@@ -36,8 +36,8 @@ Expected<std::vector<Values>> read_list(const Points & points, const std::array<
     }
     if (values.size() != order.size()) {
       return failure(ErrorCode::invalid_goal,
-                     fmt::format("points[{}].{} has {} values, points[0].{} has {}: give 6 in each point, or "
-                                 "none in any",
+                     fmt::format("points[{}].{} has {} values, points[0].{} has {}: set 6 values in every "
+                                 "point, or none in all points",
                                  i, name, values.size(), name, (points.front().*field).size()));
     }
     Values sorted(order.size());
@@ -58,14 +58,14 @@ void require(Check & check, const Status & status)
 }
 
 void check_limits(Check & check, std::string_view field, const std::vector<double> & values,
-                  const trajectory::Joints & highest, std::string_view unit)
+                  const trajectory::Joints & max, std::string_view unit)
 {
-  check.that(values.empty() || values.size() == 6,
-             fmt::format("{} has {} values, it takes 6, one a joint, or none for the defaults", field,
-                         values.size()));
+  check.that(
+      values.empty() || values.size() == 6,
+      fmt::format("{} has {} values: set 6, one per joint, or none for the defaults", field, values.size()));
   for (std::size_t i = 0; i < values.size() && check.ok(); ++i) {
     check.above_zero(fmt::format("{}[{}] ({})", field, i, joint_names()[i]), values[i],
-                     highest[static_cast<int>(i)], unit);
+                     max[static_cast<int>(i)], unit);
   }
 }
 
@@ -107,7 +107,7 @@ Expected<trajectory::TimedWaypoints> timed_waypoints(const trajectory_msgs::msg:
     return tl::unexpected(order.error());
   }
   if (message.points.empty()) {
-    return failure(ErrorCode::invalid_goal, "points is empty: give at least one");
+    return failure(ErrorCode::invalid_goal, "points is empty: set at least one");
   }
   trajectory::TimedWaypoints waypoints;
   for (const Point & point : message.points) {
@@ -124,7 +124,7 @@ Expected<trajectory::TimedWaypoints> timed_waypoints(const trajectory_msgs::msg:
     *list = std::move(*read);
   }
   if (waypoints.positions.empty()) {
-    return failure(ErrorCode::invalid_goal, "points[0].positions has 0 values, it takes 6");
+    return failure(ErrorCode::invalid_goal, "points[0].positions has 0 values, it must have 6");
   }
   return waypoints;
 }

@@ -10,15 +10,15 @@
 
 namespace ur_ros_rtde {
 
-/// What a check says that knows nothing of goals.
+/// Fails the check with the error of `status`, if it has one.
 void require(Check & check, const Status & status);
 
-/// The limits of a goal: none, or one a joint, each above zero and at most `highest`.
+/// Checks the limits of a goal: empty, or one value per joint, each above zero and at most `max`.
 void check_limits(Check & check, std::string_view field, const std::vector<double> & values,
-                  const trajectory::Joints & highest, std::string_view unit);
+                  const trajectory::Joints & max, std::string_view unit);
 
-/// What the goals for trajectories have in common: max_velocity, max_acceleration, max_jerk, lookahead_time,
-/// gain, max_tracking_error.
+/// Checks the fields that the goals of trajectories have in common: max_velocity, max_acceleration, max_jerk,
+/// lookahead_time, gain, max_tracking_error.
 template <typename Goal>
 void check_trajectory_goal(Check & check, const Goal & goal, const ArmLimits & arm)
 {
@@ -32,33 +32,33 @@ void check_trajectory_goal(Check & check, const Goal & goal, const ArmLimits & a
       .above_zero("max_tracking_error", goal.max_tracking_error, 3.14, "rad");
 }
 
-/// The goal's limits, which check_trajectory_goal() has passed; `limits` where it gives none.
+/// The limits of a goal that check_trajectory_goal() has accepted. Empty fields keep the values of `limits`.
 template <typename Goal>
 trajectory::Limits goal_limits(const Goal & goal, trajectory::Limits limits)
 {
-  const auto take = [](trajectory::Joints & limit, const std::vector<double> & given) {
+  const auto replace = [](trajectory::Joints & limit, const std::vector<double> & given) {
     if (!given.empty()) {
       limit = Eigen::Map<const trajectory::Joints>(given.data());
     }
   };
-  take(limits.velocity, goal.max_velocity);
-  take(limits.acceleration, goal.max_acceleration);
-  take(limits.jerk, goal.max_jerk);
+  replace(limits.velocity, goal.max_velocity);
+  replace(limits.acceleration, goal.max_acceleration);
+  replace(limits.jerk, goal.max_jerk);
   return limits;
 }
 
-/// Six values, as they are known to be.
+/// Converts a vector that is known to have six values.
 inline trajectory::Joints to_joints(const std::vector<double> & values)
 {
   return Eigen::Map<const trajectory::Joints>(values.data());
 }
 
-/// For each joint of the arm its place among `names`; `names` may be in any order and share a prefix; none:
-/// UR's order.
+/// The index in `names` of each joint of the arm. The names may be in any order and have a common prefix.
+/// Empty `names` mean the order of UR.
 Expected<std::array<std::size_t, 6>> joint_order(const std::vector<std::string> & names);
 
-/// The points of a trajectory in UR's order. Refused: what is not complete or not finite. Does not look at
-/// limits.
+/// Converts the points of a trajectory to the joint order of UR. Fails if the trajectory is incomplete. Does
+/// not check limits.
 Expected<trajectory::TimedWaypoints> timed_waypoints(const trajectory_msgs::msg::JointTrajectory & message);
 
 }  // namespace ur_ros_rtde

@@ -16,12 +16,12 @@ using trajectory::Limits;
 using trajectory::StreamClock;
 using trajectory::Trajectory;
 
-/// s: how fast the arm slows down when its target stands still, at least.
-constexpr double least_memory = 0.1;
-constexpr double following_reserve = 0.1;  // s, beyond lookahead_time
-constexpr double standing = 0.01;          // a rate below which there is nothing left to brake
-constexpr std::chrono::seconds package_limit{1};
-constexpr double servo_stop_deceleration = 5.0;  // m/s^2; the arm stands already
+/// s. Lower limit of the time constant with which the arm slows down when its setpoint stops.
+constexpr double min_memory = 0.1;
+constexpr double lag_reserve = 0.1;    // s, beyond lookahead_time
+constexpr double stopped_rate = 0.01;  // the rate below which braking is not necessary
+constexpr std::chrono::seconds package_timeout{1};
+constexpr double servo_stop_deceleration = 5.0;  // m/s^2; the arm is already at rest
 
 double cycle_of(const Robot & robot)
 {
@@ -29,8 +29,8 @@ double cycle_of(const Robot & robot)
   return 1.0 / (version ? version->frequency() : 500.0);
 }
 
-/// The lesser of both: controllers differ in whether the one contains the other.
-double wanted_rate(const Sample & sample)
+/// The smaller of both fractions, because only some controllers include the slider in speed_scaling.
+double requested_rate(const Sample & sample)
 {
   return std::clamp(std::min(sample.speed_scaling, sample.target_speed_fraction), 0.0, 1.0);
 }
@@ -42,7 +42,7 @@ ServoStream::ServoStream(Run & run, ServoSettings settings, Watch watch)
       settings_(std::move(settings)),
       watch_(std::move(watch)),
       cycle_(cycle_of(run.robot())),
-      memory_(std::max(settings_.lookahead_time, least_memory)),
+      memory_(std::max(settings_.lookahead_time, min_memory)),
       target_(trajectory::joint_count)
 {
   state_.sample = run.state();
@@ -54,16 +54,16 @@ Outcome ServoStream::drive(const Trajectory & plan, const Limits & limits)
   state_.sample = run_.state();
   const Joints end = plan.sample(plan.duration()).position;
   std::copy(end.begin(), end.end(), target_.begin());
-  StreamClock clock(cycle_, memory_, wanted_rate(state_.sample));
+  StreamClock clock(cycle_, memory_, requested_rate(state_.sample));
   while (clock.time() < plan.duration()) {
     const double before = state_.sample.controller_time;
-    if (const auto why = run_.next(state_.sample)) {
+    if (const auto stop_reason = run_.next(state_.sample)) {
       elapsed_ = state_.sample.controller_time - before;
       brake(plan, limits, clock);
-      return *why;
+      return *stop_reason;
     }
     elapsed_ = state_.sample.controller_time - before;
-    clock.advance(elapsed_, wanted_rate(state_.sample), plan.sample(clock.time()), limits);
+    clock.advance(elapsed_, requested_rate(state_.sample), plan.sample(clock.time()), limits);
     if (Status sent = send(plan, clock.time()); !sent) {
       return sent;
     }
@@ -77,20 +77,20 @@ Status ServoStream::send(const Trajectory & plan, double time)
   state_.desired = plan.sample(state_.time);
   std::copy(state_.desired.position.begin(), state_.desired.position.end(), target_.begin());
   run_.control()->servoJ(target_, 0.0, 0.0, cycle_, settings_.lookahead_time, settings_.gain);
-  measure();
+  update_tracking_error();
   if (state_.tracking_error > settings_.max_tracking_error) {
     return failure(ErrorCode::not_reached,
-                   fmt::format("the arm is {:.4f} rad behind the trajectory {:.2f} s after its beginning, "
-                               "max_tracking_error is {:.4f} rad: is something in the way, or the gain low?",
+                   fmt::format("the tracking error is {:.4f} rad {:.2f} s after the start of the trajectory, "
+                               "max_tracking_error is {:.4f} rad: check for obstacles and for a low gain",
                                state_.tracking_error, state_.time, settings_.max_tracking_error));
   }
   return watch_(plan, state_);
 }
 
-void ServoStream::measure()
+void ServoStream::update_tracking_error()
 {
   const Sample & sample = state_.sample;
-  const double oldest = sample.controller_time - settings_.lookahead_time - following_reserve;
+  const double oldest = sample.controller_time - settings_.lookahead_time - lag_reserve;
   targets_.push_back({sample.controller_time, state_.desired.position, state_.desired.velocity});
   while (targets_.front().controller_time < oldest) {
     targets_.pop_front();
@@ -105,13 +105,13 @@ void ServoStream::measure()
       state_.velocity_error = target.velocity - Eigen::Map<const Joints>(sample.actual_qd.data());
     }
   }
-  largest_error_ = std::max(largest_error_, state_.tracking_error);
+  max_tracking_error_ = std::max(max_tracking_error_, state_.tracking_error);
 }
 
 bool ServoStream::next_package()
 {
   const double before = state_.sample.controller_time;
-  const auto deadline = std::chrono::steady_clock::now() + package_limit;
+  const auto deadline = std::chrono::steady_clock::now() + package_timeout;
   while (std::chrono::steady_clock::now() < deadline && run_.robot().motion_possible()) {
     if (run_.robot().wait_for_next(state_.sample, std::chrono::milliseconds(10))) {
       elapsed_ = state_.sample.controller_time - before;
@@ -121,10 +121,10 @@ bool ServoStream::next_package()
   return false;
 }
 
-bool ServoStream::keep_going(const Trajectory & plan, const Limits & limits, StreamClock & clock,
-                             const std::function<bool()> & enough)
+bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits, StreamClock & clock,
+                                 const std::function<bool()> & done)
 {
-  while (clock.time() < plan.duration() && !enough()) {
+  while (clock.time() < plan.duration() && !done()) {
     if (!next_package()) {
       return false;
     }
@@ -136,12 +136,12 @@ bool ServoStream::keep_going(const Trajectory & plan, const Limits & limits, Str
   return true;
 }
 
-/// The stop is searched for in a thread of its own, the arm goes on meanwhile: it is a part of the same plan
-/// up to a moment `ahead`. Should the search take longer, it begins again farther ahead.
+/// The stop is planned in a separate thread while the arm continues along the plan. The stop begins `ahead` s
+/// later. If the planning takes longer, it is repeated with a larger `ahead`.
 void ServoStream::brake(const Trajectory & plan, const Limits & limits, StreamClock & clock)
 {
-  for (double ahead = 0.02; ahead < 1.0 && clock.rate() > standing; ahead *= 4.0) {
-    if (settings_.stopped_by_another() || !run_.robot().motion_possible()) {
+  for (double ahead = 0.02; ahead < 1.0 && clock.rate() > stopped_rate; ahead *= 4.0) {
+    if (settings_.preempted_by_stop() || !run_.robot().motion_possible()) {
       return;
     }
     const double rate = clock.rate();
@@ -150,13 +150,13 @@ void ServoStream::brake(const Trajectory & plan, const Limits & limits, StreamCl
       return plan.slowed(rate).stop_from(from / rate, limits);
     });
     const auto found = [&] { return search.wait_for(std::chrono::seconds(0)) == std::future_status::ready; };
-    if (!keep_going(plan, limits, clock, found)) {
+    if (!continue_until(plan, limits, clock, found)) {
       return;
     }
     const Trajectory stop = search.get();
     if (clock.time() <= from) {
       StreamClock braking(cycle_, memory_, 1.0, clock.time() / rate);
-      keep_going(stop, limits, braking, settings_.stopped_by_another);
+      continue_until(stop, limits, braking, settings_.preempted_by_stop);
       return;
     }
   }

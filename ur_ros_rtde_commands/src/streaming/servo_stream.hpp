@@ -13,37 +13,38 @@ struct ServoSettings {
   double lookahead_time = 0.1;      ///< s, 0.03 to 0.2
   double gain = 600.0;              ///< 100 to 2000
   double max_tracking_error = 0.3;  ///< rad
-  /// True when whoever ends the goal has said how to decelerate: then that is done, not along the path.
-  std::function<bool()> stopped_by_another = [] { return false; };
+  /// True if the goal was preempted by a command that determines the deceleration. The arm then does not
+  /// brake along the path.
+  std::function<bool()> preempted_by_stop = [] { return false; };
 };
 
-/// Where the stream is, after each target.
+/// The state of the stream after each setpoint.
 struct StreamState {
-  double time = 0.0;  ///< s, of the plan
+  double time = 0.0;  ///< s since the start of the trajectory
   trajectory::Point desired;
   Sample sample;
-  /// What the arm is behind: target less actual. It follows a target after about lookahead_time, so it is
-  /// compared with the targets of the last lookahead_time and 0.1 s, and the nearest one counts.
+  /// Setpoint minus actual value. The arm follows a setpoint after about lookahead_time, so it is compared
+  /// with the nearest setpoint of the last lookahead_time + 0.1 s.
   trajectory::Joints position_error, velocity_error;
-  double tracking_error = 0.0;  ///< rad, of the joint that is farthest behind
+  double tracking_error = 0.0;  ///< rad, the largest of all joints
 };
 
 /// Sends a plan to the controller as targets of servoJ, one with each of its packages, on a StreamClock. The
 /// rate follows the controller's speed scaling and the speed slider, which servoJ itself ignores.
 class ServoStream {
  public:
-  /// Called after each target; what it refuses ends the stream.
+  /// Called after each setpoint. A failure ends the stream.
   using Watch = std::function<Status(const trajectory::Trajectory &, const StreamState &)>;
 
   ServoStream(Run & run, ServoSettings settings, Watch watch);
 
-  /// From the beginning of `plan`, where the arm is, to its last target. When the goal has to end meanwhile
-  /// and the arm can still be moved, brakes along the path within `limits`, and returns why.
+  /// Streams `plan`, which starts at the position of the arm. If the goal has to stop meanwhile and the arm
+  /// can still move, brakes along the path within `limits` and returns the reason.
   Outcome drive(const trajectory::Trajectory & plan, const trajectory::Limits & limits);
-  /// The arm has followed the last target; servo control ends.
+  /// Waits until the arm has followed the last setpoint, then ends servo control.
   Outcome settle();
 
-  double max_tracking_error() const { return largest_error_; }
+  double max_tracking_error() const { return max_tracking_error_; }
 
  private:
   struct Target {
@@ -52,11 +53,11 @@ class ServoStream {
   };
 
   Status send(const trajectory::Trajectory & plan, double time);
-  void measure();
+  void update_tracking_error();
   bool next_package();
-  /// Sends the plan's targets until its end or until `enough`; false when the arm cannot be moved any more.
-  bool keep_going(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
-                  trajectory::StreamClock & clock, const std::function<bool()> & enough);
+  /// Streams the plan until its end or until `done`. False if the arm can no longer be moved.
+  bool continue_until(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
+                      trajectory::StreamClock & clock, const std::function<bool()> & done);
   void brake(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
              trajectory::StreamClock & clock);
 
@@ -69,7 +70,7 @@ class ServoStream {
   double elapsed_ = 0.0;  // s between the last two packages
   std::vector<double> target_;
   std::deque<Target> targets_;
-  double largest_error_ = 0.0;
+  double max_tracking_error_ = 0.0;
 };
 
 }  // namespace ur_ros_rtde

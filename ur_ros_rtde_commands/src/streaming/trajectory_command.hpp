@@ -8,8 +8,8 @@
 
 namespace ur_ros_rtde {
 
-/// What the commands of the group `trajectory` share: the arm's limits, and the fields that their goals,
-/// results and feedback have in common.
+/// Base class of the trajectory commands: the limits of the arm, and the fields that their goals, results and
+/// feedback have in common.
 template <typename A>
 class TrajectoryCommand : public Command<A> {
  public:
@@ -25,12 +25,12 @@ class TrajectoryCommand : public Command<A> {
  protected:
   CommandHost & host() const { return *host_; }
   ArmLimits arm() const { return host_->limits(); }
-  /// Of goals whose times are not given, where they name no limits.
+  /// The default limits of goals without times.
   trajectory::Limits slow_limits() const { return trajectory::slow_limits(trajectory::make_limits(arm())); }
 
-  /// All but plan.
-  Execution execution(const Goal & goal, Run & run) const;
-  /// With the result's own fields.
+  /// The parameters of the goal. `plan` is left empty.
+  Execution make_execution(const Goal & goal, Run & run) const;
+  /// Fills in the result and returns the outcome.
   static Outcome finish(const ExecutionResult & executed, Run & run)
   {
     run.result().max_tracking_error = executed.max_tracking_error;
@@ -42,7 +42,7 @@ class TrajectoryCommand : public Command<A> {
 };
 
 template <typename A>
-Execution TrajectoryCommand<A>::execution(const Goal & goal, Run & run) const
+Execution TrajectoryCommand<A>::make_execution(const Goal & goal, Run & run) const
 {
   Execution execution;
   if constexpr (requires { goal.start_tolerance; }) {
@@ -54,7 +54,7 @@ Execution TrajectoryCommand<A>::execution(const Goal & goal, Run & run) const
   }
   execution.servo = {goal.lookahead_time, goal.gain, goal.max_tracking_error,
                      [this] { return host_->preemption_stop().has_value(); }};
-  execution.planned = [&run](const trajectory::Trajectory & plan) {
+  execution.on_planned = [&run](const trajectory::Trajectory & plan) {
     run.result().duration = plan.duration();
   };
   execution.watch = [&run](const trajectory::Trajectory & plan, const StreamState & state) {

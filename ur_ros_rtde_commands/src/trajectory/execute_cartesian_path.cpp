@@ -18,22 +18,23 @@ constexpr std::size_t most_poses = 10000;
 Vector6 to_array(const std::vector<double> & values)
 {
   if (values.size() != 6) {
-    throw RobotError({ErrorCode::rejected_by_robot, "the robot did not answer with six values"});
+    throw RobotError({ErrorCode::rejected_by_robot,
+                      fmt::format("the robot answered with {} values instead of 6", values.size())});
   }
   Vector6 result;
   std::copy(values.begin(), values.end(), result.begin());
   return result;
 }
 
-/// The controller's own inverse kinematics, which know this arm's calibration.
-Expected<Joints> ask_controller(Robot & robot, const Pose & pose, const Joints & guess)
+/// The inverse kinematics of the controller, which include the calibration of the arm.
+Expected<Joints> query_inverse_kinematics(Robot & robot, const Pose & pose, const Joints & guess)
 {
   const Vector6 target = kinematics::to_ur(pose);
   const auto q =
       robot.control()->getInverseKinematics({target.begin(), target.end()}, {guess.begin(), guess.end()});
   if (q.size() != 6) {
     return failure(ErrorCode::unreachable,
-                   fmt::format("the controller knows no joint positions for ({:.3f}, {:.3f}, {:.3f}) m",
+                   fmt::format("the controller finds no joint positions for ({:.3f}, {:.3f}, {:.3f}) m",
                                target[0], target[1], target[2]));
   }
   return to_joints(q);
@@ -48,7 +49,7 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
         .above_zero("rotation_speed", goal.rotation_speed, 6.28, "rad/s")
         .in_range("blend_radius", goal.blend_radius, 0.0, 1.0, "m")
         .that(!goal.poses.empty() && goal.poses.size() <= most_poses,
-              fmt::format("poses has {} entries, it takes 1 to {}", goal.poses.size(), most_poses));
+              fmt::format("poses has {} entries, it must have 1 to {}", goal.poses.size(), most_poses));
     for (std::size_t i = 0; i < goal.poses.size() && check.ok(); ++i) {
       check.pose(fmt::format("poses[{}]", i), goal.poses[i]);
     }
@@ -65,11 +66,11 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
       poses.push_back(kinematics::to_pose(to_array(to_ur(pose))));
     }
     warn_of_turn_to_identity(run, path_poses("poses", goal.poses));
-    Execution execution = this->execution(goal, run);
+    Execution execution = make_execution(goal, run);
     execution.plan = [&](const Joints & start, const std::stop_token & stop) {
       const trajectory::Limits limits = goal_limits(goal, slow_limits());
       const auto reference = [&run](const Pose & pose, const Joints & guess) {
-        return ask_controller(run.robot(), pose, guess);
+        return query_inverse_kinematics(run.robot(), pose, guess);
       };
       return kinematics::recognise_arm(start, poses.front(), tool)
           .and_then([&](const kinematics::Arm & known) {
@@ -77,7 +78,7 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
                                               {goal.speed, goal.rotation_speed, goal.blend_radius}, reference,
                                               stop);
           })
-          .map([&](trajectory::Trajectory plan) { return Planned{std::move(plan), limits}; });
+          .map([&](trajectory::Trajectory plan) { return PlannedTrajectory{std::move(plan), limits}; });
     };
     return finish(execute(run, execution), run);
   }

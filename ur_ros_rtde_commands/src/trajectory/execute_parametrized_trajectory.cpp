@@ -2,6 +2,7 @@
 
 #include <ur_ros_rtde_msgs/action/execute_parametrized_trajectory.hpp>
 
+#include "streaming/timed_trajectory.hpp"
 #include "streaming/trajectory_command.hpp"
 
 namespace ur_ros_rtde {
@@ -13,33 +14,22 @@ class ExecuteParametrizedTrajectory
     check_trajectory_goal(check, goal, arm());
     check.above_zero("start_tolerance", goal.start_tolerance, 3.2, "rad")
         .that(goal.trajectory.points.size() >= 2,
-              fmt::format("trajectory.points has {} points, it takes 2 to {}", goal.trajectory.points.size(),
-                          trajectory::max_timed_waypoints));
-    auto waypoints = timed_waypoints(goal.trajectory);
-    require(check, waypoints.map([](const auto &) {}));
-    if (!check.ok()) {
-      return;
-    }
-    const trajectory::Joints first = to_joints(waypoints->positions.front());
-    const bool begins_there = waypoints->times.front() == 0.0;
-    trajectory::begin_at(*waypoints, first);
-    require(check, trajectory::check_timed(*waypoints, goal_limits(goal, trajectory::make_limits(arm()))));
-    if (const auto sample = check.start(); sample && begins_there) {
-      require(check, check_start_position(first, commanded_joints(*sample), goal.start_tolerance));
+              fmt::format("trajectory.points has {} points, it must have 2 to {}",
+                          goal.trajectory.points.size(), trajectory::max_timed_waypoints));
+    if (check.ok()) {
+      check_timed_trajectory(check, goal.trajectory, goal_limits(goal, trajectory::make_limits(arm())),
+                             goal.start_tolerance);
     }
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    Execution execution = this->execution(goal, run);
+    Execution execution = make_execution(goal, run);
     execution.plan = [&](const trajectory::Joints & start, const std::stop_token &) {
       const trajectory::Limits limits = goal_limits(goal, trajectory::make_limits(arm()));
-      return timed_waypoints(goal.trajectory)
-          .and_then([&](trajectory::TimedWaypoints waypoints) {
-            trajectory::begin_at(waypoints, start);
-            return trajectory::plan_timed(waypoints, limits);
-          })
-          .map([&](trajectory::Trajectory plan) { return Planned{std::move(plan), limits}; });
+      return plan_timed_trajectory(goal.trajectory, start, limits).map([&](trajectory::Trajectory plan) {
+        return PlannedTrajectory{std::move(plan), limits};
+      });
     };
     return finish(execute(run, execution), run);
   }

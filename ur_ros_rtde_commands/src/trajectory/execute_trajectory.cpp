@@ -34,12 +34,12 @@ class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::Exe
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    Execution execution = this->execution(goal, run);
+    Execution execution = make_execution(goal, run);
     execution.plan = [&](const trajectory::Joints &, std::stop_token stop) {
       const trajectory::Limits limits = goal_limits(goal, slow_limits());
       return trajectory::plan_path(positions_of(goal.waypoints), limits,
                                    {goal.blend_tolerance, 0.35, goal.speed_fraction, std::move(stop)})
-          .map([&](trajectory::Trajectory plan) { return Planned{std::move(plan), limits}; });
+          .map([&](trajectory::Trajectory plan) { return PlannedTrajectory{std::move(plan), limits}; });
     };
     return finish(execute(run, execution), run);
   }

@@ -11,14 +11,14 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// Beside the time that the goal gives: stop, way back, and a controller that runs slower than this clock.
-constexpr std::chrono::seconds reserve{60};
-constexpr std::string_view joints_mark = "ur_ros_rtde: contact at ";
-constexpr std::string_view pose_mark = "ur_ros_rtde: contact pose ";
-constexpr std::string_view time_mark = "ur_ros_rtde: no contact in time";
+/// Time beyond the timeout of the goal, for the stop, the retraction, and a slow clock of the controller.
+constexpr std::chrono::seconds script_reserve{60};
+constexpr std::string_view joints_marker = "ur_ros_rtde: contact at ";
+constexpr std::string_view pose_marker = "ur_ros_rtde: contact pose ";
+constexpr std::string_view timeout_marker = "ur_ros_rtde: no contact in time";
 
-/// One turn of the loop is one control cycle, which speedl takes.
-constexpr std::string_view search = R"(begin = get_actual_tcp_pose()
+/// Each iteration takes one control cycle, in speedl.
+constexpr std::string_view search_script = R"(begin = get_actual_tcp_pose()
 steps = 0
 way = 0
 time = 0
@@ -31,40 +31,40 @@ end
 if steps > 0:
   q = get_actual_joint_positions_history(steps)
   stopl({deceleration})
-  textmsg("{joints_mark}", q)
-  textmsg("{pose_mark}", get_forward_kin(q))
+  textmsg("{joints_marker}", q)
+  textmsg("{pose_marker}", get_forward_kin(q))
   if {retract}:
     movel(q, a=0.5, v=0.05)
   end
 else:
   stopl({deceleration})
   if time >= {timeout}:
-    textmsg("{time_mark}")
+    textmsg("{timeout_marker}")
   end
 end
 )";
-/// m/s^2: quick, as one is in contact; that of ur_rtde's own contact detection.
-constexpr double deceleration = 3.0;
+/// m/s^2, as in the contact detection of ur_rtde.
+constexpr double contact_deceleration = 3.0;
 
-std::string program(const ContactMotion & motion)
+std::string contact_program(const ContactMotion & motion)
 {
   const auto & d = motion.direction;
-  const bool given = d.x != 0.0 || d.y != 0.0 || d.z != 0.0;
-  const auto & way = given ? d : motion.twist.linear;
+  const bool has_direction = d.x != 0.0 || d.y != 0.0 || d.z != 0.0;
+  const auto & direction = has_direction ? d : motion.twist.linear;
   return fmt::format(
-      fmt::runtime(search), fmt::arg("distance", motion.distance), fmt::arg("timeout", motion.timeout),
+      fmt::runtime(search_script), fmt::arg("distance", motion.distance), fmt::arg("timeout", motion.timeout),
       fmt::arg("twist", fmt::join(to_ur(motion.twist), ", ")), fmt::arg("acceleration", motion.acceleration),
-      fmt::arg("direction", fmt::format("{}, {}, {}", way.x, way.y, way.z)),
-      fmt::arg("deceleration", deceleration), fmt::arg("retract", motion.retract ? "True" : "False"),
-      fmt::arg("joints_mark", joints_mark), fmt::arg("pose_mark", pose_mark),
-      fmt::arg("time_mark", time_mark));
+      fmt::arg("direction", fmt::format("{}, {}, {}", direction.x, direction.y, direction.z)),
+      fmt::arg("deceleration", contact_deceleration), fmt::arg("retract", motion.retract ? "True" : "False"),
+      fmt::arg("joints_marker", joints_marker), fmt::arg("pose_marker", pose_marker),
+      fmt::arg("timeout_marker", timeout_marker));
 }
 
-/// The list or pose that follows `mark` in a text message: "… [1, 2, 3, 4, 5, 6]".
-std::optional<Vector6> parse_vector6(std::string_view mark, const std::string & text)
+/// The list or pose after `marker` in a text message: "… [1, 2, 3, 4, 5, 6]".
+std::optional<Vector6> parse_vector6(std::string_view marker, const std::string & text)
 {
   const auto bracket = text.find('[');
-  if (!text.starts_with(mark) || bracket == std::string::npos) {
+  if (!text.starts_with(marker) || bracket == std::string::npos) {
     return std::nullopt;
   }
   Vector6 values;
@@ -90,7 +90,7 @@ Check & check_direction(Check & check, const geometry_msgs::msg::Twist & directi
 int contact_steps(Run & run, const std::vector<double> & direction)
 {
   const int steps = run.control()->toolContact(direction);
-  // An answer that did not come reads as 0.
+  // ur_rtde returns 0 if there is no answer.
   if (const Status possible = run.robot().motion_possible(); !possible) {
     throw RobotError(possible.error());
   }
@@ -98,25 +98,25 @@ int contact_steps(Run & run, const std::vector<double> & direction)
 }
 
 Outcome move_until_contact(Run & run, const ContactMotion & motion,
-                           const std::function<void(const ur_ros_rtde_msgs::msg::ArmState &)> & found)
+                           const std::function<void(const ur_ros_rtde_msgs::msg::ArmState &)> & on_contact)
 {
   std::optional<Vector6> joints, pose;
   bool timed_out = false;
   const Vector6 start = run.state().actual_tcp_pose;
   ScriptOptions options;
-  options.limit =
-      std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(motion.timeout) + reserve);
+  options.limit = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(motion.timeout) +
+                                                               script_reserve);
   options.on_text = [&](const std::string & text) {
-    joints = joints ? joints : parse_vector6(joints_mark, text);
-    pose = pose ? pose : parse_vector6(pose_mark, text);
-    timed_out = timed_out || text.starts_with(time_mark);
+    joints = joints ? joints : parse_vector6(joints_marker, text);
+    pose = pose ? pose : parse_vector6(pose_marker, text);
+    timed_out = timed_out || text.starts_with(timeout_marker);
   };
-  const ScriptReport report = run.run_script(program(motion), options);
+  const ScriptReport report = run.run_script(contact_program(motion), options);
   if (joints && pose) {
     ur_ros_rtde_msgs::msg::ArmState state;
     state.joint_positions = *joints;
     state.tcp_pose = to_ros(*pose);
-    found(state);
+    on_contact(state);
   }
   if (!report) {
     return report.error;
@@ -127,7 +127,7 @@ Outcome move_until_contact(Run & run, const ContactMotion & motion,
   if (!joints || !pose) {
     const Vector6 end = run.state().actual_tcp_pose;
     return Outcome::failure(ErrorCode::not_reached,
-                            fmt::format("no contact within {} m: the TCP went {:.3f} m", motion.distance,
+                            fmt::format("no contact within {} m: the TCP moved {:.3f} m", motion.distance,
                                         std::hypot(end[0] - start[0], end[1] - start[1], end[2] - start[2])));
   }
   return Outcome::success();

@@ -13,32 +13,33 @@
 
 namespace ur_ros_rtde {
 
-/// The PolyScope 5 that brought tool_contact (UR, Script Manual); there is none on a CB3.
-constexpr unsigned contact_polyscope = 4;
+/// tool_contact exists since PolyScope 5.4 (UR, Script Manual), and not on a CB3.
+constexpr unsigned min_contact_polyscope = 4;
 
-/// For directions, whose length does not matter.
+/// The limit for directions, whose length does not matter.
 constexpr double any_length = 1e9;
 Check & check_direction(Check & check, const geometry_msgs::msg::Twist & direction);
 
-/// Control cycles since the tool began to touch something in `direction` (UR's twist in the base frame; only
-/// the linear part counts, zero: any direction); 0: it touches nothing. Throws RobotError when the control
-/// program cannot answer now.
+/// The number of control cycles since the contact of the tool in `direction` began, 0 without contact.
+/// `direction` is a UR twist in the base frame; only its linear part is used, zero for any direction. Throws
+/// RobotError if the control program cannot answer now.
 int contact_steps(Run & run, const std::vector<double> & direction);
 
-/// A motion until the controller detects a contact, in its own terms: m, s, m/s^2.
+/// A motion until the controller detects a contact, in m, s, m/s^2.
 struct ContactMotion {
   geometry_msgs::msg::Twist twist;
-  geometry_msgs::msg::Vector3 direction;  ///< zero: that of twist.linear
+  geometry_msgs::msg::Vector3 direction;  ///< zero: the direction of twist.linear
   double acceleration;
   double timeout;
   double distance;
   bool retract;
 };
 
-/// Runs the motion in the controller, by a program in the place of the control program (hold
-/// Resource::script): it looks at the contact in each control cycle. `found` is told where the contact began,
-/// if there is one. not_reached when there is none on the way, timeout when the time is over.
+/// Executes the motion with a script that replaces the control program (requires Resource::script) and checks
+/// for contact in each control cycle. Calls `on_contact` with the state in which the contact began. Fails
+/// with not_reached if there is no contact within `distance`, and with timeout if there is none within
+/// `timeout`.
 Outcome move_until_contact(Run & run, const ContactMotion & motion,
-                           const std::function<void(const ur_ros_rtde_msgs::msg::ArmState &)> & found);
+                           const std::function<void(const ur_ros_rtde_msgs::msg::ArmState &)> & on_contact);
 
 }  // namespace ur_ros_rtde

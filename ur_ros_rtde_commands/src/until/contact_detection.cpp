@@ -7,8 +7,8 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// Each question takes the control program three of its cycles, in which it takes no other command.
-constexpr std::chrono::milliseconds question_interval{20};
+/// A query occupies the control program for three cycles, in which it executes no other command.
+constexpr std::chrono::milliseconds query_interval{20};
 
 builtin_interfaces::msg::Duration to_ros(std::chrono::nanoseconds duration)
 {
@@ -24,11 +24,11 @@ bool is_zero(const std::vector<double> & direction)
   return direction[0] == 0.0 && direction[1] == 0.0 && direction[2] == 0.0;
 }
 
-/// As the goal gives it, or where the TCP is to go now.
-std::vector<double> direction_now(const std::vector<double> & given, const Sample & sample)
+/// The direction of the goal, or the current direction of the TCP if it is zero.
+std::vector<double> contact_direction(const std::vector<double> & direction, const Sample & sample)
 {
   const Vector6 & motion = sample.target_tcp_speed;
-  return is_zero(given) ? std::vector<double>(motion.begin(), motion.end()) : given;
+  return is_zero(direction) ? std::vector<double>(motion.begin(), motion.end()) : direction;
 }
 
 double seconds(std::chrono::nanoseconds duration)
@@ -36,14 +36,14 @@ double seconds(std::chrono::nanoseconds duration)
   return std::chrono::duration<double>(duration).count();
 }
 
-Outcome ask_until(const std::function<bool()> & touches, double timeout, Run & run)
+Outcome wait_for_contact(const std::function<bool()> & in_contact, double timeout, Run & run)
 {
-  while (!touches()) {
+  while (!in_contact()) {
     if (seconds(run.elapsed()) > timeout) {
       return Outcome::failure(ErrorCode::timeout, fmt::format("no contact within {} s", timeout));
     }
-    if (auto why = run.sleep_for(question_interval)) {
-      return *why;
+    if (auto stop_reason = run.sleep_for(query_interval)) {
+      return *stop_reason;
     }
   }
   return Outcome::success();
@@ -57,18 +57,18 @@ class ContactDetection : public Command<ur_ros_rtde_msgs::action::ContactDetecti
   {
     check_direction(check, goal.direction)
         .above_zero("timeout", goal.timeout, 86400.0, "s")
-        .polyscope(contact_polyscope)
+        .polyscope(min_contact_polyscope)
         .answers();
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    const auto touches = [&] {
+    const auto in_contact = [&] {
       run.feedback().elapsed = to_ros(run.elapsed());
       run.publish();
-      return contact_steps(run, direction_now(to_ur(goal.direction), run.state())) > 0;
+      return contact_steps(run, contact_direction(to_ur(goal.direction), run.state())) > 0;
     };
-    const Outcome outcome = ask_until(touches, goal.timeout, run);
+    const Outcome outcome = wait_for_contact(in_contact, goal.timeout, run);
     run.result().after = seconds(run.elapsed());
     return outcome;
   }

@@ -15,7 +15,7 @@ class MoveUntilContact : public Command<ur_ros_rtde_msgs::action::MoveUntilConta
         .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2")
         .above_zero("timeout", goal.timeout, 3600.0, "s")
         .above_zero("distance", goal.distance, 3.0, "m")
-        .polyscope(contact_polyscope);
+        .polyscope(min_contact_polyscope);
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -9,7 +9,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr int packages_at_rest = 10;
+constexpr int offset_packages = 10;
 
 geometry_msgs::msg::Vector3 to_ros(const Vector3 & v)
 {
@@ -20,7 +20,7 @@ geometry_msgs::msg::Vector3 to_ros(const Vector3 & v)
   return message;
 }
 
-/// std::hypot of three may lose a NaN.
+/// Unlike std::hypot of three values, returns NaN for a NaN.
 double length(const Vector3 & v)
 {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -40,8 +40,9 @@ void MoveUntilWrench::check(const Goal & goal, Check & check) const
       .above_zero("timeout", goal.timeout, 3600.0, "s")
       .above_zero("distance", goal.distance, 3.0, "m")
       .in_range("frame", goal.frame, Goal::BASE, Goal::TOOL)
-      .that(goal.axes[0] || goal.axes[1] || goal.axes[2], "axes are all false: one at least has to count")
-      .above_zero("threshold", goal.threshold, part_.highest_threshold, part_.unit);
+      .that(goal.axes[0] || goal.axes[1] || goal.axes[2],
+            "axes is false for all axes: at least one axis has to be true")
+      .above_zero("threshold", goal.threshold, part_.max_threshold, part_.unit);
 }
 
 Vector3 MoveUntilWrench::measure(const Goal & goal, const Sample & sample) const
@@ -54,23 +55,23 @@ Vector3 MoveUntilWrench::measure(const Goal & goal, const Sample & sample) const
   return part;
 }
 
-std::optional<StopReason> MoveUntilWrench::rest(const Goal & goal, Run & run, Vector3 & mean) const
+std::optional<StopReason> MoveUntilWrench::measure_offset(const Goal & goal, Run & run, Vector3 & mean) const
 {
   mean = {};
   Sample sample = run.state();
-  for (int package = 0; package < packages_at_rest; ++package) {
+  for (int package = 0; package < offset_packages; ++package) {
     if (auto why = run.next(sample)) {
       return why;
     }
     const Vector3 now = measure(goal, sample);
     for (std::size_t i = 0; i < mean.size(); ++i) {
-      mean[i] += now[i] / packages_at_rest;
+      mean[i] += now[i] / offset_packages;
     }
   }
   return std::nullopt;
 }
 
-Outcome MoveUntilWrench::watch(const Goal & goal, Run & run, const Vector3 & zero) const
+Outcome MoveUntilWrench::wait_for_threshold(const Goal & goal, Run & run, const Vector3 & offset) const
 {
   const Sample start = run.state();
   for (Sample sample = start; true;) {
@@ -78,40 +79,41 @@ Outcome MoveUntilWrench::watch(const Goal & goal, Run & run, const Vector3 & zer
       return *why;
     }
     Vector3 now = measure(goal, sample);
-    std::transform(now.begin(), now.end(), zero.begin(), now.begin(), std::minus<>());
+    std::transform(now.begin(), now.end(), offset.begin(), now.begin(), std::minus<>());
     run.feedback().measured = run.result().measured = to_ros(now);
-    const double size = length(now);
-    if (!(size < goal.threshold)) {  // NaN stops, too
-      return std::isfinite(size) ? Outcome::success(fmt::format("stopped by {:.1f} {}", size, part_.unit))
-                                 : Outcome::failure(ErrorCode::not_supported,
-                                                    "the robot does not report the force on its TCP");
+    const double magnitude = length(now);
+    if (!(magnitude < goal.threshold)) {  // also true for NaN
+      return std::isfinite(magnitude)
+                 ? Outcome::success(fmt::format("stopped by {:.1f} {}", magnitude, part_.unit))
+                 : Outcome::failure(ErrorCode::not_supported,
+                                    "the robot does not report the force on its TCP");
     }
     const double way = distance(start.actual_tcp_pose, sample.actual_tcp_pose);
     const double time = sample.controller_time - start.controller_time;
     run.progress(std::clamp(std::max(way / goal.distance, time / goal.timeout), 0.0, 1.0));
     if (way >= goal.distance) {
       return Outcome::failure(ErrorCode::not_reached,
-                              fmt::format("no {} {} within {} m, the last were {:.1f} {}", goal.threshold,
-                                          part_.unit, goal.distance, size, part_.unit));
+                              fmt::format("threshold of {} {} not reached within {} m, last value: {:.1f} {}",
+                                          goal.threshold, part_.unit, goal.distance, magnitude, part_.unit));
     }
     if (time >= goal.timeout) {
       return Outcome::failure(ErrorCode::timeout,
-                              fmt::format("no {} {} within {} s, the last were {:.1f} {}", goal.threshold,
-                                          part_.unit, goal.timeout, size, part_.unit));
+                              fmt::format("threshold of {} {} not reached within {} s, last value: {:.1f} {}",
+                                          goal.threshold, part_.unit, goal.timeout, magnitude, part_.unit));
     }
   }
 }
 
 Outcome MoveUntilWrench::run(const Goal & goal, Run & run)
 {
-  Vector3 zero;
-  if (auto why = rest(goal, run, zero)) {
+  Vector3 offset;
+  if (auto why = measure_offset(goal, run, offset)) {
     return *why;
   }
   run.control()->speedL(to_ur(goal.twist), goal.acceleration, 0.0);
-  const Outcome outcome = watch(goal, run, zero);
+  const Outcome outcome = wait_for_threshold(goal, run, offset);
   if (!outcome) {
-    return outcome;  // and the base class stops the arm
+    return outcome;  // the base class stops the arm
   }
   run.control()->speedStop(goal.deceleration);
   const auto why = run.until_standstill();

@@ -9,18 +9,17 @@
 
 namespace ur_ros_rtde {
 
-/// Moves until a part of the wrench on the TCP, its force or its torque, reaches a threshold. The measure is
-/// taken from each package of the controller, so that the stop is under way two cycles after the package that
-/// tells of it.
+/// Moves until the force or the torque on the TCP reaches a threshold. Every package of the controller is
+/// evaluated, so that the stop begins two cycles after the package that exceeds the threshold.
 class MoveUntilWrench : public Command<ur_ros_rtde_msgs::action::MoveUntilForce> {
  public:
-  struct Part {
-    std::size_t first;         ///< of the wrench: 0 for the force, 3 for the torque
-    double highest_threshold;  ///< N or Nm
+  struct WrenchPart {
+    std::size_t first;     ///< index in the wrench: 0 for the force, 3 for the torque
+    double max_threshold;  ///< N or Nm
     std::string unit;
   };
 
-  explicit MoveUntilWrench(Part part) : part_(std::move(part)) {}
+  explicit MoveUntilWrench(WrenchPart part) : part_(std::move(part)) {}
 
  private:
   void check(const Goal & goal, Check & check) const override;
@@ -30,14 +29,14 @@ class MoveUntilWrench : public Command<ur_ros_rtde_msgs::action::MoveUntilForce>
   }
   Outcome run(const Goal & goal, Run & run) override;
 
-  /// The components that count, in the goal's frame; the others are zero.
+  /// The selected components in the frame of the goal; the others are zero.
   Vector3 measure(const Goal & goal, const Sample & sample) const;
-  /// What is measured while nothing moves: the mean of some packages.
-  std::optional<StopReason> rest(const Goal & goal, Run & run, Vector3 & mean) const;
-  /// Looks at each package until the threshold; a failure when there is another reason to stop.
-  Outcome watch(const Goal & goal, Run & run, const Vector3 & zero) const;
+  /// Measures the offset at rest: the mean of 10 packages.
+  std::optional<StopReason> measure_offset(const Goal & goal, Run & run, Vector3 & mean) const;
+  /// Succeeds when the threshold is reached. Fails at the distance, the timeout, or another reason to stop.
+  Outcome wait_for_threshold(const Goal & goal, Run & run, const Vector3 & offset) const;
 
-  const Part part_;
+  const WrenchPart part_;
 };
 
 }  // namespace ur_ros_rtde
