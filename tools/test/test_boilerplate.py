@@ -49,8 +49,12 @@ def test_only_known_commands_are_long():
 
 
 def test_a_line_of_a_table_is_a_command():
-    table = 'EXPORT_DASHBOARD_COMMAND(A, "a", Query, {"a"})\nEXPORT_DASHBOARD_COMMAND(\n  B, "b", Query, {"b"},\n  {5, 0})\n'
-    assert boilerplate.measure(table) == {"a": 2, "b": 2}
+    table = """
+EXPORT_DASHBOARD_COMMAND(A, "a", Query, {"a"})
+EXPORT_DASHBOARD_COMMAND(
+  B, "b", Query, {"b"}, {5, 0})
+"""
+    assert boilerplate.measure(table) == {"a": 1.5, "b": 1.5}
 
 
 def test_every_exported_plugin_is_found():
