@@ -65,10 +65,11 @@ Status check_start_position(const Joints & first, const Joints & current, double
   }
   return failure(
       ErrorCode::invalid_goal,
-      fmt::format("the trajectory starts with {} at {:.4f} rad, but the arm is at {:.4f} rad; the distance "
-                  "{:.4f} rad exceeds start_tolerance ({:.4f} rad): plan from the current positions, or move "
-                  "to the start first",
-                  trajectory::joint_name(joint), first[joint], current[joint], distance, tolerance));
+      fmt::format(
+          "the trajectory starts with {} at {:.4f} rad, but the arm is at {:.4f} rad, {:.4f} rad "
+          "away; start_tolerance is {:.4f} rad: plan from the current positions, or move to the start "
+          "first",
+          trajectory::joint_name(joint), first[joint], current[joint], distance, tolerance));
 }
 
 ExecutionResult execute(Run & run, const Execution & execution)

@@ -80,8 +80,8 @@ Status ServoStream::send(const Trajectory & plan, double time)
   update_tracking_error();
   if (state_.tracking_error > settings_.max_tracking_error) {
     return failure(ErrorCode::not_reached,
-                   fmt::format("the tracking error is {:.4f} rad {:.2f} s after the start of the trajectory, "
-                               "max_tracking_error is {:.4f} rad: check for obstacles and for a low gain",
+                   fmt::format("the arm is {:.4f} rad behind the trajectory {:.2f} s after its start, "
+                               "max_tracking_error is {:.4f} rad: check for obstacles and a low gain",
                                state_.tracking_error, state_.time, settings_.max_tracking_error));
   }
   return watch_(plan, state_);
