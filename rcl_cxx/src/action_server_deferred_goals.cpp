@@ -46,7 +46,7 @@ void ActionServerImpl::set_response(const GoalUUID & id, GoalResponse response) 
     }
     goal->second.response = std::move(response);
   }
-  notify(kDeferredResponse, 1);
+  notify(kDeferredResponse);
 }
 
 void ActionServerImpl::send_deferred_response()

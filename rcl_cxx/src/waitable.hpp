@@ -44,6 +44,9 @@ class Waitable : public std::enable_shared_from_this<Waitable> {
   virtual void execute(std::size_t source) = 0;
   virtual void clear_on_ready_callbacks() noexcept = 0;
 
+  /// Adds an event of `source` that does not come from the middleware. Thread-safe.
+  void notify(std::size_t source) noexcept { on_ready(&sources_[source], 1); }
+
   /// `set` is one of the functions rcl_…_set_on_new_…_callback.
   template <typename Set, typename Handle>
   void set_callback(Set set, Handle & handle, std::size_t source)

@@ -63,5 +63,5 @@ def table() -> str:
         rows.append(_row(group, members, members[0].target))
     others = [command for command in found if command.group != "dashboard"]
     if others:
-        rows.append(_row("all but dashboard", others, COMMAND_AIM))
+        rows.append(_row("all but dashboard", others, COMMAND_TARGET))
     return "\n".join(rows)
