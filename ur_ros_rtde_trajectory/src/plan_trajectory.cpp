@@ -33,7 +33,8 @@ Expected<Limits> read_limits(const json & goal)
   }
   Limits limits = trajectory::make_limits(*arm);
   if (goal.contains("waypoints")) {
-    limits = trajectory::slow_limits(limits);  // as execute_trajectory; given times are a choice of speed
+    limits =
+        trajectory::default_speed_limits(limits);  // as execute_trajectory; given times are a choice of speed
   }
   for (const auto & [field, limit] :
        {std::pair{"max_velocity", &limits.velocity}, std::pair{"max_acceleration", &limits.acceleration},
@@ -66,7 +67,7 @@ trajectory::TimedWaypoints read_points(const json & points)
   return waypoints;
 }
 
-Status known_fields(const json & goal)
+Status check_fields(const json & goal)
 {
   static const std::set<std::string> known{"model",          "waypoints",        "points",
                                            "max_velocity",   "max_acceleration", "max_jerk",
@@ -131,9 +132,9 @@ json to_json(const trajectory::Trajectory & plan)
   return {{"duration", duration}, {"waypoint_times", waypoints}, {"samples", samples}};
 }
 
-Expected<json> answer(const json & goal)
+Expected<json> plan_to_json(const json & goal)
 {
-  if (Status known = known_fields(goal); !known) {
+  if (Status known = check_fields(goal); !known) {
     return tl::unexpected(known.error());
   }
   const auto limits = read_limits(goal);
@@ -162,7 +163,7 @@ Expected<json> answer(const json & goal)
 int main()
 {
   try {
-    const auto result = answer(json::parse(std::cin));
+    const auto result = plan_to_json(json::parse(std::cin));
     if (!result) {
       fmt::print(stderr, "{}\n", result.error().message);
       return 1;

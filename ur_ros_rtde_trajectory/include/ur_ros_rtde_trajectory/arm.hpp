@@ -19,7 +19,7 @@ using Jacobian = Eigen::Matrix<double, 6, 6>;
 /// m; Denavit-Hartenberg parameters, all others of a UR arm are 0 but alpha, which is pi/2, 0, 0, pi/2,
 /// -pi/2, 0. As published by Universal Robots ("Parameters for calculations of kinematics and dynamics", and
 /// the configurations of its ROS description).
-struct Lengths {
+struct DhParameters {
   double d1, a2, a3, d4, d5, d6;
 };
 
@@ -27,9 +27,7 @@ struct Lengths {
 /// the published lengths: `correction` takes them away where they are known.
 class Arm {
  public:
-  explicit Arm(const Lengths & lengths, const Pose & tool = Pose::Identity()) : lengths_(lengths), tool_(tool)
-  {
-  }
+  explicit Arm(const DhParameters & dh, const Pose & tool = Pose::Identity()) : dh_(dh), tool_(tool) {}
 
   /// Of the TCP, in the robot's base frame.
   Pose forward(const Joints & q) const;
@@ -40,16 +38,16 @@ class Arm {
   std::optional<Joints> inverse(const Pose & pose, const Joints & guess) const;
 
  private:
-  Lengths lengths_;
+  DhParameters dh_;
   Pose tool_;
 };
 
 /// The published lengths of all models.
-const std::vector<Lengths> & published_lengths();
+const std::vector<DhParameters> & nominal_dh_parameters();
 
 /// The arm whose published lengths explain best that the controller has the TCP at `tcp` with joints `q` and
 /// tool `tool`. Refused when even those are 15 mm or 0.03 rad beside it.
-Expected<Arm> recognise_arm(const Joints & q, const Pose & tcp, const Pose & tool);
+Expected<Arm> identify_arm(const Joints & q, const Pose & tcp, const Pose & tool);
 
 /// By which a pose must be moved to become another one: m and rad, in the base frame.
 Twist difference(const Pose & from, const Pose & to);

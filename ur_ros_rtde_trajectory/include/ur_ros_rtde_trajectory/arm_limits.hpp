@@ -15,7 +15,7 @@ struct ArmLimits {
 };
 
 /// A model's name as tables have it: "UR8 Long" is "ur8long".
-std::string model_key(const std::string & name);
+std::string normalized_model_name(const std::string & name);
 /// By model, in any spelling: "ur10e", "UR10e", "UR8 Long". None for an unknown model.
 std::optional<ArmLimits> arm_limits(const std::string & model);
 /// The names of all models: "ur3, ur5, …".

@@ -17,7 +17,7 @@ struct CartesianOptions {
 
 /// The joint positions near `guess` for a pose of the TCP, by someone who knows this very arm: its
 /// controller.
-using Reference = std::function<Expected<Joints>(const Pose & pose, const Joints & guess)>;
+using IkFunction = std::function<Expected<Joints>(const Pose & pose, const Joints & guess)>;
 
 /// The fastest motion of the TCP along straight lines from `poses[0]`, where the arm is with `start`, through
 /// the others, that keeps the limits of the joints and of the TCP.
@@ -30,7 +30,7 @@ using Reference = std::function<Expected<Joints>(const Pose & pose, const Joints
 /// singularity (a smallest singular value of the Jacobian, rotations by 0.2 m, below 0.01).
 Expected<trajectory::Trajectory> plan_cartesian(const std::vector<Pose> & poses, const Arm & arm,
                                                 const Joints & start, const trajectory::Limits & limits,
-                                                const CartesianOptions & options, const Reference & reference,
+                                                const CartesianOptions & options, const IkFunction & ik,
                                                 const std::stop_token & stop = {});
 
 }  // namespace ur_ros_rtde::kinematics

@@ -40,7 +40,7 @@ Limits make_limits(const ArmLimits & arm, double acceleration = default_accelera
 
 /// `limits`, with velocities and accelerations of at most default_joint_speed and default_joint_acceleration
 /// (default_speeds.hpp).
-Limits slow_limits(Limits limits);
+Limits default_speed_limits(Limits limits);
 
 /// Refuses limits that are zero, negative, NaN or beyond 1e-4 to 1e7, an empty position range, and what
 /// time-optimal timing cannot do without: finite velocity and acceleration limits.

@@ -22,7 +22,7 @@ Status check_timed(const TimedWaypoints & waypoints, const Limits & limits);
 
 /// A first time above 0 is how long the way from `start`, at rest, to the first position may take: puts
 /// `start` in front, at 0.
-void begin_at(TimedWaypoints & waypoints, const Joints & start);
+void prepend_start(TimedWaypoints & waypoints, const Joints & start);
 
 /// The trajectory that is at each position at its time, or the reason why it cannot be: a limit that it would
 /// exceed (the first one, with joint, time, waypoint, value and limit), or bad input. Times are never

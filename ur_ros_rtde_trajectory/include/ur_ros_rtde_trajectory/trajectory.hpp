@@ -18,7 +18,7 @@ struct Point {
 };
 
 /// Largest use of each limit anywhere on a trajectory, as a fraction: 1 is the limit.
-struct Utilisation {
+struct Utilization {
   double velocity = 0.0, acceleration = 0.0, jerk = 0.0;
 };
 
@@ -54,7 +54,7 @@ class Trajectory {
 
   /// Looks at every interval of the trajectory in steps no longer than `step` seconds. The error names limit,
   /// joint, time, waypoint, value and limit of the first excess.
-  Expected<Utilisation> verify(const Limits & limits, double step = 0.002) const;
+  Expected<Utilization> verify(const Limits & limits, double step = 0.002) const;
 
   const Motion & motion() const { return *motion_; }
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "kinematics/extent.hpp"
+#include "kinematics/displacement_norm.hpp"
 
 namespace ur_ros_rtde::kinematics {
 namespace {
@@ -15,20 +15,16 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
-constexpr double half_turn = std::numbers::pi;
+constexpr double pi = std::numbers::pi;
 
 struct Link {
   double a, d, alpha;
 };
 
-std::array<Link, 6> links(const Lengths & l)
+std::array<Link, 6> links(const DhParameters & l)
 {
-  return {Link{0.0, l.d1, half_turn / 2.0},
-          Link{l.a2, 0.0, 0.0},
-          Link{l.a3, 0.0, 0.0},
-          Link{0.0, l.d4, half_turn / 2.0},
-          Link{0.0, l.d5, -half_turn / 2.0},
-          Link{0.0, l.d6, 0.0}};
+  return {Link{0.0, l.d1, pi / 2.0}, Link{l.a2, 0.0, 0.0},       Link{l.a3, 0.0, 0.0},
+          Link{0.0, l.d4, pi / 2.0}, Link{0.0, l.d5, -pi / 2.0}, Link{0.0, l.d6, 0.0}};
 }
 
 Pose link_pose(const Link & link, double theta)
@@ -42,8 +38,8 @@ Pose link_pose(const Link & link, double theta)
 
 Vector3d rotation_vector(const Eigen::Matrix3d & rotation)
 {
-  const AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
+  const AngleAxisd angle_axis(rotation);
+  return angle_axis.angle() * angle_axis.axis();
 }
 
 }  // namespace
@@ -51,7 +47,7 @@ Vector3d rotation_vector(const Eigen::Matrix3d & rotation)
 Pose Arm::forward(const Joints & q) const
 {
   Pose pose = Pose::Identity();
-  const auto chain = links(lengths_);
+  const auto chain = links(dh_);
   for (int j = 0; j < trajectory::joint_count; ++j) {
     pose = pose * link_pose(chain[static_cast<std::size_t>(j)], q[j]);
   }
@@ -61,7 +57,7 @@ Pose Arm::forward(const Joints & q) const
 Jacobian Arm::jacobian(const Joints & q) const
 {
   const Vector3d tcp = forward(q).translation();
-  const auto chain = links(lengths_);
+  const auto chain = links(dh_);
   Jacobian result;
   Pose pose = Pose::Identity();
   for (int j = 0; j < trajectory::joint_count; ++j) {
@@ -75,28 +71,28 @@ Jacobian Arm::jacobian(const Joints & q) const
 
 std::optional<Joints> Arm::inverse(const Pose & pose, const Joints & guess) const
 {
-  constexpr int rounds = 30;
-  constexpr double exact = 1e-10;       // m
-  constexpr double longest_step = 0.3;  // rad: a Newton step farther than that has left the neighbourhood
+  constexpr int max_iterations = 30;
+  constexpr double tolerance = 1e-10;  // m
+  constexpr double max_step = 0.3;     // rad: a Newton step farther than that has left the neighbourhood
   Joints q = guess;
-  for (int round = 0; round < rounds; ++round) {
-    const Twist missing = difference(forward(q), pose);
-    if (extent(missing) < exact) {
+  for (int round = 0; round < max_iterations; ++round) {
+    const Twist error = difference(forward(q), pose);
+    if (displacement_norm(error) < tolerance) {
       return q;
     }
-    Joints step = jacobian(q).partialPivLu().solve(missing).array();
+    Joints step = jacobian(q).partialPivLu().solve(error).array();
     const double longest = step.abs().maxCoeff();
     if (!std::isfinite(longest)) {
       return std::nullopt;
     }
-    q += longest > longest_step ? Joints(step * (longest_step / longest)) : step;
+    q += longest > max_step ? Joints(step * (max_step / longest)) : step;
   }
   return std::nullopt;
 }
 
-const std::vector<Lengths> & published_lengths()
+const std::vector<DhParameters> & nominal_dh_parameters()
 {
-  static const std::vector<Lengths> table{
+  static const std::vector<DhParameters> table{
       {0.1519, -0.24365, -0.21325, 0.11235, 0.08535, 0.0819},  // UR3
       {0.089159, -0.425, -0.39225, 0.10915, 0.09465, 0.0823},  // UR5
       {0.1273, -0.612, -0.5723, 0.163941, 0.1157, 0.0922},     // UR10
@@ -113,26 +109,26 @@ const std::vector<Lengths> & published_lengths()
   return table;
 }
 
-Expected<Arm> recognise_arm(const Joints & q, const Pose & tcp, const Pose & tool)
+Expected<Arm> identify_arm(const Joints & q, const Pose & tcp, const Pose & tool)
 {
-  constexpr double farthest = 0.015;  // m
-  constexpr double widest = 0.03;     // rad
+  constexpr double max_distance = 0.015;  // m
+  constexpr double max_angle = 0.03;      // rad
   std::optional<Arm> best;
-  Twist least = Twist::Constant(std::numeric_limits<double>::infinity());
-  for (const Lengths & lengths : published_lengths()) {
-    const Arm arm(lengths, tool);
-    const Twist off = difference(arm.forward(q), tcp);
-    if (!best || extent(off) < extent(least)) {
+  Twist best_error = Twist::Constant(std::numeric_limits<double>::infinity());
+  for (const DhParameters & dh : nominal_dh_parameters()) {
+    const Arm arm(dh, tool);
+    const Twist error = difference(arm.forward(q), tcp);
+    if (!best || displacement_norm(error) < displacement_norm(best_error)) {
       best = arm;
-      least = off;
+      best_error = error;
     }
   }
-  if (least.head<3>().norm() > farthest || least.tail<3>().norm() > widest) {
+  if (best_error.head<3>().norm() > max_distance || best_error.tail<3>().norm() > max_angle) {
     return failure(
         ErrorCode::not_supported,
         fmt::format("no known model has its TCP where the controller says: the nearest is {:.1f} mm "
                     "and {:.3f} rad beside it",
-                    1e3 * least.head<3>().norm(), least.tail<3>().norm()));
+                    1e3 * best_error.head<3>().norm(), best_error.tail<3>().norm()));
   }
   return *best;
 }
@@ -147,12 +143,12 @@ Twist difference(const Pose & from, const Pose & to)
 
 Pose moved(const Pose & pose, const Twist & by)
 {
-  const Vector3d turn = by.tail<3>();
-  const double angle = turn.norm();
+  const Vector3d rotation = by.tail<3>();
+  const double angle = rotation.norm();
   Pose result = pose;
   result.translation() += by.head<3>();
   if (angle > 0.0) {
-    result.linear() = AngleAxisd(angle, turn / angle).toRotationMatrix() * pose.linear();
+    result.linear() = AngleAxisd(angle, rotation / angle).toRotationMatrix() * pose.linear();
   }
   return result;
 }

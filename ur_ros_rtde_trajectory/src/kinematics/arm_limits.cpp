@@ -45,7 +45,7 @@ constexpr std::array models{
 
 }  // namespace
 
-std::string model_key(const std::string & name)
+std::string normalized_model_name(const std::string & name)
 {
   std::string key;
   for (const char c : name) {
@@ -58,7 +58,7 @@ std::string model_key(const std::string & name)
 
 std::optional<ArmLimits> arm_limits(const std::string & model)
 {
-  const std::string name = model_key(model);
+  const std::string name = normalized_model_name(model);
   const auto found =
       std::find_if(models.begin(), models.end(), [&](const Model & m) { return m.name == name; });
   return found == models.end() ? std::nullopt : std::optional(found->limits);

@@ -4,62 +4,64 @@
 
 #include <algorithm>
 
-#include "kinematics/extent.hpp"
-#include "kinematics/follow.hpp"
+#include "kinematics/cartesian_sampler.hpp"
+#include "kinematics/displacement_norm.hpp"
 
 namespace ur_ros_rtde::kinematics {
 namespace {
 
-using trajectory::SampledBlock;
+using trajectory::SampledSegment;
 using trajectory::Trajectory;
 
-constexpr std::size_t most_references = 100;
-constexpr double same_correction = 1e-5;  // m
-constexpr double farthest = 0.015;        // m: beyond that it is not the same arm
+constexpr std::size_t max_ik_queries = 100;
+constexpr double same_correction = 1e-5;   // m
+constexpr double max_model_error = 0.015;  // m: beyond that it is not the same arm
 
 /// The joint positions at a place, of blocks that were followed without knowing better.
-Joints joints_at(const std::vector<SampledBlock> & blocks, double place)
+Joints joints_at(const std::vector<SampledSegment> & segments, double u)
 {
-  for (const SampledBlock & block : blocks) {
-    const auto after = std::lower_bound(block.place.begin(), block.place.end(), place);
-    if (after != block.place.end()) {
-      return block.positions[static_cast<std::size_t>(after - block.place.begin())];
+  for (const SampledSegment & segment : segments) {
+    const auto after = std::lower_bound(segment.parameters.begin(), segment.parameters.end(), u);
+    if (after != segment.parameters.end()) {
+      return segment.positions[static_cast<std::size_t>(after - segment.parameters.begin())];
     }
   }
-  return blocks.back().positions.back();
+  return segments.back().positions.back();
 }
 
 /// What the reference says at the poses, beside what the arm as published makes of it.
-Expected<Correction> ask(const TcpPath & path, const Arm & arm, const std::vector<SampledBlock> & blocks,
-                         const Twist & first, const Reference & reference, const std::stop_token & stop)
+Expected<KinematicCorrection> query_correction(const TcpPath & path, const Arm & arm,
+                                               const std::vector<SampledSegment> & segments,
+                                               const Twist & start_correction, const IkFunction & ik,
+                                               const std::stop_token & stop)
 {
-  Correction correction;
-  correction.add(0.0, first);
-  const auto & places = path.places();
-  const std::size_t stride = std::max<std::size_t>(1, places.size() / most_references);
+  KinematicCorrection correction;
+  correction.add(0.0, start_correction);
+  const auto & waypoints = path.waypoints();
+  const std::size_t stride = std::max<std::size_t>(1, waypoints.size() / max_ik_queries);
   double last = 0.0;
-  for (std::size_t i = (places.size() - 1) % stride; i < places.size(); i += stride) {
+  for (std::size_t i = (waypoints.size() - 1) % stride; i < waypoints.size(); i += stride) {
     if (stop.stop_requested()) {
       return failure(ErrorCode::canceled, "the plan is not wanted any more");
     }
-    if (places[i] <= last) {
+    if (waypoints[i] <= last) {
       continue;
     }
-    last = places[i];
-    const Pose pose = path.at(places[i]);
-    const Joints guess = joints_at(blocks, places[i]);
-    const auto q = reference(pose, guess);
+    last = waypoints[i];
+    const Pose pose = path.at(waypoints[i]);
+    const Joints guess = joints_at(segments, waypoints[i]);
+    const auto q = ik(pose, guess);
     if (!q) {
       return tl::unexpected(q.error());
     }
-    const Twist off = difference(pose, arm.forward(*q));
-    if (extent(off) > farthest) {
+    const Twist error = difference(pose, arm.forward(*q));
+    if (displacement_norm(error) > max_model_error) {
       return failure(ErrorCode::not_supported,
                      fmt::format("the controller's joint positions for poses[{}] put the arm, as published, "
                                  "{:.1f} mm beside it: plan in joint space instead",
-                                 i - 1, 1e3 * extent(off)));
+                                 i - 1, 1e3 * displacement_norm(error)));
     }
-    correction.add(places[i], off);
+    correction.add(waypoints[i], error);
   }
   return correction;
 }
@@ -68,32 +70,32 @@ Expected<Correction> ask(const TcpPath & path, const Arm & arm, const std::vecto
 
 Expected<Trajectory> plan_cartesian(const std::vector<Pose> & poses, const Arm & arm, const Joints & start,
                                     const trajectory::Limits & limits, const CartesianOptions & options,
-                                    const Reference & reference, const std::stop_token & stop)
+                                    const IkFunction & ik, const std::stop_token & stop)
 {
   const TcpPath path(poses, options.blend_radius);
-  const Follower follower(path, arm, limits, options);
-  const Twist first = difference(poses.front(), arm.forward(start));
-  Correction correction;
-  correction.add(0.0, first);
-  auto blocks = follower.follow(start, correction, stop);
-  if (!blocks) {
-    return tl::unexpected(blocks.error());
+  const CartesianSampler sampler(path, arm, limits, options);
+  const Twist start_correction = difference(poses.front(), arm.forward(start));
+  KinematicCorrection correction;
+  correction.add(0.0, start_correction);
+  auto segments = sampler.sample_path(start, correction, stop);
+  if (!segments) {
+    return tl::unexpected(segments.error());
   }
-  const auto better = ask(path, arm, *blocks, first, reference, stop);
-  if (!better) {
-    return tl::unexpected(better.error());
+  const auto correction_at_waypoints = query_correction(path, arm, *segments, start_correction, ik, stop);
+  if (!correction_at_waypoints) {
+    return tl::unexpected(correction_at_waypoints.error());
   }
-  const auto & places = path.places();
-  const bool differs = std::any_of(places.begin(), places.end(), [&](double place) {
-    return extent(better->at(place) - first) > same_correction;
+  const auto & waypoints = path.waypoints();
+  const bool differs = std::any_of(waypoints.begin(), waypoints.end(), [&](double u) {
+    return displacement_norm(correction_at_waypoints->at(u) - start_correction) > same_correction;
   });
   if (differs) {
-    blocks = follower.follow(start, *better, stop);
+    segments = sampler.sample_path(start, *correction_at_waypoints, stop);
   }
-  if (!blocks) {
-    return tl::unexpected(blocks.error());
+  if (!segments) {
+    return tl::unexpected(segments.error());
   }
-  return trajectory::plan_sampled(*blocks, places, limits, stop);
+  return trajectory::plan_sampled(*segments, waypoints, limits, stop);
 }
 
 }  // namespace ur_ros_rtde::kinematics

@@ -17,7 +17,7 @@ class TcpPath {
   double length() const { return corners_.back(); }
   Pose at(double u) const;
   /// u at which the way is at, or nearest to, each of the poses.
-  const std::vector<double> & places() const { return places_; }
+  const std::vector<double> & waypoints() const { return waypoints_; }
   /// u of the corners where the TCP has to stop, both ends included; at most `length` apart by themselves.
   std::vector<double> stops() const;
 
@@ -29,12 +29,12 @@ class TcpPath {
     Pose at(double u) const { return moved(from, rate * u); }
   };
 
-  double reach_at(std::size_t corner, double radius) const;
+  double blend_half_length(std::size_t corner, double radius) const;
 
   std::vector<Line> lines_;
-  std::vector<double> corners_;  // u at the beginning of each line, and at the end
-  std::vector<double> reach_;    // of the blend at each corner; 0 at both ends
-  std::vector<double> places_;
+  std::vector<double> corners_;             // u at the beginning of each line, and at the end
+  std::vector<double> blend_half_lengths_;  // of the blend at each corner; 0 at both ends
+  std::vector<double> waypoints_;
 };
 
 }  // namespace ur_ros_rtde::kinematics

@@ -11,7 +11,7 @@ PathPoint PathPiece::at(double u) const
   }
   const double x = u / length;
   const double scale = 1.0 / length;
-  if (straight()) {
+  if (is_line()) {
     return {c[0] + c[1] * x, c[1] * scale, Joints::Zero(), Joints::Zero()};
   }
   // Horner's scheme for a polynomial and its first three derivatives, divided by 1, 1, 2 and 6.
@@ -36,7 +36,7 @@ std::size_t Path::piece_at(double s) const
   return after == pieces.begin() ? 0 : static_cast<std::size_t>(after - pieces.begin()) - 1;
 }
 
-std::vector<std::pair<std::size_t, std::size_t>> Path::blocks() const
+std::vector<std::pair<std::size_t, std::size_t>> Path::segments() const
 {
   std::vector<std::pair<std::size_t, std::size_t>> result;
   std::size_t first = 0;

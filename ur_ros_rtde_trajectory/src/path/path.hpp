@@ -21,13 +21,13 @@ struct PathPiece {
 
   double start = 0.0;
   double length = 0.0;
-  double top_speed = unlimited;  ///< of s, 1/s, beside what the limits of the joints allow
+  double max_speed = unlimited;  ///< of s, 1/s, beside what the limits of the joints allow
   int degree = 1;
   std::array<Joints, max_degree + 1> c;  ///< c[k] belongs to x^k
 
   PathPiece() { c.fill(Joints::Zero()); }
   double end() const { return start + length; }
-  bool straight() const { return degree == 1; }
+  bool is_line() const { return degree == 1; }
   PathPoint at(double u) const;
 };
 
@@ -43,7 +43,7 @@ struct Path {
   /// Piece that contains s; at a border the later one.
   std::size_t piece_at(double s) const;
   /// Half-open ranges of pieces between stops.
-  std::vector<std::pair<std::size_t, std::size_t>> blocks() const;
+  std::vector<std::pair<std::size_t, std::size_t>> segments() const;
 };
 
 }  // namespace ur_ros_rtde::trajectory

@@ -9,7 +9,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double same_place = 1e-9;      // rad; closer waypoints are one
+constexpr double same_position = 1e-9;   // rad; closer waypoints are one
 constexpr double same_direction = 1e-9;  // change of the unit direction below which a line goes on
 constexpr double smallest_radius =
     1e-3;                                // rad; a turn tighter than this is a corner, however small its angle
@@ -18,17 +18,17 @@ constexpr double smallest_blend = 1e-5;  // rad; a blend shorter than this gains
 // The waypoints without repetitions, as lines between them.
 struct Polyline {
   std::vector<Joints> points;
-  std::vector<std::size_t> owner;  // for each of the caller's waypoints, the index in `points`
-  std::vector<Joints> direction;   // unit vector of each line
+  std::vector<std::size_t> point_of_waypoint;  // for each of the caller's waypoints, the index in `points`
+  std::vector<Joints> direction;               // unit vector of each line
   std::vector<double> length;
 
   explicit Polyline(const std::vector<Joints> & waypoints)
   {
     for (const Joints & waypoint : waypoints) {
-      if (points.empty() || (waypoint - points.back()).abs().maxCoeff() > same_place) {
+      if (points.empty() || (waypoint - points.back()).abs().maxCoeff() > same_position) {
         points.push_back(waypoint);
       }
-      owner.push_back(points.size() - 1);
+      point_of_waypoint.push_back(points.size() - 1);
     }
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
       const Joints step = points[i + 1] - points[i];
@@ -43,20 +43,23 @@ struct Polyline {
 
 class Builder {
  public:
-  Builder(const std::vector<Joints> & waypoints, const PathShape & shape) : line_(waypoints), shape_(shape) {}
+  Builder(const std::vector<Joints> & waypoints, const PathShape & shape)
+      : polyline_(waypoints), shape_(shape)
+  {
+  }
 
   Path build()
   {
-    place_.assign(line_.points.size(), 0.0);
-    if (line_.points.size() > 1) {
-      add_runs();
-      finish_corners();
-      place_.back() = path_.length();
+    s_of_point_.assign(polyline_.points.size(), 0.0);
+    if (polyline_.points.size() > 1) {
+      add_sections();
+      blend_corners();
+      s_of_point_.back() = path_.length();
     } else {
-      add_straight(line_.points.front(), Joints::Zero(), 0.0);
+      add_line(polyline_.points.front(), Joints::Zero(), 0.0);
     }
-    for (const std::size_t point : line_.owner) {
-      path_.waypoints.push_back(place_[point]);
+    for (const std::size_t point : polyline_.point_of_waypoint) {
+      path_.waypoints.push_back(s_of_point_[point]);
     }
     return std::move(path_);
   }
@@ -68,7 +71,7 @@ class Builder {
     path_.pieces.push_back(piece);
   }
 
-  void add_straight(const Joints & from, const Joints & direction, double length)
+  void add_line(const Joints & from, const Joints & direction, double length)
   {
     PathPiece piece;
     piece.length = length;
@@ -81,25 +84,25 @@ class Builder {
   // would swing out between the waypoints, by about an eighth of angle times distance.
   bool is_corner(std::size_t i) const
   {
-    const double angle = line_.angle(i);
-    const double nearer = std::min(line_.length[i - 1], line_.length[i]);
-    const double farther = std::max(line_.length[i - 1], line_.length[i]);
+    const double angle = polyline_.angle(i);
+    const double nearer = std::min(polyline_.length[i - 1], polyline_.length[i]);
+    const double farther = std::max(polyline_.length[i - 1], polyline_.length[i]);
     if (angle > shape_.corner_angle || nearer < smallest_radius * angle) {
       return angle > same_direction;
     }
     return shape_.tolerance > 0.0 && 0.125 * angle * farther > shape_.tolerance;
   }
 
-  void add_runs()
+  void add_sections()
   {
-    const std::size_t last = line_.points.size() - 1;
+    const std::size_t last = polyline_.points.size() - 1;
     std::size_t first = 0;
     for (std::size_t i = 1; i <= last; ++i) {
       if (i < last && !is_corner(i)) {
         continue;
       }
-      add_run(first, i);
-      place_[i] = path_.length();
+      add_section(first, i);
+      s_of_point_[i] = path_.length();
       if (i < last) {
         corners_.push_back({path_.pieces.size(), i});
       }
@@ -108,55 +111,55 @@ class Builder {
   }
 
   // All points from first to last lie on the line between these two.
-  bool is_straight(std::size_t first, std::size_t last) const
+  bool is_collinear(std::size_t first, std::size_t last) const
   {
-    const Joints chord = line_.points[last] - line_.points[first];
+    const Joints chord = polyline_.points[last] - polyline_.points[first];
     const Joints along = chord / chord.matrix().norm();
     for (std::size_t i = first + 1; i < last; ++i) {
-      const Joints offset = line_.points[i] - line_.points[first];
+      const Joints offset = polyline_.points[i] - polyline_.points[first];
       const double forward = (offset * along).sum();
-      if ((offset - forward * along).abs().maxCoeff() > same_place || !(forward > 0.0)) {
+      if ((offset - forward * along).abs().maxCoeff() > same_position || !(forward > 0.0)) {
         return false;
       }
     }
     return true;
   }
 
-  void add_run(std::size_t first, std::size_t last)
+  void add_section(std::size_t first, std::size_t last)
   {
-    if (is_straight(first, last)) {
-      add_straight_run(first, last);
+    if (is_collinear(first, last)) {
+      add_collinear_section(first, last);
       return;
     }
-    const std::span points(line_.points.data() + first, last - first + 1);
-    const std::span widths(line_.length.data() + first, last - first);
+    const std::span points(polyline_.points.data() + first, last - first + 1);
+    const std::span widths(polyline_.length.data() + first, last - first);
     const auto slopes = natural_spline_slopes(points, widths);
     for (std::size_t i = first; i < last; ++i) {
-      place_[i] = path_.length();
+      s_of_point_[i] = path_.length();
       add_cubic(i, slopes[i - first], slopes[i - first + 1]);
     }
   }
 
-  void add_straight_run(std::size_t first, std::size_t last)
+  void add_collinear_section(std::size_t first, std::size_t last)
   {
     const double begin = path_.length();
-    const Joints chord = line_.points[last] - line_.points[first];
+    const Joints chord = polyline_.points[last] - polyline_.points[first];
     const double length = chord.matrix().norm();
     for (std::size_t i = first; i < last; ++i) {
-      place_[i] = begin + ((line_.points[i] - line_.points[first]) * chord).sum() / length;
+      s_of_point_[i] = begin + ((polyline_.points[i] - polyline_.points[first]) * chord).sum() / length;
     }
-    add_straight(line_.points[first], chord / length, length);
+    add_line(polyline_.points[first], chord / length, length);
   }
 
   void add_cubic(std::size_t i, const Joints & slope, const Joints & next_slope)
   {
     PathPiece piece;
-    piece.length = line_.length[i];
+    piece.length = polyline_.length[i];
     piece.degree = 3;
-    const Joints rise = line_.points[i + 1] - line_.points[i];
+    const Joints rise = polyline_.points[i + 1] - polyline_.points[i];
     const Joints m0 = slope * piece.length;
     const Joints m1 = next_slope * piece.length;
-    piece.c[0] = line_.points[i];
+    piece.c[0] = polyline_.points[i];
     piece.c[1] = m0;
     piece.c[2] = 3.0 * rise - 2.0 * m0 - m1;
     piece.c[3] = m0 + m1 - 2.0 * rise;
@@ -173,15 +176,16 @@ class Builder {
   // How far before and after a corner its blend begins and ends. The direction changes along the quintic
   // smoothstep, so between straight lines the middle of the blend passes the corner at 2 * (5/64) * reach *
   // |d1 - d0|.
-  double blend_reach(const PathPiece & before, const PathPiece & after, const Joints & corner) const
+  double blend_half_length(const PathPiece & before, const PathPiece & after, const Joints & corner) const
   {
-    constexpr double sag = 2.0 * 5.0 / 64.0;
+    constexpr double deviation = 2.0 * 5.0 / 64.0;
     const double turn = (after.at(0.0).d1 - before.at(before.length).d1).abs().maxCoeff();
-    double reach = std::min({shape_.tolerance / (sag * turn), 0.5 * before.length, 0.5 * after.length});
-    for (; reach > smallest_blend; reach *= 0.8) {
-      const PathPiece blend = make_blend(before, after, reach);
-      if ((blend.at(reach).q - corner).abs().maxCoeff() <= shape_.tolerance * (1.0 + 1e-9)) {
-        return reach;
+    double half_length =
+        std::min({shape_.tolerance / (deviation * turn), 0.5 * before.length, 0.5 * after.length});
+    for (; half_length > smallest_blend; half_length *= 0.8) {
+      const PathPiece blend = make_blend(before, after, half_length);
+      if ((blend.at(half_length).q - corner).abs().maxCoeff() <= shape_.tolerance * (1.0 + 1e-9)) {
+        return half_length;
       }
     }
     return 0.0;
@@ -189,14 +193,14 @@ class Builder {
 
   // The polynomial that continues three derivatives on both sides; between straight lines of degree six, with
   // q' = d0 + (d1 - d0) (10 x^3 - 15 x^4 + 6 x^5), inside the triangle of the corner.
-  static PathPiece make_blend(const PathPiece & before, const PathPiece & after, double reach)
+  static PathPiece make_blend(const PathPiece & before, const PathPiece & after, double half_length)
   {
     PathPiece blend;
-    blend.length = 2.0 * reach;
+    blend.length = 2.0 * half_length;
     blend.degree = 7;
     const double l = blend.length;
-    const PathPoint from = before.at(before.length - reach);
-    const PathPoint to = after.at(reach);
+    const PathPoint from = before.at(before.length - half_length);
+    const PathPoint to = after.at(half_length);
     blend.c[0] = from.q;
     blend.c[1] = from.d1 * l;
     blend.c[2] = from.d2 * (l * l / 2.0);
@@ -214,14 +218,14 @@ class Builder {
   }
 
   // `piece` without `head` at its beginning and `tail` at its end.
-  static PathPiece cut(const PathPiece & piece, double head, double tail)
+  static PathPiece trim(const PathPiece & piece, double head, double tail)
   {
     PathPiece rest = piece;
     rest.length = piece.length - head - tail;
     const PathPoint point = piece.at(head);
     rest.c[0] = point.q;
     rest.c[1] = point.d1 * rest.length;
-    if (!piece.straight()) {  // a cubic
+    if (!piece.is_line()) {  // a cubic
       rest.c[2] = point.d2 * (rest.length * rest.length / 2.0);
       rest.c[3] = point.d3 * (rest.length * rest.length * rest.length / 6.0);
     }
@@ -229,7 +233,7 @@ class Builder {
   }
 
   // Puts stops or blends at the corners; both keep every other place on the path where it was.
-  void finish_corners()
+  void blend_corners()
   {
     const std::vector<PathPiece> pieces = std::move(path_.pieces);
     path_.pieces.clear();
@@ -237,27 +241,28 @@ class Builder {
     double head = 0.0;
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       const bool ends_in_corner = corner != corners_.end() && corner->piece == k + 1;
-      const double reach = ends_in_corner && shape_.tolerance > 0.0
-                               ? blend_reach(pieces[k], pieces[k + 1], line_.points[corner->point])
-                               : 0.0;
-      if (pieces[k].length - head - reach > 1e-12 * pieces[k].length) {
-        add(head > 0.0 || reach > 0.0 ? cut(pieces[k], head, reach) : pieces[k]);
+      const double half_length =
+          ends_in_corner && shape_.tolerance > 0.0
+              ? blend_half_length(pieces[k], pieces[k + 1], polyline_.points[corner->point])
+              : 0.0;
+      if (pieces[k].length - head - half_length > 1e-12 * pieces[k].length) {
+        add(head > 0.0 || half_length > 0.0 ? trim(pieces[k], head, half_length) : pieces[k]);
       }
-      if (reach > 0.0) {
-        add(make_blend(pieces[k], pieces[k + 1], reach));
+      if (half_length > 0.0) {
+        add(make_blend(pieces[k], pieces[k + 1], half_length));
       } else if (ends_in_corner) {
         path_.stops.push_back(path_.pieces.size());
       }
       corner += ends_in_corner ? 1 : 0;
-      head = reach;
+      head = half_length;
     }
   }
 
   std::vector<Corner> corners_;
-  Polyline line_;
+  Polyline polyline_;
   PathShape shape_;
   Path path_;
-  std::vector<double> place_;  // s of each point of the polyline
+  std::vector<double> s_of_point_;  // s of each point of the polyline
 };
 
 }  // namespace

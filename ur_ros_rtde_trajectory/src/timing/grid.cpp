@@ -7,22 +7,22 @@ namespace ur_ros_rtde::trajectory {
 namespace {
 
 // Where the motion of constant acceleration over interval i is, `time` after it began.
-double place_after(const Grid & grid, const Profile & profile, std::size_t i, double time)
+double state_after(const Grid & grid, const Profile & profile, std::size_t i, double time)
 {
   const double moved = (profile.v[i] + 0.5 * profile.alpha[i] * time) * time;
   return grid.begin[i] + std::clamp(moved, 0.0, grid.width(i));
 }
 
 // Adds stations to `fine` for one piece: the intervals [begin, end) of `coarse`.
-void split_piece(const Path & path, const Grid & coarse, const Profile & profile, std::size_t begin,
-                 std::size_t end, std::size_t count, Grid & fine)
+void resample_piece(const Path & path, const Grid & coarse, const Profile & profile, std::size_t begin,
+                    std::size_t end, std::size_t count, Grid & fine)
 {
   double total = 0.0;
   for (std::size_t i = begin; i < end; ++i) {
     total += profile.time[i];
   }
   const std::size_t piece = coarse.piece[begin];
-  const double closest =
+  const double min_spacing =
       1e-6 * path.pieces[piece].length;  // stations need a distance, whatever the times say
   double from = coarse.begin[begin];
   const double last = coarse.end[end - 1];
@@ -33,8 +33,8 @@ void split_piece(const Path & path, const Grid & coarse, const Profile & profile
     while (i + 1 < end && elapsed + profile.time[i] < time) {
       elapsed += profile.time[i++];
     }
-    const double to = place_after(coarse, profile, i, time - elapsed);
-    if (to - from > closest && last - to > closest) {
+    const double to = state_after(coarse, profile, i, time - elapsed);
+    if (to - from > min_spacing && last - to > min_spacing) {
       fine.add(path, piece, from, to);
       from = to;
     }
@@ -48,7 +48,7 @@ void Grid::reserve(std::size_t count)
 {
   d1.reserve(count + 1);
   d2.reserve(count + 1);
-  top_speed.reserve(count + 1);
+  max_speed.reserve(count + 1);
   piece.reserve(count);
   begin.reserve(count);
   end.reserve(count);
@@ -64,15 +64,15 @@ void Grid::add(const Path & path, std::size_t piece_index, double from, double t
     d1.push_back(point.d1);
     d2.push_back(point.d2);
     d3_begin.push_back(point.d3);
-    top_speed.push_back(curve.top_speed);
+    max_speed.push_back(curve.max_speed);
   } else if (piece.back() != piece_index) {
     d3_begin.push_back(curve.at(from).d3);
   } else {
     d3_begin.push_back(d3_end.back());
   }
   const PathPoint point = curve.at(to);
-  top_speed.back() = std::min(top_speed.back(), curve.top_speed);
-  top_speed.push_back(curve.top_speed);
+  max_speed.back() = std::min(max_speed.back(), curve.max_speed);
+  max_speed.push_back(curve.max_speed);
   d1.push_back(point.d1);
   d2.push_back(point.d2);
   d3_end.push_back(point.d3);
@@ -98,8 +98,8 @@ Grid uniform_grid(const Path & path, std::size_t first, std::size_t last, std::s
   return grid;
 }
 
-Grid timed_grid(const Path & path, const Grid & coarse, const Profile & profile, double step,
-                std::size_t least)
+Grid time_spaced_grid(const Path & path, const Grid & coarse, const Profile & profile, double step,
+                      std::size_t min_blend_intervals)
 {
   Grid fine;
   fine.reserve(coarse.intervals());
@@ -110,9 +110,9 @@ Grid timed_grid(const Path & path, const Grid & coarse, const Profile & profile,
     while (end < coarse.intervals() && coarse.piece[end] == coarse.piece[begin]) {
       total += profile.time[end++];
     }
-    const std::size_t floor = path.pieces[coarse.piece[begin]].degree > 3 ? least : 1;
+    const std::size_t floor = path.pieces[coarse.piece[begin]].degree > 3 ? min_blend_intervals : 1;
     const auto wanted = static_cast<std::size_t>(std::ceil(total / step));
-    split_piece(path, coarse, profile, begin, end, std::max(floor, wanted), fine);
+    resample_piece(path, coarse, profile, begin, end, std::max(floor, wanted), fine);
     begin = end;
   }
   return fine;

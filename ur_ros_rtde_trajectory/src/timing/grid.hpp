@@ -13,7 +13,7 @@ struct Grid {
   std::vector<double> begin, end;        ///< of each interval, from the beginning of its piece
   std::vector<Joints> d1, d2;            ///< q' and q'' at each station
   std::vector<Joints> d3_begin, d3_end;  ///< q''' at both ends of each interval
-  std::vector<double> top_speed;         ///< of the path itself at each station
+  std::vector<double> max_speed;         ///< of the path itself at each station
 
   std::size_t intervals() const { return piece.size(); }
   std::size_t stations() const { return d1.size(); }
@@ -37,7 +37,7 @@ Grid uniform_grid(const Path & path, std::size_t first, std::size_t last, std::s
 
 /// Stations at about equal intervals of time `step` by `profile`, whose acceleration is constant in each
 /// interval of `coarse`; at least `least` intervals in a blend.
-Grid timed_grid(const Path & path, const Grid & coarse, const Profile & profile, double step,
-                std::size_t least);
+Grid time_spaced_grid(const Path & path, const Grid & coarse, const Profile & profile, double step,
+                      std::size_t min_blend_intervals);
 
 }  // namespace ur_ros_rtde::trajectory

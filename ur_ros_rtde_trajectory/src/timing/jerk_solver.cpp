@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "timing/reach.hpp"
+#include "timing/topp_ra.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
@@ -12,24 +12,24 @@ constexpr double rows_per_interval = 6.0 * joint_count + 1.0;
 
 }  // namespace
 
-JerkSolver::JerkSolver(const Grid & grid, const Limits & limits, const Allowance & allowance)
+JerkSolver::JerkSolver(const Grid & grid, const Limits & limits, const LimitFractions & limit_fractions)
     : grid_(grid),
-      allowance_(allowance),
+      limit_fractions_(limit_fractions),
       inverse_acceleration_(limits.acceleration.inverse()),
       inverse_jerk_(limits.jerk.inverse()),
-      ceiling_(grid.stations()),
+      max_a_(grid.stations()),
       weight_(grid.stations()),
       a_(grid.stations()),
       b_(grid.stations()),
       c_(grid.intervals()),
-      use_(grid.intervals()),
-      begin_rows_(grid.intervals()),
-      end_rows_(grid.intervals()),
+      acceleration_use_(grid.intervals()),
+      begin_jerk_(grid.intervals()),
+      end_jerk_(grid.intervals()),
       multipliers_(grid.intervals()),
-      change_(grid.intervals())
+      multiplier_step_(grid.intervals())
 {
   for (std::size_t m = 0; m < grid.stations(); ++m) {
-    ceiling_[m] = std::min(highest_square_speed(grid, m, limits), 1e12);
+    max_a_[m] = std::min(max_squared_speed(grid, m, limits), 1e12);
   }
 }
 
@@ -37,7 +37,7 @@ void JerkSolver::start(const SpeedSpline & spline, std::vector<double> w, double
 {
   w_ = std::move(w);
   spline_ = &spline;
-  change_spline(spline);
+  set_spline(spline);
   const double mu = gap * duration() / (rows_per_interval * static_cast<double>(count()));
   for (Multipliers & m : multipliers_) {
     for (Joints * values :
@@ -46,16 +46,16 @@ void JerkSolver::start(const SpeedSpline & spline, std::vector<double> w, double
     }
     m.speed = mu;
   }
-  balance_multipliers(mu, 1.0);
+  center_multipliers(mu, 1.0);
 }
 
-void JerkSolver::change_spline(const SpeedSpline & spline)
+void JerkSolver::set_spline(const SpeedSpline & spline)
 {
   spline_ = &spline;
   for (std::size_t i = 1; i + 1 < count(); ++i) {
     // The other weights must not make a speed vanish.
-    const double neighbours = std::min(i > 1 ? a_[i] : w_[i], i + 2 < count() ? a_[i + 1] : w_[i]);
-    w_[i] = std::max(w_[i], 0.3 * neighbours);
+    const double neighbors = std::min(i > 1 ? a_[i] : w_[i], i + 2 < count() ? a_[i + 1] : w_[i]);
+    w_[i] = std::max(w_[i], 0.3 * neighbors);
   }
   std::fill(weight_.begin(), weight_.end(), 0.0);
   for (std::size_t i = 0; i < count(); ++i) {
@@ -76,34 +76,35 @@ void JerkSolver::evaluate()
   for (std::size_t i = 0; i < count(); ++i) {
     c_[i] = (b_[i + 1] - b_[i]) / spline_->duration(i);
     if (i > 0) {
-      use_[i] = (grid_.d2[i] * a_[i] + grid_.d1[i] * b_[i]) * inverse_acceleration_;
+      acceleration_use_[i] = (grid_.d2[i] * a_[i] + grid_.d1[i] * b_[i]) * inverse_acceleration_;
     }
-    begin_rows_[i] = jerk_row(i, false);
-    end_rows_[i] = jerk_row(i, true);
+    begin_jerk_[i] = jerk_row(i, false);
+    end_jerk_[i] = jerk_row(i, true);
   }
 }
 
 // Largest use of the limits of station m and of the interval that begins there, as the factor on a: jerk
 // grows with a^(3/2).
-double JerkSolver::excess(std::size_t m) const
+double JerkSolver::limit_ratio(std::size_t m) const
 {
   double worst = 0.0;
   if (m > 0) {
-    worst = std::max(a_[m] / ceiling_[m], use_[m].abs().maxCoeff() / allowance_.acceleration[m]);
+    worst =
+        std::max(a_[m] / max_a_[m], acceleration_use_[m].abs().maxCoeff() / limit_fractions_.acceleration[m]);
   }
   const double jerk =
-      begin_rows_[m].value.abs().max(end_rows_[m].value.abs()).maxCoeff() / allowance_.jerk[m];
+      begin_jerk_[m].value.abs().max(end_jerk_[m].value.abs()).maxCoeff() / limit_fractions_.jerk[m];
   return std::max(worst, std::cbrt(jerk * jerk));
 }
 
-std::vector<double> JerkSolver::excesses(const SpeedSpline & spline, const std::vector<double> & w)
+std::vector<double> JerkSolver::limit_ratios(const SpeedSpline & spline, const std::vector<double> & w)
 {
   spline_ = &spline;
   w_ = w;
   evaluate();
   std::vector<double> result(count());
   for (std::size_t m = 0; m < count(); ++m) {
-    result[m] = excess(m);
+    result[m] = limit_ratio(m);
   }
   return result;
 }
@@ -113,7 +114,7 @@ void JerkSolver::scale_to_limits(double target)
   for (int round = 0; round < 20; ++round) {
     double worst = 0.0;
     for (std::size_t m = 0; m < count(); ++m) {
-      worst = std::max(worst, excess(m));
+      worst = std::max(worst, limit_ratio(m));
     }
     if (worst <= target * 1.01) {
       return;
@@ -132,7 +133,7 @@ JerkSolver::JerkRow JerkSolver::jerk_row(std::size_t i, bool end) const
   JerkRow row;
   row.at = rest ? (station == 0 ? 1 : count() - 1) : station;
   const double v = std::sqrt(a_[row.at]);
-  row.tangent = 0.5 * allowance_.jerk[i] / a_[row.at];
+  row.tangent = 0.5 * limit_fractions_.jerk[i] / a_[row.at];
   row.pc = grid_.d1[station] * inverse_jerk_ * (v / spline_->speed(row.at));
   if (rest) {
     row.pa.setZero();
@@ -146,40 +147,41 @@ JerkSolver::JerkRow JerkSolver::jerk_row(std::size_t i, bool end) const
 }
 
 // Moves each multiplier to within a factor `spread` of mu / slack.
-void JerkSolver::balance_multipliers(double mu, double spread)
+void JerkSolver::center_multipliers(double mu, double spread)
 {
   const auto balance = [&](Joints & multiplier, const Joints & slack) {
-    const Joints centre = mu * slack.max(1e-9).inverse();
-    multiplier = multiplier.max(centre / spread).min(centre * spread);
+    const Joints center = mu * slack.max(1e-9).inverse();
+    multiplier = multiplier.max(center / spread).min(center * spread);
   };
   for (std::size_t i = 0; i < count(); ++i) {
     Multipliers & m = multipliers_[i];
     if (i > 0) {
-      balance(m.station_plus, allowance_.acceleration[i] - use_[i]);
-      balance(m.station_minus, allowance_.acceleration[i] + use_[i]);
-      const double centre = mu / std::max(1.0 - a_[i] / ceiling_[i], 1e-9);
-      m.speed = std::clamp(m.speed, centre / spread, centre * spread);
+      balance(m.station_plus, limit_fractions_.acceleration[i] - acceleration_use_[i]);
+      balance(m.station_minus, limit_fractions_.acceleration[i] + acceleration_use_[i]);
+      const double center = mu / std::max(1.0 - a_[i] / max_a_[i], 1e-9);
+      m.speed = std::clamp(m.speed, center / spread, center * spread);
     }
-    balance(m.begin_plus, allowance_.jerk[i] - begin_rows_[i].value);
-    balance(m.begin_minus, allowance_.jerk[i] + begin_rows_[i].value);
-    balance(m.end_plus, allowance_.jerk[i] - end_rows_[i].value);
-    balance(m.end_minus, allowance_.jerk[i] + end_rows_[i].value);
+    balance(m.begin_plus, limit_fractions_.jerk[i] - begin_jerk_[i].value);
+    balance(m.begin_minus, limit_fractions_.jerk[i] + begin_jerk_[i].value);
+    balance(m.end_plus, limit_fractions_.jerk[i] - end_jerk_[i].value);
+    balance(m.end_minus, limit_fractions_.jerk[i] + end_jerk_[i].value);
   }
 }
 
-double JerkSolver::mean_product() const
+double JerkSolver::mean_complementarity() const
 {
   double sum = 0.0;
   for (std::size_t i = 0; i < count(); ++i) {
     const Multipliers & m = multipliers_[i];
     if (i > 0) {
-      const double f = allowance_.acceleration[i];
-      sum += (m.station_plus * (f - use_[i]) + m.station_minus * (f + use_[i])).sum();
-      sum += m.speed * (1.0 - a_[i] / ceiling_[i]);
+      const double f = limit_fractions_.acceleration[i];
+      sum +=
+          (m.station_plus * (f - acceleration_use_[i]) + m.station_minus * (f + acceleration_use_[i])).sum();
+      sum += m.speed * (1.0 - a_[i] / max_a_[i]);
     }
-    const double f = allowance_.jerk[i];
-    const Joints & begin = begin_rows_[i].value;
-    const Joints & end = end_rows_[i].value;
+    const double f = limit_fractions_.jerk[i];
+    const Joints & begin = begin_jerk_[i].value;
+    const Joints & end = end_jerk_[i].value;
     sum += (m.begin_plus * (f - begin) + m.begin_minus * (f + begin) + m.end_plus * (f - end) +
             m.end_minus * (f + end))
                .sum();
@@ -198,15 +200,15 @@ double JerkSolver::duration() const
 
 double JerkSolver::gap() const
 {
-  return mean_product() * rows_per_interval * static_cast<double>(count()) / duration();
+  return mean_complementarity() * rows_per_interval * static_cast<double>(count()) / duration();
 }
 
-void JerkSolver::improve(int steps, double gap_limit)
+void JerkSolver::iterate(int steps, double gap_limit)
 {
   double reduction = 0.3;
   double before = duration();
   bool settled = false;
-  double product = mean_product();
+  double product = mean_complementarity();
   const double rows = rows_per_interval * static_cast<double>(count());
   std::vector<double> last_w;
   for (int step = 0; step < steps && !(settled && product * rows < gap_limit * before); ++step) {
@@ -214,7 +216,7 @@ void JerkSolver::improve(int steps, double gap_limit)
     if (!system_.solve()) {
       return;  // the present iterate obeys the limits
     }
-    const Steps lengths = find_step(system_.right, reduction * product);
+    const StepLengths lengths = step_lengths(system_.right, reduction * product);
     last_w = w_;
     advance(system_.right, lengths);
     const double now = duration();
@@ -223,7 +225,7 @@ void JerkSolver::improve(int steps, double gap_limit)
       evaluate();
       return;
     }
-    product = mean_product();
+    product = mean_complementarity();
     const double shorter = std::min(lengths.primal, lengths.dual);
     reduction = shorter > 0.8 ? 0.1 : shorter > 0.5 ? 0.25 : shorter > 0.2 ? 0.6 : 1.0;
     settled = lengths.primal > 0.5 && std::abs(before - now) < 2.0 * gap_limit * now;

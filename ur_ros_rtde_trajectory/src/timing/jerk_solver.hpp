@@ -10,11 +10,13 @@ namespace ur_ros_rtde::trajectory {
 
 /// How much of its limits a place of the grid may use; below 1 where a first solution exceeded them between
 /// stations.
-struct Allowance {
+struct LimitFractions {
   std::vector<double> acceleration;  ///< of each station
   std::vector<double> jerk;          ///< of each interval
 
-  explicit Allowance(const Grid & grid) : acceleration(grid.stations(), 1.0), jerk(grid.intervals(), 1.0) {}
+  explicit LimitFractions(const Grid & grid) : acceleration(grid.stations(), 1.0), jerk(grid.intervals(), 1.0)
+  {
+  }
 };
 
 /// Time-optimal timing from rest to rest under velocity, acceleration and jerk limits: a feasible primal-dual
@@ -28,18 +30,18 @@ struct Allowance {
 /// stations.
 class JerkSolver {
  public:
-  JerkSolver(const Grid & grid, const Limits & limits, const Allowance & allowance);
+  JerkSolver(const Grid & grid, const Limits & limits, const LimitFractions & limit_fractions);
 
   /// Starts from coefficients `w` of `spline`, scaled down until they obey the limits. `gap`: what they may
   /// be away from the optimum, as a fraction of the duration.
   void start(const SpeedSpline & spline, std::vector<double> w, double gap);
   /// How much coefficients `w` exceed the limits at each station and in the interval after it, as factors by
   /// which the square of the speed is too high; 1: just at a limit.
-  std::vector<double> excesses(const SpeedSpline & spline, const std::vector<double> & w);
+  std::vector<double> limit_ratios(const SpeedSpline & spline, const std::vector<double> & w);
   /// Goes on with another spline of the same grid; keeps coefficients and multipliers.
-  void change_spline(const SpeedSpline & spline);
+  void set_spline(const SpeedSpline & spline);
   /// Up to `steps` steps, until the estimated loss of time is below `gap`, a fraction of the duration.
-  void improve(int steps, double gap);
+  void iterate(int steps, double gap);
 
   const std::vector<double> & coefficients() const { return w_; }
   double gap() const;
@@ -63,41 +65,41 @@ class JerkSolver {
   struct Model {
     double aa = 0, ab = 0, ac = 0, bb = 0, bc = 0, cc = 0, ga = 0, gb = 0, gc = 0;
   };
-  struct Steps {
+  struct StepLengths {
     double primal = 1.0, dual = 1.0;
   };
 
   std::size_t count() const { return grid_.intervals(); }
   void evaluate();
-  double excess(std::size_t m) const;
+  double limit_ratio(std::size_t m) const;
   void scale_to_limits(double target);
   JerkRow jerk_row(std::size_t i, bool end) const;
-  double mean_product() const;
-  void balance_multipliers(double mu, double spread);
+  double mean_complementarity() const;
+  void center_multipliers(double mu, double spread);
 
   void assemble(double target);
   void add_station(std::size_t m, double target);
   void add_interval(std::size_t i, double target);
   static Model jerk_model(const JerkRow & row, double f, const Joints & plus, const Joints & minus,
                           double target);
-  void spread_model(std::size_t i, std::size_t m, const Model & model);
+  void scatter_model(std::size_t i, std::size_t m, const Model & model);
 
-  Steps find_step(const std::vector<double> & dw, double target);
-  void station_step(std::size_t m, double da, double db, double target, Steps & steps);
-  static void limit_step(const Joints & room, const Joints & used, const Joints & multiplier, double target,
-                         Joints & change, Steps & steps);
-  void advance(const std::vector<double> & dw, const Steps & steps);
+  StepLengths step_lengths(const std::vector<double> & dw, double target);
+  void station_step_lengths(std::size_t m, double da, double db, double target, StepLengths & steps);
+  static void update_multipliers(const Joints & room, const Joints & used, const Joints & multiplier,
+                                 double target, Joints & change, StepLengths & steps);
+  void advance(const std::vector<double> & dw, const StepLengths & steps);
 
   const Grid & grid_;
-  const Allowance & allowance_;
+  const LimitFractions & limit_fractions_;
   const SpeedSpline * spline_ = nullptr;
   Joints inverse_acceleration_, inverse_jerk_;
-  std::vector<double> ceiling_;  // highest a at each station
-  std::vector<double> weight_;   // t_m
+  std::vector<double> max_a_;   // highest a at each station
+  std::vector<double> weight_;  // t_m
   std::vector<double> w_, a_, b_, c_;
-  std::vector<Joints> use_;  // of the acceleration limits at each station
-  std::vector<JerkRow> begin_rows_, end_rows_;
-  std::vector<Multipliers> multipliers_, change_;
+  std::vector<Joints> acceleration_use_;  // of the acceleration limits at each station
+  std::vector<JerkRow> begin_jerk_, end_jerk_;
+  std::vector<Multipliers> multipliers_, multiplier_step_;
   Pentadiagonal system_;
 };
 

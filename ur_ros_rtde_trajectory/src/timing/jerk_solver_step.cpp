@@ -10,7 +10,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double to_the_border = 0.95;  // part of the way to the nearest limit that a step may go
+constexpr double fraction_to_boundary = 0.95;  // part of the way to the nearest limit that a step may go
 
 }  // namespace
 
@@ -34,11 +34,11 @@ void JerkSolver::assemble(double target)
 void JerkSolver::add_station(std::size_t m, double target)
 {
   const Multipliers & l = multipliers_[m];
-  const double f = allowance_.acceleration[m];
+  const double f = limit_fractions_.acceleration[m];
   const Joints pa = grid_.d2[m] * inverse_acceleration_;
   const Joints pb = grid_.d1[m] * inverse_acceleration_;
-  const Joints plus = (f - use_[m]).inverse();
-  const Joints minus = (f + use_[m]).inverse();
+  const Joints plus = (f - acceleration_use_[m]).inverse();
+  const Joints minus = (f + acceleration_use_[m]).inverse();
   const Joints stiffness = l.station_plus * plus + l.station_minus * minus;
   const Joints push = target * (plus - minus);
   Model model;
@@ -48,22 +48,22 @@ void JerkSolver::add_station(std::size_t m, double target)
   model.ga = (push * pa).sum();
   model.gb = (push * pb).sum();
 
-  const double room = ceiling_[m] - a_[m];
-  model.aa += l.speed / (ceiling_[m] * room);
+  const double room = max_a_[m] - a_[m];
+  model.aa += l.speed / (max_a_[m] * room);
   model.ga += target / room;
 
   const double time = weight_[m] * spline_->speed(m) / std::sqrt(a_[m]);
   model.ga -= 0.5 * time / a_[m];
   model.aa += 0.3 * time / (a_[m] * a_[m]);
-  spread_model(m, m, model);
+  scatter_model(m, m, model);
 }
 
 void JerkSolver::add_interval(std::size_t i, double target)
 {
   const Multipliers & l = multipliers_[i];
-  const double f = allowance_.jerk[i];
-  spread_model(i, begin_rows_[i].at, jerk_model(begin_rows_[i], f, l.begin_plus, l.begin_minus, target));
-  spread_model(i, end_rows_[i].at, jerk_model(end_rows_[i], f, l.end_plus, l.end_minus, target));
+  const double f = limit_fractions_.jerk[i];
+  scatter_model(i, begin_jerk_[i].at, jerk_model(begin_jerk_[i], f, l.begin_plus, l.begin_minus, target));
+  scatter_model(i, end_jerk_[i].at, jerk_model(end_jerk_[i], f, l.end_plus, l.end_minus, target));
 }
 
 JerkSolver::Model JerkSolver::jerk_model(const JerkRow & row, double f, const Joints & plus,
@@ -89,7 +89,7 @@ JerkSolver::Model JerkSolver::jerk_model(const JerkRow & row, double f, const Jo
 }
 
 // Adds a model in (a_m, b_m, c_i), m = i or i + 1, to the system in w.
-void JerkSolver::spread_model(std::size_t i, std::size_t m, const Model & model)
+void JerkSolver::scatter_model(std::size_t i, std::size_t m, const Model & model)
 {
   // Rows of a, b, c over (w_(i-1), w_i, w_(i+1)).
   const double shift_left = spline_->at(i).g;  // 0 at the ends
@@ -131,73 +131,76 @@ void JerkSolver::spread_model(std::size_t i, std::size_t m, const Model & model)
   }
 }
 
-JerkSolver::Steps JerkSolver::find_step(const std::vector<double> & dw, double target)
+JerkSolver::StepLengths JerkSolver::step_lengths(const std::vector<double> & dw, double target)
 {
-  Steps steps;
+  StepLengths steps;
   for (std::size_t i = 0; i < count(); ++i) {
     if (i > 0) {
-      station_step(i, spline_->a(dw, i), spline_->b(dw, i), target, steps);
+      station_step_lengths(i, spline_->a(dw, i), spline_->b(dw, i), target, steps);
     }
-    const double f = allowance_.jerk[i];
+    const double f = limit_fractions_.jerk[i];
     const double dc = (spline_->b(dw, i + 1) - spline_->b(dw, i)) / spline_->duration(i);
     const Multipliers & l = multipliers_[i];
-    Multipliers & d = change_[i];
+    Multipliers & d = multiplier_step_[i];
     const auto move = [&](const JerkRow & row) {
       const double da = spline_->a(dw, row.at);
       return std::pair<Joints, double>(row.pa * da + row.pb * spline_->b(dw, row.at) + row.pc * dc,
                                        row.tangent * da);
     };
-    const auto [begin, begin_tangent] = move(begin_rows_[i]);
-    const auto [end, end_tangent] = move(end_rows_[i]);
-    limit_step(f - begin_rows_[i].value, begin + begin_tangent, l.begin_plus, target, d.begin_plus, steps);
-    limit_step(f + begin_rows_[i].value, begin_tangent - begin, l.begin_minus, target, d.begin_minus, steps);
-    limit_step(f - end_rows_[i].value, end + end_tangent, l.end_plus, target, d.end_plus, steps);
-    limit_step(f + end_rows_[i].value, end_tangent - end, l.end_minus, target, d.end_minus, steps);
+    const auto [begin, begin_tangent] = move(begin_jerk_[i]);
+    const auto [end, end_tangent] = move(end_jerk_[i]);
+    update_multipliers(f - begin_jerk_[i].value, begin + begin_tangent, l.begin_plus, target, d.begin_plus,
+                       steps);
+    update_multipliers(f + begin_jerk_[i].value, begin_tangent - begin, l.begin_minus, target, d.begin_minus,
+                       steps);
+    update_multipliers(f - end_jerk_[i].value, end + end_tangent, l.end_plus, target, d.end_plus, steps);
+    update_multipliers(f + end_jerk_[i].value, end_tangent - end, l.end_minus, target, d.end_minus, steps);
   }
   return steps;
 }
 
 // One side of six limits with `room` left, of which a full step takes `used`.
-void JerkSolver::limit_step(const Joints & room, const Joints & used, const Joints & multiplier,
-                            double target, Joints & change, Steps & steps)
+void JerkSolver::update_multipliers(const Joints & room, const Joints & used, const Joints & multiplier,
+                                    double target, Joints & change, StepLengths & steps)
 {
   const Joints inverse = room.inverse();
   change = (target + multiplier * used) * inverse - multiplier;
   const double fastest = (used * inverse).maxCoeff();
   const double dual = (-change / multiplier).maxCoeff();
-  steps.primal = fastest * steps.primal > to_the_border ? to_the_border / fastest : steps.primal;
-  steps.dual = dual * steps.dual > to_the_border ? to_the_border / dual : steps.dual;
+  steps.primal =
+      fastest * steps.primal > fraction_to_boundary ? fraction_to_boundary / fastest : steps.primal;
+  steps.dual = dual * steps.dual > fraction_to_boundary ? fraction_to_boundary / dual : steps.dual;
 }
 
-void JerkSolver::station_step(std::size_t m, double da, double db, double target, Steps & steps)
+void JerkSolver::station_step_lengths(std::size_t m, double da, double db, double target, StepLengths & steps)
 {
   const Multipliers & l = multipliers_[m];
-  Multipliers & d = change_[m];
-  const double f = allowance_.acceleration[m];
+  Multipliers & d = multiplier_step_[m];
+  const double f = limit_fractions_.acceleration[m];
   const Joints dx = (grid_.d2[m] * da + grid_.d1[m] * db) * inverse_acceleration_;
-  limit_step(f - use_[m], dx, l.station_plus, target, d.station_plus, steps);
-  limit_step(f + use_[m], -dx, l.station_minus, target, d.station_minus, steps);
+  update_multipliers(f - acceleration_use_[m], dx, l.station_plus, target, d.station_plus, steps);
+  update_multipliers(f + acceleration_use_[m], -dx, l.station_minus, target, d.station_minus, steps);
 
-  const double room = 1.0 - a_[m] / ceiling_[m];
-  const double used = da / ceiling_[m];
+  const double room = 1.0 - a_[m] / max_a_[m];
+  const double used = da / max_a_[m];
   d.speed = (target + l.speed * used) / room - l.speed;
   if (used > 0.0) {
-    steps.primal = std::min(steps.primal, to_the_border * room / used);
+    steps.primal = std::min(steps.primal, fraction_to_boundary * room / used);
   }
   if (da < 0.0) {
     steps.primal = std::min(steps.primal, -0.8 * a_[m] / da);
   }
   if (d.speed < 0.0) {
-    steps.dual = std::min(steps.dual, -to_the_border * l.speed / d.speed);
+    steps.dual = std::min(steps.dual, -fraction_to_boundary * l.speed / d.speed);
   }
 }
 
-void JerkSolver::advance(const std::vector<double> & dw, const Steps & steps)
+void JerkSolver::advance(const std::vector<double> & dw, const StepLengths & steps)
 {
   for (std::size_t i = 0; i < count(); ++i) {
     w_[i] += steps.primal * dw[i];
     Multipliers & l = multipliers_[i];
-    const Multipliers & d = change_[i];
+    const Multipliers & d = multiplier_step_[i];
     if (i > 0) {
       l.station_plus += steps.dual * d.station_plus;
       l.station_minus += steps.dual * d.station_minus;

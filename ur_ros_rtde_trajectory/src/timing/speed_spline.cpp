@@ -22,12 +22,12 @@ double rising(const Profile & p, std::size_t i)
 
 }  // namespace
 
-double interval_time(double width, double v0, double alpha0, double v1, double alpha1)
+double interval_duration(double width, double v0, double alpha0, double v1, double alpha1)
 {
   // width = (v0 + v1) / 2 T - (alpha1 - alpha0) / 12 T^2
   const double mean = 0.5 * (v0 + v1);
-  const double bend = (alpha1 - alpha0) / 12.0;
-  const double root = mean * mean - 4.0 * bend * width;
+  const double curvature = (alpha1 - alpha0) / 12.0;
+  const double root = mean * mean - 4.0 * curvature * width;
   return 2.0 * width / std::max(mean + std::sqrt(std::max(root, 0.0)), 1e-12);
 }
 
@@ -56,7 +56,7 @@ Profile SpeedSpline::profile(const Grid & grid, const std::vector<double> & w) c
   }
   for (std::size_t i = 0; i < count; ++i) {
     result.time[i] =
-        interval_time(grid.width(i), result.v[i], result.alpha[i], result.v[i + 1], result.alpha[i + 1]);
+        interval_duration(grid.width(i), result.v[i], result.alpha[i], result.v[i + 1], result.alpha[i + 1]);
   }
   return result;
 }

@@ -51,6 +51,6 @@ class SpeedSpline {
 };
 
 /// The time of an interval of this width between two states, when the speed is a cubic in time.
-double interval_time(double width, double v0, double alpha0, double v1, double alpha1);
+double interval_duration(double width, double v0, double alpha0, double v1, double alpha1);
 
 }  // namespace ur_ros_rtde::trajectory

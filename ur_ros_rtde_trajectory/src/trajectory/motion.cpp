@@ -4,7 +4,7 @@
 
 namespace ur_ros_rtde::trajectory {
 
-Place TimePiece::at(double time) const
+PathState TimingLawPiece::at(double time) const
 {
   const double t = time - start;
   return {c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5])))),
@@ -17,7 +17,7 @@ std::size_t Motion::piece_at(double time) const
 {
   const auto after =
       std::upper_bound(timing.begin(), timing.end(), time,
-                       [](double value, const TimePiece & piece) { return value < piece.start; });
+                       [](double value, const TimingLawPiece & piece) { return value < piece.start; });
   return after == timing.begin() ? 0 : static_cast<std::size_t>(after - timing.begin()) - 1;
 }
 
@@ -31,14 +31,14 @@ void Motion::append(const Grid & grid, const Profile & profile, bool constant_ac
   }
 }
 
-void Motion::append(std::size_t path_piece, double span, const Place & from)
+void Motion::append(std::size_t path_piece, double span, const PathState & from)
 {
   timing.push_back({duration(), span, path_piece, {from.u, from.v, from.a / 2.0, from.j / 6.0, 0.0, 0.0}});
 }
 
-void Motion::append(std::size_t path_piece, double span, const Place & from, const Place & to)
+void Motion::append(std::size_t path_piece, double span, const PathState & from, const PathState & to)
 {
-  TimePiece piece;
+  TimingLawPiece piece;
   piece.start = duration();
   piece.duration = span;
   piece.piece = path_piece;
@@ -69,7 +69,7 @@ void Motion::stretch(double factor, std::size_t first)
 {
   double start = first > 0 ? timing[first - 1].end() : 0.0;
   for (std::size_t k = first; k < timing.size(); ++k) {
-    TimePiece & piece = timing[k];
+    TimingLawPiece & piece = timing[k];
     piece.start = start;
     piece.duration *= factor;
     start = piece.end();
@@ -81,7 +81,7 @@ void Motion::stretch(double factor, std::size_t first)
   }
 }
 
-Point at_place(const PathPoint & point, const Place & place)
+Point joint_motion(const PathPoint & point, const PathState & place)
 {
   const double v2 = place.v * place.v;
   return {point.q, point.d1 * place.v, point.d2 * v2 + point.d1 * place.a,

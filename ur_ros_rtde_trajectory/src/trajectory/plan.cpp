@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "path/path_builder.hpp"
-#include "timing/time_path.hpp"
+#include "timing/time_parameterization.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
@@ -122,7 +122,7 @@ Expected<Trajectory> plan_path(const std::vector<Joints> & waypoints, const Limi
     return tl::unexpected(status.error());
   }
   auto path = std::make_shared<Path>(build_path(waypoints, {options.blend_tolerance, options.corner_angle}));
-  auto motion = time_path(std::move(path), limits, options.stop);
+  auto motion = parameterize_path(std::move(path), limits, options.stop);
   if (!motion) {
     return tl::unexpected(motion.error());
   }

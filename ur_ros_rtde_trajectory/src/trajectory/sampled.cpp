@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "path/spline.hpp"
-#include "timing/time_path.hpp"
+#include "timing/time_parameterization.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
@@ -13,26 +13,26 @@ constexpr double same_sample = 1e-9;  // rad; closer samples are one
 // A block without samples that repeat.
 struct SampledKnots {
   std::vector<Joints> q;
-  std::vector<double> width;     // rad, chords
-  std::vector<double> shortest;  // s
+  std::vector<double> width;         // rad, chords
+  std::vector<double> min_duration;  // s
 
-  explicit SampledKnots(const SampledBlock & block) : q{block.positions.front()}
+  explicit SampledKnots(const SampledSegment & segment) : q{segment.positions.front()}
   {
     double time = 0.0;
-    for (std::size_t i = 1; i < block.positions.size(); ++i) {
-      time += block.shortest[i - 1];
-      const double chord = (block.positions[i] - q.back()).matrix().norm();
+    for (std::size_t i = 1; i < segment.positions.size(); ++i) {
+      time += segment.min_durations[i - 1];
+      const double chord = (segment.positions[i] - q.back()).matrix().norm();
       if (chord > same_sample) {
-        q.push_back(block.positions[i]);
+        q.push_back(segment.positions[i]);
         width.push_back(chord);
-        shortest.push_back(time);
+        min_duration.push_back(time);
         time = 0.0;
       }
     }
   }
 };
 
-void add_block(Path & path, const SampledKnots & knots)
+void add_segment(Path & path, const SampledKnots & knots)
 {
   const auto slopes = natural_spline_slopes(knots.q, knots.width);
   for (std::size_t i = 0; i + 1 < knots.q.size(); ++i) {
@@ -40,7 +40,7 @@ void add_block(Path & path, const SampledKnots & knots)
     piece.start = path.length();
     piece.length = knots.width[i];
     piece.degree = 3;
-    piece.top_speed = knots.shortest[i] > 0.0 ? knots.width[i] / knots.shortest[i] : unlimited;
+    piece.max_speed = knots.min_duration[i] > 0.0 ? knots.width[i] / knots.min_duration[i] : unlimited;
     const Joints rise = knots.q[i + 1] - knots.q[i];
     const Joints m0 = slopes[i] * piece.length;
     const Joints m1 = slopes[i + 1] * piece.length;
@@ -53,42 +53,42 @@ void add_block(Path & path, const SampledKnots & knots)
 }
 
 // The place of each sample, and where on the path it lies.
-struct Places {
-  std::vector<double> place, s;
+struct ParameterMap {
+  std::vector<double> parameter, s;
 
-  double on_path(double wanted) const
+  double path_position(double at) const
   {
-    const auto after = std::upper_bound(place.begin(), place.end(), wanted);
-    if (after == place.begin()) {
+    const auto after = std::upper_bound(parameter.begin(), parameter.end(), at);
+    if (after == parameter.begin()) {
       return s.front();
     }
-    if (after == place.end()) {
+    if (after == parameter.end()) {
       return s.back();
     }
-    const auto i = static_cast<std::size_t>(after - place.begin());
-    const double part = (wanted - place[i - 1]) / (place[i] - place[i - 1]);
-    return s[i - 1] + part * (s[i] - s[i - 1]);
+    const auto i = static_cast<std::size_t>(after - parameter.begin());
+    const double fraction = (at - parameter[i - 1]) / (parameter[i] - parameter[i - 1]);
+    return s[i - 1] + fraction * (s[i] - s[i - 1]);
   }
 };
 
-Places places_of(const std::vector<SampledBlock> & blocks)
+ParameterMap parameter_map_of(const std::vector<SampledSegment> & segments)
 {
-  Places places;
+  ParameterMap parameter_map;
   double s = 0.0;
-  for (const SampledBlock & block : blocks) {
-    for (std::size_t i = 0; i < block.positions.size(); ++i) {
-      const double chord = i > 0 ? (block.positions[i] - block.positions[i - 1]).matrix().norm() : 0.0;
+  for (const SampledSegment & segment : segments) {
+    for (std::size_t i = 0; i < segment.positions.size(); ++i) {
+      const double chord = i > 0 ? (segment.positions[i] - segment.positions[i - 1]).matrix().norm() : 0.0;
       s += chord;
-      places.place.push_back(block.place[i]);
-      places.s.push_back(s);
+      parameter_map.parameter.push_back(segment.parameters[i]);
+      parameter_map.s.push_back(s);
     }
   }
-  return places;
+  return parameter_map;
 }
 
 }  // namespace
 
-Expected<Trajectory> plan_sampled(const std::vector<SampledBlock> & blocks,
+Expected<Trajectory> plan_sampled(const std::vector<SampledSegment> & segments,
                                   const std::vector<double> & waypoints, const Limits & limits,
                                   const std::stop_token & stop)
 {
@@ -96,24 +96,24 @@ Expected<Trajectory> plan_sampled(const std::vector<SampledBlock> & blocks,
     return tl::unexpected(status.error());
   }
   auto path = std::make_shared<Path>();
-  for (const SampledBlock & block : blocks) {
-    const SampledKnots knots(block);
+  for (const SampledSegment & segment : segments) {
+    const SampledKnots knots(segment);
     if (knots.q.size() < 2) {
       continue;
     }
     if (!path->pieces.empty()) {
       path->stops.push_back(path->pieces.size());
     }
-    add_block(*path, knots);
+    add_segment(*path, knots);
   }
   if (path->pieces.empty()) {
-    path->pieces.emplace_back().c[0] = blocks.front().positions.front();
+    path->pieces.emplace_back().c[0] = segments.front().positions.front();
   }
-  const Places places = places_of(blocks);
+  const ParameterMap parameter_map = parameter_map_of(segments);
   for (const double waypoint : waypoints) {
-    path->waypoints.push_back(std::min(places.on_path(waypoint), path->length()));
+    path->waypoints.push_back(std::min(parameter_map.path_position(waypoint), path->length()));
   }
-  return time_path(std::move(path), limits, stop).map([](std::shared_ptr<Motion> motion) {
+  return parameterize_path(std::move(path), limits, stop).map([](std::shared_ptr<Motion> motion) {
     return Trajectory(std::move(motion));
   });
 }

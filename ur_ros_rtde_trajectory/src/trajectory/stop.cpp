@@ -1,59 +1,62 @@
 #include <algorithm>
 #include <optional>
 
+#include "trajectory/braking_time_scaling.hpp"
 #include "trajectory/motion.hpp"
-#include "trajectory/slow_clock.hpp"
 #include "trajectory/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
 
 // The place on the planned piece `index` that the slowed clock shows when its r'' is `bend`.
-Place slowed_place(const Motion & plan, std::size_t index, const ClockState & clock, double bend)
+PathState scaled_state(const Motion & plan, std::size_t index, const TimeScalingState & scaling,
+                       double rate_ddot)
 {
-  const TimePiece & piece = plan.timing[index];
-  const Place place = piece.at(std::clamp(clock.planned, piece.start, piece.end()));
-  const double r = clock.rate;
-  return {place.u, place.v * r, place.a * r * r + place.v * clock.change,
-          place.j * r * r * r + 3.0 * place.a * r * clock.change + place.v * bend};
+  const TimingLawPiece & piece = plan.timing[index];
+  const PathState place = piece.at(std::clamp(scaling.plan_time, piece.start, piece.end()));
+  const double r = scaling.rate;
+  return {place.u, place.v * r, place.a * r * r + place.v * scaling.rate_dot,
+          place.j * r * r * r + 3.0 * place.a * r * scaling.rate_dot + place.v * rate_ddot};
 }
 
 // Ends of the parts in which both the plan and the clock are smooth.
-std::vector<double> part_ends(const Motion & plan, const SlowClock & clock)
+std::vector<double> smooth_interval_ends(const Motion & plan, const BrakingTimeScaling & scaling)
 {
   std::vector<double> ends;
-  for (std::size_t k = 1; k < clock.phases.size(); ++k) {
-    ends.push_back(clock.phases[k].begin);
+  for (std::size_t k = 1; k < scaling.phases.size(); ++k) {
+    ends.push_back(scaling.phases[k].begin);
   }
-  const double landing = clock.phases.back().begin;
-  constexpr int landing_parts = 16;
-  for (int k = 1; k <= landing_parts; ++k) {
-    ends.push_back(landing + (clock.end - landing) * k / landing_parts);
+  const double final_phase = scaling.phases.back().begin;
+  constexpr int final_phase_parts = 16;
+  for (int k = 1; k <= final_phase_parts; ++k) {
+    ends.push_back(final_phase + (scaling.end - final_phase) * k / final_phase_parts);
   }
-  const double last = clock.at(clock.end).planned;
-  for (std::size_t i = plan.piece_at(clock.phases.front().state.planned); plan.timing[i].end() < last; ++i) {
-    ends.push_back(clock.when(plan.timing[i].end()));
+  const double last = scaling.at(scaling.end).plan_time;
+  for (std::size_t i = plan.piece_at(scaling.phases.front().state.plan_time); plan.timing[i].end() < last;
+       ++i) {
+    ends.push_back(scaling.time_at(plan.timing[i].end()));
   }
   std::sort(ends.begin(), ends.end());
   return ends;
 }
 
 // The braking alone, its time from 0.
-Motion braking(const Motion & plan, const SlowClock & clock)
+Motion braking_motion(const Motion & plan, const BrakingTimeScaling & scaling)
 {
   constexpr double shortest = 1e-9;  // s; shorter parts are joined with the next
   Motion result;
   result.path = plan.path;
   double from = 0.0;
-  for (const double to : part_ends(plan, clock)) {
+  for (const double to : smooth_interval_ends(plan, scaling)) {
     if (to - from < shortest) {
       continue;
     }
     const double middle = 0.5 * (from + to);
-    const double bend = clock.bend_at(middle);
-    const std::size_t index = plan.piece_at(clock.at(middle).planned);
-    const Place begin = slowed_place(plan, index, clock.at(from), bend);
-    result.append(plan.timing[index].piece, to - from, begin, slowed_place(plan, index, clock.at(to), bend));
+    const double rate_ddot = scaling.rate_ddot_at(middle);
+    const std::size_t index = plan.piece_at(scaling.at(middle).plan_time);
+    const PathState begin = scaled_state(plan, index, scaling.at(from), rate_ddot);
+    result.append(plan.timing[index].piece, to - from, begin,
+                  scaled_state(plan, index, scaling.at(to), rate_ddot));
     from = to;
   }
   return result;
@@ -61,16 +64,16 @@ Motion braking(const Motion & plan, const SlowClock & clock)
 
 // The quickest braking that obeys the limits everywhere: the less of them it means to use, the less it
 // exceeds them between the moments that the search looks at.
-std::optional<Motion> find_braking(const Motion & plan, double planned, const Limits & limits)
+std::optional<Motion> find_braking(const Motion & plan, double plan_time, const Limits & limits)
 {
   for (const double reserve : {0.0, 0.02, 0.06, 0.15, 0.3, 0.5, 0.7, 0.85}) {
-    const auto clock = find_slow_clock(plan, planned, limits, reserve);
-    if (!clock) {
+    const auto scaling = find_braking_time_scaling(plan, plan_time, limits, reserve);
+    if (!scaling) {
       continue;
     }
-    Motion motion = braking(plan, *clock);
-    Utilisation use;
-    if (!first_excess(motion, limits, verification_step, use)) {
+    Motion motion = braking_motion(plan, *scaling);
+    Utilization use;
+    if (!first_violation(motion, limits, verification_step, use)) {
       return motion;
     }
   }
@@ -88,15 +91,15 @@ Trajectory Trajectory::stop_from(double time, const Limits & limits) const
   auto result = std::make_shared<Motion>();
   result->path = motion_->path;
   if (now <= 0.0) {
-    result->append(motion_->timing.front().piece, 1e-3, Place{});  // not yet begun: stay
+    result->append(motion_->timing.front().piece, 1e-3, PathState{});  // not yet begun: stay
     return Trajectory(std::move(result));
   }
   // Should no braking from here pass its verification, one that begins a little later does.
-  constexpr double wait = 0.025;  // s
+  constexpr double delay = 0.025;  // s
   std::optional<Motion> brake;
   double begin = now;
-  for (; begin < duration(); begin += wait) {
-    brake = find_braking(*motion_, begin, slightly_within(limits, 5e-5));
+  for (; begin < duration(); begin += delay) {
+    brake = find_braking(*motion_, begin, with_margin(limits, 5e-5));
     if (brake) {
       break;
     }
@@ -108,7 +111,7 @@ Trajectory Trajectory::stop_from(double time, const Limits & limits) const
   result->timing.assign(motion_->timing.begin(),
                         motion_->timing.begin() + static_cast<std::ptrdiff_t>(index) + 1);
   result->timing.back().duration = begin - result->timing.back().start;
-  for (TimePiece piece : brake->timing) {
+  for (TimingLawPiece piece : brake->timing) {
     piece.start = result->duration();
     result->timing.push_back(piece);
   }

@@ -213,7 +213,7 @@ Status check_timed(const TimedWaypoints & waypoints, const Limits & limits)
   return {};
 }
 
-void begin_at(TimedWaypoints & waypoints, const Joints & start)
+void prepend_start(TimedWaypoints & waypoints, const Joints & start)
 {
   if (waypoints.times.empty() || !(waypoints.times.front() >= shortest_step)) {
     return;

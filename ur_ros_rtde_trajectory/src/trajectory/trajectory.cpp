@@ -9,19 +9,20 @@ namespace ur_ros_rtde::trajectory {
 namespace {
 
 // The piece of the motion at `time`, and the place on the path, within it whatever rounding says.
-struct Now {
+struct PathLocation {
   const PathPiece * curve = nullptr;
-  Place place;
+  PathState place;
   double s() const { return curve->start + place.u; }
 };
 
-Now now(const Motion & motion, double time)
+PathLocation locate(const Motion & motion, double time)
 {
   if (motion.timing.empty()) {
     return {&motion.path->pieces.front(), {}};
   }
-  const TimePiece & piece = motion.timing[motion.piece_at(time)];
-  Now result{&motion.path->pieces[piece.piece], piece.at(std::clamp(time, piece.start, piece.end()))};
+  const TimingLawPiece & piece = motion.timing[motion.piece_at(time)];
+  PathLocation result{&motion.path->pieces[piece.piece],
+                      piece.at(std::clamp(time, piece.start, piece.end()))};
   result.place.u = std::clamp(result.place.u, 0.0, result.curve->length);
   return result;
 }
@@ -35,20 +36,20 @@ double Trajectory::duration() const
 
 Point Trajectory::sample(double time) const
 {
-  const Now here = now(*motion_, time);
+  const PathLocation here = locate(*motion_, time);
   const PathPoint point = here.curve->at(here.place.u);
   if (!(time >= 0.0) || time >= duration()) {
     Point rest;
     rest.position = point.q;
     return rest;
   }
-  return at_place(point, here.place);
+  return joint_motion(point, here.place);
 }
 
 double Trajectory::progress(double time) const
 {
   const double length = motion_->path->length();
-  return length > 0.0 && duration() > 0.0 ? std::clamp(now(*motion_, time).s() / length, 0.0, 1.0) : 1.0;
+  return length > 0.0 && duration() > 0.0 ? std::clamp(locate(*motion_, time).s() / length, 0.0, 1.0) : 1.0;
 }
 
 std::size_t Trajectory::waypoint_count() const
@@ -60,16 +61,16 @@ double Trajectory::time_of_waypoint(std::size_t waypoint) const
 {
   const double target = motion_->path->waypoints.at(waypoint);
   const auto & timing = motion_->timing;
-  const auto begins_at = [&](const TimePiece & piece) {
+  const auto begins_at = [&](const TimingLawPiece & piece) {
     return motion_->path->pieces[piece.piece].start + piece.c[0];
   };
   const auto after =
       std::upper_bound(timing.begin(), timing.end(), target,
-                       [&](double s, const TimePiece & piece) { return s < begins_at(piece); });
+                       [&](double s, const TimingLawPiece & piece) { return s < begins_at(piece); });
   if (after == timing.begin()) {
     return 0.0;
   }
-  const TimePiece & piece = *(after - 1);
+  const TimingLawPiece & piece = *(after - 1);
   const double start = motion_->path->pieces[piece.piece].start;
   double low = piece.start;
   double high = piece.end();
@@ -84,7 +85,7 @@ std::size_t Trajectory::waypoint_at(double time) const
 {
   constexpr double rounding = 1e-9;  // rad
   const auto & waypoints = motion_->path->waypoints;
-  const double s = now(*motion_, time).s() + rounding;
+  const double s = locate(*motion_, time).s() + rounding;
   const auto after = std::upper_bound(waypoints.begin(), waypoints.end(), s);
   return after == waypoints.begin() ? 0 : static_cast<std::size_t>(after - waypoints.begin()) - 1;
 }

@@ -11,11 +11,11 @@ namespace {
 
 constexpr double rounding = 1e-9;  // of a limit
 
-Point point_at(const Motion & motion, const TimePiece & piece, double time)
+Point point_at(const Motion & motion, const TimingLawPiece & piece, double time)
 {
   const PathPiece & curve = motion.path->pieces[piece.piece];
-  const Place place = piece.at(time);
-  return at_place(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
+  const PathState place = piece.at(time);
+  return joint_motion(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
 }
 
 // The largest of values that come in equal steps, with the vertices of the parabolas through each three of
@@ -27,10 +27,10 @@ struct Peak {
   {
     largest = largest.max(value);
     if (++count_ >= 3) {
-      const Joints bend = (2.0 * before_ - first_ - value).max(1e-12);
+      const Joints curvature = (2.0 * before_ - first_ - value).max(1e-12);
       const Joints slope = value - first_;
-      largest =
-          (slope.abs() < 2.0 * bend).select(largest.max(before_ + slope * slope / (8.0 * bend)), largest);
+      largest = (slope.abs() < 2.0 * curvature)
+                    .select(largest.max(before_ + slope * slope / (8.0 * curvature)), largest);
     }
     first_ = before_;
     before_ = value;
@@ -43,9 +43,9 @@ struct Peak {
 };
 
 // Of what the path itself allows; the speed is a polynomial in time, so a few moments will do.
-double largest_share_of_speed(const Motion & motion, const TimePiece & piece, int inner)
+double max_speed_ratio(const Motion & motion, const TimingLawPiece & piece, int inner)
 {
-  const double top = motion.path->pieces[piece.piece].top_speed;
+  const double top = motion.path->pieces[piece.piece].max_speed;
   double largest = 0.0;
   for (int k = 0; std::isfinite(top) && k <= inner + 1; ++k) {
     largest = std::max(largest, piece.at(piece.start + piece.duration * k / (inner + 1)).v / top);
@@ -53,54 +53,56 @@ double largest_share_of_speed(const Motion & motion, const TimePiece & piece, in
   return largest;
 }
 
-int steps_of(const TimePiece & piece, double step)
+int steps_of(const TimingLawPiece & piece, double step)
 {
   return std::max(6, static_cast<int>(std::ceil(piece.duration / step)));
 }
 
-std::optional<Excess> excess_of(Quantity quantity, const Joints & value, const Joints & limit, double time)
+std::optional<LimitViolation> limit_violation(Quantity quantity, const Joints & value, const Joints & limit,
+                                              double time)
 {
   int joint = 0;
   if ((value.abs() / limit).maxCoeff(&joint) <= 1.0 + rounding) {
     return std::nullopt;
   }
-  return Excess{quantity, joint, time, value[joint], limit[joint]};
+  return LimitViolation{quantity, joint, time, value[joint], limit[joint]};
 }
 
-std::optional<Excess> excess_of_position(const Joints & q, const Limits & limits, double time)
+std::optional<LimitViolation> position_violation(const Joints & q, const Limits & limits, double time)
 {
   for (int j = 0; j < joint_count; ++j) {
     if (q[j] < limits.position_min[j] - rounding || q[j] > limits.position_max[j] + rounding) {
-      return Excess{Quantity::position, j, time, q[j],
-                    q[j] < limits.position_min[j] ? limits.position_min[j] : limits.position_max[j]};
+      return LimitViolation{Quantity::position, j, time, q[j],
+                            q[j] < limits.position_min[j] ? limits.position_min[j] : limits.position_max[j]};
     }
   }
   return std::nullopt;
 }
 
-std::optional<Excess> excess_at(const Point & point, const Limits & limits, double time)
+std::optional<LimitViolation> violation_at(const Point & point, const Limits & limits, double time)
 {
   // A number that is none would pass every comparison with a limit.
   if (!(point.position + point.velocity + point.acceleration + point.jerk).isFinite().all()) {
-    return Excess{Quantity::position, 0, time, std::numeric_limits<double>::quiet_NaN(),
-                  limits.position_max[0]};
+    return LimitViolation{Quantity::position, 0, time, std::numeric_limits<double>::quiet_NaN(),
+                          limits.position_max[0]};
   }
-  auto excess = excess_of_position(point.position, limits, time);
+  auto excess = position_violation(point.position, limits, time);
   if (!excess) {
-    excess = excess_of(Quantity::velocity, point.velocity, limits.velocity, time);
-  }
-  if (!excess) {
-    excess = excess_of(Quantity::acceleration, point.acceleration, limits.acceleration, time);
+    excess = limit_violation(Quantity::velocity, point.velocity, limits.velocity, time);
   }
   if (!excess) {
-    excess = excess_of(Quantity::jerk, point.jerk, limits.jerk, time);
+    excess = limit_violation(Quantity::acceleration, point.acceleration, limits.acceleration, time);
+  }
+  if (!excess) {
+    excess = limit_violation(Quantity::jerk, point.jerk, limits.jerk, time);
   }
   return excess;
 }
 
 }  // namespace
 
-PieceUse use_of(const Motion & motion, const TimePiece & piece, const Limits & limits, int inner)
+PieceUtilization piece_utilization(const Motion & motion, const TimingLawPiece & piece, const Limits & limits,
+                                   int inner)
 {
   Peak velocity;
   Peak acceleration;
@@ -111,15 +113,15 @@ PieceUse use_of(const Motion & motion, const TimePiece & piece, const Limits & l
     acceleration.add(point.acceleration.abs() / limits.acceleration);
     jerk.add(point.jerk.abs() / limits.jerk);
   }
-  return {velocity.largest, acceleration.largest, jerk.largest, largest_share_of_speed(motion, piece, inner)};
+  return {velocity.largest, acceleration.largest, jerk.largest, max_speed_ratio(motion, piece, inner)};
 }
 
-Utilisation largest_use(const Motion & motion, std::size_t begin, const Limits & limits)
+Utilization max_utilization(const Motion & motion, std::size_t begin, const Limits & limits)
 {
-  Utilisation largest;
+  Utilization largest;
   for (std::size_t k = begin; k < motion.timing.size(); ++k) {
-    const PieceUse use =
-        use_of(motion, motion.timing[k], limits, steps_of(motion.timing[k], verification_step) - 1);
+    const PieceUtilization use = piece_utilization(motion, motion.timing[k], limits,
+                                                   steps_of(motion.timing[k], verification_step) - 1);
     largest.velocity = std::max({largest.velocity, use.velocity.maxCoeff(), use.speed});
     largest.acceleration = std::max(largest.acceleration, use.acceleration.maxCoeff());
     largest.jerk = std::max(largest.jerk, use.jerk.maxCoeff());
@@ -127,10 +129,10 @@ Utilisation largest_use(const Motion & motion, std::size_t begin, const Limits &
   return largest;
 }
 
-std::optional<Excess> first_excess(const Motion & motion, const Limits & limits, double step,
-                                   Utilisation & use)
+std::optional<LimitViolation> first_violation(const Motion & motion, const Limits & limits, double step,
+                                              Utilization & use)
 {
-  for (const TimePiece & piece : motion.timing) {
+  for (const TimingLawPiece & piece : motion.timing) {
     const int steps = steps_of(piece, step);
     for (int k = 0; k <= steps; ++k) {
       const double time = piece.start + piece.duration * k / steps;
@@ -139,19 +141,19 @@ std::optional<Excess> first_excess(const Motion & motion, const Limits & limits,
       use.acceleration =
           std::max(use.acceleration, (point.acceleration.abs() / limits.acceleration).maxCoeff());
       use.jerk = std::max(use.jerk, (point.jerk.abs() / limits.jerk).maxCoeff());
-      if (auto excess = excess_at(point, limits, time)) {
+      if (auto excess = violation_at(point, limits, time)) {
         return excess;
       }
-      const double share = piece.at(time).v / motion.path->pieces[piece.piece].top_speed;
+      const double share = piece.at(time).v / motion.path->pieces[piece.piece].max_speed;
       if (share > 1.0 + rounding) {
-        return Excess{Quantity::path_speed, 0, time, share, 1.0};
+        return LimitViolation{Quantity::path_speed, 0, time, share, 1.0};
       }
     }
   }
   return std::nullopt;
 }
 
-std::string describe(const Excess & excess, std::size_t waypoint)
+std::string describe(const LimitViolation & excess, std::size_t waypoint)
 {
   if (excess.quantity == Quantity::path_speed) {
     return fmt::format("speed along the path is {:.6g} of what is allowed at {:.4f} s (after waypoint {})",
@@ -165,10 +167,10 @@ std::string describe(const Excess & excess, std::size_t waypoint)
                      waypoint, excess.limit, units[index]);
 }
 
-Expected<Utilisation> Trajectory::verify(const Limits & limits, double step) const
+Expected<Utilization> Trajectory::verify(const Limits & limits, double step) const
 {
-  Utilisation use;
-  if (const auto excess = first_excess(*motion_, limits, step, use)) {
+  Utilization use;
+  if (const auto excess = first_violation(*motion_, limits, step, use)) {
     return failure(ErrorCode::invalid_goal, describe(*excess, waypoint_at(excess->time)));
   }
   return use;

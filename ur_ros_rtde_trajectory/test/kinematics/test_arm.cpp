@@ -27,7 +27,7 @@ Pose tool()
 TEST(AnArm, is_where_its_lengths_say)
 {
   // Stretched out along -x at the height of the shoulder; the wrist's offsets by their published lengths.
-  const Lengths ur5e{0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996};
+  const DhParameters ur5e{0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996};
   const Pose pose = Arm(ur5e).forward(Joints::Zero());
   EXPECT_NEAR(pose.translation().x(), -0.8172, 1e-12);
   EXPECT_NEAR(pose.translation().y(), -0.1333 - 0.0996, 1e-12);
@@ -37,7 +37,7 @@ TEST(AnArm, is_where_its_lengths_say)
 TEST(AnArm, has_the_jacobian_of_its_forward_kinematics)
 {
   std::mt19937 random(1);
-  for (const Lengths & lengths : published_lengths()) {
+  for (const DhParameters & lengths : nominal_dh_parameters()) {
     const Arm arm(lengths, tool());
     const Joints q = random_joints(random);
     const Jacobian jacobian = arm.jacobian(q);
@@ -57,7 +57,8 @@ TEST(AnArm, finds_back_to_the_joints_that_it_came_from)
   std::mt19937 random(2);
   int found = 0;
   for (int round = 0; round < 500; ++round) {
-    const Arm arm(published_lengths()[static_cast<std::size_t>(round) % published_lengths().size()], tool());
+    const Arm arm(nominal_dh_parameters()[static_cast<std::size_t>(round) % nominal_dh_parameters().size()],
+                  tool());
     const Joints q = random_joints(random);
     if (std::abs(arm.jacobian(q).determinant()) < 5e-3) {
       continue;  // near a singularity there are other solutions as near
@@ -72,7 +73,7 @@ TEST(AnArm, finds_back_to_the_joints_that_it_came_from)
 
 TEST(AnArm, knows_what_is_out_of_reach)
 {
-  const Arm arm(published_lengths()[4]);
+  const Arm arm(nominal_dh_parameters()[4]);
   Pose far = arm.forward(home());
   far.translation() *= 5.0;
   EXPECT_FALSE(arm.inverse(far, home()));
@@ -80,27 +81,27 @@ TEST(AnArm, knows_what_is_out_of_reach)
 
 TEST(AnArm, is_recognised_by_where_its_tool_is)
 {
-  for (const Lengths & lengths : published_lengths()) {
+  for (const DhParameters & lengths : nominal_dh_parameters()) {
     const Arm arm(lengths, tool());
-    const auto recognised = recognise_arm(home(), arm.forward(home()), tool());
-    ASSERT_TRUE(recognised) << recognised.error().message;
-    EXPECT_LT(difference(recognised->forward(home() + 0.3), arm.forward(home() + 0.3)).norm(), 1e-9);
+    const auto identified = identify_arm(home(), arm.forward(home()), tool());
+    ASSERT_TRUE(identified) << identified.error().message;
+    EXPECT_LT(difference(identified->forward(home() + 0.3), arm.forward(home() + 0.3)).norm(), 1e-9);
   }
 }
 
 TEST(AnArm, is_recognised_in_spite_of_its_calibration)
 {
-  const Lengths calibrated{0.1809, -0.6121, -0.5722, 0.1738, 0.1201, 0.1164};
-  const auto recognised = recognise_arm(home(), Arm(calibrated, tool()).forward(home()), tool());
-  ASSERT_TRUE(recognised);
+  const DhParameters calibrated{0.1809, -0.6121, -0.5722, 0.1738, 0.1201, 0.1164};
+  const auto identified = identify_arm(home(), Arm(calibrated, tool()).forward(home()), tool());
+  ASSERT_TRUE(identified);
   const Arm published({0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655}, tool());
-  EXPECT_LT(difference(recognised->forward(home()), published.forward(home())).norm(), 1e-9);
+  EXPECT_LT(difference(identified->forward(home()), published.forward(home())).norm(), 1e-9);
 }
 
 TEST(AnArm, of_an_unknown_model_or_with_another_tool_is_refused)
 {
-  const Lengths stranger{0.3, -0.5, -0.45, 0.2, 0.1, 0.1};
-  const auto refused = recognise_arm(home(), Arm(stranger).forward(home()), Pose::Identity());
+  const DhParameters stranger{0.3, -0.5, -0.45, 0.2, 0.1, 0.1};
+  const auto refused = identify_arm(home(), Arm(stranger).forward(home()), Pose::Identity());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::not_supported);
   EXPECT_NE(refused.error().message.find("mm"), std::string::npos);

@@ -10,7 +10,7 @@
 namespace ur_ros_rtde::kinematics {
 namespace {
 
-constexpr Lengths ur10e{0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655};
+constexpr DhParameters ur10e{0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655};
 
 trajectory::Limits limits()
 {
@@ -24,7 +24,7 @@ trajectory::Limits limits()
 }
 
 /// Moves of the TCP from where the arm is at home.
-std::vector<Pose> way(const Arm & arm, const std::vector<Twist> & steps)
+std::vector<Pose> poses_along(const Arm & arm, const std::vector<Twist> & steps)
 {
   std::vector<Pose> poses{arm.forward(home())};
   for (const Twist & step : steps) {
@@ -40,7 +40,7 @@ Twist step(double x, double y, double z, double turn = 0.0)
   return result;
 }
 
-Reference reference_of(const Arm & arm)
+IkFunction ik_of(const Arm & arm)
 {
   return [arm](const Pose & pose, const Joints & guess) -> Expected<Joints> {
     if (const auto q = arm.inverse(pose, guess)) {
@@ -58,7 +58,7 @@ double distance_to_line(const Pose & pose, const Pose & from, const Pose & to)
 }
 
 /// Largest speeds of the TCP, by differences.
-std::pair<double, double> top_speeds(const Arm & arm, const trajectory::Trajectory & plan)
+std::pair<double, double> max_speeds(const Arm & arm, const trajectory::Trajectory & plan)
 {
   constexpr double h = 1e-3;
   std::pair<double, double> top{0.0, 0.0};
@@ -74,15 +74,15 @@ std::pair<double, double> top_speeds(const Arm & arm, const trajectory::Trajecto
 TEST(ACartesianPlan, goes_straight_at_its_speed)
 {
   const Arm arm(ur10e);
-  const auto poses = way(arm, {step(0.0, 0.0, -0.4)});
-  const auto plan = plan_cartesian(poses, arm, home(), limits(), {.speed = 0.3}, reference_of(arm));
+  const auto poses = poses_along(arm, {step(0.0, 0.0, -0.4)});
+  const auto plan = plan_cartesian(poses, arm, home(), limits(), {.speed = 0.3}, ik_of(arm));
   ASSERT_TRUE(plan) << plan.error().message;
   ASSERT_TRUE(plan->verify(limits())) << plan->verify(limits()).error().message;
   for (double t = 0.0; t <= plan->duration(); t += 0.005) {
     EXPECT_LT(distance_to_line(arm.forward(plan->sample(t).position), poses[0], poses[1]), 1e-4);
   }
   EXPECT_LT(difference(arm.forward(plan->sample(plan->duration()).position), poses[1]).norm(), 1e-8);
-  const auto [speed, turn] = top_speeds(arm, *plan);
+  const auto [speed, turn] = max_speeds(arm, *plan);
   EXPECT_NEAR(speed, 0.3, 0.003);
   EXPECT_LT(turn, 0.02);
 }
@@ -90,9 +90,9 @@ TEST(ACartesianPlan, goes_straight_at_its_speed)
 TEST(ACartesianPlan, keeps_the_limits_of_the_joints_where_the_speed_is_beyond_them)
 {
   const Arm arm(ur10e);
-  const auto poses = way(arm, {step(0.0, 0.5, -0.3), step(-0.2, 0.0, 0.2)});
+  const auto poses = poses_along(arm, {step(0.0, 0.5, -0.3), step(-0.2, 0.0, 0.2)});
   const auto plan =
-      plan_cartesian(poses, arm, home(), limits(), {.speed = 3.0, .rotation_speed = 6.0}, reference_of(arm));
+      plan_cartesian(poses, arm, home(), limits(), {.speed = 3.0, .rotation_speed = 6.0}, ik_of(arm));
   ASSERT_TRUE(plan) << plan.error().message;
   const auto use = plan->verify(limits());
   ASSERT_TRUE(use) << use.error().message;
@@ -102,11 +102,11 @@ TEST(ACartesianPlan, keeps_the_limits_of_the_joints_where_the_speed_is_beyond_th
 TEST(ACartesianPlan, turns_no_faster_than_it_may)
 {
   const Arm arm(ur10e);
-  const auto poses = way(arm, {step(0.0, 0.0, 0.0, 1.0), step(0.02, 0.0, 0.0, -0.5)});
+  const auto poses = poses_along(arm, {step(0.0, 0.0, 0.0, 1.0), step(0.02, 0.0, 0.0, -0.5)});
   const auto plan =
-      plan_cartesian(poses, arm, home(), limits(), {.speed = 0.25, .rotation_speed = 0.4}, reference_of(arm));
+      plan_cartesian(poses, arm, home(), limits(), {.speed = 0.25, .rotation_speed = 0.4}, ik_of(arm));
   ASSERT_TRUE(plan) << plan.error().message;
-  const auto [speed, turn] = top_speeds(arm, *plan);
+  const auto [speed, turn] = max_speeds(arm, *plan);
   EXPECT_NEAR(turn, 0.4, 0.004);
   EXPECT_LT(speed, 0.25);
 }
@@ -114,10 +114,10 @@ TEST(ACartesianPlan, turns_no_faster_than_it_may)
 TEST(ACartesianPlan, stops_at_corners_and_does_not_when_it_may_go_round_them)
 {
   const Arm arm(ur10e);
-  const auto poses = way(arm, {step(0.0, 0.2, 0.0), step(0.0, 0.0, -0.2)});
-  const auto through = plan_cartesian(poses, arm, home(), limits(), {.speed = 0.2}, reference_of(arm));
+  const auto poses = poses_along(arm, {step(0.0, 0.2, 0.0), step(0.0, 0.0, -0.2)});
+  const auto through = plan_cartesian(poses, arm, home(), limits(), {.speed = 0.2}, ik_of(arm));
   const auto round =
-      plan_cartesian(poses, arm, home(), limits(), {.speed = 0.2, .blend_radius = 0.03}, reference_of(arm));
+      plan_cartesian(poses, arm, home(), limits(), {.speed = 0.2, .blend_radius = 0.03}, ik_of(arm));
   ASSERT_TRUE(through && round);
   EXPECT_LT(round->duration(), 0.9 * through->duration());
   const double corner = through->time_of_waypoint(1);
@@ -134,8 +134,8 @@ TEST(ACartesianPlan, stops_at_corners_and_does_not_when_it_may_go_round_them)
 TEST(ACartesianPlan, of_poses_that_repeat_stays)
 {
   const Arm arm(ur10e);
-  const auto poses = way(arm, {step(0, 0, 0), step(0, 0, 0)});
-  const auto plan = plan_cartesian(poses, arm, home(), limits(), {}, reference_of(arm));
+  const auto poses = poses_along(arm, {step(0, 0, 0), step(0, 0, 0)});
+  const auto plan = plan_cartesian(poses, arm, home(), limits(), {}, ik_of(arm));
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_EQ(plan->duration(), 0.0);
   EXPECT_EQ(plan->waypoint_count(), 3U);
@@ -146,8 +146,8 @@ TEST(ACartesianPlan, meets_the_poses_of_a_calibrated_arm)
 {
   const Arm real({0.1809, -0.6121, -0.5722, 0.1738, 0.1201, 0.1164});
   const Arm published(ur10e);
-  const auto poses = way(real, {step(0.0, 0.3, -0.2), step(-0.2, -0.2, -0.1, 0.5)});
-  const auto plan = plan_cartesian(poses, published, home(), limits(), {}, reference_of(real));
+  const auto poses = poses_along(real, {step(0.0, 0.3, -0.2), step(-0.2, -0.2, -0.1, 0.5)});
+  const auto plan = plan_cartesian(poses, published, home(), limits(), {}, ik_of(real));
   ASSERT_TRUE(plan) << plan.error().message;
   for (const std::size_t i : {0U, 1U, 2U}) {
     const Pose there = real.forward(plan->sample(plan->time_of_waypoint(i)).position);
@@ -158,35 +158,36 @@ TEST(ACartesianPlan, meets_the_poses_of_a_calibrated_arm)
   }
 }
 
-struct Hindrance {
+struct Obstruction {
   const char * name;
   Twist step;
   const char * message;
 };
 
-class OnTheWay : public testing::TestWithParam<Hindrance> {};
+class OnTheWay : public testing::TestWithParam<Obstruction> {};
 
 TEST_P(OnTheWay, is_what_it_is_refused_for)
 {
   const Arm arm(ur10e);
-  const auto poses = way(arm, {step(0.0, 0.0, 0.01), GetParam().step});
-  const auto plan = plan_cartesian(poses, arm, home(), limits(), {}, reference_of(arm));
+  const auto poses = poses_along(arm, {step(0.0, 0.0, 0.01), GetParam().step});
+  const auto plan = plan_cartesian(poses, arm, home(), limits(), {}, ik_of(arm));
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, ErrorCode::unreachable);
   EXPECT_NE(plan.error().message.find(GetParam().message), std::string::npos) << plan.error().message;
   EXPECT_NE(plan.error().message.find("poses[1]"), std::string::npos) << plan.error().message;
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, OnTheWay,
-                         testing::Values(Hindrance{"the_end_of_the_arm", step(-1.2, 0.0, 0.0), "elbow_joint"},
-                                         Hindrance{"the_axis_of_the_base", step(0.7, 0.3, 0.0),
-                                                   "shoulder_pan_joint"}),
-                         [](const auto & hindrance) { return hindrance.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Each, OnTheWay,
+    testing::Values(Obstruction{"the_end_of_the_arm", step(-1.2, 0.0, 0.0), "elbow_joint"},
+                    Obstruction{"the_axis_of_the_base", step(0.7, 0.3, 0.0), "shoulder_pan_joint"}),
+    [](const auto & hindrance) { return hindrance.param.name; });
 
 TEST(ATcpPath, is_continuous_in_position_and_direction_round_its_corners)
 {
   const Arm arm(ur10e);
-  const auto poses = way(arm, {step(0.0, 0.2, 0.0, 0.4), step(0.0, 0.0, -0.2), step(0.1, -0.1, 0.0, -0.7)});
+  const auto poses =
+      poses_along(arm, {step(0.0, 0.2, 0.0, 0.4), step(0.0, 0.0, -0.2), step(0.1, -0.1, 0.0, -0.7)});
   const TcpPath path(poses, 0.02);
   constexpr double h = 1e-5;
   Twist last = difference(path.at(0.0), path.at(h)) / h;

@@ -26,7 +26,7 @@ double processor_time()
 
 struct Totals {
   int planned = 0, failed = 0, beyond = 0;
-  Utilisation use;
+  Utilization use;
   double miss = 0.0, end_speed = 0.0;
   std::vector<double> ms_per_waypoint;
 
@@ -44,7 +44,7 @@ struct Totals {
   }
 };
 
-void prove(unsigned seed, bool jerk, Totals & totals)
+void check_random_path(unsigned seed, bool jerk, Totals & totals)
 {
   const auto path = test::random_path(seed);
   const Limits limits = test::random_limits(seed, jerk);
@@ -57,13 +57,13 @@ void prove(unsigned seed, bool jerk, Totals & totals)
     return;
   }
   ++totals.planned;
-  const Utilisation use = test::use_by_differences(*plan, limits);
-  const double miss = test::worst_miss(*plan, path.waypoints) - path.options.blend_tolerance;
+  const Utilization use = test::finite_difference_utilization(*plan, limits);
+  const double miss = test::max_waypoint_deviation(*plan, path.waypoints) - path.options.blend_tolerance;
   totals.use.velocity = std::max(totals.use.velocity, use.velocity);
   totals.use.acceleration = std::max(totals.use.acceleration, use.acceleration);
   totals.use.jerk = std::max(totals.use.jerk, use.jerk);
   totals.miss = std::max(totals.miss, miss);
-  totals.end_speed = std::max(totals.end_speed, test::speed_at_ends(*plan));
+  totals.end_speed = std::max(totals.end_speed, test::motion_at_ends(*plan));
   if (std::max({use.velocity, use.acceleration, use.jerk}) > 1.0 || miss > 1e-8) {
     ++totals.beyond;
     std::printf("seed %u (%s): use %.5f %.5f %.5f, miss %.3g\n", seed, path.kind.c_str(), use.velocity,
@@ -80,7 +80,7 @@ void random_paths(unsigned first, unsigned count, bool jerk)
     for (unsigned part = 0; part < threads; ++part) {
       workers.emplace_back([&, part] {
         for (unsigned seed = first + part; seed < first + count; seed += threads) {
-          prove(seed, jerk, parts[part]);
+          check_random_path(seed, jerk, parts[part]);
         }
       });
     }

@@ -6,12 +6,12 @@
 
 namespace ur_ros_rtde::trajectory::test {
 
-Utilisation use_by_differences(const Trajectory & trajectory, const Limits & limits, double rate)
+Utilization finite_difference_utilization(const Trajectory & trajectory, const Limits & limits, double rate)
 {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double h = 1.0 / rate;
   const auto count = static_cast<long>(std::ceil(trajectory.duration() * rate)) + 4;
-  Utilisation use;
+  Utilization use;
   Joints q[4];
   q[0] = q[1] = q[2] = trajectory.sample(0.0).position;
   for (long k = 1; k < count; ++k) {
@@ -33,7 +33,7 @@ Utilisation use_by_differences(const Trajectory & trajectory, const Limits & lim
   return use;
 }
 
-double worst_miss(const Trajectory & trajectory, const std::vector<Joints> & waypoints)
+double max_waypoint_deviation(const Trajectory & trajectory, const std::vector<Joints> & waypoints)
 {
   double worst = 0.0;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
@@ -43,7 +43,7 @@ double worst_miss(const Trajectory & trajectory, const std::vector<Joints> & way
   return worst;
 }
 
-double speed_at_ends(const Trajectory & trajectory)
+double motion_at_ends(const Trajectory & trajectory)
 {
   const double inside = 1e-9;
   return std::max(trajectory.sample(inside).velocity.abs().maxCoeff(),

@@ -16,11 +16,11 @@ namespace {
 class Writer {
  public:
   explicit Writer(const char * name) : file_(name, std::ios::binary) {}
-  void put(double value) { file_.write(reinterpret_cast<const char *>(&value), sizeof value); }
-  void put(const Joints & values)
+  void write(double value) { file_.write(reinterpret_cast<const char *>(&value), sizeof value); }
+  void write(const Joints & values)
   {
     for (const double value : values) {
-      put(value);
+      write(value);
     }
   }
 
@@ -37,7 +37,7 @@ std::vector<double> station_times(const Motion & motion, std::size_t first, std:
   const bool line = motion.timing[first].piece == motion.timing[last - 1].piece;
   const double longest = std::min(step, (motion.timing[last - 1].end() - times[0]) / (line ? 40.0 : 300.0));
   for (std::size_t k = first; k < last; ++k) {
-    const TimePiece & piece = motion.timing[k];
+    const TimingLawPiece & piece = motion.timing[k];
     const bool blend = motion.path->pieces[piece.piece].degree > 3;
     const bool border = k + 1 == last || motion.timing[k + 1].piece != piece.piece;
     const double since = piece.end() - times.back();
@@ -52,26 +52,26 @@ std::vector<double> station_times(const Motion & motion, std::size_t first, std:
   return times;
 }
 
-void put_block(Writer & writer, const Motion & motion, std::size_t first, std::size_t last, double step)
+void write_segment(Writer & writer, const Motion & motion, std::size_t first, std::size_t last, double step)
 {
   const std::vector<double> times = station_times(motion, first, last, step);
-  writer.put(static_cast<double>(times.size()));
-  writer.put(motion.timing[last - 1].end() - motion.timing[first].start);
+  writer.write(static_cast<double>(times.size()));
+  writer.write(motion.timing[last - 1].end() - motion.timing[first].start);
   for (std::size_t i = 0; i < times.size(); ++i) {
     const std::size_t k = std::clamp(motion.piece_at(times[i]), first, last - 1);
-    const TimePiece & piece = motion.timing[k];
+    const TimingLawPiece & piece = motion.timing[k];
     const PathPiece & curve = motion.path->pieces[piece.piece];
-    const Place place = piece.at(std::clamp(times[i], piece.start, piece.end()));
+    const PathState place = piece.at(std::clamp(times[i], piece.start, piece.end()));
     const PathPoint point = curve.at(std::clamp(place.u, 0.0, curve.length));
-    writer.put(curve.start + place.u);
-    writer.put(place.v * place.v);
-    writer.put(point.d1);
-    writer.put(point.d2);
-    writer.put(point.d3);
+    writer.write(curve.start + place.u);
+    writer.write(place.v * place.v);
+    writer.write(point.d1);
+    writer.write(point.d2);
+    writer.write(point.d3);
   }
 }
 
-void put_path(Writer & writer, unsigned seed, bool jerk, double step)
+void write_path(Writer & writer, unsigned seed, bool jerk, double step)
 {
   const auto path = test::random_path(seed);
   const Limits limits = test::random_limits(seed, jerk);
@@ -84,19 +84,19 @@ void put_path(Writer & writer, unsigned seed, bool jerk, double step)
     return;  // nothing but repetitions of one waypoint
   }
   const Motion & motion = plan->motion();
-  const auto blocks = motion.path->blocks();
-  writer.put(seed);
-  writer.put(static_cast<double>(blocks.size()));
-  writer.put(limits.velocity);
-  writer.put(limits.acceleration);
-  writer.put(limits.jerk);
+  const auto segments = motion.path->segments();
+  writer.write(seed);
+  writer.write(static_cast<double>(segments.size()));
+  writer.write(limits.velocity);
+  writer.write(limits.acceleration);
+  writer.write(limits.jerk);
   std::size_t begin = 0;
-  for (const auto & [first, last] : blocks) {
+  for (const auto & [first, last] : segments) {
     std::size_t end = begin;
     while (end < motion.timing.size() && motion.timing[end].piece < last) {
       ++end;
     }
-    put_block(writer, motion, begin, end, step);
+    write_segment(writer, motion, begin, end, step);
     begin = end;
   }
 }
@@ -113,7 +113,7 @@ int main(int argc, char ** argv)
   const unsigned first = static_cast<unsigned>(std::atoi(argv[2]));
   const unsigned count = static_cast<unsigned>(std::atoi(argv[3]));
   for (unsigned seed = first; seed < first + count; ++seed) {
-    put_path(writer, seed, std::atoi(argv[4]) != 0, std::atof(argv[5]));
+    write_path(writer, seed, std::atoi(argv[4]) != 0, std::atof(argv[5]));
   }
   return 0;
 }

@@ -36,12 +36,13 @@ TEST_P(RandomPaths, keep_all_limits_and_pass_all_waypoints)
     const Limits limits = random_limits(seed, GetParam());
     const auto plan = plan_path(path.waypoints, limits, path.options);
     ASSERT_TRUE(plan) << "seed " << seed << ": " << plan.error().message;
-    const Utilisation use = use_by_differences(*plan, limits);
+    const Utilization use = finite_difference_utilization(*plan, limits);
     EXPECT_LE(use.velocity, 1.0) << "seed " << seed;
     EXPECT_LE(use.acceleration, 1.0) << "seed " << seed;
     EXPECT_LE(use.jerk, 1.0) << "seed " << seed;
-    EXPECT_LE(worst_miss(*plan, path.waypoints), path.options.blend_tolerance + 1e-8) << "seed " << seed;
-    EXPECT_LT(speed_at_ends(*plan), 1e-6) << "seed " << seed;
+    EXPECT_LE(max_waypoint_deviation(*plan, path.waypoints), path.options.blend_tolerance + 1e-8)
+        << "seed " << seed;
+    EXPECT_LT(motion_at_ends(*plan), 1e-6) << "seed " << seed;
   }
 }
 
@@ -118,7 +119,7 @@ TEST(SmoothCurve, is_passed_without_a_stop)
   for (std::size_t i = 1; i < 40; ++i) {
     EXPECT_GT(plan->sample(plan->time_of_waypoint(i)).velocity.matrix().norm(), 0.1) << "waypoint " << i;
   }
-  EXPECT_LT(worst_miss(*plan, waypoints), 1e-9);
+  EXPECT_LT(max_waypoint_deviation(*plan, waypoints), 1e-9);
 }
 
 TEST(OneWaypoint, is_a_trajectory_that_stays)
@@ -191,7 +192,7 @@ TEST(ManyWaypoints, up_to_the_limit_can_be_planned)
   const auto plan = plan_path(waypoints, limits);
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_TRUE(plan->verify(limits));
-  EXPECT_LT(worst_miss(*plan, waypoints), 1e-8);
+  EXPECT_LT(max_waypoint_deviation(*plan, waypoints), 1e-8);
 }
 
 }  // namespace

@@ -24,9 +24,9 @@ TEST(Stop, keeps_the_limits_and_the_path_from_any_moment)
       EXPECT_LT(stop.duration() - time, 2.0) << "seed " << seed << " part " << part;
       EXPECT_LT((stop.sample(0.99 * time).position - plan->sample(0.99 * time).position).abs().maxCoeff(),
                 1e-12);
-      EXPECT_LT(speed_at_ends(stop), 1e-5) << "seed " << seed << " part " << part;
+      EXPECT_LT(motion_at_ends(stop), 1e-5) << "seed " << seed << " part " << part;
       EXPECT_LE(stop.progress(stop.duration()), 1.0);
-      const Utilisation use = use_by_differences(stop, limits);
+      const Utilization use = finite_difference_utilization(stop, limits);
       EXPECT_LE(use.velocity, 1.0) << "seed " << seed << " part " << part;
       EXPECT_LE(use.acceleration, 1.0) << "seed " << seed << " part " << part;
       EXPECT_LE(use.jerk, 1.0) << "seed " << seed << " part " << part;

@@ -79,7 +79,7 @@ TEST_P(TimedTrajectory, can_be_stopped_on_its_path)
   EXPECT_LT(stop.duration(), plan->duration());
   EXPECT_GT(stop.duration(), 0.8);
   EXPECT_TRUE(stop.verify(limits())) << stop.verify(limits()).error().message;
-  EXPECT_LT(speed_at_ends(stop), 1e-5);
+  EXPECT_LT(motion_at_ends(stop), 1e-5);
 }
 
 std::string name_of_order(const testing::TestParamInfo<int> & order)
@@ -95,7 +95,7 @@ TEST(TimedPositions, begin_and_end_without_acceleration)
   ASSERT_TRUE(plan);
   EXPECT_LT(plan->sample(1e-9).acceleration.abs().maxCoeff(), 1e-5);
   EXPECT_LT(plan->sample(2.0 - 1e-9).acceleration.abs().maxCoeff(), 1e-5);
-  const Utilisation use = use_by_differences(*plan, limits());
+  const Utilization use = finite_difference_utilization(*plan, limits());
   EXPECT_LE(use.velocity, 1.0);
   EXPECT_LE(use.acceleration, 1.0);
   EXPECT_LE(use.jerk, 1.0);
@@ -117,18 +117,18 @@ TEST(TimedTrajectories, that_are_too_fast_are_refused_with_the_first_limit_they_
   }
 }
 
-struct BadTimed {
+struct InvalidWaypoints {
   const char * name;
-  void (*spoil)(TimedWaypoints &);
+  void (*modify)(TimedWaypoints &);
   const char * part_of_message;
 };
 
-class BadTimedWaypoints : public testing::TestWithParam<BadTimed> {};
+class InvalidTimedWaypointsTest : public testing::TestWithParam<InvalidWaypoints> {};
 
-TEST_P(BadTimedWaypoints, are_refused_with_the_reason)
+TEST_P(InvalidTimedWaypointsTest, are_refused_with_the_reason)
 {
   TimedWaypoints waypoints = samples(2);
-  GetParam().spoil(waypoints);
+  GetParam().modify(waypoints);
   const auto plan = plan_timed(waypoints, limits());
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
@@ -138,32 +138,35 @@ TEST_P(BadTimedWaypoints, are_refused_with_the_reason)
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 INSTANTIATE_TEST_SUITE_P(
-    Each, BadTimedWaypoints,
+    Each, InvalidTimedWaypointsTest,
     testing::Values(
-        BadTimed{"none", [](TimedWaypoints & w) { w = {}; }, "times is empty"},
-        BadTimed{"first_time_not_zero", [](TimedWaypoints & w) { w.times[0] = 0.05; }, "times[0] is 0.05"},
-        BadTimed{"times_equal", [](TimedWaypoints & w) { w.times[4] = w.times[3]; }, "times[4] is 0.7"},
-        BadTimed{"times_decreasing", [](TimedWaypoints & w) { w.times[4] = 0.1; }, "times[4] is 0.1"},
-        BadTimed{"time_nan", [](TimedWaypoints & w) { w.times[4] = nan_value; }, "times[4] is nan"},
-        BadTimed{"time_infinite", [](TimedWaypoints & w) { w.times.back() = INFINITY; }, "times[9] is inf"},
-        BadTimed{"position_missing", [](TimedWaypoints & w) { w.positions.pop_back(); },
-                 "positions has 9 entries"},
-        BadTimed{"velocity_missing", [](TimedWaypoints & w) { w.velocities.pop_back(); },
-                 "velocities has 9 entries"},
-        BadTimed{"acceleration_missing", [](TimedWaypoints & w) { w.accelerations.pop_back(); },
-                 "accelerations has 9 entries"},
-        BadTimed{"five_joints", [](TimedWaypoints & w) { w.positions[2].pop_back(); },
-                 "positions[2] has 5 values"},
-        BadTimed{"seven_velocities", [](TimedWaypoints & w) { w.velocities[2].push_back(0); },
-                 "velocities[2] has 7 values"},
-        BadTimed{"position_nan", [](TimedWaypoints & w) { w.positions[3][1] = nan_value; },
-                 "positions[3] of shoulder_lift_joint is nan"},
-        BadTimed{"velocity_at_the_end", [](TimedWaypoints & w) { w.velocities.back()[0] = 0.5; },
-                 "the last of shoulder_pan_joint is 0.5"},
-        BadTimed{"accelerations_alone", [](TimedWaypoints & w) { w.velocities.clear(); },
-                 "accelerations are given without velocities"},
-        BadTimed{"beyond_position_limit", [](TimedWaypoints & w) { w.positions.back()[0] = 7.0; },
-                 "of shoulder_pan_joint is"}),
+        InvalidWaypoints{"none", [](TimedWaypoints & w) { w = {}; }, "times is empty"},
+        InvalidWaypoints{"first_time_not_zero", [](TimedWaypoints & w) { w.times[0] = 0.05; },
+                         "times[0] is 0.05"},
+        InvalidWaypoints{"times_equal", [](TimedWaypoints & w) { w.times[4] = w.times[3]; },
+                         "times[4] is 0.7"},
+        InvalidWaypoints{"times_decreasing", [](TimedWaypoints & w) { w.times[4] = 0.1; }, "times[4] is 0.1"},
+        InvalidWaypoints{"time_nan", [](TimedWaypoints & w) { w.times[4] = nan_value; }, "times[4] is nan"},
+        InvalidWaypoints{"time_infinite", [](TimedWaypoints & w) { w.times.back() = INFINITY; },
+                         "times[9] is inf"},
+        InvalidWaypoints{"position_missing", [](TimedWaypoints & w) { w.positions.pop_back(); },
+                         "positions has 9 entries"},
+        InvalidWaypoints{"velocity_missing", [](TimedWaypoints & w) { w.velocities.pop_back(); },
+                         "velocities has 9 entries"},
+        InvalidWaypoints{"acceleration_missing", [](TimedWaypoints & w) { w.accelerations.pop_back(); },
+                         "accelerations has 9 entries"},
+        InvalidWaypoints{"five_joints", [](TimedWaypoints & w) { w.positions[2].pop_back(); },
+                         "positions[2] has 5 values"},
+        InvalidWaypoints{"seven_velocities", [](TimedWaypoints & w) { w.velocities[2].push_back(0); },
+                         "velocities[2] has 7 values"},
+        InvalidWaypoints{"position_nan", [](TimedWaypoints & w) { w.positions[3][1] = nan_value; },
+                         "positions[3] of shoulder_lift_joint is nan"},
+        InvalidWaypoints{"velocity_at_the_end", [](TimedWaypoints & w) { w.velocities.back()[0] = 0.5; },
+                         "the last of shoulder_pan_joint is 0.5"},
+        InvalidWaypoints{"accelerations_alone", [](TimedWaypoints & w) { w.velocities.clear(); },
+                         "accelerations are given without velocities"},
+        InvalidWaypoints{"beyond_position_limit", [](TimedWaypoints & w) { w.positions.back()[0] = 7.0; },
+                         "of shoulder_pan_joint is"}),
     [](const auto & bad) { return bad.param.name; });
 
 TEST(TimedTrajectories, of_one_waypoint_stay)

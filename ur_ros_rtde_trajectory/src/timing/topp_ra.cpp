@@ -1,4 +1,4 @@
-#include "timing/reach.hpp"
+#include "timing/topp_ra.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double steep = 1e-12;  // a coefficient of the acceleration below this does not bound it
+constexpr double negligible = 1e-12;  // a coefficient of the acceleration below this does not bound it
 
 // A bound of the acceleration b along the path as a line in a, the square of the speed.
 struct Line {
@@ -45,14 +45,14 @@ class Interval {
 
   // Largest a <= highest from which some b leads to at most `next`. low(a) - high(a) is convex: Newton from
   // the right.
-  double largest(double highest, double next) const
+  double max_controllable(double highest, double next) const
   {
     double a = highest;
     for (int round = 0; round < 40; ++round) {
       Bounds bounds = at(a);
-      const Line arrive{next / (2.0 * width_), -1.0 / (2.0 * width_)};
-      if (arrive.at(a) < bounds.high.at(a)) {
-        bounds.high = arrive;
+      const Line reach_next{next / (2.0 * width_), -1.0 / (2.0 * width_)};
+      if (reach_next.at(a) < bounds.high.at(a)) {
+        bounds.high = reach_next;
       }
       const double excess = bounds.low.at(a) - bounds.high.at(a);
       const double slope = bounds.low.slope - bounds.high.slope;
@@ -70,17 +70,17 @@ class Interval {
   void tighten(const Joints & k1, const Joints & k2, double a, Bounds & bounds) const
   {
     for (int j = 0; j < joint_count; ++j) {
-      if (std::abs(k1[j]) < steep) {
+      if (std::abs(k1[j]) < negligible) {
         continue;
       }
-      const double reach = limit_[j] / std::abs(k1[j]);
+      const double half_range = limit_[j] / std::abs(k1[j]);
       const double slope = -k2[j] / k1[j];
       const double middle = slope * a;
-      if (middle + reach < bounds.high.at(a)) {
-        bounds.high = {reach, slope};
+      if (middle + half_range < bounds.high.at(a)) {
+        bounds.high = {half_range, slope};
       }
-      if (middle - reach > bounds.low.at(a)) {
-        bounds.low = {-reach, slope};
+      if (middle - half_range > bounds.low.at(a)) {
+        bounds.low = {-half_range, slope};
       }
     }
   }
@@ -89,15 +89,15 @@ class Interval {
   Joints begin_1_, begin_2_, end_1_, end_2_, limit_;
 };
 
-double ceiling(const Grid & grid, const Limits & limits, std::size_t i)
+double speed_ceiling(const Grid & grid, const Limits & limits, std::size_t i)
 {
-  double a = std::min(highest_square_speed(grid, i, limits), 1e12);
+  double a = std::min(max_squared_speed(grid, i, limits), 1e12);
   const Joints & d3 = i < grid.intervals() ? grid.d3_begin[i] : grid.d3_end[i - 1];
   for (int j = 0; j < joint_count; ++j) {
-    const double bend = std::abs(grid.d2[i][j]);
+    const double curvature = std::abs(grid.d2[i][j]);
     // Where the joint hardly moves along the path, nothing but a low speed limits its acceleration.
-    if (bend > 0.0 && std::abs(grid.d1[i][j]) < steep) {
-      a = std::min(a, limits.acceleration[j] / bend);
+    if (curvature > 0.0 && std::abs(grid.d1[i][j]) < negligible) {
+      a = std::min(a, limits.acceleration[j] / curvature);
     }
     if (d3[j] != 0.0 && std::isfinite(limits.jerk[j])) {
       a = std::min(a, std::cbrt(std::pow(limits.jerk[j] / std::abs(d3[j]), 2)));
@@ -108,19 +108,21 @@ double ceiling(const Grid & grid, const Limits & limits, std::size_t i)
 
 }  // namespace
 
-double highest_square_speed(const Grid & grid, std::size_t station, const Limits & limits)
+double max_squared_speed(const Grid & grid, std::size_t station, const Limits & limits)
 {
   const double speed = (limits.velocity / grid.d1[station].abs().max(1e-300)).minCoeff();
-  const double top = std::min(speed, grid.top_speed[station]);
+  const double top = std::min(speed, grid.max_speed[station]);
   return top * top;
 }
 
-Profile fastest_without_jerk(const Grid & grid, const Limits & limits)
+Profile solve_topp_ra(const Grid & grid, const Limits & limits)
 {
   const std::size_t count = grid.intervals();
-  std::vector<double> still(count + 1, 0.0);  // highest square of the speed that can still stop at the end
+  std::vector<double> controllable(count + 1,
+                                   0.0);  // highest square of the speed that can still stop at the end
   for (std::size_t i = count; i-- > 0;) {
-    still[i] = Interval(grid, limits, i).largest(ceiling(grid, limits, i), still[i + 1]);
+    controllable[i] =
+        Interval(grid, limits, i).max_controllable(speed_ceiling(grid, limits, i), controllable[i + 1]);
   }
   Profile profile;
   profile.v.assign(count + 1, 0.0);
@@ -130,7 +132,7 @@ Profile fastest_without_jerk(const Grid & grid, const Limits & limits)
   for (std::size_t i = 0; i < count; ++i) {
     const Interval interval(grid, limits, i);
     const Bounds bounds = interval.at(a);
-    const double next = std::clamp(a + 2.0 * interval.width() * bounds.high.at(a), 0.0, still[i + 1]);
+    const double next = std::clamp(a + 2.0 * interval.width() * bounds.high.at(a), 0.0, controllable[i + 1]);
     profile.alpha[i] = (next - a) / (2.0 * interval.width());
     profile.v[i + 1] = std::sqrt(next);
     profile.time[i] = 2.0 * interval.width() / std::max(profile.v[i] + profile.v[i + 1], 1e-12);

@@ -10,32 +10,32 @@ namespace ur_ros_rtde::trajectory {
 /// A stop slows the clock of a planned motion: where the plan is at time p, the arm comes later, on the same
 /// path. Its joints then move with q' r, q'' r^2 + q' r', q''' r^3 + 3 q'' r r' + q' r'' for a clock rate r =
 /// dp/dt.
-struct ClockState {
-  double planned = 0.0;  ///< s, what the clock shows
-  double rate = 1.0;     ///< r
-  double change = 0.0;   ///< r', 1/s
+struct TimeScalingState {
+  double plan_time = 0.0;  ///< s, what the clock shows
+  double rate = 1.0;       ///< r
+  double rate_dot = 0.0;   ///< r', 1/s
 
-  ClockState after(double time, double bend) const
+  TimeScalingState after(double time, double rate_ddot) const
   {
-    return {planned + time * (rate + time * (change / 2.0 + time * bend / 6.0)),
-            rate + time * (change + time * bend / 2.0), change + time * bend};
+    return {plan_time + time * (rate + time * (rate_dot / 2.0 + time * rate_ddot / 6.0)),
+            rate + time * (rate_dot + time * rate_ddot / 2.0), rate_dot + time * rate_ddot};
   }
 };
 
 /// r'' is constant in each phase. After the last one the clock stands still.
-struct SlowClock {
+struct BrakingTimeScaling {
   struct Phase {
-    double begin = 0.0;  // s, since the braking began
-    double bend = 0.0;   // r'', 1/s^2
-    ClockState state;    // at its beginning
+    double begin = 0.0;      // s, since the braking began
+    double rate_ddot = 0.0;  // r'', 1/s^2
+    TimeScalingState state;  // at its beginning
   };
   std::vector<Phase> phases;
   double end = 0.0;  ///< s
 
-  ClockState at(double time) const;
-  double bend_at(double time) const { return phase_at(time).bend; }
+  TimeScalingState at(double time) const;
+  double rate_ddot_at(double time) const { return phase_at(time).rate_ddot; }
   /// When the clock shows `planned`.
-  double when(double planned) const;
+  double time_at(double plan_time) const;
 
  private:
   const Phase & phase_at(double time) const;
@@ -45,7 +45,7 @@ struct SlowClock {
 /// hard as the limits and the way back to a constant rate allow (any constant rate keeps the limits that the
 /// plan keeps). None when the plan comes to rest before any. `reserve`: part of the limits that braking does
 /// not use (the plan may), for what happens between the moments looked at.
-std::optional<SlowClock> find_slow_clock(const Motion & plan, double planned, const Limits & limits,
-                                         double reserve);
+std::optional<BrakingTimeScaling> find_braking_time_scaling(const Motion & plan, double plan_time,
+                                                            const Limits & limits, double reserve);
 
 }  // namespace ur_ros_rtde::trajectory

@@ -28,19 +28,19 @@ struct Request {
   Expected<Trajectory> plan() const { return plan_path(waypoints, limits, options); }
 };
 
-struct Bad {
+struct InvalidRequest {
   const char * name;
-  void (*spoil)(Request &);
+  void (*modify)(Request &);
   const char * part_of_message;
 };
 
-class BadRequest : public testing::TestWithParam<Bad> {};
+class InvalidRequestTest : public testing::TestWithParam<InvalidRequest> {};
 
-TEST_P(BadRequest, is_refused_with_field_value_and_limit)
+TEST_P(InvalidRequestTest, is_refused_with_field_value_and_limit)
 {
   Request request;
   ASSERT_TRUE(request.plan());
-  GetParam().spoil(request);
+  GetParam().modify(request);
   const auto plan = request.plan();
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
@@ -50,38 +50,45 @@ TEST_P(BadRequest, is_refused_with_field_value_and_limit)
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 INSTANTIATE_TEST_SUITE_P(
-    Each, BadRequest,
+    Each, InvalidRequestTest,
     testing::Values(
-        Bad{"no_waypoint", [](Request & r) { r.waypoints.clear(); }, "waypoints is empty"},
-        Bad{"too_many_waypoints", [](Request & r) { r.waypoints.resize(10001, r.waypoints[0]); },
-            "has 10001 entries"},
-        Bad{"five_joints", [](Request & r) { r.waypoints[1].pop_back(); }, "waypoint 1 has 5 values"},
-        Bad{"no_joints", [](Request & r) { r.waypoints[2].clear(); }, "waypoint 2 has 0 values"},
-        Bad{"seven_joints", [](Request & r) { r.waypoints[0].push_back(0.0); }, "waypoint 0 has 7 values"},
-        Bad{"position_nan", [](Request & r) { r.waypoints[1][2] = not_a_number; },
-            "waypoint 1 of elbow_joint is nan"},
-        Bad{"position_infinite", [](Request & r) { r.waypoints[1][2] = -INFINITY; }, "elbow_joint is -inf"},
-        Bad{"position_beyond_limit", [](Request & r) { r.waypoints[2][4] = 6.5; },
+        InvalidRequest{"no_waypoint", [](Request & r) { r.waypoints.clear(); }, "waypoints is empty"},
+        InvalidRequest{"too_many_waypoints", [](Request & r) { r.waypoints.resize(10001, r.waypoints[0]); },
+                       "has 10001 entries"},
+        InvalidRequest{"five_joints", [](Request & r) { r.waypoints[1].pop_back(); },
+                       "waypoint 1 has 5 values"},
+        InvalidRequest{"no_joints", [](Request & r) { r.waypoints[2].clear(); }, "waypoint 2 has 0 values"},
+        InvalidRequest{"seven_joints", [](Request & r) { r.waypoints[0].push_back(0.0); },
+                       "waypoint 0 has 7 values"},
+        InvalidRequest{"position_nan", [](Request & r) { r.waypoints[1][2] = not_a_number; },
+                       "waypoint 1 of elbow_joint is nan"},
+        InvalidRequest{"position_infinite", [](Request & r) { r.waypoints[1][2] = -INFINITY; },
+                       "elbow_joint is -inf"},
+        InvalidRequest{
+            "position_beyond_limit", [](Request & r) { r.waypoints[2][4] = 6.5; },
             "waypoint 2: position of wrist_2_joint is 6.5 rad, outside its limits -6.3 to 6.3 rad"},
-        Bad{"velocity_limit_zero", [](Request & r) { r.limits.velocity[1] = 0.0; },
-            "velocity limit of shoulder_lift_joint is 0"},
-        Bad{"velocity_limit_infinite", [](Request & r) { r.limits.velocity[1] = INFINITY; },
-            "velocity limit"},
-        Bad{"acceleration_limit_negative", [](Request & r) { r.limits.acceleration[0] = -1.0; },
-            "acceleration limit of shoulder_pan_joint is -1"},
-        Bad{"jerk_limit_nan", [](Request & r) { r.limits.jerk[5] = not_a_number; },
-            "jerk limit of wrist_3_joint is nan"},
-        Bad{"jerk_limit_zero", [](Request & r) { r.limits.jerk[5] = 0.0; },
-            "jerk limit of wrist_3_joint is 0"},
-        Bad{"position_limits_crossed", [](Request & r) { r.limits.position_min[3] = 7.0; },
-            "position limits of wrist_1_joint"},
-        Bad{"tolerance_negative", [](Request & r) { r.options.blend_tolerance = -0.1; },
-            "blend_tolerance is -0.1"},
-        Bad{"tolerance_nan", [](Request & r) { r.options.blend_tolerance = not_a_number; },
-            "blend_tolerance is nan"},
-        Bad{"corner_angle_too_large", [](Request & r) { r.options.corner_angle = 4.0; }, "corner_angle is 4"},
-        Bad{"speed_zero", [](Request & r) { r.options.speed_fraction = 0.0; }, "speed_fraction is 0"},
-        Bad{"speed_above_one", [](Request & r) { r.options.speed_fraction = 1.5; }, "speed_fraction is 1.5"}),
+        InvalidRequest{"velocity_limit_zero", [](Request & r) { r.limits.velocity[1] = 0.0; },
+                       "velocity limit of shoulder_lift_joint is 0"},
+        InvalidRequest{"velocity_limit_infinite", [](Request & r) { r.limits.velocity[1] = INFINITY; },
+                       "velocity limit"},
+        InvalidRequest{"acceleration_limit_negative", [](Request & r) { r.limits.acceleration[0] = -1.0; },
+                       "acceleration limit of shoulder_pan_joint is -1"},
+        InvalidRequest{"jerk_limit_nan", [](Request & r) { r.limits.jerk[5] = not_a_number; },
+                       "jerk limit of wrist_3_joint is nan"},
+        InvalidRequest{"jerk_limit_zero", [](Request & r) { r.limits.jerk[5] = 0.0; },
+                       "jerk limit of wrist_3_joint is 0"},
+        InvalidRequest{"position_limits_crossed", [](Request & r) { r.limits.position_min[3] = 7.0; },
+                       "position limits of wrist_1_joint"},
+        InvalidRequest{"tolerance_negative", [](Request & r) { r.options.blend_tolerance = -0.1; },
+                       "blend_tolerance is -0.1"},
+        InvalidRequest{"tolerance_nan", [](Request & r) { r.options.blend_tolerance = not_a_number; },
+                       "blend_tolerance is nan"},
+        InvalidRequest{"corner_angle_too_large", [](Request & r) { r.options.corner_angle = 4.0; },
+                       "corner_angle is 4"},
+        InvalidRequest{"speed_zero", [](Request & r) { r.options.speed_fraction = 0.0; },
+                       "speed_fraction is 0"},
+        InvalidRequest{"speed_above_one", [](Request & r) { r.options.speed_fraction = 1.5; },
+                       "speed_fraction is 1.5"}),
     [](const auto & bad) { return bad.param.name; });
 
 // Anything may come in: the answer is a verified trajectory or a refusal, never a crash, a hang or a wrong

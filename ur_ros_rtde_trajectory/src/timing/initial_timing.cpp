@@ -1,18 +1,18 @@
-#include "timing/first_guess.hpp"
+#include "timing/initial_timing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 
 #include "timing/jerk_solver.hpp"
-#include "timing/reach.hpp"
 #include "timing/speed_spline.hpp"
+#include "timing/topp_ra.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
 
 // Squares of the speed that constant jerk reaches from rest at both ends, a ~ s^(4/3), joined smoothly.
-std::vector<double> ramps(const Grid & grid, const Limits & limits)
+std::vector<double> jerk_limited_ramps(const Grid & grid, const Limits & limits)
 {
   const auto factor = [&](const Joints & direction) {
     const double jerk = 0.7 * (limits.jerk / direction.abs().max(1e-300)).minCoeff();
@@ -35,20 +35,20 @@ std::vector<double> ramps(const Grid & grid, const Limits & limits)
 }
 
 // The least value within `reach` seconds before and after.
-std::vector<double> least_nearby(const std::vector<double> & values, const std::vector<double> & time,
-                                 double reach)
+std::vector<double> sliding_min(const std::vector<double> & values, const std::vector<double> & time,
+                                double half_window)
 {
   std::vector<double> result(values.size());
   std::deque<std::size_t> window;  // indices of increasing values
   std::size_t next = 0;
   for (std::size_t m = 0; m < values.size(); ++m) {
-    for (; next < values.size() && time[next] <= time[m] + reach; ++next) {
+    for (; next < values.size() && time[next] <= time[m] + half_window; ++next) {
       while (!window.empty() && values[window.back()] >= values[next]) {
         window.pop_back();
       }
       window.push_back(next);
     }
-    while (time[window.front()] < time[m] - reach) {
+    while (time[window.front()] < time[m] - half_window) {
       window.pop_front();
     }
     result[m] = values[window.front()];
@@ -57,8 +57,8 @@ std::vector<double> least_nearby(const std::vector<double> & values, const std::
 }
 
 // The mean over `reach` seconds before and after; beyond both ends as at the ends.
-std::vector<double> mean_nearby(const std::vector<double> & values, const std::vector<double> & time,
-                                double reach)
+std::vector<double> sliding_mean(const std::vector<double> & values, const std::vector<double> & time,
+                                 double half_window)
 {
   const std::size_t last = values.size() - 1;
   std::vector<double> sum(values.size(), 0.0);
@@ -82,18 +82,18 @@ std::vector<double> mean_nearby(const std::vector<double> & values, const std::v
   std::vector<double> result(values.size());
   std::size_t ahead = 0;
   for (std::size_t m = 0; m <= last; ++m) {
-    const double low = integral(time[m] - reach, index);
-    result[m] = (integral(time[m] + reach, ahead) - low) / (2.0 * reach);
+    const double low = integral(time[m] - half_window, index);
+    result[m] = (integral(time[m] + half_window, ahead) - low) / (2.0 * half_window);
   }
   return result;
 }
 
 }  // namespace
 
-Start start_from(const Grid & grid, Profile profile)
+InitialTiming initial_timing_from(const Grid & grid, Profile profile)
 {
   const std::size_t count = grid.intervals();
-  Start start{std::move(profile), std::vector<double>(count, 0.0)};
+  InitialTiming start{std::move(profile), std::vector<double>(count, 0.0)};
   const SpeedSpline spline(grid, start.profile);
   for (std::size_t m = 1; m < count; ++m) {
     // Each station tells both its neighbours: a_m = (1 - l) w_(m-1) + l w_m, b_m = g (w_m - w_(m-1)).
@@ -114,7 +114,7 @@ Start start_from(const Grid & grid, Profile profile)
 namespace {
 
 // The timing whose squared speeds at the stations are these.
-Start start_with(const Grid & grid, const std::vector<double> & squares)
+InitialTiming timing_from_squared_speeds(const Grid & grid, const std::vector<double> & squared_speeds)
 {
   const std::size_t last = grid.stations() - 1;
   Profile profile;
@@ -125,19 +125,19 @@ Start start_with(const Grid & grid, const std::vector<double> & squares)
     // Slope of the parabola through three stations.
     const double before = grid.width(m - 1);
     const double after = grid.width(m);
-    const double left = (squares[m] - squares[m - 1]) / before;
-    const double right = (squares[m + 1] - squares[m]) / after;
-    profile.v[m] = std::sqrt(squares[m]);
+    const double left = (squared_speeds[m] - squared_speeds[m - 1]) / before;
+    const double right = (squared_speeds[m + 1] - squared_speeds[m]) / after;
+    profile.v[m] = std::sqrt(squared_speeds[m]);
     profile.alpha[m] = 0.5 * (left * after + right * before) / (before + after);
   }
   for (std::size_t i = 0; i < last; ++i) {
-    profile.time[i] =
-        interval_time(grid.width(i), profile.v[i], profile.alpha[i], profile.v[i + 1], profile.alpha[i + 1]);
+    profile.time[i] = interval_duration(grid.width(i), profile.v[i], profile.alpha[i], profile.v[i + 1],
+                                        profile.alpha[i + 1]);
   }
-  return start_from(grid, std::move(profile));
+  return initial_timing_from(grid, std::move(profile));
 }
 
-std::vector<double> sums(const std::vector<double> & times)
+std::vector<double> cumulative_times(const std::vector<double> & times)
 {
   std::vector<double> result(times.size() + 1, 0.0);
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -148,28 +148,28 @@ std::vector<double> sums(const std::vector<double> & times)
 
 }  // namespace
 
-Start first_guess(const Grid & grid, const Limits & limits)
+InitialTiming initial_timing(const Grid & grid, const Limits & limits)
 {
-  const Profile fastest = fastest_without_jerk(grid, limits);
-  const std::vector<double> ramp = ramps(grid, limits);
+  const Profile unlimited_jerk = solve_topp_ra(grid, limits);
+  const std::vector<double> ramp = jerk_limited_ramps(grid, limits);
   const std::size_t last = grid.stations() - 1;
-  std::vector<double> share(last + 1, 1.0);  // of the ramps
+  std::vector<double> ramp_fraction(last + 1, 1.0);  // of the ramps
   for (std::size_t m = 1; m < last; ++m) {
-    share[m] = std::min(1.0, fastest.v[m] * fastest.v[m] / ramp[m]);
+    ramp_fraction[m] = std::min(1.0, unlimited_jerk.v[m] * unlimited_jerk.v[m] / ramp[m]);
   }
-  const double reach = (limits.acceleration / limits.jerk).maxCoeff();
-  std::vector<double> time = sums(fastest.time);
-  share = mean_nearby(least_nearby(share, time, reach), time, reach);
-  const Allowance allowance(grid);
-  JerkSolver solver(grid, limits, allowance);
-  std::vector<double> squares(last + 1, 0.0);
+  const double half_window = (limits.acceleration / limits.jerk).maxCoeff();
+  std::vector<double> time = cumulative_times(unlimited_jerk.time);
+  ramp_fraction = sliding_mean(sliding_min(ramp_fraction, time, half_window), time, half_window);
+  const LimitFractions limit_fractions(grid);
+  JerkSolver solver(grid, limits, limit_fractions);
+  std::vector<double> squared_speeds(last + 1, 0.0);
   for (int round = 0;; ++round) {
     for (std::size_t m = 1; m < last; ++m) {
-      squares[m] = ramp[m] * share[m];
+      squared_speeds[m] = ramp[m] * ramp_fraction[m];
     }
-    Start start = start_with(grid, squares);
+    InitialTiming start = timing_from_squared_speeds(grid, squared_speeds);
     // Where it exceeds the limits, slower, and smoothly slower around: the rest of the path need not suffer.
-    std::vector<double> excess = solver.excesses(SpeedSpline(grid, start.profile), start.w);
+    std::vector<double> excess = solver.limit_ratios(SpeedSpline(grid, start.profile), start.w);
     if (round == 4 || *std::max_element(excess.begin(), excess.end()) < 1.5) {
       return start;
     }
@@ -177,10 +177,10 @@ Start first_guess(const Grid & grid, const Limits & limits)
     for (double & value : excess) {
       value = 1.0 / std::max(1.0, value);
     }
-    time = sums(start.profile.time);
-    const auto slower = mean_nearby(least_nearby(excess, time, 0.5 * reach), time, 0.5 * reach);
+    time = cumulative_times(start.profile.time);
+    const auto slower = sliding_mean(sliding_min(excess, time, 0.5 * half_window), time, 0.5 * half_window);
     for (std::size_t m = 0; m <= last; ++m) {
-      share[m] *= slower[m];
+      ramp_fraction[m] *= slower[m];
     }
   }
 }

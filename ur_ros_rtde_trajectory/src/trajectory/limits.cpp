@@ -42,7 +42,7 @@ Limits make_limits(const ArmLimits & arm, double acceleration, double jerk)
   return limits;
 }
 
-Limits slow_limits(Limits limits)
+Limits default_speed_limits(Limits limits)
 {
   limits.velocity = limits.velocity.min(default_joint_speed);
   limits.acceleration = limits.acceleration.min(default_joint_acceleration);

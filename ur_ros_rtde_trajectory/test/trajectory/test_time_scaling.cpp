@@ -5,15 +5,15 @@
 
 #include "random_paths.hpp"
 #include "ur_ros_rtde_trajectory/plan.hpp"
-#include "ur_ros_rtde_trajectory/stream_clock.hpp"
+#include "ur_ros_rtde_trajectory/time_scaling.hpp"
 
 namespace ur_ros_rtde::trajectory::test {
 namespace {
 
 constexpr double cycle = 0.002;
-constexpr double memory = 0.1;
+constexpr double servo_lag = 0.1;
 
-Limits stream_limits()
+Limits test_limits()
 {
   Limits result;
   result.velocity.setConstant(1.0);
@@ -24,39 +24,39 @@ Limits stream_limits()
 
 Trajectory line()
 {
-  return *plan_path(std::vector<Joints>{Joints::Zero(), Joints::Constant(5.0)}, stream_limits());
+  return *plan_path(std::vector<Joints>{Joints::Zero(), Joints::Constant(5.0)}, test_limits());
 }
 
-TEST(AStreamClock, runs_with_the_controllers_clock)
+TEST(TimeScalingTest, runs_with_the_controllers_clock)
 {
   const Trajectory plan = line();
-  StreamClock clock(cycle, memory, 1.0);
+  TimeScaling clock(cycle, servo_lag, 1.0);
   for (int k = 0; k < 1000; ++k) {
-    clock.advance(cycle, 1.0, plan.sample(clock.time()), stream_limits());
+    clock.advance(cycle, 1.0, plan.sample(clock.time()), test_limits());
   }
   EXPECT_NEAR(clock.time(), 2.0, 1e-9);
 }
 
-TEST(AStreamClock, loses_nothing_to_packages_that_come_in_pairs)
+TEST(TimeScalingTest, loses_nothing_to_packages_that_come_in_pairs)
 {
   const Trajectory plan = line();
-  StreamClock clock(cycle, memory, 1.0);
+  TimeScaling clock(cycle, servo_lag, 1.0);
   for (int k = 0; k < 500; ++k) {
-    clock.advance(2.0 * cycle, 1.0, plan.sample(clock.time()), stream_limits());
+    clock.advance(2.0 * cycle, 1.0, plan.sample(clock.time()), test_limits());
   }
   EXPECT_NEAR(clock.time(), 2.0, 1e-9);
 }
 
-TEST(AStreamClock, of_a_late_host_skips_nothing_and_goes_on_slower_at_first)
+TEST(TimeScalingTest, of_a_late_host_skips_nothing_and_goes_on_slower_at_first)
 {
   const Trajectory plan = line();
-  StreamClock clock(cycle, memory, 1.0, 1.0);
-  clock.advance(0.054, 1.0, plan.sample(clock.time()), stream_limits());
+  TimeScaling clock(cycle, servo_lag, 1.0, 1.0);
+  clock.advance(0.054, 1.0, plan.sample(clock.time()), test_limits());
   EXPECT_LE(clock.time() - 1.0, 2.0 * cycle + 1e-12);
   EXPECT_NEAR(clock.rate(), 0.5, 0.03);
   double before = clock.rate();
   for (int k = 0; k < 500; ++k) {
-    clock.advance(cycle, 1.0, plan.sample(clock.time()), stream_limits());
+    clock.advance(cycle, 1.0, plan.sample(clock.time()), test_limits());
     EXPECT_LE(std::abs(clock.rate() - before), 2.001 * cycle);  // 2 rad/s^2 at 1 rad/s
     before = clock.rate();
   }
@@ -64,40 +64,40 @@ TEST(AStreamClock, of_a_late_host_skips_nothing_and_goes_on_slower_at_first)
 }
 
 // On a machine that does other things, too: every 40 ms nothing for 20 ms.
-TEST(AStreamClock, gets_on_though_the_host_is_late_again_and_again)
+TEST(TimeScalingTest, gets_on_though_the_host_is_late_again_and_again)
 {
   const Trajectory plan = line();
-  StreamClock clock(cycle, memory, 1.0);
+  TimeScaling clock(cycle, servo_lag, 1.0);
   double elapsed = 0.0;
   while (clock.time() < plan.duration() && elapsed < 10.0 * plan.duration()) {
     for (int k = 0; k < 10; ++k, elapsed += cycle) {
-      clock.advance(cycle, 1.0, plan.sample(clock.time()), stream_limits());
+      clock.advance(cycle, 1.0, plan.sample(clock.time()), test_limits());
     }
-    clock.advance(0.02, 1.0, plan.sample(clock.time()), stream_limits());
+    clock.advance(0.02, 1.0, plan.sample(clock.time()), test_limits());
     elapsed += 0.02;
   }
   EXPECT_LT(elapsed, 8.0 * plan.duration());
 }
 
-TEST(AStreamClock, begins_anew_from_standstill_after_a_long_silence)
+TEST(TimeScalingTest, begins_anew_from_standstill_after_a_long_silence)
 {
   const Trajectory plan = line();
-  StreamClock clock(cycle, memory, 1.0, 1.0);
-  clock.advance(3.0, 1.0, plan.sample(clock.time()), stream_limits());
+  TimeScaling clock(cycle, servo_lag, 1.0, 1.0);
+  clock.advance(3.0, 1.0, plan.sample(clock.time()), test_limits());
   EXPECT_LE(clock.time() - 1.0, 2.0 * cycle);
   EXPECT_LT(clock.rate(), 0.05);
 }
 
-TEST(AStreamClock, never_runs_backward_or_faster_than_the_plan_whatever_the_packages_say)
+TEST(TimeScalingTest, never_runs_backward_or_faster_than_the_plan_whatever_the_packages_say)
 {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> between(-0.02, 0.2);
   const Trajectory plan = line();
-  StreamClock clock(cycle, memory, 1.0);
+  TimeScaling clock(cycle, servo_lag, 1.0);
   for (int k = 0; k < 20000; ++k) {
     const double before = clock.time();
     const double elapsed = k % 3 == 0 ? between(random) : cycle;
-    clock.advance(elapsed, between(random) * 10.0, plan.sample(clock.time()), stream_limits());
+    clock.advance(elapsed, between(random) * 10.0, plan.sample(clock.time()), test_limits());
     ASSERT_GE(clock.time(), before);
     ASSERT_LE(clock.time() - before, std::max(0.0, elapsed) + 1e-12);
     ASSERT_GE(clock.rate(), 0.0);
@@ -106,15 +106,15 @@ TEST(AStreamClock, never_runs_backward_or_faster_than_the_plan_whatever_the_pack
 }
 
 // Differences of what is sent, at the controller's rate.
-Joints largest_acceleration(const Trajectory & plan, const Limits & bounds, double wanted_later)
+Joints largest_acceleration(const Trajectory & plan, const Limits & bounds, double later_target_rate)
 {
-  StreamClock clock(cycle, memory, 1.0);
+  TimeScaling clock(cycle, servo_lag, 1.0);
   Joints q[3];
   q[0] = q[1] = plan.sample(0.0).position;
   Joints largest = Joints::Zero();
   for (int k = 0; k < 60000 && clock.time() < plan.duration(); ++k) {
-    const double wanted = std::fmod(k * cycle, 2.0) < 1.0 ? 1.0 : wanted_later;
-    clock.advance(cycle, wanted, plan.sample(clock.time()), bounds);
+    const double target_rate = std::fmod(k * cycle, 2.0) < 1.0 ? 1.0 : later_target_rate;
+    clock.advance(cycle, target_rate, plan.sample(clock.time()), bounds);
     q[2] = plan.sample(clock.time()).position;
     largest = largest.max((q[2] - 2.0 * q[1] + q[0]).abs() / (cycle * cycle));
     q[0] = q[1];
@@ -124,7 +124,7 @@ Joints largest_acceleration(const Trajectory & plan, const Limits & bounds, doub
   return largest;
 }
 
-TEST(AStreamClock, changes_the_speed_smoothly)
+TEST(TimeScalingTest, changes_the_speed_smoothly)
 {
   for (unsigned seed = 0; seed < 12; ++seed) {
     const RandomPath path = random_path(seed);
@@ -138,16 +138,16 @@ TEST(AStreamClock, changes_the_speed_smoothly)
   }
 }
 
-TEST(AStreamClock, stands_while_the_speed_is_zero)
+TEST(TimeScalingTest, stands_while_the_speed_is_zero)
 {
   const Trajectory plan = line();
-  StreamClock clock(cycle, memory, 1.0, 1.0);
+  TimeScaling clock(cycle, servo_lag, 1.0, 1.0);
   for (int k = 0; k < 1000; ++k) {
-    clock.advance(cycle, 0.0, plan.sample(clock.time()), stream_limits());
+    clock.advance(cycle, 0.0, plan.sample(clock.time()), test_limits());
   }
   EXPECT_EQ(clock.rate(), 0.0);
   const double time = clock.time();
-  clock.advance(cycle, 0.0, plan.sample(time), stream_limits());
+  clock.advance(cycle, 0.0, plan.sample(time), test_limits());
   EXPECT_EQ(clock.time(), time);
 }
 

@@ -5,12 +5,12 @@
 namespace ur_ros_rtde::kinematics {
 
 /// What a rotation counts as beside a translation, in m/rad: about the distance from the wrist to the TCP.
-inline constexpr double arm_length = 0.2;
+inline constexpr double characteristic_length = 0.2;
 
 /// How far a displacement moves the TCP, in m, rotation included.
-inline double extent(const Twist & displacement)
+inline double displacement_norm(const Twist & displacement)
 {
-  return displacement.head<3>().norm() + arm_length * displacement.tail<3>().norm();
+  return displacement.head<3>().norm() + characteristic_length * displacement.tail<3>().norm();
 }
 
 }  // namespace ur_ros_rtde::kinematics

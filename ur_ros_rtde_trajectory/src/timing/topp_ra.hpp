@@ -9,10 +9,10 @@ namespace ur_ros_rtde::trajectory {
 /// (as fast as these allow); linear in the number of stations. After H. Pham, Q.-C. Pham: A New Approach to
 /// Time-Optimal Path Parameterization Based on Reachability Analysis, IEEE Transactions on Robotics, 2018.
 /// Jerk limits only bound the speed where the path itself, passed at constant speed, would exceed them.
-Profile fastest_without_jerk(const Grid & grid, const Limits & limits);
+Profile solve_topp_ra(const Grid & grid, const Limits & limits);
 
 /// Highest square of the speed that velocity limits, and the path itself, allow at a station; infinite where
 /// nothing limits it.
-double highest_square_speed(const Grid & grid, std::size_t station, const Limits & limits);
+double max_squared_speed(const Grid & grid, std::size_t station, const Limits & limits);
 
 }  // namespace ur_ros_rtde::trajectory

@@ -1,24 +1,24 @@
-#include "timing/timing.hpp"
+#include "timing/segment_timing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
 
-#include "path/straight.hpp"
-#include "timing/first_guess.hpp"
+#include "timing/initial_timing.hpp"
 #include "timing/jerk_solver.hpp"
-#include "timing/reach.hpp"
+#include "timing/s_curve_profile.hpp"
+#include "timing/topp_ra.hpp"
 #include "trajectory/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
 
 constexpr int inner_points = 3;  // looked at between two stations
-constexpr double most_stations = 50000;
-constexpr double shortest_station_step = 0.002;  // s, between stations
+constexpr double max_stations = 50000;
+constexpr double min_station_step = 0.002;  // s, between stations
 
-double sum(const std::vector<double> & values)
+double total_time(const std::vector<double> & values)
 {
   double total = 0.0;
   for (const double value : values) {
@@ -37,7 +37,7 @@ Grid coarse_grid(const Path & path, std::size_t first, std::size_t last)
 void slow_to_limits(Motion & motion, std::size_t begin, const Limits & limits)
 {
   constexpr double margin = 3e-4;  // for what happens between the points looked at
-  const Utilisation use = largest_use(motion, begin, limits);
+  const Utilization use = max_utilization(motion, begin, limits);
   const double factor = std::max({use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)});
   if (factor > 1.0 - 0.5 * margin) {
     motion.stretch(factor * (1.0 + margin), begin);
@@ -48,20 +48,22 @@ namespace {
 
 // Takes back what `motion` (its pieces from `begin`, one per interval) uses too much. False when there is
 // nothing.
-bool tighten(const Motion & motion, std::size_t begin, const Limits & limits, Allowance & allowance)
+bool tighten_limits(const Motion & motion, std::size_t begin, const Limits & limits,
+                    LimitFractions & limit_fractions)
 {
   bool found = false;
-  for (std::size_t i = 0; i < allowance.jerk.size(); ++i) {
-    const PieceUse use = use_of(motion, motion.timing[begin + i], limits, inner_points);
+  for (std::size_t i = 0; i < limit_fractions.jerk.size(); ++i) {
+    const PieceUtilization use = piece_utilization(motion, motion.timing[begin + i], limits, inner_points);
     const double jerk = use.jerk.maxCoeff();
     const double acceleration = use.acceleration.maxCoeff();
     if (jerk > 1.002) {
-      allowance.jerk[i] = std::max(0.3, allowance.jerk[i] / jerk * 0.999);
+      limit_fractions.jerk[i] = std::max(0.3, limit_fractions.jerk[i] / jerk * 0.999);
       found = true;
     }
     if (acceleration > 1.002) {
       for (const std::size_t m : {i, i + 1}) {
-        allowance.acceleration[m] = std::max(0.3, std::min(allowance.acceleration[m], 0.999 / acceleration));
+        limit_fractions.acceleration[m] =
+            std::max(0.3, std::min(limit_fractions.acceleration[m], 0.999 / acceleration));
       }
       found = true;
     }
@@ -69,22 +71,22 @@ bool tighten(const Motion & motion, std::size_t begin, const Limits & limits, Al
   return found;
 }
 
-Grid grid_for_jerk(const Path & path, std::size_t first, std::size_t last, const Limits & limits)
+Grid jerk_limited_grid(const Path & path, std::size_t first, std::size_t last, const Limits & limits)
 {
   const Grid coarse = coarse_grid(path, first, last);
-  const Profile guess = fastest_without_jerk(coarse, limits);
-  const double total = sum(guess.time);
+  const Profile estimate = solve_topp_ra(coarse, limits);
+  const double total = total_time(estimate.time);
   const double jerk_time = (limits.acceleration / limits.jerk).minCoeff();
   const double step =
-      std::min(std::max({0.3 * jerk_time, shortest_station_step, total / most_stations}), total / 100.0);
-  return timed_grid(path, coarse, guess, step, 6);
+      std::min(std::max({0.3 * jerk_time, min_station_step, total / max_stations}), total / 100.0);
+  return time_spaced_grid(path, coarse, estimate, step, 6);
 }
 
 // Divides the intervals of `motion` (its pieces from `begin`, one per interval) in which a limit is exceeded
 // between the stations. Returns the new grid and the same motion on it; no grid when there is nothing to
 // divide.
-std::optional<std::pair<Grid, Profile>> divide(const Motion & motion, std::size_t begin, const Grid & grid,
-                                               const Limits & limits)
+std::optional<std::pair<Grid, Profile>> subdivide(const Motion & motion, std::size_t begin, const Grid & grid,
+                                                  const Limits & limits)
 {
   std::pair<Grid, Profile> result;
   auto & [fine, profile] = result;
@@ -92,14 +94,14 @@ std::optional<std::pair<Grid, Profile>> divide(const Motion & motion, std::size_
   profile.v.push_back(0.0);
   profile.alpha.push_back(0.0);
   for (std::size_t i = 0; i < grid.intervals(); ++i) {
-    const TimePiece & piece = motion.timing[begin + i];
-    const PieceUse use = use_of(motion, piece, limits, inner_points);
+    const TimingLawPiece & piece = motion.timing[begin + i];
+    const PieceUtilization use = piece_utilization(motion, piece, limits, inner_points);
     const double worst = std::max(use.jerk.maxCoeff(), use.acceleration.maxCoeff());
     const bool rest = i == 0 || i + 1 == grid.intervals();
     const int parts = rest || worst < 1.03 ? 1 : worst < 1.3 ? 2 : 3;
     double from = grid.begin[i];
     for (int k = 1; k <= parts; ++k) {
-      const Place place = piece.at(piece.start + piece.duration * k / parts);
+      const PathState place = piece.at(piece.start + piece.duration * k / parts);
       const double to = k == parts ? grid.end[i] : std::clamp(place.u, from, grid.end[i]);
       fine.add(*motion.path, grid.piece[i], from, to);
       profile.v.push_back(place.v);
@@ -117,7 +119,7 @@ Profile profile_of(const Motion & motion, std::size_t begin)
 {
   Profile profile;
   for (std::size_t k = begin; k < motion.timing.size(); ++k) {
-    const Place place = motion.timing[k].at(motion.timing[k].start);
+    const PathState place = motion.timing[k].at(motion.timing[k].start);
     profile.v.push_back(place.v);
     profile.alpha.push_back(place.a);
     profile.time.push_back(motion.timing[k].duration);
@@ -129,19 +131,19 @@ Profile profile_of(const Motion & motion, std::size_t begin)
 
 // One grid's solution, appended to the motion. Gaps: how near to the optimum, for one speed spline after the
 // other.
-Profile solve_on(const Grid & grid, Start start, double away, const Limits & limits,
-                 const Allowance & allowance, std::initializer_list<double> gaps)
+Profile solve_on_grid(const Grid & grid, InitialTiming start, double initial_gap, const Limits & limits,
+                      const LimitFractions & limit_fractions, std::initializer_list<double> gaps)
 {
   SpeedSpline spline(grid, start.profile);
-  JerkSolver solver(grid, limits, allowance);
-  solver.start(spline, std::move(start.w), away);
+  JerkSolver solver(grid, limits, limit_fractions);
+  solver.start(spline, std::move(start.w), initial_gap);
   Profile profile;
   for (const double gap : gaps) {
     if (!profile.v.empty()) {
       spline = SpeedSpline(grid, profile);
-      solver.change_spline(spline);
+      solver.set_spline(spline);
     }
-    solver.improve(profile.v.empty() ? 40 : 20, gap);
+    solver.iterate(profile.v.empty() ? 40 : 20, gap);
     profile = spline.profile(grid, solver.coefficients());
   }
   return profile;
@@ -149,54 +151,58 @@ Profile solve_on(const Grid & grid, Start start, double away, const Limits & lim
 
 void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, const Limits & limits)
 {
-  Grid grid = grid_for_jerk(*motion.path, first, last, limits);
+  Grid grid = jerk_limited_grid(*motion.path, first, last, limits);
   const std::size_t begin = motion.timing.size();
-  const auto take = [&](const Profile & profile) {
+  const auto replace_motion = [&](const Profile & profile) {
     motion.timing.resize(begin);
     motion.append(grid, profile, false);
   };
-  take(solve_on(grid, first_guess(grid, limits), 4.0, limits, Allowance(grid), {0.1, 0.02}));
+  replace_motion(
+      solve_on_grid(grid, initial_timing(grid, limits), 4.0, limits, LimitFractions(grid), {0.1, 0.02}));
   for (int round = 0; round < 2; ++round) {
-    if (auto finer = divide(motion, begin, grid, limits)) {
+    if (auto finer = subdivide(motion, begin, grid, limits)) {
       grid = std::move(finer->first);
-      take(solve_on(grid, start_from(grid, std::move(finer->second)), 0.3, limits, Allowance(grid), {0.02}));
+      replace_motion(solve_on_grid(grid, initial_timing_from(grid, std::move(finer->second)), 0.3, limits,
+                                   LimitFractions(grid), {0.02}));
     }
   }
-  Allowance allowance(grid);
+  LimitFractions limit_fractions(grid);
   for (int round = 0; round < 3; ++round) {
-    if (!tighten(motion, begin, limits, allowance) && round > 0) {
+    if (!tighten_limits(motion, begin, limits, limit_fractions) && round > 0) {
       break;
     }
-    take(solve_on(grid, start_from(grid, profile_of(motion, begin)), 0.1, limits, allowance, {0.004}));
+    replace_motion(solve_on_grid(grid, initial_timing_from(grid, profile_of(motion, begin)), 0.1, limits,
+                                 limit_fractions, {0.004}));
   }
   slow_to_limits(motion, begin, limits);
 }
 
-void append_fastest(Motion & motion, std::size_t first, std::size_t last, const Limits & limits)
+void append_topp_ra(Motion & motion, std::size_t first, std::size_t last, const Limits & limits)
 {
   const Grid coarse = coarse_grid(*motion.path, first, last);
-  const Profile guess = fastest_without_jerk(coarse, limits);
-  const double step = std::max(sum(guess.time) / most_stations, 0.005);
-  const Grid grid = timed_grid(*motion.path, coarse, guess, std::min(step, sum(guess.time) / 50.0), 12);
+  const Profile estimate = solve_topp_ra(coarse, limits);
+  const double step = std::max(total_time(estimate.time) / max_stations, 0.005);
+  const Grid grid =
+      time_spaced_grid(*motion.path, coarse, estimate, std::min(step, total_time(estimate.time) / 50.0), 12);
   const std::size_t begin = motion.timing.size();
-  motion.append(grid, fastest_without_jerk(grid, limits), true);
+  motion.append(grid, solve_topp_ra(grid, limits), true);
   slow_to_limits(motion, begin, limits);
 }
 
 }  // namespace
 
-void time_block(Motion & motion, std::size_t first, std::size_t last, const Limits & limits)
+void parameterize_segment(Motion & motion, std::size_t first, std::size_t last, const Limits & limits)
 {
   if (motion.path->length() <= 0.0) {
     return;  // a path of one point
   }
-  const Limits inner = slightly_within(limits);
-  if (last - first == 1 && motion.path->pieces[first].straight()) {
-    append_straight_motion(motion, first, inner);
+  const Limits inner = with_margin(limits);
+  if (last - first == 1 && motion.path->pieces[first].is_line()) {
+    append_s_curve_profile(motion, first, inner);
   } else if (limits.has_jerk()) {
     append_jerk_limited(motion, first, last, inner);
   } else {
-    append_fastest(motion, first, last, inner);
+    append_topp_ra(motion, first, last, inner);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "path/straight.hpp"
+#include "timing/s_curve_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,12 @@ struct LineLimits {
   double velocity, acceleration, jerk;
 };
 
-LineLimits along(const Joints & direction, const Limits & limits)
+LineLimits path_limits(const Joints & direction, const Limits & limits)
 {
-  const Joints share = direction.abs().max(1e-300);
-  return {(limits.velocity / share).minCoeff(), (limits.acceleration / share).minCoeff(),
-          (limits.jerk / share).minCoeff()};
+  const Joints direction_magnitude = direction.abs().max(1e-300);
+  return {(limits.velocity / direction_magnitude).minCoeff(),
+          (limits.acceleration / direction_magnitude).minCoeff(),
+          (limits.jerk / direction_magnitude).minCoeff()};
 }
 
 // Speeding up from rest: jerk, constant acceleration, jerk back to zero.
@@ -47,12 +48,12 @@ double peak_speed(double length, const LineLimits & limits)
 
 }  // namespace
 
-void append_straight_motion(Motion & motion, std::size_t piece, const Limits & limits)
+void append_s_curve_profile(Motion & motion, std::size_t piece, const Limits & limits)
 {
   const PathPiece & line = motion.path->pieces[piece];
-  const LineLimits bounds = along(line.c[1] / line.length, limits);
-  const double speed = peak_speed(line.length, bounds);
-  const Ramp ramp = ramp_to(speed, bounds);
+  const LineLimits line_limits = path_limits(line.c[1] / line.length, limits);
+  const double speed = peak_speed(line.length, line_limits);
+  const Ramp ramp = ramp_to(speed, line_limits);
   const double steady = std::max(0.0, ramp.total_time - 2.0 * ramp.jerk_time);
   const double cruise = std::max(0.0, line.length / speed - ramp.total_time);
   const double a = ramp.acceleration;
@@ -60,16 +61,16 @@ void append_straight_motion(Motion & motion, std::size_t piece, const Limits & l
                                {ramp.jerk_time, 0, a}, {steady, a, a},          {ramp.jerk_time, a, 0},
                                {cruise, 0, 0},         {ramp.jerk_time, 0, -a}, {steady, -a, -a},
                                {ramp.jerk_time, -a, 0}};
-  Place here;
+  PathState state;
   for (const auto & [time, from, to] : phases) {
     if (time <= 0.0) {
       continue;
     }
-    here.a = from;
-    here.j = (to - from) / time;
-    motion.append(piece, time, here);
-    here.u += time * (here.v + time * (from / 3.0 + to / 6.0));
-    here.v += 0.5 * (from + to) * time;
+    state.a = from;
+    state.j = (to - from) / time;
+    motion.append(piece, time, state);
+    state.u += time * (state.v + time * (from / 3.0 + to / 6.0));
+    state.v += 0.5 * (from + to) * time;
   }
 }
 

@@ -1,8 +1,8 @@
-#include "timing/time_path.hpp"
+#include "timing/time_parameterization.hpp"
 
 #include <cmath>
 
-#include "timing/timing.hpp"
+#include "timing/segment_timing.hpp"
 #include "trajectory/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {
@@ -10,12 +10,12 @@ namespace {
 
 // Nothing leaves without having been looked at everywhere; what little is too much is taken away by slowing
 // down.
-Status verify_or_slow(Motion & motion, const Limits & limits)
+Status verify_and_slow(Motion & motion, const Limits & limits)
 {
   constexpr int rounds = 4;
   for (int round = 0;; ++round) {
-    Utilisation use;
-    const auto excess = first_excess(motion, limits, verification_step, use);
+    Utilization use;
+    const auto excess = first_violation(motion, limits, verification_step, use);
     if (!excess) {
       return {};
     }
@@ -30,18 +30,18 @@ Status verify_or_slow(Motion & motion, const Limits & limits)
 
 }  // namespace
 
-Expected<std::shared_ptr<Motion>> time_path(std::shared_ptr<const Path> path, const Limits & limits,
-                                            const std::stop_token & stop)
+Expected<std::shared_ptr<Motion>> parameterize_path(std::shared_ptr<const Path> path, const Limits & limits,
+                                                    const std::stop_token & stop)
 {
   auto motion = std::make_shared<Motion>();
   motion->path = std::move(path);
-  for (const auto & [first, last] : motion->path->blocks()) {
+  for (const auto & [first, last] : motion->path->segments()) {
     if (stop.stop_requested()) {
       return failure(ErrorCode::canceled, "the plan is not wanted any more");
     }
-    time_block(*motion, first, last, limits);
+    parameterize_segment(*motion, first, last, limits);
   }
-  if (auto status = verify_or_slow(*motion, limits); !status) {
+  if (auto status = verify_and_slow(*motion, limits); !status) {
     return tl::unexpected(status.error());
   }
   return motion;
