@@ -44,8 +44,8 @@ Expected<std::optional<Trajectory>> plan_approach(const Joints & start, const Pl
     return tl::unexpected(near.error());
   }
   const trajectory::PathOptions options{.speed_fraction = execution.speed_fraction};
-  return trajectory::plan_path(std::vector<Joints>{start, first}, trajectory::slow_limits(plan.limits),
-                               options)
+  return trajectory::plan_path(std::vector<Joints>{start, first},
+                               trajectory::default_speed_limits(plan.limits), options)
       .map([](Trajectory approach) { return std::optional(std::move(approach)); });
 }
 

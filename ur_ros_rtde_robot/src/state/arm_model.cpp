@@ -65,7 +65,7 @@ std::optional<std::string> model_of_type(std::int32_t number, bool cb3)
 
 ArmModel::ArmModel(std::string address, std::string stated, LogFunction log)
     : address_(std::move(address)),
-      stated_(model_key(stated)),
+      stated_(normalized_model_name(stated)),
       report_(std::move(log)),
       limits_(limits_of_stated(stated_))
 {
