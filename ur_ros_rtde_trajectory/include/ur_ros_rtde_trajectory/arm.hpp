@@ -16,25 +16,25 @@ using Pose = Eigen::Isometry3d;
 using Twist = Eigen::Matrix<double, 6, 1>;  ///< m/s and rad/s, or small displacements in m and rad
 using Jacobian = Eigen::Matrix<double, 6, 6>;
 
-/// m; Denavit-Hartenberg parameters, all others of a UR arm are 0 but alpha, which is pi/2, 0, 0, pi/2,
-/// -pi/2, 0. As published by Universal Robots ("Parameters for calculations of kinematics and dynamics", and
-/// the configurations of its ROS description).
+/// Denavit-Hartenberg parameters in m. The parameters not listed are 0, except alpha: pi/2, 0, 0, pi/2,
+/// -pi/2, 0. Values are published by Universal Robots ("Parameters for calculations of kinematics and
+/// dynamics", and the configuration files of the ROS description).
 struct DhParameters {
   double d1, a2, a3, d4, d5, d6;
 };
 
-/// A UR arm with a tool. Every arm leaves its calibration's few tenths of a millimetre to millimetres beside
-/// the published lengths: `correction` takes them away where they are known.
+/// Kinematics of a UR arm with a tool, from nominal DH parameters. The calibration of a real arm deviates
+/// from the nominal parameters by some tenths of a millimeter up to millimeters.
 class Arm {
  public:
   explicit Arm(const DhParameters & dh, const Pose & tool = Pose::Identity()) : dh_(dh), tool_(tool) {}
 
-  /// Of the TCP, in the robot's base frame.
+  /// Pose of the TCP in the base frame.
   Pose forward(const Joints & q) const;
-  /// The TCP's velocity by the joints', in the base frame.
+  /// Geometric Jacobian of the TCP in the base frame: linear part first.
   Jacobian jacobian(const Joints & q) const;
-  /// The joint positions near `guess` that put the TCP to `pose`: Newton's method. None when it does not get
-  /// there.
+  /// Joint positions near `guess` that place the TCP at `pose`, by Newton's method. Returns nullopt if the
+  /// iteration does not converge.
   std::optional<Joints> inverse(const Pose & pose, const Joints & guess) const;
 
  private:
@@ -42,18 +42,20 @@ class Arm {
   Pose tool_;
 };
 
-/// The published lengths of all models.
+/// Nominal DH parameters of all models, as published by Universal Robots.
 const std::vector<DhParameters> & nominal_dh_parameters();
 
-/// The arm whose published lengths explain best that the controller has the TCP at `tcp` with joints `q` and
-/// tool `tool`. Refused when even those are 15 mm or 0.03 rad beside it.
+/// Identifies the model whose nominal kinematics best match the TCP pose `tcp` that the controller reports
+/// for joint positions `q` and tool `tool`. Returns an error if the best match deviates by more than 15 mm or
+/// 0.03 rad.
 Expected<Arm> identify_arm(const Joints & q, const Pose & tcp, const Pose & tool);
 
-/// By which a pose must be moved to become another one: m and rad, in the base frame.
+/// Displacement from `from` to `to`: translation in m and rotation vector in rad, in the base frame.
 Twist difference(const Pose & from, const Pose & to);
+/// `pose` displaced by `by`, which is given in the base frame.
 Pose moved(const Pose & pose, const Twist & by);
 
-/// UR's notation: position and rotation vector.
+/// Conversion from and to UR poses: position and rotation vector.
 Pose to_pose(const Vector6 & pose);
 Vector6 to_ur(const Pose & pose);
 

@@ -7,23 +7,24 @@
 
 namespace ur_ros_rtde {
 
-/// What an arm can do at most, by its data sheet; the safety configuration of an installation may allow less.
+/// Limits of an arm according to its data sheet. The safety configuration of an installation may be stricter.
 struct ArmLimits {
   Vector6 position;  ///< rad, symmetric: -position … +position
   Vector6 velocity;  ///< rad/s
-  double reach;      ///< m, from the base's centre
+  double reach;      ///< m, from the center of the base
 };
 
-/// A model's name as tables have it: "UR8 Long" is "ur8long".
+/// Model name in lower case, without spaces, hyphens and underscores: "UR8 Long" becomes "ur8long".
 std::string normalized_model_name(const std::string & name);
-/// By model, in any spelling: "ur10e", "UR10e", "UR8 Long". None for an unknown model.
+/// Limits of a model. The name may be in any spelling: "ur10e", "UR10e", "UR8 Long". Returns nullopt for an
+/// unknown model.
 std::optional<ArmLimits> arm_limits(const std::string & model);
-/// The names of all models: "ur3, ur5, …".
+/// Names of all models, separated by commas: "ur3, ur5, …".
 std::string arm_models();
-/// What at least one model can do: ±2 pi, and the highest velocities.
+/// Limits that at least one model can reach: ±2 pi and the highest velocities.
 ArmLimits widest_arm_limits();
-/// What every model can do: ±2 pi, and the lowest velocity of each joint. The reach is the longest: it only
-/// rules out what no arm reaches.
+/// Limits that every model can reach: ±2 pi and the lowest velocity of each joint. The reach is the longest
+/// of all models, so that only positions that no arm reaches are excluded.
 ArmLimits common_arm_limits();
 
 }  // namespace ur_ros_rtde

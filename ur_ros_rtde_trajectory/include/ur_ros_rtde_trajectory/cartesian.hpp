@@ -12,22 +12,24 @@ namespace ur_ros_rtde::kinematics {
 struct CartesianOptions {
   double speed = 0.25;          ///< m/s of the TCP
   double rotation_speed = 1.0;  ///< rad/s of the TCP
-  double blend_radius = 0.0;  ///< m that the TCP may stay from a pose to go round a corner; 0: it stops there
+  double blend_radius =
+      0.0;  ///< m; largest distance from a pose when a corner is blended. 0: stop at each corner
 };
 
-/// The joint positions near `guess` for a pose of the TCP, by someone who knows this very arm: its
-/// controller.
+/// Inverse kinematics of the real arm, solved by its controller: joint positions near `guess` for a pose of
+/// the TCP.
 using IkFunction = std::function<Expected<Joints>(const Pose & pose, const Joints & guess)>;
 
-/// The fastest motion of the TCP along straight lines from `poses[0]`, where the arm is with `start`, through
-/// the others, that keeps the limits of the joints and of the TCP.
+/// Plans the time-optimal motion of the TCP along straight lines from `poses[0]`, where the arm is at
+/// `start`, through all other poses, within the limits of the joints and of the TCP.
 ///
-/// `arm` has the published lengths, this arm is a little different. At the beginning and at up to 100 of the
-/// poses, the last one among them, `reference` tells the joint positions; what the arm as published makes of
-/// them is a correction that is carried over to the way between.
+/// `arm` has nominal kinematics; the real arm deviates slightly. `ik` is queried at the start and at up to
+/// 100 poses, including the last one. The deviation of the nominal kinematics at these poses is a correction
+/// that is interpolated along the path.
 ///
-/// Refused (unreachable) with the pose and what is in the way: out of reach, a limit of a joint, a
-/// singularity (a smallest singular value of the Jacobian, rotations by 0.2 m, below 0.01).
+/// Returns ErrorCode::unreachable, with the pose and the reason, if a pose is out of reach, a joint limit is
+/// exceeded or the arm comes near a singularity (smallest singular value of the Jacobian below 0.01,
+/// rotations scaled by 0.2 m).
 Expected<trajectory::Trajectory> plan_cartesian(const std::vector<Pose> & poses, const Arm & arm,
                                                 const Joints & start, const trajectory::Limits & limits,
                                                 const CartesianOptions & options, const IkFunction & ik,

@@ -8,7 +8,7 @@
 
 namespace ur_ros_rtde {
 
-/// Why something was refused or ended early. The numbers are those of ur_ros_rtde_msgs/msg/ErrorCode.
+/// Reason why a request was rejected or ended early. The values match ur_ros_rtde_msgs/msg/ErrorCode.
 enum class ErrorCode : std::uint16_t {
   none = 0,
   invalid_goal = 1,
@@ -34,10 +34,10 @@ enum class ErrorCode : std::uint16_t {
   robot_in_use = 21,
 };
 
-/// The enumerator's name, "unknown" for a number outside the enumeration.
+/// Name of the enumerator; "unknown" for a value outside the enumeration.
 const char * to_string(ErrorCode code);
 
-/// `message` names the field or part concerned, its value, the limit, and what to do about it.
+/// `message` names the field or component, its value, the limit and the remedy.
 struct Error {
   ErrorCode code = ErrorCode::none;
   std::string message;
@@ -52,7 +52,7 @@ inline tl::unexpected<Error> failure(ErrorCode code, std::string message)
   return tl::unexpected<Error>(Error{code, std::move(message)});
 }
 
-/// An Error as an exception, for calls that return something else.
+/// Error as an exception, for functions that cannot return Expected.
 class RobotError : public std::runtime_error {
  public:
   explicit RobotError(Error error) : std::runtime_error(error.message), error_(std::move(error)) {}

@@ -12,17 +12,17 @@ namespace ur_ros_rtde::trajectory {
 
 inline constexpr int joint_count = 6;
 
-/// One value per joint, base to wrist 3. rad, rad/s, rad/s^2 or rad/s^3. The number of joints is fixed: every
-/// UR arm has six, and fixed sizes keep the solver free of allocations.
+/// One value per joint, base to wrist 3: rad, rad/s, rad/s^2 or rad/s^3. The number of joints is fixed
+/// because every UR arm has six joints, and fixed sizes keep the solver free of allocations.
 using Joints = Eigen::Array<double, joint_count, 1>;
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
-/// Defaults where the caller gives none: Universal Robots publishes no acceleration limit of the joints;
-/// these are gentle enough for every model with its rated payload, as MoveIt's configurations are.
+/// Defaults if the caller specifies none. Universal Robots publishes no acceleration limits of the joints.
+/// These values suit every model with its rated payload, like those in MoveIt configurations.
 inline constexpr double default_acceleration = 5.0;  ///< rad/s^2
 inline constexpr double default_jerk = 100.0;        ///< rad/s^3: full acceleration after 0.05 s
 
-/// What each joint may do. Positions lie within [position_min, position_max]; the others are symmetric.
+/// Limits of each joint. Positions lie within [position_min, position_max]; the other limits are symmetric.
 struct Limits {
   Joints position_min = Joints::Constant(-unlimited);  ///< rad
   Joints position_max = Joints::Constant(unlimited);   ///< rad
@@ -30,26 +30,27 @@ struct Limits {
   Joints acceleration = Joints::Constant(unlimited);   ///< rad/s^2, > 0
   Joints jerk = Joints::Constant(unlimited);  ///< rad/s^3, > 0; `unlimited` for all six: no jerk limit
 
-  /// False when no joint has a jerk limit: the acceleration may then jump.
+  /// False if no joint has a jerk limit. The acceleration may then be discontinuous.
   bool has_jerk() const { return jerk.isFinite().any(); }
 };
 
-/// The position and velocity limits of an arm, with the same acceleration and jerk limit for every joint.
+/// Position and velocity limits of an arm, with the same acceleration and jerk limit for every joint.
 Limits make_limits(const ArmLimits & arm, double acceleration = default_acceleration,
                    double jerk = default_jerk);
 
-/// `limits`, with velocities and accelerations of at most default_joint_speed and default_joint_acceleration
-/// (default_speeds.hpp).
+/// `limits` with velocities and accelerations reduced to at most default_joint_speed and
+/// default_joint_acceleration (default_speeds.hpp).
 Limits default_speed_limits(Limits limits);
 
-/// Refuses limits that are zero, negative, NaN or beyond 1e-4 to 1e7, an empty position range, and what
-/// time-optimal timing cannot do without: finite velocity and acceleration limits.
+/// Checks the limits. Velocity, acceleration and jerk limits must be between 1e-4 and 1e7; only jerk limits
+/// may be infinite. Position ranges must not be empty.
 Status check(const Limits & limits);
 
-/// "shoulder_pan_joint", … as ROS names them.
+/// Joint name as in the ROS description: "shoulder_pan_joint", …
 std::string_view joint_name(int joint);
 
-/// `values` as Joints; refused, naming `field`, when there are not six or one is not finite.
+/// Converts `values` to Joints. Returns an error that names `field` if there are not six values or a value is
+/// not finite.
 Expected<Joints> to_joints(std::string_view field, const std::vector<double> & values);
 
 }  // namespace ur_ros_rtde::trajectory

@@ -11,30 +11,32 @@ namespace ur_ros_rtde::trajectory {
 inline constexpr std::size_t max_waypoints = 10000;
 
 struct PathOptions {
-  /// Largest distance of the path from a waypoint, in the joint that deviates most. rad, >= 0. 0: the path
+  /// Largest distance of the path from a waypoint, in the joint that deviates most, in rad. 0: the path
   /// passes through every waypoint.
   double blend_tolerance = 0.0;
-  /// With blend_tolerance 0: a waypoint where the direction in joint space changes by more than this is a
-  /// corner, where the motion stops; through the others a smooth spline passes. rad, 0 to pi; 0: straight
-  /// lines only.
+  /// Only used if blend_tolerance is 0: a waypoint where the direction in joint space changes by more than
+  /// this angle is a corner, where the motion stops. A smooth spline passes through the other waypoints. In
+  /// rad, 0 to pi; 0: straight lines only.
   double corner_angle = 0.35;
-  /// Of the fastest motion. 0 < fraction <= 1: velocities times fraction, accelerations times its square.
+  /// Scales the time-optimal motion: velocities by the fraction, accelerations by its square. 0 < fraction <=
+  /// 1.
   double speed_fraction = 1.0;
-  /// Ends the planning (canceled) between two parts of the path, when it is not wanted any more.
+  /// Cancels planning between two segments of the path.
   std::stop_token stop = {};
 };
 
-/// What plan_path refuses without planning, in some milliseconds: count, sizes, numbers, positions, limits.
+/// Performs the input checks of plan_path without planning: counts, sizes, finite numbers, position limits
+/// and the limits themselves. Takes some milliseconds.
 Status check_path(std::span<const std::vector<double>> waypoints, const Limits & limits);
 
-/// The fastest motion through joint positions without times, at rest at both ends, that keeps `limits` in
-/// every joint at every moment: it is verified before it is returned. Without jerk limits
-/// (`Limits::has_jerk`) accelerations may jump. One waypoint, or only repetitions of one: a trajectory of
-/// duration 0.
+/// Plans the time-optimal motion through joint positions without times, at rest at both ends. The result is
+/// verified to keep `limits` in every joint at all times. Without jerk limits (`Limits::has_jerk`),
+/// accelerations may be discontinuous. A single waypoint, or repetitions of one waypoint, results in a
+/// trajectory of duration 0.
 ///
-/// Refused, with field, waypoint, joint, value and limit: no waypoint or more than `max_waypoints`, a wrong
-/// number of joints, a number that is not finite, a position beyond its limits, limits or options out of
-/// range.
+/// Returns an error with field, waypoint, joint, value and limit if there is no waypoint or more than
+/// `max_waypoints`, the number of joints is wrong, a number is not finite, a position exceeds its limits, or
+/// limits or options are out of range.
 Expected<Trajectory> plan_path(std::span<const std::vector<double>> waypoints, const Limits & limits,
                                const PathOptions & options = {});
 Expected<Trajectory> plan_path(const std::vector<Joints> & waypoints, const Limits & limits,

@@ -7,17 +7,17 @@
 
 namespace ur_ros_rtde::trajectory {
 
-/// A part of a path, from one stop to the next, as closely spaced samples of a smooth curve: what inverse
-/// kinematics make of the way of a tool.
+/// Segment of a path between two stops, given as closely spaced samples of a smooth curve, for example the
+/// result of inverse kinematics along a Cartesian path.
 struct SampledSegment {
-  std::vector<double> parameters;     ///< of each sample, by the caller's own measure; increasing
-  std::vector<Joints> positions;      ///< rad; at least two, the first where the block before ends
-  std::vector<double> min_durations;  ///< s that each interval takes at least: one fewer than the positions
+  std::vector<double> parameters;     ///< path parameter of each sample, chosen by the caller; increasing
+  std::vector<Joints> positions;      ///< rad; at least two; the first is where the previous segment ends
+  std::vector<double> min_durations;  ///< s; minimum duration of each interval, one fewer than positions
 };
 
-/// The fastest motion through these samples, with a stop between two blocks, that keeps `limits` as plan_path
-/// does, and the shortest times of the intervals. `waypoints`: places that count as the waypoints of the
-/// trajectory, not decreasing. `stop` ends the planning (canceled).
+/// Plans the time-optimal motion through the samples, with a stop between two segments, within `limits` (as
+/// plan_path) and the minimum durations. `waypoints` are the path parameters, in non-decreasing order, that
+/// count as waypoints of the trajectory. `stop` cancels planning.
 Expected<Trajectory> plan_sampled(const std::vector<SampledSegment> & segments,
                                   const std::vector<double> & waypoints, const Limits & limits,
                                   const std::stop_token & stop = {});

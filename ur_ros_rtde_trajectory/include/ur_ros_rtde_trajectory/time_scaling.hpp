@@ -4,28 +4,27 @@
 
 namespace ur_ros_rtde::trajectory {
 
-/// The time axis of a plan that is sent to a controller target by target. It runs with the controller's
-/// clock, at a rate from 0 to 1 times as fast, and changes the rate smoothly: when the speed is to be another
-/// one, and when the host was late. A target that came late is not skipped; the plan goes on from there,
-/// first as much slower as the arm has become by waiting for it.
+/// Time scaling of a plan that is sent to a controller setpoint by setpoint. The time of the plan advances
+/// with the controller's clock at a rate from 0 to 1. The rate changes smoothly if another rate is requested
+/// or the host was late. After a late setpoint, no part of the plan is skipped: the plan continues where it
+/// was, first slowed down by as much as the arm has slowed down meanwhile.
 ///
-/// Any constant rate keeps the limits that the plan keeps. A change of the rate r adds q' r' to the
-/// accelerations and q' r'' to the jerks: it takes what room the limits leave, and 2 /s where they leave
-/// less.
+/// The plan keeps its limits at any constant rate. A change of the rate r adds q' r' to the accelerations and
+/// q' r'' to the jerks. It uses the remaining margin of the limits, and 2 /s if the margin is smaller.
 class TimeScaling {
  public:
-  /// `cycle`: of the controller, s. `memory`: how long the controller takes to follow a target, s. Begins at
-  /// `time` of the plan.
+  /// Starts at `time` of the plan. `cycle`: cycle time of the controller, s. `servo_lag`: time that the
+  /// controller takes to follow a setpoint, s.
   TimeScaling(double cycle, double servo_lag, double rate, double time = 0.0)
       : cycle_(cycle), servo_lag_(servo_lag), time_(time), rate_(rate)
   {
   }
 
-  /// `elapsed` seconds of the controller's clock have passed since the last target. `wanted`: the rate to go
-  /// to. `point`: the plan at time().
+  /// Advances the time of the plan. `elapsed`: time of the controller's clock since the previous setpoint, s.
+  /// `target_rate`: requested rate. `point`: the plan at time().
   void advance(double elapsed, double target_rate, const Point & point, const Limits & limits);
 
-  /// s, of the plan
+  /// Time of the plan in s.
   double time() const { return time_; }
   double rate() const { return rate_; }
 
@@ -36,7 +35,7 @@ class TimeScaling {
   double cycle_, servo_lag_;
   double time_;
   double rate_;
-  double rate_dot_ = 0.0;  // of the rate, 1/s
+  double rate_dot_ = 0.0;  // 1/s
 };
 
 }  // namespace ur_ros_rtde::trajectory

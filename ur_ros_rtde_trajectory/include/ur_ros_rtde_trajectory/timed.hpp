@@ -8,7 +8,7 @@ namespace ur_ros_rtde::trajectory {
 
 inline constexpr std::size_t max_timed_waypoints = 100000;
 
-/// A motion whose times are given. All lists that are not empty have the same length.
+/// Waypoints with given times. All lists that are not empty have the same length.
 struct TimedWaypoints {
   std::vector<double> times;                       ///< s, any spacing, strictly increasing, the first is 0
   std::vector<std::vector<double>> positions;      ///< rad, six values each; the first is where the arm is
@@ -16,22 +16,22 @@ struct TimedWaypoints {
   std::vector<std::vector<double>> accelerations;  ///< rad/s^2; may be empty; only together with velocities
 };
 
-/// What plan_timed refuses without planning: lengths, numbers, times, positions beyond their limits, ends in
-/// motion.
+/// Performs the input checks of plan_timed without planning: list lengths, finite numbers, times, position
+/// limits, rest at both ends.
 Status check_timed(const TimedWaypoints & waypoints, const Limits & limits);
 
-/// A first time above 0 is how long the way from `start`, at rest, to the first position may take: puts
-/// `start` in front, at 0.
+/// If the first time is above 0, inserts `start`, at rest, as the first waypoint at time 0. The first time is
+/// then the duration of the motion from `start` to the first given position.
 void prepend_start(TimedWaypoints & waypoints, const Joints & start);
 
-/// The trajectory that is at each position at its time, or the reason why it cannot be: a limit that it would
-/// exceed (the first one, with joint, time, waypoint, value and limit), or bad input. Times are never
-/// changed.
+/// Interpolates a trajectory that passes each position at its given time. Returns an error for invalid input,
+/// or for the first limit that would be exceeded (with joint, time, waypoint, value and limit). The given
+/// times are never changed.
 ///
-/// Positions alone: the cubic spline with continuous accelerations, at rest at both ends; its first and last
-/// interval are quintic, so that the acceleration begins and ends at zero. With velocities: through these
-/// velocities, with accelerations estimated from both neighbours: quintic, continuous acceleration. With
-/// accelerations as well: the quintic through all of them.
+/// Positions only: cubic spline with continuous acceleration, at rest at both ends. The first and last
+/// interval are quintic, so that the acceleration starts and ends at zero. With velocities: quintic with
+/// continuous acceleration through the given velocities; accelerations are estimated from both neighboring
+/// intervals. With accelerations: quintic through all given values.
 Expected<Trajectory> plan_timed(const TimedWaypoints & waypoints, const Limits & limits);
 
 }  // namespace ur_ros_rtde::trajectory
