@@ -1,8 +1,8 @@
-// Plans a trajectory without a robot: reads the fields of a goal as JSON from standard input, writes the plan
-// as JSON to standard output. What ./ur plan draws. A refusal goes to standard error, and the program ends
-// with 1.
+// Plans a trajectory without a robot, as the backend of `./ur plan`: reads the fields of a goal as JSON from
+// standard input and writes the plan as JSON to standard output. On failure, writes the reason to standard
+// error and exits with 1.
 //
-//   {"model": "ur10e", "waypoints": [[rad, …], …]}, and the fields of ExecuteTrajectory; or, with times,
+//   {"model": "ur10e", "waypoints": [[rad, …], …]} with the fields of ExecuteTrajectory; or, with times,
 //   {"points": [{"time": s, "positions": […], "velocities": […], "accelerations": […]}, …]}
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,7 +34,7 @@ Expected<Limits> read_limits(const json & goal)
   Limits limits = trajectory::make_limits(*arm);
   if (goal.contains("waypoints")) {
     limits =
-        trajectory::default_speed_limits(limits);  // as execute_trajectory; given times are a choice of speed
+        trajectory::default_speed_limits(limits);  // as execute_trajectory; given times determine the speed
   }
   for (const auto & [field, limit] :
        {std::pair{"max_velocity", &limits.velocity}, std::pair{"max_acceleration", &limits.acceleration},

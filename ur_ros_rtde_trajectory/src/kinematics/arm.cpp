@@ -73,7 +73,7 @@ std::optional<Joints> Arm::inverse(const Pose & pose, const Joints & guess) cons
 {
   constexpr int max_iterations = 30;
   constexpr double tolerance = 1e-10;  // m
-  constexpr double max_step = 0.3;     // rad: a Newton step farther than that has left the neighbourhood
+  constexpr double max_step = 0.3;     // rad; limits the Newton step
   Joints q = guess;
   for (int round = 0; round < max_iterations; ++round) {
     const Twist error = difference(forward(q), pose);

@@ -15,9 +15,9 @@ using trajectory::Trajectory;
 
 constexpr std::size_t max_ik_queries = 100;
 constexpr double same_correction = 1e-5;   // m
-constexpr double max_model_error = 0.015;  // m: beyond that it is not the same arm
+constexpr double max_model_error = 0.015;  // m; a larger deviation means another arm
 
-/// The joint positions at a place, of blocks that were followed without knowing better.
+/// Joint positions at path parameter u of segments that were sampled with the correction of the start only.
 Joints joints_at(const std::vector<SampledSegment> & segments, double u)
 {
   for (const SampledSegment & segment : segments) {
@@ -29,7 +29,7 @@ Joints joints_at(const std::vector<SampledSegment> & segments, double u)
   return segments.back().positions.back();
 }
 
-/// What the reference says at the poses, beside what the arm as published makes of it.
+/// Queries the inverse kinematics at the poses. Returns the deviation of the nominal kinematics from it.
 Expected<KinematicCorrection> query_correction(const TcpPath & path, const Arm & arm,
                                                const std::vector<SampledSegment> & segments,
                                                const Twist & start_correction, const IkFunction & ik,
@@ -42,7 +42,7 @@ Expected<KinematicCorrection> query_correction(const TcpPath & path, const Arm &
   double last = 0.0;
   for (std::size_t i = (waypoints.size() - 1) % stride; i < waypoints.size(); i += stride) {
     if (stop.stop_requested()) {
-      return failure(ErrorCode::canceled, "the plan is not wanted any more");
+      return failure(ErrorCode::canceled, "planning was canceled");
     }
     if (waypoints[i] <= last) {
       continue;

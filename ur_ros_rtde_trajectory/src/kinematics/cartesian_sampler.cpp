@@ -13,12 +13,12 @@ namespace {
 
 using trajectory::SampledSegment;
 
-constexpr double max_step = 0.005;           // m of the way
+constexpr double max_step = 0.005;           // m along the path
 constexpr double min_step = 2e-6;            // m
-constexpr double max_joint_step = 0.04;      // rad of a joint, between two samples
-constexpr int min_intervals = 8;             // of a block
-constexpr double min_singular_value = 0.01;  // of the Jacobian, rotations by arm_length
-constexpr double singular_angle = 0.05;      // rad from where a joint makes the arm singular
+constexpr double max_joint_step = 0.04;      // rad; largest change of a joint between two samples
+constexpr int min_intervals = 8;             // per segment
+constexpr double min_singular_value = 0.01;  // of the Jacobian, rotations scaled by characteristic_length
+constexpr double singular_angle = 0.05;      // rad; distance of a joint from a singularity
 
 double smallest_singular_value(Jacobian jacobian)
 {
@@ -28,7 +28,7 @@ double smallest_singular_value(Jacobian jacobian)
   return std::sqrt(std::max(0.0, squares.eigenvalues()[0]));
 }
 
-/// The three ways in which a UR arm loses a direction.
+/// Names the singularity near q: wrist, elbow or shoulder.
 const char * describe_singularity(const Joints & q)
 {
   if (std::abs(std::sin(q[4])) < singular_angle) {
@@ -62,7 +62,7 @@ Expected<std::vector<SampledSegment>> CartesianSampler::sample_path(const Joints
   Joints q = start;
   for (std::size_t k = 1; k < stops.size(); ++k) {
     if (stop.stop_requested()) {
-      return failure(ErrorCode::canceled, "the plan is not wanted any more");
+      return failure(ErrorCode::canceled, "planning was canceled");
     }
     auto segment = sample_segment(stops[k - 1], stops[k], q, correction);
     if (!segment) {
@@ -96,7 +96,7 @@ Expected<SampledSegment> CartesianSampler::sample_segment(double from, double to
   return segment;
 }
 
-/// `step` shrinks where the joints turn fast, and grows again.
+/// `step` decreases where the joints move fast, and increases again afterwards.
 Expected<CartesianSampler::Sample> CartesianSampler::next_sample(const Sample & last, double to,
                                                                  const KinematicCorrection & correction,
                                                                  double & step) const
@@ -143,7 +143,7 @@ double CartesianSampler::min_duration(double from, double to) const
 
 std::string CartesianSampler::describe_position(double u) const
 {
-  // The first place is where the arm is; the caller's poses come after it.
+  // The first pose is the start of the arm; the poses of the caller follow.
   const auto & waypoints = path_.waypoints();
   const auto next_sample = std::lower_bound(waypoints.begin(), waypoints.end(), u - 1e-9) - waypoints.begin();
   const Pose pose = path_.at(u);

@@ -8,7 +8,7 @@
 
 namespace ur_ros_rtde::kinematics {
 
-/// By which the published arm is beside the real one, along the way: linear between places.
+/// Deviation of the nominal kinematics from the real arm along the path, interpolated linearly.
 class KinematicCorrection {
  public:
   void add(double u, const Twist & value)
@@ -16,7 +16,7 @@ class KinematicCorrection {
     u_.push_back(u);
     values_.push_back(value);
   }
-  /// At least one has been added.
+  /// Requires at least one added value.
   Twist at(double u) const;
 
  private:
@@ -24,8 +24,8 @@ class KinematicCorrection {
   std::vector<Twist> values_;
 };
 
-/// Joint positions along a way of the TCP, closely enough for a spline through them. Refused as
-/// plan_cartesian says.
+/// Samples joint positions along a TCP path by inverse kinematics, closely enough for a spline through them.
+/// Returns errors as described at plan_cartesian.
 class CartesianSampler {
  public:
   CartesianSampler(const TcpPath & path, const Arm & arm, const trajectory::Limits & limits,

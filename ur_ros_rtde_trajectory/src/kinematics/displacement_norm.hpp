@@ -4,10 +4,11 @@
 
 namespace ur_ros_rtde::kinematics {
 
-/// What a rotation counts as beside a translation, in m/rad: about the distance from the wrist to the TCP.
+/// Characteristic length that weights rotations against translations, in m/rad: about the distance from the
+/// wrist to the TCP.
 inline constexpr double characteristic_length = 0.2;
 
-/// How far a displacement moves the TCP, in m, rotation included.
+/// Norm of a TCP displacement in m, including rotation.
 inline double displacement_norm(const Twist & displacement)
 {
   return displacement.head<3>().norm() + characteristic_length * displacement.tail<3>().norm();

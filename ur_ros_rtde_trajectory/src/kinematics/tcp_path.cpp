@@ -9,9 +9,9 @@ namespace ur_ros_rtde::kinematics {
 namespace {
 
 constexpr double same_pose = 1e-7;       // m
-constexpr double same_direction = 1e-6;  // change of direction below which a line goes on
-// How far a blend passes from its corner, by its reach and the change of direction: twice the integral of the
-// smooth step up to its middle.
+constexpr double same_direction = 1e-6;  // smaller changes of direction are ignored
+// Distance of a blend from its corner per half length and change of direction: twice the integral of the
+// smoothstep up to its middle.
 constexpr double blend_deviation = 2.0 * 5.0 / 64.0;
 
 double larger_displacement(const Twist & twist)
@@ -19,7 +19,7 @@ double larger_displacement(const Twist & twist)
   return std::max(twist.head<3>().norm(), characteristic_length * twist.tail<3>().norm());
 }
 
-// Integral from 0 to x of the step 10 x^3 - 15 x^4 + 6 x^5.
+// Integral from 0 to x of the smoothstep 10 x^3 - 15 x^4 + 6 x^5.
 double step_integral(double x)
 {
   return x * x * x * x * (2.5 + x * (-3.0 + x));
@@ -72,7 +72,8 @@ Pose TcpPath::at(double u) const
   if (!at_end && !(along < blend_half_lengths_[line])) {
     return lines_[line].at(along);
   }
-  // Backward along the line before the corner, by as much as is left of it; forward along the one after.
+  // Combines the remaining displacement along the line before the corner and the displacement along the line
+  // after it.
   const double blend = blend_half_lengths_[corner];
   const double x = std::clamp((u - corners_[corner] + blend) / (2.0 * blend), 0.0, 1.0);
   const Pose from = lines_[corner - 1].at(lines_[corner - 1].length - 2.0 * blend * step_integral(1.0 - x));

@@ -6,25 +6,25 @@
 
 namespace ur_ros_rtde::kinematics {
 
-/// The way of the TCP through poses: straight lines, with a turn at a constant rate on each, and round
-/// corners where `blend_radius` allows. The parameter u is the length of the way in metres, with 0.2 m a
-/// radian where the TCP turns more than it moves.
+/// Path of the TCP through poses: straight lines with constant rotation rate, and corners blended within
+/// `blend_radius`. The parameter u is the path length in m. If the TCP mainly rotates, one radian counts as
+/// 0.2 m.
 class TcpPath {
  public:
-  /// Poses that repeat their predecessor count as one. At least one pose.
+  /// Requires at least one pose. Repeated poses are merged.
   TcpPath(const std::vector<Pose> & poses, double blend_radius);
 
   double length() const { return corners_.back(); }
   Pose at(double u) const;
-  /// u at which the way is at, or nearest to, each of the poses.
+  /// u of each pose, or of the nearest point of the path.
   const std::vector<double> & waypoints() const { return waypoints_; }
-  /// u of the corners where the TCP has to stop, both ends included; at most `length` apart by themselves.
+  /// u of the corners where the TCP has to stop, including both ends.
   std::vector<double> stops() const;
 
  private:
   struct Line {
     Pose from;
-    Twist rate;  // by u
+    Twist rate;  // derivative with respect to u
     double length = 0.0;
     Pose at(double u) const { return moved(from, rate * u); }
   };
@@ -32,8 +32,8 @@ class TcpPath {
   double blend_half_length(std::size_t corner, double radius) const;
 
   std::vector<Line> lines_;
-  std::vector<double> corners_;             // u at the beginning of each line, and at the end
-  std::vector<double> blend_half_lengths_;  // of the blend at each corner; 0 at both ends
+  std::vector<double> corners_;             // u at the start of each line, and at the end
+  std::vector<double> blend_half_lengths_;  // half length of the blend at each corner; 0 at both ends
   std::vector<double> waypoints_;
 };
 

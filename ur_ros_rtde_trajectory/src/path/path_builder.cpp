@@ -9,13 +9,12 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double same_position = 1e-9;   // rad; closer waypoints are one
-constexpr double same_direction = 1e-9;  // change of the unit direction below which a line goes on
-constexpr double smallest_radius =
-    1e-3;                                // rad; a turn tighter than this is a corner, however small its angle
-constexpr double smallest_blend = 1e-5;  // rad; a blend shorter than this gains nothing over a stop
+constexpr double same_position = 1e-9;    // rad; closer waypoints are merged
+constexpr double same_direction = 1e-9;   // smaller changes of the unit direction are ignored
+constexpr double smallest_radius = 1e-3;  // rad; a tighter curve is a corner, even if its angle is small
+constexpr double smallest_blend = 1e-5;   // rad; a shorter blend has no advantage over a stop
 
-// The waypoints without repetitions, as lines between them.
+// Polyline through the waypoints, without repetitions.
 struct Polyline {
   std::vector<Joints> points;
   std::vector<std::size_t> point_of_waypoint;  // for each of the caller's waypoints, the index in `points`
@@ -80,8 +79,8 @@ class Builder {
     add(piece);
   }
 
-  // A corner is where the direction changes too much for a smooth curve: one that passes through the waypoint
-  // would swing out between the waypoints, by about an eighth of angle times distance.
+  // A corner is a waypoint where the direction changes too much for a smooth curve: a spline through the
+  // waypoint would deviate from the straight lines by about an eighth of angle times distance.
   bool is_corner(std::size_t i) const
   {
     const double angle = polyline_.angle(i);
@@ -110,7 +109,7 @@ class Builder {
     }
   }
 
-  // All points from first to last lie on the line between these two.
+  // Whether all points from first to last lie on the line between these two.
   bool is_collinear(std::size_t first, std::size_t last) const
   {
     const Joints chord = polyline_.points[last] - polyline_.points[first];
@@ -169,13 +168,13 @@ class Builder {
   // --- corners ---
 
   struct Corner {
-    std::size_t piece = 0;  // the first one after it
+    std::size_t piece = 0;  // first piece after the corner
     std::size_t point = 0;
   };
 
-  // How far before and after a corner its blend begins and ends. The direction changes along the quintic
-  // smoothstep, so between straight lines the middle of the blend passes the corner at 2 * (5/64) * reach *
-  // |d1 - d0|.
+  // Distance from the corner at which its blend starts and ends. The direction changes along the quintic
+  // smoothstep, so between straight lines the middle of the blend passes the corner at a distance of 2 *
+  // (5/64) * half_length * |d1 - d0|.
   double blend_half_length(const PathPiece & before, const PathPiece & after, const Joints & corner) const
   {
     constexpr double deviation = 2.0 * 5.0 / 64.0;
@@ -191,8 +190,8 @@ class Builder {
     return 0.0;
   }
 
-  // The polynomial that continues three derivatives on both sides; between straight lines of degree six, with
-  // q' = d0 + (d1 - d0) (10 x^3 - 15 x^4 + 6 x^5), inside the triangle of the corner.
+  // Polynomial that continues three derivatives on both sides. Between straight lines it has degree six, with
+  // q' = d0 + (d1 - d0) (10 x^3 - 15 x^4 + 6 x^5), and stays inside the triangle of the corner.
   static PathPiece make_blend(const PathPiece & before, const PathPiece & after, double half_length)
   {
     PathPiece blend;
@@ -205,7 +204,7 @@ class Builder {
     blend.c[1] = from.d1 * l;
     blend.c[2] = from.d2 * (l * l / 2.0);
     blend.c[3] = from.d3 * (l * l * l / 6.0);
-    // What is missing at x = 1 of the position and of x-derivatives 1 to 3.
+    // Remaining differences at x = 1 of the position and of x-derivatives 1 to 3.
     const Joints e0 = to.q - blend.c[0] - blend.c[1] - blend.c[2] - blend.c[3];
     const Joints e1 = to.d1 * l - blend.c[1] - 2.0 * blend.c[2] - 3.0 * blend.c[3];
     const Joints e2 = to.d2 * (l * l) - 2.0 * blend.c[2] - 6.0 * blend.c[3];
@@ -217,7 +216,7 @@ class Builder {
     return blend;
   }
 
-  // `piece` without `head` at its beginning and `tail` at its end.
+  // `piece` without a length `head` at its start and `tail` at its end.
   static PathPiece trim(const PathPiece & piece, double head, double tail)
   {
     PathPiece rest = piece;
@@ -232,7 +231,7 @@ class Builder {
     return rest;
   }
 
-  // Puts stops or blends at the corners; both keep every other place on the path where it was.
+  // Adds a stop or a blend at each corner. Both preserve the parameter s of all other points.
   void blend_corners()
   {
     const std::vector<PathPiece> pieces = std::move(path_.pieces);

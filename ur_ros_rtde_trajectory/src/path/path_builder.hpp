@@ -7,15 +7,16 @@
 namespace ur_ros_rtde::trajectory {
 
 struct PathShape {
-  /// How far the path may pass from a waypoint, in the joint that deviates most. rad. 0: through every
+  /// Largest distance of the path from a waypoint, in the joint that deviates most, in rad. 0: through every
   /// waypoint.
   double tolerance = 0.0;
-  /// A waypoint where the direction changes by more than this is a corner; at the others, with tolerance 0, a
-  /// spline passes through smoothly. rad. 0: straight lines only, a stop at every waypoint that turns.
+  /// A waypoint where the direction changes by more than this angle is a corner. With tolerance 0, a smooth
+  /// spline passes through the other waypoints. In rad; 0: straight lines only, with a stop at every waypoint
+  /// where the direction changes.
   double corner_angle = 0.35;
 };
 
-/// The path through `waypoints` (at least one). Waypoints that repeat their predecessor share its place.
+/// Builds the path through `waypoints` (at least one). Repeated waypoints have the same s.
 Path build_path(const std::vector<Joints> & waypoints, const PathShape & shape);
 
 }  // namespace ur_ros_rtde::trajectory

@@ -25,7 +25,7 @@ struct Tridiagonal {
   }
 };
 
-// The rows of the inner knots: the second derivatives from both sides are equal.
+// Equations of the inner knots: the second derivatives of both sides are equal.
 Tridiagonal inner_rows(std::span<const Joints> values, std::span<const double> widths)
 {
   Tridiagonal system(values.size());

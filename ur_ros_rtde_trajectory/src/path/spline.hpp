@@ -7,11 +7,11 @@
 
 namespace ur_ros_rtde::trajectory {
 
-/// First derivatives at the knots of the cubic spline through `values` whose second derivative is continuous,
-/// and zero at both ends. `widths` are the distances between neighbouring knots, one fewer than the values.
+/// First derivatives at the knots of the natural cubic spline through `values`: its second derivative is
+/// continuous, and zero at both ends. `widths`: distances between adjacent knots, one fewer than values.
 std::vector<Joints> natural_spline_slopes(std::span<const Joints> values, std::span<const double> widths);
 
-/// As above, with the first derivatives at both ends given.
+/// First derivatives at the knots of the cubic spline with the given first derivatives at both ends.
 std::vector<Joints> clamped_spline_slopes(std::span<const Joints> values, std::span<const double> widths,
                                           const Joints & first, const Joints & last);
 

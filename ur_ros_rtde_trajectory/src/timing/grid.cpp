@@ -6,14 +6,15 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-// Where the motion of constant acceleration over interval i is, `time` after it began.
+// Position on the piece, `time` after the start of interval i, at constant acceleration.
 double state_after(const Grid & grid, const Profile & profile, std::size_t i, double time)
 {
   const double moved = (profile.v[i] + 0.5 * profile.alpha[i] * time) * time;
   return grid.begin[i] + std::clamp(moved, 0.0, grid.width(i));
 }
 
-// Adds stations to `fine` for one piece: the intervals [begin, end) of `coarse`.
+// Adds stations to `fine` for the intervals [begin, end) of `coarse`, which lie on one piece, at equal
+// intervals of time.
 void resample_piece(const Path & path, const Grid & coarse, const Profile & profile, std::size_t begin,
                     std::size_t end, std::size_t count, Grid & fine)
 {
@@ -23,10 +24,10 @@ void resample_piece(const Path & path, const Grid & coarse, const Profile & prof
   }
   const std::size_t piece = coarse.piece[begin];
   const double min_spacing =
-      1e-6 * path.pieces[piece].length;  // stations need a distance, whatever the times say
+      1e-6 * path.pieces[piece].length;  // minimum distance of stations, independent of the times
   double from = coarse.begin[begin];
   const double last = coarse.end[end - 1];
-  double elapsed = 0.0;  // when interval i begins
+  double elapsed = 0.0;  // start time of interval i
   std::size_t i = begin;
   for (std::size_t k = 1; k < count; ++k) {
     const double time = total * static_cast<double>(k) / static_cast<double>(count);

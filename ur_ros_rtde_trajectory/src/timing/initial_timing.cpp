@@ -11,7 +11,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-// Squares of the speed that constant jerk reaches from rest at both ends, a ~ s^(4/3), joined smoothly.
+// Squared speeds of a motion with constant jerk from rest at both ends, a ~ s^(4/3), blended smoothly.
 std::vector<double> jerk_limited_ramps(const Grid & grid, const Limits & limits)
 {
   const auto factor = [&](const Joints & direction) {
@@ -34,7 +34,7 @@ std::vector<double> jerk_limited_ramps(const Grid & grid, const Limits & limits)
   return result;
 }
 
-// The least value within `reach` seconds before and after.
+// Sliding minimum over the time window +-half_window around each station.
 std::vector<double> sliding_min(const std::vector<double> & values, const std::vector<double> & time,
                                 double half_window)
 {
@@ -56,7 +56,8 @@ std::vector<double> sliding_min(const std::vector<double> & values, const std::v
   return result;
 }
 
-// The mean over `reach` seconds before and after; beyond both ends as at the ends.
+// Sliding mean over the time window +-half_window around each station. Values are extrapolated as constants
+// beyond both ends.
 std::vector<double> sliding_mean(const std::vector<double> & values, const std::vector<double> & time,
                                  double half_window)
 {
@@ -96,7 +97,8 @@ InitialTiming initial_timing_from(const Grid & grid, Profile profile)
   InitialTiming start{std::move(profile), std::vector<double>(count, 0.0)};
   const SpeedSpline spline(grid, start.profile);
   for (std::size_t m = 1; m < count; ++m) {
-    // Each station tells both its neighbours: a_m = (1 - l) w_(m-1) + l w_m, b_m = g (w_m - w_(m-1)).
+    // Each station contributes to both adjacent coefficients: a_m = (1 - l) w_(m-1) + l w_m, b_m = g (w_m -
+    // w_(m-1)).
     const auto & at = spline.at(m);
     const double a = start.profile.v[m] * start.profile.v[m];
     const double rise = start.profile.alpha[m] / at.g;
@@ -113,7 +115,7 @@ InitialTiming initial_timing_from(const Grid & grid, Profile profile)
 
 namespace {
 
-// The timing whose squared speeds at the stations are these.
+// Timing with the given squared speeds at the stations.
 InitialTiming timing_from_squared_speeds(const Grid & grid, const std::vector<double> & squared_speeds)
 {
   const std::size_t last = grid.stations() - 1;
@@ -168,7 +170,8 @@ InitialTiming initial_timing(const Grid & grid, const Limits & limits)
       squared_speeds[m] = ramp[m] * ramp_fraction[m];
     }
     InitialTiming start = timing_from_squared_speeds(grid, squared_speeds);
-    // Where it exceeds the limits, slower, and smoothly slower around: the rest of the path need not suffer.
+    // Slow down locally where the limits are exceeded, with a smooth transition. The rest of the path keeps
+    // its speed.
     std::vector<double> excess = solver.limit_ratios(SpeedSpline(grid, start.profile), start.w);
     if (round == 4 || *std::max_element(excess.begin(), excess.end()) < 1.5) {
       return start;

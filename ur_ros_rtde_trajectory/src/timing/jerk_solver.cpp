@@ -53,13 +53,13 @@ void JerkSolver::set_spline(const SpeedSpline & spline)
 {
   spline_ = &spline;
   for (std::size_t i = 1; i + 1 < count(); ++i) {
-    // The other weights must not make a speed vanish.
+    // With the new weights, no speed may vanish.
     const double neighbors = std::min(i > 1 ? a_[i] : w_[i], i + 2 < count() ? a_[i + 1] : w_[i]);
     w_[i] = std::max(w_[i], 0.3 * neighbors);
   }
   std::fill(weight_.begin(), weight_.end(), 0.0);
   for (std::size_t i = 0; i < count(); ++i) {
-    // The ends are at rest: their share goes to the station beside them.
+    // Both ends are at rest: their weight goes to the adjacent station.
     weight_[std::max<std::size_t>(i, 1)] += 0.5 * spline.duration(i);
     weight_[std::min(i + 1, count() - 1)] += 0.5 * spline.duration(i);
   }
@@ -83,7 +83,7 @@ void JerkSolver::evaluate()
   }
 }
 
-// Largest use of the limits of station m and of the interval that begins there, as the factor on a: jerk
+// Largest ratio of station m and the interval that starts there to their limits, as a factor on a. The jerk
 // grows with a^(3/2).
 double JerkSolver::limit_ratio(std::size_t m) const
 {
@@ -146,7 +146,7 @@ JerkSolver::JerkRow JerkSolver::jerk_row(std::size_t i, bool end) const
   return row;
 }
 
-// Moves each multiplier to within a factor `spread` of mu / slack.
+// Limits each multiplier to mu / slack within a factor of `spread`.
 void JerkSolver::center_multipliers(double mu, double spread)
 {
   const auto balance = [&](Joints & multiplier, const Joints & slack) {
@@ -214,7 +214,7 @@ void JerkSolver::iterate(int steps, double gap_limit)
   for (int step = 0; step < steps && !(settled && product * rows < gap_limit * before); ++step) {
     assemble(reduction * product);
     if (!system_.solve()) {
-      return;  // the present iterate obeys the limits
+      return;  // the current iterate is feasible
     }
     const StepLengths lengths = step_lengths(system_.right, reduction * product);
     last_w = w_;

@@ -8,8 +8,8 @@
 
 namespace ur_ros_rtde::trajectory {
 
-/// How much of its limits a place of the grid may use; below 1 where a first solution exceeded them between
-/// stations.
+/// Fractions of the limits that the solver may use. Below 1 where a previous solution exceeded the limits
+/// between stations.
 struct LimitFractions {
   std::vector<double> acceleration;  ///< of each station
   std::vector<double> jerk;          ///< of each interval
@@ -19,28 +19,28 @@ struct LimitFractions {
   }
 };
 
-/// Time-optimal timing from rest to rest under velocity, acceleration and jerk limits: a feasible primal-dual
-/// interior-point method on the coefficients w of a SpeedSpline.
+/// Time-optimal path parameterization from rest to rest under velocity, acceleration and jerk limits: a
+/// feasible primal-dual interior-point method for the coefficients w of a SpeedSpline.
 ///
-///   minimise  the sum over stations of  t_m sqrt(a^_m / a_m)             (the duration; ^: of the present
-///   profile) subject to  a <= a_max,  |q'' a + q' b| <= A,  |q''' a + 3 q'' b + q' c / v^| <= J / sqrt(a)
+///   minimize    sum over stations of t_m sqrt(a^_m / a_m)    (the duration; ^: current profile)
+///   subject to  a <= a_max,  |q'' a + q' b| <= A,  |q''' a + 3 q'' b + q' c / v^| <= J / sqrt(a)
 ///
-/// J / sqrt(a) is convex; its tangent at the present iterate lies below it, so each step obeys the true
-/// limits, and every iterate is a plan that could be driven. Each step costs time linear in the number of
-/// stations.
+/// J / sqrt(a) is convex. Its tangent at the current iterate is a lower bound, so every iterate keeps the
+/// true limits and is an executable timing. The cost of each step is linear in the number of stations.
 class JerkSolver {
  public:
   JerkSolver(const Grid & grid, const Limits & limits, const LimitFractions & limit_fractions);
 
-  /// Starts from coefficients `w` of `spline`, scaled down until they obey the limits. `gap`: what they may
-  /// be away from the optimum, as a fraction of the duration.
+  /// Initializes with coefficients `w` of `spline`, scaled down until they keep the limits. `gap`: estimated
+  /// distance from the optimum, as a fraction of the duration.
   void start(const SpeedSpline & spline, std::vector<double> w, double gap);
-  /// How much coefficients `w` exceed the limits at each station and in the interval after it, as factors by
-  /// which the square of the speed is too high; 1: just at a limit.
+  /// Ratio of coefficients `w` to the limits at each station and in the following interval, as a factor on
+  /// the squared speed. 1: at the limit.
   std::vector<double> limit_ratios(const SpeedSpline & spline, const std::vector<double> & w);
-  /// Goes on with another spline of the same grid; keeps coefficients and multipliers.
+  /// Continues with another spline on the same grid. Keeps coefficients and multipliers.
   void set_spline(const SpeedSpline & spline);
-  /// Up to `steps` steps, until the estimated loss of time is below `gap`, a fraction of the duration.
+  /// Runs up to `steps` iterations, until the estimated loss of time is below `gap`, a fraction of the
+  /// duration.
   void iterate(int steps, double gap);
 
   const std::vector<double> & coefficients() const { return w_; }
@@ -48,20 +48,20 @@ class JerkSolver {
   double duration() const;
 
  private:
-  // Multipliers of the constraints that belong to interval i and to the station where it begins; plus and
-  // minus: of the upper and the lower limit.
+  // Multipliers of the constraints of interval i and of the station where it starts. Plus and minus: upper
+  // and lower limit.
   struct Multipliers {
     Joints station_plus, station_minus, begin_plus, begin_minus, end_plus, end_minus;
     double speed = 0.0;
   };
-  // The jerk limit at one end of an interval, as |pa a + pb b + pc c| <= f, with a, b of station `at`.
+  // Jerk constraint at one end of an interval: |pa a + pb b + pc c| <= f, with a and b of station `at`.
   struct JerkRow {
     std::size_t at = 0;
     Joints pa, pb, pc;
-    double tangent = 0.0;  // f / (2 a): of the linearised right-hand side
+    double tangent = 0.0;  // f / (2 a), slope of the linearized right-hand side
     Joints value;
   };
-  // Second-order model in three variables: station's a and b, interval's c.
+  // Quadratic model in a and b of a station and c of an interval.
   struct Model {
     double aa = 0, ab = 0, ac = 0, bb = 0, bc = 0, cc = 0, ga = 0, gb = 0, gc = 0;
   };
@@ -97,7 +97,7 @@ class JerkSolver {
   std::vector<double> max_a_;   // highest a at each station
   std::vector<double> weight_;  // t_m
   std::vector<double> w_, a_, b_, c_;
-  std::vector<Joints> acceleration_use_;  // of the acceleration limits at each station
+  std::vector<Joints> acceleration_use_;  // utilization of the acceleration limits at each station
   std::vector<JerkRow> begin_jerk_, end_jerk_;
   std::vector<Multipliers> multipliers_, multiplier_step_;
   Pentadiagonal system_;

@@ -4,13 +4,12 @@
 
 #include "timing/jerk_solver.hpp"
 
-// One step of the solver: the linear system of the perturbed optimality conditions, and how far its solution
-// may go.
+// One iteration of the solver: the linear system of the perturbed KKT conditions and the step lengths.
 
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double fraction_to_boundary = 0.95;  // part of the way to the nearest limit that a step may go
+constexpr double fraction_to_boundary = 0.95;  // fraction-to-boundary rule
 
 }  // namespace
 
@@ -88,7 +87,7 @@ JerkSolver::Model JerkSolver::jerk_model(const JerkRow & row, double f, const Jo
   return model;
 }
 
-// Adds a model in (a_m, b_m, c_i), m = i or i + 1, to the system in w.
+// Adds a quadratic model in (a_m, b_m, c_i), m = i or i + 1, to the linear system in w.
 void JerkSolver::scatter_model(std::size_t i, std::size_t m, const Model & model)
 {
   // Rows of a, b, c over (w_(i-1), w_i, w_(i+1)).
@@ -159,7 +158,8 @@ JerkSolver::StepLengths JerkSolver::step_lengths(const std::vector<double> & dw,
   return steps;
 }
 
-// One side of six limits with `room` left, of which a full step takes `used`.
+// One side of six constraints with slack `room`, of which a full step consumes `used`: computes the
+// multiplier step and reduces the step lengths.
 void JerkSolver::update_multipliers(const Joints & room, const Joints & used, const Joints & multiplier,
                                     double target, Joints & change, StepLengths & steps)
 {

@@ -5,7 +5,7 @@
 
 namespace ur_ros_rtde::trajectory {
 
-/// A symmetric positive definite matrix with two bands on each side of the diagonal, and a right-hand side.
+/// Linear system with a symmetric positive definite matrix with two bands on each side of the diagonal.
 struct Pentadiagonal {
   std::vector<double> diagonal;  ///< (i, i)
   std::vector<double> first;     ///< (i, i + 1)
@@ -19,8 +19,8 @@ struct Pentadiagonal {
     }
   }
 
-  /// Replaces `right` by the solution (Cholesky, L D L^T, in place). False when the matrix is not positive
-  /// definite.
+  /// Replaces `right` by the solution (L D L^T factorization in place). Returns false if the matrix is not
+  /// positive definite.
   bool solve()
   {
     const std::size_t size = diagonal.size();

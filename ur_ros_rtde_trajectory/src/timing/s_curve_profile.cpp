@@ -19,9 +19,9 @@ LineLimits path_limits(const Joints & direction, const Limits & limits)
           (limits.jerk / direction_magnitude).minCoeff()};
 }
 
-// Speeding up from rest: jerk, constant acceleration, jerk back to zero.
+// Acceleration from rest: jerk, constant acceleration, jerk back to zero acceleration.
 struct Ramp {
-  double jerk_time = 0.0;  // of each of the two jerk phases
+  double jerk_time = 0.0;  // duration of each of the two jerk phases
   double total_time = 0.0;
   double acceleration = 0.0;
 };
@@ -36,7 +36,7 @@ Ramp ramp_to(double speed, const LineLimits & limits)
   return ramp;
 }
 
-// Highest speed from which the motion can still stop within `length`, when it began at rest.
+// Highest speed of a motion from rest to rest over `length`.
 double peak_speed(double length, const LineLimits & limits)
 {
   const double settle = limits.acceleration * limits.acceleration / limits.jerk;  // acceleration * jerk time
@@ -57,7 +57,7 @@ void append_s_curve_profile(Motion & motion, std::size_t piece, const Limits & l
   const double steady = std::max(0.0, ramp.total_time - 2.0 * ramp.jerk_time);
   const double cruise = std::max(0.0, line.length / speed - ramp.total_time);
   const double a = ramp.acceleration;
-  const double phases[7][3] = {// duration, acceleration at its beginning and at its end
+  const double phases[7][3] = {// duration, acceleration at the start and at the end
                                {ramp.jerk_time, 0, a}, {steady, a, a},          {ramp.jerk_time, a, 0},
                                {cruise, 0, 0},         {ramp.jerk_time, 0, -a}, {steady, -a, -a},
                                {ramp.jerk_time, -a, 0}};

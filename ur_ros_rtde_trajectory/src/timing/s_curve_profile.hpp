@@ -4,8 +4,8 @@
 
 namespace ur_ros_rtde::trajectory {
 
-/// Appends the time-optimal motion along the straight piece `piece`, from rest to rest: up to seven phases of
-/// constant jerk (three of constant acceleration without a jerk limit), in closed form.
+/// Appends the time-optimal motion along the straight piece `piece`, from rest to rest, in closed form: up to
+/// seven phases of constant jerk, or three phases of constant acceleration without a jerk limit.
 void append_s_curve_profile(Motion & motion, std::size_t piece, const Limits & limits);
 
 }  // namespace ur_ros_rtde::trajectory

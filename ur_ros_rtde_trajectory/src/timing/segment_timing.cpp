@@ -14,7 +14,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr int inner_points = 3;  // looked at between two stations
+constexpr int inner_points = 3;  // verified points between two stations
 constexpr double max_stations = 50000;
 constexpr double min_station_step = 0.002;  // s, between stations
 
@@ -36,7 +36,7 @@ Grid coarse_grid(const Path & path, std::size_t first, std::size_t last)
 
 void slow_to_limits(Motion & motion, std::size_t begin, const Limits & limits)
 {
-  constexpr double margin = 3e-4;  // for what happens between the points looked at
+  constexpr double margin = 3e-4;  // for violations between the verified points
   const Utilization use = max_utilization(motion, begin, limits);
   const double factor = std::max({use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)});
   if (factor > 1.0 - 0.5 * margin) {
@@ -46,8 +46,8 @@ void slow_to_limits(Motion & motion, std::size_t begin, const Limits & limits)
 
 namespace {
 
-// Takes back what `motion` (its pieces from `begin`, one per interval) uses too much. False when there is
-// nothing.
+// Tightens the limits where `motion` exceeds them (pieces from `begin`, one per interval). Returns false if
+// it exceeds none.
 bool tighten_limits(const Motion & motion, std::size_t begin, const Limits & limits,
                     LimitFractions & limit_fractions)
 {
@@ -82,9 +82,9 @@ Grid jerk_limited_grid(const Path & path, std::size_t first, std::size_t last, c
   return time_spaced_grid(path, coarse, estimate, step, 6);
 }
 
-// Divides the intervals of `motion` (its pieces from `begin`, one per interval) in which a limit is exceeded
-// between the stations. Returns the new grid and the same motion on it; no grid when there is nothing to
-// divide.
+// Subdivides the intervals of `motion` (pieces from `begin`, one per interval) in which a limit is exceeded
+// between the stations. Returns the new grid and the same motion on it, or nullopt if no interval is
+// subdivided.
 std::optional<std::pair<Grid, Profile>> subdivide(const Motion & motion, std::size_t begin, const Grid & grid,
                                                   const Limits & limits)
 {
@@ -114,7 +114,7 @@ std::optional<std::pair<Grid, Profile>> subdivide(const Motion & motion, std::si
   return fine.intervals() > grid.intervals() ? std::optional(std::move(result)) : std::nullopt;
 }
 
-// Of the motion's pieces from `begin` on.
+// Profile of the pieces of `motion` from `begin` on.
 Profile profile_of(const Motion & motion, std::size_t begin)
 {
   Profile profile;
@@ -129,8 +129,7 @@ Profile profile_of(const Motion & motion, std::size_t begin)
   return profile;
 }
 
-// One grid's solution, appended to the motion. Gaps: how near to the optimum, for one speed spline after the
-// other.
+// Solves on one grid. `gaps`: the optimality gaps for successive speed splines.
 Profile solve_on_grid(const Grid & grid, InitialTiming start, double initial_gap, const Limits & limits,
                       const LimitFractions & limit_fractions, std::initializer_list<double> gaps)
 {
@@ -194,7 +193,7 @@ void append_topp_ra(Motion & motion, std::size_t first, std::size_t last, const 
 void parameterize_segment(Motion & motion, std::size_t first, std::size_t last, const Limits & limits)
 {
   if (motion.path->length() <= 0.0) {
-    return;  // a path of one point
+    return;  // a path of a single point
   }
   const Limits inner = with_margin(limits);
   if (last - first == 1 && motion.path->pieces[first].is_line()) {

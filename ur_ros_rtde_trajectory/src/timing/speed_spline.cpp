@@ -6,8 +6,8 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-// Distances covered in an interval, weighted by a line that falls from 1 to 0 (falling) or rises from 0 to 1
-// over its time: integrals of cubic Hermite speeds.
+// Distances covered in an interval, weighted by a line over its time that falls from 1 to 0 (falling) or
+// rises from 0 to 1 (rising): integrals of cubic Hermite speeds.
 double falling(const Profile & p, std::size_t i)
 {
   const double t = p.time[i];
@@ -35,7 +35,8 @@ SpeedSpline::SpeedSpline(const Grid & grid, const Profile & profile)
     : duration_(profile.time), speed_(profile.v), weights_(profile.v.size())
 {
   for (std::size_t m = 1; m < grid.intervals(); ++m) {
-    // The halves of the hat at m; they are parts of two widths, whatever an inaccurate profile says.
+    // Halves of the hat function at m. The clamps keep them inside their intervals if the profile is
+    // inaccurate.
     const double left =
         std::clamp(rising(profile, m - 1), 0.05 * grid.width(m - 1), 0.95 * grid.width(m - 1));
     const double right = std::clamp(falling(profile, m), 0.05 * grid.width(m), 0.95 * grid.width(m));

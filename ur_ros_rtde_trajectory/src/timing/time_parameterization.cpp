@@ -8,8 +8,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-// Nothing leaves without having been looked at everywhere; what little is too much is taken away by slowing
-// down.
+// Verifies the whole motion. Small violations are removed by slowing down.
 Status verify_and_slow(Motion & motion, const Limits & limits)
 {
   constexpr int rounds = 4;
@@ -37,7 +36,7 @@ Expected<std::shared_ptr<Motion>> parameterize_path(std::shared_ptr<const Path> 
   motion->path = std::move(path);
   for (const auto & [first, last] : motion->path->segments()) {
     if (stop.stop_requested()) {
-      return failure(ErrorCode::canceled, "the plan is not wanted any more");
+      return failure(ErrorCode::canceled, "planning was canceled");
     }
     parameterize_segment(*motion, first, last, limits);
   }

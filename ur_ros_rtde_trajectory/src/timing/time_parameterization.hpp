@@ -7,8 +7,8 @@
 
 namespace ur_ros_rtde::trajectory {
 
-/// The fastest motion along a path, verified. Refused: what remains beyond a limit, a position above all;
-/// canceled by `stop` between two blocks.
+/// Computes the time-optimal motion along a path and verifies it. Returns an error for a remaining violation,
+/// in particular of a position limit. `stop` cancels between two segments.
 Expected<std::shared_ptr<Motion>> parameterize_path(std::shared_ptr<const Path> path, const Limits & limits,
                                                     const std::stop_token & stop);
 

@@ -6,16 +6,17 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double negligible = 1e-12;  // a coefficient of the acceleration below this does not bound it
+constexpr double negligible = 1e-12;  // smaller coefficients do not bound the acceleration
 
-// A bound of the acceleration b along the path as a line in a, the square of the speed.
+// Bound of the acceleration b along the path as a linear function of a, the squared speed.
 struct Line {
   double offset = 0.0;
   double slope = 0.0;
   double at(double a) const { return offset + slope * a; }
 };
 
-// |k2 a + k1 b| <= A for each joint, at both ends of an interval of width w (where a becomes a + 2 w b).
+// Bounds from |k2 a + k1 b| <= A of each joint, at both ends of an interval of width w (at the end, a becomes
+// a + 2 w b).
 struct Bounds {
   Line low{-1e12, 0.0};
   Line high{1e12, 0.0};
@@ -33,18 +34,18 @@ class Interval {
   {
   }
 
-  // The tightest bounds of b at this a.
+  // Tightest bounds of b at this a.
   Bounds at(double a) const
   {
     Bounds bounds;
-    bounds.low = {0.0, -1.0 / (2.0 * width_)};  // at its end, a >= 0
+    bounds.low = {0.0, -1.0 / (2.0 * width_)};  // a >= 0 at the end
     tighten(begin_1_, begin_2_, a, bounds);
     tighten(end_1_, end_2_, a, bounds);
     return bounds;
   }
 
-  // Largest a <= highest from which some b leads to at most `next`. low(a) - high(a) is convex: Newton from
-  // the right.
+  // Largest a <= highest from which some b leads to at most `next`. low(a) - high(a) is convex, so Newton's
+  // method converges from the right.
   double max_controllable(double highest, double next) const
   {
     double a = highest;
@@ -95,7 +96,7 @@ double speed_ceiling(const Grid & grid, const Limits & limits, std::size_t i)
   const Joints & d3 = i < grid.intervals() ? grid.d3_begin[i] : grid.d3_end[i - 1];
   for (int j = 0; j < joint_count; ++j) {
     const double curvature = std::abs(grid.d2[i][j]);
-    // Where the joint hardly moves along the path, nothing but a low speed limits its acceleration.
+    // If the joint hardly moves along the path, only a low speed limits its acceleration.
     if (curvature > 0.0 && std::abs(grid.d1[i][j]) < negligible) {
       a = std::min(a, limits.acceleration[j] / curvature);
     }
@@ -119,7 +120,7 @@ Profile solve_topp_ra(const Grid & grid, const Limits & limits)
 {
   const std::size_t count = grid.intervals();
   std::vector<double> controllable(count + 1,
-                                   0.0);  // highest square of the speed that can still stop at the end
+                                   0.0);  // squared speeds from which the end can be reached at rest
   for (std::size_t i = count; i-- > 0;) {
     controllable[i] =
         Interval(grid, limits, i).max_controllable(speed_ceiling(grid, limits, i), controllable[i + 1]);

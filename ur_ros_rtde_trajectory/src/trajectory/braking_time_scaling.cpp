@@ -25,7 +25,7 @@ class BrakingSearch {
   {
     TimeScalingState state{plan_time, 1.0, 0.0};
     double time = 0.0;
-    double recovery = 0.0;  // the bend with which the way back to a constant rate begins
+    double recovery = 0.0;  // first rate_ddot of the recovery to a constant rate
     best_end_ = plan_.duration() - plan_time;
     while (time < best_end_ && state.plan_time < plan_.duration()) {
       try_final_phase(time, state);
@@ -46,14 +46,14 @@ class BrakingSearch {
     return joint_motion(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
   }
 
-  // The r'' that the jerk limits allow; empty (low > high) when an acceleration limit is exceeded.
+  // Range of r'' within the jerk limits. Empty (low > high) if an acceleration limit is exceeded.
   RateDdotRange feasible_rate_ddot(const TimeScalingState & s) const
   {
     const Point p = plan_point(s.plan_time);
     const double r2 = s.rate * s.rate;
     RateDdotRange result;
     const Joints acceleration = p.acceleration * r2 + p.velocity * s.rate_dot;
-    // What the slowed plan itself uses is always allowed: so a constant rate always is.
+    // The acceleration of the scaled plan itself is always allowed, so a constant rate is always feasible.
     const Joints max_acceleration = (usable_fraction_ * acceleration_).max((p.acceleration * r2).abs());
     if (s.rate < 0.0 || s.rate > 1.0 || (acceleration.abs() > max_acceleration).any()) {
       return {1.0, -1.0};
@@ -75,8 +75,8 @@ class BrakingSearch {
     return result;
   }
 
-  // Whether r'' = bend keeps the limits for `time`, seen at three moments: where the plan's jerk jumps, on
-  // both sides.
+  // Whether r'' = rate_ddot keeps the limits for `time`. Checks three moments, including both sides of a
+  // discontinuity of the jerk of the plan.
   bool keeps_limits(const TimeScalingState & s, double rate_ddot, double time) const
   {
     for (const double part : {0.02, 0.5, 0.98}) {
@@ -88,7 +88,7 @@ class BrakingSearch {
     return true;
   }
 
-  // From this state the rate can become constant before it is zero. `first`: the bend of the first step.
+  // Whether the rate can become constant before it reaches zero. `first`: r'' of the first step.
   bool can_recover(TimeScalingState s, double & first) const
   {
     first = 0.0;
@@ -112,7 +112,7 @@ class BrakingSearch {
         return false;
       }
       first = k == 0 ? rate_ddot : first;
-      // The remaining change fades away: a rest of it that one step could take away is none.
+      // A remaining r' that one step can remove counts as zero.
       s = next;
       if (s.rate_dot > -1e-4) {
         s.rate_dot = 0.0;
@@ -121,8 +121,8 @@ class BrakingSearch {
     return false;
   }
 
-  // The lowest bend for the next step that keeps the limits and leaves a way back. `way_back` holds the
-  // bend that begins the way back from here, and receives that of the next state.
+  // Lowest r'' for the next step that keeps the limits and allows a recovery to a constant rate. `recovery`
+  // is the first r'' of the recovery from this state, and receives that of the next state.
   double hardest_braking(const TimeScalingState & s, double & recovery) const
   {
     const RateDdotRange allowed = feasible_rate_ddot(s);
@@ -140,7 +140,8 @@ class BrakingSearch {
     return rate_ddot;
   }
 
-  // From here to rest with constant r'', when that keeps the limits and ends sooner than the best so far.
+  // Final phase to rest with constant r''. Accepted if it keeps the limits and ends sooner than the best so
+  // far.
   void try_final_phase(double time, const TimeScalingState & s)
   {
     if (s.rate_dot >= 0.0) {

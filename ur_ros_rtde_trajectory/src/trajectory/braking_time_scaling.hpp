@@ -7,11 +7,10 @@
 
 namespace ur_ros_rtde::trajectory {
 
-/// A stop slows the clock of a planned motion: where the plan is at time p, the arm comes later, on the same
-/// path. Its joints then move with q' r, q'' r^2 + q' r', q''' r^3 + 3 q'' r r' + q' r'' for a clock rate r =
-/// dp/dt.
+/// State of a time scaling p(t), which brakes a planned motion along its path. With the rate r = dp/dt, the
+/// joints move with q' r, q'' r^2 + q' r' and q''' r^3 + 3 q'' r r' + q' r''.
 struct TimeScalingState {
-  double plan_time = 0.0;  ///< s, what the clock shows
+  double plan_time = 0.0;  ///< p, s
   double rate = 1.0;       ///< r
   double rate_dot = 0.0;   ///< r', 1/s
 
@@ -22,29 +21,29 @@ struct TimeScalingState {
   }
 };
 
-/// r'' is constant in each phase. After the last one the clock stands still.
+/// Time scaling with constant r'' in each phase. After the last phase, the plan time is constant.
 struct BrakingTimeScaling {
   struct Phase {
-    double begin = 0.0;      // s, since the braking began
+    double begin = 0.0;      // s, since the start of braking
     double rate_ddot = 0.0;  // r'', 1/s^2
-    TimeScalingState state;  // at its beginning
+    TimeScalingState state;  // at the start of the phase
   };
   std::vector<Phase> phases;
   double end = 0.0;  ///< s
 
   TimeScalingState at(double time) const;
   double rate_ddot_at(double time) const { return phase_at(time).rate_ddot; }
-  /// When the clock shows `planned`.
+  /// Time at which the plan time is `plan_time`.
   double time_at(double plan_time) const;
 
  private:
   const Phase & phase_at(double time) const;
 };
 
-/// The clock that stops the motion soonest, beginning at `planned`, of those that brake at each moment as
-/// hard as the limits and the way back to a constant rate allow (any constant rate keeps the limits that the
-/// plan keeps). None when the plan comes to rest before any. `reserve`: part of the limits that braking does
-/// not use (the plan may), for what happens between the moments looked at.
+/// Finds the time scaling that stops the motion soonest, starting at `plan_time`, among those that at each
+/// moment brake as hard as the limits allow while a recovery to a constant rate remains possible (the plan
+/// keeps its limits at any constant rate). Returns nullopt if the plan comes to rest earlier. `reserve`:
+/// fraction of the limits that braking leaves unused, for violations between the checked moments.
 std::optional<BrakingTimeScaling> find_braking_time_scaling(const Motion & plan, double plan_time,
                                                             const Limits & limits, double reserve);
 

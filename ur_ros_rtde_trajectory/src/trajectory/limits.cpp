@@ -10,7 +10,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-// Numbers beyond these are mistakes, and would make motions that last for years or have no accuracy.
+// Values outside this range are mistakes: they lead to motions that last for years or have no accuracy.
 constexpr double smallest = 1e-4;
 constexpr double largest = 1e7;
 

@@ -43,7 +43,8 @@ void Motion::append(std::size_t path_piece, double span, const PathState & from,
   piece.duration = span;
   piece.piece = path_piece;
   // Quintic Hermite interpolation in x = t / span.
-  // Over a short time the difference of two places is all rounding; the speeds tell better how far it goes.
+  // Over a short time, the difference of two positions consists of rounding errors; the speeds are more
+  // accurate.
   constexpr double brief = 5e-4;  // s
   const double rise =
       span < brief ? span * (0.5 * (from.v + to.v) + span * (from.a - to.a) / 12.0) : to.u - from.u;

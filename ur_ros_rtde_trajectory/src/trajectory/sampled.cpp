@@ -8,12 +8,12 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double same_sample = 1e-9;  // rad; closer samples are one
+constexpr double same_sample = 1e-9;  // rad; closer samples are merged
 
-// A block without samples that repeat.
+// Knots of a segment, without repeated samples.
 struct SampledKnots {
   std::vector<Joints> q;
-  std::vector<double> width;         // rad, chords
+  std::vector<double> width;         // rad, chord lengths
   std::vector<double> min_duration;  // s
 
   explicit SampledKnots(const SampledSegment & segment) : q{segment.positions.front()}
@@ -52,7 +52,7 @@ void add_segment(Path & path, const SampledKnots & knots)
   }
 }
 
-// The place of each sample, and where on the path it lies.
+// Maps the path parameters of the caller to the arc length s of the path.
 struct ParameterMap {
   std::vector<double> parameter, s;
 

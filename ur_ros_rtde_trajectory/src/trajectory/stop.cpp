@@ -8,7 +8,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-// The place on the planned piece `index` that the slowed clock shows when its r'' is `bend`.
+// State on piece `index` of the plan under a time scaling with the given r''.
 PathState scaled_state(const Motion & plan, std::size_t index, const TimeScalingState & scaling,
                        double rate_ddot)
 {
@@ -19,7 +19,7 @@ PathState scaled_state(const Motion & plan, std::size_t index, const TimeScaling
           place.j * r * r * r + 3.0 * place.a * r * scaling.rate_dot + place.v * rate_ddot};
 }
 
-// Ends of the parts in which both the plan and the clock are smooth.
+// Ends of the intervals in which both the plan and the time scaling are smooth.
 std::vector<double> smooth_interval_ends(const Motion & plan, const BrakingTimeScaling & scaling)
 {
   std::vector<double> ends;
@@ -40,10 +40,10 @@ std::vector<double> smooth_interval_ends(const Motion & plan, const BrakingTimeS
   return ends;
 }
 
-// The braking alone, its time from 0.
+// The braking motion alone; its time starts at 0.
 Motion braking_motion(const Motion & plan, const BrakingTimeScaling & scaling)
 {
-  constexpr double shortest = 1e-9;  // s; shorter parts are joined with the next
+  constexpr double shortest = 1e-9;  // s; shorter intervals are merged with the next
   Motion result;
   result.path = plan.path;
   double from = 0.0;
@@ -62,8 +62,8 @@ Motion braking_motion(const Motion & plan, const BrakingTimeScaling & scaling)
   return result;
 }
 
-// The quickest braking that obeys the limits everywhere: the less of them it means to use, the less it
-// exceeds them between the moments that the search looks at.
+// Finds the fastest braking that keeps the limits everywhere. A larger reserve reduces violations between the
+// moments that the search checks.
 std::optional<Motion> find_braking(const Motion & plan, double plan_time, const Limits & limits)
 {
   for (const double reserve : {0.0, 0.02, 0.06, 0.15, 0.3, 0.5, 0.7, 0.85}) {
@@ -91,10 +91,10 @@ Trajectory Trajectory::stop_from(double time, const Limits & limits) const
   auto result = std::make_shared<Motion>();
   result->path = motion_->path;
   if (now <= 0.0) {
-    result->append(motion_->timing.front().piece, 1e-3, PathState{});  // not yet begun: stay
+    result->append(motion_->timing.front().piece, 1e-3, PathState{});  // not started yet: stay
     return Trajectory(std::move(result));
   }
-  // Should no braking from here pass its verification, one that begins a little later does.
+  // If no braking from this moment passes verification, a later one does.
   constexpr double delay = 0.025;  // s
   std::optional<Motion> brake;
   double begin = now;

@@ -6,15 +6,15 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-/// 1/s, as the controller's own ramp of the speed slider. Less would let a busy host stand still for ever.
+/// 1/s, the ramp of the controller's speed slider. With a lower limit, a busy host could prevent any motion.
 constexpr double lowest_rate_dot_limit = 2.0;
 constexpr double highest_rate_dot_limit = 20.0;
 constexpr double lowest_rate_ddot_limit = 100.0;  // 1/s^2, of the rate
 constexpr double highest_rate_ddot_limit = 1000.0;
-/// Packages of one or two cycles are the network's jitter; what is more, the arm has waited for.
+/// Gaps of one or two cycles are network jitter. During longer gaps the arm slows down.
 constexpr double jitter_cycles = 2.0;
 
-// How much more a joint can take beside `used`, by how fast it moves.
+// Margin of the limits beside `used`, relative to the joint velocities.
 double available(const Joints & limit, const Joints & used, const Joints & velocity, double least,
                  double most)
 {
@@ -38,7 +38,7 @@ void TimeScaling::advance(double elapsed, double target_rate, const Point & poin
   time_ += 0.5 * (before + rate_) * duration;
 }
 
-// The target stood still: the controller, which follows it with its memory, has slowed the arm down.
+// While the setpoint was constant, the controller has slowed the arm down with its servo lag.
 void TimeScaling::slow_for_delay(double delay)
 {
   if (delay > 0.0) {
@@ -50,7 +50,7 @@ void TimeScaling::slow_for_delay(double delay)
 void TimeScaling::update_rate(double duration, double target_rate, double max_rate_dot, double max_rate_ddot)
 {
   const double remaining = target_rate - rate_;
-  // Not faster than what can be taken back until the wanted rate is reached.
+  // Limits the rate of change so that it can return to zero when the target rate is reached.
   const double target_rate_dot =
       std::copysign(std::min(max_rate_dot, std::sqrt(2.0 * max_rate_ddot * std::abs(remaining))), remaining);
   rate_dot_ += std::clamp(target_rate_dot - rate_dot_, -max_rate_ddot * duration, max_rate_ddot * duration);

@@ -10,8 +10,9 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double at_rest = 1e-3;        // rad/s; a slower end is rest
-constexpr double shortest_step = 1e-4;  // s; polynomials over shorter ones lose their meaning to rounding
+constexpr double at_rest = 1e-3;  // rad/s; lower velocities count as rest
+constexpr double shortest_step =
+    1e-4;  // s; polynomials over shorter intervals are dominated by rounding errors
 
 struct Knots {
   std::vector<double> widths;  // s
@@ -65,7 +66,7 @@ Expected<std::vector<Joints>> read_list(std::string_view field, const std::vecto
   return result;
 }
 
-// Velocities of the cubic spline, at rest at both ends.
+// Velocities of the cubic spline with rest at both ends.
 std::vector<Joints> spline_velocities(const Knots & knots)
 {
   if (knots.q.size() < 2) {
@@ -74,8 +75,8 @@ std::vector<Joints> spline_velocities(const Knots & knots)
   return clamped_spline_slopes(knots.q, knots.widths, Joints::Zero(), Joints::Zero());
 }
 
-// At each inner knot the mean of the accelerations of the two cubics that meet there (for the cubic spline
-// they are equal); none at the ends.
+// Mean of the accelerations of the two cubics that meet at each inner knot (for the cubic spline they are
+// equal). Zero at both ends.
 std::vector<Joints> estimated_accelerations(const Knots & knots)
 {
   std::vector<Joints> result(knots.q.size(), Joints::Zero());
@@ -107,7 +108,7 @@ Status check_rest(std::vector<Joints> & velocities)
   return {};
 }
 
-// What is given; lists that are not stay empty.
+// Reads the given lists. Lists that are not given stay empty.
 Expected<Knots> read_given(const TimedWaypoints & waypoints)
 {
   if (auto status = check_times(waypoints.times); !status) {
@@ -172,7 +173,7 @@ PathPiece quintic(const Knots & knots, std::size_t i, double start)
   return piece;
 }
 
-// The path parameter is the time itself.
+// The path parameter is the time.
 Trajectory make_trajectory(const Knots & knots, const std::vector<double> & times)
 {
   auto path = std::make_shared<Path>();

@@ -8,7 +8,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-// The piece of the motion at `time`, and the place on the path, within it whatever rounding says.
+// Piece of the path at `time` and the state on it, clamped to the piece against rounding errors.
 struct PathLocation {
   const PathPiece * curve = nullptr;
   PathState place;

@@ -9,7 +9,7 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double rounding = 1e-9;  // of a limit
+constexpr double rounding = 1e-9;  // relative to the limit
 
 Point point_at(const Motion & motion, const TimingLawPiece & piece, double time)
 {
@@ -18,8 +18,7 @@ Point point_at(const Motion & motion, const TimingLawPiece & piece, double time)
   return joint_motion(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
 }
 
-// The largest of values that come in equal steps, with the vertices of the parabolas through each three of
-// them.
+// Maximum of equally spaced values, including the vertex of the parabola through every three of them.
 struct Peak {
   Joints largest = Joints::Zero();
 
@@ -42,7 +41,8 @@ struct Peak {
   Joints before_ = Joints::Zero();
 };
 
-// Of what the path itself allows; the speed is a polynomial in time, so a few moments will do.
+// Largest ratio of the speed to the maximum speed of the path. The speed is a polynomial in time, so few
+// samples are sufficient.
 double max_speed_ratio(const Motion & motion, const TimingLawPiece & piece, int inner)
 {
   const double top = motion.path->pieces[piece.piece].max_speed;
@@ -81,7 +81,7 @@ std::optional<LimitViolation> position_violation(const Joints & q, const Limits 
 
 std::optional<LimitViolation> violation_at(const Point & point, const Limits & limits, double time)
 {
-  // A number that is none would pass every comparison with a limit.
+  // NaN passes every comparison with a limit, so it is checked explicitly.
   if (!(point.position + point.velocity + point.acceleration + point.jerk).isFinite().all()) {
     return LimitViolation{Quantity::position, 0, time, std::numeric_limits<double>::quiet_NaN(),
                           limits.position_max[0]};
