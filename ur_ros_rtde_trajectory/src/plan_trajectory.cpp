@@ -29,7 +29,8 @@ Expected<Limits> read_limits(const json & goal)
   const std::string model = goal.value("model", "");
   const auto arm = model.empty() ? std::optional(widest_arm_limits()) : arm_limits(model);
   if (!arm) {
-    return failure(ErrorCode::invalid_goal, fmt::format("model is \"{}\", there is no such arm", model));
+    return failure(ErrorCode::invalid_goal,
+                   fmt::format("model is \"{}\": unknown model, give one of {}", model, arm_models()));
   }
   Limits limits = trajectory::make_limits(*arm);
   if (goal.contains("waypoints")) {
@@ -75,7 +76,7 @@ Status check_fields(const json & goal)
   for (const auto & [field, value] : goal.items()) {
     if (!known.contains(field)) {
       return failure(ErrorCode::invalid_goal,
-                     fmt::format("there is no field {}: it may have {}", field, fmt::join(known, ", ")));
+                     fmt::format("unknown field {}; the fields are {}", field, fmt::join(known, ", ")));
     }
   }
   if (goal.contains("waypoints") == goal.contains("points")) {

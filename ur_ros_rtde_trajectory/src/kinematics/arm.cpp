@@ -126,9 +126,10 @@ Expected<Arm> identify_arm(const Joints & q, const Pose & tcp, const Pose & tool
   if (best_error.head<3>().norm() > max_distance || best_error.tail<3>().norm() > max_angle) {
     return failure(
         ErrorCode::not_supported,
-        fmt::format("no known model has its TCP where the controller says: the nearest is {:.1f} mm "
-                    "and {:.3f} rad beside it",
-                    1e3 * best_error.head<3>().norm(), best_error.tail<3>().norm()));
+        fmt::format(
+            "no known model matches the TCP pose of the controller: the nearest one deviates by {:.1f} mm "
+            "and {:.3f} rad",
+            1e3 * best_error.head<3>().norm(), best_error.tail<3>().norm()));
   }
   return *best;
 }

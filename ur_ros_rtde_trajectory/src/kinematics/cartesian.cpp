@@ -56,10 +56,11 @@ Expected<KinematicCorrection> query_correction(const TcpPath & path, const Arm &
     }
     const Twist error = difference(pose, arm.forward(*q));
     if (displacement_norm(error) > max_model_error) {
-      return failure(ErrorCode::not_supported,
-                     fmt::format("the controller's joint positions for poses[{}] put the arm, as published, "
-                                 "{:.1f} mm beside it: plan in joint space instead",
-                                 i - 1, 1e3 * displacement_norm(error)));
+      return failure(
+          ErrorCode::not_supported,
+          fmt::format("the controller's inverse kinematics for poses[{}] deviate by {:.1f} mm from the "
+                      "nominal kinematics of the arm: plan in joint space instead",
+                      i - 1, 1e3 * displacement_norm(error)));
     }
     correction.add(waypoints[i], error);
   }

@@ -10,9 +10,8 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double at_rest = 1e-3;  // rad/s; lower velocities count as rest
-constexpr double shortest_step =
-    1e-4;  // s; polynomials over shorter intervals are dominated by rounding errors
+constexpr double at_rest = 1e-3;        // rad/s; lower velocities count as rest
+constexpr double shortest_step = 1e-4;  // s; below, rounding errors dominate
 
 struct Knots {
   std::vector<double> widths;  // s

@@ -156,7 +156,7 @@ std::optional<LimitViolation> first_violation(const Motion & motion, const Limit
 std::string describe(const LimitViolation & excess, std::size_t waypoint)
 {
   if (excess.quantity == Quantity::path_speed) {
-    return fmt::format("speed along the path is {:.6g} of what is allowed at {:.4f} s (after waypoint {})",
+    return fmt::format("speed along the path is {:.6g} times its limit at {:.4f} s (after waypoint {})",
                        excess.value, excess.time, waypoint);
   }
   static constexpr std::array names{"position", "velocity", "acceleration", "jerk"};
