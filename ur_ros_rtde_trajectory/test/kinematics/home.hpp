@@ -4,7 +4,7 @@
 
 namespace ur_ros_rtde::kinematics {
 
-/// rad; where no joint makes the arm singular.
+/// Joint positions in rad, far from singularities.
 inline Joints home()
 {
   Joints q;

@@ -24,9 +24,9 @@ Pose tool()
   return to_pose({0.02, -0.03, 0.15, 0.1, 0.4, -0.2});
 }
 
-TEST(AnArm, is_where_its_lengths_say)
+TEST(ArmTest, ForwardKinematicsMatchDhParameters)
 {
-  // Stretched out along -x at the height of the shoulder; the wrist's offsets by their published lengths.
+  // Stretched out along -x at the height of the shoulder.
   const DhParameters ur5e{0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996};
   const Pose pose = Arm(ur5e).forward(Joints::Zero());
   EXPECT_NEAR(pose.translation().x(), -0.8172, 1e-12);
@@ -34,7 +34,7 @@ TEST(AnArm, is_where_its_lengths_say)
   EXPECT_NEAR(pose.translation().z(), 0.1625 - 0.0997, 1e-12);
 }
 
-TEST(AnArm, has_the_jacobian_of_its_forward_kinematics)
+TEST(ArmTest, JacobianMatchesFiniteDifferences)
 {
   std::mt19937 random(1);
   for (const DhParameters & lengths : nominal_dh_parameters()) {
@@ -52,7 +52,7 @@ TEST(AnArm, has_the_jacobian_of_its_forward_kinematics)
   }
 }
 
-TEST(AnArm, finds_back_to_the_joints_that_it_came_from)
+TEST(ArmTest, InverseKinematicsRecoverTheJointPositions)
 {
   std::mt19937 random(2);
   int found = 0;
@@ -71,7 +71,7 @@ TEST(AnArm, finds_back_to_the_joints_that_it_came_from)
   EXPECT_GT(found, 200);
 }
 
-TEST(AnArm, knows_what_is_out_of_reach)
+TEST(ArmTest, InverseKinematicsFailOutOfReach)
 {
   const Arm arm(nominal_dh_parameters()[4]);
   Pose far = arm.forward(home());
@@ -79,7 +79,7 @@ TEST(AnArm, knows_what_is_out_of_reach)
   EXPECT_FALSE(arm.inverse(far, home()));
 }
 
-TEST(AnArm, is_recognised_by_where_its_tool_is)
+TEST(IdentifyArmTest, FindsEveryModelByItsTcpPose)
 {
   for (const DhParameters & lengths : nominal_dh_parameters()) {
     const Arm arm(lengths, tool());
@@ -89,7 +89,7 @@ TEST(AnArm, is_recognised_by_where_its_tool_is)
   }
 }
 
-TEST(AnArm, is_recognised_in_spite_of_its_calibration)
+TEST(IdentifyArmTest, ToleratesCalibration)
 {
   const DhParameters calibrated{0.1809, -0.6121, -0.5722, 0.1738, 0.1201, 0.1164};
   const auto identified = identify_arm(home(), Arm(calibrated, tool()).forward(home()), tool());
@@ -98,7 +98,7 @@ TEST(AnArm, is_recognised_in_spite_of_its_calibration)
   EXPECT_LT(difference(identified->forward(home()), published.forward(home())).norm(), 1e-9);
 }
 
-TEST(AnArm, of_an_unknown_model_or_with_another_tool_is_refused)
+TEST(IdentifyArmTest, RejectsUnknownModel)
 {
   const DhParameters stranger{0.3, -0.5, -0.45, 0.2, 0.1, 0.1};
   const auto refused = identify_arm(home(), Arm(stranger).forward(home()), Pose::Identity());
@@ -107,7 +107,7 @@ TEST(AnArm, of_an_unknown_model_or_with_another_tool_is_refused)
   EXPECT_NE(refused.error().message.find("mm"), std::string::npos);
 }
 
-TEST(APose, comes_back_from_its_rotation_vector)
+TEST(PoseTest, ConvertsToRotationVectorAndBack)
 {
   const Vector6 pose{0.3, -0.2, 0.5, 1.2, -0.8, 2.1};
   const Vector6 back = to_ur(to_pose(pose));

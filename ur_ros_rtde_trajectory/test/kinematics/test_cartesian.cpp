@@ -23,7 +23,7 @@ trajectory::Limits limits()
   return result;
 }
 
-/// Moves of the TCP from where the arm is at home.
+/// Poses of the TCP, from the home position on, each displaced by a step.
 std::vector<Pose> poses_along(const Arm & arm, const std::vector<Twist> & steps)
 {
   std::vector<Pose> poses{arm.forward(home())};
@@ -57,7 +57,7 @@ double distance_to_line(const Pose & pose, const Pose & from, const Pose & to)
   return (offset - offset.dot(along) * along).norm();
 }
 
-/// Largest speeds of the TCP, by differences.
+/// Largest linear and rotation speed of the TCP, by finite differences.
 std::pair<double, double> max_speeds(const Arm & arm, const trajectory::Trajectory & plan)
 {
   constexpr double h = 1e-3;
@@ -71,7 +71,7 @@ std::pair<double, double> max_speeds(const Arm & arm, const trajectory::Trajecto
   return top;
 }
 
-TEST(ACartesianPlan, goes_straight_at_its_speed)
+TEST(CartesianPlanTest, FollowsStraightLineAtItsSpeed)
 {
   const Arm arm(ur10e);
   const auto poses = poses_along(arm, {step(0.0, 0.0, -0.4)});
@@ -87,7 +87,7 @@ TEST(ACartesianPlan, goes_straight_at_its_speed)
   EXPECT_LT(turn, 0.02);
 }
 
-TEST(ACartesianPlan, keeps_the_limits_of_the_joints_where_the_speed_is_beyond_them)
+TEST(CartesianPlanTest, KeepsJointLimitsAtExcessiveTcpSpeed)
 {
   const Arm arm(ur10e);
   const auto poses = poses_along(arm, {step(0.0, 0.5, -0.3), step(-0.2, 0.0, 0.2)});
@@ -99,7 +99,7 @@ TEST(ACartesianPlan, keeps_the_limits_of_the_joints_where_the_speed_is_beyond_th
   EXPECT_GT(std::max({use->velocity, use->acceleration, use->jerk}), 0.99);
 }
 
-TEST(ACartesianPlan, turns_no_faster_than_it_may)
+TEST(CartesianPlanTest, KeepsTheRotationSpeed)
 {
   const Arm arm(ur10e);
   const auto poses = poses_along(arm, {step(0.0, 0.0, 0.0, 1.0), step(0.02, 0.0, 0.0, -0.5)});
@@ -111,7 +111,7 @@ TEST(ACartesianPlan, turns_no_faster_than_it_may)
   EXPECT_LT(speed, 0.25);
 }
 
-TEST(ACartesianPlan, stops_at_corners_and_does_not_when_it_may_go_round_them)
+TEST(CartesianPlanTest, StopsAtCornersUnlessBlended)
 {
   const Arm arm(ur10e);
   const auto poses = poses_along(arm, {step(0.0, 0.2, 0.0), step(0.0, 0.0, -0.2)});
@@ -131,7 +131,7 @@ TEST(ACartesianPlan, stops_at_corners_and_does_not_when_it_may_go_round_them)
   EXPECT_GT(nearest, 0.02);
 }
 
-TEST(ACartesianPlan, of_poses_that_repeat_stays)
+TEST(CartesianPlanTest, RepeatedPosesYieldZeroDuration)
 {
   const Arm arm(ur10e);
   const auto poses = poses_along(arm, {step(0, 0, 0), step(0, 0, 0)});
@@ -141,8 +141,8 @@ TEST(ACartesianPlan, of_poses_that_repeat_stays)
   EXPECT_EQ(plan->waypoint_count(), 3U);
 }
 
-// The controller knows this arm's calibration; we know the published lengths.
-TEST(ACartesianPlan, meets_the_poses_of_a_calibrated_arm)
+// The controller knows the calibration of the arm, the planner knows the nominal parameters.
+TEST(CartesianPlanTest, ReachesThePosesOfCalibratedArm)
 {
   const Arm real({0.1809, -0.6121, -0.5722, 0.1738, 0.1201, 0.1164});
   const Arm published(ur10e);
@@ -164,9 +164,9 @@ struct Obstruction {
   const char * message;
 };
 
-class OnTheWay : public testing::TestWithParam<Obstruction> {};
+class UnreachablePathTest : public testing::TestWithParam<Obstruction> {};
 
-TEST_P(OnTheWay, is_what_it_is_refused_for)
+TEST_P(UnreachablePathTest, IsRejectedWithTheReason)
 {
   const Arm arm(ur10e);
   const auto poses = poses_along(arm, {step(0.0, 0.0, 0.01), GetParam().step});
@@ -177,13 +177,13 @@ TEST_P(OnTheWay, is_what_it_is_refused_for)
   EXPECT_NE(plan.error().message.find("poses[1]"), std::string::npos) << plan.error().message;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Each, OnTheWay,
-    testing::Values(Obstruction{"the_end_of_the_arm", step(-1.2, 0.0, 0.0), "elbow_joint"},
-                    Obstruction{"the_axis_of_the_base", step(0.7, 0.3, 0.0), "shoulder_pan_joint"}),
-    [](const auto & hindrance) { return hindrance.param.name; });
+INSTANTIATE_TEST_SUITE_P(Each, UnreachablePathTest,
+                         testing::Values(Obstruction{"ArmStretchedOut", step(-1.2, 0.0, 0.0), "elbow_joint"},
+                                         Obstruction{"NearBaseAxis", step(0.7, 0.3, 0.0),
+                                                     "shoulder_pan_joint"}),
+                         [](const auto & hindrance) { return hindrance.param.name; });
 
-TEST(ATcpPath, is_continuous_in_position_and_direction_round_its_corners)
+TEST(TcpPathTest, IsContinuousInPositionAndDirectionAtCorners)
 {
   const Arm arm(ur10e);
   const auto poses =

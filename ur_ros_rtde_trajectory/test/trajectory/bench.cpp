@@ -1,6 +1,6 @@
-// The full proof of the trajectory room: trajectory_bench [PATHS=10000] [FIRST=0]
-// Prints how many random paths were planned, the largest use of each limit by finite differences at 10 kHz,
-// the largest miss of a waypoint beyond its tolerance, and planning times.
+// Verifies and measures the planner: trajectory_bench [PATHS=10000] [FIRST=0]. Prints how many random paths
+// were planned, the largest utilization of each limit by finite differences at 10 kHz, the largest distance
+// to a waypoint beyond its tolerance, and planning times.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +16,7 @@ using namespace ur_ros_rtde::trajectory;
 
 namespace {
 
-/// Of this thread. ms
+/// CPU time of this thread in ms.
 double processor_time()
 {
   timespec now{};
@@ -63,7 +63,7 @@ void check_random_path(unsigned seed, bool jerk, Totals & totals)
   totals.use.acceleration = std::max(totals.use.acceleration, use.acceleration);
   totals.use.jerk = std::max(totals.use.jerk, use.jerk);
   totals.miss = std::max(totals.miss, miss);
-  totals.end_speed = std::max(totals.end_speed, test::motion_at_ends(*plan));
+  totals.end_speed = std::max(totals.end_speed, test::speed_at_ends(*plan));
   if (std::max({use.velocity, use.acceleration, use.jerk}) > 1.0 || miss > 1e-8) {
     ++totals.beyond;
     std::printf("seed %u (%s): use %.5f %.5f %.5f, miss %.3g\n", seed, path.kind.c_str(), use.velocity,
@@ -117,7 +117,7 @@ void planning_time(const char * what, const std::vector<Joints> & waypoints, con
               duration);
 }
 
-// Stops from 200 moments of random plans.
+// Measures stops from 200 moments of random plans.
 void stops()
 {
   std::vector<double> ms;

@@ -43,7 +43,7 @@ double max_waypoint_deviation(const Trajectory & trajectory, const std::vector<J
   return worst;
 }
 
-double motion_at_ends(const Trajectory & trajectory)
+double speed_at_ends(const Trajectory & trajectory)
 {
   const double inside = 1e-9;
   return std::max(trajectory.sample(inside).velocity.abs().maxCoeff(),

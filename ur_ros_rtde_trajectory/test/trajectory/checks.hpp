@@ -4,16 +4,16 @@
 
 namespace ur_ros_rtde::trajectory::test {
 
-/// Largest uses of the limits by finite differences of the sampled *positions*, without what rounding can do
-/// to them.
+/// Largest utilization of the limits by finite differences of the sampled *positions*, minus the possible
+/// rounding errors.
 Utilization finite_difference_utilization(const Trajectory & trajectory, const Limits & limits,
                                           double rate = 10000.0);
 
-/// Largest distance of a waypoint from the trajectory at the time of that waypoint, in the joint that
-/// deviates most. rad
+/// Largest distance in rad of a waypoint from the trajectory at the time of that waypoint, in the joint that
+/// deviates most.
 double max_waypoint_deviation(const Trajectory & trajectory, const std::vector<Joints> & waypoints);
 
-/// Largest speed (rad/s) and acceleration (rad/s^2) just inside both ends.
-double motion_at_ends(const Trajectory & trajectory);
+/// Largest joint speed in rad/s just inside both ends.
+double speed_at_ends(const Trajectory & trajectory);
 
 }  // namespace ur_ros_rtde::trajectory::test

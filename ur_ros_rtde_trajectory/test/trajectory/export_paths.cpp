@@ -1,5 +1,5 @@
-// Writes random paths and their timing for the oracle (oracle.py): trajectory_export FILE FIRST COUNT
-// JERK(0|1) STEP
+// Writes random paths and their timing for the independent solvers (oracle.py): trajectory_export FILE FIRST
+// COUNT JERK(0|1) STEP
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -28,9 +28,9 @@ class Writer {
   std::ofstream file_;
 };
 
-// Times of the stations of one block: the borders of the path's pieces, two in each of our own intervals in a
-// blend (an oracle that does not look there exceeds the limits), and others at most `step` apart; at least
-// 300, or 40 on a line.
+// Times of the stations of one segment: the boundaries of the pieces of the path, two in each interval of the
+// timing law in a blend (otherwise the independent solver exceeds the limits there), and others at most
+// `step` apart; at least 300, or 40 on a line.
 std::vector<double> station_times(const Motion & motion, std::size_t first, std::size_t last, double step)
 {
   std::vector<double> times{motion.timing[first].start};

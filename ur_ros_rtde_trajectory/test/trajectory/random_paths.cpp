@@ -32,7 +32,7 @@ std::vector<Joints> jumps(Random & random, int count)
   return points;
 }
 
-// Harmonics of different frequency in each joint, sampled as motion planners do.
+// Harmonics of a different frequency in each joint, sampled as densely as motion planners do.
 std::vector<Joints> curve(Random & random, int count)
 {
   const Joints size = joints_between(random, 0.1, 1.2);

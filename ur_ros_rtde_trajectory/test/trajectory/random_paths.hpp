@@ -14,12 +14,12 @@ struct RandomPath {
   PathOptions options;
 };
 
-/// 2 to 200 waypoints: jumps across the workspace, a planner's densely sampled smooth curve, a walk of small
-/// steps of different lengths, or lines with repeated and reversed waypoints; with and without blending. The
-/// same for the same seed.
+/// 2 to 200 waypoints, deterministic for each seed: jumps across the workspace, the densely sampled smooth
+/// curve of a planner, a walk of small steps of different lengths, or lines with repeated and reversed
+/// waypoints; with and without blending.
 RandomPath random_path(unsigned seed);
 
-/// Velocities of the UR models in turn; accelerations and jerks different in every joint.
+/// Velocities of the UR models in turn; different accelerations and jerks in every joint.
 Limits random_limits(unsigned seed, bool with_jerk);
 
 }  // namespace ur_ros_rtde::trajectory::test

@@ -31,12 +31,12 @@ struct Request {
 struct InvalidRequest {
   const char * name;
   void (*modify)(Request &);
-  const char * part_of_message;
+  const char * message_part;
 };
 
 class InvalidRequestTest : public testing::TestWithParam<InvalidRequest> {};
 
-TEST_P(InvalidRequestTest, is_refused_with_field_value_and_limit)
+TEST_P(InvalidRequestTest, IsRejectedWithFieldValueAndLimit)
 {
   Request request;
   ASSERT_TRUE(request.plan());
@@ -44,7 +44,7 @@ TEST_P(InvalidRequestTest, is_refused_with_field_value_and_limit)
   const auto plan = request.plan();
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
-  EXPECT_NE(plan.error().message.find(GetParam().part_of_message), std::string::npos) << plan.error().message;
+  EXPECT_NE(plan.error().message.find(GetParam().message_part), std::string::npos) << plan.error().message;
 }
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -52,48 +52,47 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 INSTANTIATE_TEST_SUITE_P(
     Each, InvalidRequestTest,
     testing::Values(
-        InvalidRequest{"no_waypoint", [](Request & r) { r.waypoints.clear(); }, "waypoints is empty"},
-        InvalidRequest{"too_many_waypoints", [](Request & r) { r.waypoints.resize(10001, r.waypoints[0]); },
+        InvalidRequest{"NoWaypoint", [](Request & r) { r.waypoints.clear(); }, "waypoints is empty"},
+        InvalidRequest{"TooManyWaypoints", [](Request & r) { r.waypoints.resize(10001, r.waypoints[0]); },
                        "has 10001 entries"},
-        InvalidRequest{"five_joints", [](Request & r) { r.waypoints[1].pop_back(); },
+        InvalidRequest{"FiveJoints", [](Request & r) { r.waypoints[1].pop_back(); },
                        "waypoint 1 has 5 values"},
-        InvalidRequest{"no_joints", [](Request & r) { r.waypoints[2].clear(); }, "waypoint 2 has 0 values"},
-        InvalidRequest{"seven_joints", [](Request & r) { r.waypoints[0].push_back(0.0); },
+        InvalidRequest{"NoJoints", [](Request & r) { r.waypoints[2].clear(); }, "waypoint 2 has 0 values"},
+        InvalidRequest{"SevenJoints", [](Request & r) { r.waypoints[0].push_back(0.0); },
                        "waypoint 0 has 7 values"},
-        InvalidRequest{"position_nan", [](Request & r) { r.waypoints[1][2] = not_a_number; },
+        InvalidRequest{"PositionNan", [](Request & r) { r.waypoints[1][2] = not_a_number; },
                        "waypoint 1 of elbow_joint is nan"},
-        InvalidRequest{"position_infinite", [](Request & r) { r.waypoints[1][2] = -INFINITY; },
+        InvalidRequest{"PositionInfinite", [](Request & r) { r.waypoints[1][2] = -INFINITY; },
                        "elbow_joint is -inf"},
         InvalidRequest{
             "position_beyond_limit", [](Request & r) { r.waypoints[2][4] = 6.5; },
             "waypoint 2: position of wrist_2_joint is 6.5 rad, outside its limits -6.3 to 6.3 rad"},
-        InvalidRequest{"velocity_limit_zero", [](Request & r) { r.limits.velocity[1] = 0.0; },
+        InvalidRequest{"VelocityLimitZero", [](Request & r) { r.limits.velocity[1] = 0.0; },
                        "velocity limit of shoulder_lift_joint is 0"},
-        InvalidRequest{"velocity_limit_infinite", [](Request & r) { r.limits.velocity[1] = INFINITY; },
+        InvalidRequest{"VelocityLimitInfinite", [](Request & r) { r.limits.velocity[1] = INFINITY; },
                        "velocity limit"},
-        InvalidRequest{"acceleration_limit_negative", [](Request & r) { r.limits.acceleration[0] = -1.0; },
+        InvalidRequest{"AccelerationLimitNegative", [](Request & r) { r.limits.acceleration[0] = -1.0; },
                        "acceleration limit of shoulder_pan_joint is -1"},
-        InvalidRequest{"jerk_limit_nan", [](Request & r) { r.limits.jerk[5] = not_a_number; },
+        InvalidRequest{"JerkLimitNan", [](Request & r) { r.limits.jerk[5] = not_a_number; },
                        "jerk limit of wrist_3_joint is nan"},
-        InvalidRequest{"jerk_limit_zero", [](Request & r) { r.limits.jerk[5] = 0.0; },
+        InvalidRequest{"JerkLimitZero", [](Request & r) { r.limits.jerk[5] = 0.0; },
                        "jerk limit of wrist_3_joint is 0"},
-        InvalidRequest{"position_limits_crossed", [](Request & r) { r.limits.position_min[3] = 7.0; },
+        InvalidRequest{"PositionLimitsCrossed", [](Request & r) { r.limits.position_min[3] = 7.0; },
                        "position limits of wrist_1_joint"},
-        InvalidRequest{"tolerance_negative", [](Request & r) { r.options.blend_tolerance = -0.1; },
+        InvalidRequest{"ToleranceNegative", [](Request & r) { r.options.blend_tolerance = -0.1; },
                        "blend_tolerance is -0.1"},
-        InvalidRequest{"tolerance_nan", [](Request & r) { r.options.blend_tolerance = not_a_number; },
+        InvalidRequest{"ToleranceNan", [](Request & r) { r.options.blend_tolerance = not_a_number; },
                        "blend_tolerance is nan"},
-        InvalidRequest{"corner_angle_too_large", [](Request & r) { r.options.corner_angle = 4.0; },
+        InvalidRequest{"CornerAngleTooLarge", [](Request & r) { r.options.corner_angle = 4.0; },
                        "corner_angle is 4"},
-        InvalidRequest{"speed_zero", [](Request & r) { r.options.speed_fraction = 0.0; },
+        InvalidRequest{"SpeedZero", [](Request & r) { r.options.speed_fraction = 0.0; },
                        "speed_fraction is 0"},
-        InvalidRequest{"speed_above_one", [](Request & r) { r.options.speed_fraction = 1.5; },
+        InvalidRequest{"SpeedAboveOne", [](Request & r) { r.options.speed_fraction = 1.5; },
                        "speed_fraction is 1.5"}),
     [](const auto & bad) { return bad.param.name; });
 
-// Anything may come in: the answer is a verified trajectory or a refusal, never a crash, a hang or a wrong
-// plan.
-TEST(Fuzz, whatever_comes_in_ends_in_a_verified_plan_or_a_reason)
+// Any input results in a verified trajectory or an error; never in a crash, a hang or an invalid plan.
+TEST(PlanFuzzTest, YieldsVerifiedPlanOrError)
 {
   std::mt19937 random(4711);
   const double strange[]{0.0,  -0.0, 1e-300, 1e-12, 1e-9,  1e-6,         1e-3,     0.1,       1.0,

@@ -27,9 +27,9 @@ Joints only(int joint, double value)
   return q;
 }
 
-class RandomPaths : public testing::TestWithParam<bool> {};
+class RandomPathsTest : public testing::TestWithParam<bool> {};
 
-TEST_P(RandomPaths, keep_all_limits_and_pass_all_waypoints)
+TEST_P(RandomPathsTest, KeepsAllLimitsAndPassesAllWaypoints)
 {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const RandomPath path = random_path(seed);
@@ -42,29 +42,29 @@ TEST_P(RandomPaths, keep_all_limits_and_pass_all_waypoints)
     EXPECT_LE(use.jerk, 1.0) << "seed " << seed;
     EXPECT_LE(max_waypoint_deviation(*plan, path.waypoints), path.options.blend_tolerance + 1e-8)
         << "seed " << seed;
-    EXPECT_LT(motion_at_ends(*plan), 1e-6) << "seed " << seed;
+    EXPECT_LT(speed_at_ends(*plan), 1e-6) << "seed " << seed;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(JerkLimits, RandomPaths, testing::Bool(),
-                         [](const auto & with) { return with.param ? "with" : "without"; });
+INSTANTIATE_TEST_SUITE_P(JerkLimits, RandomPathsTest, testing::Bool(),
+                         [](const auto & with) { return with.param ? "With" : "Without"; });
 
-TEST(StraightLine, takes_the_textbook_time_of_seven_phases)
+TEST(StraightLineTest, TakesTheTimeOfTheSevenPhaseProfile)
 {
-  // All phases: v = 1, a = 2, j = 10, distance 2: accelerate in v/a + a/j, then cruise.
+  // Seven phases with v = 1, a = 2, j = 10 and distance 2: acceleration takes v/a + a/j.
   const auto plan = plan_path(std::vector<Joints>{only(2, 0.0), only(2, 2.0)}, same_limits(1.0, 2.0, 10.0));
   ASSERT_TRUE(plan);
   EXPECT_NEAR(plan->duration(), 2.0 / 1.0 + 1.0 / 2.0 + 2.0 / 10.0, 1e-3);
 }
 
-TEST(StraightLine, takes_the_textbook_time_when_only_jerk_matters)
+TEST(StraightLineTest, TakesTheClosedFormTimeWhenOnlyJerkLimits)
 {
   const auto plan = plan_path(std::vector<Joints>{only(0, 0.0), only(0, 0.002)}, same_limits(1.0, 2.0, 10.0));
   ASSERT_TRUE(plan);
   EXPECT_NEAR(plan->duration(), 4.0 * std::cbrt(0.002 / (2.0 * 10.0)), 1e-4);
 }
 
-TEST(StraightLine, takes_the_textbook_time_without_jerk_limits)
+TEST(StraightLineTest, TakesTheClosedFormTimeWithoutJerkLimits)
 {
   const auto plan =
       plan_path(std::vector<Joints>{only(5, 1.0), only(5, -1.0)}, same_limits(10.0, 2.0, unlimited));
@@ -72,7 +72,7 @@ TEST(StraightLine, takes_the_textbook_time_without_jerk_limits)
   EXPECT_NEAR(plan->duration(), 2.0 * std::sqrt(2.0 / 2.0), 1e-3);
 }
 
-TEST(StraightLine, is_not_interrupted_by_waypoints_on_it)
+TEST(StraightLineTest, IsNotInterruptedByCollinearWaypoints)
 {
   std::vector<Joints> waypoints;
   for (const double x : {0.0, 0.1, 0.1, 0.5, 0.500001, 2.0}) {
@@ -85,7 +85,7 @@ TEST(StraightLine, is_not_interrupted_by_waypoints_on_it)
   EXPECT_NEAR(all->duration(), ends->duration(), 1e-9);
 }
 
-TEST(Corner, is_passed_exactly_and_at_rest_without_tolerance)
+TEST(CornerTest, IsPassedExactlyAndAtRestWithoutTolerance)
 {
   const std::vector<Joints> waypoints{Joints::Zero(), only(0, 1.0), only(0, 1.0) + only(1, 1.0)};
   const auto plan = plan_path(waypoints, same_limits(1.0, 2.0, 20.0));
@@ -95,7 +95,7 @@ TEST(Corner, is_passed_exactly_and_at_rest_without_tolerance)
   EXPECT_LT(corner.velocity.abs().maxCoeff(), 1e-6);
 }
 
-TEST(Corner, is_blended_within_its_tolerance_and_faster)
+TEST(CornerTest, IsBlendedWithinToleranceInLessTime)
 {
   const std::vector<Joints> waypoints{Joints::Zero(), only(0, 1.0), only(0, 1.0) + only(1, 1.0)};
   const Limits limits = same_limits(1.0, 2.0, 20.0);
@@ -108,7 +108,7 @@ TEST(Corner, is_blended_within_its_tolerance_and_faster)
   EXPECT_LT(blended->duration(), 0.9 * exact->duration());
 }
 
-TEST(SmoothCurve, is_passed_without_a_stop)
+TEST(SmoothCurveTest, IsPassedWithoutStopping)
 {
   std::vector<Joints> waypoints;
   for (int i = 0; i <= 40; ++i) {
@@ -122,7 +122,7 @@ TEST(SmoothCurve, is_passed_without_a_stop)
   EXPECT_LT(max_waypoint_deviation(*plan, waypoints), 1e-9);
 }
 
-TEST(OneWaypoint, is_a_trajectory_that_stays)
+TEST(SingleWaypointTest, YieldsTrajectoryOfZeroDuration)
 {
   for (const std::size_t repetitions : {1U, 3U}) {
     const auto plan = plan_path(std::vector<Joints>(repetitions, only(3, 0.5)), same_limits(1.0, 2.0, 10.0));
@@ -134,7 +134,7 @@ TEST(OneWaypoint, is_a_trajectory_that_stays)
   }
 }
 
-TEST(SpeedFraction, makes_the_same_motion_slower)
+TEST(SpeedFractionTest, ScalesTheSameMotion)
 {
   const RandomPath path = random_path(9);
   const Limits limits = random_limits(9, true);
@@ -149,7 +149,7 @@ TEST(SpeedFraction, makes_the_same_motion_slower)
   EXPECT_LT((fast.acceleration - 4.0 * slow.acceleration).abs().maxCoeff(), 1e-6);
 }
 
-TEST(Progress, counts_waypoints_and_never_goes_back)
+TEST(ProgressTest, IncreasesMonotonicallyUpToTheLastWaypoint)
 {
   const RandomPath path = random_path(7);
   const auto plan = plan_path(path.waypoints, random_limits(7, true), path.options);
@@ -166,7 +166,7 @@ TEST(Progress, counts_waypoints_and_never_goes_back)
   EXPECT_EQ(progress, 1.0);
 }
 
-TEST(Sample, agrees_with_its_own_derivatives)
+TEST(SampleTest, DerivativesMatchFiniteDifferences)
 {
   const RandomPath path = random_path(5);
   const auto plan = plan_path(path.waypoints, random_limits(5, true), path.options);
@@ -181,7 +181,7 @@ TEST(Sample, agrees_with_its_own_derivatives)
   }
 }
 
-TEST(ManyWaypoints, up_to_the_limit_can_be_planned)
+TEST(ManyWaypointsTest, PlansTheMaximumNumberOfWaypoints)
 {
   std::vector<Joints> waypoints;
   for (std::size_t i = 0; i < max_waypoints; ++i) {

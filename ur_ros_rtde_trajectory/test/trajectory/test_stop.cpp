@@ -9,7 +9,7 @@
 namespace ur_ros_rtde::trajectory::test {
 namespace {
 
-TEST(Stop, keeps_the_limits_and_the_path_from_any_moment)
+TEST(StopTest, KeepsLimitsFromAnyMoment)
 {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const RandomPath path = random_path(seed);
@@ -24,7 +24,7 @@ TEST(Stop, keeps_the_limits_and_the_path_from_any_moment)
       EXPECT_LT(stop.duration() - time, 2.0) << "seed " << seed << " part " << part;
       EXPECT_LT((stop.sample(0.99 * time).position - plan->sample(0.99 * time).position).abs().maxCoeff(),
                 1e-12);
-      EXPECT_LT(motion_at_ends(stop), 1e-5) << "seed " << seed << " part " << part;
+      EXPECT_LT(speed_at_ends(stop), 1e-5) << "seed " << seed << " part " << part;
       EXPECT_LE(stop.progress(stop.duration()), 1.0);
       const Utilization use = finite_difference_utilization(stop, limits);
       EXPECT_LE(use.velocity, 1.0) << "seed " << seed << " part " << part;
@@ -34,7 +34,7 @@ TEST(Stop, keeps_the_limits_and_the_path_from_any_moment)
   }
 }
 
-TEST(Stop, from_cruising_takes_hardly_longer_than_the_limits_demand)
+TEST(StopTest, FromConstantSpeedIsNearlyTimeOptimal)
 {
   Limits limits;
   limits.velocity.setConstant(1.0);
@@ -47,7 +47,7 @@ TEST(Stop, from_cruising_takes_hardly_longer_than_the_limits_demand)
   EXPECT_LT(stop.duration() - 2.0, 1.15 * shortest);
 }
 
-TEST(Stop, stays_on_the_path)
+TEST(StopTest, StaysOnThePath)
 {
   Limits limits;
   limits.velocity.setConstant(1.0);
@@ -68,7 +68,7 @@ TEST(Stop, stays_on_the_path)
   }
 }
 
-TEST(Stop, before_the_beginning_does_not_move)
+TEST(StopTest, DoesNotMoveBeforeTheStart)
 {
   Limits limits = random_limits(1, true);
   const auto plan = plan_path(random_path(1).waypoints, limits);
@@ -80,7 +80,7 @@ TEST(Stop, before_the_beginning_does_not_move)
   }
 }
 
-TEST(Stop, after_the_end_is_the_trajectory_itself)
+TEST(StopTest, AfterTheEndReturnsTheTrajectory)
 {
   Limits limits = random_limits(1, true);
   const auto plan = plan_path(random_path(1).waypoints, limits);

@@ -27,7 +27,7 @@ Trajectory line()
   return *plan_path(std::vector<Joints>{Joints::Zero(), Joints::Constant(5.0)}, test_limits());
 }
 
-TEST(TimeScalingTest, runs_with_the_controllers_clock)
+TEST(TimeScalingTest, FollowsTheControllerClock)
 {
   const Trajectory plan = line();
   TimeScaling clock(cycle, servo_lag, 1.0);
@@ -37,7 +37,7 @@ TEST(TimeScalingTest, runs_with_the_controllers_clock)
   EXPECT_NEAR(clock.time(), 2.0, 1e-9);
 }
 
-TEST(TimeScalingTest, loses_nothing_to_packages_that_come_in_pairs)
+TEST(TimeScalingTest, KeepsFullRateWhenPackagesArriveInPairs)
 {
   const Trajectory plan = line();
   TimeScaling clock(cycle, servo_lag, 1.0);
@@ -47,7 +47,7 @@ TEST(TimeScalingTest, loses_nothing_to_packages_that_come_in_pairs)
   EXPECT_NEAR(clock.time(), 2.0, 1e-9);
 }
 
-TEST(TimeScalingTest, of_a_late_host_skips_nothing_and_goes_on_slower_at_first)
+TEST(TimeScalingTest, ContinuesSlowerWithoutSkippingAfterDelay)
 {
   const Trajectory plan = line();
   TimeScaling clock(cycle, servo_lag, 1.0, 1.0);
@@ -63,8 +63,8 @@ TEST(TimeScalingTest, of_a_late_host_skips_nothing_and_goes_on_slower_at_first)
   EXPECT_EQ(clock.rate(), 1.0);
 }
 
-// On a machine that does other things, too: every 40 ms nothing for 20 ms.
-TEST(TimeScalingTest, gets_on_though_the_host_is_late_again_and_again)
+// Simulates a loaded host: every 40 ms, no setpoint for 20 ms.
+TEST(TimeScalingTest, MakesProgressDespiteRepeatedDelays)
 {
   const Trajectory plan = line();
   TimeScaling clock(cycle, servo_lag, 1.0);
@@ -79,7 +79,7 @@ TEST(TimeScalingTest, gets_on_though_the_host_is_late_again_and_again)
   EXPECT_LT(elapsed, 8.0 * plan.duration());
 }
 
-TEST(TimeScalingTest, begins_anew_from_standstill_after_a_long_silence)
+TEST(TimeScalingTest, RestartsFromStandstillAfterLongDelay)
 {
   const Trajectory plan = line();
   TimeScaling clock(cycle, servo_lag, 1.0, 1.0);
@@ -88,7 +88,7 @@ TEST(TimeScalingTest, begins_anew_from_standstill_after_a_long_silence)
   EXPECT_LT(clock.rate(), 0.05);
 }
 
-TEST(TimeScalingTest, never_runs_backward_or_faster_than_the_plan_whatever_the_packages_say)
+TEST(TimeScalingTest, NeverRunsBackwardOrFasterThanThePlan)
 {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> between(-0.02, 0.2);
@@ -105,7 +105,7 @@ TEST(TimeScalingTest, never_runs_backward_or_faster_than_the_plan_whatever_the_p
   }
 }
 
-// Differences of what is sent, at the controller's rate.
+// Largest accelerations of the setpoints, by finite differences at the rate of the controller.
 Joints largest_acceleration(const Trajectory & plan, const Limits & bounds, double later_target_rate)
 {
   TimeScaling clock(cycle, servo_lag, 1.0);
@@ -124,7 +124,7 @@ Joints largest_acceleration(const Trajectory & plan, const Limits & bounds, doub
   return largest;
 }
 
-TEST(TimeScalingTest, changes_the_speed_smoothly)
+TEST(TimeScalingTest, ChangesTheRateSmoothly)
 {
   for (unsigned seed = 0; seed < 12; ++seed) {
     const RandomPath path = random_path(seed);
@@ -132,13 +132,13 @@ TEST(TimeScalingTest, changes_the_speed_smoothly)
     const auto plan = plan_path(path.waypoints, bounds, path.options);
     ASSERT_TRUE(plan) << plan.error().message;
     const Joints largest = largest_acceleration(*plan, bounds, 0.3);
-    // Where the plan uses all there is, changing the rate takes 2 /s of the velocity beside it.
+    // Where the plan uses the limits completely, a change of the rate adds 2 /s times the velocity.
     const Joints allowed = bounds.acceleration * 1.05 + bounds.velocity * 2.2;
     EXPECT_TRUE((largest <= allowed).all()) << "seed " << seed << ": " << (largest / allowed).maxCoeff();
   }
 }
 
-TEST(TimeScalingTest, stands_while_the_speed_is_zero)
+TEST(TimeScalingTest, StandsStillAtZeroRate)
 {
   const Trajectory plan = line();
   TimeScaling clock(cycle, servo_lag, 1.0, 1.0);

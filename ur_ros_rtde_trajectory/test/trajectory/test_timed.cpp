@@ -46,9 +46,9 @@ TimedWaypoints samples(int order)
   return waypoints;
 }
 
-class TimedTrajectory : public testing::TestWithParam<int> {};
+class TimedTrajectoryTest : public testing::TestWithParam<int> {};
 
-TEST_P(TimedTrajectory, is_at_each_waypoint_at_its_time_and_near_the_sampled_motion_between)
+TEST_P(TimedTrajectoryTest, PassesWaypointsOnTimeAndApproximatesTheSampledMotion)
 {
   const TimedWaypoints waypoints = samples(GetParam());
   const auto plan = plan_timed(waypoints, limits());
@@ -71,7 +71,7 @@ TEST_P(TimedTrajectory, is_at_each_waypoint_at_its_time_and_near_the_sampled_mot
   }
 }
 
-TEST_P(TimedTrajectory, can_be_stopped_on_its_path)
+TEST_P(TimedTrajectoryTest, CanBeStoppedAlongItsPath)
 {
   const auto plan = plan_timed(samples(GetParam()), limits());
   ASSERT_TRUE(plan) << plan.error().message;
@@ -79,17 +79,17 @@ TEST_P(TimedTrajectory, can_be_stopped_on_its_path)
   EXPECT_LT(stop.duration(), plan->duration());
   EXPECT_GT(stop.duration(), 0.8);
   EXPECT_TRUE(stop.verify(limits())) << stop.verify(limits()).error().message;
-  EXPECT_LT(motion_at_ends(stop), 1e-5);
+  EXPECT_LT(speed_at_ends(stop), 1e-5);
 }
 
 std::string name_of_order(const testing::TestParamInfo<int> & order)
 {
-  return order.param == 0 ? "positions" : order.param == 1 ? "velocities" : "accelerations";
+  return order.param == 0 ? "Positions" : order.param == 1 ? "Velocities" : "Accelerations";
 }
 
-INSTANTIATE_TEST_SUITE_P(Given, TimedTrajectory, testing::Values(0, 1, 2), name_of_order);
+INSTANTIATE_TEST_SUITE_P(Given, TimedTrajectoryTest, testing::Values(0, 1, 2), name_of_order);
 
-TEST(TimedPositions, begin_and_end_without_acceleration)
+TEST(TimedPositionsTest, StartAndEndWithZeroAcceleration)
 {
   const auto plan = plan_timed(samples(0), limits());
   ASSERT_TRUE(plan);
@@ -101,7 +101,7 @@ TEST(TimedPositions, begin_and_end_without_acceleration)
   EXPECT_LE(use.jerk, 1.0);
 }
 
-TEST(TimedTrajectories, that_are_too_fast_are_refused_with_the_first_limit_they_exceed)
+TEST(PlanTimedTest, RejectsFirstExceededLimit)
 {
   TimedWaypoints waypoints = samples(2);
   for (double & time : waypoints.times) {
@@ -120,19 +120,19 @@ TEST(TimedTrajectories, that_are_too_fast_are_refused_with_the_first_limit_they_
 struct InvalidWaypoints {
   const char * name;
   void (*modify)(TimedWaypoints &);
-  const char * part_of_message;
+  const char * message_part;
 };
 
 class InvalidTimedWaypointsTest : public testing::TestWithParam<InvalidWaypoints> {};
 
-TEST_P(InvalidTimedWaypointsTest, are_refused_with_the_reason)
+TEST_P(InvalidTimedWaypointsTest, AreRejectedWithTheReason)
 {
   TimedWaypoints waypoints = samples(2);
   GetParam().modify(waypoints);
   const auto plan = plan_timed(waypoints, limits());
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
-  EXPECT_NE(plan.error().message.find(GetParam().part_of_message), std::string::npos) << plan.error().message;
+  EXPECT_NE(plan.error().message.find(GetParam().message_part), std::string::npos) << plan.error().message;
 }
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
@@ -140,36 +140,36 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 INSTANTIATE_TEST_SUITE_P(
     Each, InvalidTimedWaypointsTest,
     testing::Values(
-        InvalidWaypoints{"none", [](TimedWaypoints & w) { w = {}; }, "times is empty"},
-        InvalidWaypoints{"first_time_not_zero", [](TimedWaypoints & w) { w.times[0] = 0.05; },
+        InvalidWaypoints{"NoWaypoint", [](TimedWaypoints & w) { w = {}; }, "times is empty"},
+        InvalidWaypoints{"FirstTimeNotZero", [](TimedWaypoints & w) { w.times[0] = 0.05; },
                          "times[0] is 0.05"},
-        InvalidWaypoints{"times_equal", [](TimedWaypoints & w) { w.times[4] = w.times[3]; },
+        InvalidWaypoints{"TimesEqual", [](TimedWaypoints & w) { w.times[4] = w.times[3]; },
                          "times[4] is 0.7"},
-        InvalidWaypoints{"times_decreasing", [](TimedWaypoints & w) { w.times[4] = 0.1; }, "times[4] is 0.1"},
-        InvalidWaypoints{"time_nan", [](TimedWaypoints & w) { w.times[4] = nan_value; }, "times[4] is nan"},
-        InvalidWaypoints{"time_infinite", [](TimedWaypoints & w) { w.times.back() = INFINITY; },
+        InvalidWaypoints{"TimesDecreasing", [](TimedWaypoints & w) { w.times[4] = 0.1; }, "times[4] is 0.1"},
+        InvalidWaypoints{"TimeNan", [](TimedWaypoints & w) { w.times[4] = nan_value; }, "times[4] is nan"},
+        InvalidWaypoints{"TimeInfinite", [](TimedWaypoints & w) { w.times.back() = INFINITY; },
                          "times[9] is inf"},
-        InvalidWaypoints{"position_missing", [](TimedWaypoints & w) { w.positions.pop_back(); },
+        InvalidWaypoints{"PositionMissing", [](TimedWaypoints & w) { w.positions.pop_back(); },
                          "positions has 9 entries"},
-        InvalidWaypoints{"velocity_missing", [](TimedWaypoints & w) { w.velocities.pop_back(); },
+        InvalidWaypoints{"VelocityMissing", [](TimedWaypoints & w) { w.velocities.pop_back(); },
                          "velocities has 9 entries"},
-        InvalidWaypoints{"acceleration_missing", [](TimedWaypoints & w) { w.accelerations.pop_back(); },
+        InvalidWaypoints{"AccelerationMissing", [](TimedWaypoints & w) { w.accelerations.pop_back(); },
                          "accelerations has 9 entries"},
-        InvalidWaypoints{"five_joints", [](TimedWaypoints & w) { w.positions[2].pop_back(); },
+        InvalidWaypoints{"FiveJoints", [](TimedWaypoints & w) { w.positions[2].pop_back(); },
                          "positions[2] has 5 values"},
-        InvalidWaypoints{"seven_velocities", [](TimedWaypoints & w) { w.velocities[2].push_back(0); },
+        InvalidWaypoints{"SevenVelocities", [](TimedWaypoints & w) { w.velocities[2].push_back(0); },
                          "velocities[2] has 7 values"},
-        InvalidWaypoints{"position_nan", [](TimedWaypoints & w) { w.positions[3][1] = nan_value; },
+        InvalidWaypoints{"PositionNan", [](TimedWaypoints & w) { w.positions[3][1] = nan_value; },
                          "positions[3] of shoulder_lift_joint is nan"},
-        InvalidWaypoints{"velocity_at_the_end", [](TimedWaypoints & w) { w.velocities.back()[0] = 0.5; },
+        InvalidWaypoints{"VelocityAtTheEnd", [](TimedWaypoints & w) { w.velocities.back()[0] = 0.5; },
                          "the last of shoulder_pan_joint is 0.5"},
-        InvalidWaypoints{"accelerations_alone", [](TimedWaypoints & w) { w.velocities.clear(); },
+        InvalidWaypoints{"AccelerationsAlone", [](TimedWaypoints & w) { w.velocities.clear(); },
                          "accelerations are given without velocities"},
-        InvalidWaypoints{"beyond_position_limit", [](TimedWaypoints & w) { w.positions.back()[0] = 7.0; },
+        InvalidWaypoints{"BeyondPositionLimit", [](TimedWaypoints & w) { w.positions.back()[0] = 7.0; },
                          "of shoulder_pan_joint is"}),
     [](const auto & bad) { return bad.param.name; });
 
-TEST(TimedTrajectories, of_one_waypoint_stay)
+TEST(PlanTimedTest, SingleWaypointYieldsZeroDuration)
 {
   TimedWaypoints waypoints;
   waypoints.times = {0.0};
