@@ -28,6 +28,22 @@ PathPoint PathPiece::at(double u) const
   return {p, p1 * scale, p2 * (2.0 * scale * scale), p3 * (6.0 * scale * scale * scale)};
 }
 
+PathPiece cubic_piece(const Joints & from, const Joints & to, const Joints & from_slope,
+                      const Joints & to_slope, double length)
+{
+  PathPiece piece;
+  piece.length = length;
+  piece.degree = 3;
+  const Joints rise = to - from;
+  const Joints m0 = from_slope * length;
+  const Joints m1 = to_slope * length;
+  piece.c[0] = from;
+  piece.c[1] = m0;
+  piece.c[2] = 3.0 * rise - 2.0 * m0 - m1;
+  piece.c[3] = m0 + m1 - 2.0 * rise;
+  return piece;
+}
+
 std::size_t Path::piece_at(double s) const
 {
   const auto after =

@@ -31,6 +31,11 @@ struct PathPiece {
   PathPoint at(double u) const;
 };
 
+/// Cubic Hermite piece from `from` to `to`, with the given derivatives with respect to s at both ends. Its
+/// `start` is not set.
+PathPiece cubic_piece(const Joints & from, const Joints & to, const Joints & from_slope,
+                      const Joints & to_slope, double length);
+
 /// Curve q(s), 0 <= s <= length(), with approximately unit speed in s. Between two stops it is twice
 /// continuously differentiable with a bounded third derivative. At a stop, its direction may be
 /// discontinuous.

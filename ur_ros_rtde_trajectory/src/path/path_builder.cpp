@@ -135,7 +135,8 @@ class Builder {
     const auto slopes = natural_spline_slopes(points, widths);
     for (std::size_t i = first; i < last; ++i) {
       s_of_point_[i] = path_.length();
-      add_cubic(i, slopes[i - first], slopes[i - first + 1]);
+      add(cubic_piece(polyline_.points[i], polyline_.points[i + 1], slopes[i - first], slopes[i - first + 1],
+                      polyline_.length[i]));
     }
   }
 
@@ -148,21 +149,6 @@ class Builder {
       s_of_point_[i] = begin + ((polyline_.points[i] - polyline_.points[first]) * chord).sum() / length;
     }
     add_line(polyline_.points[first], chord / length, length);
-  }
-
-  void add_cubic(std::size_t i, const Joints & slope, const Joints & next_slope)
-  {
-    PathPiece piece;
-    piece.length = polyline_.length[i];
-    piece.degree = 3;
-    const Joints rise = polyline_.points[i + 1] - polyline_.points[i];
-    const Joints m0 = slope * piece.length;
-    const Joints m1 = next_slope * piece.length;
-    piece.c[0] = polyline_.points[i];
-    piece.c[1] = m0;
-    piece.c[2] = 3.0 * rise - 2.0 * m0 - m1;
-    piece.c[3] = m0 + m1 - 2.0 * rise;
-    add(piece);
   }
 
   // --- corners ---

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "trajectory/check_positions.hpp"
 #include "ur_ros_rtde_trajectory/default_speeds.hpp"
 
 namespace ur_ros_rtde::trajectory {
@@ -65,6 +66,19 @@ Status check(const Limits & limits)
     return status;
   }
   return check_range("jerk", limits.jerk, true);
+}
+
+Status check_positions(std::string_view field, const Joints & positions, const Limits & limits)
+{
+  for (int j = 0; j < joint_count; ++j) {
+    if (positions[j] < limits.position_min[j] || positions[j] > limits.position_max[j]) {
+      return failure(
+          ErrorCode::invalid_goal,
+          fmt::format("{} of {} is {:.6g} rad, outside its limits {:.6g} to {:.6g} rad", field, joint_name(j),
+                      positions[j], limits.position_min[j], limits.position_max[j]));
+    }
+  }
+  return {};
 }
 
 std::string_view joint_name(int joint)

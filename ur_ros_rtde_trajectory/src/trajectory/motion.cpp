@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "path/quintic_hermite.hpp"
+
 namespace ur_ros_rtde::trajectory {
 
 PathState TimingLawPiece::at(double time) const
@@ -52,14 +54,9 @@ void Motion::append(std::size_t path_piece, double span, const PathState & from,
   const double v1 = to.v * span;
   const double a0 = from.a * span * span;
   const double a1 = to.a * span * span;
-  const double x[6] = {from.u,
-                       v0,
-                       0.5 * a0,
-                       10 * rise - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1,
-                       -15 * rise + 8 * v0 + 7 * v1 + 1.5 * a0 - a1,
-                       6 * rise - 3 * (v0 + v1) - 0.5 * (a0 - a1)};
+  const auto x = quintic_hermite(from.u, rise, v0, v1, a0, a1);
   double scale = 1.0;
-  for (int k = 0; k < 6; ++k) {
+  for (std::size_t k = 0; k < x.size(); ++k) {
     piece.c[k] = x[k] * scale;
     scale /= span;
   }

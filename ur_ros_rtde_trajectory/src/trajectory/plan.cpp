@@ -7,6 +7,7 @@
 
 #include "path/path_builder.hpp"
 #include "timing/time_parameterization.hpp"
+#include "trajectory/check_positions.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
@@ -58,12 +59,10 @@ Status check_waypoints(const std::vector<Joints> & waypoints, const Limits & lim
             ErrorCode::invalid_goal,
             fmt::format("waypoint {}: position of {} is {}: give a finite number", i, joint_name(j), value));
       }
-      if (value < limits.position_min[j] || value > limits.position_max[j]) {
-        return failure(
-            ErrorCode::invalid_goal,
-            fmt::format("waypoint {}: position of {} is {:.6g} rad, outside its limits {:.6g} to {:.6g} rad",
-                        i, joint_name(j), value, limits.position_min[j], limits.position_max[j]));
-      }
+    }
+    if (auto status = check_positions(fmt::format("waypoint {}: position", i), waypoints[i], limits);
+        !status) {
+      return status;
     }
   }
   return {};

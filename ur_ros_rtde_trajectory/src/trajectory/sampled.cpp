@@ -36,18 +36,9 @@ void add_segment(Path & path, const SampledKnots & knots)
 {
   const auto slopes = natural_spline_slopes(knots.q, knots.width);
   for (std::size_t i = 0; i + 1 < knots.q.size(); ++i) {
-    PathPiece piece;
+    PathPiece piece = cubic_piece(knots.q[i], knots.q[i + 1], slopes[i], slopes[i + 1], knots.width[i]);
     piece.start = path.length();
-    piece.length = knots.width[i];
-    piece.degree = 3;
     piece.max_speed = knots.min_duration[i] > 0.0 ? knots.width[i] / knots.min_duration[i] : unlimited;
-    const Joints rise = knots.q[i + 1] - knots.q[i];
-    const Joints m0 = slopes[i] * piece.length;
-    const Joints m1 = slopes[i + 1] * piece.length;
-    piece.c[0] = knots.q[i];
-    piece.c[1] = m0;
-    piece.c[2] = 3.0 * rise - 2.0 * m0 - m1;
-    piece.c[3] = m0 + m1 - 2.0 * rise;
     path.pieces.push_back(piece);
   }
 }

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "path/quintic_hermite.hpp"
 #include "path/spline.hpp"
+#include "trajectory/check_positions.hpp"
 #include "trajectory/motion.hpp"
 
 namespace ur_ros_rtde::trajectory {
@@ -163,12 +166,8 @@ PathPiece quintic(const Knots & knots, std::size_t i, double start)
   const Joints v1 = knots.v[i + 1] * t;
   const Joints a0 = knots.a[i] * (t * t);
   const Joints a1 = knots.a[i + 1] * (t * t);
-  piece.c[0] = knots.q[i];
-  piece.c[1] = v0;
-  piece.c[2] = 0.5 * a0;
-  piece.c[3] = 10.0 * rise - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1;
-  piece.c[4] = -15.0 * rise + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1;
-  piece.c[5] = 6.0 * rise - 3.0 * (v0 + v1) - 0.5 * (a0 - a1);
+  const auto coefficients = quintic_hermite(knots.q[i], rise, v0, v1, a0, a1);
+  std::copy(coefficients.begin(), coefficients.end(), piece.c.begin());
   return piece;
 }
 
@@ -201,13 +200,8 @@ Status check_timed(const TimedWaypoints & waypoints, const Limits & limits)
     return tl::unexpected(knots.error());
   }
   for (std::size_t i = 0; i < knots->q.size(); ++i) {
-    for (int j = 0; j < joint_count; ++j) {
-      if (knots->q[i][j] < limits.position_min[j] || knots->q[i][j] > limits.position_max[j]) {
-        return failure(
-            ErrorCode::invalid_goal,
-            fmt::format("positions[{}] of {} is {:.6g} rad, outside its limits {:.6g} to {:.6g} rad", i,
-                        joint_name(j), knots->q[i][j], limits.position_min[j], limits.position_max[j]));
-      }
+    if (auto status = check_positions(fmt::format("positions[{}]", i), knots->q[i], limits); !status) {
+      return status;
     }
   }
   return {};

@@ -30,50 +30,50 @@ Trajectory line()
 TEST(TimeScalingTest, FollowsTheControllerClock)
 {
   const Trajectory plan = line();
-  TimeScaling clock(cycle, servo_lag, 1.0);
+  TimeScaling scaling(cycle, servo_lag, 1.0);
   for (int k = 0; k < 1000; ++k) {
-    clock.advance(cycle, 1.0, plan.sample(clock.time()), test_limits());
+    scaling.advance(cycle, 1.0, plan.sample(scaling.time()), test_limits());
   }
-  EXPECT_NEAR(clock.time(), 2.0, 1e-9);
+  EXPECT_NEAR(scaling.time(), 2.0, 1e-9);
 }
 
 TEST(TimeScalingTest, KeepsFullRateWhenPackagesArriveInPairs)
 {
   const Trajectory plan = line();
-  TimeScaling clock(cycle, servo_lag, 1.0);
+  TimeScaling scaling(cycle, servo_lag, 1.0);
   for (int k = 0; k < 500; ++k) {
-    clock.advance(2.0 * cycle, 1.0, plan.sample(clock.time()), test_limits());
+    scaling.advance(2.0 * cycle, 1.0, plan.sample(scaling.time()), test_limits());
   }
-  EXPECT_NEAR(clock.time(), 2.0, 1e-9);
+  EXPECT_NEAR(scaling.time(), 2.0, 1e-9);
 }
 
 TEST(TimeScalingTest, ContinuesSlowerWithoutSkippingAfterDelay)
 {
   const Trajectory plan = line();
-  TimeScaling clock(cycle, servo_lag, 1.0, 1.0);
-  clock.advance(0.054, 1.0, plan.sample(clock.time()), test_limits());
-  EXPECT_LE(clock.time() - 1.0, 2.0 * cycle + 1e-12);
-  EXPECT_NEAR(clock.rate(), 0.5, 0.03);
-  double before = clock.rate();
+  TimeScaling scaling(cycle, servo_lag, 1.0, 1.0);
+  scaling.advance(0.054, 1.0, plan.sample(scaling.time()), test_limits());
+  EXPECT_LE(scaling.time() - 1.0, 2.0 * cycle + 1e-12);
+  EXPECT_NEAR(scaling.rate(), 0.5, 0.03);
+  double before = scaling.rate();
   for (int k = 0; k < 500; ++k) {
-    clock.advance(cycle, 1.0, plan.sample(clock.time()), test_limits());
-    EXPECT_LE(std::abs(clock.rate() - before), 2.001 * cycle);  // 2 rad/s^2 at 1 rad/s
-    before = clock.rate();
+    scaling.advance(cycle, 1.0, plan.sample(scaling.time()), test_limits());
+    EXPECT_LE(std::abs(scaling.rate() - before), 2.001 * cycle);  // 2 rad/s^2 at 1 rad/s
+    before = scaling.rate();
   }
-  EXPECT_EQ(clock.rate(), 1.0);
+  EXPECT_EQ(scaling.rate(), 1.0);
 }
 
 // Simulates a loaded host: every 40 ms, no setpoint for 20 ms.
 TEST(TimeScalingTest, MakesProgressDespiteRepeatedDelays)
 {
   const Trajectory plan = line();
-  TimeScaling clock(cycle, servo_lag, 1.0);
+  TimeScaling scaling(cycle, servo_lag, 1.0);
   double elapsed = 0.0;
-  while (clock.time() < plan.duration() && elapsed < 10.0 * plan.duration()) {
+  while (scaling.time() < plan.duration() && elapsed < 10.0 * plan.duration()) {
     for (int k = 0; k < 10; ++k, elapsed += cycle) {
-      clock.advance(cycle, 1.0, plan.sample(clock.time()), test_limits());
+      scaling.advance(cycle, 1.0, plan.sample(scaling.time()), test_limits());
     }
-    clock.advance(0.02, 1.0, plan.sample(clock.time()), test_limits());
+    scaling.advance(0.02, 1.0, plan.sample(scaling.time()), test_limits());
     elapsed += 0.02;
   }
   EXPECT_LT(elapsed, 8.0 * plan.duration());
@@ -82,10 +82,10 @@ TEST(TimeScalingTest, MakesProgressDespiteRepeatedDelays)
 TEST(TimeScalingTest, RestartsFromStandstillAfterLongDelay)
 {
   const Trajectory plan = line();
-  TimeScaling clock(cycle, servo_lag, 1.0, 1.0);
-  clock.advance(3.0, 1.0, plan.sample(clock.time()), test_limits());
-  EXPECT_LE(clock.time() - 1.0, 2.0 * cycle);
-  EXPECT_LT(clock.rate(), 0.05);
+  TimeScaling scaling(cycle, servo_lag, 1.0, 1.0);
+  scaling.advance(3.0, 1.0, plan.sample(scaling.time()), test_limits());
+  EXPECT_LE(scaling.time() - 1.0, 2.0 * cycle);
+  EXPECT_LT(scaling.rate(), 0.05);
 }
 
 TEST(TimeScalingTest, NeverRunsBackwardOrFasterThanThePlan)
@@ -93,34 +93,34 @@ TEST(TimeScalingTest, NeverRunsBackwardOrFasterThanThePlan)
   std::mt19937 random(7);
   std::uniform_real_distribution<double> between(-0.02, 0.2);
   const Trajectory plan = line();
-  TimeScaling clock(cycle, servo_lag, 1.0);
+  TimeScaling scaling(cycle, servo_lag, 1.0);
   for (int k = 0; k < 20000; ++k) {
-    const double before = clock.time();
+    const double before = scaling.time();
     const double elapsed = k % 3 == 0 ? between(random) : cycle;
-    clock.advance(elapsed, between(random) * 10.0, plan.sample(clock.time()), test_limits());
-    ASSERT_GE(clock.time(), before);
-    ASSERT_LE(clock.time() - before, std::max(0.0, elapsed) + 1e-12);
-    ASSERT_GE(clock.rate(), 0.0);
-    ASSERT_LE(clock.rate(), 1.0);
+    scaling.advance(elapsed, between(random) * 10.0, plan.sample(scaling.time()), test_limits());
+    ASSERT_GE(scaling.time(), before);
+    ASSERT_LE(scaling.time() - before, std::max(0.0, elapsed) + 1e-12);
+    ASSERT_GE(scaling.rate(), 0.0);
+    ASSERT_LE(scaling.rate(), 1.0);
   }
 }
 
 // Largest accelerations of the setpoints, by finite differences at the rate of the controller.
 Joints largest_acceleration(const Trajectory & plan, const Limits & bounds, double later_target_rate)
 {
-  TimeScaling clock(cycle, servo_lag, 1.0);
+  TimeScaling scaling(cycle, servo_lag, 1.0);
   Joints q[3];
   q[0] = q[1] = plan.sample(0.0).position;
   Joints largest = Joints::Zero();
-  for (int k = 0; k < 60000 && clock.time() < plan.duration(); ++k) {
+  for (int k = 0; k < 60000 && scaling.time() < plan.duration(); ++k) {
     const double target_rate = std::fmod(k * cycle, 2.0) < 1.0 ? 1.0 : later_target_rate;
-    clock.advance(cycle, target_rate, plan.sample(clock.time()), bounds);
-    q[2] = plan.sample(clock.time()).position;
+    scaling.advance(cycle, target_rate, plan.sample(scaling.time()), bounds);
+    q[2] = plan.sample(scaling.time()).position;
     largest = largest.max((q[2] - 2.0 * q[1] + q[0]).abs() / (cycle * cycle));
     q[0] = q[1];
     q[1] = q[2];
   }
-  EXPECT_GE(clock.time(), plan.duration());
+  EXPECT_GE(scaling.time(), plan.duration());
   return largest;
 }
 
@@ -141,14 +141,14 @@ TEST(TimeScalingTest, ChangesTheRateSmoothly)
 TEST(TimeScalingTest, StandsStillAtZeroRate)
 {
   const Trajectory plan = line();
-  TimeScaling clock(cycle, servo_lag, 1.0, 1.0);
+  TimeScaling scaling(cycle, servo_lag, 1.0, 1.0);
   for (int k = 0; k < 1000; ++k) {
-    clock.advance(cycle, 0.0, plan.sample(clock.time()), test_limits());
+    scaling.advance(cycle, 0.0, plan.sample(scaling.time()), test_limits());
   }
-  EXPECT_EQ(clock.rate(), 0.0);
-  const double time = clock.time();
-  clock.advance(cycle, 0.0, plan.sample(time), test_limits());
-  EXPECT_EQ(clock.time(), time);
+  EXPECT_EQ(scaling.rate(), 0.0);
+  const double time = scaling.time();
+  scaling.advance(cycle, 0.0, plan.sample(time), test_limits());
+  EXPECT_EQ(scaling.time(), time);
 }
 
 }  // namespace
