@@ -101,11 +101,11 @@ std::optional<std::pair<Grid, Profile>> subdivide(const Motion & motion, std::si
     const int parts = rest || worst < 1.03 ? 1 : worst < 1.3 ? 2 : 3;
     double from = grid.begin[i];
     for (int k = 1; k <= parts; ++k) {
-      const PathState place = piece.at(piece.start + piece.duration * k / parts);
-      const double to = k == parts ? grid.end[i] : std::clamp(place.u, from, grid.end[i]);
+      const PathState path_state = piece.at(piece.start + piece.duration * k / parts);
+      const double to = k == parts ? grid.end[i] : std::clamp(path_state.u, from, grid.end[i]);
       fine.add(*motion.path, grid.piece[i], from, to);
-      profile.v.push_back(place.v);
-      profile.alpha.push_back(place.a);
+      profile.v.push_back(path_state.v);
+      profile.alpha.push_back(path_state.a);
       profile.time.push_back(piece.duration / parts);
       from = to;
     }
@@ -119,9 +119,9 @@ Profile profile_of(const Motion & motion, std::size_t begin)
 {
   Profile profile;
   for (std::size_t k = begin; k < motion.timing.size(); ++k) {
-    const PathState place = motion.timing[k].at(motion.timing[k].start);
-    profile.v.push_back(place.v);
-    profile.alpha.push_back(place.a);
+    const PathState path_state = motion.timing[k].at(motion.timing[k].start);
+    profile.v.push_back(path_state.v);
+    profile.alpha.push_back(path_state.a);
     profile.time.push_back(motion.timing[k].duration);
   }
   profile.v.push_back(0.0);

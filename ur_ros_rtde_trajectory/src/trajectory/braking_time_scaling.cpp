@@ -41,9 +41,9 @@ class BrakingSearch {
   Point plan_point(double plan_time) const
   {
     const TimingLawPiece & piece = plan_.timing[plan_.piece_at(plan_time)];
-    const PathState place = piece.at(std::clamp(plan_time, piece.start, piece.end()));
+    const PathState path_state = piece.at(std::clamp(plan_time, piece.start, piece.end()));
     const PathPiece & curve = plan_.path->pieces[piece.piece];
-    return joint_motion(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
+    return joint_motion(curve.at(std::clamp(path_state.u, 0.0, curve.length)), path_state);
   }
 
   // Range of r'' within the jerk limits. Empty (low > high) if an acceleration limit is exceeded.

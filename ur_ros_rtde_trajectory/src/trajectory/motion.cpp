@@ -79,11 +79,12 @@ void Motion::stretch(double factor, std::size_t first)
   }
 }
 
-Point joint_motion(const PathPoint & point, const PathState & place)
+Point joint_motion(const PathPoint & point, const PathState & path_state)
 {
-  const double v2 = place.v * place.v;
-  return {point.q, point.d1 * place.v, point.d2 * v2 + point.d1 * place.a,
-          point.d3 * (v2 * place.v) + point.d2 * (3.0 * place.v * place.a) + point.d1 * place.j};
+  const double v2 = path_state.v * path_state.v;
+  return {point.q, point.d1 * path_state.v, point.d2 * v2 + point.d1 * path_state.a,
+          point.d3 * (v2 * path_state.v) + point.d2 * (3.0 * path_state.v * path_state.a) +
+              point.d1 * path_state.j};
 }
 
 }  // namespace ur_ros_rtde::trajectory

@@ -44,6 +44,6 @@ struct Motion {
 };
 
 /// Setpoint of the joints for a state on a path, by the chain rule.
-Point joint_motion(const PathPoint & point, const PathState & place);
+Point joint_motion(const PathPoint & point, const PathState & path_state);
 
 }  // namespace ur_ros_rtde::trajectory

@@ -13,10 +13,10 @@ PathState scaled_state(const Motion & plan, std::size_t index, const TimeScaling
                        double rate_ddot)
 {
   const TimingLawPiece & piece = plan.timing[index];
-  const PathState place = piece.at(std::clamp(scaling.plan_time, piece.start, piece.end()));
+  const PathState path_state = piece.at(std::clamp(scaling.plan_time, piece.start, piece.end()));
   const double r = scaling.rate;
-  return {place.u, place.v * r, place.a * r * r + place.v * scaling.rate_dot,
-          place.j * r * r * r + 3.0 * place.a * r * scaling.rate_dot + place.v * rate_ddot};
+  return {path_state.u, path_state.v * r, path_state.a * r * r + path_state.v * scaling.rate_dot,
+          path_state.j * r * r * r + 3.0 * path_state.a * r * scaling.rate_dot + path_state.v * rate_ddot};
 }
 
 // Ends of the intervals in which both the plan and the time scaling are smooth.

@@ -11,8 +11,8 @@ namespace {
 // Piece of the path at `time` and the state on it, clamped to the piece against rounding errors.
 struct PathLocation {
   const PathPiece * curve = nullptr;
-  PathState place;
-  double s() const { return curve->start + place.u; }
+  PathState path_state;
+  double s() const { return curve->start + path_state.u; }
 };
 
 PathLocation locate(const Motion & motion, double time)
@@ -23,7 +23,7 @@ PathLocation locate(const Motion & motion, double time)
   const TimingLawPiece & piece = motion.timing[motion.piece_at(time)];
   PathLocation result{&motion.path->pieces[piece.piece],
                       piece.at(std::clamp(time, piece.start, piece.end()))};
-  result.place.u = std::clamp(result.place.u, 0.0, result.curve->length);
+  result.path_state.u = std::clamp(result.path_state.u, 0.0, result.curve->length);
   return result;
 }
 
@@ -37,13 +37,13 @@ double Trajectory::duration() const
 Point Trajectory::sample(double time) const
 {
   const PathLocation here = locate(*motion_, time);
-  const PathPoint point = here.curve->at(here.place.u);
+  const PathPoint point = here.curve->at(here.path_state.u);
   if (!(time >= 0.0) || time >= duration()) {
     Point rest;
     rest.position = point.q;
     return rest;
   }
-  return joint_motion(point, here.place);
+  return joint_motion(point, here.path_state);
 }
 
 double Trajectory::progress(double time) const

@@ -14,8 +14,8 @@ constexpr double rounding = 1e-9;  // relative to the limit
 Point point_at(const Motion & motion, const TimingLawPiece & piece, double time)
 {
   const PathPiece & curve = motion.path->pieces[piece.piece];
-  const PathState place = piece.at(time);
-  return joint_motion(curve.at(std::clamp(place.u, 0.0, curve.length)), place);
+  const PathState path_state = piece.at(time);
+  return joint_motion(curve.at(std::clamp(path_state.u, 0.0, curve.length)), path_state);
 }
 
 // Maximum of equally spaced values, including the vertex of the parabola through every three of them.

@@ -61,10 +61,10 @@ void write_segment(Writer & writer, const Motion & motion, std::size_t first, st
     const std::size_t k = std::clamp(motion.piece_at(times[i]), first, last - 1);
     const TimingLawPiece & piece = motion.timing[k];
     const PathPiece & curve = motion.path->pieces[piece.piece];
-    const PathState place = piece.at(std::clamp(times[i], piece.start, piece.end()));
-    const PathPoint point = curve.at(std::clamp(place.u, 0.0, curve.length));
-    writer.write(curve.start + place.u);
-    writer.write(place.v * place.v);
+    const PathState path_state = piece.at(std::clamp(times[i], piece.start, piece.end()));
+    const PathPoint point = curve.at(std::clamp(path_state.u, 0.0, curve.length));
+    writer.write(curve.start + path_state.u);
+    writer.write(path_state.v * path_state.v);
     writer.write(point.d1);
     writer.write(point.d2);
     writer.write(point.d3);
