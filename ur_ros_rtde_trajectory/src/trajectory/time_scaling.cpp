@@ -14,7 +14,7 @@ constexpr double highest_rate_ddot_limit = 1000.0;
 /// Gaps of one or two cycles are network jitter. During longer gaps the arm slows down.
 constexpr double jitter_cycles = 2.0;
 
-// Margin of the limits beside `used`, relative to the joint velocities.
+// Margin between `used` and `limit`, relative to the joint velocities.
 double available(const Joints & limit, const Joints & used, const Joints & velocity, double least,
                  double most)
 {
