@@ -86,7 +86,7 @@ def _matches(word: str, source: Source, packages: Iterable[str]) -> bool:
     if word in packages:
         return source.package == word
     suites = {case.split(".")[0] for case in source.cases}
-    # CTest adds prefixes and parameters: robot.AStop.keeps_its_line, Each/OnTheWay.is_refused/2.
+    # CTest adds prefixes and parameters: robot.StopTest.KeepsItsLine, Each/UnreachablePathTest.is_refused/2.
     if suites & set(re.split(r"[./]", word)):
         return True
     return word.lower() in source.package or any(word.lower() in name.lower() for name in _names(source))

@@ -115,8 +115,8 @@ Outcome DashboardRun::raw(const std::string & line, double timeout)
   return Outcome::success(answer_);
 }
 
-Outcome DashboardRun::command(const std::string & line, const std::string & reply, const ExpectedState & expected,
-                              double timeout)
+Outcome DashboardRun::command(const std::string & line, const std::string & reply,
+                              const ExpectedState & expected, double timeout)
 {
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(timeout));
   if (Outcome answered = raw(line, timeout); !answered) {

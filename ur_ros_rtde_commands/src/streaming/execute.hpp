@@ -35,7 +35,8 @@ struct ExecutionResult {
 };
 
 /// Plans the trajectory, checks that the arm is at its start, and streams it. A remaining distance to the
-/// start (or the approach) is planned separately within the same limits, and not faster than slow_limits().
+/// start (or the approach) is planned separately within the same limits, and not faster than
+/// default_speed_limits().
 ExecutionResult execute(Run & run, const Execution & execution);
 
 /// The target positions of the controller, which contain no measurement noise.

@@ -13,7 +13,7 @@ namespace {
 
 using trajectory::Joints;
 using trajectory::Limits;
-using trajectory::StreamClock;
+using trajectory::TimeScaling;
 using trajectory::Trajectory;
 
 /// s. Lower limit of the time constant with which the arm slows down when its setpoint stops.
@@ -54,7 +54,7 @@ Outcome ServoStream::drive(const Trajectory & plan, const Limits & limits)
   state_.sample = run_.state();
   const Joints end = plan.sample(plan.duration()).position;
   std::copy(end.begin(), end.end(), target_.begin());
-  StreamClock clock(cycle_, memory_, requested_rate(state_.sample));
+  TimeScaling clock(cycle_, memory_, requested_rate(state_.sample));
   while (clock.time() < plan.duration()) {
     const double before = state_.sample.controller_time;
     if (const auto stop_reason = run_.next(state_.sample)) {
@@ -121,7 +121,7 @@ bool ServoStream::next_package()
   return false;
 }
 
-bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits, StreamClock & clock,
+bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits, TimeScaling & clock,
                                  const std::function<bool()> & done)
 {
   while (clock.time() < plan.duration() && !done()) {
@@ -138,7 +138,7 @@ bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits,
 
 /// The stop is planned in a separate thread while the arm continues along the plan. The stop begins `ahead` s
 /// later. If the planning takes longer, it is repeated with a larger `ahead`.
-void ServoStream::brake(const Trajectory & plan, const Limits & limits, StreamClock & clock)
+void ServoStream::brake(const Trajectory & plan, const Limits & limits, TimeScaling & clock)
 {
   for (double ahead = 0.02; ahead < 1.0 && clock.rate() > stopped_rate; ahead *= 4.0) {
     if (settings_.preempted_by_stop() || !run_.robot().motion_possible()) {
@@ -155,7 +155,7 @@ void ServoStream::brake(const Trajectory & plan, const Limits & limits, StreamCl
     }
     const Trajectory stop = search.get();
     if (clock.time() <= from) {
-      StreamClock braking(cycle_, memory_, 1.0, clock.time() / rate);
+      TimeScaling braking(cycle_, memory_, 1.0, clock.time() / rate);
       continue_until(stop, limits, braking, settings_.preempted_by_stop);
       return;
     }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ur_ros_rtde/run.hpp"
-#include "ur_ros_rtde_trajectory/stream_clock.hpp"
+#include "ur_ros_rtde_trajectory/time_scaling.hpp"
 
 namespace ur_ros_rtde {
 
@@ -29,7 +29,7 @@ struct StreamState {
   double tracking_error = 0.0;  ///< rad, the largest of all joints
 };
 
-/// Sends a plan to the controller as targets of servoJ, one with each of its packages, on a StreamClock. The
+/// Sends a plan to the controller as targets of servoJ, one with each of its packages, on a TimeScaling. The
 /// rate follows the controller's speed scaling and the speed slider, which servoJ itself ignores.
 class ServoStream {
  public:
@@ -57,15 +57,15 @@ class ServoStream {
   bool next_package();
   /// Streams the plan until its end or until `done`. False if the arm can no longer be moved.
   bool continue_until(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
-                      trajectory::StreamClock & clock, const std::function<bool()> & done);
+                      trajectory::TimeScaling & clock, const std::function<bool()> & done);
   void brake(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
-             trajectory::StreamClock & clock);
+             trajectory::TimeScaling & clock);
 
   Run & run_;
   const ServoSettings settings_;
   const Watch watch_;
   const double cycle_;
-  const double memory_;  // s, of the StreamClock
+  const double memory_;  // s, of the TimeScaling
   StreamState state_;
   double elapsed_ = 0.0;  // s between the last two packages
   std::vector<double> target_;

@@ -14,7 +14,7 @@ void check_timed_trajectory(Check & check, const trajectory_msgs::msg::JointTraj
   }
   const trajectory::Joints first = to_joints(waypoints->positions.front());
   const bool starts_at_first = waypoints->times.front() == 0.0;
-  trajectory::begin_at(*waypoints, first);
+  trajectory::prepend_start(*waypoints, first);
   require(check, trajectory::check_timed(*waypoints, limits));
   if (const auto sample = check.start(); sample && starts_at_first) {
     require(check, check_start_position(first, commanded_joints(*sample), start_tolerance));
@@ -26,7 +26,7 @@ Expected<trajectory::Trajectory> plan_timed_trajectory(const trajectory_msgs::ms
                                                        const trajectory::Limits & limits)
 {
   return timed_waypoints(message).and_then([&](trajectory::TimedWaypoints waypoints) {
-    trajectory::begin_at(waypoints, start);
+    trajectory::prepend_start(waypoints, start);
     return trajectory::plan_timed(waypoints, limits);
   });
 }

@@ -26,7 +26,10 @@ class TrajectoryCommand : public Command<A> {
   CommandHost & host() const { return *host_; }
   ArmLimits arm() const { return host_->limits(); }
   /// The default limits of goals without times.
-  trajectory::Limits slow_limits() const { return trajectory::slow_limits(trajectory::make_limits(arm())); }
+  trajectory::Limits default_speed_limits() const
+  {
+    return trajectory::default_speed_limits(trajectory::make_limits(arm()));
+  }
 
   /// The parameters of the goal. `plan` is left empty.
   Execution make_execution(const Goal & goal, Run & run) const;

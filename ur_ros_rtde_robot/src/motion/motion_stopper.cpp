@@ -108,8 +108,9 @@ bool MotionStopper::is_moving() const
   }
   const auto started = control->getStartedMotions();
   // Includes a move that was sent but has not been acknowledged. Excludes a move that has ended.
-  const bool move_pending = (started & moves) != 0 &&
-                            view.async.word == static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove());
+  const bool move_pending =
+      (started & moves) != 0 &&
+      view.async.word == static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove());
   return move_pending || (started & ~moves) != 0;
 }
 

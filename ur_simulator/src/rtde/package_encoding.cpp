@@ -11,14 +11,14 @@ struct TypeDescription {
 };
 
 constexpr std::array<TypeDescription, 9> type_descriptions{{{"BOOL", 1},
-                                                {"UINT8", 1},
-                                                {"UINT32", 4},
-                                                {"UINT64", 8},
-                                                {"INT32", 4},
-                                                {"DOUBLE", 8},
-                                                {"VECTOR3D", 24},
-                                                {"VECTOR6D", 48},
-                                                {"VECTOR6INT32", 24}}};
+                                                            {"UINT8", 1},
+                                                            {"UINT32", 4},
+                                                            {"UINT64", 8},
+                                                            {"INT32", 4},
+                                                            {"DOUBLE", 8},
+                                                            {"VECTOR3D", 24},
+                                                            {"VECTOR6D", 48},
+                                                            {"VECTOR6INT32", 24}}};
 
 }  // namespace
 
