@@ -9,7 +9,7 @@ constexpr std::chrono::milliseconds answer_timeout{2000};
 
 std::string send_to_dashboard(const Robot & robot, const std::string & line)
 {
-  const auto answer = robot.ask_dashboard(line, answer_timeout);
+  const auto answer = robot.query_dashboard(line, answer_timeout);
   if (!answer) {
     throw RobotError({answer.error().code, fmt::format("the dashboard server did not answer \"{}\": {}", line,
                                                        answer.error().message)});
