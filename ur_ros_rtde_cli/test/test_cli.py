@@ -89,7 +89,7 @@ def test_nan_and_infinity_reach_the_driver_which_refuses_them(running, number):
 def test_the_nearest_names_are_suggested(running):
     code, output = ur("call", "movej", "--wait", DISCOVERY)
     hint, error = output.splitlines()
-    assert code == 2 and hint.startswith("no plugin is called movej; did you mean move_j "), output
+    assert code == 2 and hint.startswith("no plugin is named movej; did you mean move_j "), output
     assert error.startswith("no server of /movej; did you mean move_j "), output
 
 
@@ -201,7 +201,7 @@ def test_the_arm_stops_when_nobody_reads_the_output_any_more(at_home, tmp_path):
     process.stdout.close()
     assert process.wait(PATIENCE * 20.0) == 128 + signal.SIGPIPE, errors.read_text()
     assert at_home.state()["at_rest"]
-    assert errors.read_text().splitlines() == ["canceling (SIGPIPE), again to go without the result"]
+    assert errors.read_text().splitlines() == ["canceling (SIGPIPE), interrupt again to quit without the result"]
 
 
 def test_the_result_can_be_piped_into_head(at_home):
