@@ -60,7 +60,7 @@ def test_an_action_name_taken_twice_is_reported(addresses, processes, plugin_pre
     prefix = plugin_prefix("zz_other", '<library path="other">' + CLASS.format(name="move_j", type="Other") + "</library>")
     server = processes(node("command_server", addresses[3], env=with_prefix(prefix)))
     line = server.wait_for_output("plugin move_j of package zz_other")
-    assert "package ur_ros_rtde has one of that name already" in line
+    assert "package ur_ros_rtde_commands has one of that name already" in line
     assert "move_j" in server.wait_for_output("commands:")
 
 
