@@ -26,7 +26,7 @@ class TrajectoryCommand : public Command<A> {
   CommandHost & host() const { return *host_; }
   ArmLimits arm() const { return host_->limits(); }
   /// The default limits of goals without times.
-  trajectory::Limits default_speed_limits() const
+  trajectory::Limits default_limits() const
   {
     return trajectory::default_speed_limits(trajectory::make_limits(arm()));
   }
