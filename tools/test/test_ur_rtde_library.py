@@ -96,7 +96,7 @@ def test_the_headers_do_not_compile_without_the_library(tmp_path):
     code, text = compile_only(source, "-I", HEADERS)
     assert code != 0
     assert "this target does not link its library" in text
-    assert "Call find_package(ur_rtde_vendor) instead of find_package(ur_rtde), and link ur_rtde::rtde." in text
+    assert "Find ur_rtde_vendor instead of ur_rtde, and link ur_rtde::rtde." in text
 
 
 def test_ur_ros_rtde_does_not_compile_with_headers_of_another_installation(tmp_path, other_headers):
