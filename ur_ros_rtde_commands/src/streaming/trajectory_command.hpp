@@ -25,10 +25,10 @@ class TrajectoryCommand : public Command<A> {
  protected:
   CommandHost & host() const { return *host_; }
   ArmLimits arm() const { return host_->limits(); }
-  /// The default limits of goals without times.
-  trajectory::Limits default_limits() const
+  /// The limits of a goal without times. Where it has none, the default speeds apply.
+  trajectory::Limits limits_of(const Goal & goal) const
   {
-    return trajectory::default_speed_limits(trajectory::make_limits(arm()));
+    return goal_limits(goal, trajectory::default_speed_limits(trajectory::make_limits(arm())));
   }
 
   /// The parameters of the goal. `plan` is left empty.

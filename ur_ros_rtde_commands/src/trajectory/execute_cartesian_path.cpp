@@ -68,7 +68,7 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
     warn_of_turn_to_identity(run, path_poses("poses", goal.poses));
     Execution execution = make_execution(goal, run);
     execution.plan = [&](const Joints & start, const std::stop_token & stop) {
-      const trajectory::Limits limits = goal_limits(goal, default_limits());
+      const trajectory::Limits limits = limits_of(goal);
       const auto reference = [&run](const Pose & pose, const Joints & guess) {
         return query_inverse_kinematics(run.robot(), pose, guess);
       };

@@ -24,8 +24,7 @@ class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::Exe
         .in_range("blend_tolerance", goal.blend_tolerance, 0.0, 1.0, "rad")
         .above_zero("start_tolerance", goal.start_tolerance, 3.2, "rad");
     if (check.ok()) {
-      require(check,
-              trajectory::check_path(positions_of(goal.waypoints), goal_limits(goal, default_limits())));
+      require(check, trajectory::check_path(positions_of(goal.waypoints), limits_of(goal)));
     }
     if (const auto sample = check.start(); sample && !goal.approach) {
       require(check, check_start_position(to_joints(goal.waypoints[0].positions), commanded_joints(*sample),
@@ -37,7 +36,7 @@ class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::Exe
   {
     Execution execution = make_execution(goal, run);
     execution.plan = [&](const trajectory::Joints &, std::stop_token stop) {
-      const trajectory::Limits limits = goal_limits(goal, default_limits());
+      const trajectory::Limits limits = limits_of(goal);
       return trajectory::plan_path(positions_of(goal.waypoints), limits,
                                    {goal.blend_tolerance, 0.35, goal.speed_fraction, std::move(stop)})
           .map([&](trajectory::Trajectory plan) { return PlannedTrajectory{std::move(plan), limits}; });
