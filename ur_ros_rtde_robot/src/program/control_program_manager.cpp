@@ -168,7 +168,11 @@ void ControlProgramManager::set_status(const RobotStatus & status)
     report_.say(LogLevel::warn, fmt::format("the robot cannot move: {}", status.message));
   }
   if (status_function) {
-    status_function(status);
+    try {
+      status_function(status);
+    } catch (const std::exception & error) {
+      report_.say(LogLevel::error, fmt::format("on_status threw: {}", printable(error.what())));
+    }
   }
 }
 
@@ -225,8 +229,7 @@ RobotStatus ControlProgramManager::examine()
       return std::move(*status);
     }
   }
-  wake();
-  return {RobotState::connecting, ErrorCode::not_ready, "the program on the robot changes all the time"};
+  return {RobotState::connecting, ErrorCode::not_ready, "the program on the robot keeps changing"};
 }
 
 ControlProgramManager::Outcome ControlProgramManager::examine_once()
