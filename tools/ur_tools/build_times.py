@@ -10,17 +10,17 @@ REFERENCE_CORES = 2
 # Seconds of a first build without and with tests, on REFERENCE_CORES, without a compiler cache and with no other package built at the
 # same time. Source: "first" in .ur/<distribution>/build_times.json after a first `./ur build` and `./ur build --tests`.
 REFERENCE: Dict[str, Tuple[float, float]] = {
-    "ur_rtde_vendor": (14.0, 14.0),
-    "rcl_cxx": (16.0, 60.0),
+    "ur_rtde_vendor": (13.0, 13.0),
+    "rcl_cxx": (16.0, 57.0),
     "ur_ros_rtde_msgs": (112.0, 112.0),
-    "ur_simulator": (84.0, 150.0),
-    "ur_ros_rtde_trajectory": (25.0, 60.0),
-    "ur_ros_rtde_robot": (40.0, 150.0),
-    "ur_ros_rtde": (60.0, 90.0),
-    "ur_ros_rtde_commands": (70.0, 75.0),
-    "ur_ros_rtde_cli": (2.0, 2.0),
-    "ur_ros_rtde_gripper_commands": (20.0, 20.0),
-    "ur_ros_rtde_tutorials": (20.0, 20.0),
+    "ur_simulator": (84.0, 142.0),
+    "ur_ros_rtde_trajectory": (18.0, 32.0),
+    "ur_ros_rtde_robot": (35.0, 84.0),
+    "ur_ros_rtde": (45.0, 72.0),
+    "ur_ros_rtde_commands": (75.0, 82.0),
+    "ur_ros_rtde_cli": (1.0, 1.0),
+    "ur_ros_rtde_gripper_commands": (20.0, 25.0),
+    "ur_ros_rtde_tutorials": (18.0, 18.0),
 }
 UNKNOWN_PACKAGE = (30.0, 30.0)
 STEPS_PER_SECOND = 1.0  # until ninja reports the number of steps of a package
