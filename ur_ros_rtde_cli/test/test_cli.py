@@ -256,7 +256,7 @@ def test_no_driver_is_said_after_the_wait():
 
 def test_plugins_are_listed_with_package_and_description():
     code, output = ur("plugins", "move_l")
-    assert code == 0 and ["move_l", "ur_ros_rtde", "Moves"] in [line.split()[:3] for line in output.splitlines()], output
+    assert code == 0 and ["move_l", "ur_ros_rtde_commands", "Moves"] in [line.split()[:3] for line in output.splitlines()], output
 
 
 @pytest.fixture
