@@ -41,6 +41,27 @@ TEST_F(RobotConnectionTest, WaitsForControllerThatStartsLater)
   EXPECT_TRUE(becomes_ready());
 }
 
+TEST_F(RobotConnectionTest, RetriesAFailedStartAtTheRetryInterval)
+{
+  auto options = Controller::options();
+  options.polyscope_version = "5.3.0";  // ur_rtde does not request the output registers that it needs
+  controller.start(options);
+  make_robot();
+  ASSERT_TRUE(eventually([&] { return log.count("the control program cannot be started") > 0; }))
+      << log.text();
+  const auto starts = [&] {
+    const std::lock_guard lock(mutex);
+    return std::count_if(statuses.begin(), statuses.end(), [](const RobotStatus & status) {
+      return status.message == "starting the control program";
+    });
+  };
+  const auto before = starts();
+  const double end = robot->latest()->controller_time + 2.0;
+  ASSERT_TRUE(eventually([&] { return robot->latest()->controller_time >= end; }));
+  EXPECT_LE(starts() - before, 2.0 / 0.25 + 1.0);
+  EXPECT_EQ(log.count("the control program cannot be started"), 1U) << log.text();
+}
+
 TEST_F(RobotConnectionTest, FollowsPowerUpOfTheArm)
 {
   auto options = Controller::options();

@@ -109,6 +109,7 @@ RobotStatus ControlProgramManager::interface_failed(const Error & error)
 
 ControlProgramManager::Outcome ControlProgramManager::start_program()
 {
+  wait_after_failed_start();
   if (!interfaces_.has_pending_control()) {
     set_status({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
   }
@@ -117,18 +118,32 @@ ControlProgramManager::Outcome ControlProgramManager::start_program()
   if (!started) {
     auto failed = interface_failed(started.error());
     // No effect after inputs_in_use.
-    dispatch(started.error().code == ErrorCode::not_ready ? ProgramEvent::start_failed
-                                                          : ProgramEvent::start_aborted);
+    const bool rejected = started.error().code == ErrorCode::not_ready;
+    if (rejected && next_start_ == Clock::time_point{} && !stop_.stop_requested()) {
+      report_.say(LogLevel::warn, fmt::format("the control program cannot be started: {}; trying again",
+                                              started.error().message));
+    }
+    next_start_ = Clock::now() + options_.retry_interval;
+    dispatch(rejected ? ProgramEvent::start_failed : ProgramEvent::start_aborted);
     return failed;
   }
   if (!wait_for_program(ProgramActivity::playing, program_begin_limit)) {
     interfaces_.close_control();
+    next_start_ = Clock::now() + options_.retry_interval;
     dispatch(ProgramEvent::start_failed);
     return RobotStatus{RobotState::connecting, ErrorCode::not_ready,
                        "the control program ended at once: look at the pendant's log"};
   }
+  next_start_ = {};
   dispatch(ProgramEvent::program_started);
   return std::nullopt;
+}
+
+void ControlProgramManager::wait_after_failed_start()
+{
+  // A failed start changes the state of the robot's program, which would trigger the next one at once.
+  std::unique_lock lock(mutex_);
+  changed_.wait_until(lock, stop_.get_token(), next_start_, [] { return false; });
 }
 
 ControlProgramManager::Outcome ControlProgramManager::stop_program_on_robot()

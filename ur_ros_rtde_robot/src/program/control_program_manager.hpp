@@ -91,6 +91,7 @@ class ControlProgramManager {
   std::optional<ProgramAction> next_action();
   Outcome execute(ProgramAction action);
   Outcome start_program();
+  void wait_after_failed_start();
   Outcome stop_program_on_robot();
   Outcome connect_control();
   Outcome adopt_program();
@@ -132,6 +133,8 @@ class ControlProgramManager {
   std::uint64_t modes_ = 0;
   // The manager's thread only.
   std::uint32_t lost_link_ = 0;  ///< Sample::link of the connection that was lost last
+  std::chrono::steady_clock::time_point
+      next_start_{};  ///< earliest time after a failed start; zero after success
 
   std::stop_source stop_;
   std::jthread thread_;
