@@ -90,26 +90,28 @@ tl::unexpected<std::string> ActiveGoals::publish_refusal(const rcl_cxx::GoalUUID
   return tl::unexpected(with_code(reason.message, reason.code));
 }
 
-Status ActiveGoals::start_check(const rcl_cxx::GoalUUID & id,
-                                std::function<void(std::shared_ptr<GoalContext>)> work)
+Status ActiveGoals::start_check(const rcl_cxx::GoalUUID & id, Work work)
 {
   const auto context = find(id);
   if (!context) {
     return failure(ErrorCode::exception, "this goal is not registered");
   }
-  return host_.goals().start(fmt::format("check of {} {}", action_, id.short_string()), context->stop_request,
-                             [work = std::move(work), context] { work(context); });
+  return start_thread(fmt::format("check of {} {}", action_, id.short_string()), context, std::move(work));
 }
 
-Status ActiveGoals::start(const rcl_cxx::GoalUUID & id,
-                          std::function<void(std::shared_ptr<GoalContext>)> work)
+Status ActiveGoals::start(const rcl_cxx::GoalUUID & id, Work work)
 {
   const auto context = find(id);
   if (!context) {
     return failure(ErrorCode::exception, "this goal was never accepted");
   }
   context->set_started();
-  return host_.goals().start(fmt::format("{} {}", action_, id.short_string()), context->stop_request,
+  return start_thread(fmt::format("{} {}", action_, id.short_string()), context, std::move(work));
+}
+
+Status ActiveGoals::start_thread(std::string name, const std::shared_ptr<GoalContext> & context, Work work)
+{
+  return host_.goals().start(std::move(name), context->stop_request,
                              [work = std::move(work), context] { work(context); });
 }
 

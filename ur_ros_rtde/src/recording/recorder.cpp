@@ -65,7 +65,7 @@ Expected<std::vector<std::string>> Recorder::start(const std::string & file, std
   if (Status fits = check(file, fields, frequency); !fits) {
     return tl::unexpected(fits.error());
   }
-  // Losses are seen by the timestamp; when nobody wants it, it comes last and is left out of the rows.
+  // Losses are detected by the timestamp. If it is not requested, it is the last field and not written.
   RecordingSession::Plan plan{address_, fields, frequency, 0, 0};
   if (std::ranges::find(fields, timestamp) == fields.end()) {
     plan.fields.push_back(timestamp);

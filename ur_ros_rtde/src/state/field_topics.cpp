@@ -94,7 +94,7 @@ void FieldTopics::run(const std::stop_token & stop)
   }
 }
 
-/// Until somebody else wants it, or there is something the matter.
+/// Publishes until the need for tool_data changes, a stop is requested or the connection fails.
 Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_token & stop)
 {
   set_up_fields(stream);

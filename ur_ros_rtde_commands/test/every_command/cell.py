@@ -28,7 +28,7 @@ CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper(
 
 
 class Domain:
-    """A ROS domain that no other test of this machine has: whoever has locked its file owns it. The project's test runner does
+    """A ROS domain that no other test of this machine has: the process that has locked its file owns it. The project's test runner does
     the same."""
 
     def __init__(self):
@@ -154,7 +154,7 @@ class Cell:
         if not self.simulator.process.running():
             self.restart_simulator()
         self.home(limit)
-        if self.simulator.state()["external_sensor"]:  # to which nobody sends readings
+        if self.simulator.state()["external_sensor"]:  # without readings
             self.client.send(EnableExternalFtSensor, "ft_rtde_input_enable", enable=False).succeeded()
         # That link looks for its server now and then only.
         wait_for(self._dashboard_answers, 20.0, "the dashboard server")
@@ -205,7 +205,7 @@ class Cell:
         state = self.simulator.state()
         return {name: state[name] for name in SETTINGS}
 
-    # --- What holds whatever happened ---
+    # --- Conditions after every event ---
 
     def at_rest(self):
         return max(map(abs, self.simulator.state()["actual"]["velocity"])) < AT_REST

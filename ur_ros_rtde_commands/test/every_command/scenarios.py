@@ -1,4 +1,4 @@
-"""What can happen to a goal while it is carried out, and what has to hold whatever its command."""
+"""Events during the execution of a goal, and the conditions that must hold for each command."""
 
 import time
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from cell import described
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 MIDDLE = 0.35  # s after which a goal that has not ended counts as one in the middle
-COMPLIANT = 0.6  # s after which an arm that does not move waits for somebody to push it
+COMPLIANT = 0.6  # s without motion after which a compliant arm is expected to wait for a push
 RESULT_LIMIT = 6.0  # s from a disturbance to the result
 ATTEMPTS = 3  # to meet a goal in its middle
 PATIENCE = 2.0  # s for a command that moves no arm and may wait for a state as long as its timeout says
@@ -90,7 +90,7 @@ def disturb(cell, example, disturbance) -> Optional[str]:
 
 
 def _give_up(cell, goal):
-    """Cancels it, if it has not ended by itself and there still is somebody to ask."""
+    """Cancels the goal if it is active and its server is available."""
     end = time.monotonic() + PATIENCE
     while not goal.ended() and time.monotonic() < end:
         time.sleep(0.01)

@@ -203,7 +203,7 @@ class Goal:
         return bytes(self.handle.goal_id.uuid)
 
     def ask_for_result_when_accepted(self):
-        """At once, in the executor's thread; otherwise it is asked for when somebody wants to know."""
+        """Requests the result on acceptance, in the executor's thread. Otherwise it is requested by ended()."""
 
         def ask(future):
             handle = future.result()

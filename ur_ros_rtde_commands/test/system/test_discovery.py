@@ -1,4 +1,4 @@
-"""New clients find the actions at once, whatever became of the clients before: see docs/discovery.md."""
+"""New clients discover the actions, also after other clients were killed: see docs/discovery.md."""
 
 import json
 import os
@@ -16,7 +16,7 @@ LIMIT = 2.0  # s, on a machine on which other tests run
 
 @pytest.fixture
 def no_profile(monkeypatch):
-    """As without `./ur`: nobody has chosen a profile."""
+    """The environment without `./ur`, in which no profile is chosen."""
     for variable in PROFILES:
         monkeypatch.delenv(variable, raising=False)
     return monkeypatch

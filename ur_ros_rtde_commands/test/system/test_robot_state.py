@@ -1,4 +1,4 @@
-"""What robot_state_receiver tells beside the joints: modes, speeds, targets, the tool, and the fields that somebody wants."""
+"""Topics of robot_state_receiver besides the joints: modes, speeds, setpoints, tool data and the configured fields."""
 
 import pytest
 from geometry_msgs.msg import TwistStamped

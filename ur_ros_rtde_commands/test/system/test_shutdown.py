@@ -62,7 +62,7 @@ def test_ctrl_c_in_a_motion_prints_nothing_that_looks_like_a_failure(cell):
     make_ready(cell.client)
     goal = cell.client.send(MoveJ, "move_j", joint_positions=[2.5, *HOME[1:]], speed=0.5)
     wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
-    assert not goal.ended()  # the result is asked for while there is somebody to send it
+    assert not goal.ended()  # requests the result while the server is available
     assert not looks_like_failures(cell.interrupt(with_simulator=False))
     assert goal.end()[0] == GoalStatus.STATUS_ABORTED
     assert cell.simulator.stands_still()

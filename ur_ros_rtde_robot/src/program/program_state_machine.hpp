@@ -35,7 +35,7 @@ enum class ProgramEvent : std::uint8_t {
   control_link_lost,  ///< only the connection to the control program is lost
   sample,             ///< the newest sample shows ProgramObservation::program
   heartbeat_lost,     ///< a program runs, but gives no sign of life of the control program
-  inspection,         ///< the manager examines the robot, whatever its condition
+  inspection,         ///< the manager examines the robot, in any condition
   robot_ready,        ///< nothing but the program on the robot prevents a start
   program_started,
   start_failed,     ///< the control program did not start or does not answer

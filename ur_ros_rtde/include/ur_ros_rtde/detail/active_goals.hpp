@@ -22,6 +22,8 @@ Outcome missing_result(rcl_cxx::GoalStatus status);
 /// The goals of one action that have no result yet, independent of the action's type. Thread-safe.
 class ActiveGoals {
  public:
+  using Work = std::function<void(std::shared_ptr<GoalContext>)>;
+
   /// `action` is the resolved name.
   ActiveGoals(PluginHost & host, std::string action) : host_(host), action_(std::move(action)) {}
   ActiveGoals(const ActiveGoals &) = delete;
@@ -37,9 +39,9 @@ class ActiveGoals {
   /// the log.
   tl::unexpected<std::string> reject(const rcl_cxx::GoalUUID & id, const Error & reason);
   /// Runs `work`, which must not throw, in a thread of its own before the goal is accepted.
-  Status start_check(const rcl_cxx::GoalUUID & id, std::function<void(std::shared_ptr<GoalContext>)> work);
+  Status start_check(const rcl_cxx::GoalUUID & id, Work work);
   /// Runs `work`, which must not throw, in a thread of its own for an accepted goal.
-  Status start(const rcl_cxx::GoalUUID & id, std::function<void(std::shared_ptr<GoalContext>)> work);
+  Status start(const rcl_cxx::GoalUUID & id, Work work);
   /// Asks a goal to stop. Does nothing if the goal is not active.
   void stop(const rcl_cxx::GoalUUID & id, const StopReason & reason);
   /// Removes an accepted goal that will not be executed and releases its lease.
@@ -51,6 +53,7 @@ class ActiveGoals {
  private:
   /// Publishes the reason and returns it for the log.
   tl::unexpected<std::string> publish_refusal(const rcl_cxx::GoalUUID & id, const Error & reason);
+  Status start_thread(std::string name, const std::shared_ptr<GoalContext> & context, Work work);
   std::shared_ptr<GoalContext> find(const rcl_cxx::GoalUUID & id) const;
   std::shared_ptr<GoalContext> remove(const rcl_cxx::GoalUUID & id);
 
