@@ -5,7 +5,7 @@
 #include <future>
 #include <std_msgs/msg/string.hpp>
 
-#include "../src/response_sender.hpp"
+#include "../src/services/response_sender.hpp"
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "ros_fixture.hpp"
 

@@ -10,7 +10,7 @@ elseif(BUILD_TESTING)
   # The program's own tool_transform.cpp is linked instead of the one in the static library, where it must be alone.
   set_source_files_properties(src/state/tool_transform.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   add_executable(robot_state_receiver_with_tf
-    src/nodes/main_robot_state_receiver.cpp src/state/tool_transform.cpp)
+    src/programs/robot_state_receiver.cpp src/state/tool_transform.cpp)
   ur_ros_rtde_settings(robot_state_receiver_with_tf)
   target_link_libraries(robot_state_receiver_with_tf PRIVATE ur_ros_rtde_nodes ${tf2_msgs_interfaces})
   set_target_properties(robot_state_receiver_with_tf PROPERTIES

@@ -10,9 +10,9 @@
 #include <sstream>
 #include <thread>
 
+#include "diagnostics/package_statistics.hpp"
 #include "recording/csv_file.hpp"
 #include "recording/row_queue.hpp"
-#include "state/package_statistics.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "action_client_impl.hpp"
-#include "node_impl.hpp"
+#include "node/node_impl.hpp"
 #include "rcl_cxx/error.hpp"
 #include "wait.hpp"
 

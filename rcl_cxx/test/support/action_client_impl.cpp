@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "node_impl.hpp"
-#include "rcl_error.hpp"
-#include "to_time.hpp"
+#include "node/node_impl.hpp"
+#include "rcl_support/rcl_error.hpp"
+#include "rcl_support/to_time.hpp"
 
 namespace rcl_cxx::detail {
 namespace {

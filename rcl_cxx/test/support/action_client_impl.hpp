@@ -13,8 +13,8 @@
 #include <mutex>
 #include <string>
 
+#include "executor/waitable.hpp"
 #include "rcl_cxx_test/action_client.hpp"
-#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
 /// A goal from its sending until its result has arrived. Shared with the user's handle.

@@ -4,8 +4,8 @@
 #include <rcl/graph.h>
 
 #include "client_impl.hpp"
-#include "node_impl.hpp"
-#include "rcl_error.hpp"
+#include "node/node_impl.hpp"
+#include "rcl_support/rcl_error.hpp"
 #include "wait.hpp"
 
 namespace rcl_cxx {

@@ -11,8 +11,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "executor/waitable.hpp"
 #include "rcl_cxx_test/client.hpp"
-#include "waitable.hpp"
 
 namespace rcl_cxx::detail {
 class ClientImpl : public Waitable {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "node_impl.hpp"
+#include "node/node_impl.hpp"
 
 namespace rcl_cxx::detail {
 /// Checks `condition` every 5 ms. Returns false on timeout and shutdown.

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "diagnostics/plugin_problems.hpp"
 #include "nodes/node_log.hpp"
 #include "plugins/plugin_selection.hpp"
-#include "state/plugin_problems.hpp"
 
 namespace ur_ros_rtde {
 

@@ -2,10 +2,10 @@
 
 #include <memory>
 
+#include "diagnostics/diagnostics.hpp"
 #include "nodes/parameters.hpp"
 #include "nodes/server.hpp"
 #include "plugins/plugin_set.hpp"
-#include "state/diagnostics.hpp"
 #include "state/driver_state.hpp"
 #include "teleoperation/teleoperation.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"

@@ -14,10 +14,10 @@
 #include <ur_ros_rtde_msgs/srv/get_wrench.hpp>
 #include <vector>
 
+#include "diagnostics/state_diagnostics.hpp"
 #include "recording/recording_services.hpp"
 #include "state/fake_joints.hpp"
 #include "state/field_topics.hpp"
-#include "state/state_diagnostics.hpp"
 #include "state/state_messages.hpp"
 #include "state/status_topics.hpp"
 #include "state/tool_transform.hpp"

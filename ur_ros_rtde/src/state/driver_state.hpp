@@ -4,7 +4,7 @@
 #include <ur_ros_rtde_msgs/msg/driver_state.hpp>
 #include <vector>
 
-#include "state/diagnostics.hpp"
+#include "diagnostics/diagnostics.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {

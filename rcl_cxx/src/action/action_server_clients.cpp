@@ -1,0 +1,57 @@
+#include "action/action_server_impl.hpp"
+#include "executor/timer_impl.hpp"
+#include "node/node_impl.hpp"
+
+/// Checks whether the clients of active goals still exist. In the executor's thread.
+namespace rcl_cxx::detail {
+void ActionServerImpl::watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request)
+{
+  if (!client_timer_) {
+    return;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    goal.client.emplace(client_of(request), requests_carry_endpoints(), ClientWatch::Clock::now());
+  }
+  if (client_timer_->is_canceled()) {
+    client_timer_->reset();
+  }
+}
+
+void ActionServerImpl::check_clients()
+{
+  if (!client_timer_) {
+    return;
+  }
+  const Goals goals = get_active_goals();
+  if (goals.empty()) {
+    client_timer_->cancel();
+    return;
+  }
+  const auto known = find_clients(*node(), name_ + "/_action/send_goal");
+  if (!known) {
+    if (node()->get_context().ok()) {
+      RCL_CXX_WARN_ONCE(node()->get_logger(),
+                        "{}: the middleware does not list clients, a lost client is not detected", name_);
+    }
+    return;
+  }
+  for (const auto & goal : goals) {
+    std::shared_ptr<ServerGoalHandleBase> handle;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!goal->client || !goal->client->is_lost(*known, ClientWatch::Clock::now())) {
+        continue;
+      }
+      goal->client.reset();
+      handle = goal->handle.lock();
+    }
+    if (handle && handle->is_active()) {
+      RCL_CXX_WARN(node()->get_logger(), "{}: goal {}: its client has disappeared", name_,
+                   goal->id().short_string());
+      call("on_client_lost", goal->id(), [&] { erased_.on_client_lost(*handle); });
+    }
+  }
+}
+
+}  // namespace rcl_cxx::detail

@@ -1,0 +1,314 @@
+#include <fmt/format.h>
+
+#include "action/action_messages.hpp"
+#include "action/action_server_impl.hpp"
+#include "node/node_impl.hpp"
+#include "rcl_support/rcl_error.hpp"
+#include "rcl_support/to_time.hpp"
+
+/// The requests of clients: goals, cancel requests, results. In the executor's thread.
+namespace rcl_cxx::detail {
+namespace {
+bool nothing_to_take(rcl_ret_t code)
+{
+  if (code == RCL_RET_ACTION_SERVER_TAKE_FAILED) {
+    rcl_reset_error();
+    return true;
+  }
+  return false;
+}
+}  // namespace
+
+void ActionServerImpl::call(const char * name, const GoalUUID & id,
+                            const std::function<void()> & callback) const noexcept
+{
+  try {
+    callback();
+  } catch (const std::exception & error) {
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {} failed: {}", name_, id.short_string(), name,
+                  error.what());
+  } catch (...) {
+    RCL_CXX_ERROR(node()->get_logger(), "{}: goal {}: {} threw an unknown exception", name_,
+                  id.short_string(), name);
+  }
+}
+
+void ActionServerImpl::respond(ResponseFunction send, const rmw_request_id_t & request,
+                               std::shared_ptr<void> response,
+                               std::function<std::shared_ptr<void>()> replacement,
+                               std::function<void(bool)> done)
+{
+  const auto self = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
+  const auto send_to = [self, send, request](void * message) {
+    rmw_request_id_t id = request;
+    return send(&self->server_, &id, message);
+  };
+  ResponseSender::Send send_replacement;
+  if (replacement) {
+    send_replacement = [send_to, replacement = std::move(replacement)] {
+      return send_to(replacement().get());
+    };
+  }
+  sender_->send({[send_to, response = std::move(response)] { return send_to(response.get()); },
+                 std::move(send_replacement),
+                 [self, done = std::move(done)](rcl_ret_t code) {
+                   if (code != RCL_RET_OK) {
+                     RCL_CXX_WARN(self->node()->get_logger(), "{}: a response was not delivered: {}",
+                                  self->name_, take_rcl_error());
+                   }
+                   if (done) {
+                     done(code == RCL_RET_OK);
+                   }
+                 }});
+}
+
+void ActionServerImpl::take_goal()
+{
+  const std::shared_ptr<void> request = erased_.make_goal_request();
+  rmw_request_id_t request_id;
+  const rcl_ret_t code = rcl_action_take_goal_request(&server_, &request_id, request.get());
+  if (nothing_to_take(code)) {
+    return;
+  }
+  check_rcl(code, name_, "cannot take a goal");
+  const GoalUUID id = erased_.goal_id_of_goal_request(request.get());
+  // rcl_action checks this only after handle_goal.
+  if (is_known(id)) {
+    return reject(id, request_id, "a goal with this id exists already");
+  }
+  const GoalDecision decision = handle_goal(id, request.get());
+  if (const auto * const deferred = std::get_if<DeferredGoalResponse>(&decision)) {
+    defer(id, {request_id, request}, *deferred);
+  } else {
+    send_decision(id, {request_id, request}, std::get<GoalResponse>(decision));
+  }
+}
+
+bool ActionServerImpl::is_known(const GoalUUID & id) const
+{
+  const std::lock_guard lock(mutex_);
+  return goals_.count(id) != 0 || deferred_goals_.count(id) != 0;
+}
+
+void ActionServerImpl::reject(const GoalUUID & id, const rmw_request_id_t & request_id,
+                              const std::string & reason)
+{
+  RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
+  respond(&rcl_action_send_goal_response, request_id, erased_.make_goal_response(false, 0, 0));
+}
+
+void ActionServerImpl::send_decision(const GoalUUID & id, const GoalRequest & request,
+                                     const GoalResponse & response)
+{
+  if (!response) {
+    return reject(id, request.id, response.error());
+  }
+  if (auto handle = accept(id, request.message)) {
+    send_acceptance(request.id, std::move(*handle));
+  } else {
+    discard(id);
+    reject(id, request.id, handle.error());
+  }
+}
+
+void ActionServerImpl::discard(const GoalUUID & id) noexcept
+{
+  if (erased_.on_goal_discarded) {
+    call("on_goal_discarded", id, [&] { erased_.on_goal_discarded(id); });
+  }
+}
+
+void ActionServerImpl::send_acceptance(const rmw_request_id_t & request,
+                                       std::shared_ptr<ServerGoalHandleBase> handle)
+{
+  const std::int64_t stamp = handle->get_goal_stamp();
+  auto response = erased_.make_goal_response(true, static_cast<std::int32_t>(stamp / kNsPerSecond),
+                                             static_cast<std::uint32_t>(stamp % kNsPerSecond));
+  respond(&rcl_action_send_goal_response, request, std::move(response), {},
+          [this, request, handle](bool delivered) {
+            const auto goal = find(handle->get_goal_id());
+            if (!delivered || !goal || !handle->is_active()) {
+              // The client does not know of the goal; releasing the handle aborts it. Or the goal was aborted
+              // while the response was being delivered.
+              discard(handle->get_goal_id());
+              return;
+            }
+            watch_client(*goal, request);
+            {
+              const std::lock_guard lock(mutex_);
+              publish_status_locked();
+            }
+            run_accepted(handle);
+            check_clients();  // a client has to be discovered before its end can be noticed
+          });
+}
+
+GoalDecision ActionServerImpl::handle_goal(const GoalUUID & id, const void * request) noexcept
+{
+  try {
+    return erased_.handle_goal ? erased_.handle_goal(id, request) : GoalResponse{};
+  } catch (const std::exception & error) {
+    return GoalResponse{tl::unexpect, error.what()};
+  } catch (...) {
+    return GoalResponse{tl::unexpect, "handle_goal threw an unknown exception"};
+  }
+}
+
+tl::expected<std::shared_ptr<ServerGoalHandleBase>, std::string> ActionServerImpl::accept(
+    const GoalUUID & id, const std::shared_ptr<void> & request)
+{
+  const std::lock_guard lock(mutex_);
+  if (!node()->get_context().ok()) {
+    return tl::make_unexpected(std::string("shutting down"));
+  }
+  rcl_action_goal_info_t info = rcl_action_get_zero_initialized_goal_info();
+  std::copy(id.bytes.begin(), id.bytes.end(), std::begin(info.goal_id.uuid));
+  const rcl_action_goal_handle_t * const rcl_handle = rcl_action_accept_new_goal(&server_, &info);
+  if (rcl_handle == nullptr) {
+    return tl::make_unexpected(take_rcl_error());
+  }
+  const auto self = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
+  const auto goal = std::make_shared<ServerGoalImpl>(self, id, *rcl_handle);
+  goals_.emplace(id, goal);
+  goal->update(GOAL_EVENT_EXECUTE);
+  std::shared_ptr<ServerGoalHandleBase> handle = erased_.make_handle(goal, request);
+  goal->handle = handle;
+  return handle;
+}
+
+void ActionServerImpl::run_accepted(const std::shared_ptr<ServerGoalHandleBase> & handle) noexcept
+{
+  bool returned = false;
+  call("handle_accepted", handle->get_goal_id(), [&] {
+    erased_.handle_accepted(handle);
+    returned = true;
+  });
+  if (!returned) {
+    if (const auto goal = find(handle->get_goal_id())) {
+      abort(*goal);
+    }
+  }
+}
+
+void ActionServerImpl::take_cancel()
+{
+  action_msgs::srv::CancelGoal::Request request;
+  rmw_request_id_t request_id;
+  const rcl_ret_t code = rcl_action_take_cancel_request(&server_, &request_id, &request);
+  if (nothing_to_take(code)) {
+    return;
+  }
+  check_rcl(code, name_, "cannot take a cancel request");
+  const auto response = std::make_shared<action_msgs::srv::CancelGoal::Response>();
+  process_cancel(request, *response);
+  respond(&rcl_action_send_cancel_response, request_id, response);
+}
+
+void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Request & request,
+                                      action_msgs::srv::CancelGoal::Response & response)
+{
+  using Response = action_msgs::srv::CancelGoal::Response;
+  rcl_action_cancel_request_t rcl_request = rcl_action_get_zero_initialized_cancel_request();
+  rcl_request.goal_info = to_c(request.goal_info);
+  rcl_action_cancel_response_t rcl_response = rcl_action_get_zero_initialized_cancel_response();
+  std::vector<action_msgs::msg::GoalInfo> candidates;
+  {
+    const std::lock_guard lock(mutex_);
+    if (request.goal_info == action_msgs::msg::GoalInfo()) {  // all goals
+      for (auto & [id, goal] : deferred_goals_) {
+        goal.canceled = true;
+      }
+    }
+    check_rcl(rcl_action_process_cancel_request(&server_, &rcl_request, &rcl_response), name_,
+              "cannot process a cancel request");
+    for (std::size_t i = 0; i < rcl_response.msg.goals_canceling.size; ++i) {
+      candidates.push_back(to_cpp(rcl_response.msg.goals_canceling.data[i]));
+    }
+    response.return_code = rcl_response.msg.return_code;
+    ignore_rcl(rcl_action_cancel_response_fini(&rcl_response));
+  }
+  bool all_ended = true;
+  for (const auto & info : candidates) {
+    const auto goal = find(GoalUUID{info.goal_id.uuid});
+    if (goal && try_to_cancel(*goal)) {
+      response.goals_canceling.push_back(info);
+    } else if (goal && !is_terminal(goal->get_status())) {
+      all_ended = false;
+    }
+  }
+  if (!candidates.empty() && response.goals_canceling.empty()) {
+    response.return_code = all_ended ? Response::ERROR_GOAL_TERMINATED : Response::ERROR_REJECTED;
+  }
+  if (!response.goals_canceling.empty()) {
+    const std::lock_guard lock(mutex_);
+    publish_status_locked();
+  }
+}
+
+bool ActionServerImpl::try_to_cancel(ServerGoalImpl & goal)
+{
+  std::shared_ptr<ServerGoalHandleBase> handle;
+  {
+    const std::lock_guard lock(mutex_);
+    handle = goal.handle.lock();
+    if (!handle || is_terminal(goal.get_status())) {
+      return false;
+    }
+    goal.in_handle_cancel = true;
+  }
+  bool accepted = false;
+  if (erased_.handle_cancel) {
+    call("handle_cancel", goal.id(), [&] { accepted = erased_.handle_cancel(*handle); });
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    goal.in_handle_cancel = false;
+    if (goal.get_status() == GoalStatus::canceled) {
+      return true;  // the goal's thread has finished it meanwhile
+    }
+    if (!accepted || !goal.update(GOAL_EVENT_CANCEL_GOAL)) {
+      return false;
+    }
+  }
+  if (erased_.on_canceling) {
+    call("on_canceling", goal.id(), [&] { erased_.on_canceling(*handle); });
+  }
+  return true;
+}
+
+bool ActionServerImpl::take_result()
+{
+  const std::shared_ptr<void> request = erased_.make_result_request();
+  rmw_request_id_t request_id;
+  const rcl_ret_t code = rcl_action_take_result_request(&server_, &request_id, request.get());
+  if (nothing_to_take(code)) {
+    return false;
+  }
+  check_rcl(code, name_, "cannot take a result request");
+  const GoalUUID id = erased_.goal_id_of_result_request(request.get());
+  const auto goal = find(id);
+  if (!goal) {
+    respond(&rcl_action_send_result_response, request_id, make_missing_result(id, GoalStatus::unknown));
+    return true;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (!goal->result_response) {
+      goal->result_requests.push_back(request_id);
+      return true;
+    }
+  }
+  send_result(request_id, *goal);
+  return true;
+}
+
+void ActionServerImpl::send_result(const rmw_request_id_t & request, ServerGoalImpl & goal)
+{
+  const GoalUUID id = goal.id();
+  const GoalStatus status = goal.get_status();
+  respond(&rcl_action_send_result_response, request, goal.result_response,
+          [this, id, status] { return make_missing_result(id, status); });
+  goal.result_sent = true;
+}
+
+}  // namespace rcl_cxx::detail

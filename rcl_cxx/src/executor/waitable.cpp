@@ -1,0 +1,62 @@
+#include "executor/waitable.hpp"
+
+#include <exception>
+
+#include "node/node_impl.hpp"
+#include "rcl_cxx/logging.hpp"
+
+namespace rcl_cxx::detail {
+Waitable::Waitable(std::shared_ptr<NodeImpl> node, std::string label)
+    : node_(std::move(node)), label_(std::move(label))
+{
+  for (Source & source : sources_) {
+    source.waitable = this;
+  }
+}
+
+void Waitable::on_ready(const void * source, std::size_t count) noexcept
+{
+  // rcl passes on the pointer that set_callback() has given to it.
+  auto & origin = *static_cast<Source *>(const_cast<void *>(source));
+  // One event in the queue represents all pending data of a source: this bounds the length of the queue.
+  if (count > 0 && origin.pending.fetch_add(count) == 0) {
+    origin.waitable->push_event(static_cast<std::size_t>(&origin - origin.waitable->sources_.data()));
+  }
+}
+
+void Waitable::push_event(std::size_t source) noexcept
+{
+  node_->pending_events().push(Event{weak_from_this(), source, {}});
+}
+
+void Waitable::take_and_execute(std::size_t source) noexcept
+{
+  {
+    const std::lock_guard lock(callback_mutex_);
+    if (closed_) {
+      return;
+    }
+    try {
+      execute(source);
+    } catch (const std::exception & error) {
+      RCL_CXX_ERROR(node_->get_logger(), "{}: {}", label_, error.what());
+    } catch (...) {
+      RCL_CXX_ERROR(node_->get_logger(), "{}: the callback threw an unknown exception", label_);
+    }
+  }
+  // The rest goes to the end of the queue, so that every waitable has its turn. A timer has no pending data.
+  if (sources_[source].pending > 0 && sources_[source].pending.fetch_sub(1) > 1) {
+    push_event(source);
+  }
+}
+
+void Waitable::close() noexcept
+{
+  const std::lock_guard lock(callback_mutex_);
+  if (!closed_) {
+    closed_ = true;
+    clear_on_ready_callbacks();
+  }
+}
+
+}  // namespace rcl_cxx::detail

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <rcl/node.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "context/context_impl.hpp"
+#include "executor/event_queue.hpp"
+#include "node/ros_clock.hpp"
+#include "rcl_cxx/logging.hpp"
+#include "rcl_cxx/parameter.hpp"
+
+namespace rcl_cxx::detail {
+/// Owns the rcl node. Lives as long as any part of the node.
+class NodeImpl {
+ public:
+  NodeImpl(std::shared_ptr<ContextImpl> context, const std::string & name,
+           const std::string & node_namespace);
+  ~NodeImpl();
+  NodeImpl(const NodeImpl &) = delete;
+  NodeImpl & operator=(const NodeImpl &) = delete;
+
+  rcl_node_t * handle() noexcept { return &node_; }
+  /// To hold while an rcl entity of this node is initialized or finalized: rcl does not guard the node's
+  /// tables.
+  std::mutex & mutex() noexcept { return mutex_; }
+  PendingEvents & pending_events() noexcept { return pending_events_; }
+  RosClock & get_clock() noexcept { return clock_; }
+  ContextImpl & get_context() noexcept { return *context_impl_; }
+
+  const Logger & get_logger() const noexcept { return logger_; }
+  const std::string & get_name() const noexcept { return name_; }
+  const std::string & get_namespace() const noexcept { return namespace_; }
+  const std::string & get_fully_qualified_name() const noexcept { return fully_qualified_name_; }
+
+  /// Expands and remaps a name. @throws Error if it is invalid
+  std::string resolve(const std::string & name, bool is_service) const;
+  /// The values for this node from the command line and parameter files.
+  std::map<std::string, ParameterValue> read_parameter_overrides() const;
+
+  /// True in a callback of the executor of this node: waiting for another callback would never end.
+  bool in_own_callback() const;
+
+ private:
+  void end_rosout();
+
+  const std::shared_ptr<ContextImpl> context_impl_;
+  mutable std::mutex mutex_;
+  rcl_node_t node_ = rcl_get_zero_initialized_node();
+  bool has_rosout_ = false;  ///< guarded by logging_mutex
+  std::size_t rosout_end_ = 0;
+  Logger logger_;
+  std::string name_;
+  std::string namespace_;
+  std::string fully_qualified_name_;
+  RosClock clock_;
+  PendingEvents pending_events_;
+};
+
+}  // namespace rcl_cxx::detail

@@ -1,0 +1,61 @@
+#include "process/duplicate_check.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <tuple>
+#include <utility>
+
+namespace ur_ros_rtde {
+namespace {
+/// Longest time for discovery. After that, this process is in use and must not exit.
+constexpr std::chrono::seconds start_phase{10};
+
+std_msgs::msg::Header this_process()
+{
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto whole = std::chrono::floor<std::chrono::seconds>(now);
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  std_msgs::msg::Header header;
+  header.stamp.sec = static_cast<std::int32_t>(whole.count());
+  header.stamp.nanosec = static_cast<std::uint32_t>(std::chrono::nanoseconds(now - whole).count());
+  header.frame_id = fmt::format("process {} on {}", ::getpid(), host.data());
+  return header;
+}
+
+auto age(const std_msgs::msg::Header & header)
+{
+  return std::tie(header.stamp.sec, header.stamp.nanosec, header.frame_id);
+}
+}  // namespace
+
+DuplicateCheck::DuplicateCheck(rcl_cxx::Node & node, std::function<void(const std::string & why)> refuse)
+    : node_(node),
+      refuse_(std::move(refuse)),
+      own_(this_process()),
+      publisher_(node.create_publisher<Instance>("~/_instance", rcl_cxx::QoS::transient_local())),
+      subscription_(
+          node.create_subscription<Instance>("~/_instance", rcl_cxx::QoS::transient_local(8),
+                                             [this](const Instance & other) { on_instance(other); }))
+{
+  publisher_->publish(own_);
+}
+
+void DuplicateCheck::on_instance(const Instance & other)
+{
+  if (age(other) == age(own_)) {
+    return;
+  }
+  const std::string what = fmt::format("another node with the name {} is already running ({})",
+                                       node_.get_fully_qualified_name(), other.frame_id);
+  const std::string remedy = "stop one of them, or use a different namespace (--ros-args -r __ns:=/…)";
+  if (std::chrono::steady_clock::now() - begin_ > start_phase) {
+    RCL_CXX_ERROR(node_.get_logger(), "{}; both answer the same clients: {}", what, remedy);
+  } else if (age(other) < age(own_)) {
+    refuse_(fmt::format("{}, so this process exits: {}", what, remedy));
+  }
+}
+
+}  // namespace ur_ros_rtde
