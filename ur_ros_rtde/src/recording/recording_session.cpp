@@ -21,7 +21,7 @@ constexpr std::chrono::milliseconds retry_interval{250};
 
 RecordingSession::RecordingSession(Plan plan, RtdeStream stream, CsvFile file, const LogFunction & log)
     : plan_(std::move(plan)),
-      report_(log),
+      logger_(log),
       stream_(std::move(stream)),
       file_(std::move(file)),
       queue_(plan_.columns, queue_rows),
@@ -59,11 +59,11 @@ void RecordingSession::receive(const std::stop_token & stop)
     if (stop.stop_requested()) {
       return;
     }
-    report_.once(LogLevel::warn, fmt::format("recording {}: {}; trying to connect again", file_.path(),
-                                             ended.error().message));
+    logger_.log_on_change(LogLevel::warn, fmt::format("recording {}: {}; trying to connect again",
+                                                      file_.path(), ended.error().message));
     if (auto stream = RtdeStream::open(plan_.address, plan_.fields, plan_.frequency)) {
       stream_ = std::move(*stream);
-      report_.forget();
+      logger_.reset();
     }
   }
 }
@@ -114,7 +114,7 @@ void RecordingSession::write()
       }
       state_ = file_.flush();
       if (!state_) {
-        report_.say(LogLevel::error, fmt::format("recording: {}", state_.error().message));
+        logger_.log(LogLevel::error, fmt::format("recording: {}", state_.error().message));
       }
     }
     lost_ += count - (file_.rows() - before);

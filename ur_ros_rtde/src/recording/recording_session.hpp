@@ -9,7 +9,7 @@
 #include "recording/csv_file.hpp"
 #include "recording/recorder.hpp"
 #include "recording/row_queue.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
+#include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
 
 namespace ur_ros_rtde {
@@ -39,7 +39,7 @@ class RecordingSession {
   void write();
 
   const Plan plan_;
-  Reporter report_;
+  ChangeLogger logger_;
   RtdeStream stream_;
   CsvFile file_;
   Status state_;  ///< used by the writer thread until it has ended

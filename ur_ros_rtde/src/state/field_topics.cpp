@@ -59,7 +59,7 @@ void wait(const std::stop_token & stop, std::chrono::milliseconds duration)
 }  // namespace
 
 FieldTopics::FieldTopics(rcl_cxx::Node & node, Options options, LogFunction log)
-    : options_(std::move(options)), report_(std::move(log))
+    : options_(std::move(options)), logger_(std::move(log))
 {
   const rcl_cxx::QoS qos = rcl_cxx::QoS::from_name(options_.qos);
   tool_.header.frame_id = options_.tf_prefix + "tool0";
@@ -81,15 +81,15 @@ void FieldTopics::run(const std::stop_token & stop)
     auto stream = RtdeStream::open(options_.address, recipe(options_.fields, with_tool), options_.frequency);
     Status ended = stream ? Status() : tl::unexpected(stream.error());
     if (stream) {
-      report_.forget();
+      logger_.reset();
       ended = follow(*stream, with_tool, stop);
     }
     if (!ended) {
       wait(stop, fields_retry_interval);
     }
     if (!ended && !stop.stop_requested()) {
-      report_.once(LogLevel::error,
-                   fmt::format("tool_data and robot_state: {}; trying again", ended.error().message));
+      logger_.log_on_change(
+          LogLevel::error, fmt::format("tool_data and robot_state: {}; trying again", ended.error().message));
     }
   }
 }

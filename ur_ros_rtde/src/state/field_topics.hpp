@@ -10,7 +10,7 @@
 #include <ur_ros_rtde_msgs/msg/tool_data.hpp>
 #include <vector>
 
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
+#include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
 
 namespace ur_ros_rtde {
@@ -44,7 +44,7 @@ class FieldTopics {
   void publish_state(std::span<const double> numbers);
 
   const Options options_;
-  Reporter report_;
+  ChangeLogger logger_;
   std::vector<std::size_t> begins_;  ///< position of each field of robot_state in a package
   ur_ros_rtde_msgs::msg::ToolData tool_;
   ur_ros_rtde_msgs::msg::RobotState state_;

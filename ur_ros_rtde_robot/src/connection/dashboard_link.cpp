@@ -14,7 +14,7 @@
 #include "connection/dashboard_request.hpp"
 #include "connection/ports.hpp"
 #include "connection/rtde_probe.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
+#include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {
@@ -40,7 +40,7 @@ bool supports_remote_control(const std::optional<ControllerVersion> & version)
 
 class DashboardLink::Impl {
  public:
-  Impl(DashboardLinkOptions options, LogFunction log) : options_(std::move(options)), report_(std::move(log))
+  Impl(DashboardLinkOptions options, LogFunction log) : options_(std::move(options)), logger_(std::move(log))
   {
     if (options_.address.empty()) {
       throw std::invalid_argument("the robot's address is empty: give its IP address or host name");
@@ -71,7 +71,7 @@ class DashboardLink::Impl {
   void report_failure(const std::shared_ptr<DashboardClient> & client, const std::string & why);
   void wait(const std::stop_token & stop, std::chrono::milliseconds duration);
 
-  Reporter report_;
+  ChangeLogger logger_;
   std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
   std::shared_ptr<DashboardClient> client_;
   bool supports_remote_ = false;
@@ -235,9 +235,9 @@ void DashboardLink::Impl::run(const std::stop_token & stop)
     const auto connected = connect();
     if (connected) {
       if (!lost) {
-        report_.say(LogLevel::warn, fmt::format("{}; connected again", lost.error().message));
+        logger_.log(LogLevel::warn, fmt::format("{}; connected again", lost.error().message));
       }
-      report_.forget();
+      logger_.reset();
       set_link({true, {}});
       lost = monitor(stop);
       continue;
@@ -250,9 +250,9 @@ void DashboardLink::Impl::run(const std::stop_token & stop)
     }
     wait(stop, options_.retry_interval);
     if (!stop.stop_requested()) {  // no error message if driver and controller are shut down together
-      report_.once(LogLevel::error,
-                   fmt::format("{}. Trying again every {} s", connected.error().message,
-                               std::chrono::duration<double>(options_.retry_interval).count()));
+      logger_.log_on_change(LogLevel::error,
+                            fmt::format("{}. Trying again every {} s", connected.error().message,
+                                        std::chrono::duration<double>(options_.retry_interval).count()));
     }
   }
 }

@@ -130,7 +130,7 @@ Status RtdeInterfaces::check_extensions(const ControllerVersion & version)
     }
   }
   extensions_checked_ = true;
-  extensions_reporter_.once(LogLevel::info, scripts_.missing_urcaps_message());
+  extensions_logger_.log_on_change(LogLevel::info, scripts_.missing_urcaps_message());
   return {};
 }
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "program/control_scripts.hpp"
+#include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
@@ -86,7 +86,7 @@ class RtdeInterfaces {
   const LogFunction log_;
   // Used by the thread of ControlProgramManager only.
   bool extensions_checked_ = false;
-  Reporter extensions_reporter_{log_};
+  ChangeLogger extensions_logger_{log_};
   mutable std::mutex mutex_;
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_;  ///< active
   std::shared_ptr<ur_rtde::RTDEControlInterface> pending_;

@@ -120,7 +120,7 @@ ControlProgramManager::Outcome ControlProgramManager::start_program()
     // No effect after inputs_in_use.
     const bool rejected = started.error().code == ErrorCode::not_ready;
     if (rejected && next_start_ == Clock::time_point{} && !stop_.stop_requested()) {
-      report_.say(LogLevel::warn, fmt::format("the control program cannot be started: {}; trying again",
+      logger_.log(LogLevel::warn, fmt::format("the control program cannot be started: {}; trying again",
                                               started.error().message));
     }
     next_start_ = Clock::now() + options_.retry_interval;
@@ -180,7 +180,7 @@ Status ControlProgramManager::end_program()
     return failure(ErrorCode::program_stopped, "the robot does not stop its program: stop it on the pendant");
   }
   if (runtime == RuntimeState::playing) {
-    report_.say(LogLevel::warn,
+    logger_.log(LogLevel::warn,
                 "a program was running on the robot: stopped it to start the control program");
   }
   return {};

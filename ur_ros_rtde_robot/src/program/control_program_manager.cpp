@@ -60,7 +60,7 @@ ControlProgramManager::ControlProgramManager(const RobotOptions & options, State
       model_(model),
       interfaces_(interfaces),
       server_(server),
-      report_(std::move(log)),
+      logger_(std::move(log)),
       machine_(options.control_mode, options.restart_program),
       status_{RobotState::disconnected, ErrorCode::link_lost,
               fmt::format("connecting to {}", options_.address)},
@@ -163,15 +163,15 @@ void ControlProgramManager::set_status(const RobotStatus & status)
   }
   changed_.notify_all();
   if (status.state == RobotState::ready) {
-    report_.say(LogLevel::info, "the robot is ready");
+    logger_.log(LogLevel::info, "the robot is ready");
   } else if (status.state == RobotState::stopped) {
-    report_.say(LogLevel::warn, fmt::format("the robot cannot move: {}", status.message));
+    logger_.log(LogLevel::warn, fmt::format("the robot cannot move: {}", status.message));
   }
   if (status_function) {
     try {
       status_function(status);
     } catch (const std::exception & error) {
-      report_.say(LogLevel::error, fmt::format("on_status threw: {}", printable(error.what())));
+      logger_.log(LogLevel::error, fmt::format("on_status threw: {}", printable(error.what())));
     }
   }
 }

@@ -16,8 +16,8 @@
 #include "program/program_state_machine.hpp"
 #include "program/script_server.hpp"
 #include "state/arm_model.hpp"
+#include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
@@ -114,7 +114,7 @@ class ControlProgramManager {
   ArmModel & model_;
   RtdeInterfaces & interfaces_;
   const ScriptServer & server_;
-  Reporter report_;
+  ChangeLogger logger_;
 
   mutable std::mutex mutex_;
   mutable std::condition_variable_any changed_;

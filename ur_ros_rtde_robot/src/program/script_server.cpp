@@ -201,7 +201,7 @@ ScriptServer::ScriptServer(std::uint16_t port, std::chrono::milliseconds retry_i
     : port_(port),
       retry_interval_(retry_interval),
       source_(std::move(source)),
-      report_(std::move(log)),
+      logger_(std::move(log)),
       status_(failure(ErrorCode::not_ready, fmt::format("port {} is not open yet", port)))
 {
 }
@@ -254,7 +254,8 @@ void ScriptServer::run(const std::stop_token & stop)
       set(service.listen());
       service.poll_once(retry_interval_);
     } catch (const std::exception & error) {
-      report_.once(LogLevel::error, fmt::format("cannot serve the control program: {}", error.what()));
+      logger_.log_on_change(LogLevel::error,
+                            fmt::format("cannot serve the control program: {}", error.what()));
     }
   }
 }
@@ -262,14 +263,15 @@ void ScriptServer::run(const std::stop_token & stop)
 std::optional<std::string> ScriptServer::answer(const std::string & line, const std::string & peer)
 {
   if (line.substr(0, line.find_last_not_of(" \r") + 1) != request) {
-    report_.once(LogLevel::warn, fmt::format("{} asked port {} for something other than the control program: "
-                                             "is it an External Control URCap?",
-                                             peer, port_));
+    logger_.log_on_change(LogLevel::warn,
+                          fmt::format("{} asked port {} for something other than the control program: "
+                                      "is it an External Control URCap?",
+                                      peer, port_));
     return std::nullopt;
   }
   const auto version = source_.version();
   if (!version) {
-    report_.say(LogLevel::warn, fmt::format("{} asked for the control program before its controller was "
+    logger_.log(LogLevel::warn, fmt::format("{} asked for the control program before its controller was "
                                             "known: check the robot's address, and press play again",
                                             peer));
     return std::nullopt;
@@ -278,14 +280,14 @@ std::optional<std::string> ScriptServer::answer(const std::string & line, const 
   try {
     program = source_.program(*version);
   } catch (const std::exception & error) {
-    report_.say(LogLevel::error, fmt::format("there is no control program for {}: {}", peer, error.what()));
+    logger_.log(LogLevel::error, fmt::format("there is no control program for {}: {}", peer, error.what()));
     return std::nullopt;
   }
   {
     const std::lock_guard lock(mutex_);
     ++fetched_;
   }
-  report_.say(LogLevel::info, fmt::format("{} has fetched the control program", peer));
+  logger_.log(LogLevel::info, fmt::format("{} has fetched the control program", peer));
   return program;
 }
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <thread>
 
+#include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
@@ -50,7 +50,7 @@ class ScriptServer {
   const std::uint16_t port_;
   const std::chrono::milliseconds retry_interval_;
   const Source source_;
-  Reporter report_;
+  ChangeLogger logger_;
   mutable std::mutex mutex_;
   Status status_;
   unsigned fetched_ = 0;

@@ -66,7 +66,7 @@ std::optional<std::string> model_of_type(std::int32_t number, bool cb3)
 ArmModel::ArmModel(std::string address, std::string stated, LogFunction log)
     : address_(std::move(address)),
       stated_(normalized_model_name(stated)),
-      report_(std::move(log)),
+      logger_(std::move(log)),
       limits_(limits_of_stated(stated_))
 {
 }
@@ -82,9 +82,9 @@ void ArmModel::report_undetected(const std::string & why)
       stated_.empty() ? "motions are limited to what every model can do: set the parameter ur_type to the "
                         "model on the arm's base"
                       : fmt::format("the parameter ur_type ({}) cannot be verified", stated_);
-  report_.once(LogLevel::warn,
-               fmt::format("the controller at {} does not report the model of the arm ({}); {}", address_,
-                           why, consequence));
+  logger_.log_on_change(LogLevel::warn,
+                        fmt::format("the controller at {} does not report the model of the arm ({}); {}",
+                                    address_, why, consequence));
 }
 
 void ArmModel::detect(const ControllerVersion & version, std::chrono::milliseconds limit)
@@ -103,7 +103,7 @@ void ArmModel::detect(const ControllerVersion & version, std::chrono::millisecon
     detected_ = model;
     limits_ = stated_.empty() ? arm_limits(*model).value_or(common_arm_limits()) : limits_of_stated(stated_);
   }
-  report_.once(LogLevel::info, fmt::format("the arm at {} is a {}", address_, describe(*model)));
+  logger_.log_on_change(LogLevel::info, fmt::format("the arm at {} is a {}", address_, describe(*model)));
 }
 
 ArmLimits ArmModel::limits() const

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
@@ -37,7 +37,7 @@ class ArmModel {
 
   const std::string address_;
   const std::string stated_;
-  Reporter report_;  ///< used by detect() only
+  ChangeLogger logger_;  ///< used by detect() only
   mutable std::mutex mutex_;
   std::optional<std::string> detected_;
   ArmLimits limits_;

@@ -14,8 +14,8 @@
 #include "connection/ports.hpp"
 #include "connection/rtde_probe.hpp"
 #include "state/sample_reader.hpp"
+#include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
-#include "ur_ros_rtde_robot/connection/reporter.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {
@@ -46,7 +46,7 @@ void check(const StateReceiverOptions & options)
 
 class StateReceiver::Impl {
  public:
-  Impl(StateReceiverOptions options, LogFunction log) : options_(std::move(options)), report_(std::move(log))
+  Impl(StateReceiverOptions options, LogFunction log) : options_(std::move(options)), logger_(std::move(log))
   {
     check(options_);
     link_.error = {ErrorCode::link_lost, fmt::format("connecting to {}", options_.address)};
@@ -87,7 +87,7 @@ class StateReceiver::Impl {
   std::optional<std::string> failure_;  ///< exception of sample_function_
   std::atomic<bool> processing_ = false;
   std::atomic<Clock::time_point> processed_{};
-  Reporter report_;
+  ChangeLogger logger_;
   bool frequency_reported_ = false;
   std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
 };
@@ -98,7 +98,7 @@ double StateReceiver::Impl::choose_frequency(const ControllerVersion & version)
     return version.frequency();
   }
   if (options_.frequency > version.frequency() && !std::exchange(frequency_reported_, true)) {
-    report_.say(LogLevel::warn,
+    logger_.log(LogLevel::warn,
                 fmt::format("frequency {} Hz exceeds the maximum of a controller of version {}: using {} Hz",
                             options_.frequency, to_string(version), version.frequency()));
   }
@@ -254,7 +254,7 @@ void StateReceiver::Impl::run(const std::stop_token & stop)
 {
   // ur_rtde's threads inherit the priority.
   if (const Status allowed = set_realtime_priority(options_.realtime_priority); !allowed) {
-    report_.say(LogLevel::warn, allowed.error().message);
+    logger_.log(LogLevel::warn, allowed.error().message);
   }
   const auto retry_seconds = std::chrono::duration<double>(options_.retry_interval).count();
   while (!stop.stop_requested()) {
@@ -262,7 +262,8 @@ void StateReceiver::Impl::run(const std::stop_token & stop)
     set_link({false, end});
     pause(stop, options_.retry_interval);
     if (!stop.stop_requested()) {  // no error message if driver and controller are shut down together
-      report_.once(LogLevel::error, fmt::format("{}. Trying again every {} s", end.message, retry_seconds));
+      logger_.log_on_change(LogLevel::error,
+                            fmt::format("{}. Trying again every {} s", end.message, retry_seconds));
     }
   }
 }
@@ -272,8 +273,8 @@ Error StateReceiver::Impl::connect_and_receive(const std::stop_token & stop)
   if (const auto connected = connect(); !connected) {
     return connected.error();
   }
-  report_.forget();
-  report_.say(LogLevel::info, fmt::format("connected to {}: PolyScope {}, {} Hz", options_.address,
+  logger_.reset();
+  logger_.log(LogLevel::info, fmt::format("connected to {}: PolyScope {}, {} Hz", options_.address,
                                           to_string(*version_), frequency_));
   return receive_packages(stop);
 }
