@@ -15,8 +15,8 @@ using std::chrono::seconds;
 class ActiveGoalsTest : public testing::Test {
  protected:
   rcl_cxx::Context::SharedPtr context_ = std::make_shared<rcl_cxx::Context>(
-      std::vector<std::string>{"active_goals_test"}, rcl_cxx::InitOptions{.shutdown_on_signal = false});
-  rcl_cxx::Node node_{context_, "active_goals_test"};
+      std::vector<std::string>{"test_active_goals"}, rcl_cxx::InitOptions{.shutdown_on_signal = false});
+  rcl_cxx::Node node_{context_, "test_active_goals"};
   PluginHost host_{node_};
   ActiveGoals active_goals_{host_, "/test"};
   StopRequest stop_request_;

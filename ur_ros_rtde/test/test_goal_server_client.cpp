@@ -13,7 +13,7 @@ using std::chrono::seconds;
 
 rcl_cxx::Context::SharedPtr make_context()
 {
-  return std::make_shared<rcl_cxx::Context>(std::vector<std::string>{"goal_server_client_test"},
+  return std::make_shared<rcl_cxx::Context>(std::vector<std::string>{"test_goal_server_client"},
                                             rcl_cxx::InitOptions{.shutdown_on_signal = false});
 }
 

@@ -19,8 +19,8 @@ using ur_ros_rtde_msgs::action::Trigger;
 class GoalServerTest : public testing::Test {
  protected:
   rcl_cxx::Context::SharedPtr context_ = std::make_shared<rcl_cxx::Context>(
-      std::vector<std::string>{"goal_server_test"}, rcl_cxx::InitOptions{.shutdown_on_signal = false});
-  rcl_cxx::Node node_{context_, "goal_server_test"};
+      std::vector<std::string>{"test_goal_server"}, rcl_cxx::InitOptions{.shutdown_on_signal = false});
+  rcl_cxx::Node node_{context_, "test_goal_server"};
 };
 
 /// An action whose result cannot be filled in.
