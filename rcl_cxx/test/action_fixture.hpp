@@ -5,11 +5,13 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <test_msgs/action/fibonacci.hpp>
 #include <vector>
 
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "rcl_cxx_test/action_client.hpp"
+#include "rcl_cxx_test/client.hpp"
 #include "ros_fixture.hpp"
 
 using Fibonacci = test_msgs::action::Fibonacci;
@@ -70,6 +72,19 @@ class Actions : public Spinning {
   {
     auto response = client->async_send_goal(goal_of(order), std::move(options));
     return response.wait_for(kLimit) == std::future_status::ready ? response.get() : nullptr;
+  }
+
+  /// Sends a goal with this id, as a client with a faulty generator of ids would. Returns whether it was
+  /// accepted.
+  std::optional<bool> send_with_id(const rcl_cxx::GoalUUID & id)
+  {
+    using SendGoal = Fibonacci::Impl::SendGoalService;
+    const auto service = rcl_cxx::create_client<SendGoal>(*node, "fibonacci/_action/send_goal");
+    SendGoal::Request request;
+    request.goal_id.uuid = id.bytes;
+    const auto response = service->call(request, kLimit);
+    EXPECT_TRUE(response) << response.error();
+    return response ? std::optional<bool>(response->accepted) : std::nullopt;
   }
 
   /// The server's handle of the n-th goal.

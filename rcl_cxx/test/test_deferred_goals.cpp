@@ -72,6 +72,23 @@ TEST_F(DeferredGoalTest, LetsTheServerAnswerOtherRequests)
   accepted(1)->succeed();
 }
 
+TEST_F(DeferredGoalTest, IsNotReplacedByAGoalWithTheSameId)
+{
+  serve();
+  const auto defer = on_goal;
+  std::optional<rcl_cxx::GoalUUID> id;
+  on_goal = [&](const rcl_cxx::GoalUUID & goal_id, const Fibonacci::Goal & goal) {
+    id = goal_id;
+    return defer(goal_id, goal);
+  };
+  Response response = send_deferred();
+  EXPECT_EQ(send_with_id(id.value()), false);
+  EXPECT_EQ(responder_count(), 1U);
+  responders.at(0)({});
+  EXPECT_TRUE(get(std::move(response)));
+  accepted(0)->succeed();
+}
+
 TEST_F(DeferredGoalTest, TakesTheFirstResponse)
 {
   serve();

@@ -1,10 +1,10 @@
-#include "ur_ros_rtde/detail/active_goals.hpp"
-
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <future>
 #include <rcl_cxx/executor.hpp>
 
+#include "ur_ros_rtde/detail/active_goals.hpp"
 #include "ur_ros_rtde/detail/guarded.hpp"
 
 namespace ur_ros_rtde {
@@ -36,6 +36,21 @@ TEST_F(ActiveGoalsTest, CheckThatThrowsRefusesWithItsText)
       GoalUUID::random(), [](GoalContext &) -> Status { throw std::runtime_error("a fault in the check"); });
   ASSERT_FALSE(accepted);
   EXPECT_NE(accepted.error().find("a fault in the check"), std::string::npos);
+}
+
+TEST_F(ActiveGoalsTest, CheckThatThrowsARobotErrorRefusesWithItsCode)
+{
+  const auto accepted = active_goals_.accept(GoalUUID::random(), [](GoalContext &) -> Status {
+    throw RobotError(Error{ErrorCode::busy, "a script is running"});
+  });
+  ASSERT_FALSE(accepted);
+  EXPECT_EQ(accepted.error(),
+            fmt::format("a script is running (busy {})", static_cast<int>(ErrorCode::busy)));
+}
+
+TEST_F(ActiveGoalsTest, CheckThatThrowsAnExceptionOfAnyTypeRefuses)
+{
+  EXPECT_FALSE(active_goals_.accept(GoalUUID::random(), [](GoalContext &) -> Status { throw 42; }));
 }
 
 TEST_F(ActiveGoalsTest, ExceptionBecomesTheOutcome)
@@ -140,24 +155,6 @@ TEST_F(GoalWithLeaseTest, StoppedGoalKeepsItsLeaseUntilItsEnd)
   EXPECT_TRUE(arbiter_.holder(Resource::motion));
   active_goals_.finish(id, client_lost());
   EXPECT_FALSE(arbiter_.holder(Resource::motion));
-  host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
-}
-
-TEST_F(GoalWithLeaseTest, IsNotReplacedByAGoalWithTheSameId)
-{
-  const GoalUUID id = GoalUUID::random();
-  ASSERT_TRUE(accept(id));
-  std::promise<std::shared_ptr<GoalContext>> started;
-  ASSERT_TRUE(active_goals_.start(
-      id, [&](const std::shared_ptr<GoalContext> & context) { started.set_value(context); }));
-  const auto context = started.get_future().get();
-
-  const auto again = active_goals_.accept(id, [](GoalContext &) { return Status(); });
-  ASSERT_FALSE(again);
-  EXPECT_NE(again.error().find(id.to_string()), std::string::npos) << again.error();
-
-  active_goals_.stop(id, Error{ErrorCode::canceled, "canceled by a client"});
-  ASSERT_TRUE(context->stop_request->reason()) << "the cancel has to reach the goal that runs";
   host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 

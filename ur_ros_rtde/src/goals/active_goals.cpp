@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "ur_ros_rtde/detail/guarded.hpp"
+
 namespace ur_ros_rtde {
 namespace {
 /// The goal was stopped by the shutdown, and nothing else went wrong (which would add to the message).
@@ -41,23 +43,12 @@ tl::expected<void, std::string> ActiveGoals::accept(const rcl_cxx::GoalUUID & id
                                                     const std::function<Status(GoalContext &)> & check)
 {
   const auto context = std::make_shared<GoalContext>();
-  Status status = host_.goals().can_start();
-  if (status && find(id)) {
-    status = failure(
-        ErrorCode::invalid_goal,
-        fmt::format("a goal with the id {} is active: give each goal an id of its own", id.to_string()));
-  }
-  if (status) {
-    try {
-      status = check(*context);
-    } catch (const RobotError & error) {
-      status = tl::unexpected(error.error());
-    } catch (const std::exception & error) {
-      status = failure(ErrorCode::exception, fmt::format("the check of the goal threw: {}", error.what()));
-    }
-  }
-  if (!status) {
-    return publish_refusal(id, status.error());
+  const Outcome checked = guarded([&]() -> Outcome {
+    const Status can_start = host_.goals().can_start();
+    return can_start ? check(*context) : can_start;
+  });
+  if (!checked) {
+    return publish_refusal(id, checked.error());
   }
   const std::lock_guard lock(mutex_);
   contexts_[id] = context;

@@ -32,7 +32,7 @@ class ActiveGoals {
   const std::string & action() const { return action_; }
 
   /// Registers a goal if `check` succeeds. Otherwise the reason is published on goal_refusals and returned
-  /// for the log.
+  /// for the log. `check` may throw. The action server has made sure that no other goal has this id.
   tl::expected<void, std::string> accept(const rcl_cxx::GoalUUID & id,
                                          const std::function<Status(GoalContext &)> & check);
   /// Discards a goal that accept() has registered, publishes the reason on goal_refusals and returns it for
