@@ -176,7 +176,7 @@ int serve(const std::string & address, int pipe)
   }
   print("goal sent -> first RTDE command", timed.seconds);
   print("cancel sent -> the arm decelerates", cancels);
-  host.goals().close(ur_ros_rtde::Error{ur_ros_rtde::ErrorCode::shutdown, "done"}, 5s);
+  host.goal_threads().close(ur_ros_rtde::Error{ur_ros_rtde::ErrorCode::shutdown, "done"}, 5s);
   timed.stop_action_server();
   swing.stop_action_server();
   context->shutdown("done");

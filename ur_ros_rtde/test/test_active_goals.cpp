@@ -98,7 +98,7 @@ TEST_F(ActiveGoalsTest, CancelReachesTheGoal)
   }));
   active_goals_.stop(id, Error{ErrorCode::canceled, "canceled by a client"});
   EXPECT_EQ(ended.get_future().get(), ErrorCode::canceled);
-  host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
+  host_.goal_threads().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 
 /// Goals that hold a resource from their acceptance, as motions do.
@@ -135,7 +135,7 @@ TEST_F(GoalWithLeaseTest, KeepsItsLeaseWhileAnotherGoalIsRefused)
   ASSERT_TRUE(accept(id));
   EXPECT_FALSE(accept(GoalUUID::random())) << "the first one still holds the arm";
   EXPECT_TRUE(active_goals_.start(id, [](const std::shared_ptr<GoalContext> &) {}));
-  host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
+  host_.goal_threads().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 
 TEST_F(GoalWithLeaseTest, GoalStoppedBeforeItsStartReleasesItsLease)
@@ -155,7 +155,7 @@ TEST_F(GoalWithLeaseTest, StoppedGoalKeepsItsLeaseUntilItsEnd)
   EXPECT_TRUE(arbiter_.holder(Resource::motion));
   active_goals_.finish(id, client_lost());
   EXPECT_FALSE(arbiter_.holder(Resource::motion));
-  host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
+  host_.goal_threads().close(Error{ErrorCode::shutdown, ""}, seconds(10));
 }
 
 TEST_F(GoalWithLeaseTest, LeaseIsReleasedBeforeTheResultIsSent)

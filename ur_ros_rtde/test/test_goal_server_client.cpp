@@ -46,7 +46,7 @@ class EndlessCommand : public GoalServer<Trigger> {
   }
   ~EndlessCommand() override
   {
-    host_.goals().close(Error{ErrorCode::shutdown, ""}, seconds(10));
+    host_.goal_threads().close(Error{ErrorCode::shutdown, ""}, seconds(10));
     stop_server();
   }
 

@@ -1,9 +1,9 @@
-#include "ur_ros_rtde/tcp_target.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "ur_ros_rtde/tcp_target.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -59,7 +59,7 @@ TEST(TcpTargetTest, UsesAnyOtherOrientation)
 TEST(TurnToIdentityTest, NamesTheFirstPoseWithAnIdentityOrientation)
 {
   const Vector6 start = looking_down().target_tcp_pose;
-  const auto text = turn_to_identity(
+  const auto text = identity_orientation_warning(
       start, path_poses("poses", {turned(pi), turned(0.9 * pi), pose(0.5, 0.1, 0.4), pose(0.6, 0.1, 0.4)}));
   EXPECT_EQ(text.find("poses[2] turns the tool by 162 degrees"), 0U) << text;
 }
@@ -67,16 +67,19 @@ TEST(TurnToIdentityTest, NamesTheFirstPoseWithAnIdentityOrientation)
 TEST(TurnToIdentityTest, IgnoresOtherAndSmallRotations)
 {
   const Vector6 start = looking_down().target_tcp_pose;
-  EXPECT_EQ(turn_to_identity(start, path_poses("poses", {turned(0.1)})), "") << "an orientation of its own";
-  EXPECT_EQ(turn_to_identity(start, path_poses("poses", {turned(0.6 * pi), turned(0.3 * pi), pose(1, 0, 0)})),
+  EXPECT_EQ(identity_orientation_warning(start, path_poses("poses", {turned(0.1)})), "")
+      << "an orientation of its own";
+  EXPECT_EQ(identity_orientation_warning(
+                start, path_poses("poses", {turned(0.6 * pi), turned(0.3 * pi), pose(1, 0, 0)})),
             "");
-  EXPECT_NE(turn_to_identity(start, path_poses("poses", {turned(0.6 * pi), pose(1, 0, 0)})), "");
+  EXPECT_NE(identity_orientation_warning(start, path_poses("poses", {turned(0.6 * pi), pose(1, 0, 0)})), "");
 }
 
 TEST(TurnToIdentityTest, IsUnknownAfterJointPositions)
 {
   const Vector6 start = looking_down().target_tcp_pose;
-  EXPECT_EQ(turn_to_identity(start, {{"waypoints[0]", std::nullopt}, {"waypoints[1].pose", pose(1, 0, 0)}}),
+  EXPECT_EQ(identity_orientation_warning(
+                start, {{"waypoints[0]", std::nullopt}, {"waypoints[1].pose", pose(1, 0, 0)}}),
             "");
 }
 

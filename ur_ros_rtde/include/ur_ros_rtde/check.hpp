@@ -70,7 +70,7 @@ class Check {
   /// controller is sufficient.
   Check & polyscope(unsigned minor, std::optional<unsigned> cb3_minor = std::nullopt);
   /// The control program can answer queries. For commands without a resource: the arm may be moving.
-  Check & answers();
+  Check & answers_queries();
   /// The controller finds a solution for the pose within the safety limits. Skipped while the arm moves,
   /// because the inverse kinematics would start from a moving configuration.
   Check & reachable(std::string_view field, const geometry_msgs::msg::Pose & pose);

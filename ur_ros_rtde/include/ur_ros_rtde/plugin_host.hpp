@@ -23,14 +23,14 @@ class PluginHost {
   explicit PluginHost(rcl_cxx::Node & node);
 
   rcl_cxx::Node & node() { return node_; }
-  GoalThreads & goals() { return goals_; }
+  GoalThreads & goal_threads() { return goal_threads_; }
   /// Publishes on goal_refusals why a goal was rejected.
   void publish_refusal(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why);
 
  private:
   rcl_cxx::Node & node_;
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::GoalRefused>::SharedPtr refusals_;
-  GoalThreads goals_;
+  GoalThreads goal_threads_;
 };
 
 class CommandHost : public PluginHost {

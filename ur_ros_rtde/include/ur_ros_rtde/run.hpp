@@ -116,7 +116,7 @@ class Run {
   Outcome until_at(const Distance & distance, double tolerance, const char * unit);
   std::optional<StopReason> wait(const std::function<bool()> & condition,
                                  std::chrono::steady_clock::time_point deadline);
-  void feed_back();
+  void publish_feedback_if_due();
 
   Robot & robot_;
   std::shared_ptr<StopRequest> stop_request_;

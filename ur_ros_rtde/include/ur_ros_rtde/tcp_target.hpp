@@ -48,9 +48,9 @@ std::vector<PathPose> path_poses(const std::string & field,
 /// A warning about the first pose of a path from `start` that has an identity orientation and turns the tool
 /// by more than 90 degrees. Paths do not keep the orientation, which surprises users who set positions only.
 /// Empty if there is no such pose.
-std::string turn_to_identity(const Vector6 & start, const std::vector<PathPose> & path);
+std::string identity_orientation_warning(const Vector6 & start, const std::vector<PathPose> & path);
 
-/// Calls Run::warn() with the message of turn_to_identity().
-void warn_of_turn_to_identity(Run & run, const std::vector<PathPose> & path);
+/// Calls Run::warn() with the message of identity_orientation_warning().
+void warn_of_identity_orientation(Run & run, const std::vector<PathPose> & path);
 
 }  // namespace ur_ros_rtde

@@ -44,7 +44,7 @@ tl::expected<void, std::string> ActiveGoals::accept(const rcl_cxx::GoalUUID & id
 {
   const auto context = std::make_shared<GoalContext>();
   const Outcome checked = guarded([&]() -> Outcome {
-    const Status can_start = host_.goals().can_start();
+    const Status can_start = host_.goal_threads().can_start();
     return can_start ? check(*context) : can_start;
   });
   if (!checked) {
@@ -102,8 +102,8 @@ Status ActiveGoals::start(const rcl_cxx::GoalUUID & id, Work work)
 
 Status ActiveGoals::start_thread(std::string name, const std::shared_ptr<GoalContext> & context, Work work)
 {
-  return host_.goals().start(std::move(name), context->stop_request,
-                             [work = std::move(work), context] { work(context); });
+  return host_.goal_threads().start(std::move(name), context->stop_request,
+                                    [work = std::move(work), context] { work(context); });
 }
 
 void ActiveGoals::stop(const rcl_cxx::GoalUUID & id, const StopReason & reason)

@@ -36,7 +36,7 @@ Check & Check::polyscope(unsigned minor, std::optional<unsigned> cb3_minor)
               ErrorCode::not_supported);
 }
 
-Check & Check::answers()
+Check & Check::answers_queries()
 {
   if (!ready().ok() || preflight_ == nullptr) {
     return *this;

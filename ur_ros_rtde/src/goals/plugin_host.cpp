@@ -6,7 +6,7 @@ namespace ur_ros_rtde {
 
 PluginHost::PluginHost(rcl_cxx::Node & node)
     : node_(node),
-      // Latched: a client may be refused before its subscription has been matched.
+      // Transient local: a client may be refused before its subscription has been matched.
       refusals_(node.create_publisher<ur_ros_rtde_msgs::msg::GoalRefused>("goal_refusals",
                                                                           rcl_cxx::QoS::transient_local(100)))
 {

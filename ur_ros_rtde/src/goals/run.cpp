@@ -136,7 +136,7 @@ std::optional<StopReason> Run::wait(const std::function<bool()> & condition, Clo
     if (condition()) {
       return std::nullopt;
     }
-    feed_back();
+    publish_feedback_if_due();
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
     if (left <= milliseconds(0)) {
       return Error{ErrorCode::timeout, "the time was over"};
@@ -190,7 +190,7 @@ std::optional<StopReason> Run::next(Sample & sample)
     if (auto why = stop_reason()) {
       return why;
     }
-    feed_back();
+    publish_feedback_if_due();
     if (robot_.wait_for_next(sample, longest_nap, stop_request_->token())) {
       return stop_reason();
     }
@@ -298,7 +298,7 @@ Outcome Run::until_at_pose(const std::vector<double> & pose)
 ScriptReport Run::run_script(const std::string & script, ScriptOptions options)
 {
   options.stop_reason = [this] {
-    feed_back();
+    publish_feedback_if_due();
     return stop_reason();
   };
   return robot_.run_script(script, options);
@@ -320,7 +320,7 @@ std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> Run::motion_feedback() cons
   return feedback;
 }
 
-void Run::feed_back()
+void Run::publish_feedback_if_due()
 {
   const auto now = Clock::now();
   if (now < next_feedback_) {
@@ -350,7 +350,7 @@ Outcome Run::trigger(double timeout)
   options.limit =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
   options.stop_reason = [this] {
-    feed_back();
+    publish_feedback_if_due();
     return stop_reason();
   };
   return robot_.run_extension(plugin_, options);

@@ -53,7 +53,7 @@ std::vector<PathPose> path_poses(const std::string & field,
   return path;
 }
 
-std::string turn_to_identity(const Vector6 & start, const std::vector<PathPose> & path)
+std::string identity_orientation_warning(const Vector6 & start, const std::vector<PathPose> & path)
 {
   std::optional<Vector6> before = start;
   for (const PathPose & next : path) {
@@ -71,9 +71,10 @@ std::string turn_to_identity(const Vector6 & start, const std::vector<PathPose> 
   return {};
 }
 
-void warn_of_turn_to_identity(Run & run, const std::vector<PathPose> & path)
+void warn_of_identity_orientation(Run & run, const std::vector<PathPose> & path)
 {
-  if (const std::string warning = turn_to_identity(run.state().target_tcp_pose, path); !warning.empty()) {
+  if (const std::string warning = identity_orientation_warning(run.state().target_tcp_pose, path);
+      !warning.empty()) {
     run.warn(warning);
   }
 }

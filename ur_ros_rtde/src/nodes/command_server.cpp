@@ -59,7 +59,7 @@ void CommandServer::add_extensions(const ReportProblem & report)
 std::vector<std::string> CommandServer::close()
 {
   teleoperation_->close();
-  return host_->goals().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
+  return host_->goal_threads().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
 }
 
 }  // namespace ur_ros_rtde

@@ -38,7 +38,7 @@ void DashboardServer::start()
 
 std::vector<std::string> DashboardServer::close()
 {
-  return host_->goals().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
+  return host_->goal_threads().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
 }
 
 }  // namespace ur_ros_rtde

@@ -9,7 +9,7 @@ class ForceModeSetDamping : public Command<ur_ros_rtde_msgs::action::SetForceMod
 
   void check(const Goal & goal, Check & check) const override
   {
-    check.in_range("value", goal.value, 0.0, 1.0).polyscope(0, 5).answers();
+    check.in_range("value", goal.value, 0.0, 1.0).polyscope(0, 5).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -9,7 +9,7 @@ class ForceModeSetGainScaling : public Command<ur_ros_rtde_msgs::action::SetForc
 
   void check(const Goal & goal, Check & check) const override
   {
-    check.in_range("value", goal.value, 0.0, 2.0).polyscope(0).answers();
+    check.in_range("value", goal.value, 0.0, 2.0).polyscope(0).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -9,7 +9,7 @@ class ForceModeStart : public Command<ur_ros_rtde_msgs::action::ForceMode> {
   void check(const Goal & goal, Check & check) const override
   {
     check_force_mode(goal, false, check);
-    check.answers();
+    check.answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -10,7 +10,7 @@ constexpr std::array<const char *, 3> meanings{
 }  // namespace
 
 class GetFreedriveStatus : public QueryCommand<ur_ros_rtde_msgs::action::GetInteger> {
-  void check(const Goal &, Check & check) const override { check.polyscope(10).answers(); }
+  void check(const Goal &, Check & check) const override { check.polyscope(10).answers_queries(); }
 
   Outcome run(const Goal &, Run & run) override
   {

@@ -11,7 +11,7 @@ class SetExternalForceTorque : public Command<ur_ros_rtde_msgs::action::SetExter
   {
     check.vector("wrench.force", goal.wrench.force, 5000.0, "N")
         .vector("wrench.torque", goal.wrench.torque, 500.0, "Nm")
-        .answers();
+        .answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

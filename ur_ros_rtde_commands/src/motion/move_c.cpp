@@ -32,7 +32,7 @@ class MoveC : public Command<ur_ros_rtde_msgs::action::MoveC> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    warn_of_turn_to_identity(run, {{"pose", goal.pose}});
+    warn_of_identity_orientation(run, {{"pose", goal.pose}});
     return run_path(run, to_waypoints(goal), [](std::uint32_t) {}, goal.mode);
   }
 };

@@ -32,7 +32,7 @@ class MoveP : public Command<ur_ros_rtde_msgs::action::MoveP> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    warn_of_turn_to_identity(run, path_poses("poses", goal.poses));
+    warn_of_identity_orientation(run, path_poses("poses", goal.poses));
     return run_path(run, to_waypoints(goal), [&](std::uint32_t index) { run.feedback().waypoint = index; });
   }
 };

@@ -15,7 +15,7 @@ class MovePath : public Command<ur_ros_rtde_msgs::action::MovePath> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    warn_of_turn_to_identity(run, path_poses(goal.waypoints));
+    warn_of_identity_orientation(run, path_poses(goal.waypoints));
     return run_path(run, goal.waypoints, [&](std::uint32_t index) { run.feedback().waypoint = index; });
   }
 };

@@ -17,7 +17,7 @@ using Waypoints = std::vector<ur_ros_rtde_msgs::msg::PathWaypoint>;
 void check_path(Check & check, std::string_view name, const Waypoints & waypoints,
                 std::string_view pose = ".pose");
 
-/// The poses of the waypoints, for warn_of_turn_to_identity().
+/// The poses of the waypoints, for warn_of_identity_orientation().
 std::vector<PathPose> path_poses(const Waypoints & waypoints);
 
 /// Moves through the waypoints with a script that replaces the control program (requires Resource::script),

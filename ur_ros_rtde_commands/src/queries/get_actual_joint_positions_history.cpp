@@ -8,7 +8,7 @@ class GetActualJointPositionsHistory
     : public QueryCommand<ur_ros_rtde_msgs::action::GetJointPositionsHistory> {
   void check(const Goal & goal, Check & check) const override
   {
-    check.in_range("steps", goal.steps, 0, 100).polyscope(4).answers();
+    check.in_range("steps", goal.steps, 0, 100).polyscope(4).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -8,7 +8,9 @@ class GetCoriolisAndCentrifugalTorques : public QueryCommand<ur_ros_rtde_msgs::a
   void check(const Goal & goal, Check & check) const override
   {
     check_optional_joints(check, "joint_positions", goal.joint_positions);
-    check_optional_velocities(check, "joint_velocities", goal.joint_velocities).polyscope(23).answers();
+    check_optional_velocities(check, "joint_velocities", goal.joint_velocities)
+        .polyscope(23)
+        .answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -8,7 +8,7 @@ class GetForwardKinematics : public QueryCommand<ur_ros_rtde_msgs::action::GetFo
   void check(const Goal & goal, Check & check) const override
   {
     check_optional_joints(check, "joint_positions", goal.joint_positions);
-    check_optional_tcp(check, goal.use_tcp, goal.tcp).answers();
+    check_optional_tcp(check, goal.use_tcp, goal.tcp).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -10,7 +10,7 @@ class GetInverseKinematics : public QueryCommand<ur_ros_rtde_msgs::action::GetIn
     check.pose("pose", goal.pose)
         .above_zero("max_position_error", goal.max_position_error, 0.1, "m")
         .above_zero("max_orientation_error", goal.max_orientation_error, 0.1, "rad");
-    check_optional_joints(check, "near", goal.near).polyscope(10, 15).answers();
+    check_optional_joints(check, "near", goal.near).polyscope(10, 15).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

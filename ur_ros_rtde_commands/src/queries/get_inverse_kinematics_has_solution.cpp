@@ -8,7 +8,7 @@ class GetInverseKinematicsHasSolution : public QueryCommand<ur_ros_rtde_msgs::ac
   void check(const Goal & goal, Check & check) const override
   {
     check.pose("pose", goal.pose);
-    check_optional_joints(check, "near", goal.near).polyscope(10, 15).answers();
+    check_optional_joints(check, "near", goal.near).polyscope(10, 15).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

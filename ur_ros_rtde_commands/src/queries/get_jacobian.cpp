@@ -10,7 +10,7 @@ class GetJacobian : public QueryCommand<ur_ros_rtde_msgs::action::GetJacobian> {
     check_optional_joints(check, "joint_positions", goal.joint_positions)
         .that(goal.joint_velocities.empty(),
               "joint_velocities is used by get_jacobian_time_derivative only: leave it empty");
-    check_optional_tcp(check, goal.use_tcp, goal.tcp).polyscope(23).answers();
+    check_optional_tcp(check, goal.use_tcp, goal.tcp).polyscope(23).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

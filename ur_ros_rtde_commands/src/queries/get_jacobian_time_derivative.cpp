@@ -9,7 +9,7 @@ class GetJacobianTimeDerivative : public QueryCommand<ur_ros_rtde_msgs::action::
   {
     check_optional_joints(check, "joint_positions", goal.joint_positions);
     check_optional_velocities(check, "joint_velocities", goal.joint_velocities);
-    check_optional_tcp(check, goal.use_tcp, goal.tcp).polyscope(23).answers();
+    check_optional_tcp(check, goal.use_tcp, goal.tcp).polyscope(23).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class GetJointTorques : public QueryCommand<ur_ros_rtde_msgs::action::GetJointValues> {
-  void check(const Goal &, Check & check) const override { check.answers(); }
+  void check(const Goal &, Check & check) const override { check.answers_queries(); }
 
   Outcome run(const Goal &, Run & run) override
   {

@@ -7,7 +7,7 @@ namespace ur_ros_rtde {
 class GetMassMatrix : public QueryCommand<ur_ros_rtde_msgs::action::GetMassMatrix> {
   void check(const Goal & goal, Check & check) const override
   {
-    check_optional_joints(check, "joint_positions", goal.joint_positions).polyscope(23).answers();
+    check_optional_joints(check, "joint_positions", goal.joint_positions).polyscope(23).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

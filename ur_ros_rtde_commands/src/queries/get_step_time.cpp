@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class GetStepTime : public QueryCommand<ur_ros_rtde_msgs::action::GetNumber> {
-  void check(const Goal &, Check & check) const override { check.polyscope(4).answers(); }
+  void check(const Goal &, Check & check) const override { check.polyscope(4).answers_queries(); }
 
   Outcome run(const Goal &, Run & run) override
   {

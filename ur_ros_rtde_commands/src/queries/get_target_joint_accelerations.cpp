@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class GetTargetJointAccelerations : public QueryCommand<ur_ros_rtde_msgs::action::GetJointValues> {
-  void check(const Goal &, Check & check) const override { check.polyscope(23).answers(); }
+  void check(const Goal &, Check & check) const override { check.polyscope(23).answers_queries(); }
 
   Outcome run(const Goal &, Run & run) override
   {

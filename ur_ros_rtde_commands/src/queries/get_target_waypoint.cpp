@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class GetTargetWaypoint : public QueryCommand<ur_ros_rtde_msgs::action::GetPose> {
-  void check(const Goal &, Check & check) const override { check.polyscope(3).answers(); }
+  void check(const Goal &, Check & check) const override { check.polyscope(3).answers_queries(); }
 
   Outcome run(const Goal &, Run & run) override
   {

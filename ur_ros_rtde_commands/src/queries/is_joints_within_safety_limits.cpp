@@ -7,7 +7,7 @@ namespace ur_ros_rtde {
 class IsJointsWithinSafetyLimits : public QueryCommand<ur_ros_rtde_msgs::action::CheckJoints> {
   void check(const Goal & goal, Check & check) const override
   {
-    check.joints("joint_positions", goal.joint_positions).answers();
+    check.joints("joint_positions", goal.joint_positions).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -9,7 +9,7 @@ class IsPoseWithinSafetyLimits : public QueryCommand<ur_ros_rtde_msgs::action::C
   {
     check.pose("pose", goal.pose)
         .that(goal.near.empty(), "near is used by get_inverse_kinematics_has_solution only: leave it empty")
-        .answers();
+        .answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -7,7 +7,7 @@ namespace ur_ros_rtde {
 class PoseTrans : public QueryCommand<ur_ros_rtde_msgs::action::PoseTrans> {
   void check(const Goal & goal, Check & check) const override
   {
-    check.frame("p_from", goal.p_from).frame("p_from_to", goal.p_from_to).answers();
+    check.frame("p_from", goal.p_from).frame("p_from_to", goal.p_from_to).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -10,7 +10,7 @@ class SetWatchdog : public Command<ur_ros_rtde_msgs::action::SetWatchdog> {
   void check(const Goal & goal, Check & check) const override
   {
     check.in_range("min_frequency", goal.min_frequency, min_watchdog_frequency, max_watchdog_frequency, "Hz")
-        .answers();
+        .answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override { return run.robot().set_watchdog(goal.min_frequency); }

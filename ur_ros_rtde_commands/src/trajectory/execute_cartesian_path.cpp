@@ -65,7 +65,7 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
     for (const auto & pose : goal.poses) {
       poses.push_back(kinematics::to_pose(to_array(to_ur(pose))));
     }
-    warn_of_turn_to_identity(run, path_poses("poses", goal.poses));
+    warn_of_identity_orientation(run, path_poses("poses", goal.poses));
     Execution execution = make_execution(goal, run);
     execution.plan = [&](const Joints & start, const std::stop_token & stop) {
       const trajectory::Limits limits = limits_of(goal);

@@ -58,7 +58,7 @@ class ContactDetection : public Command<ur_ros_rtde_msgs::action::ContactDetecti
     check_direction(check, goal.direction)
         .above_zero("timeout", goal.timeout, 86400.0, "s")
         .polyscope(min_contact_polyscope)
-        .answers();
+        .answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override

@@ -11,7 +11,7 @@ class ToolContact : public Command<ur_ros_rtde_msgs::action::ToolContact> {
 
   void check(const Goal & goal, Check & check) const override
   {
-    check_direction(check, goal.direction).polyscope(min_contact_polyscope).answers();
+    check_direction(check, goal.direction).polyscope(min_contact_polyscope).answers_queries();
   }
 
   Outcome run(const Goal & goal, Run & run) override
