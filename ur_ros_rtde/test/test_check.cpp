@@ -1,9 +1,9 @@
-#include "ur_ros_rtde/check.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "ur_ros_rtde/check.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -62,7 +62,7 @@ TEST(CheckTest, RequiresSixJointsAndNamesThem)
 {
   Check check;
   check.joints("joint_positions", {1.0, 2.0, 3.0});
-  EXPECT_NE(message(check).find("joint_positions has 3 values, it takes 6: shoulder_pan_joint"),
+  EXPECT_NE(message(check).find("joint_positions has 3 values, it must have 6: shoulder_pan_joint"),
             std::string::npos)
       << message(check);
 }

@@ -121,13 +121,13 @@ TEST(PackageStatisticsTest, ReportIntervalsAndMissingCycles)
     statistics.add(sample(0.002 * cycle, begin + std::chrono::milliseconds(2 * cycle)), 500.0);
   }
   const auto report = statistics.report();
-  EXPECT_EQ(report.received_ever, 200U);
+  EXPECT_EQ(report.received_total, 200U);
   EXPECT_EQ(report.lost, 3U);
   EXPECT_NEAR(report.mean_interval, 2e-3 * 202 / 199, 1e-9);
   EXPECT_NEAR(report.p99_interval, 2e-3, 1e-9);
   EXPECT_NEAR(report.longest, 8e-3, 1e-9);
   EXPECT_EQ(statistics.report().lost, 0U);
-  EXPECT_EQ(statistics.report().lost_ever, 3U);
+  EXPECT_EQ(statistics.report().lost_total, 3U);
 }
 
 TEST(PackageStatisticsTest, RestartWithANewConnection)
@@ -139,7 +139,7 @@ TEST(PackageStatisticsTest, RestartWithANewConnection)
   again.link = 2;
   statistics.add(again, 500.0);
   const auto report = statistics.report();
-  EXPECT_EQ(report.lost_ever, 0U);
+  EXPECT_EQ(report.lost_total, 0U);
   EXPECT_EQ(report.longest, 0.0);
 }
 

@@ -60,7 +60,7 @@ class Context {
   /// Waits until a shutdown has begun. Returns false on timeout.
   bool wait_for_shutdown_begin(std::chrono::nanoseconds timeout) const;
 
-  /// Runs `callback` at the begin of a shutdown, in order of registration, while communication still works.
+  /// Runs `callback` when a shutdown begins, in order of registration, while communication still works.
   /// It must not block without a limit. An exception is logged. If a shutdown has begun already, the callback
   /// runs at once. Returns an id for remove_shutdown_callback().
   std::size_t add_pre_shutdown_callback(Callback callback);

@@ -29,8 +29,8 @@ class Parameters;
 ///
 /// Topic, service and action names are relative unless they begin with '/'; '~/x' is private to the node;
 /// remaps apply. All members are thread-safe. Publishers, subscriptions, services, timers and action servers
-/// may outlive the node object. Their callbacks run once the node has been added to an executor; what arrives
-/// before is kept.
+/// may outlive the node object. Their callbacks run once the node has been added to an executor; events that
+/// arrive earlier are kept.
 class Node {
  public:
   using SharedPtr = std::shared_ptr<Node>;

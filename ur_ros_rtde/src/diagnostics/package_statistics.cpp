@@ -6,7 +6,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// Two seconds at 500 Hz: what comes beyond is not looked at until the next report.
+/// 2 s at 500 Hz. Further intervals are ignored until the next report.
 constexpr std::size_t capacity = 1000;
 }  // namespace
 
@@ -19,8 +19,8 @@ PackageStatistics::PackageStatistics() : began_(std::chrono::steady_clock::now()
 void PackageStatistics::add(const Sample & sample, double frequency)
 {
   const std::lock_guard lock(mutex_);
-  ++counts_.received_ever;
-  if (counts_.received_ever > 1 && sample.link == link_) {
+  ++counts_.received_total;
+  if (counts_.received_total > 1 && sample.link == link_) {
     if (intervals_.size() < capacity) {
       intervals_.push_back(std::chrono::duration<double>(sample.received - received_).count());
     }
@@ -28,7 +28,7 @@ void PackageStatistics::add(const Sample & sample, double frequency)
     if (cycles > 1.0) {
       const auto lost = static_cast<std::uint64_t>(cycles) - 1;
       counts_.lost += lost;
-      counts_.lost_ever += lost;
+      counts_.lost_total += lost;
     }
   }
   link_ = sample.link;
@@ -47,7 +47,7 @@ PackageStatistics::Report PackageStatistics::report()
     std::ranges::sort(sorted_);
     report.mean_interval =
         std::accumulate(sorted_.begin(), sorted_.end(), 0.0) / static_cast<double>(sorted_.size());
-    // The smallest that at least 99 % do not exceed.
+    // The smallest interval that at least 99 % do not exceed.
     report.p99_interval = sorted_[(99 * sorted_.size() + 99) / 100 - 1];
     report.longest = sorted_.back();
   }

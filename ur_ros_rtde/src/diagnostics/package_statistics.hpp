@@ -18,8 +18,8 @@ class PackageStatistics {
     double p99_interval = 0.0;   ///< s, 99th percentile
     double longest = 0.0;        ///< s
     std::uint64_t lost = 0;      ///< control cycles without a package in the last second, by controller time
-    std::uint64_t lost_ever = 0;
-    std::uint64_t received_ever = 0;
+    std::uint64_t lost_total = 0;
+    std::uint64_t received_total = 0;
   };
 
   PackageStatistics();

@@ -8,10 +8,11 @@ namespace ur_ros_rtde {
 namespace {
 using Level = Diagnosis::Status;
 
-constexpr double good_share = 0.95;  // of the agreed rate
-constexpr double bad_share = 0.5;
-/// Joints in use stay below; UR gives no figure for what they bear.
-constexpr double hot = 75.0;  // degrees Celsius
+// Fractions of the agreed rate.
+constexpr double warn_rate = 0.95;
+constexpr double error_rate = 0.5;
+/// Joints in use stay below this temperature. UR publishes no limit.
+constexpr double hot_joint = 75.0;  // degrees Celsius
 
 std::uint8_t level(SafetyMode mode)
 {
@@ -58,8 +59,8 @@ Diagnosis diagnose_packages(const StateSource & source, const PackageStatistics:
     const std::string rate = fmt::format("{:.1f} of {:.0f} packages/s", packages.rate, source.frequency);
     diagnosis.ok(rate)
         .warn_if(packages.lost > 0, fmt::format("{} packages lost in the last second", packages.lost))
-        .warn_if(packages.rate < good_share * source.frequency, rate)
-        .error_if(packages.rate < bad_share * source.frequency, rate);
+        .warn_if(packages.rate < warn_rate * source.frequency, rate)
+        .error_if(packages.rate < error_rate * source.frequency, rate);
   }
   return diagnosis.value("rate", fmt::format("{:.1f} Hz", packages.rate))
       .value("agreed rate", fmt::format("{:.1f} Hz", source.frequency))
@@ -67,8 +68,8 @@ Diagnosis diagnose_packages(const StateSource & source, const PackageStatistics:
       .value("interval, 99 %", milliseconds(packages.p99_interval))
       .value("interval, longest", milliseconds(packages.longest))
       .value("lost in the last second", packages.lost)
-      .value("lost", packages.lost_ever)
-      .value("received", packages.received_ever);
+      .value("lost", packages.lost_total)
+      .value("received", packages.received_total);
 }
 
 Diagnosis diagnose_robot(const StateSource & source, const std::optional<Sample> & sample)
@@ -85,7 +86,7 @@ Diagnosis diagnose_robot(const StateSource & source, const std::optional<Sample>
     diagnosis.add(level(sample->safety_mode), fmt::format("safety mode {}", to_string(sample->safety_mode)))
         .warn_if(sample->robot_mode != RobotMode::running,
                  fmt::format("robot mode {}", to_string(sample->robot_mode)))
-        .warn_if(hottest > hot, fmt::format("a joint has {:.1f} degrees Celsius", hottest));
+        .warn_if(hottest > hot_joint, fmt::format("a joint has {:.1f} degrees Celsius", hottest));
   }
   return diagnosis.value("safety mode", to_string(sample->safety_mode))
       .value("robot mode", to_string(sample->robot_mode))

@@ -24,8 +24,8 @@ StopReason client_lost()
 {
   return Error{
       ErrorCode::client_lost,
-      "the client that sent this goal has disappeared: keep its action client until the result has come, or "
-      "start command_server with on_client_lost:=continue"};
+      "the client that sent this goal has disappeared: keep the action client alive until the result is "
+      "received, or start command_server with on_client_lost:=continue"};
 }
 
 Outcome missing_result(rcl_cxx::GoalStatus status)
@@ -36,7 +36,7 @@ Outcome missing_result(rcl_cxx::GoalStatus status)
                             "names has accepted it");
   }
   return Outcome::failure(ErrorCode::exception,
-                          "the goal ended without a result that can be sent: the driver's log says why");
+                          "the goal ended without a result that can be sent: see the log of the driver");
 }
 
 tl::expected<void, std::string> ActiveGoals::accept(const rcl_cxx::GoalUUID & id,

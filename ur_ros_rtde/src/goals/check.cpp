@@ -41,7 +41,8 @@ Status check_reachable(Robot & robot, const std::string & field, const std::vect
     }
     return failure(
         ErrorCode::unreachable,
-        fmt::format("{} cannot be reached in that orientation: no joint positions lead there", where));
+        fmt::format("{} cannot be reached in this orientation: the inverse kinematics has no solution",
+                    where));
   } catch (const RobotError &) {
     throw;
   } catch (const std::runtime_error & error) {
@@ -111,8 +112,8 @@ Check & Check::that(bool holds, std::string message, ErrorCode code)
 Check & Check::each_joint(std::string_view field, const std::vector<double> & values, const Vector6 & limits,
                           std::string_view unit)
 {
-  that(values.size() == 6,
-       fmt::format("{} has {} values, it takes 6: {}", field, values.size(), fmt::join(joint_names(), ", ")));
+  that(values.size() == 6, fmt::format("{} has {} values, it must have 6: {}", field, values.size(),
+                                       fmt::join(joint_names(), ", ")));
   for (std::size_t i = 0; i < 6 && ok(); ++i) {
     in_range(fmt::format("{}[{}] ({})", field, i, joint_names()[i]), values[i], -limits[i], limits[i], unit);
   }
@@ -126,7 +127,7 @@ Check & Check::joints(std::string_view field, const std::vector<double> & values
 
 Check & Check::joint_velocities(std::string_view field, const std::vector<double> & values)
 {
-  constexpr double highest = 3.14;  // ur_rtde takes no more
+  constexpr double highest = 3.14;  // limit of ur_rtde
   Vector6 velocity = limits().velocity;
   for (double & limit : velocity) {
     limit = std::min(limit, highest);
@@ -250,7 +251,8 @@ std::optional<Sample> Check::newest()
     return std::nullopt;
   }
   auto sample = preflight_->robot().latest();
-  that(sample.has_value(), "the robot has not told its state yet: try again", ErrorCode::not_ready);
+  that(sample.has_value(), "no data has been received from the controller yet: try again",
+       ErrorCode::not_ready);
   return sample;
 }
 

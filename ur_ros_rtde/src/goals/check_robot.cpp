@@ -5,7 +5,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr double furthest_frame = 100.0;  // m: far beyond any cell, near enough for exact arithmetic
+constexpr double max_frame_distance = 100.0;  // m: larger than any cell, small enough for precise arithmetic
 }
 
 Check & Check::frame(std::string_view field, const geometry_msgs::msg::Pose & frame)
@@ -14,9 +14,10 @@ Check & Check::frame(std::string_view field, const geometry_msgs::msg::Pose & fr
   position.x = frame.position.x;
   position.y = frame.position.y;
   position.z = frame.position.z;
-  geometry_msgs::msg::Pose turn = frame;
-  turn.position = geometry_msgs::msg::Point();
-  return vector(fmt::format("{}.position", field), position, furthest_frame, "m").pose(field, turn);
+  geometry_msgs::msg::Pose orientation = frame;
+  orientation.position = geometry_msgs::msg::Point();
+  return vector(fmt::format("{}.position", field), position, max_frame_distance, "m")
+      .pose(field, orientation);
 }
 
 Check & Check::polyscope(unsigned minor, std::optional<unsigned> cb3_minor)
@@ -26,7 +27,7 @@ Check & Check::polyscope(unsigned minor, std::optional<unsigned> cb3_minor)
   }
   const auto version = preflight_->robot().version();
   if (!version) {
-    return that(false, "the robot has not told its version yet: try again", ErrorCode::not_ready);
+    return that(false, "the version of PolyScope is not known yet: try again", ErrorCode::not_ready);
   }
   const bool enough = version->cb3() ? cb3_minor && version->minor >= *cb3_minor
                                      : version->major > 5 || version->minor >= minor;
@@ -45,11 +46,11 @@ Check & Check::answers_queries()
   if (const Status possible = robot.motion_possible(); !possible) {
     return that(false, possible.error().message, possible.error().code);
   }
-  [[maybe_unused]] const auto control = robot.control();  // throws why not, for instance that a script runs
+  [[maybe_unused]] const auto control = robot.control();  // throws the reason if it is not available
   const auto holder = robot.arbiter().holder(Resource::motion);
-  constexpr std::string_view uninterrupted = "direct_torque";
-  return that(!holder || !holder->owner.ends_with(uninterrupted),
-              "direct_torque takes the control program's every cycle: ask when it has ended",
+  constexpr std::string_view every_cycle_action = "direct_torque";
+  return that(!holder || !holder->owner.ends_with(every_cycle_action),
+              "direct_torque occupies every cycle of the control program: try again when it has ended",
               ErrorCode::busy);
 }
 

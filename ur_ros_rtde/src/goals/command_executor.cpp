@@ -8,14 +8,14 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// For the preempted goal: longer than a stop that falls back to the dashboard server.
+/// Time for a preempted goal to end: longer than a stop that falls back to the dashboard server.
 constexpr std::chrono::milliseconds preemption_timeout{6000};
-/// During a shutdown, a stop that has no effect is given up earlier.
+/// Time limit of a stop during a shutdown.
 constexpr std::chrono::milliseconds shutdown_stop_timeout{1500};
 /// For the dashboard server's answer before a goal is accepted.
 constexpr std::chrono::milliseconds dashboard_timeout{500};
 
-/// The dashboard server answers.
+/// Succeeds if the dashboard server answers.
 Status query_dashboard(Robot & robot)
 {
   const auto mode = robot.query_dashboard("robotmode", dashboard_timeout);
@@ -126,8 +126,8 @@ rcl_cxx::GoalDecision CommandExecutor::accept(const rcl_cxx::GoalUUID & id,
     return accepted;
   }
   return rcl_cxx::DeferredGoalResponse{
-      [this, id, asked = std::move(queries)](rcl_cxx::SendGoalResponse respond) {
-        start_queries(id, asked, std::move(respond));
+      [this, id, pending = std::move(queries)](rcl_cxx::SendGoalResponse respond) {
+        start_queries(id, pending, std::move(respond));
       }};
 }
 
@@ -135,9 +135,9 @@ void CommandExecutor::start_queries(const rcl_cxx::GoalUUID & id, std::vector<Ro
                                     rcl_cxx::SendGoalResponse respond)
 {
   const Status started = goals_.start_check(
-      id, [this, id, asked = std::move(queries), respond](const std::shared_ptr<GoalContext> & context) {
+      id, [this, id, pending = std::move(queries), respond](const std::shared_ptr<GoalContext> & context) {
         const Outcome outcome =
-            guarded(*context->stop_request, [&] { return run_queries(asked, *context->stop_request); });
+            guarded(*context->stop_request, [&] { return run_queries(pending, *context->stop_request); });
         respond(outcome ? rcl_cxx::GoalResponse() : goals_.reject(id, outcome.error()));
       });
   if (!started) {

@@ -33,7 +33,7 @@ Status GoalThreads::can_start_locked() const
       std::count_if(entries_.begin(), entries_.end(), [](const Entry & e) { return !e.done; });
   if (static_cast<std::size_t>(running) >= limit) {
     return failure(ErrorCode::busy,
-                   std::to_string(limit) + " goals are running, more are not taken: wait for one to end");
+                   std::to_string(limit) + " goals are running, which is the limit: wait for one to end");
   }
   return {};
 }
@@ -52,14 +52,14 @@ Status GoalThreads::start(std::string name, std::shared_ptr<StopRequest> stop_re
   try {
     entry.thread = std::jthread([this, &entry, work = std::move(work)]() mutable {
       work();
-      work = nullptr;  // what it holds goes before the thread counts as done
+      work = nullptr;  // destroys captured objects before the thread counts as done
       const std::lock_guard done_lock(mutex_);
       entry.done = true;
       changed_.notify_all();
     });
   } catch (const std::system_error & error) {
     entries_.pop_back();
-    return failure(ErrorCode::exception, std::string("no thread for the goal: ") + error.what());
+    return failure(ErrorCode::exception, std::string("cannot start a thread for the goal: ") + error.what());
   }
   return {};
 }
@@ -92,7 +92,7 @@ void GoalThreads::join_finished(std::unique_lock<std::mutex> & lock)
     }
     entry = next;
   }
-  lock.unlock();  // their last step takes it
+  lock.unlock();  // the end of their work locks it
   finished.clear();
   lock.lock();
 }

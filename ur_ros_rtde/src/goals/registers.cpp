@@ -8,15 +8,15 @@
 namespace ur_ros_rtde {
 namespace {
 
-void expect(const Status & status)
+void throw_if_failed(const Status & status)
 {
   if (!status) {
     throw RobotError(status.error());
   }
 }
 
-/// Its place in a Sample.
-std::size_t checked(int index, const script::RegisterRange & free)
+/// The index of an output register in a Sample.
+std::size_t sample_index(int index, const script::RegisterRange & free)
 {
   if (!free.contains(index)) {
     throw RobotError(Error{ErrorCode::invalid_goal, fmt::format("output register {}: extensions may use {}",
@@ -25,36 +25,36 @@ std::size_t checked(int index, const script::RegisterRange & free)
   return static_cast<std::size_t>(index - free.first);
 }
 
-Sample newest(const Robot & robot)
+Sample latest_sample(const Robot & robot)
 {
   if (auto sample = robot.latest()) {
     return *sample;
   }
-  throw RobotError(Error{ErrorCode::link_lost, "nothing has come from the controller yet"});
+  throw RobotError(Error{ErrorCode::link_lost, "no data has been received from the controller yet"});
 }
 
 }  // namespace
 
 void Registers::set_int(int index, std::int32_t value)
 {
-  expect(robot_.set_input_register(index, value));
+  throw_if_failed(robot_.set_input_register(index, value));
 }
 
 void Registers::set_double(int index, double value)
 {
-  expect(robot_.set_input_register(index, value));
+  throw_if_failed(robot_.set_input_register(index, value));
 }
 
 std::int32_t Registers::get_int(int index) const
 {
-  const std::size_t place = checked(index, script::free_int_outputs);
-  return newest(robot_).output_int_registers[place];
+  const std::size_t i = sample_index(index, script::free_int_outputs);
+  return latest_sample(robot_).output_int_registers[i];
 }
 
 double Registers::get_double(int index) const
 {
-  const std::size_t place = checked(index, script::free_float_outputs);
-  return newest(robot_).output_double_registers[place];
+  const std::size_t i = sample_index(index, script::free_float_outputs);
+  return latest_sample(robot_).output_double_registers[i];
 }
 
 }  // namespace ur_ros_rtde

@@ -15,22 +15,22 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr milliseconds feedback_period{50};
-constexpr milliseconds longest_nap{10};
+constexpr milliseconds max_sleep{10};
 /// The control program starts a motion within this time after its acknowledgement: two cycles and a reserve.
-constexpr std::chrono::seconds begin_limit{1};
-constexpr std::chrono::seconds package_limit{1};
+constexpr std::chrono::seconds motion_start_timeout{1};
+constexpr std::chrono::seconds package_timeout{1};
 /// Without samples for this long, the connection is considered lost.
-constexpr milliseconds silence_limit{200};
+constexpr milliseconds max_sample_age{200};
 constexpr double joint_tolerance = 0.005;     // rad
 constexpr double position_tolerance = 0.002;  // m
-constexpr double rotation_share = 0.2;        // m/rad: what a rotation counts as, so that 0.01 rad is 2 mm
-constexpr std::chrono::minutes longest_motion{10};
+constexpr double rotation_weight = 0.2;       // m/rad: 0.01 rad counts as 2 mm
+constexpr std::chrono::minutes max_motion_duration{10};
 /// For motions whose end the controller does not report: they end where the arm stands still.
 constexpr double servo_joint_tolerance = 0.01;      // rad
 constexpr double servo_position_tolerance = 0.004;  // m
-constexpr std::chrono::seconds settling_limit{2};
+constexpr std::chrono::seconds settling_timeout{2};
 
-Vector6 unknown()
+Vector6 nan_vector()
 {
   Vector6 values;
   values.fill(std::numeric_limits<double>::quiet_NaN());
@@ -40,8 +40,8 @@ Vector6 unknown()
 ur_ros_rtde_msgs::msg::ArmState to_arm_state(const std::optional<Sample> & sample)
 {
   ur_ros_rtde_msgs::msg::ArmState state;
-  state.joint_positions = sample ? sample->actual_q : unknown();
-  state.tcp_pose = to_ros(sample ? sample->actual_tcp_pose : unknown());
+  state.joint_positions = sample ? sample->actual_q : nan_vector();
+  state.tcp_pose = to_ros(sample ? sample->actual_tcp_pose : nan_vector());
   return state;
 }
 
@@ -50,7 +50,7 @@ double pose_distance(const Vector6 & a, const Vector6 & b)
 {
   const Vector6 difference = pose_trans(pose_inverse(a), b);
   return std::hypot(difference[0], difference[1], difference[2]) +
-         rotation_share * std::hypot(difference[3], difference[4], difference[5]);
+         rotation_weight * std::hypot(difference[3], difference[4], difference[5]);
 }
 
 Vector6 to_array(const std::vector<double> & values)
@@ -100,7 +100,7 @@ Sample Run::state() const
   if (auto sample = robot_.latest()) {
     return *sample;
   }
-  throw RobotError(Error{ErrorCode::link_lost, "the robot has not told its state yet"});
+  throw RobotError(Error{ErrorCode::link_lost, "no data has been received from the controller yet"});
 }
 
 ur_ros_rtde_msgs::msg::ArmState Run::arm_state() const
@@ -139,9 +139,9 @@ std::optional<StopReason> Run::wait(const std::function<bool()> & condition, Clo
     publish_feedback_if_due();
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
     if (left <= milliseconds(0)) {
-      return Error{ErrorCode::timeout, "the time was over"};
+      return Error{ErrorCode::timeout, "timed out"};
     }
-    robot_.wait_for_next(last, std::min(left, longest_nap), stop_request_->token());
+    robot_.wait_for_next(last, std::min(left, max_sleep), stop_request_->token());
   }
 }
 
@@ -157,7 +157,7 @@ std::optional<StopReason> Run::until(const std::function<bool()> & condition,
   auto why = wait(condition, Clock::now() + timeout);
   if (why && why->code == ErrorCode::timeout) {
     why->message =
-        fmt::format("nothing came of it within {:.1f} s", std::chrono::duration<double>(timeout).count());
+        fmt::format("condition not met within {:.1f} s", std::chrono::duration<double>(timeout).count());
   }
   return why;
 }
@@ -172,30 +172,30 @@ Outcome Run::expect(const std::function<bool()> & condition, std::chrono::nanose
   if (why->code != ErrorCode::timeout) {
     return *why;
   }
-  // A command that does not move the arm is not stopped by a lost connection. Then a missing condition says
-  // nothing about the robot.
-  const auto silence = Clock::now() - state().received;
-  if (silence < silence_limit) {
+  // A lost connection does not stop a command that does not move the arm. The condition is then unknown, not
+  // false.
+  const auto age = Clock::now() - state().received;
+  if (age < max_sample_age) {
     return Outcome::failure(code, otherwise);
   }
   return Outcome::failure(ErrorCode::link_lost,
-                          fmt::format("no package has come from the controller for {:.1f} s",
-                                      std::chrono::duration<double>(silence).count()));
+                          fmt::format("no data has been received from the controller for {:.1f} s",
+                                      std::chrono::duration<double>(age).count()));
 }
 
 std::optional<StopReason> Run::next(Sample & sample)
 {
-  const auto deadline = Clock::now() + package_limit;
+  const auto deadline = Clock::now() + package_timeout;
   while (true) {
     if (auto why = stop_reason()) {
       return why;
     }
     publish_feedback_if_due();
-    if (robot_.wait_for_next(sample, longest_nap, stop_request_->token())) {
+    if (robot_.wait_for_next(sample, max_sleep, stop_request_->token())) {
       return stop_reason();
     }
     if (Clock::now() >= deadline) {
-      return Error{ErrorCode::link_lost, "no package came from the controller within a second"};
+      return Error{ErrorCode::link_lost, "no data has been received from the controller for 1 s"};
     }
   }
 }
@@ -212,7 +212,7 @@ std::optional<StopReason> Run::until_standstill(std::chrono::nanoseconds limit)
 bool Run::motion_ended() const
 {
   const MotionProgress motion = robot_.motion_progress(mark_);
-  return motion.finished() || (!motion.started && Clock::now() - last_call_ > begin_limit);
+  return motion.finished() || (!motion.started && Clock::now() - last_call_ > motion_start_timeout);
 }
 
 Outcome Run::until_motion_ends(std::chrono::nanoseconds limit)
@@ -222,21 +222,20 @@ Outcome Run::until_motion_ends(std::chrono::nanoseconds limit)
   }
   if (!robot_.motion_progress(mark_).started) {
     return Outcome::failure(ErrorCode::rejected_by_robot,
-                            "the control program on the robot did not begin the move: the log on the teach "
-                            "pendant may say why");
+                            "the control program did not start the motion: see the log on the teach pendant");
   }
   return Outcome::success();
 }
 
 Outcome Run::until_reached(const Distance & distance, double tolerance, const char * unit)
 {
-  const double whole = distance(state());
-  const auto look = [&] {
+  const double initial = distance(state());
+  const auto update = [&] {
     const double left = distance(state());
-    progress(whole > tolerance ? std::clamp(1.0 - left / whole, 0.0, 1.0) : 1.0);
+    progress(initial > tolerance ? std::clamp(1.0 - left / initial, 0.0, 1.0) : 1.0);
     return motion_ended();
   };
-  if (auto why = until(look, longest_motion)) {
+  if (auto why = until(update, max_motion_duration)) {
     return *why;
   }
   const double left = distance(state());
@@ -263,26 +262,26 @@ Outcome Run::until_pose_reached(const std::vector<double> & pose)
 
 Outcome Run::until_at(const Distance & distance, double tolerance, const char * unit)
 {
-  const double whole = std::max(distance(state()), tolerance);
-  auto moved = Clock::now();
-  bool there = false;
-  const auto look = [&] {
+  const double initial = std::max(distance(state()), tolerance);
+  auto last_moved = Clock::now();
+  bool reached = false;
+  const auto update = [&] {
     const double left = distance(state());
-    progress(std::max(progress(), std::clamp(1.0 - left / whole, 0.0, 1.0)));
+    progress(std::max(progress(), std::clamp(1.0 - left / initial, 0.0, 1.0)));
     const bool at_rest = robot_.motion_progress(mark_).at_rest;
-    moved = at_rest ? moved : Clock::now();
-    there = at_rest && left <= tolerance;
-    return there || Clock::now() - moved > settling_limit;
+    last_moved = at_rest ? last_moved : Clock::now();
+    reached = at_rest && left <= tolerance;
+    return reached || Clock::now() - last_moved > settling_timeout;
   };
-  if (auto why = until(look, longest_motion)) {
+  if (auto why = until(update, max_motion_duration)) {
     return *why;
   }
-  if (there) {
+  if (reached) {
     progress(1.0);
     return Outcome::success();
   }
-  return Outcome::failure(ErrorCode::not_reached,
-                          fmt::format("the arm ended {:.4f} {} before the target", distance(state()), unit));
+  return Outcome::failure(ErrorCode::not_reached, fmt::format("the arm stopped {:.4f} {} before the target",
+                                                              distance(state()), unit));
 }
 
 Outcome Run::until_at_joints(const std::vector<double> & positions)
@@ -313,9 +312,9 @@ std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> Run::motion_feedback() cons
   ur_ros_rtde_msgs::msg::MotionFeedback feedback;
   feedback.progress = progress_;
   const std::chrono::nanoseconds since = elapsed();
-  const auto whole = std::chrono::floor<std::chrono::seconds>(since);
-  feedback.elapsed.sec = static_cast<std::int32_t>(whole.count());
-  feedback.elapsed.nanosec = static_cast<std::uint32_t>((since - whole).count());
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
+  feedback.elapsed.sec = static_cast<std::int32_t>(seconds.count());
+  feedback.elapsed.nanosec = static_cast<std::uint32_t>((since - seconds).count());
   feedback.state = to_arm_state(sample);
   return feedback;
 }

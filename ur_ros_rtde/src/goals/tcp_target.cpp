@@ -10,12 +10,12 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr double suspicious_turn = std::numbers::pi / 2.0;  // rad
+constexpr double max_rotation_without_warning = std::numbers::pi / 2.0;  // rad
 
-double turn(const Vector6 & from, const Vector6 & to)
+double rotation_angle(const Vector6 & from, const Vector6 & to)
 {
-  const Vector6 way = pose_trans(pose_inverse(from), to);
-  return std::hypot(way[3], way[4], way[5]);
+  const Vector6 displacement = pose_trans(pose_inverse(from), to);
+  return std::hypot(displacement[3], displacement[4], displacement[5]);
 }
 
 Vector6 to_pose(const std::vector<double> & values)
@@ -58,12 +58,11 @@ std::string identity_orientation_warning(const Vector6 & start, const std::vecto
   std::optional<Vector6> before = start;
   for (const PathPose & next : path) {
     const std::optional<Vector6> pose = next.pose ? std::optional(to_pose(to_ur(*next.pose))) : std::nullopt;
-    const double angle = before && pose ? turn(*before, *pose) : 0.0;
-    if (angle > suspicious_turn && has_identity_orientation(*next.pose)) {
+    const double angle = before && pose ? rotation_angle(*before, *pose) : 0.0;
+    if (angle > max_rotation_without_warning && has_identity_orientation(*next.pose)) {
       return fmt::format(
-          "{} turns the tool by {:.0f} degrees, to the orientation (0, 0, 0, 1), which a pose has if only "
-          "its "
-          "position is given: give each pose of a path the orientation that the tool is to have there",
+          "{} turns the tool by {:.0f} degrees to the orientation (0, 0, 0, 1), the default of a pose "
+          "message if only its position is given: set the orientation of each pose of a path",
           next.name, angle * 180.0 / std::numbers::pi);
     }
     before = pose;

@@ -11,9 +11,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 namespace srv = ur_ros_rtde_msgs::srv;
 
-/// A package that has not come after this many periods, and at least this time, does not come.
-constexpr double missing_periods = 5.0;
-constexpr double least_age = 0.5;  // s
+/// Without a package for this many periods, and at least for this time, the state is outdated.
+constexpr double outdated_periods = 5.0;
+constexpr double min_outdated_age = 0.5;  // s
 
 template <typename M>
 void publish_if_subscribed(rcl_cxx::Publisher<M> & publisher, const M & message)
@@ -85,13 +85,14 @@ Status RobotStateReceiver::freshness() const
 {
   const auto problem = [this] { return source_().link.error.message; };
   if (!received_) {
-    return failure(ErrorCode::link_lost, fmt::format("the robot has not told its state yet: {}", problem()));
+    return failure(ErrorCode::link_lost,
+                   fmt::format("no data has been received from the controller yet: {}", problem()));
   }
   const double age = std::chrono::duration<double>(Clock::now() - received_->received).count();
-  if (age > std::max(least_age, missing_periods / options_.frequency)) {
+  if (age > std::max(min_outdated_age, outdated_periods / options_.frequency)) {
     return failure(
         ErrorCode::link_lost,
-        fmt::format("the robot told its state {:.1f} s ago for the last time: {}", age, problem()));
+        fmt::format("no data has been received from the controller for {:.1f} s: {}", age, problem()));
   }
   return {};
 }
@@ -99,7 +100,7 @@ Status RobotStateReceiver::freshness() const
 bool RobotStateReceiver::is_due(const Sample & sample)
 {
   const double period = 1.0 / options_.frequency;
-  const double cycle = 0.001;  // half of the shortest control cycle
+  const double tolerance = 0.001;  // half of the shortest control cycle
   if (sample.link != link_) {
     agreed_frequency_ = source_().frequency;
   }
@@ -107,7 +108,7 @@ bool RobotStateReceiver::is_due(const Sample & sample)
     link_ = sample.link;
     next_due_ = sample.controller_time;
   }
-  if (sample.controller_time + cycle < next_due_) {
+  if (sample.controller_time + tolerance < next_due_) {
     return false;
   }
   next_due_ += period;
@@ -166,10 +167,11 @@ void RobotStateReceiver::enable_fake_joints(const std_srvs::srv::SetBool::Reques
   if (request.data) {
     const std::lock_guard lock(mutex_);
     fake_.begin(newest_.joint_state);
-    response.message = "joint_states shows the positions of now, until fake_joint_states gives others";
+    response.message =
+        "joint_states now has fake positions: the current ones, then those received on fake_joint_states";
   } else {
     fake_.end();
-    response.message = "joint_states shows the robot";
+    response.message = "joint_states has the positions of the robot again";
   }
   response.success = true;
   RCL_CXX_INFO(node_.get_logger(), "{}", response.message);
@@ -177,12 +179,12 @@ void RobotStateReceiver::enable_fake_joints(const std_srvs::srv::SetBool::Reques
 
 void RobotStateReceiver::set_fake_joints(const sensor_msgs::msg::JointState & message)
 {
-  if (const auto taken = fake_.set(message); !taken) {
+  if (const auto applied = fake_.set(message); !applied) {
     RCL_CXX_WARN_THROTTLE(node_.get_logger(), std::chrono::seconds(1),
-                          "fake_joint_states: a message is ignored: {}", taken.error());
+                          "fake_joint_states: message ignored: {}", applied.error());
     return;
   }
-  // Without a robot there are no packages to publish with.
+  // Without a robot, no package triggers publishing.
   sensor_msgs::msg::JointState shown;
   {
     const std::lock_guard lock(mutex_);

@@ -21,7 +21,7 @@ Expected<rcpputils::SharedLibrary *> PluginLibraries::load(const std::string & p
   }
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
-    return failure(ErrorCode::exception, fmt::format("there is no library {}", path));
+    return failure(ErrorCode::exception, fmt::format("its library {} does not exist", path));
   }
   try {
     auto library = std::make_unique<rcpputils::SharedLibrary>(path);
@@ -56,7 +56,7 @@ Expected<const PluginDescriptor *> PluginLibraries::describe(const PluginEntry &
   }
   if (descriptor->name != entry.name) {
     return failure(ErrorCode::exception,
-                   fmt::format("{} calls it \"{}\" in UR_ROS_RTDE_EXPORT, plugins.xml calls it \"{}\"",
+                   fmt::format("{} exports it as \"{}\", but plugins.xml names it \"{}\": use the same name",
                                entry.library, descriptor->name, entry.name));
   }
   const bool command = entry.base == command_base;

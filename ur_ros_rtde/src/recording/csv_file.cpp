@@ -45,7 +45,7 @@ CsvFile::CsvFile(CsvFile && other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       path_(std::move(other.path_)),
       text_(std::move(other.text_)),
-      waiting_(other.waiting_),
+      buffered_rows_(other.buffered_rows_),
       rows_(other.rows_),
       size_(other.size_)
 {
@@ -56,7 +56,7 @@ CsvFile & CsvFile::operator=(CsvFile && other) noexcept
   std::swap(descriptor_, other.descriptor_);
   path_.swap(other.path_);
   text_.swap(other.text_);
-  std::swap(waiting_, other.waiting_);
+  std::swap(buffered_rows_, other.buffered_rows_);
   std::swap(rows_, other.rows_);
   std::swap(size_, other.size_);
   return *this;
@@ -81,7 +81,7 @@ void CsvFile::append(std::span<const double> row)
     text_.append(digits.data(), std::to_chars(digits.begin(), digits.end(), number).ptr);
   }
   text_.push_back('\n');
-  ++waiting_;
+  ++buffered_rows_;
 }
 
 Status CsvFile::flush()
@@ -99,7 +99,7 @@ Status CsvFile::flush()
     }
   }
   size_ += static_cast<std::int64_t>(text_.size());
-  rows_ += std::exchange(waiting_, 0);
+  rows_ += std::exchange(buffered_rows_, 0);
   text_.clear();
   return {};
 }
@@ -108,11 +108,11 @@ Status CsvFile::failed(int error)
 {
   std::string message = fmt::format("{} cannot be written any more: {}", path_, system_text(error));
   if (::ftruncate(descriptor_, size_) != 0) {
-    message += "; its last line may be a part of one";
+    message += "; its last line may be incomplete";
   }
   ::close(std::exchange(descriptor_, -1));
   text_.clear();
-  waiting_ = 0;
+  buffered_rows_ = 0;
   return failure(ErrorCode::exception, message);
 }
 

@@ -37,7 +37,7 @@ class CsvFile {
   int descriptor_ = -1;
   std::string path_;
   std::string text_;
-  std::uint64_t waiting_ = 0;  ///< rows in text_
+  std::uint64_t buffered_rows_ = 0;  ///< rows in text_
   std::uint64_t rows_ = 0;
   std::int64_t size_ = 0;  ///< bytes, of whole rows
 };

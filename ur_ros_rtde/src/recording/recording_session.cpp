@@ -12,9 +12,9 @@ namespace ur_ros_rtde {
 namespace {
 using Clock = RtdeStream::Clock;
 
-/// 8 s at 500 Hz: a disk may be busy for that long.
+/// 8 s at 500 Hz, to bridge delays of the disk.
 constexpr std::size_t queue_rows = 4000;
-constexpr std::chrono::milliseconds look_interval{50};
+constexpr std::chrono::milliseconds poll_interval{50};
 constexpr std::chrono::milliseconds silence_limit{1000};
 constexpr std::chrono::milliseconds retry_interval{250};
 }  // namespace
@@ -73,7 +73,7 @@ Status RecordingSession::follow(const std::stop_token & stop)
   std::vector<double> numbers(stream_.width());
   auto last = Clock::now();
   while (!stop.stop_requested()) {
-    const auto got = stream_.next(numbers, Clock::now() + look_interval);
+    const auto got = stream_.next(numbers, Clock::now() + poll_interval);
     if (!got) {
       return tl::unexpected(got.error());
     }
@@ -81,7 +81,7 @@ Status RecordingSession::follow(const std::stop_token & stop)
       last = Clock::now();
       take(numbers);
     } else if (Clock::now() - last > silence_limit) {
-      return failure(ErrorCode::link_lost, fmt::format("{} sends nothing any more", plan_.address));
+      return failure(ErrorCode::link_lost, fmt::format("{} has stopped sending data", plan_.address));
     }
   }
   return {};
@@ -91,10 +91,10 @@ void RecordingSession::take(std::span<const double> numbers)
 {
   const double now = numbers[plan_.timestamp];
   const double periods = std::round((now - last_) * plan_.frequency);
-  if (began_ && periods > 1.0) {
+  if (has_last_ && periods > 1.0) {
     lost_ += static_cast<std::uint64_t>(periods) - 1;
   }
-  began_ = true;
+  has_last_ = true;
   last_ = now;
   if (!queue_.push(numbers.first(plan_.columns))) {
     ++lost_;

@@ -45,7 +45,7 @@ class RecordingSession {
   Status state_;  ///< used by the writer thread until it has ended
   RowQueue queue_;
   double last_ = 0.0;  ///< timestamp
-  bool began_ = false;
+  bool has_last_ = false;
   std::atomic<std::uint64_t> lost_ = 0;
   std::jthread writer_;
   std::jthread receiver_;

@@ -78,7 +78,7 @@ std::vector<Diagnosis> diagnose_driver(Robot & robot)
 {
   const RobotStatus status = robot.status();
   Diagnosis diagnosis("driver");
-  diagnosis.add(level(status), status.message.empty() ? "takes commands" : status.message)
+  diagnosis.add(level(status), status.message.empty() ? "ready for commands" : status.message)
       .value("state", name(status.state))
       .value("cause", to_string(status.cause))
       .value("motion goal", holder(robot.arbiter(), Resource::motion))

@@ -4,8 +4,8 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr double fading = 0.998;        // per sample: a second at 500 Hz
-constexpr double least_current = 0.05;  // A: smaller ones tell nothing but noise
+constexpr double forgetting_factor = 0.998;  // per sample: a time constant of 1 s at 500 Hz
+constexpr double min_current = 0.05;         // A: smaller currents are mostly noise
 }  // namespace
 
 Vector6 EffortEstimator::update(const Sample & sample)
@@ -18,9 +18,9 @@ Vector6 EffortEstimator::update(const Sample & sample)
     Ratio & ratio = ratios_[i];
     const double current = sample.target_current[i];
     const double moment = sample.target_moment[i];
-    if (std::isfinite(current) && std::isfinite(moment) && std::abs(current) > least_current) {
-      ratio.moment_current = fading * ratio.moment_current + moment * current;
-      ratio.current_current = fading * ratio.current_current + current * current;
+    if (std::isfinite(current) && std::isfinite(moment) && std::abs(current) > min_current) {
+      ratio.moment_current = forgetting_factor * ratio.moment_current + moment * current;
+      ratio.current_current = forgetting_factor * ratio.current_current + current * current;
     }
     const bool known = ratio.current_current > 0.0;
     efforts[i] = known ? ratio.moment_current / ratio.current_current * sample.actual_current[i] : moment;

@@ -35,17 +35,17 @@ tl::expected<void, std::string> FakeJoints::set(const sensor_msgs::msg::JointSta
 {
   const std::lock_guard lock(mutex_);
   if (!active_) {
-    return tl::unexpected(std::string("it is not shown: publish_fake_joint_states is off"));
+    return tl::unexpected(std::string("publish_fake_joint_states is off"));
   }
   if (message.position.size() != message.name.size()) {
-    return tl::unexpected(fmt::format("it has {} names and {} positions, it needs one position a name",
+    return tl::unexpected(fmt::format("it has {} names and {} positions, it must have one position per name",
                                       message.name.size(), message.position.size()));
   }
   std::vector<double> positions = joints_.position;
   for (std::size_t i = 0; i < message.name.size(); ++i) {
     const auto found = std::find(joints_.name.begin(), joints_.name.end(), message.name[i]);
     if (found == joints_.name.end()) {
-      return tl::unexpected(fmt::format("there is no joint \"{}\", there are: {}", message.name[i],
+      return tl::unexpected(fmt::format("there is no joint \"{}\", the joints are: {}", message.name[i],
                                         fmt::join(joints_.name, ", ")));
     }
     if (!std::isfinite(message.position[i])) {

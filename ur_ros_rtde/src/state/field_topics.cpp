@@ -16,11 +16,11 @@ namespace {
 using Clock = RtdeStream::Clock;
 
 constexpr std::chrono::milliseconds fields_retry_interval{500};
-/// How soon a new listener of tool_data is noticed.
-constexpr std::chrono::milliseconds fields_look_interval{100};
+/// Interval at which the subscribers of tool_data are counted.
+constexpr std::chrono::milliseconds fields_poll_interval{100};
 constexpr std::chrono::milliseconds fields_silence_limit{1000};
 
-/// What ToolData is made of, in the order in which publish_tool() reads it.
+/// The RTDE fields of ToolData, in the order in which publish_tool() reads them.
 const std::array<std::string, 10> tool_fields{"tool_analog_input0",
                                               "tool_analog_input1",
                                               "tool_analog_input_types",
@@ -75,7 +75,7 @@ void FieldTopics::run(const std::stop_token & stop)
   while (!stop.stop_requested()) {
     const bool with_tool = tool_wanted();
     if (!with_tool && options_.fields.empty()) {
-      wait(stop, fields_look_interval);
+      wait(stop, fields_poll_interval);
       continue;
     }
     auto stream = RtdeStream::open(options_.address, recipe(options_.fields, with_tool), options_.frequency);
@@ -100,9 +100,9 @@ Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_
   set_up_fields(stream);
   std::vector<double> numbers(stream.width());
   auto last = Clock::now();
-  auto look = last + fields_look_interval;
+  auto next_poll = last + fields_poll_interval;
   while (!stop.stop_requested()) {
-    const auto got = stream.next(numbers, Clock::now() + fields_look_interval);
+    const auto got = stream.next(numbers, Clock::now() + fields_poll_interval);
     if (!got) {
       return tl::unexpected(got.error());
     }
@@ -116,10 +116,10 @@ Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_
         publish_state(numbers);
       }
     } else if (now - last > fields_silence_limit) {
-      return failure(ErrorCode::link_lost, fmt::format("{} sends nothing any more", options_.address));
+      return failure(ErrorCode::link_lost, fmt::format("{} has stopped sending data", options_.address));
     }
-    if (now >= look) {
-      look = now + fields_look_interval;
+    if (now >= next_poll) {
+      next_poll = now + fields_poll_interval;
       if (tool_wanted() != with_tool) {
         return {};
       }

@@ -5,11 +5,11 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// Whether `shown` has to be shown anew, which it then counts as.
+/// Stores `value` as published. Returns whether it differs from the value published before.
 template <typename T>
-bool changes(std::optional<T> & shown, const T & value)
+bool update(std::optional<T> & published, const T & value)
 {
-  return std::exchange(shown, value) != value;
+  return std::exchange(published, value) != value;
 }
 }  // namespace
 
@@ -29,18 +29,18 @@ StatusTopics::StatusTopics(rcl_cxx::Node & node)
 void StatusTopics::publish(const Sample & sample)
 {
   const std::lock_guard lock(mutex_);
-  if (changes(published_robot_mode_, sample.robot_mode)) {
+  if (update(published_robot_mode_, sample.robot_mode)) {
     publish(sample.robot_mode);
   }
-  if (changes(published_safety_mode_, sample.safety_mode)) {
+  if (update(published_safety_mode_, sample.safety_mode)) {
     publish(sample.safety_mode);
   }
-  if (changes(published_program_running_, sample.program_running())) {
+  if (update(published_program_running_, sample.program_running())) {
     std_msgs::msg::Bool message;
     message.data = sample.program_running();
     program_running_->publish(message);
   }
-  if (changes(published_speed_scaling_, std::lround(1000.0 * sample.speed_scaling))) {
+  if (update(published_speed_scaling_, std::lround(1000.0 * sample.speed_scaling))) {
     std_msgs::msg::Float64 message;
     message.data = sample.speed_scaling;
     speed_scaling_->publish(message);
@@ -50,7 +50,7 @@ void StatusTopics::publish(const Sample & sample)
 void StatusTopics::publish_no_controller()
 {
   const std::lock_guard lock(mutex_);
-  if (changes(published_robot_mode_, RobotMode::no_controller)) {
+  if (update(published_robot_mode_, RobotMode::no_controller)) {
     publish(RobotMode::no_controller);
   }
 }

@@ -149,9 +149,9 @@ class PoseFollower : public TargetFollower {
 
   Status set_target(const TeleopTarget & target, double period) override
   {
-    const Vector6 way = pose_trans(pose_inverse(at_), target.values);
-    const double distance = std::hypot(way[0], way[1], way[2]);
-    const double angle = std::hypot(way[3], way[4], way[5]);
+    const Vector6 displacement = pose_trans(pose_inverse(at_), target.values);
+    const double distance = std::hypot(displacement[0], displacement[1], displacement[2]);
+    const double angle = std::hypot(displacement[3], displacement[4], displacement[5]);
     if (!(distance <= options_.max_linear_jump && angle <= options_.max_joint_jump)) {
       return failure(
           ErrorCode::invalid_goal,
@@ -164,7 +164,7 @@ class PoseFollower : public TargetFollower {
                           : ""));
     }
     from_ = at_;
-    displacement_ = way;
+    displacement_ = displacement;
     line_.begin(duration_.seconds(period,
                                   std::max(distance / default_linear_speed, angle / default_angular_speed),
                                   std::max(distance / highest_linear_speed, angle / highest_angular_speed)));
@@ -173,8 +173,8 @@ class PoseFollower : public TargetFollower {
 
   Status advance(Run & run, const Sample & sample, double elapsed) override
   {
-    if (Status slow = check_joint_velocities(sample, limits_); !slow) {
-      return slow;
+    if (Status safe = check_joint_velocities(sample, limits_); !safe) {
+      return safe;
     }
     Vector6 part = displacement_;
     const double share = line_.advance(elapsed);
@@ -214,8 +214,8 @@ class TwistFollower : public TargetFollower {
 
   Status advance(Run & run, const Sample & sample, double) override
   {
-    if (Status slow = check_joint_velocities(sample, limits_); !slow) {
-      return slow;
+    if (Status safe = check_joint_velocities(sample, limits_); !safe) {
+      return safe;
     }
     Vector6 twist = target_.values;
     if (target_.in_tool_frame) {

@@ -9,7 +9,8 @@
 namespace ur_ros_rtde {
 namespace {
 /// The target, or the error of the check.
-Expected<TeleopTarget> checked(const Check & check, const std::vector<double> & values, bool in_tool = false)
+Expected<TeleopTarget> target_if_valid(const Check & check, const std::vector<double> & values,
+                                       bool in_tool = false)
 {
   if (!check.ok()) {
     return tl::unexpected(*check.error());
@@ -20,7 +21,7 @@ Expected<TeleopTarget> checked(const Check & check, const std::vector<double> & 
   return target;
 }
 
-Status only_in(const std::string & frame_id, std::string_view frames, bool known)
+Status check_frame(const std::string & frame_id, std::string_view frames, bool known)
 {
   return known ? Status()
                : failure(ErrorCode::invalid_goal,
@@ -48,25 +49,26 @@ Expected<TeleopTarget> joint_target(const sensor_msgs::msg::JointState & message
                fmt::format("the message has two positions of {}", joint_names()[i]));
   }
   check.each_joint("position", positions, limits.position, "rad");
-  return checked(check, positions);
+  return target_if_valid(check, positions);
 }
 
 Expected<TeleopTarget> pose_target(const geometry_msgs::msg::PoseStamped & message)
 {
   const std::string & frame = message.header.frame_id;
-  if (Status known = only_in(frame, "base", frame.ends_with("base")); !known) {
+  if (Status known = check_frame(frame, "base", frame.ends_with("base")); !known) {
     return tl::unexpected(known.error());
   }
   Check check;
   check.pose("pose", message.pose);
-  return checked(check, check.ok() ? to_ur(message.pose) : std::vector<double>(6));
+  return target_if_valid(check, check.ok() ? to_ur(message.pose) : std::vector<double>(6));
 }
 
 Expected<TeleopTarget> twist_target(const geometry_msgs::msg::TwistStamped & message)
 {
   const std::string & frame = message.header.frame_id;
   const bool in_tool = frame.ends_with("tool0_controller");
-  if (Status known = only_in(frame, "base or tool0_controller", in_tool || frame.ends_with("base")); !known) {
+  if (Status known = check_frame(frame, "base or tool0_controller", in_tool || frame.ends_with("base"));
+      !known) {
     return tl::unexpected(known.error());
   }
   const std::vector<double> values = to_ur(message.twist);
@@ -74,7 +76,7 @@ Expected<TeleopTarget> twist_target(const geometry_msgs::msg::TwistStamped & mes
   if (std::any_of(values.begin(), values.end(), [](double value) { return value != 0.0; })) {
     check.twist("twist", message.twist);
   }
-  return checked(check, values, in_tool);
+  return target_if_valid(check, values, in_tool);
 }
 
 }  // namespace ur_ros_rtde

@@ -29,7 +29,7 @@ void TeleopTopic::Latency::add(Clock::duration wait)
 std::string TeleopTopic::Latency::text() const
 {
   if (count == 0) {
-    return "no message was executed";
+    return "no message led to a command";
   }
   return fmt::format("{} messages, {:.1f} ms from message to command, {:.1f} ms at most", count,
                      1e3 * seconds(sum) / static_cast<double>(count), 1e3 * seconds(longest));
@@ -160,16 +160,16 @@ Error TeleopTopic::follow(Run & run, std::uint64_t session, Latency & latency)
     const double cycle = 1.0 / (version ? version->frequency() : 500.0);
     Sample sample = run.state();
     follower_->begin(sample, cycle, host_.limits());
-    for (std::uint64_t taken = 0; true;) {
+    for (std::uint64_t last_number = 0; true;) {
       const double before = sample.controller_time;
       if (auto why = run.next(sample)) {
         return *why;
       }
       const Message message = newest();
-      const bool is_new = message.number != std::exchange(taken, message.number);
-      if (const Status good = is_new ? set_target(message, session) : check_timeout(message, session);
-          !good) {
-        return good.error();
+      const bool is_new = message.number != std::exchange(last_number, message.number);
+      if (const Status valid = is_new ? set_target(message, session) : check_timeout(message, session);
+          !valid) {
+        return valid.error();
       }
       // After a delay of the host, the motion continues from the last command: slower, never faster.
       const double elapsed = std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
