@@ -71,16 +71,16 @@ struct ErasedActionServer {
   std::function<void(GoalStatus, void * result_response)> fill_missing_result{};
 };
 
+/// The functions of ErasedActionServer that depend on the types of `A`, without callbacks.
 template <typename A>
-ErasedActionServer erase_action_server(ActionServerCallbacks<A> callbacks)
+ErasedActionServer erase_action_types()
 {
   using GoalRequest = typename A::Impl::SendGoalService::Request;
   using GoalResponse = typename A::Impl::SendGoalService::Response;
   using ResultRequest = typename A::Impl::GetResultService::Request;
   using ResultResponse = typename A::Impl::GetResultService::Response;
-  using Handle = ServerGoalHandle<A>;
 
-  ErasedActionServer erased{
+  return {
       rosidl_typesupport_cpp::get_action_type_support_handle<A>(),
       []() -> std::shared_ptr<void> { return std::make_shared<GoalRequest>(); },
       [](const void * request) { return GoalUUID{static_cast<const GoalRequest *>(request)->goal_id.uuid}; },
@@ -102,9 +102,19 @@ ErasedActionServer erase_action_server(ActionServerCallbacks<A> callbacks)
       },
       [](std::shared_ptr<ServerGoalImpl> impl,
          std::shared_ptr<void> request) -> std::shared_ptr<ServerGoalHandleBase> {
-        return std::make_shared<Handle>(std::move(impl),
-                                        std::static_pointer_cast<const GoalRequest>(request));
+        return std::make_shared<ServerGoalHandle<A>>(std::move(impl),
+                                                     std::static_pointer_cast<const GoalRequest>(request));
       }};
+}
+
+template <typename A>
+ErasedActionServer erase_action_server(ActionServerCallbacks<A> callbacks)
+{
+  using GoalRequest = typename A::Impl::SendGoalService::Request;
+  using ResultResponse = typename A::Impl::GetResultService::Response;
+  using Handle = ServerGoalHandle<A>;
+
+  ErasedActionServer erased = erase_action_types<A>();
   const auto erase_handle = [](auto callback) -> std::function<void(ServerGoalHandleBase &)> {
     if (!callback) {
       return {};

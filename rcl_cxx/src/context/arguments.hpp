@@ -10,7 +10,7 @@
 #include "rcl_cxx/parameter_value.hpp"
 
 namespace rcl_cxx::detail {
-/// @throws Error that names the arguments after --ros-args that are no ROS arguments
+/// @throws Error that names the arguments after --ros-args that are not ROS arguments
 void check_ros_arguments(const rcl_arguments_t & arguments, const char * const * argv);
 
 std::vector<std::string> remove_ros_arguments(const rcl_arguments_t & arguments, const char * const * argv);

@@ -61,7 +61,7 @@ std::string NodeImpl::resolve(const std::string & name, bool is_service) const
   const rcl_allocator_t allocator = rcl_get_default_allocator();
   char * resolved = nullptr;
   check_rcl(rcl_node_resolve_name(&node_, name.c_str(), allocator, is_service, false, &resolved),
-            fully_qualified_name_, fmt::format("'{}' is no valid name", name));
+            fully_qualified_name_, fmt::format("'{}' is not a valid name", name));
   std::string result = resolved;
   allocator.deallocate(resolved, allocator.state);
   return result;
