@@ -8,6 +8,7 @@
 
 #include "ur_ros_rtde_robot/connection/interfaces.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
+#include "ur_ros_rtde_trajectory/limits.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -58,8 +59,13 @@ Status check_reachable(Robot & robot, const std::string & field, const std::vect
 
 const std::array<std::string, 6> & joint_names()
 {
-  static const std::array<std::string, 6> names{"shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
-                                                "wrist_1_joint",      "wrist_2_joint",       "wrist_3_joint"};
+  static const auto names = [] {
+    std::array<std::string, 6> all;
+    for (int joint = 0; joint < trajectory::joint_count; ++joint) {
+      all[static_cast<std::size_t>(joint)] = trajectory::joint_name(joint);
+    }
+    return all;
+  }();
   return names;
 }
 
