@@ -74,12 +74,13 @@ class Actions : public Spinning {
     return response.wait_for(kLimit) == std::future_status::ready ? response.get() : nullptr;
   }
 
-  /// Sends a goal with this id, as a client with a faulty generator of ids would. Returns whether it was
+  /// Sends a goal with this id, as another client may do. Returns whether it was
   /// accepted.
   std::optional<bool> send_with_id(const rcl_cxx::GoalUUID & id)
   {
     using SendGoal = Fibonacci::Impl::SendGoalService;
     const auto service = rcl_cxx::create_client<SendGoal>(*node, "fibonacci/_action/send_goal");
+    EXPECT_TRUE(service->wait_for_service(kLimit));
     SendGoal::Request request;
     request.goal_id.uuid = id.bytes;
     const auto response = service->call(request, kLimit);

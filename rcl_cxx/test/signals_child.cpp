@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "../src/signals.hpp"
+#include "context/signals.hpp"
 #include "rcl_cxx/rcl_cxx.hpp"
 
 using rcl_cxx::Context;

@@ -4,9 +4,8 @@
 #include <future>
 #include <mutex>
 
-#include "../src/client_watch.hpp"
+#include "action/client_watch.hpp"
 #include "action_fixture.hpp"
-#include "rcl_cxx_test/client.hpp"
 
 using rcl_cxx::detail::ClientWatch;
 using rcl_cxx::detail::Gid;
@@ -240,32 +239,5 @@ TEST_F(ClientLostTest, LeavesOtherGoalsToBeWatchedWhenTheHandlerThrows)
   other->send_accepted_goal();
   other.reset();
   EXPECT_TRUE(eventually([&] { return calls == 2; }));
-}
-
-using GoalIdTest = Actions;
-
-TEST_F(GoalIdTest, IsRefusedWithoutCallingHandleGoalWhileInUse)
-{
-  serve();
-  std::atomic<int> asked{0};
-  on_goal = [&](const rcl_cxx::GoalUUID &, const Fibonacci::Goal &) -> tl::expected<void, std::string> {
-    ++asked;
-    return {};
-  };
-  const auto goal = send(5);
-  ASSERT_TRUE(goal);
-  const auto handle = accepted(0);
-  using SendGoal = Fibonacci::Impl::SendGoalService;
-  const auto sender = rcl_cxx::create_client<SendGoal>(*node, "fibonacci/_action/send_goal");
-  ASSERT_TRUE(sender->wait_for_service(kLimit));
-  SendGoal::Request again;
-  again.goal_id.uuid = goal->get_goal_id().bytes;
-  const auto response = sender->call(again, kLimit);
-  ASSERT_TRUE(response) << response.error();
-  EXPECT_FALSE(response->accepted);
-  EXPECT_EQ(asked, 1);
-  EXPECT_THAT(discarded, IsEmpty());
-  EXPECT_TRUE(handle->succeed());
-  EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
 }
 }  // namespace

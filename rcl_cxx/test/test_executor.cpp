@@ -5,9 +5,9 @@
 #include <future>
 #include <std_msgs/msg/string.hpp>
 
-#include "../src/services/response_sender.hpp"
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "ros_fixture.hpp"
+#include "services/response_sender.hpp"
 
 using std_msgs::msg::String;
 using testing::ElementsAre;

@@ -5,10 +5,10 @@
 #include <limits>
 #include <set>
 
-#include "../src/arguments.hpp"
-#include "../src/parameter_messages.hpp"
-#include "../src/parameter_rules.hpp"
-#include "../src/parameter_services.hpp"
+#include "context/arguments.hpp"
+#include "parameters/parameter_messages.hpp"
+#include "parameters/parameter_rules.hpp"
+#include "parameters/parameter_services.hpp"
 #include "rcl_cxx/error.hpp"
 #include "rcl_cxx/goal_uuid.hpp"
 #include "rcl_cxx/parameter_value.hpp"
