@@ -1,9 +1,10 @@
-// goal -> first RTDE command, and cancel -> deceleration begins, from a client in another process.
+// Measures the time from sending a goal to its first RTDE command, and from a cancel request to the start of
+// the deceleration. The client is another process.
 //
 //     bench_goals <address of a simulator or a robot whose arm may move> [repetitions]
 //
-// The client is forked before anything of ROS exists. Times are CLOCK_MONOTONIC, which both processes share;
-// the goal carries the time at which it was sent in a field.
+// The client is forked before ROS is initialized. Times are those of CLOCK_MONOTONIC, which both processes
+// share. A field of the goal contains the time at which it was sent.
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -48,7 +49,7 @@ void print(const char * what, std::vector<double> seconds)
              at(1.0), seconds.size());
 }
 
-/// `fraction` carries the time at which the client sent the goal.
+/// `fraction` is the time at which the client sent the goal.
 class Timed : public ur_ros_rtde::Command<SetSpeedSlider> {
  public:
   std::vector<double> seconds;
@@ -64,7 +65,7 @@ class Timed : public ur_ros_rtde::Command<SetSpeedSlider> {
   }
 };
 
-/// Swings the base until it is canceled; `speed` carries nothing but the speed.
+/// Swings the base until it is canceled.
 class Swing : public ur_ros_rtde::Command<MoveJ> {
   Outcome run(const Goal & goal, Run & run) override
   {
@@ -75,7 +76,7 @@ class Swing : public ur_ros_rtde::Command<MoveJ> {
   }
 };
 
-/// Highest target speed of a joint, by the time its package came.
+/// The highest target speed of all joints, with the time at which the package was received.
 class Speeds {
  public:
   void add(const ur_ros_rtde::Sample & sample)
@@ -88,8 +89,8 @@ class Speeds {
     all_.emplace_back(std::chrono::duration<double>(sample.received.time_since_epoch()).count(), speed);
   }
 
-  /// s from `begin` until the speed first falls.
-  double until_it_falls(double begin) const
+  /// s from `begin` until the speed first decreases. NaN if it does not.
+  double time_to_deceleration(double begin) const
   {
     const std::lock_guard lock(mutex_);
     for (std::size_t i = 1; i < all_.size(); ++i) {
@@ -105,7 +106,8 @@ class Speeds {
   std::vector<std::pair<double, double>> all_;
 };
 
-/// The other process: sends goals one after the other; the times of its cancels go through `pipe`.
+/// The client process. Sends goals one after the other, and writes the times of its cancel requests to
+/// `pipe`.
 int client(int repetitions, int pipe)
 {
   auto context = std::make_shared<rcl_cxx::Context>(std::vector<std::string>{"bench_client"});
@@ -117,7 +119,7 @@ int client(int repetitions, int pipe)
     auto timed = rcl_cxx::create_action_client<SetSpeedSlider>(node, "bench_timed");
     auto swing = rcl_cxx::create_action_client<MoveJ>(node, "bench_swing");
     if (!timed->wait_for_action_server(20s) || !swing->wait_for_action_server(20s)) {
-      fmt::print(stderr, "the servers do not show up\n");
+      fmt::print(stderr, "the action servers were not discovered\n");
       std::_Exit(1);
     }
     for (int i = 0; i < repetitions; ++i) {
@@ -172,7 +174,7 @@ int serve(const std::string & address, int pipe)
 
   std::vector<double> cancels;
   for (double canceled = 0.0; ::read(pipe, &canceled, sizeof(canceled)) == sizeof(canceled);) {
-    cancels.push_back(speeds.until_it_falls(canceled));
+    cancels.push_back(speeds.time_to_deceleration(canceled));
   }
   print("goal sent -> first RTDE command", timed.seconds);
   print("cancel sent -> the arm decelerates", cancels);

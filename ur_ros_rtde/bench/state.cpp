@@ -1,8 +1,9 @@
-// Controller package at this host -> callback of a subscriber in another process, of joint_states.
+// Measures the time from the reception of a package of the controller to the callback of a subscriber of
+// joint_states in another process.
 //
 //     bench_state [seconds] [--ros-args …]        beside a robot_state_receiver or a driver
 //
-// The stamp of a message is the moment at which the node had the package; both clocks are the system's.
+// The stamp of a message is the time at which the node received the package, by the system clock.
 
 #include <fmt/format.h>
 
@@ -34,7 +35,7 @@ int main(int argc, char ** argv)
   executor.spin_until([] { return false; },
                       std::chrono::nanoseconds(static_cast<std::int64_t>(duration * 1e9)));
   if (milliseconds.empty()) {
-    fmt::print(stderr, "nothing came on {}\n", subscription->get_topic_name());
+    fmt::print(stderr, "no message was received on {}\n", subscription->get_topic_name());
     return 1;
   }
   std::sort(milliseconds.begin(), milliseconds.end());

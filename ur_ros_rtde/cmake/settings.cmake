@@ -1,4 +1,4 @@
-# What all targets of this package have in common.
+# Settings of all targets of this package.
 function(ur_ros_rtde_settings target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)

@@ -1,5 +1,5 @@
-# The transform base -> tool0_controller, where tf2_msgs is installed. Where it is not, the tests define the same
-# interface and build a second robot_state_receiver with it, for them alone.
+# The transform base -> tool0_controller needs tf2_msgs. If tf2_msgs is not installed, test/tf2_msgs defines the same
+# message, and a second robot_state_receiver that broadcasts the transform is built for the tests.
 find_package(tf2_msgs QUIET)
 
 if(tf2_msgs_FOUND)
@@ -7,7 +7,8 @@ if(tf2_msgs_FOUND)
 elseif(BUILD_TESTING)
   add_subdirectory(test/tf2_msgs)
   rosidl_get_typesupport_target(tf2_msgs_interfaces tf2_msgs rosidl_typesupport_cpp)
-  # The program's own tool_transform.cpp is linked instead of the one in the static library, where it must be alone.
+  # This program compiles tool_transform.cpp itself. To replace the one in the static library, that must be an object
+  # file of its own there.
   set_source_files_properties(src/state/tool_transform.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   add_executable(robot_state_receiver_with_tf
     src/programs/robot_state_receiver.cpp src/state/tool_transform.cpp)

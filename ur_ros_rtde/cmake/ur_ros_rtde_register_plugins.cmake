@@ -1,9 +1,9 @@
 # ur_ros_rtde_register_plugins(<target> <plugins.xml>)
 #
 # Makes the plugins of the shared library <target> known to the servers of ur_ros_rtde: installs the library into lib,
-# and <plugins.xml> with an entry in the ament index. The same files and the same entry as
-# pluginlib_export_plugin_description_file(ur_ros_rtde <plugins.xml>) makes, without needing pluginlib.
-# Once for each library, each description with a file name of its own; call it before ament_package().
+# and <plugins.xml> with an entry in the ament index. The installed files and the entry are those of
+# pluginlib_export_plugin_description_file(ur_ros_rtde <plugins.xml>); pluginlib itself is not needed.
+# Call it once for each library, before ament_package(). The file names of the descriptions must differ.
 function(ur_ros_rtde_register_plugins target description)
   if(NOT TARGET ${target})
     message(FATAL_ERROR "ur_ros_rtde_register_plugins: there is no target ${target}")
@@ -19,7 +19,7 @@ function(ur_ros_rtde_register_plugins target description)
   if(NOT first)
     set(first ${target})
     set_property(DIRECTORY PROPERTY UR_ROS_RTDE_FIRST_PLUGINS ${target})
-    # Evaluated when all calls have been made.
+    # Evaluated after all calls.
     ament_index_register_resource(ur_ros_rtde__pluginlib__plugin
       CONTENT "$<JOIN:$<TARGET_PROPERTY:${target},UR_ROS_RTDE_DESCRIPTIONS>,\n>\n")
   endif()
