@@ -41,12 +41,12 @@ bool spins_until(const std::string & signal)
 bool hears_early_signals()
 {
   for (int round = 0; round < 100; ++round) {
-    std::promise<int> told;
-    auto signal = told.get_future();
+    std::promise<int> delivered;
+    auto signal = delivered.get_future();
     const auto watcher = rcl_cxx::detail::SignalWatcher::instance();
     ::raise(SIGINT);
     std::this_thread::sleep_for(std::chrono::microseconds(10 * round));
-    watcher->add([&told](int number) { told.set_value(number); });
+    watcher->add([&delivered](int number) { delivered.set_value(number); });
     if (signal.wait_for(kLimit) != std::future_status::ready || signal.get() != SIGINT) {
       return false;
     }

@@ -1,6 +1,4 @@
 // What a plugin throws outside of run() ends its goal, not the process.
-#include "ur_ros_rtde/detail/goal_server.hpp"
-
 #include <gtest/gtest.h>
 
 #include <rcl_cxx/executor.hpp>
@@ -9,6 +7,7 @@
 #include <ur_ros_rtde_msgs/action/trigger.hpp>
 
 #include "ur_ros_rtde/detail/command_executor.hpp"
+#include "ur_ros_rtde/detail/goal_server.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
@@ -48,7 +47,7 @@ class FaultyServer : public GoalServer<Trigger> {
   }
   void fill_result(const Outcome &, Trigger::Result &) const override
   {
-    throw std::runtime_error("a fault in tell");
+    throw std::runtime_error("a fault in fill_result");
   }
 
   ActiveGoals active_goals_;
@@ -68,7 +67,7 @@ TEST_F(GoalServerTest, ExceptionInFillResultAbortsTheGoal)
   EXPECT_EQ(end->status, rcl_cxx::GoalStatus::aborted);
   EXPECT_FALSE(end->result.success);
   EXPECT_EQ(end->result.error_code, static_cast<std::uint16_t>(ErrorCode::exception));
-  EXPECT_NE(end->result.message.find("a fault in tell"), std::string::npos) << end->result.message;
+  EXPECT_NE(end->result.message.find("a fault in fill_result"), std::string::npos) << end->result.message;
 }
 
 TEST_F(GoalServerTest, ExceptionInStopOptionsFailsTheGoalBeforeRun)

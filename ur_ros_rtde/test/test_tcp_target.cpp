@@ -56,7 +56,7 @@ TEST(TcpTargetTest, UsesAnyOtherOrientation)
   EXPECT_NEAR(tcp_target(negative, false, looking_down())[3], 0.0, 1e-12);
 }
 
-TEST(TurnToIdentityTest, NamesTheFirstPoseWithAnIdentityOrientation)
+TEST(IdentityOrientationWarningTest, NamesTheFirstPoseWithAnIdentityOrientation)
 {
   const Vector6 start = looking_down().target_tcp_pose;
   const auto text = identity_orientation_warning(
@@ -64,7 +64,7 @@ TEST(TurnToIdentityTest, NamesTheFirstPoseWithAnIdentityOrientation)
   EXPECT_EQ(text.find("poses[2] turns the tool by 162 degrees"), 0U) << text;
 }
 
-TEST(TurnToIdentityTest, IgnoresOtherAndSmallRotations)
+TEST(IdentityOrientationWarningTest, IgnoresOtherAndSmallRotations)
 {
   const Vector6 start = looking_down().target_tcp_pose;
   EXPECT_EQ(identity_orientation_warning(start, path_poses("poses", {turned(0.1)})), "")
@@ -75,7 +75,7 @@ TEST(TurnToIdentityTest, IgnoresOtherAndSmallRotations)
   EXPECT_NE(identity_orientation_warning(start, path_poses("poses", {turned(0.6 * pi), pose(1, 0, 0)})), "");
 }
 
-TEST(TurnToIdentityTest, IsUnknownAfterJointPositions)
+TEST(IdentityOrientationWarningTest, IsUnknownAfterJointPositions)
 {
   const Vector6 start = looking_down().target_tcp_pose;
   EXPECT_EQ(identity_orientation_warning(

@@ -99,8 +99,8 @@ class ActionServerImpl : public Waitable {
   bool try_to_finish(ServerGoalImpl & goal, GoalStatus status, std::shared_ptr<void> result_response);
   bool transition_locked(ServerGoalImpl & goal, GoalStatus status);
   void abort(ServerGoalImpl & goal) noexcept;
-  /// Aborts the active goals. Clients that have just been told of the acceptance of their goals have a moment
-  /// to request the results. Takes their requests in this thread if `take_requests`.
+  /// Aborts the active goals. Clients whose goals have just been accepted have a moment to request
+  /// the results. Takes their requests in this thread if `take_requests`.
   void abort_all(const char * reason, bool take_requests) noexcept;
   void wait_for_result_requests(const Goals & goals, bool take_requests);
   void send_result(const rmw_request_id_t & request, ServerGoalImpl & goal);

@@ -27,7 +27,7 @@ struct ServiceClients {
   std::size_t unlisted = 0;
 };
 
-/// Returns nothing if the middleware cannot tell.
+/// Returns nothing if the middleware cannot list clients.
 std::optional<ServiceClients> find_clients(NodeImpl & node, const std::string & service);
 
 /// Returns whether the header of a request contains the id of an endpoint of the client, as with
