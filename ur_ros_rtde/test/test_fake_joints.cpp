@@ -1,8 +1,8 @@
-#include "state/fake_joints.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "state/fake_joints.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -1,5 +1,3 @@
-#include "ur_ros_rtde/detail/goal_threads.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -10,6 +8,8 @@
 #include <future>
 #include <string>
 #include <thread>
+
+#include "ur_ros_rtde/detail/goal_threads.hpp"
 
 namespace ur_ros_rtde {
 namespace {

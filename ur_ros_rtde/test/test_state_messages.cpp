@@ -1,9 +1,9 @@
-#include "state/state_messages.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "state/state_messages.hpp"
 
 namespace ur_ros_rtde {
 namespace {
