@@ -5,9 +5,10 @@
 
 namespace ur_ros_rtde::test {
 
-void RobotFixture::make_robot(RobotOptions options)
+void RobotFixture::make_robot(RobotOptions options, const std::vector<ScriptExtension> & extensions)
 {
   robot = std::make_unique<Robot>(std::move(options), log.function());
+  ASSERT_TRUE(robot->set_extensions(extensions).empty());
   robot->on_status([this](const RobotStatus & status) {
     const std::lock_guard lock(mutex);
     statuses.push_back(status);

@@ -29,6 +29,20 @@ TEST_F(RobotConnectionTest, BecomesReadyWithinTwoSeconds)
   EXPECT_NE(robot->dashboard()->robotmode().find("RUNNING"), std::string::npos);
 }
 
+TEST_F(RobotConnectionTest, BecomesReadyOnEarlyVersionsOfPolyscope5)
+{
+  for (const char * version : {"5.0.0", "5.3.0"}) {
+    auto options = Controller::options();
+    options.polyscope_version = version;
+    controller.start(options);
+    make_robot();
+    EXPECT_TRUE(becomes_ready()) << version;
+    EXPECT_TRUE(robot->control()->isSteady()) << version;
+    robot.reset();
+    controller.stop();
+  }
+}
+
 TEST_F(RobotConnectionTest, WaitsForControllerThatStartsLater)
 {
   make_robot();
@@ -43,10 +57,12 @@ TEST_F(RobotConnectionTest, WaitsForControllerThatStartsLater)
 
 TEST_F(RobotConnectionTest, RetriesAFailedStartAtTheRetryInterval)
 {
-  auto options = Controller::options();
-  options.polyscope_version = "5.3.0";  // ur_rtde does not request the output registers that it needs
-  controller.start(options);
-  make_robot();
+  controller.start();
+  ScriptExtension extension;
+  extension.name = "ends_the_program";
+  extension.preamble_name = "end";
+  extension.preamble = "sync()\nhalt";  // the control program starts, but does not answer
+  make_robot(robot_options(), {extension});
   ASSERT_TRUE(eventually([&] { return log.count("the control program cannot be started") > 0; }))
       << log.text();
   const auto starts = [&] {
