@@ -188,6 +188,30 @@ def test_a_path_refuses_what_is_wrong_in_it(robot):
         assert not goal.accepted and text in robot.refusal(goal).message, robot.refusal(goal).message
 
 
+@pytest.mark.parametrize("field, value, limit", [("speed", 3.2, "m/s"), ("acceleration", 151.0, "m/s^2")])
+@pytest.mark.parametrize("action, name, fields", [
+    (MoveC, "move_c", {"via": Pose(position=Point(x=0.5), orientation=DOWN), "pose": Pose(position=Point(x=0.5), orientation=DOWN)}),
+    (MoveP, "move_p", {"poses": [Pose(position=Point(x=0.5), orientation=DOWN)]}),
+    (MoveLRelative, "move_l_relative", {"translation": Vector3(z=-0.1)}),
+    (ServoC, "servo_c", {"pose": Pose(position=Point(x=0.5), orientation=DOWN)}),
+    (MoveJRelative, "move_j_relative", {"joint_offsets": [0.1] * 6})])
+def test_the_speed_and_acceleration_of_a_goal_are_limited(robot, action, name, fields, field, value, limit):
+    goal = robot.send(action, name, **fields, **{field: value})
+    unit = limit.replace("m/", "rad/") if action is MoveJRelative else limit
+    message = robot.refusal(goal).message
+    assert not goal.accepted and field in message and message.endswith(f" {unit}"), message
+
+
+@pytest.mark.parametrize("action, name, fields", [
+    (ServoJ, "servo_j", {"joint_positions": HOME}),
+    (ServoL, "servo_l", {"pose": Pose(position=Point(x=0.5), orientation=DOWN)}),
+    (ServoC, "servo_c", {"pose": Pose(position=Point(x=0.5), orientation=DOWN)}),
+    (Decelerate, "servo_stop", {})])
+def test_the_deceleration_of_servo_motion_is_that_of_the_tcp(robot, action, name, fields):
+    message = robot.refusal(robot.send(action, name, **fields, deceleration=41.0)).message
+    assert "deceleration" in message and message.endswith(" m/s^2"), message
+
+
 def test_speed_j_turns_for_its_time(robot):
     result = robot.send(SpeedJ, "speed_j", joint_velocities=[0.2, 0.0, 0.0, 0.0, 0.0, -0.4], acceleration=2.0,
                         time=1.0, deceleration=4.0).succeeded()

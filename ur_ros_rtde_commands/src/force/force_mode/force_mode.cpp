@@ -1,0 +1,27 @@
+#include "force/force_mode/force_mode_helpers.hpp"
+
+namespace ur_ros_rtde {
+
+class ForceMode : public Command<ur_ros_rtde_msgs::action::ForceMode> {
+  void check(const Goal & goal, Check & check) const override { check_force_mode(goal, true, check); }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    start_force_mode(goal, run);
+    const auto stop_reason = wait_for_duration_or_cancel(run, goal.duration, [&](const Sample & now) {
+      const Vector6 & measured = now.actual_tcp_force;
+      auto & wrench = run.feedback().wrench;
+      wrench.force.x = measured[0], wrench.force.y = measured[1], wrench.force.z = measured[2];
+      wrench.torque.x = measured[3], wrench.torque.y = measured[4], wrench.torque.z = measured[5];
+    });
+    if (stop_reason) {
+      return *stop_reason;
+    }
+    check_result(run.control()->forceModeStop(), "end force mode");
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(ForceMode, "force_mode")
+
+}  // namespace ur_ros_rtde

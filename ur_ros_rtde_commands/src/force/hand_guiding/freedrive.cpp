@@ -1,0 +1,21 @@
+#include "force/hand_guiding/hand_guiding.hpp"
+
+namespace ur_ros_rtde {
+
+class Freedrive : public Command<ur_ros_rtde_msgs::action::Freedrive> {
+  void check(const Goal & goal, Check & check) const override { check_freedrive(goal, true, check); }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    start_freedrive(goal, run);
+    if (auto stop_reason = wait_for_duration_or_cancel(run, goal.duration)) {
+      return *stop_reason;
+    }
+    check_result(run.control()->endFreedriveMode(), "end freedrive");
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(Freedrive, "freedrive")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,23 @@
+#include <ur_ros_rtde_msgs/action/teach_mode.hpp>
+
+#include "force/hand_guiding/hand_guiding.hpp"
+
+namespace ur_ros_rtde {
+
+class TeachMode : public Command<ur_ros_rtde_msgs::action::TeachMode> {
+  void check(const Goal & goal, Check & check) const override { check_duration(check, goal.duration, true); }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    start_teach_mode(run);
+    if (auto stop_reason = wait_for_duration_or_cancel(run, goal.duration)) {
+      return *stop_reason;
+    }
+    check_result(run.control()->endTeachMode(), "end teach mode");
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(TeachMode, "teach_mode")
+
+}  // namespace ur_ros_rtde

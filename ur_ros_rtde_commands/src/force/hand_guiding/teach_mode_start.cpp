@@ -1,0 +1,19 @@
+#include <ur_ros_rtde_msgs/action/trigger.hpp>
+
+#include "force/hand_guiding/hand_guiding.hpp"
+
+namespace ur_ros_rtde {
+
+class TeachModeStart : public Command<ur_ros_rtde_msgs::action::Trigger> {
+  CommandTraits traits() const override { return {.leaves_mode_active = true}; }
+
+  Outcome run(const Goal &, Run & run) override
+  {
+    start_teach_mode(run);
+    return Outcome::success("the arm can be moved by hand until end_teach_mode or stop");
+  }
+};
+
+UR_ROS_RTDE_EXPORT(TeachModeStart, "teach_mode_start")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "motion/speed_limits.hpp"
+#include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde/run.hpp"
+
+namespace ur_ros_rtde {
+
+template <typename Goal>
+Check & check_servo_deceleration(Check & check, const Goal & goal)
+{
+  return check.in_range("deceleration", goal.deceleration, min_deceleration, max_servo_deceleration, "m/s^2");
+}
+
+/// Checks the fields that the goals of servo_j and servo_l have in common.
+template <typename Goal>
+Check & check_servo(Check & check, const Goal & goal)
+{
+  if (goal.time != 0.0) {
+    check.in_range("time", goal.time, 0.01, 600.0, "s");
+  }
+  check.in_range("lookahead_time", goal.lookahead_time, 0.03, 0.2, "s")
+      .in_range("gain", goal.gain, 100.0, 2000.0);
+  return check_servo_deceleration(check, goal);
+}
+
+/// Includes the linear deceleration, because the control script stops servo motion along the path of the TCP.
+template <typename Goal>
+StopOptions servo_stop_options(const Goal & goal)
+{
+  return {.joint_deceleration = goal.deceleration, .linear_deceleration = goal.deceleration};
+}
+
+/// The minimum-jerk polynomial (Flash and Hogan 1985): the traveled fraction of the path at the fraction `u`
+/// of the duration, both 0 to 1. It starts and ends at rest with continuous acceleration.
+double smooth_step(double u);
+/// The peak speed of smooth_step as a multiple of its mean speed.
+constexpr double smooth_step_peak = 15.0 / 8.0;
+
+/// The duration (s) of a goal without a time: what the joints, or the TCP, need with the default speeds and
+/// accelerations (default_speeds.hpp).
+double default_joint_duration(const Vector6 & from, const std::vector<double> & to);
+double default_tcp_duration(const Vector6 & from, const std::vector<double> & to);
+
+/// Executes a servo motion of `duration` s: calls `send` for each package of the controller with the traveled
+/// fraction (smooth_step) and the cycle time (s), then calls `wait_for_arrival`, and ends servo control. If
+/// the host is late, the motion continues where it was: the arm becomes slower, never faster.
+[[nodiscard]] Outcome servo(Run & run, double duration,
+                            const std::function<void(double fraction, double cycle)> & send,
+                            const std::function<Outcome()> & wait_for_arrival, double deceleration);
+
+/// Ends servo control after a successful arrival. After a failure, the base class stops the arm.
+[[nodiscard]] Outcome finish_servo(Run & run, const Outcome & arrival, double deceleration);
+
+/// Linear interpolation at the fraction `s`: of joint positions, and of UR poses, on a straight line with a
+/// rotation about a fixed axis.
+std::vector<double> interpolate_joints(const Vector6 & from, const std::vector<double> & to, double s);
+std::vector<double> interpolate_pose(const Vector6 & from, const std::vector<double> & to, double s);
+
+/// Checks that the TCP does not exceed 3 m/s and 3.14 rad/s if it follows smooth_step from one UR pose to
+/// another in `time` s.
+void check_tcp_speed(Check & check, const Vector6 & from, const std::vector<double> & to, double time);
+
+}  // namespace ur_ros_rtde

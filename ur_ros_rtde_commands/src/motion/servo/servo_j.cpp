@@ -1,0 +1,34 @@
+#include <ur_ros_rtde_msgs/action/servo_j.hpp>
+
+#include "motion/servo/servo.hpp"
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+
+class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.joints("joint_positions", goal.joint_positions);
+    if (check_servo(check, goal).ok() && goal.time > 0.0) {
+      check.reachable_in("joint_positions", goal.joint_positions, goal.time, smooth_step_peak);
+    }
+  }
+
+  StopOptions stop_options(const Goal & goal) const override { return servo_stop_options(goal); }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const Vector6 start = run.state().actual_q;
+    const double time = goal.time > 0.0 ? goal.time : default_joint_duration(start, goal.joint_positions);
+    const auto send = [&](double fraction, double cycle) {
+      const auto target = interpolate_joints(start, goal.joint_positions, fraction);
+      run.control()->servoJ(target, 0.0, 0.0, cycle, goal.lookahead_time, goal.gain);
+    };
+    const auto wait_for_arrival = [&] { return run.until_at_joints(goal.joint_positions); };
+    return servo(run, time, send, wait_for_arrival, goal.deceleration);
+  }
+};
+
+UR_ROS_RTDE_EXPORT(ServoJ, "servo_j")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,37 @@
+#include <ur_ros_rtde_msgs/action/servo_l.hpp>
+
+#include "motion/servo/servo.hpp"
+#include "ur_ros_rtde/command.hpp"
+#include "ur_ros_rtde/tcp_target.hpp"
+
+namespace ur_ros_rtde {
+
+class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.pose("pose", goal.pose);
+    check_tcp_target(check_servo(check, goal), goal);
+    if (const auto start = check.start(); start && goal.time > 0.0) {
+      check_tcp_speed(check, start->actual_tcp_pose, tcp_target(goal, *start), goal.time);
+    }
+  }
+
+  StopOptions stop_options(const Goal & goal) const override { return servo_stop_options(goal); }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const Sample sample = run.state();
+    const Vector6 & start = sample.actual_tcp_pose;
+    const auto end = tcp_target(goal, sample);
+    const double time = goal.time > 0.0 ? goal.time : default_tcp_duration(start, end);
+    const auto send = [&](double fraction, double cycle) {
+      const auto target = interpolate_pose(start, end, fraction);
+      run.control()->servoL(target, 0.0, 0.0, cycle, goal.lookahead_time, goal.gain);
+    };
+    return servo(run, time, send, [&] { return run.until_at_pose(end); }, goal.deceleration);
+  }
+};
+
+UR_ROS_RTDE_EXPORT(ServoL, "servo_l")
+
+}  // namespace ur_ros_rtde
