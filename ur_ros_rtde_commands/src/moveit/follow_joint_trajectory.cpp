@@ -98,8 +98,8 @@ class FollowJointTrajectory : public Command<Action> {
   }
   void check_time(const Goal & goal, Check & check) const;
   Expected<PlannedTrajectory> plan(const Goal & goal, const Joints & start) const;
-  Status watch(const Goal & goal, Run & run, const Tolerances & path,
-               const trajectory::Trajectory & trajectory, const StreamState & state) const;
+  Status check_setpoint(const Goal & goal, Run & run, const Tolerances & path,
+                        const trajectory::Trajectory & trajectory, const StreamState & state) const;
   void publish_feedback_at(const Goal & goal, Run & run, std::size_t index, const StreamState & state) const;
   static Outcome wait_for_arrival(const Goal & goal, Run & run, const Tolerances & tolerances,
                                   const Joints & end);
@@ -204,16 +204,16 @@ Outcome FollowJointTrajectory::run(const Goal & goal, Run & run)
   execution.on_planned = [&](const trajectory::Trajectory & plan) {
     last = plan.sample(plan.duration()).position;
   };
-  execution.watch = [&](const trajectory::Trajectory & plan, const StreamState & state) {
-    return watch(goal, run, *path, plan, state);
+  execution.on_setpoint = [&](const trajectory::Trajectory & plan, const StreamState & state) {
+    return check_setpoint(goal, run, *path, plan, state);
   };
   execution.wait_for_arrival = [&] { return wait_for_arrival(goal, run, *end, last); };
   return execute(run, execution).outcome;
 }
 
-Status FollowJointTrajectory::watch(const Goal & goal, Run & run, const Tolerances & path,
-                                    const trajectory::Trajectory & trajectory,
-                                    const StreamState & state) const
+Status FollowJointTrajectory::check_setpoint(const Goal & goal, Run & run, const Tolerances & path,
+                                             const trajectory::Trajectory & trajectory,
+                                             const StreamState & state) const
 {
   run.progress(trajectory.progress(state.time));
   publish_feedback_at(

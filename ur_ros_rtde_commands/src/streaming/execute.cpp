@@ -87,12 +87,12 @@ ExecutionResult execute(Run & run, const Execution & execution)
   if (*approach) {
     ServoStream stream(run, execution.servo,
                        [](const Trajectory &, const StreamState &) { return Status(); });
-    if (Outcome approached = stream.drive(**approach, plan->limits); !approached) {
+    if (Outcome approached = stream.execute(**approach, plan->limits); !approached) {
       return {approached, stream.max_tracking_error()};
     }
   }
-  ServoStream stream(run, execution.servo, execution.watch);
-  Outcome outcome = stream.drive(plan->trajectory, plan->limits);
+  ServoStream stream(run, execution.servo, execution.on_setpoint);
+  Outcome outcome = stream.execute(plan->trajectory, plan->limits);
   if (outcome) {
     outcome = execution.wait_for_arrival ? execution.wait_for_arrival() : stream.settle();
   }

@@ -24,7 +24,9 @@ struct Execution {
   /// Called once after planning, before any motion.
   std::function<void(const trajectory::Trajectory &)> on_planned = [](const trajectory::Trajectory &) {};
   /// Called after each setpoint. A failure ends the goal.
-  ServoStream::Watch watch = [](const trajectory::Trajectory &, const StreamState &) { return Status(); };
+  ServoStream::SetpointCallback on_setpoint = [](const trajectory::Trajectory &, const StreamState &) {
+    return Status();
+  };
   /// Waits until the arm has followed the last setpoint. Default: ServoStream::settle().
   std::function<Outcome()> wait_for_arrival;
 };

@@ -16,8 +16,8 @@ using trajectory::Limits;
 using trajectory::TimeScaling;
 using trajectory::Trajectory;
 
-/// s. Lower limit of the time constant with which the arm slows down when its setpoint stops.
-constexpr double min_memory = 0.1;
+/// s. Lower limit of the time that the arm takes to follow a setpoint.
+constexpr double min_servo_lag = 0.1;
 constexpr double lag_reserve = 0.1;    // s, beyond lookahead_time
 constexpr double stopped_rate = 0.01;  // the rate below which braking is not necessary
 constexpr std::chrono::seconds package_timeout{1};
@@ -37,34 +37,34 @@ double requested_rate(const Sample & sample)
 
 }  // namespace
 
-ServoStream::ServoStream(Run & run, ServoSettings settings, Watch watch)
+ServoStream::ServoStream(Run & run, ServoSettings settings, SetpointCallback on_setpoint)
     : run_(run),
       settings_(std::move(settings)),
-      watch_(std::move(watch)),
+      on_setpoint_(std::move(on_setpoint)),
       cycle_(cycle_of(run.robot())),
-      memory_(std::max(settings_.lookahead_time, min_memory)),
+      servo_lag_(std::max(settings_.lookahead_time, min_servo_lag)),
       target_(trajectory::joint_count)
 {
   state_.sample = run.state();
 }
 
-Outcome ServoStream::drive(const Trajectory & plan, const Limits & limits)
+Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
 {
   const RealtimePriority priority(run_.robot().realtime_priority());
   state_.sample = run_.state();
   const Joints end = plan.sample(plan.duration()).position;
   std::copy(end.begin(), end.end(), target_.begin());
-  TimeScaling clock(cycle_, memory_, requested_rate(state_.sample));
-  while (clock.time() < plan.duration()) {
+  TimeScaling time_scaling(cycle_, servo_lag_, requested_rate(state_.sample));
+  while (time_scaling.time() < plan.duration()) {
     const double before = state_.sample.controller_time;
     if (const auto stop_reason = run_.next(state_.sample)) {
       elapsed_ = state_.sample.controller_time - before;
-      brake(plan, limits, clock);
+      brake(plan, limits, time_scaling);
       return *stop_reason;
     }
     elapsed_ = state_.sample.controller_time - before;
-    clock.advance(elapsed_, requested_rate(state_.sample), plan.sample(clock.time()), limits);
-    if (Status sent = send(plan, clock.time()); !sent) {
+    time_scaling.advance(elapsed_, requested_rate(state_.sample), plan.sample(time_scaling.time()), limits);
+    if (Status sent = send(plan, time_scaling.time()); !sent) {
       return sent;
     }
   }
@@ -84,7 +84,7 @@ Status ServoStream::send(const Trajectory & plan, double time)
                                "max_tracking_error is {:.4f} rad: check for obstacles and a low gain",
                                state_.tracking_error, state_.time, settings_.max_tracking_error));
   }
-  return watch_(plan, state_);
+  return on_setpoint_(plan, state_);
 }
 
 void ServoStream::update_tracking_error()
@@ -121,15 +121,15 @@ bool ServoStream::next_package()
   return false;
 }
 
-bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits, TimeScaling & clock,
+bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits, TimeScaling & time_scaling,
                                  const std::function<bool()> & done)
 {
-  while (clock.time() < plan.duration() && !done()) {
+  while (time_scaling.time() < plan.duration() && !done()) {
     if (!next_package()) {
       return false;
     }
-    clock.advance(elapsed_, clock.rate(), plan.sample(clock.time()), limits);
-    if (!send(plan, clock.time())) {
+    time_scaling.advance(elapsed_, time_scaling.rate(), plan.sample(time_scaling.time()), limits);
+    if (!send(plan, time_scaling.time())) {
       return false;
     }
   }
@@ -138,24 +138,24 @@ bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits,
 
 /// The stop is planned in a separate thread while the arm continues along the plan. The stop begins `ahead` s
 /// later. If the planning takes longer, it is repeated with a larger `ahead`.
-void ServoStream::brake(const Trajectory & plan, const Limits & limits, TimeScaling & clock)
+void ServoStream::brake(const Trajectory & plan, const Limits & limits, TimeScaling & time_scaling)
 {
-  for (double ahead = 0.02; ahead < 1.0 && clock.rate() > stopped_rate; ahead *= 4.0) {
+  for (double ahead = 0.02; ahead < 1.0 && time_scaling.rate() > stopped_rate; ahead *= 4.0) {
     if (settings_.preempted_by_stop() || !run_.robot().motion_possible()) {
       return;
     }
-    const double rate = clock.rate();
-    const double from = clock.time() + ahead * rate;
+    const double rate = time_scaling.rate();
+    const double from = time_scaling.time() + ahead * rate;
     auto search = std::async(std::launch::async, [&plan, &limits, rate, from] {
       return plan.slowed(rate).stop_from(from / rate, limits);
     });
     const auto found = [&] { return search.wait_for(std::chrono::seconds(0)) == std::future_status::ready; };
-    if (!continue_until(plan, limits, clock, found)) {
+    if (!continue_until(plan, limits, time_scaling, found)) {
       return;
     }
     const Trajectory stop = search.get();
-    if (clock.time() <= from) {
-      TimeScaling braking(cycle_, memory_, 1.0, clock.time() / rate);
+    if (time_scaling.time() <= from) {
+      TimeScaling braking(cycle_, servo_lag_, 1.0, time_scaling.time() / rate);
       continue_until(stop, limits, braking, settings_.preempted_by_stop);
       return;
     }

@@ -34,13 +34,13 @@ struct StreamState {
 class ServoStream {
  public:
   /// Called after each setpoint. A failure ends the stream.
-  using Watch = std::function<Status(const trajectory::Trajectory &, const StreamState &)>;
+  using SetpointCallback = std::function<Status(const trajectory::Trajectory &, const StreamState &)>;
 
-  ServoStream(Run & run, ServoSettings settings, Watch watch);
+  ServoStream(Run & run, ServoSettings settings, SetpointCallback on_setpoint);
 
   /// Streams `plan`, which starts at the position of the arm. If the goal has to stop meanwhile and the arm
   /// can still move, brakes along the path within `limits` and returns the reason.
-  Outcome drive(const trajectory::Trajectory & plan, const trajectory::Limits & limits);
+  Outcome execute(const trajectory::Trajectory & plan, const trajectory::Limits & limits);
   /// Waits until the arm has followed the last setpoint, then ends servo control.
   Outcome settle();
 
@@ -57,15 +57,15 @@ class ServoStream {
   bool next_package();
   /// Streams the plan until its end or until `done`. False if the arm can no longer be moved.
   bool continue_until(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
-                      trajectory::TimeScaling & clock, const std::function<bool()> & done);
+                      trajectory::TimeScaling & time_scaling, const std::function<bool()> & done);
   void brake(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
-             trajectory::TimeScaling & clock);
+             trajectory::TimeScaling & time_scaling);
 
   Run & run_;
   const ServoSettings settings_;
-  const Watch watch_;
+  const SetpointCallback on_setpoint_;
   const double cycle_;
-  const double memory_;  // s, of the TimeScaling
+  const double servo_lag_;  // s, the time that the arm takes to follow a setpoint
   StreamState state_;
   double elapsed_ = 0.0;  // s between the last two packages
   std::vector<double> target_;

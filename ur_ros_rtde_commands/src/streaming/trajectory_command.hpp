@@ -60,7 +60,7 @@ Execution TrajectoryCommand<A>::make_execution(const Goal & goal, Run & run) con
   execution.on_planned = [&run](const trajectory::Trajectory & plan) {
     run.result().duration = plan.duration();
   };
-  execution.watch = [&run](const trajectory::Trajectory & plan, const StreamState & state) {
+  execution.on_setpoint = [&run](const trajectory::Trajectory & plan, const StreamState & state) {
     run.progress(plan.progress(state.time));
     const std::size_t next = plan.waypoint_at(state.time) + 1;
     run.feedback().waypoint = static_cast<std::uint32_t>(std::min(next, plan.waypoint_count() - 1));

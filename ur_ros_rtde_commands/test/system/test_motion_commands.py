@@ -15,6 +15,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode, PathWaypoint
 from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
 
 DOWN = Quaternion(x=math.sqrt(0.5), y=math.sqrt(0.5), z=0.0, w=0.0)  # the tool looks down
+FORWARD = Pose(position=Point(x=0.5), orientation=DOWN)
 
 
 def pose_now(client):
@@ -190,10 +191,10 @@ def test_a_path_refuses_what_is_wrong_in_it(robot):
 
 @pytest.mark.parametrize("field, value, limit", [("speed", 3.2, "m/s"), ("acceleration", 151.0, "m/s^2")])
 @pytest.mark.parametrize("action, name, fields", [
-    (MoveC, "move_c", {"via": Pose(position=Point(x=0.5), orientation=DOWN), "pose": Pose(position=Point(x=0.5), orientation=DOWN)}),
-    (MoveP, "move_p", {"poses": [Pose(position=Point(x=0.5), orientation=DOWN)]}),
+    (MoveC, "move_c", {"via": FORWARD, "pose": FORWARD}),
+    (MoveP, "move_p", {"poses": [FORWARD]}),
     (MoveLRelative, "move_l_relative", {"translation": Vector3(z=-0.1)}),
-    (ServoC, "servo_c", {"pose": Pose(position=Point(x=0.5), orientation=DOWN)}),
+    (ServoC, "servo_c", {"pose": FORWARD}),
     (MoveJRelative, "move_j_relative", {"joint_offsets": [0.1] * 6})])
 def test_the_speed_and_acceleration_of_a_goal_are_limited(robot, action, name, fields, field, value, limit):
     goal = robot.send(action, name, **fields, **{field: value})
@@ -204,8 +205,8 @@ def test_the_speed_and_acceleration_of_a_goal_are_limited(robot, action, name, f
 
 @pytest.mark.parametrize("action, name, fields", [
     (ServoJ, "servo_j", {"joint_positions": HOME}),
-    (ServoL, "servo_l", {"pose": Pose(position=Point(x=0.5), orientation=DOWN)}),
-    (ServoC, "servo_c", {"pose": Pose(position=Point(x=0.5), orientation=DOWN)}),
+    (ServoL, "servo_l", {"pose": FORWARD}),
+    (ServoC, "servo_c", {"pose": FORWARD}),
     (Decelerate, "servo_stop", {})])
 def test_the_deceleration_of_servo_motion_is_that_of_the_tcp(robot, action, name, fields):
     message = robot.refusal(robot.send(action, name, **fields, deceleration=41.0)).message
