@@ -5,13 +5,13 @@
 
 namespace ur_ros_rtde::test {
 
-void RobotFixture::make_robot(RobotOptions options, const std::vector<ScriptExtension> & extensions)
+void RobotFixture::make_robot(RobotOptions options)
 {
   robot = std::make_unique<Robot>(std::move(options), log.function());
-  ASSERT_TRUE(robot->set_extensions(extensions).empty());
   robot->on_status([this](const RobotStatus & status) {
     const std::lock_guard lock(mutex);
     statuses.push_back(status);
+    status_times.push_back(std::chrono::steady_clock::now());
   });
   robot->on_sample([this](const Sample & sample) {
     if (recording) {

@@ -8,7 +8,6 @@
 
 #include "support.hpp"
 #include "ur_ros_rtde_robot/connection/interfaces.hpp"
-#include "ur_ros_rtde_robot/program/script_extension.hpp"
 
 namespace ur_ros_rtde::test {
 
@@ -18,12 +17,12 @@ struct RobotFixture : testing::Test {
   Controller controller;
   std::mutex mutex;
   std::vector<RobotStatus> statuses;
-  std::vector<Sample> samples;  ///< while `recording`
+  std::vector<std::chrono::steady_clock::time_point> status_times;  ///< of `statuses`
+  std::vector<Sample> samples;                                      ///< while `recording`
   std::atomic<bool> recording{false};
   std::unique_ptr<Robot> robot;  ///< last: its callbacks use the rest
 
-  void make_robot(RobotOptions options = robot_options(),
-                  const std::vector<ScriptExtension> & extensions = {});
+  void make_robot(RobotOptions options = robot_options());
   void make_both();
   /// Waits for the state; the failure message is the log.
   testing::AssertionResult comes_to(RobotState state, ErrorCode cause = ErrorCode::none,
