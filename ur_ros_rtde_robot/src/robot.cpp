@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "program/motion_blocker.hpp"
+#include "motion/motion_blocker.hpp"
 #include "robot_impl.hpp"
 
 namespace ur_ros_rtde {

@@ -23,9 +23,9 @@ StateReceiverOptions receiver_options(const RobotOptions & options)
   return result;
 }
 
-DashboardLinkOptions dashboard_options(const RobotOptions & options)
+DashboardConnectionOptions dashboard_options(const RobotOptions & options)
 {
-  DashboardLinkOptions result;
+  DashboardConnectionOptions result;
   result.address = options.address;
   result.connect_timeout = options.connect_timeout;
   result.retry_interval = options.retry_interval;

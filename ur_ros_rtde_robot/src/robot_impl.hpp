@@ -4,16 +4,16 @@
 #include <chrono>
 #include <functional>
 
-#include "connection/rtde_interfaces.hpp"
+#include "connection/rtde/rtde_interfaces.hpp"
 #include "motion/motion_stopper.hpp"
 #include "motion/motion_tracker.hpp"
 #include "program/control_program_manager.hpp"
 #include "program/control_scripts.hpp"
-#include "program/extension_runner.hpp"
-#include "program/script_runner.hpp"
+#include "program/execution/extension_runner.hpp"
+#include "program/execution/script_runner.hpp"
 #include "program/script_server.hpp"
 #include "state/arm_model.hpp"
-#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
@@ -36,7 +36,7 @@ class Robot::Impl {
   std::function<void(const Sample &)> sample_function;
   MotionTracker tracker;
   StateReceiver state;
-  DashboardLink dashboard;
+  DashboardConnection dashboard;
   ArmModel model;
   ControlScripts control_scripts;
   RtdeInterfaces interfaces;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "connection/tcp_stream.hpp"
+#include "connection/tcp_socket.hpp"
 #include "program/script_server.hpp"
 #include "robot_fixture.hpp"
 
@@ -342,14 +342,14 @@ struct ScriptServerTest : testing::Test {
     ASSERT_TRUE(eventually([&] { return server.status().has_value(); }));
   }
 
-  TcpStream connect() { return std::move(TcpStream::connect(own_address(), port, 1s).value()); }
+  TcpSocket connect() { return std::move(TcpSocket::connect(own_address(), port, 1s).value()); }
 };
 
 TEST_F(ScriptServerTest, SendsTheWholeProgramToEachClient)
 {
-  TcpStream silent = connect();
+  TcpSocket silent = connect();
   for (int i = 0; i < 2; ++i) {
-    TcpStream client = connect();
+    TcpSocket client = connect();
     ASSERT_TRUE(client.write("request_", Clock::now() + 1s));
     ASSERT_TRUE(client.write("program\n", Clock::now() + 1s));
     std::vector<std::byte> program(1'000'003);
@@ -362,7 +362,7 @@ TEST_F(ScriptServerTest, SendsTheWholeProgramToEachClient)
 TEST_F(ScriptServerTest, ClosesTheConnectionAfterAnUnknownRequest)
 {
   for (const std::string request : {"GET / HTTP/1.1\r\n", "request_program_or_whatever\n"}) {
-    TcpStream client = connect();
+    TcpSocket client = connect();
     ASSERT_TRUE(client.write(request + std::string(200, 'x'), Clock::now() + 1s));
     std::byte answer{};
     const auto status = client.read(std::span(&answer, 1), Clock::now() + 5s);
@@ -375,7 +375,7 @@ TEST_F(ScriptServerTest, ClosesTheConnectionAfterAnUnknownRequest)
 TEST_F(ScriptServerTest, SendsNothingWhileTheControllerIsUnknown)
 {
   known = false;
-  TcpStream client = connect();
+  TcpSocket client = connect();
   ASSERT_TRUE(client.write("request_program\n", Clock::now() + 1s));
   std::byte answer{};
   EXPECT_FALSE(client.read(std::span(&answer, 1), Clock::now() + 5s));

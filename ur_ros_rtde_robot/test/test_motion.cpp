@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "program/motion_blocker.hpp"
+#include "motion/motion_blocker.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 
 namespace ur_ros_rtde {

@@ -3,7 +3,7 @@
 #include <random>
 #include <string>
 
-#include "connection/primary_link.hpp"
+#include "connection/primary_connection.hpp"
 
 namespace ur_ros_rtde {
 namespace {

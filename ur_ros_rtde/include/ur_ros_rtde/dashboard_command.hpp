@@ -15,7 +15,7 @@
 namespace ur_ros_rtde {
 
 /// Success if the dashboard server is connected.
-Status dashboard_ready(const DashboardLink & link);
+Status dashboard_ready(const DashboardConnection & link);
 /// Fails unless `text` is one of `texts`. Every text is allowed if `texts` is empty.
 void check_text(const std::string & text, const std::vector<std::string> & texts, Check & check);
 
@@ -59,7 +59,7 @@ class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
   void abort_unstarted(Handle & handle, const Outcome & outcome) override;
   void send_result(Handle & handle, Run & run, const Outcome & outcome);
 
-  DashboardLink * link_ = nullptr;
+  DashboardConnection * link_ = nullptr;
   std::unique_ptr<ActiveGoals> goals_;
 };
 

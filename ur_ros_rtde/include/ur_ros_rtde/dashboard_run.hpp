@@ -9,7 +9,7 @@
 
 #include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/outcome.hpp"
-#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
 
 namespace ur_ros_rtde {
 
@@ -49,14 +49,15 @@ struct DashboardLimits {
 
 /// Fails (not_supported) with the supported versions if the controller is not within `limits`. Succeeds while
 /// its version is unknown.
-Status supported(const std::string & action, const DashboardLimits & limits, const DashboardLink & link);
+Status supported(const std::string & action, const DashboardLimits & limits,
+                 const DashboardConnection & link);
 
 /// Gives a dashboard command access to the dashboard server while it executes a goal, in the goal's thread.
 class DashboardRun {
  public:
   using PublishState = std::function<void(const std::string &)>;
 
-  DashboardRun(DashboardLink & link, std::shared_ptr<StopRequest> stop_request, PublishState publish);
+  DashboardRun(DashboardConnection & link, std::shared_ptr<StopRequest> stop_request, PublishState publish);
 
   /// Sends a line to the dashboard server and returns its answer. Throws RobotError (link_lost, timeout after
   /// 5 s).
@@ -89,7 +90,7 @@ class DashboardRun {
   Outcome rejection(const std::string & line);
   Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout);
 
-  DashboardLink & link_;
+  DashboardConnection & link_;
   std::shared_ptr<StopRequest> stop_request_;
   PublishState publish_;
   std::string answer_;

@@ -14,7 +14,7 @@
 
 namespace ur_ros_rtde {
 
-class DashboardLink;
+class DashboardConnection;
 class Robot;
 
 /// What a server provides to its plugins.
@@ -64,11 +64,11 @@ class CommandHost : public PluginHost {
 
 class DashboardHost : public PluginHost {
  public:
-  DashboardHost(rcl_cxx::Node & node, DashboardLink & link) : PluginHost(node), link_(link) {}
-  DashboardLink & link() { return link_; }
+  DashboardHost(rcl_cxx::Node & node, DashboardConnection & link) : PluginHost(node), link_(link) {}
+  DashboardConnection & link() { return link_; }
 
  private:
-  DashboardLink & link_;
+  DashboardConnection & link_;
 };
 
 }  // namespace ur_ros_rtde

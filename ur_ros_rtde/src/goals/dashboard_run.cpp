@@ -39,7 +39,7 @@ bool is_one_of(const std::string & state, const std::vector<std::string> & state
 }
 }  // namespace
 
-Status dashboard_ready(const DashboardLink & link)
+Status dashboard_ready(const DashboardConnection & link)
 {
   const LinkStatus status = link.link();
   if (status.connected) {
@@ -56,7 +56,7 @@ void check_text(const std::string & text, const std::vector<std::string> & texts
              fmt::format("text is \"{}\", it may be {}", text, fmt::join(texts, ", ")));
 }
 
-Status supported(const std::string & action, const DashboardLimits & limits, const DashboardLink & link)
+Status supported(const std::string & action, const DashboardLimits & limits, const DashboardConnection & link)
 {
   const auto version = link.version();
   if (!version) {
@@ -72,7 +72,7 @@ Status supported(const std::string & action, const DashboardLimits & limits, con
                              availability("a CB3", limits.cb3)));
 }
 
-DashboardRun::DashboardRun(DashboardLink & link, std::shared_ptr<StopRequest> stop_request,
+DashboardRun::DashboardRun(DashboardConnection & link, std::shared_ptr<StopRequest> stop_request,
                            PublishState publish)
     : link_(link), stop_request_(std::move(stop_request)), publish_(std::move(publish))
 {

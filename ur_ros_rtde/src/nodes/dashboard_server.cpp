@@ -12,10 +12,10 @@ namespace ur_ros_rtde {
 DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context)
     : node_(std::make_shared<rcl_cxx::Node>(context, "dashboard_server"))
 {
-  DashboardLinkOptions options;
+  DashboardConnectionOptions options;
   options.address = declare_robot_ip(*node_);
   choice_ = declare_plugin_choice(*node_);
-  link_ = std::make_unique<DashboardLink>(options, log_connection(*node_));
+  link_ = std::make_unique<DashboardConnection>(options, log_connection(*node_));
   host_ = std::make_unique<DashboardHost>(*node_, *link_);
 }
 

@@ -6,7 +6,7 @@
 #include "nodes/server.hpp"
 #include "plugins/plugin_set.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
-#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
 
 namespace ur_ros_rtde {
 
@@ -23,7 +23,7 @@ class DashboardServer : public Server {
  private:
   PluginSet<DashboardPlugin, DashboardHost> plugins_;  // destroyed last, because it unloads the libraries
   rcl_cxx::Node::SharedPtr node_;
-  std::unique_ptr<DashboardLink> link_;
+  std::unique_ptr<DashboardConnection> link_;
   std::unique_ptr<DashboardHost> host_;
   PluginChoice choice_;
 };

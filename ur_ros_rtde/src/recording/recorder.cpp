@@ -28,7 +28,7 @@ Status check(const std::string & file, const std::vector<std::string> & fields, 
   return check_rtde_outputs(fields);
 }
 
-std::vector<std::string> columns_of(const std::vector<RtdeStream::Field> & fields)
+std::vector<std::string> columns_of(const std::vector<RtdeSubscription::Field> & fields)
 {
   std::vector<std::string> columns;
   for (const auto & field : fields) {
@@ -70,12 +70,12 @@ Expected<std::vector<std::string>> Recorder::start(const std::string & file, std
   if (std::ranges::find(fields, timestamp) == fields.end()) {
     plan.fields.push_back(timestamp);
   }
-  auto stream = RtdeStream::open(address_, plan.fields, frequency);
-  if (!stream) {
-    return tl::unexpected(stream.error());
+  auto subscription = RtdeSubscription::open(address_, plan.fields, frequency);
+  if (!subscription) {
+    return tl::unexpected(subscription.error());
   }
-  plan.frequency = stream->frequency();
-  auto columns = columns_of(stream->fields());
+  plan.frequency = subscription->frequency();
+  auto columns = columns_of(subscription->fields());
   plan.timestamp = static_cast<std::size_t>(std::ranges::find(columns, timestamp) - columns.begin());
   columns.resize(columns.size() - (plan.fields.size() - fields.size()));
   plan.columns = columns.size();
@@ -83,7 +83,8 @@ Expected<std::vector<std::string>> Recorder::start(const std::string & file, std
   if (!csv) {
     return tl::unexpected(csv.error());
   }
-  session_ = std::make_unique<RecordingSession>(std::move(plan), std::move(*stream), std::move(*csv), log_);
+  session_ =
+      std::make_unique<RecordingSession>(std::move(plan), std::move(*subscription), std::move(*csv), log_);
   return columns;
 }
 

@@ -10,7 +10,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-using Clock = RtdeStream::Clock;
+using Clock = RtdeSubscription::Clock;
 
 /// 8 s at 500 Hz, to bridge delays of the disk.
 constexpr std::size_t queue_rows = 4000;
@@ -19,10 +19,11 @@ constexpr std::chrono::milliseconds silence_limit{1000};
 constexpr std::chrono::milliseconds retry_interval{250};
 }  // namespace
 
-RecordingSession::RecordingSession(Plan plan, RtdeStream stream, CsvFile file, const LogFunction & log)
+RecordingSession::RecordingSession(Plan plan, RtdeSubscription subscription, CsvFile file,
+                                   const LogFunction & log)
     : plan_(std::move(plan)),
       logger_(log),
-      stream_(std::move(stream)),
+      subscription_(std::move(subscription)),
       file_(std::move(file)),
       queue_(plan_.columns, queue_rows),
       writer_([this] { write(); }),
@@ -61,8 +62,8 @@ void RecordingSession::receive(const std::stop_token & stop)
     }
     logger_.log_on_change(LogLevel::warn, fmt::format("recording {}: {}; trying to connect again",
                                                       file_.path(), ended.error().message));
-    if (auto stream = RtdeStream::open(plan_.address, plan_.fields, plan_.frequency)) {
-      stream_ = std::move(*stream);
+    if (auto subscription = RtdeSubscription::open(plan_.address, plan_.fields, plan_.frequency)) {
+      subscription_ = std::move(*subscription);
       logger_.reset();
     }
   }
@@ -70,10 +71,10 @@ void RecordingSession::receive(const std::stop_token & stop)
 
 Status RecordingSession::follow(const std::stop_token & stop)
 {
-  std::vector<double> numbers(stream_.width());
+  std::vector<double> numbers(subscription_.width());
   auto last = Clock::now();
   while (!stop.stop_requested()) {
-    const auto got = stream_.next(numbers, Clock::now() + poll_interval);
+    const auto got = subscription_.next(numbers, Clock::now() + poll_interval);
     if (!got) {
       return tl::unexpected(got.error());
     }

@@ -10,7 +10,7 @@
 #include "recording/recorder.hpp"
 #include "recording/row_queue.hpp"
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
-#include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
+#include "ur_ros_rtde_robot/connection/rtde_subscription.hpp"
 
 namespace ur_ros_rtde {
 
@@ -26,7 +26,7 @@ class RecordingSession {
     std::size_t timestamp;            ///< its index in a row
   };
 
-  RecordingSession(Plan plan, RtdeStream stream, CsvFile file, const LogFunction & log);
+  RecordingSession(Plan plan, RtdeSubscription subscription, CsvFile file, const LogFunction & log);
   ~RecordingSession();
   const std::string & path() const { return file_.path(); }
   /// Writes the remaining rows and closes the file. Call it once.
@@ -40,7 +40,7 @@ class RecordingSession {
 
   const Plan plan_;
   ChangeLogger logger_;
-  RtdeStream stream_;
+  RtdeSubscription subscription_;
   CsvFile file_;
   Status state_;  ///< used by the writer thread until it has ended
   RowQueue queue_;

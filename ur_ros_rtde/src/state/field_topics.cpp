@@ -13,7 +13,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-using Clock = RtdeStream::Clock;
+using Clock = RtdeSubscription::Clock;
 
 constexpr std::chrono::milliseconds fields_retry_interval{500};
 /// Interval at which the subscribers of tool_data are counted.
@@ -78,11 +78,12 @@ void FieldTopics::run(const std::stop_token & stop)
       wait(stop, fields_poll_interval);
       continue;
     }
-    auto stream = RtdeStream::open(options_.address, recipe(options_.fields, with_tool), options_.frequency);
-    Status ended = stream ? Status() : tl::unexpected(stream.error());
-    if (stream) {
+    auto subscription =
+        RtdeSubscription::open(options_.address, recipe(options_.fields, with_tool), options_.frequency);
+    Status ended = subscription ? Status() : tl::unexpected(subscription.error());
+    if (subscription) {
       logger_.reset();
-      ended = follow(*stream, with_tool, stop);
+      ended = follow(*subscription, with_tool, stop);
     }
     if (!ended) {
       wait(stop, fields_retry_interval);
@@ -95,14 +96,14 @@ void FieldTopics::run(const std::stop_token & stop)
 }
 
 /// Publishes until the need for tool_data changes, a stop is requested or the connection fails.
-Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_token & stop)
+Status FieldTopics::follow(RtdeSubscription & subscription, bool with_tool, const std::stop_token & stop)
 {
-  set_up_fields(stream);
-  std::vector<double> numbers(stream.width());
+  set_up_fields(subscription);
+  std::vector<double> numbers(subscription.width());
   auto last = Clock::now();
   auto next_poll = last + fields_poll_interval;
   while (!stop.stop_requested()) {
-    const auto got = stream.next(numbers, Clock::now() + fields_poll_interval);
+    const auto got = subscription.next(numbers, Clock::now() + fields_poll_interval);
     if (!got) {
       return tl::unexpected(got.error());
     }
@@ -128,13 +129,13 @@ Status FieldTopics::follow(RtdeStream & stream, bool with_tool, const std::stop_
   return {};
 }
 
-void FieldTopics::set_up_fields(const RtdeStream & stream)
+void FieldTopics::set_up_fields(const RtdeSubscription & subscription)
 {
   state_.fields.clear();
   begins_.clear();
   for (const std::string & name : options_.fields) {
     std::size_t begin = 0;
-    for (const RtdeStream::Field & field : stream.fields()) {
+    for (const RtdeSubscription::Field & field : subscription.fields()) {
       if (field.name == name) {
         begins_.push_back(begin);
         state_.fields.emplace_back();

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
-#include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
+#include "ur_ros_rtde_robot/connection/rtde_subscription.hpp"
 
 namespace ur_ros_rtde {
 
@@ -37,9 +37,9 @@ class FieldTopics {
  private:
   void run(const std::stop_token & stop);
   bool tool_wanted() const { return tool_data_->get_subscription_count() > 0; }
-  Status follow(RtdeStream & stream, bool with_tool, const std::stop_token & stop);
+  Status follow(RtdeSubscription & subscription, bool with_tool, const std::stop_token & stop);
   /// Sets up the fields of robot_state and stores the positions of their values.
-  void set_up_fields(const RtdeStream & stream);
+  void set_up_fields(const RtdeSubscription & subscription);
   void publish_tool(std::span<const double> numbers);
   void publish_state(std::span<const double> numbers);
 

@@ -7,13 +7,13 @@
 #include <span>
 
 #include "connection/ports.hpp"
-#include "connection/tcp_stream.hpp"
+#include "connection/tcp_socket.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {
 
-using Clock = TcpStream::Clock;
+using Clock = TcpSocket::Clock;
 constexpr std::chrono::milliseconds connect_limit{5000};
 constexpr std::chrono::milliseconds poll_interval{50};
 constexpr std::size_t longest_answer = 64 * 1024;
@@ -23,8 +23,8 @@ struct WaitLimit {
   std::stop_token stop;
 };
 
-/// Removes the first line from `received` and returns it, reading from `stream` until there is one.
-Expected<std::string> next_line(TcpStream & stream, std::string & received, const WaitLimit & wait_limit)
+/// Removes the first line from `received` and returns it, reading from `socket` until there is one.
+Expected<std::string> next_line(TcpSocket & socket, std::string & received, const WaitLimit & wait_limit)
 {
   std::array<std::byte, 512> bytes;
   for (auto end = received.find('\n'); true; end = received.find('\n')) {
@@ -41,7 +41,7 @@ Expected<std::string> next_line(TcpStream & stream, std::string & received, cons
     if (now >= wait_limit.deadline) {
       return failure(ErrorCode::timeout, "the dashboard server has not answered");
     }
-    const auto got = stream.read_some(bytes, std::min(wait_limit.deadline, now + poll_interval));
+    const auto got = socket.read_some(bytes, std::min(wait_limit.deadline, now + poll_interval));
     if (!got) {
       return tl::unexpected(got.error());
     }
@@ -60,18 +60,18 @@ Expected<std::string> dashboard_request(const std::string & address, const std::
                                         std::chrono::milliseconds limit, const std::stop_token & stop)
 {
   const auto begin = Clock::now();
-  auto stream = TcpStream::connect(address, dashboard_port, std::min(limit, connect_limit));
-  if (!stream) {
-    return tl::unexpected(stream.error());
+  auto socket = TcpSocket::connect(address, dashboard_port, std::min(limit, connect_limit));
+  if (!socket) {
+    return tl::unexpected(socket.error());
   }
   std::string received;
-  if (const auto greeting = next_line(*stream, received, {begin + limit, stop}); !greeting) {
+  if (const auto greeting = next_line(*socket, received, {begin + limit, stop}); !greeting) {
     return greeting;
   }
-  if (const auto sent = stream->write(line + "\n", begin + limit); !sent) {
+  if (const auto sent = socket->write(line + "\n", begin + limit); !sent) {
     return tl::unexpected(sent.error());
   }
-  return next_line(*stream, received, {begin + limit, stop});
+  return next_line(*socket, received, {begin + limit, stop});
 }
 
 }  // namespace ur_ros_rtde

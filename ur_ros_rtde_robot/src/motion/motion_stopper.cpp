@@ -6,8 +6,8 @@
 #include <array>
 
 #include "connection/ports.hpp"
-#include "connection/tcp_stream.hpp"
-#include "program/motion_blocker.hpp"
+#include "connection/tcp_socket.hpp"
+#include "motion/motion_blocker.hpp"
 #include "state/wait_until.hpp"
 
 namespace ur_ros_rtde {
@@ -75,18 +75,18 @@ void send_stops(Control & control, const StopOptions & options)
 
 Status stop_program(const std::string & address, milliseconds limit)
 {
-  auto stream = TcpStream::connect(address, dashboard_port, limit);
-  if (!stream) {
-    return tl::unexpected(stream.error());
+  auto socket = TcpSocket::connect(address, dashboard_port, limit);
+  if (!socket) {
+    return tl::unexpected(socket.error());
   }
-  const auto deadline = TcpStream::Clock::now() + limit;
-  if (const auto greeting = stream->read_line(deadline); !greeting) {
+  const auto deadline = TcpSocket::Clock::now() + limit;
+  if (const auto greeting = socket->read_line(deadline); !greeting) {
     return tl::unexpected(greeting.error());
   }
-  if (const auto sent = stream->write("stop\n", deadline); !sent) {
+  if (const auto sent = socket->write("stop\n", deadline); !sent) {
     return sent;
   }
-  const auto answer = stream->read_line(deadline);
+  const auto answer = socket->read_line(deadline);
   if (!answer) {
     return tl::unexpected(answer.error());
   }

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <string>
 
-#include "connection/rtde_interfaces.hpp"
+#include "connection/rtde/rtde_interfaces.hpp"
 #include "motion/motion_tracker.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"

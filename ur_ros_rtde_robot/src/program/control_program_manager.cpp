@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "program/motion_blocker.hpp"
+#include "motion/motion_blocker.hpp"
 #include "program/program_status.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
@@ -51,7 +51,7 @@ const char * to_string(RobotState state)
 }
 
 ControlProgramManager::ControlProgramManager(const RobotOptions & options, StateReceiver & receiver,
-                                             DashboardLink & dashboard, ArmModel & model,
+                                             DashboardConnection & dashboard, ArmModel & model,
                                              RtdeInterfaces & interfaces, const ScriptServer & server,
                                              LogFunction log)
     : options_(options),

@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "connection/rtde_interfaces.hpp"
+#include "connection/rtde/rtde_interfaces.hpp"
 #include "program/program_state_machine.hpp"
 #include "program/script_server.hpp"
 #include "state/arm_model.hpp"
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
-#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
@@ -29,9 +29,9 @@ namespace ur_ros_rtde {
 class ControlProgramManager {
  public:
   /// `server` serves the program in ControlMode::control_urcap. All references must outlive this object.
-  ControlProgramManager(const RobotOptions & options, StateReceiver & receiver, DashboardLink & dashboard,
-                        ArmModel & model, RtdeInterfaces & interfaces, const ScriptServer & server,
-                        LogFunction log);
+  ControlProgramManager(const RobotOptions & options, StateReceiver & receiver,
+                        DashboardConnection & dashboard, ArmModel & model, RtdeInterfaces & interfaces,
+                        const ScriptServer & server, LogFunction log);
   ~ControlProgramManager() { stop(); }
 
   /// Called on the manager's thread at each change of status. Set before start().
@@ -110,7 +110,7 @@ class ControlProgramManager {
 
   const RobotOptions options_;
   StateReceiver & receiver_;
-  DashboardLink & dashboard_;
+  DashboardConnection & dashboard_;
   ArmModel & model_;
   RtdeInterfaces & interfaces_;
   const ScriptServer & server_;

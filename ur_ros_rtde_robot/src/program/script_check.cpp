@@ -17,7 +17,7 @@ constexpr int lines_before = 1;
 Expected<std::optional<PrimaryMessage>> check_definitions(const std::string & address,
                                                           const std::string & text, milliseconds limit)
 {
-  auto primary = PrimaryLink::connect(address, limit);
+  auto primary = PrimaryConnection::connect(address, limit);
   if (!primary) {
     return tl::unexpected(primary.error());
   }

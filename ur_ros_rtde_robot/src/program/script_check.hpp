@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "connection/primary_link.hpp"
+#include "connection/primary_connection.hpp"
 
 namespace ur_ros_rtde {
 

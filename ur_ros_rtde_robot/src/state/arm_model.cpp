@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "connection/primary_link.hpp"
+#include "connection/primary_connection.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -89,8 +89,8 @@ void ArmModel::report_undetected(const std::string & why)
 
 void ArmModel::detect(const ControllerVersion & version, std::chrono::milliseconds limit)
 {
-  auto primary = PrimaryLink::connect(address_, limit);
-  const auto type = primary.and_then([&](PrimaryLink & link) { return link.robot_type(limit); });
+  auto primary = PrimaryConnection::connect(address_, limit);
+  const auto type = primary.and_then([&](PrimaryConnection & link) { return link.robot_type(limit); });
   if (!type) {
     return report_undetected(type.error().message);
   }

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "connection/ports.hpp"
-#include "connection/rtde_probe.hpp"
+#include "connection/rtde/rtde_probe.hpp"
 #include "state/sample_reader.hpp"
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"

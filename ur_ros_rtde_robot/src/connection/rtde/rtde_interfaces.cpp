@@ -1,4 +1,4 @@
-#include "connection/rtde_interfaces.hpp"
+#include "connection/rtde/rtde_interfaces.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "connection/ports.hpp"
-#include "connection/tcp_stream.hpp"
+#include "connection/tcp_socket.hpp"
 #include "program/script_check.hpp"
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
@@ -80,7 +80,7 @@ Status RtdeInterfaces::ensure_io()
       return {};
     }
   }
-  if (const auto reachable = TcpStream::connect(options_.address, rtde_port, options_.connect_timeout);
+  if (const auto reachable = TcpSocket::connect(options_.address, rtde_port, options_.connect_timeout);
       !reachable) {
     return tl::unexpected(reachable.error());
   }
@@ -137,7 +137,7 @@ Status RtdeInterfaces::check_extensions(const ControllerVersion & version)
 Status RtdeInterfaces::probe_control_ports() const
 {
   for (const auto port : {rtde_port, script_port}) {
-    if (const auto reachable = TcpStream::connect(options_.address, port, options_.connect_timeout);
+    if (const auto reachable = TcpSocket::connect(options_.address, port, options_.connect_timeout);
         !reachable) {
       return tl::unexpected(reachable.error());
     }

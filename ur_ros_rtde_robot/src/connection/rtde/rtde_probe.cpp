@@ -1,4 +1,4 @@
-#include "connection/rtde_probe.hpp"
+#include "connection/rtde/rtde_probe.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "connection/ports.hpp"
-#include "connection/rtde_header.hpp"
-#include "connection/tcp_stream.hpp"
+#include "connection/rtde/rtde_header.hpp"
+#include "connection/tcp_socket.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -36,12 +36,12 @@ Error not_rtde(const std::string & address, const std::string & why)
                                             address, rtde_port, why)};
 }
 
-Expected<std::vector<std::byte>> reply(TcpStream & stream, const std::string & address, char type,
-                                       TcpStream::Clock::time_point deadline)
+Expected<std::vector<std::byte>> reply(TcpSocket & socket, const std::string & address, char type,
+                                       TcpSocket::Clock::time_point deadline)
 {
-  while (TcpStream::Clock::now() < deadline) {
+  while (TcpSocket::Clock::now() < deadline) {
     std::array<std::byte, rtde_header_size> header{};
-    if (const auto status = stream.read(header, deadline); !status) {
+    if (const auto status = socket.read(header, deadline); !status) {
       return tl::unexpected(not_rtde(address, status.error().message));
     }
     const auto size = std::to_integer<std::size_t>(header[0]) << 8U | std::to_integer<std::size_t>(header[1]);
@@ -50,7 +50,7 @@ Expected<std::vector<std::byte>> reply(TcpStream & stream, const std::string & a
       return tl::unexpected(not_rtde(address, "its answer is not an RTDE package"));
     }
     std::vector<std::byte> body(size - rtde_header_size);
-    if (const auto status = stream.read(body, deadline); !status) {
+    if (const auto status = socket.read(body, deadline); !status) {
       return tl::unexpected(not_rtde(address, status.error().message));
     }
     if (found == type) {
@@ -64,17 +64,17 @@ Expected<std::vector<std::byte>> reply(TcpStream & stream, const std::string & a
 
 Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono::milliseconds limit)
 {
-  auto stream = TcpStream::connect(address, rtde_port, limit);
-  if (!stream) {
-    return tl::unexpected(stream.error());
+  auto socket = TcpSocket::connect(address, rtde_port, limit);
+  if (!socket) {
+    return tl::unexpected(socket.error());
   }
-  const auto deadline = TcpStream::Clock::now() + limit;
+  const auto deadline = TcpSocket::Clock::now() + limit;
   constexpr std::array version_2{std::byte{0}, std::byte{5}, std::byte{request_protocol_version},
                                  std::byte{0}, std::byte{2}};
-  if (const auto status = stream->write(version_2, deadline); !status) {
+  if (const auto status = socket->write(version_2, deadline); !status) {
     return tl::unexpected(status.error());
   }
-  const auto accepted = reply(*stream, address, request_protocol_version, deadline);
+  const auto accepted = reply(*socket, address, request_protocol_version, deadline);
   if (!accepted) {
     return tl::unexpected(accepted.error());
   }
@@ -83,10 +83,10 @@ Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono:
         not_rtde(address, "it refuses protocol version 2, which PolyScope has had since 3.3"));
   }
   constexpr std::array version{std::byte{0}, std::byte{3}, std::byte{get_urcontrol_version}};
-  if (const auto status = stream->write(version, deadline); !status) {
+  if (const auto status = socket->write(version, deadline); !status) {
     return tl::unexpected(status.error());
   }
-  const auto numbers = reply(*stream, address, get_urcontrol_version, deadline);
+  const auto numbers = reply(*socket, address, get_urcontrol_version, deadline);
   if (!numbers) {
     return tl::unexpected(numbers.error());
   }
@@ -99,11 +99,11 @@ Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono:
 
 Status probe_dashboard(const std::string & address, std::chrono::milliseconds limit)
 {
-  auto stream = TcpStream::connect(address, dashboard_port, limit);
-  if (!stream) {
-    return tl::unexpected(stream.error());
+  auto socket = TcpSocket::connect(address, dashboard_port, limit);
+  if (!socket) {
+    return tl::unexpected(socket.error());
   }
-  const auto greeting = stream->read_line(TcpStream::Clock::now() + limit);
+  const auto greeting = socket->read_line(TcpSocket::Clock::now() + limit);
   if (!greeting || greeting->find("Dashboard Server") == std::string::npos) {
     return failure(
         ErrorCode::link_lost,

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "connection/tcp_stream.hpp"
+#include "connection/tcp_socket.hpp"
 
 namespace ur_ros_rtde {
 
@@ -45,10 +45,10 @@ class PrimaryReader {
 };
 
 /// A connection to the primary interface (port 30001), which executes scripts and reports about them.
-class PrimaryLink {
+class PrimaryConnection {
  public:
   /// Returns after the first data from the controller, so that all later messages are received.
-  static Expected<PrimaryLink> connect(const std::string & address, std::chrono::milliseconds limit);
+  static Expected<PrimaryConnection> connect(const std::string & address, std::chrono::milliseconds limit);
 
   Status send(std::string_view script, std::chrono::milliseconds limit);
   /// The next message; none if none arrives within `wait`.
@@ -57,10 +57,10 @@ class PrimaryLink {
   Expected<std::int32_t> robot_type(std::chrono::milliseconds limit);
 
  private:
-  explicit PrimaryLink(TcpStream stream) : stream_(std::move(stream)) {}
+  explicit PrimaryConnection(TcpSocket socket) : socket_(std::move(socket)) {}
   Expected<std::size_t> read(std::chrono::milliseconds wait);
 
-  TcpStream stream_;
+  TcpSocket socket_;
   PrimaryReader reader_;
 };
 

@@ -1,11 +1,11 @@
-#include "program/extension_runner.hpp"
+#include "program/execution/extension_runner.hpp"
 
 #include <fmt/format.h>
 #include <ur_rtde/rtde_io_interface.h>
 
 #include <utility>
 
-#include "program/motion_blocker.hpp"
+#include "motion/motion_blocker.hpp"
 #include "state/wait_until.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 #include "ur_ros_rtde_robot/program/extension_registers.hpp"
@@ -29,7 +29,7 @@ constexpr int lines_before_extensions = 1;  // `def rtde_control():`
 struct ExtensionRunner::Run {
   std::string name;
   int id;
-  PrimaryLink primary;
+  PrimaryConnection primary;
   std::uint32_t program;  ///< MotionTracker::View::program at the begin
   Clock::time_point begin = Clock::now();
 };
@@ -191,7 +191,7 @@ Status ExtensionRunner::run(const std::string & name, const ExtensionOptions & o
   if (!wait_for_acknowledgement(0.0)) {
     return failure(ErrorCode::not_ready, "the control program has not finished the previous extension");
   }
-  auto primary = PrimaryLink::connect(options_.address, options_.connect_timeout);
+  auto primary = PrimaryConnection::connect(options_.address, options_.connect_timeout);
   if (!primary) {
     return tl::unexpected(primary.error());
   }

@@ -4,37 +4,37 @@
 
 #include "connection/dashboard_request.hpp"
 #include "support.hpp"
-#include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
+#include "ur_ros_rtde_robot/connection/rtde_subscription.hpp"
 #include "ur_ros_rtde_robot/state/rtde_outputs.hpp"
 
 namespace ur_ros_rtde::test {
 namespace {
 
-using Clock = RtdeStream::Clock;
+using Clock = RtdeSubscription::Clock;
 constexpr std::chrono::milliseconds limit{2000};
 
-struct RtdeStreamTest : testing::Test {
+struct RtdeSubscriptionTest : testing::Test {
   Controller controller;
 
-  Expected<RtdeStream> open(const std::vector<std::string> & fields, double frequency = 0.0)
+  Expected<RtdeSubscription> open(const std::vector<std::string> & fields, double frequency = 0.0)
   {
-    return RtdeStream::open(own_address(), fields, frequency, limit);
+    return RtdeSubscription::open(own_address(), fields, frequency, limit);
   }
 };
 
-TEST_F(RtdeStreamTest, ReturnsFieldsOfEveryTypeInTheRequestedOrder)
+TEST_F(RtdeSubscriptionTest, ReturnsFieldsOfEveryTypeInTheRequestedOrder)
 {
   controller.start();
   const auto q = controller.state()["actual"]["position"].get<std::vector<double>>();
   controller.control({{"command", "set_digital_input"}, {"number", 17}, {"value", true}});
-  auto stream = open({"robot_mode", "actual_q", "tool_output_mode", "actual_digital_input_bits",
-                      "actual_tool_accelerometer", "input_bit_register_64", "joint_mode", "timestamp"});
-  ASSERT_TRUE(stream) << stream.error().message;
-  EXPECT_EQ(stream->width(), 1U + 6 + 1 + 1 + 3 + 1 + 6 + 1);
-  EXPECT_EQ(stream->fields()[4].name, "actual_tool_accelerometer");
-  EXPECT_EQ(stream->fields()[4].size, 3U);
-  std::vector<double> numbers(stream->width());
-  ASSERT_TRUE(stream->next(numbers, Clock::now() + limit).value_or(false));
+  auto subscription = open({"robot_mode", "actual_q", "tool_output_mode", "actual_digital_input_bits",
+                            "actual_tool_accelerometer", "input_bit_register_64", "joint_mode", "timestamp"});
+  ASSERT_TRUE(subscription) << subscription.error().message;
+  EXPECT_EQ(subscription->width(), 1U + 6 + 1 + 1 + 3 + 1 + 6 + 1);
+  EXPECT_EQ(subscription->fields()[4].name, "actual_tool_accelerometer");
+  EXPECT_EQ(subscription->fields()[4].size, 3U);
+  std::vector<double> numbers(subscription->width());
+  ASSERT_TRUE(subscription->next(numbers, Clock::now() + limit).value_or(false));
   EXPECT_EQ(numbers[0], 7.0);  // RUNNING
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(numbers[1 + i], q[i], 1e-3);
@@ -44,62 +44,62 @@ TEST_F(RtdeStreamTest, ReturnsFieldsOfEveryTypeInTheRequestedOrder)
   EXPECT_EQ(numbers[12], 0.0);
 }
 
-TEST_F(RtdeStreamTest, ReturnsOnePackagePerCycle)
+TEST_F(RtdeSubscriptionTest, ReturnsOnePackagePerCycle)
 {
   controller.start();
-  auto stream = open({"timestamp"}, 125.0);
-  ASSERT_TRUE(stream);
-  EXPECT_EQ(stream->frequency(), 125.0);
+  auto subscription = open({"timestamp"}, 125.0);
+  ASSERT_TRUE(subscription);
+  EXPECT_EQ(subscription->frequency(), 125.0);
   std::vector<double> now(1);
   std::vector<double> before(1);
-  ASSERT_TRUE(stream->next(before, Clock::now() + limit).value_or(false));
+  ASSERT_TRUE(subscription->next(before, Clock::now() + limit).value_or(false));
   for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(stream->next(now, Clock::now() + limit).value_or(false));
+    ASSERT_TRUE(subscription->next(now, Clock::now() + limit).value_or(false));
     EXPECT_NEAR(now[0] - before[0], 0.008, 1e-6);
     before = now;
   }
 }
 
-TEST_F(RtdeStreamTest, LimitsTheFrequencyToTheControllersMaximum)
+TEST_F(RtdeSubscriptionTest, LimitsTheFrequencyToTheControllersMaximum)
 {
   controller.start();
-  const auto stream = open({"timestamp"}, 2000.0);
-  ASSERT_TRUE(stream);
-  EXPECT_EQ(stream->frequency(), 500.0);
+  const auto subscription = open({"timestamp"}, 2000.0);
+  ASSERT_TRUE(subscription);
+  EXPECT_EQ(subscription->frequency(), 500.0);
 }
 
-TEST_F(RtdeStreamTest, NamesTheFieldsThatTheControllerLacks)
+TEST_F(RtdeSubscriptionTest, NamesTheFieldsThatTheControllerLacks)
 {
   controller.start();
-  const auto stream = open({"actual_q", "actual_moment", "encoder0_raw"});
-  ASSERT_FALSE(stream);
-  EXPECT_EQ(stream.error().code, ErrorCode::not_supported);
-  EXPECT_NE(stream.error().message.find("actual_moment, encoder0_raw"), std::string::npos)
-      << stream.error().message;
+  const auto subscription = open({"actual_q", "actual_moment", "encoder0_raw"});
+  ASSERT_FALSE(subscription);
+  EXPECT_EQ(subscription.error().code, ErrorCode::not_supported);
+  EXPECT_NE(subscription.error().message.find("actual_moment, encoder0_raw"), std::string::npos)
+      << subscription.error().message;
 }
 
-TEST_F(RtdeStreamTest, ReportsALostConnectionAndSilence)
+TEST_F(RtdeSubscriptionTest, ReportsALostConnectionAndSilence)
 {
   controller.start();
-  auto stream = open({"timestamp"});
-  ASSERT_TRUE(stream);
+  auto subscription = open({"timestamp"});
+  ASSERT_TRUE(subscription);
   std::vector<double> numbers(1);
-  ASSERT_TRUE(stream->next(numbers, Clock::now() + limit).value_or(false));
+  ASSERT_TRUE(subscription->next(numbers, Clock::now() + limit).value_or(false));
   controller.control({{"command", "stall_links"}, {"which", "rtde"}});
-  EXPECT_TRUE(eventually([&] { return !stream->next(numbers, Clock::now() + 100ms).value_or(true); }));
+  EXPECT_TRUE(eventually([&] { return !subscription->next(numbers, Clock::now() + 100ms).value_or(true); }));
   controller.control({{"command", "drop_links"}, {"which", "rtde"}});
-  EXPECT_TRUE(eventually([&] { return !stream->next(numbers, Clock::now() + 100ms); }));
+  EXPECT_TRUE(eventually([&] { return !subscription->next(numbers, Clock::now() + 100ms); }));
 }
 
-TEST_F(RtdeStreamTest, RefusesAnotherService)
+TEST_F(RtdeSubscriptionTest, RefusesAnotherService)
 {
   const OtherService other(30004, "220 mail.example.org ESMTP\r\n");
-  const auto stream = open({"timestamp"});
-  ASSERT_FALSE(stream);
-  EXPECT_EQ(stream.error().code, ErrorCode::link_lost);
+  const auto subscription = open({"timestamp"});
+  ASSERT_FALSE(subscription);
+  EXPECT_EQ(subscription.error().code, ErrorCode::link_lost);
 }
 
-TEST_F(RtdeStreamTest, EndsAtItsLimitDuringAFloodOfTextMessages)
+TEST_F(RtdeSubscriptionTest, EndsAtItsLimitDuringAFloodOfTextMessages)
 {
   constexpr std::size_t messages = 10'000'000;
   std::string flood;
@@ -109,9 +109,9 @@ TEST_F(RtdeStreamTest, EndsAtItsLimitDuringAFloodOfTextMessages)
   }
   const OtherService other(30004, std::move(flood));
   const auto begin = Clock::now();
-  const auto stream = RtdeStream::open(own_address(), {"timestamp"}, 0.0, 300ms);
-  ASSERT_FALSE(stream);
-  EXPECT_EQ(stream.error().code, ErrorCode::link_lost);
+  const auto subscription = RtdeSubscription::open(own_address(), {"timestamp"}, 0.0, 300ms);
+  ASSERT_FALSE(subscription);
+  EXPECT_EQ(subscription.error().code, ErrorCode::link_lost);
   EXPECT_LT(Clock::now() - begin, 3s);
 }
 

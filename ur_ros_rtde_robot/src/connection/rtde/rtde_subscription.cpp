@@ -1,4 +1,4 @@
-#include "ur_ros_rtde_robot/connection/rtde_stream.hpp"
+#include "ur_ros_rtde_robot/connection/rtde_subscription.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,14 +11,14 @@
 #include <utility>
 
 #include "connection/ports.hpp"
-#include "connection/rtde_header.hpp"
-#include "connection/rtde_probe.hpp"
-#include "connection/tcp_stream.hpp"
+#include "connection/rtde/rtde_header.hpp"
+#include "connection/rtde/rtde_probe.hpp"
+#include "connection/tcp_socket.hpp"
 
 namespace ur_ros_rtde {
 namespace {
 
-using Clock = RtdeStream::Clock;
+using Clock = RtdeSubscription::Clock;
 using Bytes = std::span<const std::byte>;
 
 /// Package types (UR, "RTDE Guide", "Protocol").
@@ -106,9 +106,9 @@ std::string request(char type, std::string_view payload)
 
 }  // namespace
 
-class RtdeStream::Impl {
+class RtdeSubscription::Impl {
  public:
-  Impl(TcpStream stream, std::string name) : stream_(std::move(stream)), name_(std::move(name)) {}
+  Impl(TcpSocket socket, std::string name) : socket_(std::move(socket)), name_(std::move(name)) {}
 
   Status set_up(const std::vector<std::string> & names, double frequency, std::chrono::milliseconds limit);
   Expected<bool> next(std::span<double> numbers, Clock::time_point deadline);
@@ -130,7 +130,7 @@ class RtdeStream::Impl {
     return failure(ErrorCode::link_lost, fmt::format("{} does not speak RTDE: {}", name_, what));
   }
 
-  TcpStream stream_;
+  TcpSocket socket_;
   std::string name_;
   std::vector<Layout> layouts_;
   std::size_t package_bytes_ = 0;
@@ -138,7 +138,8 @@ class RtdeStream::Impl {
   std::size_t consumed_ = 0;  ///< bytes at the begin of buffer_ that have been processed
 };
 
-Expected<std::optional<RtdeStream::Impl::Package>> RtdeStream::Impl::package(Clock::time_point deadline)
+Expected<std::optional<RtdeSubscription::Impl::Package>> RtdeSubscription::Impl::package(
+    Clock::time_point deadline)
 {
   buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(consumed_));
   consumed_ = 0;
@@ -155,7 +156,7 @@ Expected<std::optional<RtdeStream::Impl::Package>> RtdeStream::Impl::package(Clo
                        Bytes(buffer_).subspan(rtde_header_size, size - rtde_header_size)};
       }
     }
-    const auto got = stream_.read_some(bytes, deadline);
+    const auto got = socket_.read_some(bytes, deadline);
     if (!got) {
       return tl::unexpected(got.error());
     }
@@ -167,11 +168,11 @@ Expected<std::optional<RtdeStream::Impl::Package>> RtdeStream::Impl::package(Clo
 }
 
 /// Sends a request and waits for the reply, skipping text messages.
-Expected<std::string> RtdeStream::Impl::reply(char type, std::string_view payload,
-                                              std::chrono::milliseconds limit)
+Expected<std::string> RtdeSubscription::Impl::reply(char type, std::string_view payload,
+                                                    std::chrono::milliseconds limit)
 {
   const auto deadline = Clock::now() + limit;
-  if (const auto sent = stream_.write(request(type, payload), deadline); !sent) {
+  if (const auto sent = socket_.write(request(type, payload), deadline); !sent) {
     return tl::unexpected(sent.error());
   }
   while (Clock::now() < deadline) {
@@ -187,8 +188,8 @@ Expected<std::string> RtdeStream::Impl::reply(char type, std::string_view payloa
   return failure(ErrorCode::link_lost, fmt::format("{} does not answer", name_));
 }
 
-Status RtdeStream::Impl::set_layout(const std::vector<std::string> & names,
-                                    const std::vector<std::string> & types)
+Status RtdeSubscription::Impl::set_layout(const std::vector<std::string> & names,
+                                          const std::vector<std::string> & types)
 {
   if (types.size() != names.size()) {
     return protocol_error(fmt::format("{} types for {} fields", types.size(), names.size()));
@@ -214,8 +215,8 @@ Status RtdeStream::Impl::set_layout(const std::vector<std::string> & names,
   return {};
 }
 
-Status RtdeStream::Impl::set_up(const std::vector<std::string> & names, double frequency,
-                                std::chrono::milliseconds limit)
+Status RtdeSubscription::Impl::set_up(const std::vector<std::string> & names, double frequency,
+                                      std::chrono::milliseconds limit)
 {
   frequency_ = frequency;
   if (const auto answer = reply(protocol_version, std::string_view("\0\2", 2), limit); !answer) {
@@ -245,7 +246,7 @@ Status RtdeStream::Impl::set_up(const std::vector<std::string> & names, double f
   return *started == "\1" ? Status() : protocol_error("it refuses to start");
 }
 
-Expected<bool> RtdeStream::Impl::next(std::span<double> numbers, Clock::time_point deadline)
+Expected<bool> RtdeSubscription::Impl::next(std::span<double> numbers, Clock::time_point deadline)
 {
   auto got = package(deadline);
   while (got && *got && (*got)->type != data && Clock::now() < deadline) {
@@ -273,48 +274,49 @@ Expected<bool> RtdeStream::Impl::next(std::span<double> numbers, Clock::time_poi
   return true;
 }
 
-Expected<RtdeStream> RtdeStream::open(const std::string & address, const std::vector<std::string> & fields,
-                                      double frequency, std::chrono::milliseconds limit)
+Expected<RtdeSubscription> RtdeSubscription::open(const std::string & address,
+                                                  const std::vector<std::string> & fields, double frequency,
+                                                  std::chrono::milliseconds limit)
 {
   const auto version = probe_rtde(address, limit);
   if (!version) {
     return tl::unexpected(version.error());
   }
-  auto stream = TcpStream::connect(address, rtde_port, limit);
-  if (!stream) {
-    return tl::unexpected(stream.error());
+  auto socket = TcpSocket::connect(address, rtde_port, limit);
+  if (!socket) {
+    return tl::unexpected(socket.error());
   }
-  auto impl = std::make_unique<Impl>(std::move(*stream), fmt::format("{}:{}", address, rtde_port));
+  auto impl = std::make_unique<Impl>(std::move(*socket), fmt::format("{}:{}", address, rtde_port));
   const double maximum = version->frequency();
   if (const auto ready =
           impl->set_up(fields, frequency > 0.0 ? std::min(frequency, maximum) : maximum, limit);
       !ready) {
     return tl::unexpected(ready.error());
   }
-  return RtdeStream(std::move(impl));
+  return RtdeSubscription(std::move(impl));
 }
 
-RtdeStream::RtdeStream(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-RtdeStream::RtdeStream(RtdeStream &&) noexcept = default;
-RtdeStream & RtdeStream::operator=(RtdeStream &&) noexcept = default;
-RtdeStream::~RtdeStream() = default;
+RtdeSubscription::RtdeSubscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+RtdeSubscription::RtdeSubscription(RtdeSubscription &&) noexcept = default;
+RtdeSubscription & RtdeSubscription::operator=(RtdeSubscription &&) noexcept = default;
+RtdeSubscription::~RtdeSubscription() = default;
 
-const std::vector<RtdeStream::Field> & RtdeStream::fields() const
+const std::vector<RtdeSubscription::Field> & RtdeSubscription::fields() const
 {
   return impl_->fields_;
 }
 
-std::size_t RtdeStream::width() const
+std::size_t RtdeSubscription::width() const
 {
   return impl_->width_;
 }
 
-double RtdeStream::frequency() const
+double RtdeSubscription::frequency() const
 {
   return impl_->frequency_;
 }
 
-Expected<bool> RtdeStream::next(std::span<double> numbers, Clock::time_point deadline)
+Expected<bool> RtdeSubscription::next(std::span<double> numbers, Clock::time_point deadline)
 {
   return impl_->next(numbers, deadline);
 }

@@ -14,7 +14,7 @@ namespace ur_ros_rtde {
 /// Receives arbitrary RTDE outputs of a controller, including those that are not part of Sample, over a
 /// separate connection. Values of all types are returned as doubles, which is exact except for integers
 /// beyond 2^53; BOOL is 0 or 1.
-class RtdeStream {
+class RtdeSubscription {
  public:
   using Clock = std::chrono::steady_clock;
 
@@ -25,12 +25,12 @@ class RtdeStream {
 
   /// `frequency`: Hz; 0 or a rate above the controller's maximum selects the maximum. `limit`: timeout of
   /// each step of connecting. Errors: link_lost; not_supported, naming the fields that this controller lacks.
-  static Expected<RtdeStream> open(const std::string & address, const std::vector<std::string> & fields,
-                                   double frequency,
-                                   std::chrono::milliseconds limit = std::chrono::milliseconds(500));
-  RtdeStream(RtdeStream &&) noexcept;
-  RtdeStream & operator=(RtdeStream &&) noexcept;
-  ~RtdeStream();
+  static Expected<RtdeSubscription> open(const std::string & address, const std::vector<std::string> & fields,
+                                         double frequency,
+                                         std::chrono::milliseconds limit = std::chrono::milliseconds(500));
+  RtdeSubscription(RtdeSubscription &&) noexcept;
+  RtdeSubscription & operator=(RtdeSubscription &&) noexcept;
+  ~RtdeSubscription();
 
   /// In the requested order.
   const std::vector<Field> & fields() const;
@@ -45,7 +45,7 @@ class RtdeStream {
 
  private:
   class Impl;
-  explicit RtdeStream(std::unique_ptr<Impl> impl);
+  explicit RtdeSubscription(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

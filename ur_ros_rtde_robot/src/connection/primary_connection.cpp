@@ -1,4 +1,4 @@
-#include "connection/primary_link.hpp"
+#include "connection/primary_connection.hpp"
 
 #include <fmt/format.h>
 
@@ -168,43 +168,44 @@ std::optional<PrimaryMessage> PrimaryReader::next()
   return message;
 }
 
-Expected<PrimaryLink> PrimaryLink::connect(const std::string & address, std::chrono::milliseconds limit)
+Expected<PrimaryConnection> PrimaryConnection::connect(const std::string & address,
+                                                       std::chrono::milliseconds limit)
 {
-  auto stream = TcpStream::connect(address, primary_port, limit);
-  if (!stream) {
-    return tl::unexpected(stream.error());
+  auto socket = TcpSocket::connect(address, primary_port, limit);
+  if (!socket) {
+    return tl::unexpected(socket.error());
   }
-  PrimaryLink link(std::move(*stream));
-  const auto greeting = link.read(limit);
+  PrimaryConnection connection(std::move(*socket));
+  const auto greeting = connection.read(limit);
   if (!greeting) {
     return tl::unexpected(greeting.error());
   }
   if (*greeting == 0) {
     return failure(ErrorCode::link_lost, address + ": the primary interface (port 30001) does not answer");
   }
-  return link;
+  return connection;
 }
 
-Status PrimaryLink::send(std::string_view script, std::chrono::milliseconds limit)
+Status PrimaryConnection::send(std::string_view script, std::chrono::milliseconds limit)
 {
-  return stream_.write(script, TcpStream::Clock::now() + limit);
+  return socket_.write(script, TcpSocket::Clock::now() + limit);
 }
 
-Expected<std::size_t> PrimaryLink::read(std::chrono::milliseconds wait)
+Expected<std::size_t> PrimaryConnection::read(std::chrono::milliseconds wait)
 {
   std::array<std::byte, 4096> bytes{};
-  const auto got = stream_.read_some(bytes, TcpStream::Clock::now() + wait);
+  const auto got = socket_.read_some(bytes, TcpSocket::Clock::now() + wait);
   if (got && !reader_.feed(std::span(bytes).first(*got))) {
     return failure(ErrorCode::link_lost, "port 30001 does not follow the protocol of the primary interface");
   }
   return got;
 }
 
-Expected<std::int32_t> PrimaryLink::robot_type(std::chrono::milliseconds limit)
+Expected<std::int32_t> PrimaryConnection::robot_type(std::chrono::milliseconds limit)
 {
-  const auto deadline = TcpStream::Clock::now() + limit;
+  const auto deadline = TcpSocket::Clock::now() + limit;
   while (!reader_.robot_type()) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - TcpStream::Clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - TcpSocket::Clock::now());
     if (left <= std::chrono::milliseconds(0)) {
       return failure(ErrorCode::timeout,
                      fmt::format("port {} did not send the configuration of the robot", primary_port));
@@ -216,7 +217,7 @@ Expected<std::int32_t> PrimaryLink::robot_type(std::chrono::milliseconds limit)
   return *reader_.robot_type();
 }
 
-Expected<std::optional<PrimaryMessage>> PrimaryLink::next(std::chrono::milliseconds wait)
+Expected<std::optional<PrimaryMessage>> PrimaryConnection::next(std::chrono::milliseconds wait)
 {
   auto message = reader_.next();
   if (!message) {

@@ -4,24 +4,24 @@
 #include <atomic>
 
 #include "support.hpp"
-#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
 
 namespace ur_ros_rtde::test {
 namespace {
 
-struct DashboardLinkTest : testing::Test {
+struct DashboardConnectionTest : testing::Test {
   Log log;
   Controller controller;
   std::atomic<int> lost = 0;
-  std::unique_ptr<DashboardLink> link;
+  std::unique_ptr<DashboardConnection> link;
 
   void connect()
   {
-    DashboardLinkOptions options;
+    DashboardConnectionOptions options;
     options.address = own_address();
     options.retry_interval = 50ms;
     options.heartbeat = 50ms;
-    link = std::make_unique<DashboardLink>(options, log.function());
+    link = std::make_unique<DashboardConnection>(options, log.function());
     link->on_link([this](const LinkStatus & status) { lost += status.connected ? 0 : 1; });
     link->start();
   }
@@ -31,7 +31,7 @@ struct DashboardLinkTest : testing::Test {
   }
 };
 
-TEST_F(DashboardLinkTest, ConnectsToAControllerThatStartsLater)
+TEST_F(DashboardConnectionTest, ConnectsToAControllerThatStartsLater)
 {
   connect();
   ASSERT_TRUE(eventually([&] { return log.count(own_address() + ":29999") == 1; })) << log.text();
@@ -41,7 +41,7 @@ TEST_F(DashboardLinkTest, ConnectsToAControllerThatStartsLater)
   EXPECT_NE(link->dashboard()->robotmode().find("RUNNING"), std::string::npos);
 }
 
-TEST_F(DashboardLinkTest, ReturnsTheRobotsRefusalAsAnError)
+TEST_F(DashboardConnectionTest, ReturnsTheRobotsRefusalAsAnError)
 {
   controller.start();
   connect();
@@ -53,7 +53,7 @@ TEST_F(DashboardLinkTest, ReturnsTheRobotsRefusalAsAnError)
   EXPECT_TRUE(link->call([](ur_rtde::DashboardClient & client) { client.robotmode(); }));
 }
 
-TEST_F(DashboardLinkTest, ReconnectsAtOnceWhenTheRobotClosesTheConnection)
+TEST_F(DashboardConnectionTest, ReconnectsAtOnceWhenTheRobotClosesTheConnection)
 {
   controller.start();
   connect();
@@ -66,7 +66,7 @@ TEST_F(DashboardLinkTest, ReconnectsAtOnceWhenTheRobotClosesTheConnection)
   EXPECT_EQ(lost, 0);
 }
 
-TEST_F(DashboardLinkTest, ReportsTheLossWhenTheRobotRefusesANewConnection)
+TEST_F(DashboardConnectionTest, ReportsTheLossWhenTheRobotRefusesANewConnection)
 {
   controller.start();
   connect();
@@ -78,7 +78,7 @@ TEST_F(DashboardLinkTest, ReportsTheLossWhenTheRobotRefusesANewConnection)
   EXPECT_TRUE(connected()) << log.text();
 }
 
-TEST_F(DashboardLinkTest, FailsACallOnADroppedConnectionAndReconnects)
+TEST_F(DashboardConnectionTest, FailsACallOnADroppedConnectionAndReconnects)
 {
   controller.start();
   connect();
@@ -90,7 +90,7 @@ TEST_F(DashboardLinkTest, FailsACallOnADroppedConnectionAndReconnects)
   })) << log.text();
 }
 
-TEST_F(DashboardLinkTest, ReportsRemoteControl)
+TEST_F(DashboardConnectionTest, ReportsRemoteControl)
 {
   controller.start();
   connect();
@@ -100,7 +100,7 @@ TEST_F(DashboardLinkTest, ReportsRemoteControl)
   EXPECT_TRUE(eventually([&] { return link->in_remote_control() == false; }));
 }
 
-TEST_F(DashboardLinkTest, ReconnectsWhenAnswersDoNotMatchTheQueries)
+TEST_F(DashboardConnectionTest, ReconnectsWhenAnswersDoNotMatchTheQueries)
 {
   controller.start();
   connect();
@@ -111,7 +111,7 @@ TEST_F(DashboardLinkTest, ReconnectsWhenAnswersDoNotMatchTheQueries)
   EXPECT_EQ(link->in_remote_control(), true);
 }
 
-TEST_F(DashboardLinkTest, DetectsAnotherService)
+TEST_F(DashboardConnectionTest, DetectsAnotherService)
 {
   const OtherService other(29999, "220 mail.example.org ESMTP\r\n");
   connect();

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "connection/ports.hpp"
-#include "connection/tcp_stream.hpp"
+#include "connection/tcp_socket.hpp"
 #include "motion/motion_stopper.hpp"
 #include "support.hpp"
 
@@ -32,21 +32,21 @@ namespace {
 TEST(StopProgramTest, DoesNotWaitForANameServer)
 {
   Controller controller(Controller::options());
-  ASSERT_TRUE(TcpStream::connect("robot.test", dashboard_port, 1s));  // as when the driver starts
+  ASSERT_TRUE(TcpSocket::connect("robot.test", dashboard_port, 1s));  // as when the driver starts
   name_server_answers = false;
   const auto stopped = stop_program("robot.test", 1s);
   EXPECT_TRUE(stopped) << stopped.error().message;
 }
 
-TEST(TcpStreamTest, RepeatsAFailedNameLookup)
+TEST(TcpSocketTest, RepeatsAFailedNameLookup)
 {
   Controller controller(Controller::options());
   name_server_answers = false;
-  const auto not_found = TcpStream::connect("other.test", dashboard_port, 1s);
+  const auto not_found = TcpSocket::connect("other.test", dashboard_port, 1s);
   ASSERT_FALSE(not_found);
   EXPECT_NE(not_found.error().message.find("`other.test` cannot be resolved"), std::string::npos);
   name_server_answers = true;
-  EXPECT_TRUE(TcpStream::connect("other.test", dashboard_port, 1s));
+  EXPECT_TRUE(TcpSocket::connect("other.test", dashboard_port, 1s));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "ur_ros_rtde_robot/connection/dashboard_link.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
 
 #include <fmt/format.h>
 #include <ur_rtde/dashboard_client.h>
@@ -13,7 +13,7 @@
 
 #include "connection/dashboard_request.hpp"
 #include "connection/ports.hpp"
-#include "connection/rtde_probe.hpp"
+#include "connection/rtde/rtde_probe.hpp"
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
@@ -38,9 +38,10 @@ bool supports_remote_control(const std::optional<ControllerVersion> & version)
 
 }  // namespace
 
-class DashboardLink::Impl {
+class DashboardConnection::Impl {
  public:
-  Impl(DashboardLinkOptions options, LogFunction log) : options_(std::move(options)), logger_(std::move(log))
+  Impl(DashboardConnectionOptions options, LogFunction log)
+      : options_(std::move(options)), logger_(std::move(log))
   {
     if (options_.address.empty()) {
       throw std::invalid_argument("the robot's address is empty: give its IP address or host name");
@@ -58,7 +59,7 @@ class DashboardLink::Impl {
   LinkStatus link_;
   std::optional<bool> remote_;
   std::optional<ControllerVersion> version_;
-  const DashboardLinkOptions options_;
+  const DashboardConnectionOptions options_;
   std::jthread thread_;
 
  private:
@@ -79,7 +80,7 @@ class DashboardLink::Impl {
   std::condition_variable_any wake_;
 };
 
-Status DashboardLink::Impl::connect()
+Status DashboardConnection::Impl::connect()
 {
   if (auto status = probe_dashboard(options_.address, options_.connect_timeout); !status) {
     return status;
@@ -107,7 +108,7 @@ Status DashboardLink::Impl::connect()
   }
 }
 
-Locked<DashboardClient> DashboardLink::Impl::dashboard() const
+Locked<DashboardClient> DashboardConnection::Impl::dashboard() const
 {
   const std::lock_guard lock(mutex_);
   if (!link_.connected || !client_) {
@@ -116,8 +117,8 @@ Locked<DashboardClient> DashboardLink::Impl::dashboard() const
   return {client_, lock_, "dashboard client"};
 }
 
-void DashboardLink::Impl::report_failure(const std::shared_ptr<DashboardClient> & client,
-                                         const std::string & why)
+void DashboardConnection::Impl::report_failure(const std::shared_ptr<DashboardClient> & client,
+                                               const std::string & why)
 {
   {
     const std::lock_guard lock(mutex_);
@@ -131,7 +132,7 @@ void DashboardLink::Impl::report_failure(const std::shared_ptr<DashboardClient> 
   wake_.notify_all();
 }
 
-Status DashboardLink::Impl::call(const std::function<void(DashboardClient &)> & function)
+Status DashboardConnection::Impl::call(const std::function<void(DashboardClient &)> & function)
 {
   std::shared_ptr<DashboardClient> client;
   {
@@ -161,14 +162,14 @@ Status DashboardLink::Impl::call(const std::function<void(DashboardClient &)> & 
 }
 
 /// The answer belongs to another query, so that the following answers would be wrong, too.
-[[noreturn]] void DashboardLink::Impl::throw_protocol_error(const std::string & query,
-                                                            const std::string & answer)
+[[noreturn]] void DashboardConnection::Impl::throw_protocol_error(const std::string & query,
+                                                                  const std::string & answer)
 {
   throw boost::system::system_error(make_error_code(boost::system::errc::protocol_error),
                                     fmt::format("\"{}\" was answered \"{}\"", query, printable(answer)));
 }
 
-Status DashboardLink::Impl::heartbeat()
+Status DashboardConnection::Impl::heartbeat()
 {
   std::optional<bool> remote;
   const auto status = call([&](DashboardClient & client) {
@@ -192,7 +193,7 @@ Status DashboardLink::Impl::heartbeat()
   return status;
 }
 
-void DashboardLink::Impl::set_link(LinkStatus status)
+void DashboardConnection::Impl::set_link(LinkStatus status)
 {
   bool changed = false;
   std::shared_ptr<DashboardClient> dropped;  // closed without the lock
@@ -210,13 +211,13 @@ void DashboardLink::Impl::set_link(LinkStatus status)
   }
 }
 
-void DashboardLink::Impl::wait(const std::stop_token & stop, std::chrono::milliseconds duration)
+void DashboardConnection::Impl::wait(const std::stop_token & stop, std::chrono::milliseconds duration)
 {
   std::unique_lock lock(mutex_);
   wake_.wait_for(lock, stop, duration, [this] { return broken_; });
 }
 
-Status DashboardLink::Impl::monitor(const std::stop_token & stop)
+Status DashboardConnection::Impl::monitor(const std::stop_token & stop)
 {
   Status alive;
   while (alive && !stop.stop_requested()) {
@@ -228,7 +229,7 @@ Status DashboardLink::Impl::monitor(const std::stop_token & stop)
   return alive;
 }
 
-void DashboardLink::Impl::run(const std::stop_token & stop)
+void DashboardConnection::Impl::run(const std::stop_token & stop)
 {
   Status lost;
   while (!stop.stop_requested()) {
@@ -257,29 +258,29 @@ void DashboardLink::Impl::run(const std::stop_token & stop)
   }
 }
 
-DashboardLink::DashboardLink(DashboardLinkOptions options, LogFunction log)
+DashboardConnection::DashboardConnection(DashboardConnectionOptions options, LogFunction log)
     : impl_(std::make_unique<Impl>(std::move(options), std::move(log)))
 {
 }
 
-DashboardLink::~DashboardLink()
+DashboardConnection::~DashboardConnection()
 {
   stop();
 }
 
-void DashboardLink::on_link(std::function<void(const LinkStatus &)> function)
+void DashboardConnection::on_link(std::function<void(const LinkStatus &)> function)
 {
   impl_->link_function_ = std::move(function);
 }
 
-void DashboardLink::start()
+void DashboardConnection::start()
 {
   if (!impl_->thread_.joinable()) {
     impl_->thread_ = std::jthread([impl = impl_.get()](const std::stop_token & stop) { impl->run(stop); });
   }
 }
 
-void DashboardLink::stop()
+void DashboardConnection::stop()
 {
   if (impl_->thread_.joinable()) {
     impl_->thread_.request_stop();
@@ -287,36 +288,36 @@ void DashboardLink::stop()
   }
 }
 
-LinkStatus DashboardLink::link() const
+LinkStatus DashboardConnection::link() const
 {
   const std::lock_guard lock(impl_->mutex_);
   return impl_->link_;
 }
 
-std::optional<bool> DashboardLink::in_remote_control() const
+std::optional<bool> DashboardConnection::in_remote_control() const
 {
   const std::lock_guard lock(impl_->mutex_);
   return impl_->remote_;
 }
 
-std::optional<ControllerVersion> DashboardLink::version() const
+std::optional<ControllerVersion> DashboardConnection::version() const
 {
   const std::lock_guard lock(impl_->mutex_);
   return impl_->version_;
 }
 
-Locked<DashboardClient> DashboardLink::dashboard() const
+Locked<DashboardClient> DashboardConnection::dashboard() const
 {
   return impl_->dashboard();
 }
 
-Status DashboardLink::call(const std::function<void(DashboardClient &)> & function)
+Status DashboardConnection::call(const std::function<void(DashboardClient &)> & function)
 {
   return impl_->call(function);
 }
 
-Expected<std::string> DashboardLink::request(const std::string & line, std::chrono::milliseconds limit,
-                                             const std::stop_token & stop) const
+Expected<std::string> DashboardConnection::request(const std::string & line, std::chrono::milliseconds limit,
+                                                   const std::stop_token & stop) const
 {
   return dashboard_request(impl_->options_.address, line, limit, stop);
 }

@@ -1,4 +1,4 @@
-#include "program/motion_blocker.hpp"
+#include "motion/motion_blocker.hpp"
 
 #include <fmt/format.h>
 

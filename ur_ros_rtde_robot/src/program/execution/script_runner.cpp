@@ -1,13 +1,13 @@
-#include "program/script_runner.hpp"
+#include "program/execution/script_runner.hpp"
 
 #include <fmt/format.h>
 
 #include <random>
 #include <utility>
 
-#include "connection/primary_link.hpp"
+#include "connection/primary_connection.hpp"
 #include "motion/motion_stopper.hpp"
-#include "program/script_monitor.hpp"
+#include "program/execution/script_monitor.hpp"
 #include "script/program.hpp"
 #include "state/wait_until.hpp"
 
@@ -139,7 +139,7 @@ ScriptReport ScriptRunner::run(const std::string & script, const ScriptOptions &
   if (!program) {
     return refused(program.error());
   }
-  auto primary = PrimaryLink::connect(options_.address, options_.connect_timeout);
+  auto primary = PrimaryConnection::connect(options_.address, options_.connect_timeout);
   if (!primary) {
     return refused(primary.error());
   }

@@ -14,17 +14,17 @@ namespace ur_ros_rtde {
 /// A TCP connection whose operations all have a time limit, except for the first look-up of a host name. Used
 /// to probe an address before calling ur_rtde's constructors, which can block, and for the dashboard command
 /// that stops the arm as a last resort. Errors are link_lost and name address and port.
-class TcpStream {
+class TcpSocket {
  public:
   using Clock = std::chrono::steady_clock;
 
-  static Expected<TcpStream> connect(const std::string & address, std::uint16_t port,
+  static Expected<TcpSocket> connect(const std::string & address, std::uint16_t port,
                                      std::chrono::milliseconds limit);
-  TcpStream(TcpStream && other) noexcept;
-  TcpStream & operator=(TcpStream && other) noexcept;
-  TcpStream(const TcpStream &) = delete;
-  TcpStream & operator=(const TcpStream &) = delete;
-  ~TcpStream();
+  TcpSocket(TcpSocket && other) noexcept;
+  TcpSocket & operator=(TcpSocket && other) noexcept;
+  TcpSocket(const TcpSocket &) = delete;
+  TcpSocket & operator=(const TcpSocket &) = delete;
+  ~TcpSocket();
 
   Status write(std::span<const std::byte> data, Clock::time_point deadline);
   Status write(std::string_view text, Clock::time_point deadline);
@@ -37,7 +37,7 @@ class TcpStream {
   Expected<std::string> read_line(Clock::time_point deadline);
 
  private:
-  TcpStream(int descriptor, std::string name);
+  TcpSocket(int descriptor, std::string name);
   Status wait_for(short events, Clock::time_point deadline) const;
 
   int descriptor_ = -1;

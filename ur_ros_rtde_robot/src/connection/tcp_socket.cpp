@@ -1,4 +1,4 @@
-#include "connection/tcp_stream.hpp"
+#include "connection/tcp_socket.hpp"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -69,36 +69,36 @@ Expected<in_addr> resolve(const std::string & address)
   return found;
 }
 
-int milliseconds_to(TcpStream::Clock::time_point deadline)
+int milliseconds_to(TcpSocket::Clock::time_point deadline)
 {
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - TcpStream::Clock::now()).count();
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - TcpSocket::Clock::now()).count();
   return static_cast<int>(std::clamp<std::chrono::milliseconds::rep>(left, 0, 60'000));
 }
 
 }  // namespace
 
-TcpStream::TcpStream(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
+TcpSocket::TcpSocket(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
 
-TcpStream::TcpStream(TcpStream && other) noexcept
+TcpSocket::TcpSocket(TcpSocket && other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)), name_(std::move(other.name_))
 {
 }
 
-TcpStream & TcpStream::operator=(TcpStream && other) noexcept
+TcpSocket & TcpSocket::operator=(TcpSocket && other) noexcept
 {
   std::swap(descriptor_, other.descriptor_);
   std::swap(name_, other.name_);
   return *this;
 }
 
-TcpStream::~TcpStream()
+TcpSocket::~TcpSocket()
 {
   if (descriptor_ >= 0) {
     ::close(descriptor_);
   }
 }
 
-Expected<TcpStream> TcpStream::connect(const std::string & address, std::uint16_t port,
+Expected<TcpSocket> TcpSocket::connect(const std::string & address, std::uint16_t port,
                                        std::chrono::milliseconds limit)
 {
   const auto ip = resolve(address);
@@ -110,7 +110,7 @@ Expected<TcpStream> TcpStream::connect(const std::string & address, std::uint16_
   target.sin_addr = *ip;
   target.sin_port = htons(port);
   const auto deadline = Clock::now() + limit;
-  TcpStream stream(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
+  TcpSocket socket(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
                    fmt::format("{}:{}", address, port));
   const auto refused = [&](int error) {
     const char * remedy =
@@ -119,33 +119,33 @@ Expected<TcpStream> TcpStream::connect(const std::string & address, std::uint16_
               "pendant: Settings, Security, Services)"
             : "";
     return failure(ErrorCode::link_lost,
-                   fmt::format("no connection to {}: {}{}", stream.name_, system_text(error), remedy));
+                   fmt::format("no connection to {}: {}{}", socket.name_, system_text(error), remedy));
   };
-  if (stream.descriptor_ < 0) {
+  if (socket.descriptor_ < 0) {
     return refused(errno);
   }
   const int on = 1;
-  ::setsockopt(stream.descriptor_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
-  if (::connect(stream.descriptor_, reinterpret_cast<const sockaddr *>(&target), sizeof(target)) != 0) {
+  ::setsockopt(socket.descriptor_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  if (::connect(socket.descriptor_, reinterpret_cast<const sockaddr *>(&target), sizeof(target)) != 0) {
     if (errno != EINPROGRESS) {
       return refused(errno);
     }
-    if (!stream.wait_for(POLLOUT, deadline)) {
+    if (!socket.wait_for(POLLOUT, deadline)) {
       return failure(ErrorCode::link_lost, fmt::format("no connection to {}: no answer within {} ms: check "
                                                        "the address, and that the robot is on",
-                                                       stream.name_, limit.count()));
+                                                       socket.name_, limit.count()));
     }
     int error = 0;
     socklen_t size = sizeof(error);
-    ::getsockopt(stream.descriptor_, SOL_SOCKET, SO_ERROR, &error, &size);
+    ::getsockopt(socket.descriptor_, SOL_SOCKET, SO_ERROR, &error, &size);
     if (error != 0) {
       return refused(error);
     }
   }
-  return stream;
+  return socket;
 }
 
-Status TcpStream::wait_for(short events, Clock::time_point deadline) const
+Status TcpSocket::wait_for(short events, Clock::time_point deadline) const
 {
   pollfd descriptor{descriptor_, events, 0};
   int ready = 0;
@@ -158,7 +158,7 @@ Status TcpStream::wait_for(short events, Clock::time_point deadline) const
   return failure(ErrorCode::link_lost, fmt::format("{} does not answer", name_));
 }
 
-Status TcpStream::write(std::span<const std::byte> data, Clock::time_point deadline)
+Status TcpSocket::write(std::span<const std::byte> data, Clock::time_point deadline)
 {
   while (!data.empty()) {
     const auto sent = ::send(descriptor_, data.data(), data.size(), MSG_NOSIGNAL);
@@ -175,12 +175,12 @@ Status TcpStream::write(std::span<const std::byte> data, Clock::time_point deadl
   return {};
 }
 
-Status TcpStream::write(std::string_view text, Clock::time_point deadline)
+Status TcpSocket::write(std::string_view text, Clock::time_point deadline)
 {
   return write(std::as_bytes(std::span(text.data(), text.size())), deadline);
 }
 
-Status TcpStream::read(std::span<std::byte> data, Clock::time_point deadline)
+Status TcpSocket::read(std::span<std::byte> data, Clock::time_point deadline)
 {
   while (!data.empty()) {
     if (auto ready = wait_for(POLLIN, deadline); !ready) {
@@ -198,7 +198,7 @@ Status TcpStream::read(std::span<std::byte> data, Clock::time_point deadline)
   return {};
 }
 
-Expected<std::size_t> TcpStream::read_some(std::span<std::byte> data, Clock::time_point deadline)
+Expected<std::size_t> TcpSocket::read_some(std::span<std::byte> data, Clock::time_point deadline)
 {
   while (wait_for(POLLIN, deadline)) {
     const auto got = ::recv(descriptor_, data.data(), data.size(), 0);
@@ -215,7 +215,7 @@ Expected<std::size_t> TcpStream::read_some(std::span<std::byte> data, Clock::tim
   return 0;
 }
 
-Expected<std::string> TcpStream::read_line(Clock::time_point deadline)
+Expected<std::string> TcpSocket::read_line(Clock::time_point deadline)
 {
   std::string line;
   while (line.size() < 1000) {

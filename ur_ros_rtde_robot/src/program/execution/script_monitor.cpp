@@ -1,4 +1,4 @@
-#include "program/script_monitor.hpp"
+#include "program/execution/script_monitor.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "program/motion_blocker.hpp"
+#include "motion/motion_blocker.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -75,7 +75,7 @@ const char * to_string(ScriptEnd end)
   return "unknown";
 }
 
-ScriptMonitor::ScriptMonitor(PrimaryLink primary, const StateReceiver & state, Markers markers,
+ScriptMonitor::ScriptMonitor(PrimaryConnection primary, const StateReceiver & state, Markers markers,
                              const ScriptOptions & options)
     : primary_(std::move(primary)), state_(state), markers_(std::move(markers)), options_(options)
 {

@@ -17,7 +17,7 @@ class DashboardClient;
 
 namespace ur_ros_rtde {
 
-struct DashboardLinkOptions {
+struct DashboardConnectionOptions {
   std::string address;
   std::chrono::milliseconds connect_timeout{500};
   std::chrono::milliseconds retry_interval{500};
@@ -26,13 +26,13 @@ struct DashboardLinkOptions {
 };
 
 /// A connection to the dashboard server that reconnects by itself. All methods are thread-safe.
-class DashboardLink {
+class DashboardConnection {
  public:
   /// Throws std::invalid_argument for an empty address. Network problems do not throw.
-  explicit DashboardLink(DashboardLinkOptions options, LogFunction log = {});
-  ~DashboardLink();
-  DashboardLink(const DashboardLink &) = delete;
-  DashboardLink & operator=(const DashboardLink &) = delete;
+  explicit DashboardConnection(DashboardConnectionOptions options, LogFunction log = {});
+  ~DashboardConnection();
+  DashboardConnection(const DashboardConnection &) = delete;
+  DashboardConnection & operator=(const DashboardConnection &) = delete;
 
   /// Called on the background thread when the connection is established or lost. Must not throw. Set before
   /// start().

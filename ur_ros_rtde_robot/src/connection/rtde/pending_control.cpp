@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "connection/rtde_interfaces.hpp"
+#include "connection/rtde/rtde_interfaces.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "connection/primary_link.hpp"
-#include "connection/rtde_interfaces.hpp"
+#include "connection/primary_connection.hpp"
+#include "connection/rtde/rtde_interfaces.hpp"
 #include "motion/motion_tracker.hpp"
 #include "program/control_scripts.hpp"
 #include "ur_ros_rtde_robot/program/extension_options.hpp"

@@ -6,7 +6,7 @@
 
 #include "motion/motion_tracker.hpp"
 #include "program/control_program_manager.hpp"
-#include "program/script_monitor.hpp"
+#include "program/execution/script_monitor.hpp"
 #include "ur_ros_rtde_robot/program/script.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "connection/primary_link.hpp"
+#include "connection/primary_connection.hpp"
 #include "script/program.hpp"
 #include "ur_ros_rtde_robot/program/script.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
@@ -21,7 +21,7 @@ class ScriptMonitor {
     std::string end;
   };
 
-  ScriptMonitor(PrimaryLink primary, const StateReceiver & state, Markers markers,
+  ScriptMonitor(PrimaryConnection primary, const StateReceiver & state, Markers markers,
                 const ScriptOptions & options);
 
   /// Sends the program and waits until it has ended or has to be stopped; see may_be_running().
@@ -48,7 +48,7 @@ class ScriptMonitor {
   bool complete(ScriptEnd end, ErrorCode code, std::string message);
   bool complete_with_error();
 
-  PrimaryLink primary_;
+  PrimaryConnection primary_;
   const StateReceiver & state_;
   const Markers markers_;
   const ScriptOptions & options_;
