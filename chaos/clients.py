@@ -118,12 +118,12 @@ class GoalSender:
 
     def _cancel(self, goal, after):
         end = time.monotonic() + after
-        while time.monotonic() < end and not goal.ended():
+        while time.monotonic() < end and not goal.is_finished():
             time.sleep(0.01)
         goal.cancel()
 
     def _result(self, plan, goal):
-        status, result = goal.end(RESULT_LIMIT)
+        status, result = goal.wait_for_result(RESULT_LIMIT)
         code = CODES[result.error_code]
         self._journal.write(self._name, f"  {plan.name} {goal.id.hex()[:8]}: {code}: {result.message}")
         endings = self._client.endings(goal)

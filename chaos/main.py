@@ -135,7 +135,7 @@ class Chaos:
         except AssertionError as error:
             raise Violation(f"{error}; the last reason: {reasons[-1:]}") from None
         if goal is not None:
-            goal.end(RESULT_LIMIT)
+            goal.wait_for_result(RESULT_LIMIT)
         return when if goal is not None or len(reasons) > 1 else None
 
     def _check_final_state(self):

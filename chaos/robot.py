@@ -4,7 +4,7 @@ import json
 import os
 import pathlib
 
-from support import Simulator, node, wait_for
+from support import Simulator, start_node, wait_for
 
 CLEARING_LIMIT = 20.0  # s
 
@@ -12,22 +12,22 @@ CLEARING_LIMIT = 20.0  # s
 class Robot:
     def __init__(self, address):
         self.simulator = Simulator(address)
-        self.driver = node("driver", address, "ur_type:=ur10e", "silence_limit:=0.1", "watchdog_frequency:=10.0")
+        self.driver = start_node("driver", address, "ur_type:=ur10e", "silence_limit:=0.1", "watchdog_frequency:=10.0")
         self._after_fault = []
 
     def close(self):
-        self.driver.go_on()
-        self.simulator.process.go_on()
-        self.driver.end()
-        self.simulator.end()
+        self.driver.resume()
+        self.simulator.process.resume()
+        self.driver.stop()
+        self.simulator.stop()
 
     def after_fault(self, action):
         self._after_fault.append(action)
 
     def clear(self):
         """Clears all faults. Returns when the controller is in normal operation."""
-        self.driver.go_on()
-        self.simulator.process.go_on()
+        self.driver.resume()
+        self.simulator.process.resume()
         if not self.simulator.process.running():
             self.simulator.start()
         while self._after_fault:

@@ -43,7 +43,7 @@ def build(folder: pathlib.Path) -> pathlib.Path:
 
 
 def run(checks: pathlib.Path, arguments: List[str], driver_parameters: List[str]) -> int:
-    from support import Simulator, node
+    from support import Simulator, start_node
     from ur_tools.isolation import Domain
 
     with Domain() as domain:
@@ -51,12 +51,12 @@ def run(checks: pathlib.Path, arguments: List[str], driver_parameters: List[str]
         os.environ.update(environment)
         address = environment["UR_TEST_ADDRESS"]
         simulator = Simulator(address)
-        driver = node("driver", address, "ur_type:=ur10e", *driver_parameters)
+        driver = start_node("driver", address, "ur_type:=ur10e", *driver_parameters)
         try:
             return subprocess.run([checks, *arguments]).returncode
         finally:
-            driver.end()
-            simulator.end()
+            driver.stop()
+            simulator.stop()
             pathlib.Path(checks.parent, "driver.log").write_text(driver.output() + "\n")
 
 

@@ -17,32 +17,32 @@ import pytest
 import yaml
 from rclpy.action import ActionServer
 from rclpy.task import Future
-from support import HOME, PATIENCE, Client, Process, Simulator, node, program, wait_for
+from support import HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
 
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, MoveJ
 
-DISCOVERY = str(4.0 * PATIENCE)  # s, in which all actions are found
+DISCOVERY = str(4.0 * TIMEOUT_FACTOR)  # s, in which all actions are found
 EMPTY_DOMAIN = "102"  # nothing runs there: domains of tests are below 102
 
 
 @pytest.fixture(scope="module")
 def running():
     simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
-    driver = node("driver", simulator.address, "ur_type:=ur10e")
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e")
     client = Client()
     try:
         wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to take a motion")
         yield simulator
     finally:
         client.close()
-        driver.end()
-        simulator.end()
+        driver.stop()
+        simulator.stop()
 
 
 def ur(*arguments, limit=60.0, domain=None):
     """Return code and output."""
-    process = Process([program("ur_ros_rtde_cli", "ur"), *arguments], {} if domain is None else {"ROS_DOMAIN_ID": domain})
+    process = Process([find_program("ur_ros_rtde_cli", "ur"), *arguments], {} if domain is None else {"ROS_DOMAIN_ID": domain})
     return process.wait(limit), process.output()
 
 
@@ -133,7 +133,7 @@ def test_all_feedback_is_shown_on_a_terminal(at_home):
     terminal, end = pty.openpty()
     fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
     turned = [HOME[0] + 0.2, *HOME[1:]]
-    command = [program("ur_ros_rtde_cli", "ur"), "call", "move_j", goal(joint_positions=turned, speed=0.5)]
+    command = [find_program("ur_ros_rtde_cli", "ur"), "call", "move_j", goal(joint_positions=turned, speed=0.5)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=end)
     os.close(end)
     shown = b""
@@ -141,7 +141,7 @@ def test_all_feedback_is_shown_on_a_terminal(at_home):
         while True:
             shown += os.read(terminal, 65536)
     os.close(terminal)
-    assert process.wait(PATIENCE * 20.0) == 0
+    assert process.wait(TIMEOUT_FACTOR * 20.0) == 0
     text = shown.decode()
     assert "###" in text and " % " in text and "\x1b[" in text
     for field in ("motion:", "progress:", "elapsed:", "joint_positions:", "tcp_pose:"):
@@ -161,7 +161,7 @@ def test_the_fields_of_a_goal_are_shown_without_a_server():
 
 def slow_motion():
     away = [HOME[0] - 2.0, *HOME[1:]]
-    return [program("ur_ros_rtde_cli", "ur"), "call", "move_j", "--quiet", goal(joint_positions=away, speed=0.2)]
+    return [find_program("ur_ros_rtde_cli", "ur"), "call", "move_j", "--quiet", goal(joint_positions=away, speed=0.2)]
 
 
 @pytest.fixture
@@ -199,7 +199,7 @@ def test_the_arm_stops_when_nobody_reads_the_output_any_more(at_home, tmp_path):
         process = subprocess.Popen(slow_motion(), stdout=subprocess.PIPE, stderr=file)
     wait_until_moving(at_home)
     process.stdout.close()
-    assert process.wait(PATIENCE * 20.0) == 128 + signal.SIGPIPE, errors.read_text()
+    assert process.wait(TIMEOUT_FACTOR * 20.0) == 128 + signal.SIGPIPE, errors.read_text()
     assert at_home.state()["at_rest"]
     assert errors.read_text().splitlines() == ["canceling (SIGPIPE), interrupt again to quit without the result"]
 
@@ -225,9 +225,9 @@ def stubborn():
         handle.abort()
         return MoveJ.Result()
 
-    server = client.in_executor(lambda: ActionServer(client.node, MoveJ, "move_j", execute))
+    server = client.call_in_executor(lambda: ActionServer(client.node, MoveJ, "move_j", execute))
     yield goals
-    client.in_executor(lambda: end.set_result(True) or True)
+    client.call_in_executor(lambda: end.set_result(True) or True)
     server.destroy()
     client.close()
 
@@ -250,7 +250,7 @@ def test_the_state_is_shown(running):
 
 
 def test_no_driver_is_said_after_the_wait():
-    process = Process([program("ur_ros_rtde_cli", "ur"), "state", "--wait", "0.5", "--namespace", "nobody"])
+    process = Process([find_program("ur_ros_rtde_cli", "ur"), "state", "--wait", "0.5", "--namespace", "nobody"])
     assert process.wait(20.0) == 2 and "Does robot_state_receiver run" in process.output()
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 from robot_fixtures import make_ready
-from support import Client, Simulator, node, wait_for
+from support import Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_gripper_commands.action import SgGetWidth, SgGrip, SgRelease
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -72,7 +72,7 @@ def test_cancel_ends_the_goal_and_the_driver_stays_ready(gripper, simulator):
 
 def test_a_robot_without_the_urcap_refuses_gripper_commands_and_stays_ready(client, addresses):
     bare = Simulator(addresses[1], urcap=None)
-    driver = node("driver", bare.address, "ur_type:=ur10e", namespace="bare")
+    driver = start_node("driver", bare.address, "ur_type:=ur10e", namespace="bare")
     other = Client("bare")
     try:
         make_ready(other)
@@ -89,5 +89,5 @@ def test_a_robot_without_the_urcap_refuses_gripper_commands_and_stays_ready(clie
         assert not [line for line in start if "ERROR" in line or ("WARN" in line and "refused: starting" not in line)], start
     finally:
         other.close()
-        driver.end()
-        bare.end()
+        driver.stop()
+        bare.stop()

@@ -22,7 +22,7 @@ def test_a_surface_stops_the_motion(robot, simulator):
     simulator.control("place_surface", z=start - 0.1, stiffness=15000.0, damping=80.0)
     goal = down(robot)
     result = goal.succeeded(20.0)
-    assert simulator.stands_still()
+    assert simulator.is_at_rest()
     assert 20.0 < abs(result.force) < 40.0
     assert result.distance == pytest.approx(0.1, abs=0.005)
     assert start - height(simulator) == pytest.approx(result.distance, abs=0.002)
@@ -37,14 +37,14 @@ def test_a_surface_stops_the_motion(robot, simulator):
 
 @pytest.mark.parametrize("axis", ["x", "y"])
 def test_lateral_forces_are_ignored(robot, simulator, axis):
-    wrenches = robot.listen(WrenchStamped, "wrench")
+    wrenches = robot.subscribe(WrenchStamped, "wrench")
     goal = down(robot, distance=0.1)
     wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.01, 10.0, "the arm to go down")
     push = [0.0] * 6
     push["xyz".index(axis)] = 30.0
     simulator.control("push", wrench=push, duration=0.3, frame="tool")
     wait_for(lambda: any(abs(getattr(w.wrench.force, axis)) > 25.0 for w in list(wrenches)), 10.0, "the push to be felt")
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED, result.message
     assert result.distance == pytest.approx(0.1, abs=0.003)
 
@@ -58,10 +58,10 @@ def test_a_force_along_the_axis_stops_the_motion(robot, simulator):
 
 
 def test_fails_with_not_reached_without_contact(robot, simulator):
-    status, result = down(robot, distance=0.05).end()
+    status, result = down(robot, distance=0.05).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED
     assert "20 N" in result.message and "0.05 m" in result.message
-    assert simulator.stands_still()
+    assert simulator.is_at_rest()
 
 
 def test_the_sensor_is_zeroed_at_the_start(robot, simulator):
@@ -77,9 +77,9 @@ def test_cancel_decelerates_to_standstill(robot, simulator):
     goal = down(robot, distance=0.3)
     wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.02, 10.0, "the arm to go down")
     goal.cancel()
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
-    assert simulator.stands_still() and result.distance > 0.02
+    assert simulator.is_at_rest() and result.distance > 0.02
 
 
 @pytest.mark.parametrize("field, value", [("force", 0.0), ("distance", 0.0), ("speed", 2.0), ("acceleration", float("nan")),

@@ -39,7 +39,7 @@ def test_cancel_ends_the_loop_on_the_controller_and_stops_the_arm(robot, simulat
     goal = search(robot, radius=0.05)
     wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the search to begin")
     goal.cancel()
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
     assert simulator.state()["at_rest"]
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0).succeeded()

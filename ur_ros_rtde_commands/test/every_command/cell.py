@@ -10,7 +10,7 @@ import messages
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from documentation import Setup
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from support import HOME, Client, Simulator, node, wait_for
+from support import HOME, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, EnableExternalFtSensor, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -72,7 +72,7 @@ class WatchingClient(Client):
         super().destroy_action_client(name)
         subscription = self._status_subscriptions.pop(name, None)
         if subscription is not None:
-            self.in_executor(lambda: self.node.destroy_subscription(subscription))
+            self.call_in_executor(lambda: self.node.destroy_subscription(subscription))
 
     def _see(self, message):
         for entry in message.status_list:
@@ -98,13 +98,13 @@ class Cell:
         self.start_driver()
 
     def close(self):
-        self.driver.end()
+        self.driver.stop()
         self.client.close()
-        self.simulator.end()
+        self.simulator.stop()
         self._domain.close()
 
     def start_driver(self):
-        self.driver = node("driver", self.simulator.address, f"ur_type:={self.setup.controller}", *self.setup.parameters,
+        self.driver = start_node("driver", self.simulator.address, f"ur_type:={self.setup.controller}", *self.setup.parameters,
                            env=self._env)
 
     def restart_simulator(self):
@@ -179,7 +179,7 @@ class Cell:
 
         def there():
             if any(GAVE_UP in line for line in list(self.driver.lines)):
-                self.driver.end()
+                self.driver.stop()
                 self.start_driver()
             self._undo()
             goal = self.client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
@@ -198,7 +198,7 @@ class Cell:
         """Ends a mode that a goal has left active: force mode or freedrive."""
         goal = self.client.send(Stop, "stop")
         if goal.accepted:
-            goal.end()
+            goal.wait_for_result()
 
     def settings(self):
         """What an example may leave changed for the next one."""

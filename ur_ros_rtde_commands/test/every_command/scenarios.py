@@ -56,13 +56,13 @@ def begin(cell, example):
     goal = cell.send(example)
     assert goal.accepted, f"refused: {cell.refusal(goal)}"
     moves, start = moves_arm(example), time.monotonic()
-    while not goal.ended():
+    while not goal.is_finished():
         passed = time.monotonic() - start
         speeds = cell.simulator.state()["actual"]["velocity"] if moves else ()
         if passed > MIDDLE and (passed > COMPLIANT or not moves or max(map(abs, speeds)) > MOVING):
             return goal
         time.sleep(0.01)
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert result.success, f"before anything happened: {described(status, result)}"
     assert not moves, f"the motion ended after {time.monotonic() - start:.2f} s, before it could be disturbed: make the example longer"
     if switches_mode_on(example):
@@ -77,7 +77,7 @@ def disturb(cell, example, disturbance) -> Optional[str]:
         if goal is None:
             return None
         disturbance.happen(cell)
-        if not (left and moves_arm(example) and goal.end(RESULT_LIMIT)[1].success):
+        if not (left and moves_arm(example) and goal.wait_for_result(RESULT_LIMIT)[1].success):
             break
         disturbance.recover(cell)  # it was as good as there: once more
     outcome = check_end(cell, goal, example, disturbance)
@@ -92,16 +92,16 @@ def disturb(cell, example, disturbance) -> Optional[str]:
 def _give_up(cell, goal):
     """Cancels the goal if it is active and its server is available."""
     end = time.monotonic() + PATIENCE
-    while not goal.ended() and time.monotonic() < end:
+    while not goal.is_finished() and time.monotonic() < end:
         time.sleep(0.01)
-    if not goal.ended() and cell.driver.running():
+    if not goal.is_finished() and cell.driver.running():
         goal.cancel()
 
 
 def check_end(cell, goal, example, disturbance):
     if not moves_arm(example):
         _give_up(cell, goal)
-    status, result = goal.end(RESULT_LIMIT)
+    status, result = goal.wait_for_result(RESULT_LIMIT)
     text = described(status, result)
     if moves_arm(example):
         assert status == GoalStatus.STATUS_ABORTED and result.error_code in disturbance.codes, text

@@ -29,7 +29,7 @@ def scenario(cell, example):
 def _wrong(cell, case, goal):
     if goal.accepted:
         goal.cancel()
-        goal.end()
+        goal.wait_for_result()
         return [f"{case.what}: accepted"]
     refusal = cell.client.refusal(goal)
     if refusal.error_code not in CODES:

@@ -15,7 +15,7 @@ def scenario(cell, example):
     if goal is None:
         return None
     goal.cancel()
-    status, result = goal.end(RESULT_LIMIT)
+    status, result = goal.wait_for_result(RESULT_LIMIT)
     text = described(status, result)
     if cancel_counts_as_success(example):
         assert result.success, text

@@ -11,7 +11,7 @@ import pytest
 import rclpy.action
 import ur_rtde_headers
 from cell import Domain
-from support import Client, node, wait_for
+from support import Client, start_node, wait_for
 
 PLUGINS = plugins.find()
 UNIT = re.compile(r"\d|[A-Z]{3,} or |\b(rad|m|s|N|Nm|Hz|kg|V|A)\b|see |index|whole|by rows")
@@ -27,7 +27,7 @@ def action_file_paths():
 def types():
     """Of the actions, as the driver that loads the plugins serves them; it needs no robot for that."""
     domain = Domain()
-    driver = node("driver", "127.0.0.1", env={"ROS_DOMAIN_ID": str(domain.number)})
+    driver = start_node("driver", "127.0.0.1", env={"ROS_DOMAIN_ID": str(domain.number)})
     client = Client(domain=domain.number)
     try:
         def served():
@@ -37,7 +37,7 @@ def types():
         yield served()
     finally:
         client.close()
-        driver.end()
+        driver.stop()
         domain.close()
 
 

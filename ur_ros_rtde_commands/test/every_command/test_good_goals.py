@@ -12,7 +12,7 @@ def scenario(cell, example):
     before = cell.settings()
     goal = cell.send(example)
     assert goal.accepted, f"refused: {cell.refusal(goal)}"
-    status, result = goal.end(EXAMPLE_LIMIT)
+    status, result = goal.wait_for_result(EXAMPLE_LIMIT)
     assert status == GoalStatus.STATUS_SUCCEEDED and result.success and CODES[result.error_code] == "NONE", \
         described(status, result)
     if "/" not in example.action and hasattr(result, "final_state"):

@@ -43,7 +43,7 @@ def _check_answer(cell, example, goal):
     if not goal.accepted:
         assert cell.refusal(goal), f"{example.action}: refused without a reason"
         return
-    status, result = goal.end(RESULT_LIMIT)
+    status, result = goal.wait_for_result(RESULT_LIMIT)
     text = f"{example.action}: {described(status, result)}"
     assert result.success == (result.error_code == ErrorCode.NONE) and (result.success or result.message), text
     assert cell.client.endings(goal) == {status}, text

@@ -1,9 +1,9 @@
 import shutil
 
 import pytest
-from robot_fixtures import addresses, client, driver, listening_ends_with_the_test, processes, robot, simulator
+from robot_fixtures import addresses, client, destroy_subscriptions_after_test, driver, processes, robot, simulator
 
-__all__ = ["addresses", "client", "driver", "listening_ends_with_the_test", "processes", "robot", "simulator"]
+__all__ = ["addresses", "client", "driver", "destroy_subscriptions_after_test", "processes", "robot", "simulator"]
 
 
 @pytest.fixture

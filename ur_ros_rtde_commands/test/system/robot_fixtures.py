@@ -4,7 +4,7 @@ import os
 import time
 
 import pytest
-from support import HOME, RECOVERY_TIME_FACTOR, Client, Simulator, node, wait_for
+from support import HOME, RECOVERY_TIME_FACTOR, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -28,7 +28,7 @@ def simulator(addresses, request):
     simulator = Simulator(addresses[0],
                           recovery_time_factor=getattr(request.module, "RECOVERY_TIME_FACTOR", RECOVERY_TIME_FACTOR))
     yield simulator
-    simulator.end()
+    simulator.stop()
 
 
 @pytest.fixture(scope="module")
@@ -39,17 +39,17 @@ def client():
 
 
 @pytest.fixture(autouse=True)
-def listening_ends_with_the_test(request):
+def destroy_subscriptions_after_test(request):
     yield
     if "client" in request.fixturenames:
-        request.getfixturevalue("client").stop_listening()
+        request.getfixturevalue("client").destroy_subscriptions()
 
 
 @pytest.fixture(scope="module")
 def driver(simulator):
-    driver = node("driver", simulator.address, "ur_type:=ur10e")
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e")
     yield driver
-    driver.end()
+    driver.stop()
     print(driver.output())
 
 
@@ -59,7 +59,7 @@ def processes():
     kept = []
     yield lambda process: kept.append(process) or process
     for process in reversed(kept):
-        process.end()
+        process.stop()
         print(getattr(process, "process", process).output())
 
 

@@ -18,8 +18,8 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from ur_ros_rtde_msgs.msg import GoalRefused
 from ur_ros_rtde_msgs.srv import GetJointState
 
-LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-PATIENCE = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # with a sanitizer everything takes longer
+TRANSIENT_LOCAL = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TIMEOUT_FACTOR = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # with a sanitizer everything takes longer
 REAL_TIME_FACTOR = float(os.environ.get("UR_TEST_REAL_TIME_FACTOR", "1"))  # and the robot is slower, as the driver is
 RECOVERY_TIME_FACTOR = 0.2  # of the simulated robot's power on, brake release, unlock delay and safety restart
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
@@ -28,7 +28,7 @@ JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_j
 
 def wait_for(condition, limit, what):
     """The first value of `condition` that is true; fails when there is none within `limit` s."""
-    end = time.monotonic() + PATIENCE * limit
+    end = time.monotonic() + TIMEOUT_FACTOR * limit
     while True:
         value = condition()
         if value:
@@ -37,7 +37,7 @@ def wait_for(condition, limit, what):
         time.sleep(0.005)
 
 
-def program(package, name):
+def find_program(package, name):
     for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep):
         for file in (pathlib.Path(prefix, "lib", package, name), pathlib.Path(prefix, "bin", name)):
             if file.is_file():
@@ -81,7 +81,7 @@ class Process:
 
     def wait(self, limit):
         try:
-            code = self._process.wait(PATIENCE * limit)
+            code = self._process.wait(TIMEOUT_FACTOR * limit)
         except subprocess.TimeoutExpired:
             raise AssertionError(f"it still runs after {limit} s:\n{self.output()}") from None
         self._reader.join(5.0)
@@ -96,14 +96,14 @@ class Process:
     def pause(self):
         self._process.send_signal(signal.SIGSTOP)
 
-    def go_on(self):
+    def resume(self):
         self._process.send_signal(signal.SIGCONT)
 
     def kill(self):
         self._process.kill()
         self._process.wait(10.0)
 
-    def end(self):
+    def stop(self):
         """As Ctrl-C does; killed when it does not end by that."""
         if self.running():
             self.interrupt()
@@ -123,7 +123,7 @@ class Simulator:
         self.start()
 
     def start(self):
-        self.process = Process([program("ur_simulator", "ur_simulator"), "--address", self.address,
+        self.process = Process([find_program("ur_simulator", "ur_simulator"), "--address", self.address,
                                 "--joints", ",".join(map(str, HOME)), "--real-time-factor", str(REAL_TIME_FACTOR),
                                 *self._arguments])
         wait_for(self._connect, 20.0, "the simulator's control port")
@@ -155,7 +155,7 @@ class Simulator:
         except AssertionError:
             return False
 
-    def stands_still(self):
+    def is_at_rest(self):
         """No joint turns faster than 0.01 rad/s."""
         return max(map(abs, self.state()["actual"]["velocity"])) < 0.01
 
@@ -163,15 +163,15 @@ class Simulator:
         self._socket.close()
         self.process.kill()
 
-    def end(self):
+    def stop(self):
         self._socket.close()
-        self.process.end()
+        self.process.stop()
 
 
-def node(name, address, *parameters, namespace="", env=None, arguments=(), executable=None):
+def start_node(name, address, *parameters, namespace="", env=None, arguments=(), executable=None):
     # Patient: with other tests beside it, a simulator on a small machine may be late by more than a robot ever is.
     patience = ["silence_limit:=2.0", "watchdog_frequency:=2.0"]
-    command = [executable or program("ur_ros_rtde", name), "--ros-args", "-p", f"robot_ip:={address}"]
+    command = [executable or find_program("ur_ros_rtde", name), "--ros-args", "-p", f"robot_ip:={address}"]
     parameters = [*(p for p in patience if not any(q.split(":=")[0] == p.split(":=")[0] for q in parameters)), *parameters]
     for parameter in parameters:
         command += ["-p", parameter]
@@ -212,30 +212,30 @@ class Goal:
 
         self._future.add_done_callback(ask)
 
-    def ended(self):
+    def is_finished(self):
         """Whether its result has come."""
         assert self.accepted, self._client.refusal(self)
         if self._result is None:
-            self._result = self._client.in_executor(self.handle.get_result_async)
+            self._result = self._client.call_in_executor(self.handle.get_result_async)
         return self._result.done()
 
-    def end(self, limit=30.0):
+    def wait_for_result(self, limit=30.0):
         """Status and result."""
-        wait_for(self.ended, limit, "the result")
+        wait_for(self.is_finished, limit, "the result")
         answer = self._result.result()
         return answer.status, answer.result
 
     def result(self, limit=30.0):
-        return self.end(limit)[1]
+        return self.wait_for_result(limit)[1]
 
     def succeeded(self, limit=30.0):
-        status, result = self.end(limit)
+        status, result = self.wait_for_result(limit)
         assert status == GoalStatus.STATUS_SUCCEEDED and result.success, (status, result.error_code, result.message)
         assert result.error_code == 0
         return result
 
     def cancel(self):
-        future = self._client.in_executor(self.handle.cancel_goal_async)
+        future = self._client.call_in_executor(self.handle.cancel_goal_async)
         return wait_for(lambda: future.done() and future.result(), 10.0, "the answer to the cancel request")
 
 
@@ -250,7 +250,7 @@ class Client:
         self._executor.add_node(self.node)
         self._actions, self._services, self._subscriptions = {}, {}, []
         self.refusals = []
-        self.node.create_subscription(GoalRefused, "goal_refusals", self.refusals.append, LATCHED)
+        self.node.create_subscription(GoalRefused, "goal_refusals", self.refusals.append, TRANSIENT_LOCAL)
         self._thread = threading.Thread(target=self._executor.spin, daemon=True)
         self._thread.start()
 
@@ -260,7 +260,7 @@ class Client:
         self.node.destroy_node()
         self.context.try_shutdown()
 
-    def in_executor(self, send):
+    def call_in_executor(self, send):
         """What `send` returns, called in the executor's thread: rclpy forgets an answer that comes while another thread is
         still sending the request."""
         task = self._executor.create_task(send)
@@ -271,11 +271,11 @@ class Client:
 
     def send_goal(self, action, name, message):
         if name not in self._actions:
-            self._actions[name] = self.in_executor(lambda: ActionClient(self.node, action, name))
+            self._actions[name] = self.call_in_executor(lambda: ActionClient(self.node, action, name))
         client = self._actions[name]
         self._wait_for_server(client, name)
         goal = Goal(self, None)
-        goal._future = self.in_executor(lambda: client.send_goal_async(
+        goal._future = self.call_in_executor(lambda: client.send_goal_async(
             message, feedback_callback=lambda message: goal.feedback.append(message.feedback)))
         return goal
 
@@ -283,7 +283,7 @@ class Client:
         """Saves processor time: the executor handles every action client each time it wakes up."""
         client = self._actions.pop(name, None)
         if client is not None:
-            self.in_executor(lambda: client.destroy() or True)
+            self.call_in_executor(lambda: client.destroy() or True)
 
     def _wait_for_server(self, client, name):
         try:
@@ -302,23 +302,23 @@ class Client:
             self._services[name] = self.node.create_client(service, name)
         client = self._services[name]
         wait_for(client.service_is_ready, 20.0, f"the service {name}")
-        future = self.in_executor(lambda: client.call_async(service.Request(**fields)))
+        future = self.call_in_executor(lambda: client.call_async(service.Request(**fields)))
         return wait_for(lambda: future.done() and future.result(), limit, f"the answer of {name}")
 
-    def listen(self, message, topic, latched=False):
+    def subscribe(self, message, topic, transient_local=False):
         """All messages from now on; the last one before, too, if they are latched."""
         messages = []
-        qos = LATCHED if latched else QoSProfile(depth=2000, reliability=ReliabilityPolicy.RELIABLE)
+        qos = TRANSIENT_LOCAL if transient_local else QoSProfile(depth=2000, reliability=ReliabilityPolicy.RELIABLE)
         self._subscriptions.append(self.node.create_subscription(message, topic, messages.append, qos))
         return messages
 
-    def stop_listening(self):
+    def destroy_subscriptions(self):
         """Some subscriptions at 500 Hz and Python has time for nothing else: answers to goals come late, or not at all."""
         subscriptions, self._subscriptions = self._subscriptions, []
         for subscription in subscriptions:
-            self.in_executor(lambda gone=subscription: self.node.destroy_subscription(gone))
+            self.call_in_executor(lambda gone=subscription: self.node.destroy_subscription(gone))
 
-    def up_to_now(self, states):
+    def messages_until_now(self, states):
         """What listen() has collected of a state topic, once the present state has come there, too: topics lag behind results."""
         now = seconds(self.call(GetJointState, "get_joint_state").joint_state.header.stamp)
         wait_for(lambda: states and seconds(states[-1].header.stamp) >= now, 20.0, "the state of now")

@@ -7,7 +7,7 @@ import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
 from support import wait_for
-from trajectories import Watcher
+from trajectories import TargetSpeedRecorder
 
 from ur_ros_rtde_msgs.action import ExecuteCartesianPath
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -40,13 +40,13 @@ def point(pose):
 def test_the_tcp_goes_straight_from_pose_to_pose(robot):
     start = pose_now(robot)
     down, aside = moved(start, z=-0.15), moved(start, y=0.1, z=-0.15)
-    seen = robot.listen(PoseStamped, "tcp_pose")
+    seen = robot.subscribe(PoseStamped, "tcp_pose")
     result = send(robot, down, aside, lookahead_time=LAG).succeeded()
     reached = result.final_state.tcp_pose
     assert point(reached) == pytest.approx(point(aside), abs=0.001)
     # Each place is on the one line or on the other.
     off = [min(math.dist((x, y), point(start)[:2]), math.dist((x, z), (point(down)[0], point(down)[2])))
-           for x, y, z in (point(message.pose) for message in robot.up_to_now(seen))]
+           for x, y, z in (point(message.pose) for message in robot.messages_until_now(seen))]
     assert len(off) > 100 and max(off) < 0.001
 
 
@@ -55,20 +55,18 @@ def test_it_keeps_its_speed_and_goes_round_corners(robot):
     corner, end = moved(start, z=-0.1), moved(start, y=0.1, z=-0.1)
     stops = send(robot, corner, end, speed=0.1, lookahead_time=LAG).succeeded()
     send(robot, start).succeeded()
-    seen = robot.listen(PoseStamped, "tcp_pose")
+    seen = robot.subscribe(PoseStamped, "tcp_pose")
     rounds = send(robot, corner, end, speed=0.1, blend_radius=0.01, lookahead_time=LAG).succeeded()
     assert 0.2 / 0.1 - 0.1 < rounds.duration < stops.duration
-    assert min(math.dist(point(message.pose), point(corner)) for message in robot.up_to_now(seen)) == pytest.approx(0.01, abs=0.003)
+    assert min(math.dist(point(message.pose), point(corner)) for message in robot.messages_until_now(seen)) == pytest.approx(0.01, abs=0.003)
 
 
 def test_without_limits_the_joints_are_slow(robot, simulator):
-    watcher = Watcher(simulator)
-    watcher.look()
-    watcher.speeds.clear()
+    recorder = TargetSpeedRecorder(simulator)
     goal = send(robot, moved(pose_now(robot), y=0.6, z=-0.2), speed=3.0, rotation_speed=6.0)
-    wait_for(lambda: watcher.look() and goal.ended(), 60.0, "the end")
+    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
     goal.succeeded()
-    assert 0.9 < max(watcher.look()) < 1.05 * 1.03
+    assert 0.9 < max(recorder.update()) < 1.05 * 1.03
 
 
 def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, simulator):
@@ -78,7 +76,7 @@ def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, 
     through = moved(start, x=-2.0 * start.position.x, y=-2.0 * start.position.y)
     goal = send(robot, through)
     if goal.accepted:
-        status, result = goal.end()
+        status, result = goal.wait_for_result()
         assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.UNREACHABLE, result.message
         assert "poses[0]" in result.message
     else:
@@ -88,14 +86,14 @@ def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, 
 
 def test_a_cancel_decelerates_on_the_line(robot, simulator):
     start = pose_now(robot)
-    seen = robot.listen(PoseStamped, "tcp_pose")
+    seen = robot.subscribe(PoseStamped, "tcp_pose")
     goal = send(robot, moved(start, z=-0.3), speed=0.1, lookahead_time=LAG)
     wait_for(lambda: any(f.motion.progress > 0.1 for f in goal.feedback), 20.0, "motion")
     goal.cancel()
-    status, result = goal.end(10.0)
+    status, result = goal.wait_for_result(10.0)
     assert status == GoalStatus.STATUS_CANCELED
     assert start.position.z - 0.29 < result.final_state.tcp_pose.position.z < start.position.z
-    assert max(math.dist(point(message.pose)[:2], point(start)[:2]) for message in robot.up_to_now(seen)) < 0.001
+    assert max(math.dist(point(message.pose)[:2], point(start)[:2]) for message in robot.messages_until_now(seen)) < 0.001
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 

@@ -8,24 +8,24 @@ import sys
 import pytest
 from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
-from support import HOME, REAL_TIME_FACTOR, Client, Process, Simulator, node, wait_for
+from support import HOME, REAL_TIME_FACTOR, Client, Process, Simulator, start_node, wait_for
 from unique_identifier_msgs.msg import UUID
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 
-AWAY = HOME[0] + 2.0  # 10 s away with the speed of careless_client.py
+AWAY = HOME[0] + 2.0  # 10 s away with the speed of move_j_client.py
 
 
-class CarelessClient(Process):
+class MoveJClient(Process):
     def __init__(self, *arguments, namespace=""):
-        program = pathlib.Path(__file__).with_name("careless_client.py")
+        program = pathlib.Path(__file__).with_name("move_j_client.py")
         super().__init__([sys.executable, program, AWAY, namespace, *arguments], stdin=True)
         self.goal_id = bytes.fromhex(self.wait_for_output("goal ", 30.0).split()[1])
 
 
 def wait_until_moving(simulator):
-    wait_for(lambda: not simulator.stands_still(), 10.0, "the arm to move")
+    wait_for(lambda: not simulator.is_at_rest(), 10.0, "the arm to move")
 
 
 def result(client, goal_id, limit=30.0):
@@ -37,7 +37,7 @@ def result(client, goal_id, limit=30.0):
 
 def assert_arm_was_stopped(simulator, robot, goal_id):
     status, end = result(robot, goal_id)
-    assert simulator.stands_still()
+    assert simulator.is_at_rest()
     assert status == GoalStatus.STATUS_ABORTED and not end.success
     assert end.error_code == ErrorCode.CLIENT_LOST and "on_client_lost" in end.message
     assert abs(simulator.state()["actual"]["position"][0] - AWAY) > 0.2, "it has reached its target"
@@ -46,11 +46,11 @@ def assert_arm_was_stopped(simulator, robot, goal_id):
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_the_arm_stops_at_once_when_its_client_ends(number, robot, simulator, driver, processes):
-    client = processes(CarelessClient())
+    client = processes(MoveJClient())
     wait_until_moving(simulator)
     client.signal(number)
     client.wait(10.0)
-    wait_for(simulator.stands_still, 2.0 + 1.0 / REAL_TIME_FACTOR, "the arm to stand still")
+    wait_for(simulator.is_at_rest, 2.0 + 1.0 / REAL_TIME_FACTOR, "the arm to stand still")
     assert_arm_was_stopped(simulator, robot, client.goal_id)
     driver.wait_for_output("client_lost 19")
     make_ready(robot)
@@ -59,16 +59,16 @@ def test_the_arm_stops_at_once_when_its_client_ends(number, robot, simulator, dr
 def test_the_arm_stops_when_the_lease_of_a_killed_client_ends(robot, simulator, processes):
     """The lease is that of the package's profile, which the environment of the tests names: 3 s."""
     assert {"FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE"} & os.environ.keys()
-    client = processes(CarelessClient())
+    client = processes(MoveJClient())
     wait_until_moving(simulator)
     client.kill()
-    wait_for(simulator.stands_still, 5.0 + 1.0 / REAL_TIME_FACTOR, "the arm to stand still")
+    wait_for(simulator.is_at_rest, 5.0 + 1.0 / REAL_TIME_FACTOR, "the arm to stand still")
     assert_arm_was_stopped(simulator, robot, client.goal_id)
     make_ready(robot)
 
 
 def test_the_arm_stops_when_a_client_destroys_its_action_client_and_lives(robot, simulator, processes):
-    client = processes(CarelessClient("destroy"))
+    client = processes(MoveJClient("destroy"))
     wait_until_moving(simulator)
     client.write("now\n")
     client.wait_for_output("destroyed")
@@ -102,11 +102,11 @@ rclpy.spin(node)
 
 def test_the_goal_goes_on_without_its_client_when_that_is_asked_for(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    processes(node("driver", addresses[1], "ur_type:=ur10e", "on_client_lost:=continue", namespace="continuing"))
+    processes(start_node("driver", addresses[1], "ur_type:=ur10e", "on_client_lost:=continue", namespace="continuing"))
     robot = Client("continuing", name="other_client")
     try:
         make_ready(robot)
-        client = processes(CarelessClient(namespace="continuing"))
+        client = processes(MoveJClient(namespace="continuing"))
         wait_until_moving(simulator)
         client.signal(signal.SIGTERM)
         client.wait(10.0)

@@ -16,7 +16,7 @@ from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
 NAN = math.nan
 
 
-def turned(angle, joint=0):
+def home_plus(angle, joint=0):
     positions = list(HOME)
     positions[joint] += angle
     return positions
@@ -39,10 +39,10 @@ def is_at_rest(client):
 
 
 def test_move_j_arrives_with_progress_and_says_where(robot):
-    goal = robot.send(MoveJ, "move_j", joint_positions=turned(0.4), speed=0.6, acceleration=1.5)
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.4), speed=0.6, acceleration=1.5)
     result = goal.succeeded()
-    assert result.final_state.joint_positions == pytest.approx(turned(0.4), abs=0.005)
-    assert joints_now(robot).position == pytest.approx(turned(0.4), abs=0.005)
+    assert result.final_state.joint_positions == pytest.approx(home_plus(0.4), abs=0.005)
+    assert joints_now(robot).position == pytest.approx(home_plus(0.4), abs=0.005)
     progress = [feedback.motion.progress for feedback in goal.feedback]
     assert len(progress) >= 10 and progress == sorted(progress) and 0.2 < progress[len(progress) // 2] < 0.9
     stamps = [seconds(feedback.motion.elapsed) for feedback in goal.feedback]
@@ -54,7 +54,7 @@ def test_move_l_goes_straight(robot):
     start = pose_now(robot)
     target = pose_now(robot)
     target.position.z -= 0.1
-    poses = robot.listen(PoseStamped, "tcp_pose")
+    poses = robot.subscribe(PoseStamped, "tcp_pose")
     wait_for(lambda: poses, 10.0, "tcp_pose")
     result = robot.send(MoveL, "move_l", pose=target, speed=0.2, acceleration=1.0).succeeded()
     reached = result.final_state.tcp_pose.position
@@ -78,8 +78,8 @@ BAD_GOALS = [
     (MoveJ, "move_j", {"joint_positions": [0.0] * 5}, "joint_positions has 5 values", "6"),
     (MoveJ, "move_j", {"joint_positions": []}, "joint_positions has 0 values", "6"),
     (MoveJ, "move_j", {"joint_positions": [0.0] * 7}, "joint_positions has 7 values", "6"),
-    (MoveJ, "move_j", {"joint_positions": turned(NAN, 2)}, "joint_positions[2] (elbow_joint) is nan", "6.28"),
-    (MoveJ, "move_j", {"joint_positions": turned(9.0, 5)}, "joint_positions[5] (wrist_3_joint) is 9", "6.28"),
+    (MoveJ, "move_j", {"joint_positions": home_plus(NAN, 2)}, "joint_positions[2] (elbow_joint) is nan", "6.28"),
+    (MoveJ, "move_j", {"joint_positions": home_plus(9.0, 5)}, "joint_positions[5] (wrist_3_joint) is 9", "6.28"),
     (MoveJ, "move_j", {"joint_positions": HOME, "speed": 3.5}, "speed is 3.5 rad/s", "3.14"),
     (MoveJ, "move_j", {"joint_positions": HOME, "speed": 0.0}, "speed is 0", "above 0"),
     (MoveJ, "move_j", {"joint_positions": HOME, "speed": -1.0}, "speed is -1", "above 0"),
@@ -120,7 +120,7 @@ def test_a_bad_goal_is_refused_with_field_value_and_limit(driver, simulator, cli
 
 def test_a_goal_after_a_bad_one_is_carried_out(robot):
     assert not robot.send(MoveJ, "move_j", joint_positions=[0.0]).accepted
-    robot.send(MoveJ, "move_j", joint_positions=turned(0.05)).succeeded()
+    robot.send(MoveJ, "move_j", joint_positions=home_plus(0.05)).succeeded()
 
 
 @pytest.mark.parametrize("x", [1.6, 2.9])
@@ -135,7 +135,7 @@ def test_an_unreachable_pose_is_refused(robot, x):
 
 
 def test_a_second_motion_is_refused_and_told_which_one_runs(robot):
-    first = robot.send(MoveJ, "move_j", joint_positions=turned(1.0), speed=0.5)
+    first = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.0), speed=0.5)
     wait_until_moving(robot)
     second = robot.send(SpeedL, "speed_l", twist=Twist(linear=Vector3(z=0.05)))
     assert not second.accepted
@@ -146,9 +146,9 @@ def test_a_second_motion_is_refused_and_told_which_one_runs(robot):
 
 
 @pytest.mark.parametrize("action, name, fields", [
-    (MoveJ, "move_j", {"joint_positions": turned(2.0), "speed": 0.6, "acceleration": 2.0}),
+    (MoveJ, "move_j", {"joint_positions": home_plus(2.0), "speed": 0.6, "acceleration": 2.0}),
     (MoveL, "move_l", {"speed": 0.1}),
-    (ServoJ, "servo_j", {"joint_positions": turned(1.0), "time": 4.0}),
+    (ServoJ, "servo_j", {"joint_positions": home_plus(1.0), "time": 4.0}),
     (SpeedL, "speed_l", {"twist": Twist(linear=Vector3(z=-0.1)), "time": 20.0}),
 ], ids=lambda value: value if isinstance(value, str) else "")
 def test_cancel_decelerates_and_tells_where_the_arm_stands(robot, action, name, fields):
@@ -158,15 +158,15 @@ def test_cancel_decelerates_and_tells_where_the_arm_stands(robot, action, name, 
     goal = robot.send(action, name, **fields)
     wait_until_moving(robot, 0.1)
     wait_for(lambda: goal.feedback and seconds(goal.feedback[-1].motion.elapsed) > 0.6, 10.0, "the motion to be at speed")
-    states = robot.listen(JointState, "joint_states")
+    states = robot.subscribe(JointState, "joint_states")
     wait_for(lambda: states, 10.0, "joint states")
     goal.cancel()
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED
     assert not result.success and result.error_code == ErrorCode.CANCELED
     assert is_at_rest(robot)
     assert result.final_state.joint_positions == pytest.approx(list(joints_now(robot).position), abs=0.003)
-    recorded = robot.up_to_now(states)
+    recorded = robot.messages_until_now(states)
     speed = [max(map(abs, state.velocity)) for state in recorded]
     times = [seconds(state.header.stamp) for state in recorded]
     begin = next(i for i, value in enumerate(speed) if value < 0.9 * speed[0])
@@ -176,13 +176,13 @@ def test_cancel_decelerates_and_tells_where_the_arm_stands(robot, action, name, 
 
 
 def test_stop_ends_the_motion_that_runs(robot):
-    motion = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.8, acceleration=2.0)
+    motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.8, acceleration=2.0)
     wait_until_moving(robot, 0.3)
     result = robot.send(Stop, "stop").succeeded()
     assert is_at_rest(robot)
     assert 0.05 < result.time_to_standstill < 2.0
     assert f"move_j, goal {motion.id.hex()[:8]}" in result.message
-    status, ended = motion.end()
+    status, ended = motion.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and ended.error_code == ErrorCode.PREEMPTED
     assert "stop" in ended.message
 
@@ -192,14 +192,14 @@ def test_stop_succeeds_when_nothing_moves(robot):
 
 
 def test_servo_j_arrives_in_its_time(robot):
-    goal = robot.send(ServoJ, "servo_j", joint_positions=turned(0.5), time=1.5)
+    goal = robot.send(ServoJ, "servo_j", joint_positions=home_plus(0.5), time=1.5)
     result = goal.succeeded()
-    assert result.final_state.joint_positions == pytest.approx(turned(0.5), abs=0.015)
+    assert result.final_state.joint_positions == pytest.approx(home_plus(0.5), abs=0.015)
     assert robot_seconds(goal.feedback[-1].motion.elapsed) == pytest.approx(1.5, abs=1.0)
 
 
 def test_servo_j_refuses_what_the_joints_cannot_do_in_the_time(robot):
-    goal = robot.send(ServoJ, "servo_j", joint_positions=turned(1.0), time=0.5)
+    goal = robot.send(ServoJ, "servo_j", joint_positions=home_plus(1.0), time=0.5)
     assert not goal.accepted
     refusal = robot.refusal(goal)
     assert refusal.error_code == ErrorCode.INVALID_GOAL
@@ -218,13 +218,13 @@ def test_set_digital_output_switches_the_pin(robot, simulator, pin):
     for state in (True, False):
         robot.send(SetDigitalOutput, "set_digital_output", pin=pin, state=state).succeeded()
         assert bool(simulator.state()["io"]["digital_outputs"] >> pin & 1) == state
-    messages = robot.listen(IOState, "io_state")
+    messages = robot.subscribe(IOState, "io_state")
     wait_for(lambda: messages, 5.0, "io_state")
     assert not messages[-1].digital_outputs[pin]
 
 
 def test_outputs_are_switched_while_the_arm_moves(robot):
-    motion = robot.send(MoveJ, "move_j", joint_positions=turned(1.0), speed=0.5)
+    motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.0), speed=0.5)
     wait_until_moving(robot)
     robot.send(SetDigitalOutput, "set_digital_output", pin=1, state=True).succeeded()
     motion.succeeded()
@@ -247,10 +247,10 @@ def test_zero_ft_sensor_reads_zero_afterwards(robot):
 
 
 def test_a_protective_stop_ends_the_goal_and_the_next_one_works_after_unlocking(robot, simulator):
-    goal = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.6)
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
     wait_until_moving(robot)
     simulator.control("protective_stop", reason="a test")
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PROTECTIVE_STOP, result.message
     assert "not known" not in result.message
     refused = robot.send(MoveJ, "move_j", joint_positions=HOME)
@@ -266,11 +266,11 @@ def _accepted(client):
 
 
 def test_an_emergency_stop_ends_the_goal(robot, simulator):
-    goal = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.6)
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
     wait_until_moving(robot)
     simulator.control("emergency_stop", pressed=True)
     try:
-        status, result = goal.end()
+        status, result = goal.wait_for_result()
         assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.EMERGENCY_STOP, result.message
     finally:
         simulator.control("emergency_stop", pressed=False)
@@ -278,20 +278,20 @@ def test_an_emergency_stop_ends_the_goal(robot, simulator):
 
 
 def test_the_stopped_program_ends_the_goal_and_is_not_resumed(robot, simulator):
-    goal = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.6)
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
     wait_until_moving(robot)
     simulator.control("stop_program")
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PROGRAM_STOPPED, result.message
     wait_for(lambda: simulator.state()["program"]["state"] == "PLAYING", 10.0, "the control program to be back")
     assert is_at_rest(robot)
 
 
 def test_a_dropped_link_ends_the_goal_and_the_arm_stops(robot, simulator):
-    goal = robot.send(MoveJ, "move_j", joint_positions=turned(2.0), speed=0.6)
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
     wait_until_moving(robot)
     simulator.control("drop_links", which="rtde")
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED
     assert result.error_code in (ErrorCode.LINK_LOST, ErrorCode.PROGRAM_STOPPED), result.message
     wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 5.0, "the arm to stand still")
@@ -302,9 +302,9 @@ def test_many_goals_of_many_kinds_get_one_result_each(robot):
     switches, motions = [], []
     for i in range(10):  # few at a time: services of ROS keep ten requests
         switches += [robot.send(SetDigitalOutput, "set_digital_output", pin=pin, state=bool(i % 2)) for pin in range(4)]
-        motions.append(robot.send(MoveJ, "move_j", joint_positions=turned(0.01 * i)))
+        motions.append(robot.send(MoveJ, "move_j", joint_positions=home_plus(0.01 * i)))
         assert all(goal.accepted for goal in switches[-4:])
-    assert all(goal.end()[0] in (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_ABORTED) for goal in switches)
+    assert all(goal.wait_for_result()[0] in (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_ABORTED) for goal in switches)
     for goal in motions:
         if goal.accepted:
             goal.succeeded()

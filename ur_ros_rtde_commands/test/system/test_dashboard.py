@@ -2,7 +2,7 @@
 
 import pytest
 from action_msgs.msg import GoalStatus
-from support import Client, Simulator, node, wait_for
+from support import Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, DashboardText
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -12,9 +12,9 @@ RECOVERY_TIME_FACTOR = 1.0  # real durations
 
 @pytest.fixture(scope="module")
 def server(simulator):
-    server = node("dashboard_server", simulator.address)
+    server = start_node("dashboard_server", simulator.address)
     yield server
-    server.end()
+    server.stop()
     print(server.output())
 
 
@@ -76,7 +76,7 @@ def test_the_arm_is_switched_off_and_on_and_its_brakes_released(dashboard):
 
 def test_what_does_not_take_effect_in_time_is_a_failure(dashboard):
     command(dashboard, "power_off").succeeded()
-    status, result = command(dashboard, "brake_release", timeout=0.1).end()
+    status, result = command(dashboard, "brake_release", timeout=0.1).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.TIMEOUT
     assert "RUNNING" in result.message and "0.1 s" in result.message
 
@@ -86,7 +86,7 @@ def test_a_wait_can_be_canceled(dashboard):
     goal = command(dashboard, "brake_release")
     wait_for(lambda: goal.feedback, 10.0, "feedback")
     goal.cancel()
-    status, result = goal.end(5.0)
+    status, result = goal.wait_for_result(5.0)
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
 
 
@@ -170,7 +170,7 @@ def test_only_words_that_the_controller_knows_are_sent(dashboard, name, words):
 def test_a_report_takes_its_time_and_questions_go_on_meanwhile(dashboard):
     goal = text(dashboard, "generate_flight_report", "controller")
     assert query(dashboard, "robot_mode") == "RUNNING"
-    assert not goal.ended()
+    assert not goal.is_finished()
     second = text(dashboard, "generate_flight_report", "system").result()
     assert second.error_code == ErrorCode.REJECTED_BY_ROBOT and "Another report" in second.message
     assert goal.succeeded().answer.startswith("Flight Report generated with id")
@@ -180,7 +180,7 @@ def test_the_wait_for_a_report_can_be_canceled(dashboard):
     goal = text(dashboard, "generate_flight_report", "software")
     wait_for(goal.answered, 10.0, "the goal to be accepted")
     goal.cancel()
-    status, result = goal.end(5.0)
+    status, result = goal.wait_for_result(5.0)
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
     # The controller goes on with it: only then there may be another one.
     wait_for(lambda: text(dashboard, "generate_support_file", "/programs").result().success, 30.0, "the support file")
@@ -207,7 +207,7 @@ def test_what_the_controller_is_too_new_for_is_refused_with_its_version(dashboar
 
 def test_a_cb3_has_user_roles_and_no_operational_modes(addresses, processes):
     processes(Simulator(addresses[2], model="ur10"))
-    processes(node("dashboard_server", addresses[2], namespace="old"))
+    processes(start_node("dashboard_server", addresses[2], namespace="old"))
     client = Client("old")
     try:
         wait_for(lambda: _accepted(client), 20.0, "the dashboard server to be connected")
@@ -221,7 +221,7 @@ def test_a_cb3_has_user_roles_and_no_operational_modes(addresses, processes):
 
 def test_a_shut_down_controller_is_gone(addresses, processes):
     processes(Simulator(addresses[3]))
-    processes(node("dashboard_server", addresses[3], namespace="going"))
+    processes(start_node("dashboard_server", addresses[3], namespace="going"))
     client = Client("going")
     try:
         wait_for(lambda: _accepted(client), 20.0, "the dashboard server to be connected")
@@ -265,7 +265,7 @@ def test_local_control_is_named_as_the_reason(dashboard, simulator):
 
 def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
     address = addresses[1]
-    server = processes(node("dashboard_server", address, namespace="early"))
+    server = processes(start_node("dashboard_server", address, namespace="early"))
     client = Client("early")
     try:
         refused = client.send(DashboardQuery, "dashboard/robot_mode")

@@ -2,7 +2,7 @@
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from support import HOME, Simulator, node, seconds, wait_for
+from support import HOME, Simulator, seconds, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -28,14 +28,14 @@ def values(status):
 
 @pytest.fixture
 def arrays(client):
-    return client.listen(DiagnosticArray, "/diagnostics")
+    return client.subscribe(DiagnosticArray, "/diagnostics")
 
 
 @pytest.fixture(scope="module")
 def receiver(simulator):
-    receiver = node("robot_state_receiver", simulator.address, namespace="cell/left")
+    receiver = start_node("robot_state_receiver", simulator.address, namespace="cell/left")
     yield receiver
-    receiver.end()
+    receiver.stop()
     print(receiver.output())
 
 
@@ -82,7 +82,7 @@ def test_lost_packages_are_counted_and_a_bad_rate_is_an_error(receiver, simulato
         wait_for(lambda: simulator.state()["timestamp"] > stamp + 1.0, 20.0, "a second to go by")
         assert len(arrays) <= number + 1, "it is paused"
     finally:
-        receiver.go_on()
+        receiver.resume()
     packages = entry(arrays, of("packages"), lambda s: int(values(s)["lost"]) > before, "the loss")
     assert packages.level in (DiagnosticStatus.WARN, DiagnosticStatus.ERROR), packages.message
 
@@ -104,7 +104,7 @@ def test_the_robot_tells_what_keeps_it_from_moving(receiver, simulator, arrays):
 
 
 def test_what_has_never_been_there_is_stale_and_what_is_gone_an_error(addresses, processes, client, arrays):
-    processes(node("robot_state_receiver", addresses[1], namespace="early"))
+    processes(start_node("robot_state_receiver", addresses[1], namespace="early"))
     link, robot = "/early/robot_state_receiver: link", "/early/robot_state_receiver: robot"
     assert addresses[1] in entry(arrays, link, lambda s: s.level == DiagnosticStatus.STALE and addresses[1] in s.message).message
     simulator = Simulator(addresses[1])
@@ -124,7 +124,7 @@ def test_the_driver_tells_its_state_and_whose_goal_has_the_arm(simulator, client
     busy = entry(arrays, name, lambda s: values(s)["motion goal"] != "none", "the goal")
     assert "move_j" in values(busy)["motion goal"] and values(busy)["control program"] == "runs"
     goal.cancel()
-    goal.end()
+    goal.wait_for_result()
     simulator.control("protective_stop", reason="a test")
     stopped = entry(arrays, name, lambda s: values(s)["state"] == "STOPPED", "the stop")
     assert stopped.level == DiagnosticStatus.WARN and values(stopped)["cause"] == "protective_stop"

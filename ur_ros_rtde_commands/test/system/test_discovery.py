@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from support import PATIENCE, node, wait_for
+from support import TIMEOUT_FACTOR, start_node, wait_for
 
 CLIENTS = pathlib.Path(__file__).parent / "discovery_clients.py"
 PROFILES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
@@ -29,13 +29,13 @@ def actions(driver):
 
 
 def test_new_clients_find_all_actions_after_others_were_killed(no_profile, addresses, processes):
-    driver = processes(node("driver", addresses[3]))
-    command = [sys.executable, str(CLIENTS), actions(driver), "--clients", "10", "--killed", "5", "--limit", str(10.0 * PATIENCE)]
-    result = subprocess.run(command, stdout=subprocess.PIPE, timeout=200.0 * PATIENCE, text=True, check=True)
+    driver = processes(start_node("driver", addresses[3]))
+    command = [sys.executable, str(CLIENTS), actions(driver), "--clients", "10", "--killed", "5", "--limit", str(10.0 * TIMEOUT_FACTOR)]
+    result = subprocess.run(command, stdout=subprocess.PIPE, timeout=200.0 * TIMEOUT_FACTOR, text=True, check=True)
     found = json.loads(result.stdout)
     assert len(found) == 10
     assert not [client["missing"] for client in found if client["missing"]]
-    assert max(client["seconds"] for client in found) < LIMIT * PATIENCE, found
+    assert max(client["seconds"] for client in found) < LIMIT * TIMEOUT_FACTOR, found
 
 
 
@@ -54,7 +54,7 @@ DISABLED = """<propertiesPolicy><properties><property><name>fastdds.type_propaga
 @pytest.mark.parametrize("text, said", [("<name>own</name>", True), (DISABLED, False)])
 def test_a_profile_of_the_user_that_keeps_type_propagation_is_named(no_profile, addresses, processes, tmp_path, text, said):
     file = own_profile(tmp_path, text)
-    driver = processes(node("driver", addresses[3], env={"FASTDDS_DEFAULT_PROFILES_FILE": file}))
+    driver = processes(start_node("driver", addresses[3], env={"FASTDDS_DEFAULT_PROFILES_FILE": file}))
     driver.wait_for_output("]: commands: ")
     assert ("leaves fastdds.type_propagation enabled" in driver.output()) == said
     assert (file in driver.output()) == said
@@ -63,7 +63,7 @@ def test_a_profile_of_the_user_that_keeps_type_propagation_is_named(no_profile, 
 def test_a_profile_in_the_working_directory_is_kept(no_profile, addresses, processes, tmp_path):
     pathlib.Path(own_profile(tmp_path, "<name>own</name>")).rename(tmp_path / "DEFAULT_FASTDDS_PROFILES.xml")
     no_profile.chdir(tmp_path)
-    driver = processes(node("driver", addresses[3]))
+    driver = processes(start_node("driver", addresses[3]))
     wait_for(lambda: "]: commands: " in driver.output(), 15.0, "the start")
     said = "DEFAULT_FASTDDS_PROFILES.xml leaves fastdds.type_propagation enabled" in driver.output()
     assert said == (os.environ.get("ROS_DISTRO", "") >= "kilted"), driver.output()

@@ -4,16 +4,16 @@ import os
 import pathlib
 import shutil
 
-import control_msgs_or_ours
+import control_msgs_fallback
 import pytest
 import yaml
 from action_msgs.msg import GoalStatus
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from control_msgs.msg import JointComponentTolerance, JointTolerance
-from interfaces_or_ours import type_hashes
-from support import HOME, JOINTS, node, wait_for
-from trajectories import point, timed, turned
+from interface_fallback import type_hashes
+from support import HOME, JOINTS, start_node, wait_for
+from trajectories import home_plus, point, timed
 
 Result = FollowJointTrajectory.Result
 CONFIG = pathlib.Path(__file__).parents[3] / "ur_ros_rtde" / "config" / "moveit"
@@ -26,21 +26,21 @@ HASHES = {"RIHS01_738ebcb7a2d7cfa42f9f1001cc99ce3a4383d1cfe508015d9be8485e4b1c66
 @pytest.fixture(scope="module")
 def driver(simulator, tmp_path_factory):
     env = {}
-    if control_msgs_or_ours.PLUGIN:
+    if control_msgs_fallback.PLUGIN:
         prefix = tmp_path_factory.mktemp("moveit")
         index = prefix / "share" / "ament_index" / "resource_index"
         for kind, content in (("ur_ros_rtde__pluginlib__plugin", "share/moveit/plugins.xml\n"), ("packages", "")):
             (index / kind).mkdir(parents=True)
             (index / kind / "moveit").write_text(content)
         (prefix / "lib").mkdir()
-        shutil.copy(control_msgs_or_ours.PLUGIN, prefix / "lib")
+        shutil.copy(control_msgs_fallback.PLUGIN, prefix / "lib")
         (prefix / "share" / "moveit").mkdir()
         shutil.copy(DESCRIPTION, prefix / "share" / "moveit" / "plugins.xml")
         env = {name: os.pathsep.join([str(path), os.environ.get(name, "")])
-               for name, path in (("AMENT_PREFIX_PATH", prefix), ("LD_LIBRARY_PATH", control_msgs_or_ours.LIBRARIES))}
-    driver = node("driver", simulator.address, "ur_type:=ur10e", env=env)
+               for name, path in (("AMENT_PREFIX_PATH", prefix), ("LD_LIBRARY_PATH", control_msgs_fallback.LIBRARIES))}
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", env=env)
     yield driver
-    driver.end()
+    driver.stop()
     print(driver.output())
 
 
@@ -62,7 +62,7 @@ def reason(robot, goal):
     return robot.refusal(goal).message
 
 
-@pytest.mark.skipif(control_msgs_or_ours.PLUGIN is None, reason="control_msgs is installed")
+@pytest.mark.skipif(control_msgs_fallback.PLUGIN is None, reason="control_msgs is installed")
 def test_the_interface_is_the_published_one():
     hashes = type_hashes("control_msgs")
     assert hashes["control_msgs/action/FollowJointTrajectory"] in HASHES
@@ -71,8 +71,8 @@ def test_the_interface_is_the_published_one():
 
 
 def test_a_plan_is_executed_with_feedback(robot):
-    goal = send(robot, *there_and(turned(0.4, 0.1)))
-    status, result = goal.end(20.0)
+    goal = send(robot, *there_and(home_plus(0.4, 0.1)))
+    status, result = goal.wait_for_result(20.0)
     assert status == GoalStatus.STATUS_SUCCEEDED and result.error_code == Result.SUCCESSFUL, result.error_string
     feedback = goal.feedback[len(goal.feedback) // 2]
     assert len(goal.feedback) > 10 and feedback.joint_names == JOINTS
@@ -83,71 +83,71 @@ def test_a_plan_is_executed_with_feedback(robot):
 
 def test_joints_may_come_in_any_order(robot):
     order = (3, 0, 5, 1, 4, 2)
-    target = turned(0.1, 0.05, -0.1, 0.2, 0.0, 0.3)
+    target = home_plus(0.1, 0.05, -0.1, 0.2, 0.0, 0.3)
     names = ["left_" + JOINTS[i] for i in order]
     goal = send(robot, point(1.5, [target[i] for i in order], [0.0] * 6), names=names)
-    status, result = goal.end(20.0)
+    status, result = goal.wait_for_result(20.0)
     assert status == GoalStatus.STATUS_SUCCEEDED, result.error_string
     last = goal.feedback[-1]
     assert last.joint_names == names and last.actual.positions == pytest.approx([target[i] for i in order], abs=0.1)
 
 
 def test_a_new_goal_replaces_the_running_one(robot, simulator):
-    first = send(robot, *there_and(turned(1.0), 4.0))
+    first = send(robot, *there_and(home_plus(1.0), 4.0))
     wait_for(lambda: len(first.feedback) > 10, 10.0, "the first to move")
     second = send(robot, point(2.0, HOME, [0.0] * 6))
     assert second.accepted
-    status, result = first.end(10.0)
+    status, result = first.wait_for_result(10.0)
     assert status == GoalStatus.STATUS_ABORTED and "preempted by" in result.error_string
-    status, result = second.end(20.0)
+    status, result = second.wait_for_result(20.0)
     assert status == GoalStatus.STATUS_SUCCEEDED, result.error_string
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
 def test_an_empty_trajectory_stops_the_running_one(robot, simulator):
-    first = send(robot, *there_and(turned(1.0), 4.0))
+    first = send(robot, *there_and(home_plus(1.0), 4.0))
     wait_for(lambda: len(first.feedback) > 10, 10.0, "the first to move")
-    status, result = send(robot, names=[]).end(10.0)
+    status, result = send(robot, names=[]).wait_for_result(10.0)
     assert status == GoalStatus.STATUS_SUCCEEDED and result.error_code == Result.SUCCESSFUL
-    assert first.end(10.0)[0] == GoalStatus.STATUS_ABORTED
+    assert first.wait_for_result(10.0)[0] == GoalStatus.STATUS_ABORTED
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
 def test_cancel_decelerates(robot, simulator):
-    goal = send(robot, *there_and(turned(1.0), 4.0))
+    goal = send(robot, *there_and(home_plus(1.0), 4.0))
     wait_for(lambda: len(goal.feedback) > 10, 10.0, "motion")
     goal.cancel()
-    assert goal.end(10.0)[0] == GoalStatus.STATUS_CANCELED
+    assert goal.wait_for_result(10.0)[0] == GoalStatus.STATUS_CANCELED
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
 def test_a_path_tolerance_that_is_left_ends_it(robot):
-    goal = send(robot, *there_and(turned(0.8)), path_tolerance=[tolerance(JOINTS[0], 1e-6)])
-    status, result = goal.end(10.0)
+    goal = send(robot, *there_and(home_plus(0.8)), path_tolerance=[tolerance(JOINTS[0], 1e-6)])
+    status, result = goal.wait_for_result(10.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == Result.PATH_TOLERANCE_VIOLATED
     assert "shoulder_pan_joint" in result.error_string and "tolerance" in result.error_string
 
 
 def test_a_goal_tolerance_that_is_not_met_in_time_ends_it(robot):
-    goal = send(robot, *there_and(turned(0.8)), goal_tolerance=[tolerance(JOINTS[0], 1e-9)],
+    goal = send(robot, *there_and(home_plus(0.8)), goal_tolerance=[tolerance(JOINTS[0], 1e-9)],
                 goal_time_tolerance=Duration(nanosec=100_000_000))
-    status, result = goal.end(10.0)
+    status, result = goal.wait_for_result(10.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == Result.GOAL_TOLERANCE_VIOLATED
     assert "0.10 s after the end" in result.error_string
 
 
 def test_it_begins_at_the_stamp(robot, simulator):
     begin = simulator.state()["timestamp"]
-    trajectory = timed(*there_and(turned(0.2)))
+    trajectory = timed(*there_and(home_plus(0.2)))
     trajectory.header.stamp = (robot.node.get_clock().now()).to_msg()
     trajectory.header.stamp.sec += 2
     goal = robot.send(FollowJointTrajectory, "follow_joint_trajectory", trajectory=trajectory)
-    assert goal.end(20.0)[0] == GoalStatus.STATUS_SUCCEEDED
+    assert goal.wait_for_result(20.0)[0] == GoalStatus.STATUS_SUCCEEDED
     assert simulator.state()["timestamp"] - begin > 2.0
 
 
 def test_a_trajectory_of_the_past_is_refused(robot):
-    trajectory = timed(*there_and(turned(0.2)))
+    trajectory = timed(*there_and(home_plus(0.2)))
     trajectory.header.stamp = robot.node.get_clock().now().to_msg()
     trajectory.header.stamp.sec -= 100
     message = reason(robot, robot.send(FollowJointTrajectory, "follow_joint_trajectory", trajectory=trajectory))
@@ -167,27 +167,27 @@ REFUSED = [
 
 @pytest.mark.parametrize("fields, what", REFUSED, ids=[what for _, what in REFUSED])
 def test_what_it_cannot_do_is_refused(robot, fields, what):
-    assert what in reason(robot, send(robot, *there_and(turned(0.1)), **fields))
+    assert what in reason(robot, send(robot, *there_and(home_plus(0.1)), **fields))
 
 
 def test_start_elsewhere_and_bad_points_are_refused(robot):
-    assert "away" in reason(robot, send(robot, point(0.0, turned(0.3)), point(1.0, HOME)))
+    assert "away" in reason(robot, send(robot, point(0.0, home_plus(0.3)), point(1.0, HOME)))
     assert "times[1]" in reason(robot, send(robot, point(0.0, HOME), point(0.0, HOME)))
-    assert "7" in reason(robot, send(robot, point(0.0, HOME), point(1.0, turned(7.0))))
+    assert "7" in reason(robot, send(robot, point(0.0, HOME), point(1.0, home_plus(7.0))))
     assert "rest" in reason(robot, send(robot, point(0.0, HOME, [0.0] * 6), point(1.0, HOME, [1.0] * 6)))
 
 
 def test_too_fast_for_the_arm_ends_before_it_moves(robot):
-    status, result = send(robot, *there_and(turned(2.0), 0.5)).end(10.0)
+    status, result = send(robot, *there_and(home_plus(2.0), 0.5)).wait_for_result(10.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == Result.INVALID_GOAL
     assert "velocity of shoulder_pan_joint" in result.error_string or "acceleration of" in result.error_string
 
 
 def test_a_protective_stop_ends_it(robot, simulator):
-    goal = send(robot, *there_and(turned(1.0), 4.0))
+    goal = send(robot, *there_and(home_plus(1.0), 4.0))
     wait_for(lambda: len(goal.feedback) > 10, 10.0, "motion")
     simulator.control("protective_stop")
-    status, result = goal.end(10.0)
+    status, result = goal.wait_for_result(10.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == Result.INVALID_GOAL
     assert "protective stop" in result.error_string
     wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")

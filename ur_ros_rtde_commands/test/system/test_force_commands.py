@@ -6,7 +6,7 @@ import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Pose, Vector3, Wrench
 from support import wait_for
-from test_commands import is_at_rest, joints_now, pose_now, turned, wait_until_moving
+from test_commands import home_plus, is_at_rest, joints_now, pose_now, wait_until_moving
 
 from ur_ros_rtde_msgs.action import (DirectTorque, EnableExternalFtSensor, ForceMode, Freedrive, MoveJ, MoveL, SetExternalForceTorque,
                                      SetForceModeParameter, TeachMode, Trigger, ZeroFtSensor)
@@ -39,7 +39,7 @@ def test_force_mode_presses_with_the_force_it_was_asked_for_until_it_is_canceled
     goal = press(robot, simulator, 20.0)
     assert simulator.state()["force_mode"]
     goal.cancel()
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert (status, result.success) == (GoalStatus.STATUS_SUCCEEDED, True), result.message
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
     after = pose_now(robot).position
@@ -59,7 +59,7 @@ def test_force_mode_ends_by_itself_after_its_duration(robot, simulator):
 def test_force_mode_ends_with_a_stop_of_the_robot(robot, simulator):
     goal = press(robot, simulator, 20.0)
     simulator.control("protective_stop", reason="a test")
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.PROTECTIVE_STOP)
     assert not simulator.state()["force_mode"]
     simulator.control("clear_surfaces")
@@ -92,10 +92,10 @@ def test_a_motion_goes_along_a_surface_in_force_mode_that_was_started_and_is_cha
 
 def test_a_motion_that_is_canceled_ends_force_mode(robot, simulator):
     robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
-    motion = robot.send(MoveJ, "move_j", joint_positions=turned(1.0), speed=0.3)
+    motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.0), speed=0.3)
     wait_until_moving(robot)
     motion.cancel()
-    assert motion.end()[0] == GoalStatus.STATUS_CANCELED
+    assert motion.wait_for_result()[0] == GoalStatus.STATUS_CANCELED
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
 
 
@@ -115,7 +115,7 @@ def test_the_arm_can_be_pushed_while_it_is_guided_and_stands_still_afterwards(ro
     simulator.control("push", force=[0.0, 60.0, 0.0], duration=3.0)
     wait_for(lambda: abs(pose_now(robot).position.y - before.y) > 0.02, 10.0, "the arm to give way")
     goal.cancel()
-    assert goal.end()[0] == GoalStatus.STATUS_SUCCEEDED
+    assert goal.wait_for_result()[0] == GoalStatus.STATUS_SUCCEEDED
     assert not simulator.state()["freedrive"]
     wait_for(lambda: is_at_rest(robot), 2.0, "standstill")
 
@@ -125,11 +125,11 @@ def test_the_arm_can_be_pushed_while_it_is_guided_and_stands_still_afterwards(ro
 def test_motions_are_refused_while_somebody_may_hold_the_arm(robot, simulator, start, stop, action):
     robot.send(action, start).succeeded()
     assert simulator.state()["freedrive"]
-    refused = robot.send(MoveJ, "move_j", joint_positions=turned(0.1))
+    refused = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1))
     assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
     robot.send(Trigger, stop).succeeded()
     assert not simulator.state()["freedrive"]
-    robot.send(MoveJ, "move_j", joint_positions=turned(0.1)).succeeded()
+    robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1)).succeeded()
 
 
 def test_direct_torque_turns_a_joint_and_comes_to_rest(robot):
@@ -141,7 +141,7 @@ def test_direct_torque_turns_a_joint_and_comes_to_rest(robot):
 
 def test_direct_torque_ends_when_a_joint_gets_too_fast(robot):
     status, result = robot.send(DirectTorque, "direct_torque", joint_torques=[0.0, 0.0, 0.0, 0.0, 0.0, 10.0], duration=20.0,
-                                max_joint_speed=0.3).end()
+                                max_joint_speed=0.3).wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.SAFETY_VIOLATION), result.message
     assert "max_joint_speed" in result.message
     wait_for(lambda: is_at_rest(robot), 2.0, "standstill")

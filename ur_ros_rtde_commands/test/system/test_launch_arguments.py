@@ -8,7 +8,7 @@ import rclpy
 import yaml
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.parameter import parameter_value_to_python
-from support import Process, program, wait_for
+from support import Process, find_program, wait_for
 
 from ur_ros_rtde import launch_arguments
 from ur_ros_rtde.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_name, to_values
@@ -32,14 +32,14 @@ def start(asker, addresses, tmp_path):
     processes = []
 
     def run(*arguments, executable="driver", namespace=""):
-        processes.append(Process([program("ur_ros_rtde", executable), "--ros-args", "-r", f"__ns:=/{namespace}",
+        processes.append(Process([find_program("ur_ros_rtde", executable), "--ros-args", "-r", f"__ns:=/{namespace}",
                                   "-p", f"robot_ip:={addresses[3]}", *map(str, arguments)]))
         nodes = NODES if executable == "driver" else (executable,)
         return {node: reported(asker, f"/{namespace}/{node}".replace("//", "/")) for node in nodes}
 
     yield run
     for process in processes:
-        process.end()
+        process.stop()
         print(process.output())
 
 

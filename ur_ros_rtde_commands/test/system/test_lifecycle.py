@@ -8,7 +8,7 @@ import time
 import pytest
 from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
-from support import HOME, Client, Simulator, node, wait_for
+from support import HOME, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -22,7 +22,7 @@ def far_away():
 
 @pytest.mark.parametrize("name", NODES)
 def test_without_an_address_it_says_what_to_give(name):
-    process = node(name, "''")
+    process = start_node(name, "''")
     assert process.wait(15.0) == 2
     assert "robot_ip" in process.output() and "--ros-args -p robot_ip:=" in process.output()
 
@@ -42,7 +42,7 @@ def test_without_an_address_it_says_what_to_give(name):
     ("robot_state_receiver", "realtime_priority:=-1", "realtime_priority"),
 ])
 def test_a_wrong_parameter_is_named_with_what_it_may_be(name, parameter, what):
-    process = node(name, "127.0.0.1", parameter)
+    process = start_node(name, "127.0.0.1", parameter)
     assert process.wait(15.0) == 2
     assert what in process.output()
 
@@ -55,7 +55,7 @@ def threads_with_priority(pid, priority):
 
 @pytest.mark.parametrize("name", ["robot_state_receiver", "command_server"])
 def test_a_realtime_priority_is_of_the_threads_that_follow_the_packages_or_its_refusal_is_said(name, simulator, processes):
-    process = processes(node(name, simulator.address, "realtime_priority:=20"))
+    process = processes(start_node(name, simulator.address, "realtime_priority:=20"))
     process.wait_for_output("connected to")
     if "realtime_priority 20 is not permitted" in process.output():
         assert not threads_with_priority(process.pid, 20)
@@ -66,7 +66,7 @@ def test_a_realtime_priority_is_of_the_threads_that_follow_the_packages_or_its_r
 
 @pytest.mark.parametrize("name", NODES)
 def test_ctrl_c_ends_it_without_a_robot(name, addresses):
-    process = node(name, addresses[3])
+    process = start_node(name, addresses[3])
     process.wait_for_output(addresses[3])
     process.interrupt()
     begin = time.monotonic()
@@ -76,7 +76,7 @@ def test_ctrl_c_ends_it_without_a_robot(name, addresses):
 
 @pytest.mark.parametrize("delay", [0.0, 0.05, 0.1, 0.2, 0.4])
 def test_ctrl_c_ends_it_while_it_starts(delay, simulator):
-    process = node("driver", simulator.address)
+    process = start_node("driver", simulator.address)
     time.sleep(delay)  # the moment itself is the variation
     process.interrupt()
     assert process.wait(15.0) in (0, -2), process.output()
@@ -84,7 +84,7 @@ def test_ctrl_c_ends_it_while_it_starts(delay, simulator):
 
 @pytest.mark.parametrize("name", ["driver", "command_server"])
 def test_no_controller_at_the_address_is_said_and_goals_are_refused_with_it(name, addresses, processes):
-    server = processes(node(name, addresses[3], namespace="nobody"))
+    server = processes(start_node(name, addresses[3], namespace="nobody"))
     client = Client("nobody")
     try:
         goal = client.send(MoveJ, "move_j", joint_positions=HOME)
@@ -125,7 +125,7 @@ class SomethingElse:
 def test_something_else_at_the_address_does_no_harm(addresses, processes):
     other = SomethingElse(addresses[2])
     try:
-        server = processes(node("driver", addresses[2], namespace="other"))
+        server = processes(start_node("driver", addresses[2], namespace="other"))
         client = Client("other")
         try:
             server.wait_for_output(addresses[2])
@@ -141,13 +141,13 @@ def test_something_else_at_the_address_does_no_harm(addresses, processes):
 
 
 def test_ctrl_c_in_the_middle_of_a_motion_decelerates_and_gives_the_result(simulator, client, processes):
-    driver = processes(node("driver", simulator.address, "ur_type:=ur10e"))
+    driver = processes(start_node("driver", simulator.address, "ur_type:=ur10e"))
     make_ready(client)
     goal = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.8, acceleration=2.0)
     wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.5, 10.0, "the arm to move")
     begin = time.monotonic()
     driver.interrupt()
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.SHUTDOWN, result.message
     assert driver.wait(10.0) == 0, driver.output()
     assert time.monotonic() - begin < 4.0
@@ -158,7 +158,7 @@ def test_ctrl_c_in_the_middle_of_a_motion_decelerates_and_gives_the_result(simul
 
 
 def test_when_the_driver_is_killed_the_robot_stops_by_itself(simulator, processes):
-    driver = processes(node("driver", simulator.address, "ur_type:=ur10e", namespace="doomed"))
+    driver = processes(start_node("driver", simulator.address, "ur_type:=ur10e", namespace="doomed"))
     client = Client("doomed")
     try:
         make_ready(client)
@@ -173,14 +173,14 @@ def test_when_the_driver_is_killed_the_robot_stops_by_itself(simulator, processe
 
 def test_a_controller_that_dies_ends_the_motion_and_is_found_again(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    driver = processes(node("driver", addresses[1], namespace="frail"))
+    driver = processes(start_node("driver", addresses[1], namespace="frail"))
     client = Client("frail")
     try:
         make_ready(client)
         goal = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.5)
         wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
         simulator.kill()
-        status, result = goal.end(10.0)
+        status, result = goal.wait_for_result(10.0)
         assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.LINK_LOST, result.message
         refused = client.send(MoveJ, "move_j", joint_positions=HOME)
         assert not refused.accepted and client.refusal(refused).message
@@ -192,18 +192,18 @@ def test_a_controller_that_dies_ends_the_motion_and_is_found_again(addresses, pr
 
 
 def test_the_dashboard_and_the_commands_live_in_one_process(simulator, client, processes):
-    processes(node("driver", simulator.address))
+    processes(start_node("driver", simulator.address))
     make_ready(client)
     wait_for(lambda: client.send(DashboardCommand, "dashboard/close_popup").accepted, 10.0, "the dashboard server")
 
 
 def test_preempting_stops_the_motion_that_runs_and_carries_out_the_new_one(simulator, client, processes):
-    processes(node("driver", simulator.address, "on_busy:=preempt"))
+    processes(start_node("driver", simulator.address, "on_busy:=preempt"))
     make_ready(client)
     first = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.6)
     wait_for(lambda: first.feedback and first.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
     second = client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.6)
-    status, result = first.end()
+    status, result = first.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PREEMPTED
     assert "move_j" in result.message
     second.succeeded()
@@ -211,7 +211,7 @@ def test_preempting_stops_the_motion_that_runs_and_carries_out_the_new_one(simul
 
 def test_a_controller_that_falls_silent_ends_the_motion_within_the_limit(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    processes(node("driver", addresses[1], "silence_limit:=0.3", namespace="silent"))
+    processes(start_node("driver", addresses[1], "silence_limit:=0.3", namespace="silent"))
     client = Client("silent")
     try:
         make_ready(client)
@@ -220,11 +220,11 @@ def test_a_controller_that_falls_silent_ends_the_motion_within_the_limit(address
         simulator.process.pause()
         try:
             begin = time.monotonic()
-            status, result = goal.end(10.0)
+            status, result = goal.wait_for_result(10.0)
             assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.LINK_LOST, result.message
             assert time.monotonic() - begin < 5.0
         finally:
-            simulator.process.go_on()
+            simulator.process.resume()
         make_ready(client)
     finally:
         client.close()

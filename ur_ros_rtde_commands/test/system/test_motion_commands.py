@@ -7,7 +7,7 @@ from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from sensor_msgs.msg import JointState
 from support import HOME, REAL_TIME_FACTOR, wait_for
-from trajectories import Watcher
+from trajectories import TargetSpeedRecorder
 
 from ur_ros_rtde_msgs.action import (Decelerate, Jog, MoveC, MoveJ, MoveJIK, MoveJRelative, MoveLFK, MoveLRelative, MoveP,
                                      MovePath, MoveL, ServoC, ServoJ, ServoL, SpeedJ, SpeedL)
@@ -52,7 +52,7 @@ class Track:
         self.points = []
         while not (goal.accepted and goal._result is not None and goal._result.done()):
             if goal._result is None:
-                goal._result = goal._client.in_executor(goal.handle.get_result_async)
+                goal._result = goal._client.call_in_executor(goal.handle.get_result_async)
             self.points.append(tuple(simulator.state()["actual_tcp_pose"][:3]))
         goal.succeeded()
 
@@ -161,7 +161,7 @@ def test_a_path_ends_with_the_controllers_own_words_when_it_cannot_go_on(robot):
     near = [moved(start, z=-0.002 * i) for i in range(1, 21)]  # as many as are asked for beforehand
     status, result = robot.send(MovePath, "move_path", waypoints=[
         PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, speed=0.2, acceleration=2.0)
-        for pose in [*near, moved(start, x=-0.8)]]).end()
+        for pose in [*near, moved(start, x=-0.8)]]).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED
     assert result.error_code == ErrorCode.REJECTED_BY_ROBOT and "the controller ended the script" in result.message
     assert distance(result.final_state.tcp_pose, near[-1]) < 0.01 and speed_now(robot) < 0.01
@@ -173,7 +173,7 @@ def test_cancel_ends_a_path_at_rest_and_the_next_motion_works(robot):
     goal = robot.send(MoveP, "move_p", poses=[moved(start, z=-0.15), moved(start, z=-0.15, y=0.3)], speed=0.1)
     wait_for(lambda: speed_now(robot) > 0.05, 10.0, "the arm to move")
     goal.cancel()
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED, result.message
     assert speed_now(robot) < 0.01
     assert distance(result.final_state.tcp_pose, moved(start, z=-0.15, y=0.3)) > 0.1
@@ -248,7 +248,7 @@ def test_jog_goes_on_until_cancel_which_is_a_success(robot):
     goal = robot.send(Jog, "jog", twist=Twist(linear=Vector3(z=-0.05)))
     wait_for(lambda: speed_now(robot) > 0.02, 10.0, "the arm to move")
     goal.cancel()
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_SUCCEEDED and result.success, result.message
     assert speed_now(robot) < 0.01
 
@@ -267,13 +267,11 @@ def test_servo_l_refuses_what_the_tcp_cannot_do_in_the_time(robot):
 
 
 def test_servo_without_a_time_is_slow(robot, simulator):
-    watcher = Watcher(simulator)
-    watcher.look()
-    watcher.speeds.clear()
+    recorder = TargetSpeedRecorder(simulator)
     goal = robot.send(ServoJ, "servo_j", joint_positions=[1.5, *HOME[1:]])
-    wait_for(lambda: watcher.look() and goal.ended(), 30.0, "the end")
+    wait_for(lambda: recorder.update() and goal.is_finished(), 30.0, "the end")
     goal.succeeded()
-    assert 0.9 < max(watcher.look()) < 1.05 * 1.03
+    assert 0.9 < max(recorder.update()) < 1.05 * 1.03
     start = pose_now(robot)
     begin = simulator.state()["timestamp"]
     robot.send(ServoL, "servo_l", pose=moved(start, y=0.3)).succeeded()
@@ -302,14 +300,14 @@ def test_stops_end_what_moves(robot, name, action, motion, fields):
     result = robot.send(Decelerate, name, deceleration=3.0).succeeded()
     assert speed_now(robot) < 0.01 and 0.01 < result.time_to_standstill < 2.0
     assert motion in result.message
-    assert goal.end()[1].error_code == ErrorCode.PREEMPTED
+    assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
 
 
 def test_stop_j_decelerates_as_it_was_told(robot):
     times = {}
     for deceleration in (0.5, 4.0):
         robot.send(SpeedJ, "speed_j", joint_velocities=[0.6, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=4.0, time=10.0)
-        states = robot.listen(JointState, "joint_states")
+        states = robot.subscribe(JointState, "joint_states")
         wait_for(lambda: states and states[-1].velocity[0] > 0.59, 10.0, "the speed")
         stopped = robot.send(Decelerate, "stop_j", deceleration=deceleration).succeeded()
         times[deceleration] = REAL_TIME_FACTOR * stopped.time_to_standstill

@@ -3,7 +3,7 @@
 import pytest
 from action_msgs.msg import GoalStatus
 from support import HOME, wait_for
-from test_commands import turned, wait_until_moving
+from test_commands import home_plus, wait_until_moving
 
 from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -19,7 +19,7 @@ def make_ready(robot, **fields):
 
 
 def not_made_ready(robot, code, **fields):
-    status, result = robot.send(MakeReady, "make_ready", **fields).end()
+    status, result = robot.send(MakeReady, "make_ready", **fields).wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, code), result.message
     return result.message
 
@@ -50,10 +50,10 @@ def test_from_idle(robot, simulator):
 
 
 def test_from_a_protective_stop_with_its_popup_and_never_going_on_with_the_motion(robot, simulator):
-    goal = robot.send(MoveJ, "move_j", joint_positions=turned(1.5), speed=0.5)
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.5), speed=0.5)
     wait_until_moving(robot)
     robot.send(Trigger, "trigger_protective_stop").succeeded()
-    assert goal.end()[1].error_code == ErrorCode.PROTECTIVE_STOP
+    assert goal.wait_for_result()[1].error_code == ErrorCode.PROTECTIVE_STOP
     protectively_stopped(simulator)
     assert "unlock_protective_stop" in not_made_ready(robot, ErrorCode.PROTECTIVE_STOP, unlock_protective_stop=False)
     robot.send(MakeReady, "make_ready").succeeded(60.0)
@@ -64,15 +64,15 @@ def test_from_a_protective_stop_with_its_popup_and_never_going_on_with_the_motio
 
 
 def test_a_protective_stop_can_be_triggered_while_a_script_moves_the_arm(robot, simulator):
-    goal = robot.send(SendScript, "send_script", script=f"movej({turned(1.5)}, a=1, v=0.5)")
+    goal = robot.send(SendScript, "send_script", script=f"movej({home_plus(1.5)}, a=1, v=0.5)")
     wait_until_moving(robot)
     robot.send(Trigger, "trigger_protective_stop").succeeded()
-    assert goal.end()[1].error_code == ErrorCode.PROTECTIVE_STOP
+    assert goal.wait_for_result()[1].error_code == ErrorCode.PROTECTIVE_STOP
     make_ready(robot)
 
 
 def test_after_the_program_was_stopped(robot, simulator):
-    robot.send(DashboardCommand, "dashboard/stop").end()
+    robot.send(DashboardCommand, "dashboard/stop").wait_for_result()
     make_ready(robot)
 
 
@@ -93,7 +93,7 @@ def test_what_only_people_may_do_is_left_to_them(robot, simulator, trouble, way_
         simulator.control("power", to="off")
     simulator.control(trouble[0], **trouble[1])
     try:
-        wait_for(lambda: robot.send(MakeReady, "make_ready").end()[1].error_code == code, 10.0, "the reason")
+        wait_for(lambda: robot.send(MakeReady, "make_ready").wait_for_result()[1].error_code == code, 10.0, "the reason")
     finally:
         simulator.control(way_out[0], **way_out[1])
     make_ready(robot)
@@ -104,15 +104,15 @@ def test_cancel_and_timeout_end_the_wait(robot, simulator):
     goal = robot.send(MakeReady, "make_ready")
     wait_for(lambda: goal.feedback, 10.0, "the first step")
     goal.cancel()
-    assert goal.end()[0] == GoalStatus.STATUS_CANCELED
+    assert goal.wait_for_result()[0] == GoalStatus.STATUS_CANCELED
     assert "still" in not_made_ready(robot, ErrorCode.TIMEOUT, timeout=0.01)
     make_ready(robot)
 
 
 def test_stand_down_ends_the_motion_that_runs(robot, simulator):
-    goal = robot.send(MoveJ, "move_j", joint_positions=turned(1.5), speed=0.5)
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.5), speed=0.5)
     wait_until_moving(robot)
     robot.send(DashboardCommand, "stand_down").succeeded()
-    assert goal.end()[1].error_code == ErrorCode.PREEMPTED
+    assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
     assert simulator.state()["robot_mode"] == "POWER_OFF"
     make_ready(robot)

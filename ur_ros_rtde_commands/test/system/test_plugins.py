@@ -1,6 +1,6 @@
 """Which plugins command_server loads, and what it says of those it cannot."""
 
-from support import HOME, node, wait_for
+from support import HOME, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, SetDigitalOutput
 
@@ -13,7 +13,7 @@ def with_prefix(prefix):
 
 
 def test_unknown_names_are_errors_that_name_the_nearest_one(addresses, processes):
-    server = processes(node("command_server", addresses[3], "plugins:=[move_j,move_jik]", "plugins_blacklist:=[speed_k]"))
+    server = processes(start_node("command_server", addresses[3], "plugins:=[move_j,move_jik]", "plugins_blacklist:=[speed_k]"))
     line = server.wait_for_output('"move_jik"')
     assert "parameter plugins " in line and "ERROR" in line and '"move_j_ik"' in line
     assert '"speed_j"' in server.wait_for_output('"speed_k"')
@@ -21,7 +21,7 @@ def test_unknown_names_are_errors_that_name_the_nearest_one(addresses, processes
 
 
 def test_a_list_for_the_whole_process_may_have_names_of_each_server(addresses, processes):
-    server = processes(node("driver", addresses[3], "plugins:=[move_j,dashboard/power_on,dashboard/powr_off]"))
+    server = processes(start_node("driver", addresses[3], "plugins:=[move_j,dashboard/power_on,dashboard/powr_off]"))
     assert server.wait_for_output(" commands:").endswith(" commands: move_j")
     assert server.wait_for_output("dashboard commands:").endswith("dashboard commands: dashboard/power_on")
     errors = [line for line in list(server.lines) if "ERROR" in line and "plugin" in line]
@@ -29,7 +29,7 @@ def test_a_list_for_the_whole_process_may_have_names_of_each_server(addresses, p
 
 
 def test_a_blacklisted_plugin_is_not_loaded(addresses, processes):
-    server = processes(node("command_server", addresses[3], "plugins_blacklist:=[move_j,move_l]"))
+    server = processes(start_node("command_server", addresses[3], "plugins_blacklist:=[move_j,move_l]"))
     loaded = server.wait_for_output("commands:").split("commands: ")[1].split(", ")
     assert "stop" in loaded and "move_j" not in loaded and "move_l" not in loaded
 
@@ -37,7 +37,7 @@ def test_a_blacklisted_plugin_is_not_loaded(addresses, processes):
 def test_a_broken_library_is_named_and_the_rest_goes_on(addresses, client, processes, plugin_prefix):
     prefix = plugin_prefix("broken_plugins", '<library path="broken">' + CLASS.format(name="broken", type="Broken") + "</library>")
     (prefix / "lib" / "libbroken.so").write_bytes(b"\x7fELF this is no library")
-    server = processes(node("command_server", addresses[3], env=with_prefix(prefix)))
+    server = processes(start_node("command_server", addresses[3], env=with_prefix(prefix)))
     line = server.wait_for_output("plugin broken of package broken_plugins is left out")
     assert "libbroken.so" in line
     assert "move_j" in server.wait_for_output("commands:")
@@ -50,7 +50,7 @@ def test_a_missing_library_and_a_malformed_description_are_named(addresses, proc
     (prefix / "share" / "torn" / "plugins.xml").write_text("<library path='x'><class name=")
     index = prefix / "share" / "ament_index" / "resource_index" / "ur_ros_rtde__pluginlib__plugin" / "torn"
     index.write_text("share/torn/plugins.xml\n")
-    server = processes(node("command_server", addresses[3], env=with_prefix(prefix)))
+    server = processes(start_node("command_server", addresses[3], env=with_prefix(prefix)))
     server.wait_for_output("libnowhere.so")
     server.wait_for_output("share/torn/plugins.xml")
     assert "move_j" in server.wait_for_output("commands:")
@@ -58,14 +58,14 @@ def test_a_missing_library_and_a_malformed_description_are_named(addresses, proc
 
 def test_an_action_name_taken_twice_is_reported(addresses, processes, plugin_prefix):
     prefix = plugin_prefix("zz_other", '<library path="other">' + CLASS.format(name="move_j", type="Other") + "</library>")
-    server = processes(node("command_server", addresses[3], env=with_prefix(prefix)))
+    server = processes(start_node("command_server", addresses[3], env=with_prefix(prefix)))
     line = server.wait_for_output("plugin move_j of package zz_other")
     assert "package ur_ros_rtde_commands has one of that name already" in line
     assert "move_j" in server.wait_for_output("commands:")
 
 
 def test_every_plugin_of_the_package_is_loaded(addresses, client, processes):
-    server = processes(node("driver", addresses[3]))
+    server = processes(start_node("driver", addresses[3]))
     loaded = set(server.wait_for_output(" commands: ").split("commands: ")[1].split(", "))
     assert {"move_j", "move_l", "stop", "servo_j", "speed_l", "set_digital_output", "zero_ft_sensor", "set_payload",
             "set_speed_slider"} <= loaded

@@ -6,7 +6,7 @@ import ur10e
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, Pose, Quaternion
 from support import HOME, wait_for
-from test_commands import joints_now, turned, wait_until_moving
+from test_commands import home_plus, joints_now, wait_until_moving
 
 from ur_ros_rtde_msgs.action import (CheckJoints, CheckPose, GetCoriolisTorques, GetFlag, GetForwardKinematics, GetInteger,
                                      GetInverseKinematics, GetJacobian, GetJointPositionsHistory, GetJointValues, GetMassMatrix,
@@ -53,7 +53,7 @@ def test_inverse_kinematics_leads_to_the_pose_by_the_nearest_solution(robot):
 
 def test_a_pose_out_of_reach_has_no_solution_and_asking_for_one_harms_nothing(robot):
     far = Pose(position=Point(x=1.2, y=1.2, z=0.5))
-    status, result = robot.send(GetInverseKinematics, "get_inverse_kinematics", pose=far).end()
+    status, result = robot.send(GetInverseKinematics, "get_inverse_kinematics", pose=far).wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.UNREACHABLE)
     assert not ask(robot, CheckPose, "get_inverse_kinematics_has_solution", pose=far).value
     assert not ask(robot, CheckPose, "is_pose_within_safety_limits", pose=far).value
@@ -117,10 +117,10 @@ def test_joint_torques_are_those_of_a_push(robot, simulator):
 
 
 def test_queries_are_answered_while_the_arm_moves(robot):
-    motion = robot.send(MoveJ, "move_j", joint_positions=turned(1.2), speed=0.5, acceleration=1.0)
+    motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.2), speed=0.5, acceleration=1.0)
     wait_until_moving(robot, 0.2)
     waypoint = ask(robot, GetPose, "get_target_waypoint").pose
-    assert ur10e.matrix(waypoint) == pytest.approx(ur10e.flange(turned(1.2)), abs=2e-3)
+    assert ur10e.matrix(waypoint) == pytest.approx(ur10e.flange(home_plus(1.2)), abs=2e-3)
     assert not ask(robot, GetFlag, "is_steady").value
     progress = ask(robot, GetInteger, "get_async_operation_progress")
     assert progress.value == 0 and "waypoint" in progress.text
@@ -156,7 +156,7 @@ def test_nobody_answers_while_a_script_runs_in_place_of_the_control_program(robo
     assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
     assert ask(robot, GetFlag, "is_program_running").value
     goal.cancel()
-    assert goal.end()[0] == GoalStatus.STATUS_CANCELED
+    assert goal.wait_for_result()[0] == GoalStatus.STATUS_CANCELED
     assert ask(robot, GetFlag, "is_steady").success
 
 

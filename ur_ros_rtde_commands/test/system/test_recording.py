@@ -5,7 +5,7 @@ import resource
 import struct
 
 import pytest
-from support import HOME, Client, Process, node, program, wait_for
+from support import HOME, Client, Process, find_program, start_node, wait_for
 
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
@@ -14,9 +14,9 @@ DEFAULT = ["timestamp", *(f"{name}_{i}" for name in ("actual_q", "actual_qd", "a
 
 @pytest.fixture(scope="module")
 def receiver(simulator):
-    receiver = node("robot_state_receiver", simulator.address)
+    receiver = start_node("robot_state_receiver", simulator.address)
     yield receiver
-    receiver.end()
+    receiver.stop()
     print(receiver.output())
 
 
@@ -140,7 +140,7 @@ def test_there_is_nothing_to_stop_without_a_recording(receiver, client):
 
 
 def test_without_a_robot_nothing_is_begun(addresses, processes, tmp_path):
-    processes(node("robot_state_receiver", addresses[1], namespace="nowhere"))
+    processes(start_node("robot_state_receiver", addresses[1], namespace="nowhere"))
     client = Client("nowhere")
     try:
         answer = start(client, tmp_path / "none.csv")
@@ -164,7 +164,7 @@ def test_a_lost_link_is_bridged_and_its_packages_are_counted(receiver, simulator
 
 
 def test_the_end_of_the_node_closes_the_file(simulator, client, processes, tmp_path):
-    receiver = processes(node("robot_state_receiver", simulator.address, namespace="ending"))
+    receiver = processes(start_node("robot_state_receiver", simulator.address, namespace="ending"))
     own = Client("ending")
     try:
         file = tmp_path / "ending.csv"
@@ -181,7 +181,7 @@ def test_the_end_of_the_node_closes_the_file(simulator, client, processes, tmp_p
 
 def test_a_full_disk_ends_the_file_with_a_whole_row_and_is_told(simulator, processes, tmp_path):
     # The limit of the size of files looks to a program as a full disk does, once its signal is ignored.
-    ignoring = ["sh", "-c", 'trap "" XFSZ; exec "$@"', "sh", program("ur_ros_rtde", "robot_state_receiver")]
+    ignoring = ["sh", "-c", 'trap "" XFSZ; exec "$@"', "sh", find_program("ur_ros_rtde", "robot_state_receiver")]
     receiver = processes(Process([*ignoring, "--ros-args", "-p", f"robot_ip:={simulator.address}", "-r", "__ns:=/full"]))
     client = Client("full")
     try:

@@ -4,7 +4,7 @@ import pytest
 from geometry_msgs.msg import TwistStamped
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
-from support import HOME, JOINTS, Client, Simulator, node, wait_for
+from support import HOME, JOINTS, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode, RobotMode, RobotState, SafetyMode, ToolData
 
@@ -14,9 +14,9 @@ NAMED = "robot_state_fields:=[" + ", ".join(f'"{name}"' for name in FIELDS) + "]
 
 @pytest.fixture(scope="module")
 def receiver(simulator):
-    receiver = node("robot_state_receiver", simulator.address, "tf_prefix:=left_", NAMED)
+    receiver = start_node("robot_state_receiver", simulator.address, "tf_prefix:=left_", NAMED)
     yield receiver
-    receiver.end()
+    receiver.stop()
     print(receiver.output())
 
 
@@ -25,7 +25,7 @@ def state(receiver, simulator, client):
     simulator.control("power", to="running")
     simulator.control("speed_slider", fraction=1.0)
     simulator.control("stop_program")
-    modes = client.listen(RobotMode, "robot_mode", latched=True)
+    modes = client.subscribe(RobotMode, "robot_mode", transient_local=True)
     wait_for(lambda: modes and modes[-1].mode == RobotMode.RUNNING, 15.0, "the robot mode RUNNING")
     return client
 
@@ -35,8 +35,8 @@ def last(messages, condition, what):
 
 
 def test_modes_are_told_to_those_who_come_late_and_when_they_change(state, simulator):
-    modes = state.listen(RobotMode, "robot_mode", latched=True)
-    safety = state.listen(SafetyMode, "safety_mode", latched=True)
+    modes = state.subscribe(RobotMode, "robot_mode", transient_local=True)
+    safety = state.subscribe(SafetyMode, "safety_mode", transient_local=True)
     assert last(modes, lambda m: True, "the robot mode").name == "RUNNING"
     assert last(safety, lambda m: True, "the safety mode").name == "NORMAL"
     simulator.control("reduced_mode", on=True)
@@ -50,7 +50,7 @@ def test_modes_are_told_to_those_who_come_late_and_when_they_change(state, simul
 
 
 def test_whether_a_program_runs_is_told(state, simulator):
-    running = state.listen(Bool, "program_running", latched=True)
+    running = state.subscribe(Bool, "program_running", transient_local=True)
     last(running, lambda m: not m.data, "that none runs")
     simulator.control("run_script", script="def wait():\n  while True:\n    sync()\n  end\nend\n")
     last(running, lambda m: m.data, "that one runs")
@@ -59,7 +59,7 @@ def test_whether_a_program_runs_is_told(state, simulator):
 
 
 def test_the_speed_scaling_follows_the_slider_while_a_program_runs(state, simulator):
-    scaling = state.listen(Float64, "speed_scaling", latched=True)
+    scaling = state.subscribe(Float64, "speed_scaling", transient_local=True)
     simulator.control("run_script", script="def wait():\n  while True:\n    sync()\n  end\nend\n")
     simulator.control("speed_slider", fraction=0.5)
     last(scaling, lambda m: m.data == pytest.approx(0.5, abs=1e-3), "a half")
@@ -68,7 +68,7 @@ def test_the_speed_scaling_follows_the_slider_while_a_program_runs(state, simula
 
 
 def test_targets_are_joint_states_of_the_same_names(state):
-    targets = state.listen(JointState, "target_joint_states")
+    targets = state.subscribe(JointState, "target_joint_states")
     target = last(targets, lambda m: True, "a target")
     assert list(target.name) == [f"left_{name}" for name in JOINTS]
     assert list(target.position) == pytest.approx(HOME, abs=1e-6)  # what is aimed at has no noise
@@ -76,7 +76,7 @@ def test_targets_are_joint_states_of_the_same_names(state):
 
 
 def test_the_speed_of_the_tcp_is_in_the_base_frame(state, simulator):
-    speeds = state.listen(TwistStamped, "tcp_speed")
+    speeds = state.subscribe(TwistStamped, "tcp_speed")
     last(speeds, lambda m: m.header.frame_id == "left_base", "a speed")
     simulator.control("run_script", script="def lift():\n  speedl([0, 0, 0.1, 0, 0, 0], 1.0, 0.6)\n  stopl(1.0)\nend\n")
     fast = last(speeds, lambda m: m.twist.linear.z > 0.09, "0.1 m/s upwards").twist
@@ -85,7 +85,7 @@ def test_the_speed_of_the_tcp_is_in_the_base_frame(state, simulator):
 
 
 def test_the_tool_is_told_to_whoever_listens(state, simulator):
-    tool = state.listen(ToolData, "tool_data")
+    tool = state.subscribe(ToolData, "tool_data")
     assert last(tool, lambda m: m.mode == 253, "tool data").header.frame_id == "left_tool0"
     assert 10.0 < tool[-1].temperature < 60.0
     assert 5.0 < abs(tool[-1].acceleration.x) + abs(tool[-1].acceleration.y) + abs(tool[-1].acceleration.z) < 20.0
@@ -96,7 +96,7 @@ def test_the_tool_is_told_to_whoever_listens(state, simulator):
 
 
 def test_robot_state_has_the_fields_that_are_wanted_in_their_order(state, simulator):
-    states = state.listen(RobotState, "robot_state")
+    states = state.subscribe(RobotState, "robot_state")
     message = last(states, lambda m: True, "a state")
     values = {field.name: list(field.values) for field in message.fields}
     assert list(values) == FIELDS
@@ -112,8 +112,8 @@ def test_robot_state_has_the_fields_that_are_wanted_in_their_order(state, simula
 
 
 def test_there_is_no_robot_state_without_fields(simulator, state, processes):
-    processes(node("robot_state_receiver", simulator.address, namespace="plain"))
-    speeds = state.listen(TwistStamped, "/plain/tcp_speed")
+    processes(start_node("robot_state_receiver", simulator.address, namespace="plain"))
+    speeds = state.subscribe(TwistStamped, "/plain/tcp_speed")
     wait_for(lambda: speeds, 15.0, "it to run")
     assert state.node.count_publishers("/plain/robot_state") == 0
 
@@ -122,25 +122,25 @@ def test_there_is_no_robot_state_without_fields(simulator, state, processes):
                                          ('["actual_q", "actual_q"]', '"actual_q" occurs twice'),
                                          ('["output_int_register_48"]', '"output_int_register_48" is not an RTDE output')])
 def test_a_field_that_there_is_not_ends_the_start_with_its_name(simulator, processes, names, said):
-    receiver = processes(node("robot_state_receiver", simulator.address, f"robot_state_fields:={names}", namespace="wrong"))
+    receiver = processes(start_node("robot_state_receiver", simulator.address, f"robot_state_fields:={names}", namespace="wrong"))
     assert receiver.wait(15.0) == 2
     assert said in receiver.output() and "robot_state_fields" in receiver.output()
 
 
 def test_a_field_that_this_controller_does_not_have_is_named(addresses, processes):
     processes(Simulator(addresses[1], model="ur10"))
-    receiver = processes(node("robot_state_receiver", addresses[1], 'robot_state_fields:=["actual_current_as_torque"]', namespace="old"))
+    receiver = processes(start_node("robot_state_receiver", addresses[1], 'robot_state_fields:=["actual_current_as_torque"]', namespace="old"))
     receiver.wait_for_output("this controller does not have actual_current_as_torque")
 
 
 def test_a_controller_that_is_gone_has_the_mode_no_controller(addresses, processes):
-    processes(node("robot_state_receiver", addresses[2], NAMED, namespace="early"))
+    processes(start_node("robot_state_receiver", addresses[2], NAMED, namespace="early"))
     client = Client("early")
     try:
-        modes = client.listen(RobotMode, "robot_mode", latched=True)
+        modes = client.subscribe(RobotMode, "robot_mode", transient_local=True)
         last(modes, lambda m: m.name == "NO_CONTROLLER", "that there is none")
         simulator = Simulator(addresses[2])
-        states = client.listen(RobotState, "robot_state")
+        states = client.subscribe(RobotState, "robot_state")
         last(modes, lambda m: m.name == "RUNNING", "that it runs")
         wait_for(lambda: states, 10.0, "its fields")
         simulator.kill()
@@ -154,10 +154,10 @@ def test_a_controller_that_is_gone_has_the_mode_no_controller(addresses, process
 
 
 def test_the_state_of_the_driver_is_told_with_its_cause(addresses, processes):
-    processes(node("driver", addresses[3], namespace="whole"))
+    processes(start_node("driver", addresses[3], namespace="whole"))
     client = Client("whole")
     try:
-        states = client.listen(DriverState, "driver_state", latched=True)
+        states = client.subscribe(DriverState, "driver_state", transient_local=True)
         gone = last(states, lambda m: m.state == DriverState.DISCONNECTED, "that there is no robot")
         assert gone.name == "DISCONNECTED" and gone.cause == ErrorCode.LINK_LOST and gone.message
         simulator = processes(Simulator(addresses[3]))

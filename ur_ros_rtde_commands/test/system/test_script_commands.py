@@ -3,7 +3,7 @@
 import pytest
 from action_msgs.msg import GoalStatus
 from support import HOME, wait_for
-from test_commands import is_at_rest, joints_now, turned, wait_until_moving
+from test_commands import home_plus, is_at_rest, joints_now, wait_until_moving
 
 from ur_ros_rtde_msgs.action import MoveJ, SendScript, Stop, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -19,7 +19,7 @@ def takes_motions(robot):
 
 
 def test_a_script_moves_the_arm_and_says_what_it_prints(robot):
-    goal = send(robot, f'def turn():\n  textmsg("first")\n  movej({turned(0.2)}, a=2, v=1)\n  textmsg("last: ", 1 + 1)\nend\n')
+    goal = send(robot, f'def turn():\n  textmsg("first")\n  movej({home_plus(0.2)}, a=2, v=1)\n  textmsg("last: ", 1 + 1)\nend\n')
     result = goal.succeeded()
     assert list(result.output) == ["first", "last: 2"] and result.line == 0 and result.run_time > 0.1
     assert [feedback.output for feedback in goal.feedback] == ["first", "last: 2"]
@@ -35,40 +35,40 @@ def test_a_script_is_read_from_a_file(robot, tmp_path):
 
 @pytest.mark.parametrize("script,line", [("def bad():\n  sync()\n  x = = 3\nend\n", 3), ("sync()\nno_such_function()\n", 2)])
 def test_a_compile_error_is_the_result_with_its_line(robot, script, line):
-    status, result = send(robot, script).end()
+    status, result = send(robot, script).wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.REJECTED_BY_ROBOT), result.message
     assert result.line in (line, line + 1) and str(result.line) in result.message
     assert takes_motions(robot)
 
 
 def test_a_run_time_error_is_the_result_with_its_line_and_the_output_so_far(robot):
-    status, result = send(robot, 'textmsg("so far")\nx = [1, 2]\ny = x[5]\ntextmsg("never")\n').end()
+    status, result = send(robot, 'textmsg("so far")\nx = [1, 2]\ny = x[5]\ntextmsg("never")\n').wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.REJECTED_BY_ROBOT), result.message
     assert list(result.output) == ["so far"] and result.line == 3
     assert takes_motions(robot)
 
 
 def test_cancel_stops_a_script_that_moves_the_arm(robot):
-    goal = send(robot, f"movej({turned(1.5)}, a=1, v=0.5)")
+    goal = send(robot, f"movej({home_plus(1.5)}, a=1, v=0.5)")
     wait_until_moving(robot)
     goal.cancel()
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_CANCELED, ErrorCode.CANCELED)
     assert is_at_rest(robot) and joints_now(robot).position[0] < 1.4
     assert takes_motions(robot)
 
 
 def test_a_script_that_takes_too_long_is_stopped(robot):
-    status, result = send(robot, "while True:\n  sync()\nend", timeout=0.5).end()
+    status, result = send(robot, "while True:\n  sync()\nend", timeout=0.5).wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.TIMEOUT), result.message
     assert takes_motions(robot)
 
 
 def test_stop_ends_a_script(robot):
-    goal = send(robot, f"movej({turned(1.5)}, a=1, v=0.5)")
+    goal = send(robot, f"movej({home_plus(1.5)}, a=1, v=0.5)")
     wait_until_moving(robot)
     robot.send(Stop, "stop").succeeded()
-    assert goal.end()[1].error_code == ErrorCode.PREEMPTED and is_at_rest(robot)
+    assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED and is_at_rest(robot)
 
 
 def test_a_motion_is_refused_while_a_script_runs(robot):
@@ -78,15 +78,15 @@ def test_a_motion_is_refused_while_a_script_runs(robot):
     assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
     assert "send_script" in robot.refusal(refused).message
     goal.cancel()
-    goal.end()
+    goal.wait_for_result()
 
 
 def test_a_secondary_script_does_not_disturb_a_motion(robot, simulator):
-    motion = robot.send(MoveJ, "move_j", joint_positions=turned(1.0), speed=0.5)
+    motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.0), speed=0.5)
     wait_until_moving(robot)
     send(robot, "sec light():\n  set_standard_digital_out(5, True)\nend\n", name="send_secondary_script").succeeded()
     assert simulator.state()["io"]["digital_outputs"] >> 5 & 1 and not is_at_rest(robot)
-    status, result = send(robot, "no_such_function()", name="send_secondary_script").end()
+    status, result = send(robot, "no_such_function()", name="send_secondary_script").wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.REJECTED_BY_ROBOT), result.message
     motion.succeeded()
 

@@ -2,7 +2,7 @@
 
 import pytest
 from robot_fixtures import make_ready
-from support import HOME, Client, node, wait_for
+from support import HOME, Client, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, SpeedJ
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode
@@ -33,26 +33,26 @@ def other_client():
 
 @pytest.fixture
 def first(simulator, processes, first_client):
-    driver = processes(node("driver", simulator.address, namespace="first"))
+    driver = processes(start_node("driver", simulator.address, namespace="first"))
     make_ready(first_client)
     return driver
 
 
 @pytest.fixture
 def states(other_client):
-    return other_client.listen(DriverState, "driver_state", latched=True)
+    return other_client.subscribe(DriverState, "driver_state", transient_local=True)
 
 
 @pytest.fixture
 def other(simulator, processes):
     """Starts a driver in another namespace."""
-    return lambda *parameters: processes(node("driver", simulator.address, *parameters, namespace="other"))
+    return lambda *parameters: processes(start_node("driver", simulator.address, *parameters, namespace="other"))
 
 
 def test_a_second_driver_with_the_same_names_refuses_to_start_and_the_first_moves_on(first, first_client, simulator):
     goal = first_client.send(MoveJ, "move_j", joint_positions=AWAY, speed=0.3)
     assert goal.accepted
-    second = node("driver", simulator.address, namespace="first")
+    second = start_node("driver", simulator.address, namespace="first")
     assert second.wait(30.0) == 2
     refusal = [line for line in second.lines if "is already running" in line]
     assert len(refusal) == 1, second.output()
@@ -62,14 +62,14 @@ def test_a_second_driver_with_the_same_names_refuses_to_start_and_the_first_move
 
 @pytest.mark.parametrize("name", ["command_server", "dashboard_server", "robot_state_receiver"])
 def test_each_node_whose_name_another_process_has_refuses_to_start(name, first, simulator):
-    second = node(name, simulator.address, namespace="first")
+    second = start_node(name, simulator.address, namespace="first")
     assert second.wait(30.0) == 2
     assert f"/first/{name} is already running" in second.output()
 
 
 def test_a_driver_starts_again_at_once_after_it_was_killed(first, simulator, processes):
     first.kill()
-    second = processes(node("driver", simulator.address, namespace="first"))
+    second = processes(start_node("driver", simulator.address, namespace="first"))
     second.wait_for_output("the robot is ready")
     assert second.running() and "is already running" not in second.output()
 
@@ -86,7 +86,7 @@ def test_a_driver_in_another_namespace_says_who_has_the_robot_and_gets_it_when_i
     assert not refused.accepted
     assert other_client.refusal(refused).error_code == ErrorCode.ROBOT_IN_USE
     goal.succeeded()
-    first.end()
+    first.stop()
     comes_to(states, DriverState.READY, ErrorCode.NONE)
     other_client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0).succeeded()
 
@@ -96,7 +96,7 @@ def test_a_fieldbus_has_the_lower_registers_and_register_range_upper_is_the_way_
     try:
         driver = other()
         assert "register_range:=upper" in comes_to(states, DriverState.STOPPED, ErrorCode.ROBOT_IN_USE).message
-        driver.end()
+        driver.stop()
         other("register_range:=upper")
         make_ready(other_client)
     finally:

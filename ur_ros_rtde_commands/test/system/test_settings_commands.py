@@ -85,7 +85,7 @@ def test_the_robot_keeps_running_with_a_faster_watchdog_and_stops_by_it(robot, d
     try:
         wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 5.0, "the watchdog to stop the program")
     finally:
-        driver.go_on()
+        driver.resume()
 
 
 def test_a_watchdog_that_is_faster_than_the_signs_of_life_is_refused(robot):
@@ -99,7 +99,7 @@ def test_an_output_that_does_not_change_because_nothing_comes_is_a_lost_link(rob
     simulator.control("stall_links", which="rtde")
     try:
         goal = robot.send(SetDigitalOutput, "set_standard_digital_output", pin=2, state=True)
-        told = goal.end(10.0)[1] if goal.accepted else robot.refusal(goal)  # refused if the driver has seen it before
+        told = goal.wait_for_result(10.0)[1] if goal.accepted else robot.refusal(goal)  # refused if the driver has seen it before
         assert told.error_code == ErrorCode.LINK_LOST, told.message
     finally:
         simulator.control("drop_links", which="rtde")

@@ -5,7 +5,7 @@ import re
 import pytest
 from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
-from support import HOME, Client, Simulator, node, wait_for
+from support import HOME, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -19,7 +19,7 @@ class Cell:
 
     def __init__(self, address, names):
         self.simulator = Simulator(address)
-        self.nodes = [node(name, address, namespace="quiet") for name in names]
+        self.nodes = [start_node(name, address, namespace="quiet") for name in names]
         self.client = Client("quiet")
 
     def interrupt(self, with_simulator):
@@ -31,18 +31,18 @@ class Cell:
             assert process.wait(15.0) == 0, process.output()
         return [line for process, count in zip(self.nodes, said) for line in process.lines[count:]]
 
-    def end(self):
+    def stop(self):
         self.client.close()
         for process in self.nodes:
-            process.end()
-        self.simulator.end()
+            process.stop()
+        self.simulator.stop()
 
 
 @pytest.fixture(params=[ONE_PROCESS, THREE_PROCESSES], ids=["one process", "three processes"])
 def cell(request, addresses):
     cell = Cell(addresses[1], request.param)
     yield cell
-    cell.end()
+    cell.stop()
     print("\n".join(line for process in cell.nodes for line in process.lines))
 
 
@@ -62,10 +62,10 @@ def test_ctrl_c_in_a_motion_prints_nothing_that_looks_like_a_failure(cell):
     make_ready(cell.client)
     goal = cell.client.send(MoveJ, "move_j", joint_positions=[2.5, *HOME[1:]], speed=0.5)
     wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
-    assert not goal.ended()  # requests the result while the server is available
+    assert not goal.is_finished()  # requests the result while the server is available
     assert not looks_like_failures(cell.interrupt(with_simulator=False))
-    assert goal.end()[0] == GoalStatus.STATUS_ABORTED
-    assert cell.simulator.stands_still()
+    assert goal.wait_for_result()[0] == GoalStatus.STATUS_ABORTED
+    assert cell.simulator.is_at_rest()
 
 
 def test_ctrl_c_in_a_motion_warns_if_the_controller_ends_before_the_arm_has_stopped(cell):

@@ -6,7 +6,7 @@ import pytest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
-from support import HOME, JOINTS, Client, Simulator, node, robot_seconds, seconds, wait_for
+from support import HOME, JOINTS, Client, Simulator, robot_seconds, seconds, start_node, wait_for
 
 from ur_ros_rtde_msgs.msg import ErrorCode, IOState
 from ur_ros_rtde_msgs.srv import GetIOState, GetJointState, GetTcpPose, GetWrench
@@ -14,14 +14,14 @@ from ur_ros_rtde_msgs.srv import GetIOState, GetJointState, GetTcpPose, GetWrenc
 
 @pytest.fixture(scope="module")
 def receiver(simulator):
-    receiver = node("robot_state_receiver", simulator.address, "tf_prefix:=left_")
+    receiver = start_node("robot_state_receiver", simulator.address, "tf_prefix:=left_")
     yield receiver
-    receiver.end()
+    receiver.stop()
     print(receiver.output())
 
 
 def collect(client, message, topic, number, limit=15.0):
-    messages = client.listen(message, topic)
+    messages = client.subscribe(message, topic)
     wait_for(lambda: len(messages) >= number, limit, f"{number} messages of {topic}")
     return list(messages)
 
@@ -52,7 +52,7 @@ def test_the_pose_is_the_tools_in_the_base_frame(receiver, client, simulator):
 
 
 def test_the_wrench_is_in_the_frame_of_the_tool(receiver, client, simulator):
-    wrenches = client.listen(WrenchStamped, "wrench")
+    wrenches = client.subscribe(WrenchStamped, "wrench")
     simulator.control("push", force=[0.0, 0.0, 30.0], duration=0.5, frame="tool")
     wait_for(lambda: any(w.wrench.force.z > 25.0 for w in list(wrenches)), 10.0, "the push along the tool's axis")
     strongest = max(list(wrenches), key=lambda w: w.wrench.force.z)
@@ -61,7 +61,7 @@ def test_the_wrench_is_in_the_frame_of_the_tool(receiver, client, simulator):
 
 
 def test_io_state_shows_inputs_by_pin(receiver, client, simulator):
-    messages = client.listen(IOState, "io_state")
+    messages = client.subscribe(IOState, "io_state")
     for pin in (0, 9, 17):
         simulator.control("set_digital_input", number=pin, value=True)
         wait_for(lambda p=pin: messages and messages[-1].digital_inputs[p], 10.0, f"input {pin}")
@@ -70,7 +70,7 @@ def test_io_state_shows_inputs_by_pin(receiver, client, simulator):
 
 
 def test_all_messages_of_a_cycle_have_one_stamp(receiver, client):
-    topics = {name: client.listen(kind, name) for name, kind in (("joint_states", JointState), ("tcp_pose", PoseStamped),
+    topics = {name: client.subscribe(kind, name) for name, kind in (("joint_states", JointState), ("tcp_pose", PoseStamped),
                                                                  ("wrench", WrenchStamped), ("io_state", IOState))}
     wait_for(lambda: all(len(messages) > 100 for messages in topics.values()), 20.0, "100 messages of each topic")
     stamps = [{seconds(message.header.stamp) for message in list(messages)[20:80]} for messages in topics.values()]
@@ -80,7 +80,7 @@ def test_all_messages_of_a_cycle_have_one_stamp(receiver, client):
 
 def rate(client, topic, number):
     """Messages for each of the robot's seconds by their stamps, the first of which may be late by the discovery."""
-    states = client.listen(JointState, topic)
+    states = client.subscribe(JointState, topic)
     wait_for(lambda: len(states) > number, 60.0, f"{number} messages of {topic}")
     stamps = [robot_seconds(state.header.stamp) for state in list(states)][1:]
     assert stamps == sorted(stamps)
@@ -99,13 +99,13 @@ def test_it_publishes_at_the_rate_of_the_controller(receiver, simulator, client)
 @pytest.mark.parametrize("frequency", [10.0, 300.0])
 def test_the_rate_can_be_chosen(simulator, client, processes, frequency):
     name = f"at_{frequency:.0f}_hz"
-    processes(node("robot_state_receiver", simulator.address, f"rtde_frequency:={frequency}", namespace=name))
+    processes(start_node("robot_state_receiver", simulator.address, f"rtde_frequency:={frequency}", namespace=name))
     number = 20 if frequency < 100 else 900
     assert is_about(rate(client, f"/{name}/joint_states", number), frequency)
 
 
 def test_in_the_driver_the_rate_of_the_state_can_be_chosen_apart_from_that_of_the_commands(simulator, client, processes):
-    processes(node("driver", simulator.address, "rtde_frequency:=40.0", namespace="in_one"))
+    processes(start_node("driver", simulator.address, "rtde_frequency:=40.0", namespace="in_one"))
     assert is_about(rate(client, "/in_one/joint_states", 80), 40.0)
 
 
@@ -123,7 +123,7 @@ def test_services_answer_from_the_newest_sample(receiver, client, service, name,
 
 
 def test_faked_joint_states_are_shown_and_the_real_state_goes_on(receiver, client):
-    shown = client.listen(JointState, "joint_states")
+    shown = client.subscribe(JointState, "joint_states")
     publisher = client.node.create_publisher(JointState, "fake_joint_states", 10)
     wait_for(lambda: publisher.get_subscription_count(), 10.0, "the subscription of fake_joint_states")
     assert client.call(SetBool, "publish_fake_joint_states", data=True).success
@@ -148,7 +148,7 @@ def test_faked_joint_states_are_shown_and_the_real_state_goes_on(receiver, clien
 
 
 def test_the_actual_joint_states_are_published_while_fake_ones_are_shown(receiver, client):
-    shown, actual = client.listen(JointState, "joint_states"), client.listen(JointState, "actual_joint_states")
+    shown, actual = client.subscribe(JointState, "joint_states"), client.subscribe(JointState, "actual_joint_states")
     wait_for(lambda: len(shown) > 50 and len(actual) > 50, 20.0, "joint states of both topics")
     by_stamp = {seconds(state.header.stamp): state for state in list(shown)}
     assert sum(by_stamp.get(seconds(state.header.stamp)) == state for state in list(actual)) > 25  # not fake: the same
@@ -171,14 +171,14 @@ def test_the_actual_joint_states_are_published_while_fake_ones_are_shown(receive
 def test_any_number_of_receivers_follow_one_robot(simulator, client, processes):
     names = [f"watcher_{i}" for i in range(4)]
     for name in names:
-        processes(node("robot_state_receiver", simulator.address, "rtde_frequency:=50.0", namespace=name))
+        processes(start_node("robot_state_receiver", simulator.address, "rtde_frequency:=50.0", namespace=name))
     for name in names:
         assert collect(client, JointState, f"/{name}/joint_states", 20)
 
 
 def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
     address = addresses[1]
-    receiver = processes(node("robot_state_receiver", address, namespace="early"))
+    receiver = processes(start_node("robot_state_receiver", address, namespace="early"))
     client = Client("early")
     try:
         answer = client.call(GetJointState, "get_joint_state")
@@ -187,7 +187,7 @@ def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
         receiver.wait_for_output(address)
 
         simulator = Simulator(address)
-        states = client.listen(JointState, "joint_states")
+        states = client.subscribe(JointState, "joint_states")
         wait_for(lambda: len(states) > 10, 15.0, "the first joint states")
         assert client.call(GetJointState, "get_joint_state").success
 
@@ -210,8 +210,8 @@ def _failed(answer):
 
 
 def test_faked_joint_states_are_shown_without_a_robot(addresses, client, processes):
-    processes(node("robot_state_receiver", addresses[2], namespace="nowhere"))
-    shown = client.listen(JointState, "/nowhere/joint_states")
+    processes(start_node("robot_state_receiver", addresses[2], namespace="nowhere"))
+    shown = client.subscribe(JointState, "/nowhere/joint_states")
     publisher = client.node.create_publisher(JointState, "/nowhere/fake_joint_states", 10)
     wait_for(lambda: publisher.get_subscription_count(), 15.0, "the subscription of fake_joint_states")
     assert client.call(SetBool, "/nowhere/publish_fake_joint_states", data=True).success

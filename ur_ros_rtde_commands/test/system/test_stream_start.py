@@ -3,33 +3,31 @@
 import pytest
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
-from support import node, wait_for
-from test_streams import Publisher, joint_message, pose_now, state, turned
-from trajectories import Watcher
+from support import start_node, wait_for
+from test_streams import Publisher, home_plus, joint_message, pose_now, state
+from trajectories import TargetSpeedRecorder
 
 
 @pytest.fixture(scope="module")
 def driver(simulator):
     # Short enough for the first messages to ask for a haste that the arm is capable of.
-    driver = node("driver", simulator.address, "ur_type:=ur10e", "stream_timeout:=0.2", "stream_max_joint_jump:=0.5",
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", "stream_timeout:=0.2", "stream_max_joint_jump:=0.5",
                   "stream_max_linear_jump:=0.5")
     yield driver
-    driver.end()
+    driver.stop()
     print(driver.output())
 
 
 def watch(simulator):
-    watcher = Watcher(simulator)
-    watcher.look()
-    watcher.speeds.clear()
-    return watcher
+    recorder = TargetSpeedRecorder(simulator)
+    return recorder
 
 
 def test_of_joint_positions(robot, simulator):
-    watcher = watch(simulator)
-    with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(turned(0.4))):
-        wait_for(lambda: watcher.look() and state(robot).position[0] > 0.39, 20.0, "the arm to be there")
-    assert 0.5 < max(watcher.look()) < 1.05 * 1.05
+    recorder = watch(simulator)
+    with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(home_plus(0.4))):
+        wait_for(lambda: recorder.update() and state(robot).position[0] > 0.39, 20.0, "the arm to be there")
+    assert 0.5 < max(recorder.update()) < 1.05 * 1.05
 
 
 def test_of_poses(robot, simulator):

@@ -10,7 +10,7 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.qos import QoSProfile
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
-from support import HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, node, seconds, wait_for
+from support import HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, seconds, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -22,9 +22,9 @@ TIMEOUT = 0.5  # s; other tests beside this one make its publisher late
 
 @pytest.fixture(scope="module")
 def driver(simulator):
-    driver = node("driver", simulator.address, "ur_type:=ur10e", f"stream_timeout:={TIMEOUT}")
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", f"stream_timeout:={TIMEOUT}")
     yield driver
-    driver.end()
+    driver.stop()
     print(driver.output())
 
 
@@ -49,7 +49,7 @@ class Publisher(threading.Thread):
             number += 1
             self._over.wait(max(0.0, begin + number * self.period - time.monotonic()))
 
-    def end(self):
+    def stop(self):
         self._over.set()
         self.join(5.0)
         return time.time()
@@ -58,14 +58,14 @@ class Publisher(threading.Thread):
         return self
 
     def __exit__(self, *_):
-        self.end()
+        self.stop()
 
 
 def joint_message(positions, names=JOINTS):
     return JointState(name=list(names), position=[float(p) for p in positions])
 
 
-def turned(angle, joint=0):
+def home_plus(angle, joint=0):
     return [position + (angle if i == joint else 0.0) for i, position in enumerate(HOME)]
 
 
@@ -111,7 +111,7 @@ def swing(t):
 def recorded_swing(robot, file):
     """Times, positions and velocities of the base joint, by the robot's clock; None if the host held the publisher up."""
     assert robot.call(StartRecording, "start_recording", filename=str(file), fields=["timestamp", "actual_q", "actual_qd"]).success
-    with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(turned(swing(REAL_TIME_FACTOR * t)))) as publisher:
+    with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(home_plus(swing(REAL_TIME_FACTOR * t)))) as publisher:
         publisher.join(4.5 / REAL_TIME_FACTOR)
     assert robot.call(StopRecording, "stop_recording").success
     if publisher.longest_gap > 2.0 * publisher.period:
@@ -138,7 +138,7 @@ def test_servo_joint_at_50_hz_moves_smoothly(robot, tmp_path):
 
 def test_names_may_come_in_any_order_and_with_others(robot):
     names = [*reversed(JOINTS), "finger_joint"]
-    target = turned(0.1, joint=5)
+    target = home_plus(0.1, joint=5)
     values = [*reversed(target), 0.3]
     ramp = lambda t: [h + min(t / 0.5, 1.0) * (v - h) for h, v in zip([*reversed(HOME), 0.3], values)]
     with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(ramp(t), names)):
@@ -146,11 +146,11 @@ def test_names_may_come_in_any_order_and_with_others(robot):
 
 
 def test_a_stream_that_stops_is_followed_by_deceleration_within_the_timeout(robot):
-    states = robot.listen(JointState, "joint_states")
+    states = robot.subscribe(JointState, "joint_states")
     publisher = Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", -0.1), rate=100.0)
     wait_for(lambda: states and max(map(abs, states[-1].velocity)) > 0.1, 10.0, "the arm to move")
     time.sleep(0.3)
-    publisher.end()
+    publisher.stop()
     last = seconds(state(robot).header.stamp)
     wait_for(lambda: seconds(states[-1].header.stamp) > last and max(map(abs, states[-1].velocity)) < 0.01, 5.0,
              "the arm to stand still")
@@ -204,12 +204,12 @@ def test_a_goal_is_refused_while_a_stream_lives_and_accepted_after_it(robot):
 
 
 def test_a_stream_is_refused_while_a_goal_moves_the_arm(robot, driver):
-    goal = robot.send(MoveJ, "move_j", joint_positions=turned(0.8), speed=0.4)
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.8), speed=0.4)
     wait_for(lambda: speed_now(robot) > 0.1, 10.0, "the arm to move")
     before = len(lines(driver, "/twist: messages are ignored"))
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.1)):
         goal.succeeded()
-        assert list(state(robot).position) == pytest.approx(turned(0.8), abs=0.005)
+        assert list(state(robot).position) == pytest.approx(home_plus(0.8), abs=0.005)
         time.sleep(0.5)
         assert speed_now(robot) < 0.01, "it must not begin in the middle of a stream"
     assert len(lines(driver, "/twist: messages are ignored")) == before + 1, "logged once"
@@ -219,7 +219,7 @@ def test_a_stream_is_refused_while_another_one_lives(robot, driver):
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base")):
         time.sleep(0.3)
         before = len(lines(driver, "/servo_joint: messages are ignored"))
-        with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(turned(min(0.2, 0.2 * t)))):
+        with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(home_plus(min(0.2, 0.2 * t)))):
             wait_for(lambda: len(lines(driver, "/servo_joint: messages are ignored")) > before, 5.0, "the refusal")
             time.sleep(0.5)
         assert "/twist is running" in lines(driver, "/servo_joint: messages are ignored")[-1]
@@ -228,16 +228,16 @@ def test_a_stream_is_refused_while_another_one_lives(robot, driver):
 
 def test_a_goal_ends_a_stream_where_goals_preempt(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    processes(node("driver", simulator.address, "ur_type:=ur10e", "on_busy:=preempt", f"stream_timeout:={TIMEOUT}",
+    processes(start_node("driver", simulator.address, "ur_type:=ur10e", "on_busy:=preempt", f"stream_timeout:={TIMEOUT}",
                    namespace="other"))
     client = Client("other")
     try:
         make_ready(client)
         with Publisher(client, TwistStamped, "twist", lambda t: twist_message("base", -0.05)):
             wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) > 0.03, 10.0, "the arm to move")
-            client.send(MoveJ, "move_j", joint_positions=turned(0.3), speed=1.0).succeeded()
+            client.send(MoveJ, "move_j", joint_positions=home_plus(0.3), speed=1.0).succeeded()
             time.sleep(0.5)
-            assert simulator.state()["actual"]["position"] == pytest.approx(turned(0.3), abs=0.01)
+            assert simulator.state()["actual"]["position"] == pytest.approx(home_plus(0.3), abs=0.01)
     finally:
         client.close()
 
@@ -255,9 +255,9 @@ def test_stop_ends_a_stream_until_there_has_been_a_pause(robot):
 
 
 BAD = [
-    ("a jump", JointState, "servo_joint", lambda t: joint_message(turned(0.5 if t > 0.5 else 0.0)), "shoulder_pan_joint"),
+    ("a jump", JointState, "servo_joint", lambda t: joint_message(home_plus(0.5 if t > 0.5 else 0.0)), "shoulder_pan_joint"),
     ("a missing joint", JointState, "servo_joint", lambda t: joint_message(HOME[:5], JOINTS[:5]), "wrist_3_joint"),
-    ("NaN", JointState, "servo_joint", lambda t: joint_message(turned(math.nan if t > 0.5 else 0.0)), "nan"),
+    ("NaN", JointState, "servo_joint", lambda t: joint_message(home_plus(math.nan if t > 0.5 else 0.0)), "nan"),
     ("a frame", TwistStamped, "twist", lambda t: twist_message("camera"), "camera"),
     ("too fast", TwistStamped, "twist", lambda t: twist_message("base", 3.5 if t > 0.5 else 0.0), "3.5"),
 ]

@@ -2,16 +2,16 @@
 
 import os
 
-import interfaces_or_ours
+import interface_fallback
 import pytest
 from geometry_msgs.msg import PoseStamped
 from rclpy.node import NodeNameNonExistentError
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
-from support import node, seconds, wait_for
+from support import seconds, start_node, wait_for
 
-LIBRARIES = interfaces_or_ours.provide("tf2_msgs")
+LIBRARIES = interface_fallback.provide("tf2_msgs")
 
 from tf2_msgs.msg import TFMessage  # noqa: E402
 
@@ -22,9 +22,9 @@ HASH = "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"
 def receiver(address, *parameters, **options):
     """robot_state_receiver as it is where tf2_msgs is installed."""
     if LIBRARIES is None:
-        return node("robot_state_receiver", address, *parameters, **options)
+        return start_node("robot_state_receiver", address, *parameters, **options)
     path = os.pathsep.join([str(LIBRARIES), os.environ.get("LD_LIBRARY_PATH", "")])
-    return node("robot_state_receiver", address, *parameters, env={"LD_LIBRARY_PATH": path},
+    return start_node("robot_state_receiver", address, *parameters, env={"LD_LIBRARY_PATH": path},
                 executable=LIBRARIES / "robot_state_receiver", **options)
 
 
@@ -55,13 +55,13 @@ def published(client, namespace):
 
 @pytest.mark.skipif(LIBRARIES is None, reason="tf2_msgs is installed")
 def test_the_interface_is_the_published_one():
-    assert interfaces_or_ours.type_hashes("tf2_msgs")["tf2_msgs/msg/TFMessage"] == HASH
+    assert interface_fallback.type_hashes("tf2_msgs")["tf2_msgs/msg/TFMessage"] == HASH
 
 
 def test_the_tcp_pose_is_broadcast_with_the_stamp_of_tcp_pose(simulator, client, processes):
     processes(receiver(simulator.address, "tf_prefix:=left_", namespace="with_tf"))
-    poses = client.listen(PoseStamped, "/with_tf/tcp_pose")
-    tf = client.listen(TFMessage, "/tf")
+    poses = client.subscribe(PoseStamped, "/with_tf/tcp_pose")
+    tf = client.subscribe(TFMessage, "/tf")
     child = "left_tool0_controller"
     wait_for(lambda: len(tf) > 100 and len(poses) > 100, 20.0, "100 transforms and poses")
     assert all(len(message.transforms) == 1 for message in list(tf))
@@ -88,8 +88,8 @@ def test_listeners_of_tf2_match(simulator, client, processes):
 
 def test_the_broadcast_follows_the_robot_while_fake_joint_states_are_shown(simulator, client, processes):
     processes(receiver(simulator.address, "tf_prefix:=faked_", namespace="faked"))
-    shown = client.listen(JointState, "/faked/joint_states")
-    tf = client.listen(TFMessage, "/tf")
+    shown = client.subscribe(JointState, "/faked/joint_states")
+    tf = client.subscribe(TFMessage, "/tf")
     publisher = client.node.create_publisher(JointState, "/faked/fake_joint_states", 10)
     wait_for(lambda: publisher.get_subscription_count() and shown, 15.0, "the receiver")
     assert client.call(SetBool, "/faked/publish_fake_joint_states", data=True).success
@@ -102,7 +102,7 @@ def test_the_broadcast_follows_the_robot_while_fake_joint_states_are_shown(simul
 
 def test_the_topic_can_be_remapped_into_the_namespace(simulator, client, processes):
     processes(receiver(simulator.address, namespace="own", arguments=["-r", "/tf:=tf"]))
-    tf = client.listen(TFMessage, "/own/tf")
+    tf = client.subscribe(TFMessage, "/own/tf")
     assert wait_for(lambda: transforms(tf, "tool0_controller"), 15.0, "a transform")
 
 
@@ -113,10 +113,10 @@ def test_the_broadcast_can_be_switched_off(simulator, client, processes):
 
 @pytest.mark.skipif(LIBRARIES is None, reason="tf2_msgs is installed")
 def test_a_build_without_tf2_msgs_says_so(simulator, client, processes):
-    without = processes(node("robot_state_receiver", simulator.address, "tf_prefix:=plain_", namespace="plain"))
+    without = processes(start_node("robot_state_receiver", simulator.address, "tf_prefix:=plain_", namespace="plain"))
     line = without.wait_for_output("tf2_msgs was not found")
     assert "[INFO]" in line and "plain_tool0_controller" in line and "publish_tf" in line
     assert "/tf" not in published(client, "/plain")
-    silent = processes(node("robot_state_receiver", simulator.address, "publish_tf:=false", namespace="silent"))
+    silent = processes(start_node("robot_state_receiver", simulator.address, "publish_tf:=false", namespace="silent"))
     assert "/tf" not in published(client, "/silent")
     assert "tf2_msgs" not in silent.output()

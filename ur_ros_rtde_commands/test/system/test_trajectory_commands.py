@@ -7,7 +7,7 @@ from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
 from support import HOME, JOINTS, robot_seconds, wait_for
-from trajectories import Watcher, cycles_without_target, distance_to_line, point, timed, turned, wave, waypoints
+from trajectories import TargetSpeedRecorder, cycles_without_target, distance_to_line, home_plus, point, timed, wave, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -34,12 +34,12 @@ def wait_for_progress(goal, progress):
 
 
 def test_it_passes_through_every_waypoint(robot):
-    corners = [HOME, turned(0.3), turned(0.3, 0.2), turned(0.1, 0.1, -0.2), HOME]
-    states = robot.listen(JointState, "joint_states")
+    corners = [HOME, home_plus(0.3), home_plus(0.3, 0.2), home_plus(0.1, 0.1, -0.2), HOME]
+    states = robot.subscribe(JointState, "joint_states")
     goal = send(robot, corners, lookahead_time=LAG)
     result = goal.succeeded()
     assert result.final_state.joint_positions == pytest.approx(HOME, abs=0.005)
-    states = robot.up_to_now(states)
+    states = robot.messages_until_now(states)
     for corner in corners:
         assert nearest(states, corner) < 0.01
     assert 0.0 < result.max_tracking_error < 0.02
@@ -61,76 +61,72 @@ def test_it_takes_as_long_as_planned_and_says_where_it_is(robot, simulator):
 
 
 def test_a_speed_fraction_slows_it_down(robot):
-    fast = send(robot, [HOME, turned(0.3), HOME], **FAST).succeeded()
-    slow = send(robot, [HOME, turned(0.3), HOME], speed_fraction=0.5, **FAST).succeeded()
+    fast = send(robot, [HOME, home_plus(0.3), HOME], **FAST).succeeded()
+    slow = send(robot, [HOME, home_plus(0.3), HOME], speed_fraction=0.5, **FAST).succeeded()
     assert slow.duration == pytest.approx(2.0 * fast.duration, rel=1e-6)
 
 
 def fastest(simulator, goal):
     """rad/s: of any joint's target until the goal has ended."""
-    watcher = Watcher(simulator)
-    watcher.look()
-    watcher.speeds.clear()
-    wait_for(lambda: watcher.look() and goal.ended(), 60.0, "the end")
+    recorder = TargetSpeedRecorder(simulator)
+    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
     goal.succeeded()
-    return max(watcher.look())
+    return max(recorder.update())
 
 
 def test_without_limits_it_is_slow(robot, simulator):
-    goal = send(robot, [HOME, turned(1.2)])
+    goal = send(robot, [HOME, home_plus(1.2)])
     assert fastest(simulator, goal) < 1.05 * 1.03
     assert goal.succeeded().duration == pytest.approx(1.2 / 1.05 + 1.05 / 1.4 + 1.4 / 100.0, abs=0.01)
 
 
 def test_limits_that_are_given_may_be_faster(robot, simulator):
-    goal = send(robot, [HOME, turned(1.2)], max_velocity=[1.8] * 6, max_acceleration=[5.0] * 6)
+    goal = send(robot, [HOME, home_plus(1.2)], max_velocity=[1.8] * 6, max_acceleration=[5.0] * 6)
     assert goal.succeeded().duration == pytest.approx(1.2 / 1.8 + 1.8 / 5.0 + 5.0 / 100.0, abs=0.01)
 
 
 @pytest.mark.parametrize("speed_fraction", [1.0, 0.3])
 def test_an_approach_is_slow_whatever_the_limits_are(robot, simulator, speed_fraction):
-    goal = send(robot, [turned(0.8), turned(0.83)], approach=True, speed_fraction=speed_fraction, max_velocity=[2.0] * 6,
+    goal = send(robot, [home_plus(0.8), home_plus(0.83)], approach=True, speed_fraction=speed_fraction, max_velocity=[2.0] * 6,
                 max_acceleration=[10.0] * 6)
     assert fastest(simulator, goal) < 1.05 * speed_fraction * 1.05
 
 
 def test_limits_of_a_joint_count(robot, simulator):
-    watcher = Watcher(simulator)
-    watcher.look()
-    watcher.speeds.clear()
-    goal = send(robot, [HOME, turned(0.5)], max_velocity=[0.2] * 6, max_acceleration=[1.0] * 6, max_jerk=[10.0] * 6)
-    wait_for(lambda: watcher.look() and goal.ended(), 60.0, "the end")
+    recorder = TargetSpeedRecorder(simulator)
+    goal = send(robot, [HOME, home_plus(0.5)], max_velocity=[0.2] * 6, max_acceleration=[1.0] * 6, max_jerk=[10.0] * 6)
+    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
     assert goal.succeeded().duration == pytest.approx(0.5 / 0.2 + 0.2 / 1.0 + 1.0 / 10.0, abs=0.01)
-    assert max(watcher.look()) < 0.2 * 1.03
+    assert max(recorder.update()) < 0.2 * 1.03
 
 
 def test_corners_are_blended_within_the_tolerance(robot):
-    corner = turned(0.4)
-    states = robot.listen(JointState, "joint_states")
-    through = send(robot, [HOME, corner, turned(0.4, 0.3)], lookahead_time=LAG).succeeded()
-    send(robot, [turned(0.4, 0.3), HOME], lookahead_time=LAG).succeeded()
-    robot.up_to_now(states)
+    corner = home_plus(0.4)
+    states = robot.subscribe(JointState, "joint_states")
+    through = send(robot, [HOME, corner, home_plus(0.4, 0.3)], lookahead_time=LAG).succeeded()
+    send(robot, [home_plus(0.4, 0.3), HOME], lookahead_time=LAG).succeeded()
+    robot.messages_until_now(states)
     states.clear()
-    round_it = send(robot, [HOME, corner, turned(0.4, 0.3)], blend_tolerance=0.05, lookahead_time=LAG).succeeded()
+    round_it = send(robot, [HOME, corner, home_plus(0.4, 0.3)], blend_tolerance=0.05, lookahead_time=LAG).succeeded()
     assert round_it.duration < 0.95 * through.duration
-    assert nearest(robot.up_to_now(states), corner) < 0.05 + 0.005
+    assert nearest(robot.messages_until_now(states), corner) < 0.05 + 0.005
 
 
 def test_elsewhere_it_is_refused_or_approaches(robot):
-    elsewhere = [turned(0.2), turned(0.3)]
+    elsewhere = [home_plus(0.2), home_plus(0.3)]
     refused = send(robot, elsewhere)
     assert not refused.accepted
     message = robot.refusal(refused).message
     assert "shoulder_pan_joint" in message and "0.2000 rad away" in message and "start_tolerance is 0.0100" in message
     send(robot, elsewhere, approach=True).succeeded()
-    send(robot, [turned(0.3003), turned(0.25)]).succeeded()  # the last bit needs no approach
+    send(robot, [home_plus(0.3003), home_plus(0.25)]).succeeded()  # the last bit needs no approach
     send(robot, [HOME], approach=True).succeeded()
 
 
 def test_one_waypoint_repetitions_and_reversals_are_no_problem(robot):
     send(robot, [HOME]).succeeded()
     send(robot, [HOME, HOME, HOME]).succeeded()
-    send(robot, [HOME, turned(0.1), turned(0.1), HOME, turned(1e-7), turned(0.1), HOME]).succeeded()
+    send(robot, [HOME, home_plus(0.1), home_plus(0.1), HOME, home_plus(1e-7), home_plus(0.1), HOME]).succeeded()
 
 
 def test_ten_thousand_waypoints_are_planned_while_the_node_goes_on(robot):
@@ -144,57 +140,55 @@ def test_ten_thousand_waypoints_are_planned_while_the_node_goes_on(robot):
 @pytest.mark.parametrize("slider", [1.0, 0.3])
 def test_a_cancel_decelerates_along_the_path(robot, simulator, slider):
     simulator.control("speed_slider", fraction=slider)
-    end = turned(1.0, -0.4, 0.5)
-    states = robot.listen(JointState, "joint_states")
+    end = home_plus(1.0, -0.4, 0.5)
+    states = robot.subscribe(JointState, "joint_states")
     goal = send(robot, [HOME, end], max_velocity=[0.5] * 6, lookahead_time=LAG)
     wait_for_progress(goal, 0.2)
     goal.cancel()
-    status, result = goal.end(10.0)
+    status, result = goal.wait_for_result(10.0)
     simulator.control("speed_slider", fraction=1.0)
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
     assert 0.0 < result.final_state.joint_positions[0] < 0.95
-    assert max(distance_to_line(state.position, HOME, end) for state in robot.up_to_now(states)) < 0.005
+    assert max(distance_to_line(state.position, HOME, end) for state in robot.messages_until_now(states)) < 0.005
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
 def test_the_speed_slider_slows_the_time_axis(robot, simulator):
     simulator.control("speed_slider", fraction=0.4)
     begin = simulator.state()["timestamp"]
-    result = send(robot, [HOME, turned(0.5), HOME], lookahead_time=LAG, **FAST).succeeded(60.0)
+    result = send(robot, [HOME, home_plus(0.5), HOME], lookahead_time=LAG, **FAST).succeeded(60.0)
     assert simulator.state()["timestamp"] - begin > result.duration / 0.4
     simulator.control("speed_slider", fraction=1.0)
 
 
 def test_a_host_that_is_late_skips_nothing(robot, simulator, driver):
-    watcher = Watcher(simulator)
-    watcher.look()
-    watcher.speeds.clear()
-    goal = send(robot, [HOME, turned(0.8), HOME], max_velocity=[0.5] * 6, lookahead_time=LAG)
+    recorder = TargetSpeedRecorder(simulator)
+    goal = send(robot, [HOME, home_plus(0.8), HOME], max_velocity=[0.5] * 6, lookahead_time=LAG)
     for progress in (0.1, 0.3, 0.6):
         wait_for_progress(goal, progress)
         cycle = simulator.state()["cycle"]
         driver.pause()
         wait_for(lambda: simulator.state()["cycle"] > cycle + 30, 10.0, "30 cycles without the host")
-        driver.go_on()
-        watcher.look()
-    wait_for(lambda: watcher.look() and goal.ended(), 60.0, "the end")
+        driver.resume()
+        recorder.update()
+    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
     goal.succeeded()
-    assert max(watcher.look()) < 0.5 * 1.05
+    assert max(recorder.update()) < 0.5 * 1.05
 
 
 def test_too_far_behind_it_ends_and_stops(robot, simulator):
-    goal = send(robot, [HOME, turned(1.0)], max_tracking_error=0.0005, gain=100.0, lookahead_time=0.2)
-    status, result = goal.end(20.0)
+    goal = send(robot, [HOME, home_plus(1.0)], max_tracking_error=0.0005, gain=100.0, lookahead_time=0.2)
+    status, result = goal.wait_for_result(20.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED
     assert "behind the trajectory" in result.message and "0.000" in result.message
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
 def test_a_protective_stop_ends_it(robot, simulator):
-    goal = send(robot, [HOME, turned(1.0)])
+    goal = send(robot, [HOME, home_plus(1.0)])
     wait_for_progress(goal, 0.1)
     simulator.control("protective_stop")
-    _, result = goal.end(10.0)
+    _, result = goal.wait_for_result(10.0)
     assert result.error_code == ErrorCode.PROTECTIVE_STOP
     wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
     make_ready(robot)
@@ -203,8 +197,8 @@ def test_a_protective_stop_ends_it(robot, simulator):
 BAD_PATHS = [
     ({"waypoints": []}, "waypoints is empty"),
     ({"waypoints": waypoints(HOME, HOME[:5])}, "waypoint 1 has 5 values"),
-    ({"waypoints": waypoints(HOME, turned(NAN))}, "waypoint 1 of shoulder_pan_joint is nan"),
-    ({"waypoints": waypoints(HOME, turned(0.0, -5.0))}, "waypoint 1: position of shoulder_lift_joint is -6.57"),
+    ({"waypoints": waypoints(HOME, home_plus(NAN))}, "waypoint 1 of shoulder_pan_joint is nan"),
+    ({"waypoints": waypoints(HOME, home_plus(0.0, -5.0))}, "waypoint 1: position of shoulder_lift_joint is -6.57"),
     ({"max_velocity": [1.0] * 5}, "max_velocity has 5 values"),
     ({"max_velocity": [1.0, 0.0, 1.0, 1.0, 1.0, 1.0]}, "max_velocity[1] (shoulder_lift_joint) is 0"),
     ({"max_velocity": [3.0] * 6}, "max_velocity[0] (shoulder_pan_joint) is 3 rad/s"),
@@ -234,7 +228,7 @@ def arc(times, size=0.3):
     """A motion from rest to rest, with its derivatives."""
     end = times[-1]
     w = math.pi / end
-    return [point(t, turned(0.5 * size * (1 - math.cos(w * t))), [0.5 * size * w * math.sin(w * t)] + [0.0] * 5,
+    return [point(t, home_plus(0.5 * size * (1 - math.cos(w * t))), [0.5 * size * w * math.sin(w * t)] + [0.0] * 5,
                   [0.5 * size * w * w * math.cos(w * t)] + [0.0] * 5) for t in times]
 
 
@@ -244,12 +238,12 @@ def test_given_times_are_kept(robot, simulator):
     points[-1].velocities = [0.0] * 6
     for _ in range(3):
         make_ready(robot)
-        states = robot.listen(JointState, "joint_states")
+        states = robot.subscribe(JointState, "joint_states")
         before = simulator.state()["cycle"]
         goal = send_timed(robot, timed(*points), lookahead_time=LAG, gain=2000.0, max_jerk=[1e5] * 6)
         assert goal.succeeded().duration == pytest.approx(2.0)
-        moving = [s for s in robot.up_to_now(states) if abs(s.position[0] - HOME[0]) > 0.002]
-        robot.stop_listening()
+        moving = [s for s in robot.messages_until_now(states) if abs(s.position[0] - HOME[0]) > 0.002]
+        robot.destroy_subscriptions()
         if cycles_without_target(simulator, before) < 5:  # a late host makes a trajectory longer
             break
     # From when the arm has left home to each position as planned: differences of the controller's stamps.
@@ -264,8 +258,8 @@ def test_given_times_are_kept(robot, simulator):
 def test_positions_alone_and_names_in_any_order(robot):
     names = [JOINTS[i] for i in (5, 3, 1, 0, 2, 4)]
     sort = lambda positions: [positions[i] for i in (5, 3, 1, 0, 2, 4)]  # noqa: E731
-    target = turned(0.2, 0.1, 0.0, -0.1)
-    send_timed(robot, timed(point(0.0, sort(HOME)), point(1.0, sort(turned(0.1, 0.05, 0.0, -0.05))), point(2.0, sort(target)),
+    target = home_plus(0.2, 0.1, 0.0, -0.1)
+    send_timed(robot, timed(point(0.0, sort(HOME)), point(1.0, sort(home_plus(0.1, 0.05, 0.0, -0.05))), point(2.0, sort(target)),
                             names=names)).succeeded()
     result = send_timed(robot, timed(point(2.0, target), point(2.5, target), names=[])).succeeded()
     assert result.final_state.joint_positions == pytest.approx(target, abs=0.005)
@@ -273,8 +267,8 @@ def test_positions_alone_and_names_in_any_order(robot):
 
 def test_too_fast_is_ended_with_the_first_limit_before_anything_moves(robot, simulator):
     before = simulator.state()["target"]
-    goal = send_timed(robot, timed(point(0.0, HOME), point(0.1, turned(0.5)), point(0.5, turned(0.5))))
-    status, result = goal.end(10.0)
+    goal = send_timed(robot, timed(point(0.0, HOME), point(0.1, home_plus(0.5)), point(0.5, home_plus(0.5))))
+    status, result = goal.wait_for_result(10.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.INVALID_GOAL
     assert " of shoulder_pan_joint is " in result.message and "its limit" in result.message
     assert simulator.state()["target"] == before
@@ -286,8 +280,8 @@ BAD_TIMES = [
     (timed(point(0.0, HOME), point(0.0, HOME)), "times[1] is 0"),
     (timed(point(0.0, HOME), point(2.0, HOME), point(1.0, HOME)), "times[2] is 1"),
     (timed(point(0.0, HOME), point(1.0, HOME[:4])), "points[1].positions has 4 values"),
-    (timed(point(0.0, HOME), point(1.0, turned(NAN))), "positions[1] of shoulder_pan_joint is nan"),
-    (timed(point(0.0, HOME), point(1.0, turned(7.0))), "positions[1] of shoulder_pan_joint is 7"),
+    (timed(point(0.0, HOME), point(1.0, home_plus(NAN))), "positions[1] of shoulder_pan_joint is nan"),
+    (timed(point(0.0, HOME), point(1.0, home_plus(7.0))), "positions[1] of shoulder_pan_joint is 7"),
     (timed(point(0.0, HOME, [0.0] * 6), point(1.0, HOME)), "points[1].velocities has 0 values"),
     (timed(point(0.0, HOME, [0.0] * 6), point(1.0, HOME, [0.5] * 6)), "begins and ends at rest"),
     (timed(point(0.0, HOME), point(1.0, HOME), names=JOINTS[:5]), "joint_names has 5 names"),

@@ -5,7 +5,7 @@ import time
 import pytest
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
-from support import HOME, JOINTS, Client, Simulator, node, seconds, wait_for
+from support import HOME, JOINTS, Client, Simulator, seconds, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -18,9 +18,9 @@ def test_two_robots_move_at_once_and_apart(addresses, processes):
     try:
         for side, address in zip(("left", "right"), addresses):
             processes(Simulator(address))
-            processes(node("driver", address, f"tf_prefix:={side}_", namespace=side))
+            processes(start_node("driver", address, f"tf_prefix:={side}_", namespace=side))
             clients[side] = Client(side)
-        states = {side: client.listen(JointState, "joint_states") for side, client in clients.items()}
+        states = {side: client.subscribe(JointState, "joint_states") for side, client in clients.items()}
         for client in clients.values():
             make_ready(client)
         goals = {side: client.send(MoveJ, "move_j", joint_positions=[angle, *HOME[1:]], speed=1.0)
@@ -43,9 +43,9 @@ def connections(simulator):
 
 def test_ten_state_receivers_on_one_robot_have_the_same_states_while_it_moves(simulator, driver, client, processes):
     for number in range(RECEIVERS):
-        processes(node("robot_state_receiver", simulator.address, "rtde_frequency:=20.0", namespace=f"watcher_{number}"))
+        processes(start_node("robot_state_receiver", simulator.address, "rtde_frequency:=20.0", namespace=f"watcher_{number}"))
     make_ready(client)
-    states = [client.listen(JointState, f"/watcher_{number}/joint_states") for number in range(RECEIVERS)]
+    states = [client.subscribe(JointState, f"/watcher_{number}/joint_states") for number in range(RECEIVERS)]
     wait_for(lambda: all(states), LIMIT, "joint states of all of them")
     before = connections(simulator)
     client.send(MoveJ, "move_j", joint_positions=[0.5, *HOME[1:]], speed=1.0).succeeded()

@@ -52,7 +52,7 @@ def test_move_until_contact_counts_only_its_direction(robot, simulator):
                       timeout=15.0)
     wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
     simulator.control("push", force=[0, 0, 30], duration=0.3)
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and not result.contact
     assert result.error_code == ErrorCode.NOT_REACHED, result.message
 
@@ -63,7 +63,7 @@ def test_move_until_contact_counts_only_its_direction(robot, simulator):
                                                 (MoveUntilForce, "move_until_force", {"threshold": 50.0})])
 def test_without_a_contact_it_ends_with_a_stop_by_distance_or_time(robot, action, name, more, fields, code):
     start = height_now(robot)
-    status, result = robot.send(action, name, twist=DOWN, **fields, **more).end()
+    status, result = robot.send(action, name, twist=DOWN, **fields, **more).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == code, result.message
     assert speed_now(robot) < 0.01
     expected = min(fields["distance"], 0.05 * fields["timeout"])
@@ -75,7 +75,7 @@ def test_cancel_of_move_until_contact_leaves_the_arm_at_rest(robot):
     goal = robot.send(MoveUntilContact, "move_until_contact", twist=DOWN, distance=0.5, timeout=30.0)
     wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
     goal.cancel()
-    status, result = goal.end()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
     assert speed_now(robot) < 0.01 and height_now(robot) > 0.4
 
@@ -95,7 +95,7 @@ def test_move_until_force_looks_only_at_its_axes(robot, simulator):
                       distance=0.1, timeout=15.0)
     wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
     simulator.control("push", force=[0, 40, 0], duration=0.4)
-    assert goal.end()[1].error_code == ErrorCode.NOT_REACHED
+    assert goal.wait_for_result()[1].error_code == ErrorCode.NOT_REACHED
 
 
 def test_move_until_torque_is_stopped_by_a_torque_of_its_size(robot, simulator):
@@ -112,7 +112,7 @@ def test_what_the_sensor_reads_at_the_start_counts_as_zero(robot, simulator):
     simulator.control("push", force=[0, 0, 60], duration=60.0)
     time.sleep(8.0)  # of a half-sine of 60 s: some 24 N, rising by 3 N/s
     status, result = robot.send(MoveUntilForce, "move_until_force", twist=DOWN, threshold=15.0, distance=0.03,
-                                timeout=10.0).end()
+                                timeout=10.0).wait_for_result()
     assert result.error_code == ErrorCode.NOT_REACHED, result.message
 
 
@@ -141,9 +141,9 @@ def test_contact_detection_sees_a_contact_of_another_goals_motion(robot, table):
     motion = robot.send(SpeedL, "speed_l", twist=DOWN, time=1.7)
     result = watch.succeeded()
     assert 0.5 < result.after < 5.0
-    motion.end()
+    motion.wait_for_result()
 
 
 def test_contact_detection_ends_when_its_time_is_over(robot):
-    status, result = robot.send(ContactDetection, "contact_detection", timeout=0.5).end()
+    status, result = robot.send(ContactDetection, "contact_detection", timeout=0.5).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.TIMEOUT

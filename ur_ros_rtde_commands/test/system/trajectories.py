@@ -8,7 +8,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from ur_ros_rtde_msgs.msg import JointWaypoint
 
 
-def turned(*angles):
+def home_plus(*angles):
     """Home, with the joints turned by these angles, base first."""
     return [home + angle for home, angle in zip(HOME, [*angles, *[0.0] * (6 - len(angles))])]
 
@@ -20,7 +20,7 @@ def waypoints(*positions):
 def wave(count, size=0.3):
     """Samples of a smooth closed curve that begins at home."""
     angles = [2.0 * math.pi * i / (count - 1) for i in range(count)]
-    return [turned(size * (1.0 - math.cos(a)), 0.5 * size * math.sin(a), -0.4 * size * math.sin(2.0 * a)) for a in angles]
+    return [home_plus(size * (1.0 - math.cos(a)), 0.5 * size * math.sin(a), -0.4 * size * math.sin(2.0 * a)) for a in angles]
 
 
 def point(time, positions, velocities=(), accelerations=()):
@@ -47,7 +47,7 @@ def cycles_without_target(simulator, after):
     return max(targets) - min(targets) + 1 - len(targets)
 
 
-class Watcher:
+class TargetSpeedRecorder:
     """Follows the simulator's target in the background of a test: called in a wait_for."""
 
     def __init__(self, simulator):
@@ -55,7 +55,7 @@ class Watcher:
         self._last = 0
         self.speeds = []
 
-    def look(self):
+    def update(self):
         """The fastest target joint of each cycle since the last look."""
         cycles = self._simulator.control("trace", after=self._last)["cycles"]
         if cycles:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Moves joint 1 by an action goal, prints the goal's id, and ends as it is told to, without a thought for the arm.
 
-careless_client.py <joint 1 in rad> <namespace> [destroy]
+move_j_client.py <joint 1 in rad> <namespace> [destroy]
 
 With `destroy` it destroys its action client at the first line on stdin, and lives on.
 """
@@ -17,7 +17,7 @@ from ur_ros_rtde_msgs.action import MoveJ
 
 def main():
     rclpy.init()
-    node = rclpy.create_node("careless_client", namespace=sys.argv[2] or None)
+    node = rclpy.create_node("move_j_client", namespace=sys.argv[2] or None)
     client = ActionClient(node, MoveJ, "move_j")
     assert client.wait_for_server(timeout_sec=20.0)
     sent = client.send_goal_async(MoveJ.Goal(joint_positions=[float(sys.argv[1]), *HOME[1:]], speed=0.2, acceleration=0.5))

@@ -4,7 +4,7 @@ Import this before control_msgs. PLUGIN is the library of follow_joint_trajector
 the folder of the interfaces' libraries.
 """
 
-from interfaces_or_ours import provide
+from interface_fallback import provide
 
 LIBRARIES = provide("control_msgs")
 PLUGIN = LIBRARIES / "libur_ros_rtde_moveit_commands.so" if LIBRARIES else None

@@ -6,9 +6,9 @@ import json
 import pathlib
 import sys
 
-from support import program
+from support import find_program
 
-BUILD = pathlib.Path(program("ur_ros_rtde", "driver")).parents[3] / "build"
+BUILD = pathlib.Path(find_program("ur_ros_rtde", "driver")).parents[3] / "build"
 # The tests' build of these packages defines the interfaces that are not installed.
 DEFINED_BY = {"control_msgs": "ur_ros_rtde_commands", "tf2_msgs": "ur_ros_rtde"}
 KINDS = ("generator_c", "typesupport_c", "typesupport_introspection_c", "typesupport_fastrtps_cpp", "typesupport_fastrtps_c",
