@@ -1,32 +1,19 @@
 """execute_cartesian_path, on the simulator."""
 
-import copy
 import math
 
 import pytest
 from action_msgs.msg import GoalStatus
+from arm_state import get_tcp_pose, translated
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
 from support import wait_for
 from trajectories import TargetSpeedRecorder
 
 from ur_ros_rtde_msgs.action import ExecuteCartesianPath
 from ur_ros_rtde_msgs.msg import ErrorCode
-from ur_ros_rtde_msgs.srv import GetTcpPose
 
 NAN = math.nan
 LAG = 0.03
-
-
-def pose_now(robot):
-    return robot.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose
-
-
-def moved(pose, x=0.0, y=0.0, z=0.0):
-    pose = copy.deepcopy(pose)
-    pose.position.x += x
-    pose.position.y += y
-    pose.position.z += z
-    return pose
 
 
 def send(robot, *poses, **fields):
@@ -38,8 +25,8 @@ def point(pose):
 
 
 def test_the_tcp_goes_straight_from_pose_to_pose(robot):
-    start = pose_now(robot)
-    down, aside = moved(start, z=-0.15), moved(start, y=0.1, z=-0.15)
+    start = get_tcp_pose(robot)
+    down, aside = translated(start, z=-0.15), translated(start, y=0.1, z=-0.15)
     seen = robot.subscribe(PoseStamped, "tcp_pose")
     result = send(robot, down, aside, lookahead_time=LAG).succeeded()
     reached = result.final_state.tcp_pose
@@ -51,8 +38,8 @@ def test_the_tcp_goes_straight_from_pose_to_pose(robot):
 
 
 def test_it_keeps_its_speed_and_goes_round_corners(robot):
-    start = pose_now(robot)
-    corner, end = moved(start, z=-0.1), moved(start, y=0.1, z=-0.1)
+    start = get_tcp_pose(robot)
+    corner, end = translated(start, z=-0.1), translated(start, y=0.1, z=-0.1)
     stops = send(robot, corner, end, speed=0.1, lookahead_time=LAG).succeeded()
     send(robot, start).succeeded()
     seen = robot.subscribe(PoseStamped, "tcp_pose")
@@ -63,17 +50,17 @@ def test_it_keeps_its_speed_and_goes_round_corners(robot):
 
 def test_without_limits_the_joints_are_slow(robot, simulator):
     recorder = TargetSpeedRecorder(simulator)
-    goal = send(robot, moved(pose_now(robot), y=0.6, z=-0.2), speed=3.0, rotation_speed=6.0)
+    goal = send(robot, translated(get_tcp_pose(robot), y=0.6, z=-0.2), speed=3.0, rotation_speed=6.0)
     wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
     goal.succeeded()
     assert 0.9 < max(recorder.update()) < 1.05 * 1.03
 
 
 def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, simulator):
-    start = pose_now(robot)
+    start = get_tcp_pose(robot)
     before = simulator.state()["target"]["position"]
     # From one side of the base to the other: the line leads through its axis.
-    through = moved(start, x=-2.0 * start.position.x, y=-2.0 * start.position.y)
+    through = translated(start, x=-2.0 * start.position.x, y=-2.0 * start.position.y)
     goal = send(robot, through)
     if goal.accepted:
         status, result = goal.wait_for_result()
@@ -85,9 +72,9 @@ def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, 
 
 
 def test_a_cancel_decelerates_on_the_line(robot, simulator):
-    start = pose_now(robot)
+    start = get_tcp_pose(robot)
     seen = robot.subscribe(PoseStamped, "tcp_pose")
-    goal = send(robot, moved(start, z=-0.3), speed=0.1, lookahead_time=LAG)
+    goal = send(robot, translated(start, z=-0.3), speed=0.1, lookahead_time=LAG)
     wait_for(lambda: any(f.motion.progress > 0.1 for f in goal.feedback), 20.0, "motion")
     goal.cancel()
     status, result = goal.wait_for_result(10.0)

@@ -4,6 +4,7 @@ import math
 
 import pytest
 from action_msgs.msg import GoalStatus
+from arm_state import get_joint_state, get_tcp_pose, home_plus, is_at_rest, wait_until_moving
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Twist, Vector3
 from sensor_msgs.msg import JointState
 from support import HOME, robot_seconds, seconds, wait_for
@@ -11,38 +12,15 @@ from support import HOME, robot_seconds, seconds, wait_for
 from ur_ros_rtde_msgs.action import (MoveJ, MoveL, ServoJ, SetDigitalOutput, SetPayload, SetSpeedSlider, SpeedL, Stop,
                                      ZeroFtSensor)
 from ur_ros_rtde_msgs.msg import ErrorCode, IOState
-from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
 
 NAN = math.nan
-
-
-def home_plus(angle, joint=0):
-    positions = list(HOME)
-    positions[joint] += angle
-    return positions
-
-
-def pose_now(client):
-    return client.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose
-
-
-def joints_now(client):
-    return client.call(GetJointState, "get_joint_state").joint_state
-
-
-def wait_until_moving(client, speed=0.05):
-    wait_for(lambda: max(map(abs, joints_now(client).velocity)) > speed, 10.0, "the arm to move")
-
-
-def is_at_rest(client):
-    return max(map(abs, joints_now(client).velocity)) < 0.01
 
 
 def test_move_j_arrives_with_progress_and_says_where(robot):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.4), speed=0.6, acceleration=1.5)
     result = goal.succeeded()
     assert result.final_state.joint_positions == pytest.approx(home_plus(0.4), abs=0.005)
-    assert joints_now(robot).position == pytest.approx(home_plus(0.4), abs=0.005)
+    assert get_joint_state(robot).position == pytest.approx(home_plus(0.4), abs=0.005)
     progress = [feedback.motion.progress for feedback in goal.feedback]
     assert len(progress) >= 10 and progress == sorted(progress) and 0.2 < progress[len(progress) // 2] < 0.9
     stamps = [seconds(feedback.motion.elapsed) for feedback in goal.feedback]
@@ -51,8 +29,8 @@ def test_move_j_arrives_with_progress_and_says_where(robot):
 
 
 def test_move_l_goes_straight(robot):
-    start = pose_now(robot)
-    target = pose_now(robot)
+    start = get_tcp_pose(robot)
+    target = get_tcp_pose(robot)
     target.position.z -= 0.1
     poses = robot.subscribe(PoseStamped, "tcp_pose")
     wait_for(lambda: poses, 10.0, "tcp_pose")
@@ -67,7 +45,7 @@ def test_move_l_goes_straight(robot):
 
 
 def test_a_quaternion_need_not_be_normalised(robot):
-    target = pose_now(robot)
+    target = get_tcp_pose(robot)
     target.position.z += 0.02
     for axis in "xyzw":
         setattr(target.orientation, axis, 3.0 * getattr(target.orientation, axis))
@@ -78,8 +56,8 @@ BAD_GOALS = [
     (MoveJ, "move_j", {"joint_positions": [0.0] * 5}, "joint_positions has 5 values", "6"),
     (MoveJ, "move_j", {"joint_positions": []}, "joint_positions has 0 values", "6"),
     (MoveJ, "move_j", {"joint_positions": [0.0] * 7}, "joint_positions has 7 values", "6"),
-    (MoveJ, "move_j", {"joint_positions": home_plus(NAN, 2)}, "joint_positions[2] (elbow_joint) is nan", "6.28"),
-    (MoveJ, "move_j", {"joint_positions": home_plus(9.0, 5)}, "joint_positions[5] (wrist_3_joint) is 9", "6.28"),
+    (MoveJ, "move_j", {"joint_positions": home_plus(0.0, 0.0, NAN)}, "joint_positions[2] (elbow_joint) is nan", "6.28"),
+    (MoveJ, "move_j", {"joint_positions": home_plus(0.0, 0.0, 0.0, 0.0, 0.0, 9.0)}, "joint_positions[5] (wrist_3_joint) is 9", "6.28"),
     (MoveJ, "move_j", {"joint_positions": HOME, "speed": 3.5}, "speed is 3.5 rad/s", "3.14"),
     (MoveJ, "move_j", {"joint_positions": HOME, "speed": 0.0}, "speed is 0", "above 0"),
     (MoveJ, "move_j", {"joint_positions": HOME, "speed": -1.0}, "speed is -1", "above 0"),
@@ -125,7 +103,7 @@ def test_a_goal_after_a_bad_one_is_carried_out(robot):
 
 @pytest.mark.parametrize("x", [1.6, 2.9])
 def test_an_unreachable_pose_is_refused(robot, x):
-    pose = pose_now(robot)
+    pose = get_tcp_pose(robot)
     pose.position.x, pose.position.y, pose.position.z = x, 0.0, 0.5
     goal = robot.send(MoveL, "move_l", pose=pose)
     assert not goal.accepted
@@ -153,7 +131,7 @@ def test_a_second_motion_is_refused_and_told_which_one_runs(robot):
 ], ids=lambda value: value if isinstance(value, str) else "")
 def test_cancel_decelerates_and_tells_where_the_arm_stands(robot, action, name, fields):
     if action is MoveL:
-        fields = {**fields, "pose": pose_now(robot)}
+        fields = {**fields, "pose": get_tcp_pose(robot)}
         fields["pose"].position.z -= 0.4
     goal = robot.send(action, name, **fields)
     wait_until_moving(robot, 0.1)
@@ -165,7 +143,7 @@ def test_cancel_decelerates_and_tells_where_the_arm_stands(robot, action, name, 
     assert status == GoalStatus.STATUS_CANCELED
     assert not result.success and result.error_code == ErrorCode.CANCELED
     assert is_at_rest(robot)
-    assert result.final_state.joint_positions == pytest.approx(list(joints_now(robot).position), abs=0.003)
+    assert result.final_state.joint_positions == pytest.approx(list(get_joint_state(robot).position), abs=0.003)
     recorded = robot.messages_until_now(states)
     speed = [max(map(abs, state.velocity)) for state in recorded]
     times = [seconds(state.header.stamp) for state in recorded]
@@ -207,7 +185,7 @@ def test_servo_j_refuses_what_the_joints_cannot_do_in_the_time(robot):
 
 
 def test_speed_l_moves_for_its_time_and_stops(robot):
-    start = pose_now(robot).position.z
+    start = get_tcp_pose(robot).position.z
     result = robot.send(SpeedL, "speed_l", twist=Twist(linear=Vector3(z=-0.1)), acceleration=1.0, time=1.0).succeeded()
     assert is_at_rest(robot)
     assert start - result.final_state.tcp_pose.position.z == pytest.approx(0.095, abs=0.03)

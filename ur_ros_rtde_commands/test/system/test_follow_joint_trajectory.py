@@ -8,12 +8,13 @@ import control_msgs_fallback
 import pytest
 import yaml
 from action_msgs.msg import GoalStatus
+from arm_state import home_plus
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from control_msgs.msg import JointComponentTolerance, JointTolerance
 from interface_fallback import type_hashes
 from support import HOME, JOINTS, start_node, wait_for
-from trajectories import home_plus, point, timed
+from trajectories import point, timed
 
 Result = FollowJointTrajectory.Result
 CONFIG = pathlib.Path(__file__).parents[3] / "ur_ros_rtde" / "config" / "moveit"

@@ -4,9 +4,9 @@ import math
 
 import pytest
 from action_msgs.msg import GoalStatus
+from arm_state import get_joint_state, get_tcp_pose, home_plus, is_at_rest, wait_until_moving
 from geometry_msgs.msg import Pose, Vector3, Wrench
 from support import wait_for
-from test_commands import home_plus, is_at_rest, joints_now, pose_now, wait_until_moving
 
 from ur_ros_rtde_msgs.action import (DirectTorque, EnableExternalFtSensor, ForceMode, Freedrive, MoveJ, MoveL, SetExternalForceTorque,
                                      SetForceModeParameter, TeachMode, Trigger, ZeroFtSensor)
@@ -22,7 +22,7 @@ def down(force):
 def press(robot, simulator, force, **fields):
     """Force mode onto a surface five millimetres below the TCP, until the arm presses with `force`."""
     robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
-    simulator.control("place_surface", z=pose_now(robot).position.z - 0.005, stiffness=20000.0)
+    simulator.control("place_surface", z=get_tcp_pose(robot).position.z - 0.005, stiffness=20000.0)
     goal = robot.send(ForceMode, "force_mode", task_frame=Pose(), compliant=ALONG_Z, wrench=down(force),
                       limits=[0.1, 0.1, 0.03, 0.5, 0.5, 0.5], **fields)
 
@@ -35,14 +35,14 @@ def press(robot, simulator, force, **fields):
 
 
 def test_force_mode_presses_with_the_force_it_was_asked_for_until_it_is_canceled(robot, simulator):
-    before = pose_now(robot).position
+    before = get_tcp_pose(robot).position
     goal = press(robot, simulator, 20.0)
     assert simulator.state()["force_mode"]
     goal.cancel()
     status, result = goal.wait_for_result()
     assert (status, result.success) == (GoalStatus.STATUS_SUCCEEDED, True), result.message
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
-    after = pose_now(robot).position
+    after = get_tcp_pose(robot).position
     assert (after.x, after.y) == pytest.approx((before.x, before.y), abs=0.003)
     assert before.z - after.z == pytest.approx(0.005, abs=0.003)
 
@@ -68,7 +68,7 @@ def test_force_mode_ends_with_a_stop_of_the_robot(robot, simulator):
 
 def test_a_motion_goes_along_a_surface_in_force_mode_that_was_started_and_is_changed_meanwhile(robot, simulator):
     robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
-    simulator.control("place_surface", z=pose_now(robot).position.z - 0.005, stiffness=20000.0)
+    simulator.control("place_surface", z=get_tcp_pose(robot).position.z - 0.005, stiffness=20000.0)
     fields = dict(compliant=ALONG_Z, limits=[0.1, 0.1, 0.03, 0.5, 0.5, 0.5])
 
     def pressing(force):
@@ -76,7 +76,7 @@ def test_a_motion_goes_along_a_surface_in_force_mode_that_was_started_and_is_cha
 
     robot.send(ForceMode, "force_mode_start", wrench=down(15.0), **fields).succeeded()
     wait_for(lambda: pressing(15.0) and is_at_rest(robot), 10.0, "15 N")
-    target = pose_now(robot)
+    target = get_tcp_pose(robot)
     target.position.y += 0.1
     motion = robot.send(MoveL, "move_l", pose=target, speed=0.03)
     wait_until_moving(robot, 0.02)
@@ -84,7 +84,7 @@ def test_a_motion_goes_along_a_surface_in_force_mode_that_was_started_and_is_cha
     assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
     robot.send(ForceMode, "force_mode_start", wrench=down(30.0), **fields).succeeded()
     motion.succeeded()
-    assert pose_now(robot).position.y == pytest.approx(target.position.y, abs=0.002)
+    assert get_tcp_pose(robot).position.y == pytest.approx(target.position.y, abs=0.002)
     assert simulator.state()["force_mode"] and pressing(30.0), "a motion that succeeds leaves it on"
     robot.send(Trigger, "force_mode_stop").succeeded()
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
@@ -111,9 +111,9 @@ def test_damping_and_gain_are_set(robot):
 def test_the_arm_can_be_pushed_while_it_is_guided_and_stands_still_afterwards(robot, simulator, action, name):
     goal = robot.send(action, name)
     wait_for(lambda: goal.accepted and simulator.state()["freedrive"], 10.0, "the arm to be free")
-    before = pose_now(robot).position
+    before = get_tcp_pose(robot).position
     simulator.control("push", force=[0.0, 60.0, 0.0], duration=3.0)
-    wait_for(lambda: abs(pose_now(robot).position.y - before.y) > 0.02, 10.0, "the arm to give way")
+    wait_for(lambda: abs(get_tcp_pose(robot).position.y - before.y) > 0.02, 10.0, "the arm to give way")
     goal.cancel()
     assert goal.wait_for_result()[0] == GoalStatus.STATUS_SUCCEEDED
     assert not simulator.state()["freedrive"]
@@ -133,10 +133,10 @@ def test_motions_are_refused_while_somebody_may_hold_the_arm(robot, simulator, s
 
 
 def test_direct_torque_turns_a_joint_and_comes_to_rest(robot):
-    before = joints_now(robot).position[0]
+    before = get_joint_state(robot).position[0]
     robot.send(DirectTorque, "direct_torque", joint_torques=[15.0, 0.0, 0.0, 0.0, 0.0, 0.0], duration=0.3,
                max_joint_speed=3.0).succeeded()
-    assert joints_now(robot).position[0] > before + 0.01 and is_at_rest(robot)
+    assert get_joint_state(robot).position[0] > before + 0.01 and is_at_rest(robot)
 
 
 def test_direct_torque_ends_when_a_joint_gets_too_fast(robot):

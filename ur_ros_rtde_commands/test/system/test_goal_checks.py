@@ -2,18 +2,16 @@
 
 import pytest
 from action_msgs.srv import CancelGoal
+from arm_state import get_tcp_pose, translated
 from geometry_msgs.msg import Pose
 from support import wait_for
 
 from ur_ros_rtde_msgs.action import MoveL, SetDigitalOutput, SetWatchdog, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
-from ur_ros_rtde_msgs.srv import GetTcpPose
 
 
 def pose_below(robot):
-    pose = robot.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose
-    pose.position.z -= 0.05
-    return pose
+    return translated(get_tcp_pose(robot), z=-0.05)
 
 
 @pytest.fixture
@@ -55,7 +53,7 @@ def test_a_goal_whose_check_waits_does_not_move_after_cancel_all(robot, simulato
 
 
 def test_an_unreachable_pose_is_rejected_after_the_answer(robot):
-    pose = Pose(position=robot.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose.position)
+    pose = Pose(position=get_tcp_pose(robot).position)
     pose.position.z += 1.1
     goal = robot.send(MoveL, "move_l", pose=pose)
     assert not goal.accepted

@@ -4,35 +4,18 @@ import math
 
 import pytest
 from action_msgs.msg import GoalStatus
-from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from arm_state import get_joint_positions, get_joint_speed, get_tcp_pose, translated
+from geometry_msgs.msg import Pose, Quaternion, Twist, Vector3
 from sensor_msgs.msg import JointState
 from support import HOME, REAL_TIME_FACTOR, wait_for
 from trajectories import TargetSpeedRecorder
 
 from ur_ros_rtde_msgs.action import (Decelerate, Jog, MoveC, MoveJ, MoveJIK, MoveJRelative, MoveLFK, MoveLRelative, MoveP,
-                                     MovePath, MoveL, ServoC, ServoJ, ServoL, SpeedJ, SpeedL)
+                                     MovePath, ServoC, ServoJ, ServoL, SpeedJ, SpeedL)
 from ur_ros_rtde_msgs.msg import ErrorCode, PathWaypoint
-from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
 
 DOWN = Quaternion(x=math.sqrt(0.5), y=math.sqrt(0.5), z=0.0, w=0.0)  # the tool looks down
 FORWARD = Pose(position=Point(x=0.5), orientation=DOWN)
-
-
-def pose_now(client):
-    return client.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose
-
-
-def joints_now(client):
-    return list(client.call(GetJointState, "get_joint_state").joint_state.position)
-
-
-def speed_now(client):
-    return max(map(abs, client.call(GetJointState, "get_joint_state").joint_state.velocity))
-
-
-def moved(pose, x=0.0, y=0.0, z=0.0):
-    p = pose.position
-    return Pose(position=Point(x=p.x + x, y=p.y + y, z=p.z + z), orientation=pose.orientation)
 
 
 def distance(a, b):
@@ -75,7 +58,7 @@ def xyz(pose):
 
 
 def test_move_j_ik_gets_the_tcp_to_the_pose(robot):
-    target = moved(pose_now(robot), y=0.2, z=-0.1)
+    target = translated(get_tcp_pose(robot), y=0.2, z=-0.1)
     result = robot.send(MoveJIK, "move_j_ik", pose=target, speed=0.8, acceleration=3.0).succeeded()
     assert distance(result.final_state.tcp_pose, target) < 0.002 and angle(result.final_state.tcp_pose, target) < 0.01
 
@@ -83,7 +66,7 @@ def test_move_j_ik_gets_the_tcp_to_the_pose(robot):
 def test_move_j_relative_adds_to_where_the_joints_are(robot):
     offsets = [0.2, 0.0, -0.1, 0.0, 0.0, 0.3]
     for _ in range(2):
-        start = joints_now(robot)
+        start = get_joint_positions(robot)
         result = robot.send(MoveJRelative, "move_j_relative", joint_offsets=offsets, speed=1.0, acceleration=4.0).succeeded()
         assert list(result.final_state.joint_positions) == pytest.approx([a + b for a, b in zip(start, offsets)], abs=0.005)
 
@@ -96,18 +79,18 @@ def test_move_j_relative_refuses_what_leads_out_of_the_joints_range(robot):
 
 
 def test_move_l_fk_keeps_to_a_straight_line(robot, simulator):
-    start = xyz(pose_now(robot))
+    start = xyz(get_tcp_pose(robot))
     target = [HOME[0] + 0.3, *HOME[1:]]
     goal = robot.send(MoveLFK, "move_l_fk", joint_positions=target, speed=0.2, acceleration=1.0)
     track = Track(simulator, goal)
-    assert joints_now(robot) == pytest.approx(target, abs=0.005)
-    assert track.farthest_from_line(start, xyz(pose_now(robot))) < 0.002
+    assert get_joint_positions(robot) == pytest.approx(target, abs=0.005)
+    assert track.farthest_from_line(start, xyz(get_tcp_pose(robot))) < 0.002
 
 
 @pytest.mark.parametrize("frame, expected", [(MoveLRelative.Goal.BASE, (0.0, 0.0, 0.05)),
                                              (MoveLRelative.Goal.TOOL, (0.0, 0.0, -0.05))])
 def test_move_l_relative_goes_along_the_axes_of_its_frame(robot, frame, expected):
-    start = pose_now(robot)  # the tool looks down
+    start = get_tcp_pose(robot)  # the tool looks down
     result = robot.send(MoveLRelative, "move_l_relative", frame=frame, translation=Vector3(z=0.05)).succeeded()
     end = result.final_state.tcp_pose
     assert [b - a for a, b in zip(xyz(start), xyz(end))] == pytest.approx(expected, abs=0.002)
@@ -115,7 +98,7 @@ def test_move_l_relative_goes_along_the_axes_of_its_frame(robot, frame, expected
 
 
 def test_move_l_relative_turns_about_the_tcp(robot):
-    start = pose_now(robot)
+    start = get_tcp_pose(robot)
     result = robot.send(MoveLRelative, "move_l_relative", frame=MoveLRelative.Goal.BASE, rotation=Vector3(z=0.3),
                         speed=0.3).succeeded()
     assert distance(start, result.final_state.tcp_pose) < 0.002
@@ -123,32 +106,32 @@ def test_move_l_relative_turns_about_the_tcp(robot):
 
 
 def test_move_p_rounds_its_corner(robot, simulator):
-    start = pose_now(robot)
-    corner, end = moved(start, z=-0.1), moved(start, z=-0.1, y=0.15)
+    start = get_tcp_pose(robot)
+    corner, end = translated(start, z=-0.1), translated(start, z=-0.1, y=0.15)
     goal = robot.send(MoveP, "move_p", poses=[corner, end], speed=0.1, blend_radius=0.03)
     track = Track(simulator, goal)
-    assert distance(pose_now(robot), end) < 0.003
+    assert distance(get_tcp_pose(robot), end) < 0.003
     assert 0.004 < track.nearest_to(xyz(corner)) < 0.03, "the corner is cut, within the blend radius"
     assert {feedback.waypoint for feedback in goal.feedback} == {0, 1}
 
 
 def test_move_c_goes_round(robot, simulator):
-    start = pose_now(robot)
-    via, end = moved(start, x=0.05, y=0.05), moved(start, y=0.1)
+    start = get_tcp_pose(robot)
+    via, end = translated(start, x=0.05, y=0.05), translated(start, y=0.1)
     track = Track(simulator, robot.send(MoveC, "move_c", via=via, pose=end, speed=0.1))
-    assert distance(pose_now(robot), end) < 0.003
-    centre = xyz(moved(start, y=0.05))
+    assert distance(get_tcp_pose(robot), end) < 0.003
+    centre = xyz(translated(start, y=0.05))
     radii = [math.dist(point, centre) for point in track.points]
     assert max(abs(radius - 0.05) for radius in radii) < 0.003
     assert track.nearest_to(xyz(via)) < 0.005
 
 
 def test_move_path_mixes_kinds_and_tells_its_waypoint(robot):
-    start = pose_now(robot)
+    start = get_tcp_pose(robot)
     joints = [HOME[0] + 0.3, *HOME[1:]]
     goal = robot.send(MovePath, "move_path", waypoints=[
-        PathWaypoint(type=PathWaypoint.MOVE_L, pose=moved(start, z=-0.1), speed=0.2, blend_radius=0.02),
-        PathWaypoint(type=PathWaypoint.MOVE_L, pose=moved(start, z=-0.1, y=0.1), speed=0.2),
+        PathWaypoint(type=PathWaypoint.MOVE_L, pose=translated(start, z=-0.1), speed=0.2, blend_radius=0.02),
+        PathWaypoint(type=PathWaypoint.MOVE_L, pose=translated(start, z=-0.1, y=0.1), speed=0.2),
         PathWaypoint(type=PathWaypoint.MOVE_J, joint_positions=joints, speed=0.6, acceleration=2.0)])
     result = goal.succeeded()
     assert list(result.final_state.joint_positions) == pytest.approx(joints, abs=0.005)
@@ -157,31 +140,31 @@ def test_move_path_mixes_kinds_and_tells_its_waypoint(robot):
 
 
 def test_a_path_ends_with_the_controllers_own_words_when_it_cannot_go_on(robot):
-    start = pose_now(robot)
-    near = [moved(start, z=-0.002 * i) for i in range(1, 21)]  # as many as are asked for beforehand
+    start = get_tcp_pose(robot)
+    near = [translated(start, z=-0.002 * i) for i in range(1, 21)]  # as many as are asked for beforehand
     status, result = robot.send(MovePath, "move_path", waypoints=[
         PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, speed=0.2, acceleration=2.0)
-        for pose in [*near, moved(start, x=-0.8)]]).wait_for_result()
+        for pose in [*near, translated(start, x=-0.8)]]).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED
     assert result.error_code == ErrorCode.REJECTED_BY_ROBOT and "the controller ended the script" in result.message
-    assert distance(result.final_state.tcp_pose, near[-1]) < 0.01 and speed_now(robot) < 0.01
+    assert distance(result.final_state.tcp_pose, near[-1]) < 0.01 and get_joint_speed(robot) < 0.01
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 
 def test_cancel_ends_a_path_at_rest_and_the_next_motion_works(robot):
-    start = pose_now(robot)
-    goal = robot.send(MoveP, "move_p", poses=[moved(start, z=-0.15), moved(start, z=-0.15, y=0.3)], speed=0.1)
-    wait_for(lambda: speed_now(robot) > 0.05, 10.0, "the arm to move")
+    start = get_tcp_pose(robot)
+    goal = robot.send(MoveP, "move_p", poses=[translated(start, z=-0.15), translated(start, z=-0.15, y=0.3)], speed=0.1)
+    wait_for(lambda: get_joint_speed(robot) > 0.05, 10.0, "the arm to move")
     goal.cancel()
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED, result.message
-    assert speed_now(robot) < 0.01
-    assert distance(result.final_state.tcp_pose, moved(start, z=-0.15, y=0.3)) > 0.1
+    assert get_joint_speed(robot) < 0.01
+    assert distance(result.final_state.tcp_pose, translated(start, z=-0.15, y=0.3)) > 0.1
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 
 def test_a_path_refuses_what_is_wrong_in_it(robot):
-    good = PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose_now(robot))
+    good = PathWaypoint(type=PathWaypoint.MOVE_L, pose=get_tcp_pose(robot))
     for waypoints, text in (([], "1 to 1000"), ([good, PathWaypoint(type=7, pose=good.pose)], "waypoints[1].type"),
                             ([PathWaypoint(type=1, pose=good.pose, blend_radius=0.1)], "blend_radius"),
                             ([PathWaypoint(type=2, joint_positions=HOME)], "MOVE_P")):
@@ -229,14 +212,14 @@ def test_speed_j_refuses_what_a_joint_cannot_do(robot):
 
 @pytest.mark.parametrize("frame, expected", [(Jog.Goal.BASE, 0.1), (Jog.Goal.TOOL, -0.1)])
 def test_jog_moves_along_the_axes_of_its_frame(robot, frame, expected):
-    start = pose_now(robot)
+    start = get_tcp_pose(robot)
     result = robot.send(Jog, "jog", twist=Twist(linear=Vector3(z=0.1)), frame=frame, acceleration=2.0, time=1.0).succeeded()
     way = [b - a for a, b in zip(xyz(start), xyz(result.final_state.tcp_pose))]
     assert way == pytest.approx([0.0, 0.0, expected], abs=0.02)
 
 
 def test_jog_in_a_frame_of_ones_own(robot):
-    start = pose_now(robot)
+    start = get_tcp_pose(robot)
     turned = Pose(orientation=Quaternion(x=math.sqrt(0.5), y=0.0, z=0.0, w=math.sqrt(0.5)))  # its y is the base's z
     result = robot.send(Jog, "jog", twist=Twist(linear=Vector3(y=-0.1)), frame=Jog.Goal.CUSTOM, custom_frame=turned,
                         acceleration=2.0, time=0.5).succeeded()
@@ -246,23 +229,23 @@ def test_jog_in_a_frame_of_ones_own(robot):
 
 def test_jog_goes_on_until_cancel_which_is_a_success(robot):
     goal = robot.send(Jog, "jog", twist=Twist(linear=Vector3(z=-0.05)))
-    wait_for(lambda: speed_now(robot) > 0.02, 10.0, "the arm to move")
+    wait_for(lambda: get_joint_speed(robot) > 0.02, 10.0, "the arm to move")
     goal.cancel()
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_SUCCEEDED and result.success, result.message
-    assert speed_now(robot) < 0.01
+    assert get_joint_speed(robot) < 0.01
 
 
 def test_servo_l_keeps_to_a_straight_line(robot, simulator):
-    start = pose_now(robot)
-    target = moved(start, y=0.15, z=-0.1)
+    start = get_tcp_pose(robot)
+    target = translated(start, y=0.15, z=-0.1)
     track = Track(simulator, robot.send(ServoL, "servo_l", pose=target, time=2.0))
-    assert distance(pose_now(robot), target) < 0.005
+    assert distance(get_tcp_pose(robot), target) < 0.005
     assert track.farthest_from_line(xyz(start), xyz(target)) < 0.005
 
 
 def test_servo_l_refuses_what_the_tcp_cannot_do_in_the_time(robot):
-    goal = robot.send(ServoL, "servo_l", pose=moved(pose_now(robot), z=-0.2), time=0.05)
+    goal = robot.send(ServoL, "servo_l", pose=translated(get_tcp_pose(robot), z=-0.2), time=0.05)
     assert not goal.accepted and "use a time of at least" in robot.refusal(goal).message
 
 
@@ -272,14 +255,14 @@ def test_servo_without_a_time_is_slow(robot, simulator):
     wait_for(lambda: recorder.update() and goal.is_finished(), 30.0, "the end")
     goal.succeeded()
     assert 0.9 < max(recorder.update()) < 1.05 * 1.03
-    start = pose_now(robot)
+    start = get_tcp_pose(robot)
     begin = simulator.state()["timestamp"]
-    robot.send(ServoL, "servo_l", pose=moved(start, y=0.3)).succeeded()
+    robot.send(ServoL, "servo_l", pose=translated(start, y=0.3)).succeeded()
     assert simulator.state()["timestamp"] - begin > 15.0 / 8.0 * 0.3 / 0.25  # as 0.25 m/s at most takes
 
 
 def test_servo_c_gets_there(robot):
-    target = moved(pose_now(robot), y=0.1)
+    target = translated(get_tcp_pose(robot), y=0.1)
     result = robot.send(ServoC, "servo_c", pose=target, speed=0.1).succeeded()
     assert distance(result.final_state.tcp_pose, target) < 0.005
 
@@ -294,11 +277,11 @@ def test_servo_c_gets_there(robot):
 ])
 def test_stops_end_what_moves(robot, name, action, motion, fields):
     if action is ServoL:
-        fields = {**fields, "pose": moved(pose_now(robot), z=-0.2)}
+        fields = {**fields, "pose": translated(get_tcp_pose(robot), z=-0.2)}
     goal = robot.send(action, motion, **fields)
-    wait_for(lambda: speed_now(robot) > 0.03, 10.0, "the arm to move")
+    wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")
     result = robot.send(Decelerate, name, deceleration=3.0).succeeded()
-    assert speed_now(robot) < 0.01 and 0.01 < result.time_to_standstill < 2.0
+    assert get_joint_speed(robot) < 0.01 and 0.01 < result.time_to_standstill < 2.0
     assert motion in result.message
     assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
 

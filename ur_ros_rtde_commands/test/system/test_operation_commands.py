@@ -2,8 +2,8 @@
 
 import pytest
 from action_msgs.msg import GoalStatus
+from arm_state import home_plus, wait_until_moving
 from support import HOME, wait_for
-from test_commands import home_plus, wait_until_moving
 
 from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode

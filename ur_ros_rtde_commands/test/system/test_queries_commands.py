@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import ur10e
 from action_msgs.msg import GoalStatus
+from arm_state import get_joint_state, home_plus, wait_until_moving
 from geometry_msgs.msg import Point, Pose, Quaternion
 from support import HOME, wait_for
-from test_commands import home_plus, joints_now, wait_until_moving
 
 from ur_ros_rtde_msgs.action import (CheckJoints, CheckPose, GetCoriolisTorques, GetFlag, GetForwardKinematics, GetInteger,
                                      GetInverseKinematics, GetJacobian, GetJointPositionsHistory, GetJointValues, GetMassMatrix,
@@ -126,7 +126,7 @@ def test_queries_are_answered_while_the_arm_moves(robot):
     assert progress.value == 0 and "waypoint" in progress.text
     assert ask(robot, GetFlag, "is_program_running").value
     past = ask(robot, GetJointPositionsHistory, "get_actual_joint_positions_history", steps=100).joint_positions
-    assert 0.02 < joints_now(robot).position[0] - past[0] < 0.6
+    assert 0.02 < get_joint_state(robot).position[0] - past[0] < 0.6
     ask(robot, GetJointValues, "get_target_joint_accelerations")
     motion.succeeded()
     assert ask(robot, GetInteger, "get_async_operation_progress").value == -1

@@ -2,8 +2,8 @@
 
 import pytest
 from action_msgs.msg import GoalStatus
+from arm_state import get_joint_state, home_plus, is_at_rest, wait_until_moving
 from support import HOME, wait_for
-from test_commands import home_plus, is_at_rest, joints_now, wait_until_moving
 
 from ur_ros_rtde_msgs.action import MoveJ, SendScript, Stop, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -23,7 +23,7 @@ def test_a_script_moves_the_arm_and_says_what_it_prints(robot):
     result = goal.succeeded()
     assert list(result.output) == ["first", "last: 2"] and result.line == 0 and result.run_time > 0.1
     assert [feedback.output for feedback in goal.feedback] == ["first", "last: 2"]
-    assert joints_now(robot).position[0] == pytest.approx(0.2, abs=0.01)
+    assert get_joint_state(robot).position[0] == pytest.approx(0.2, abs=0.01)
     assert takes_motions(robot)
 
 
@@ -54,7 +54,7 @@ def test_cancel_stops_a_script_that_moves_the_arm(robot):
     goal.cancel()
     status, result = goal.wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_CANCELED, ErrorCode.CANCELED)
-    assert is_at_rest(robot) and joints_now(robot).position[0] < 1.4
+    assert is_at_rest(robot) and get_joint_state(robot).position[0] < 1.4
     assert takes_motions(robot)
 
 

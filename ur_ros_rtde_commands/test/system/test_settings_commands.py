@@ -3,9 +3,9 @@
 import math
 
 import pytest
+from arm_state import get_tcp_pose
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from support import wait_for
-from test_commands import pose_now
 
 from ur_ros_rtde_msgs.action import (GetPose, SendScript, SetAnalogOutput, SetDigitalOutput, SetGravity, SetPayload, SetRegister,
                                      SetTargetPayload, SetTcp, SetWatchdog)
@@ -13,7 +13,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 
 
 def test_set_tcp_moves_the_poses_and_get_tcp_offset_tells_it(robot, simulator):
-    flange = pose_now(robot).position
+    flange = get_tcp_pose(robot).position
     quarter = Quaternion(z=math.sqrt(0.5), w=math.sqrt(0.5))
     robot.send(SetTcp, "set_tcp", pose=Pose(position=Point(z=0.2), orientation=quarter)).succeeded()
     told = robot.send(GetPose, "get_tcp_offset").succeeded()
@@ -21,7 +21,7 @@ def test_set_tcp_moves_the_poses_and_get_tcp_offset_tells_it(robot, simulator):
     assert simulator.state()["tcp_offset"] == pytest.approx([0.0, 0.0, 0.2, 0.0, 0.0, math.pi / 2], abs=1e-6)
 
     def moved():
-        at = pose_now(robot).position
+        at = get_tcp_pose(robot).position
         return math.dist((at.x, at.y, at.z), (flange.x, flange.y, flange.z))
 
     wait_for(lambda: moved() == pytest.approx(0.2, abs=1e-3), 2.0, "tcp_pose to follow")

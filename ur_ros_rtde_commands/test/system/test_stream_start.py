@@ -1,10 +1,11 @@
 """The way to where a stream begins is slow: no message has said yet how fast the arm is to be."""
 
 import pytest
+from arm_state import get_joint_state, get_tcp_pose, home_plus
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 from support import start_node, wait_for
-from test_streams import Publisher, home_plus, joint_message, pose_now, state
+from test_streams import Publisher, joint_message
 from trajectories import TargetSpeedRecorder
 
 
@@ -26,15 +27,15 @@ def watch(simulator):
 def test_of_joint_positions(robot, simulator):
     recorder = watch(simulator)
     with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(home_plus(0.4))):
-        wait_for(lambda: recorder.update() and state(robot).position[0] > 0.39, 20.0, "the arm to be there")
+        wait_for(lambda: recorder.update() and get_joint_state(robot).position[0] > 0.39, 20.0, "the arm to be there")
     assert 0.5 < max(recorder.update()) < 1.05 * 1.05
 
 
 def test_of_poses(robot, simulator):
-    start = pose_now(robot)
+    start = get_tcp_pose(robot)
     message = PoseStamped()
     message.header.frame_id = "base"
-    message.pose = pose_now(robot)
+    message.pose = get_tcp_pose(robot)
     message.pose.position.z -= 0.2
     with Publisher(robot, PoseStamped, "servo_pose", lambda t: message):
         speeds = []

@@ -6,6 +6,7 @@ import threading
 import time
 
 import pytest
+from arm_state import get_joint_speed, get_joint_state, get_tcp_pose, home_plus
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.qos import QoSProfile
 from robot_fixtures import make_ready
@@ -14,7 +15,7 @@ from support import HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, seconds, 
 
 from ur_ros_rtde_msgs.action import MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
-from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose, StartRecording, StopRecording
+from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 MEASURES_TIME = True
 TIMEOUT = 0.5  # s; other tests beside this one make its publisher late
@@ -63,22 +64,6 @@ class Publisher(threading.Thread):
 
 def joint_message(positions, names=JOINTS):
     return JointState(name=list(names), position=[float(p) for p in positions])
-
-
-def home_plus(angle, joint=0):
-    return [position + (angle if i == joint else 0.0) for i, position in enumerate(HOME)]
-
-
-def state(client):
-    return client.call(GetJointState, "get_joint_state").joint_state
-
-
-def speed_now(client):
-    return max(map(abs, state(client).velocity))
-
-
-def pose_now(client):
-    return client.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose
 
 
 def lines(driver, text):
@@ -138,11 +123,11 @@ def test_servo_joint_at_50_hz_moves_smoothly(robot, tmp_path):
 
 def test_names_may_come_in_any_order_and_with_others(robot):
     names = [*reversed(JOINTS), "finger_joint"]
-    target = home_plus(0.1, joint=5)
+    target = home_plus(0.0, 0.0, 0.0, 0.0, 0.0, 0.1)
     values = [*reversed(target), 0.3]
     ramp = lambda t: [h + min(t / 0.5, 1.0) * (v - h) for h, v in zip([*reversed(HOME), 0.3], values)]
     with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(ramp(t), names)):
-        wait_for(lambda: list(state(robot).position) == pytest.approx(target, abs=0.005), 5.0, "the arm to be there")
+        wait_for(lambda: list(get_joint_state(robot).position) == pytest.approx(target, abs=0.005), 5.0, "the arm to be there")
 
 
 def test_a_stream_that_stops_is_followed_by_deceleration_within_the_timeout(robot):
@@ -151,7 +136,7 @@ def test_a_stream_that_stops_is_followed_by_deceleration_within_the_timeout(robo
     wait_for(lambda: states and max(map(abs, states[-1].velocity)) > 0.1, 10.0, "the arm to move")
     time.sleep(0.3)
     publisher.stop()
-    last = seconds(state(robot).header.stamp)
+    last = seconds(get_joint_state(robot).header.stamp)
     wait_for(lambda: seconds(states[-1].header.stamp) > last and max(map(abs, states[-1].velocity)) < 0.01, 5.0,
              "the arm to stand still")
     recorded = [(seconds(s.header.stamp), max(map(abs, s.velocity))) for s in list(states)]
@@ -166,15 +151,15 @@ def test_a_stream_that_stops_is_followed_by_deceleration_within_the_timeout(robo
 
 @pytest.mark.parametrize("frame, sign", [("base", 1.0), ("tool0_controller", -1.0), ("left_base", 1.0)])
 def test_twist_moves_along_the_axes_of_its_frame(robot, frame, sign):
-    start = pose_now(robot).position
+    start = get_tcp_pose(robot).position
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message(frame, 0.05)):
-        wait_for(lambda: abs(pose_now(robot).position.z - start.z) > 0.03, 5.0, "the TCP to move")
-    end = pose_now(robot).position
+        wait_for(lambda: abs(get_tcp_pose(robot).position.z - start.z) > 0.03, 5.0, "the TCP to move")
+    end = get_tcp_pose(robot).position
     assert sign * (end.z - start.z) > 0.02 and math.hypot(end.x - start.x, end.y - start.y) < 0.003
 
 
 def test_servo_pose_follows_a_line(robot):
-    start = pose_now(robot)
+    start = get_tcp_pose(robot)
 
     def message(t):
         target = PoseStamped()
@@ -186,15 +171,15 @@ def test_servo_pose_follows_a_line(robot):
         return target
 
     with Publisher(robot, PoseStamped, "servo_pose", message):
-        wait_for(lambda: pose_now(robot).position.y - start.position.y == pytest.approx(0.1, abs=0.003), 6.0, "the pose")
-    end = pose_now(robot).position
+        wait_for(lambda: get_tcp_pose(robot).position.y - start.position.y == pytest.approx(0.1, abs=0.003), 6.0, "the pose")
+    end = get_tcp_pose(robot).position
     assert (end.x, end.z) == pytest.approx((start.position.x, start.position.z), abs=0.003)
 
 
 def test_a_goal_is_refused_while_a_stream_lives_and_accepted_after_it(robot):
-    start = pose_now(robot).position
+    start = get_tcp_pose(robot).position
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.05)):
-        wait_for(lambda: abs(pose_now(robot).position.z - start.z) > 0.005, 5.0, "the stream to move the arm")
+        wait_for(lambda: abs(get_tcp_pose(robot).position.z - start.z) > 0.005, 5.0, "the stream to move the arm")
         goal = robot.send(MoveJ, "move_j", joint_positions=HOME)
         assert not goal.accepted
         refusal = robot.refusal(goal)
@@ -205,13 +190,13 @@ def test_a_goal_is_refused_while_a_stream_lives_and_accepted_after_it(robot):
 
 def test_a_stream_is_refused_while_a_goal_moves_the_arm(robot, driver):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.8), speed=0.4)
-    wait_for(lambda: speed_now(robot) > 0.1, 10.0, "the arm to move")
+    wait_for(lambda: get_joint_speed(robot) > 0.1, 10.0, "the arm to move")
     before = len(lines(driver, "/twist: messages are ignored"))
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.1)):
         goal.succeeded()
-        assert list(state(robot).position) == pytest.approx(home_plus(0.8), abs=0.005)
+        assert list(get_joint_state(robot).position) == pytest.approx(home_plus(0.8), abs=0.005)
         time.sleep(0.5)
-        assert speed_now(robot) < 0.01, "it must not begin in the middle of a stream"
+        assert get_joint_speed(robot) < 0.01, "it must not begin in the middle of a stream"
     assert len(lines(driver, "/twist: messages are ignored")) == before + 1, "logged once"
 
 
@@ -223,7 +208,7 @@ def test_a_stream_is_refused_while_another_one_lives(robot, driver):
             wait_for(lambda: len(lines(driver, "/servo_joint: messages are ignored")) > before, 5.0, "the refusal")
             time.sleep(0.5)
         assert "/twist is running" in lines(driver, "/servo_joint: messages are ignored")[-1]
-    assert state(robot).position[0] == pytest.approx(0.0, abs=0.01)
+    assert get_joint_state(robot).position[0] == pytest.approx(0.0, abs=0.01)
 
 
 def test_a_goal_ends_a_stream_where_goals_preempt(addresses, processes):
@@ -244,14 +229,14 @@ def test_a_goal_ends_a_stream_where_goals_preempt(addresses, processes):
 
 def test_stop_ends_a_stream_until_there_has_been_a_pause(robot):
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", -0.05)):
-        wait_for(lambda: speed_now(robot) > 0.03, 10.0, "the arm to move")
+        wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")
         result = robot.send(Stop, "stop").succeeded()
         assert "/twist" in result.message
         time.sleep(3.0 * TIMEOUT)
-        assert speed_now(robot) < 0.01
+        assert get_joint_speed(robot) < 0.01
     pause()
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.05)):
-        wait_for(lambda: speed_now(robot) > 0.03, 10.0, "the arm to move by a fresh stream")
+        wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move by a fresh stream")
 
 
 BAD = [
@@ -270,20 +255,20 @@ def test_a_target_that_cannot_be_ends_the_stream_and_is_logged_once(robot, drive
     with Publisher(robot, kind, topic, message):
         wait_for(lambda: len(lines(driver, told)) > before, 5.0, "the reason in the log")
         time.sleep(0.5)
-        assert speed_now(robot) < 0.01
+        assert get_joint_speed(robot) < 0.01
     assert len(lines(driver, told)) == before + 1 and text in lines(driver, told)[-1]
-    assert state(robot).position[0] == pytest.approx(0.0, abs=0.02)
+    assert get_joint_state(robot).position[0] == pytest.approx(0.0, abs=0.02)
 
 
 def test_a_protective_stop_ends_a_stream_which_does_not_go_on_by_itself(robot, simulator):
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", -0.05)):
-        wait_for(lambda: speed_now(robot) > 0.03, 10.0, "the arm to move")
+        wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")
         simulator.control("protective_stop", reason="a test")
-        wait_for(lambda: speed_now(robot) < 0.01, 5.0, "the arm to stand still")
+        wait_for(lambda: get_joint_speed(robot) < 0.01, 5.0, "the arm to stand still")
         wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
         wait_for(lambda: simulator.state()["program"]["state"] == "PLAYING", 10.0, "the control program to be back")
         time.sleep(0.5)
-        assert speed_now(robot) < 0.01
+        assert get_joint_speed(robot) < 0.01
 
 
 def test_a_message_becomes_a_command_within_some_cycles(robot, driver):

@@ -4,10 +4,11 @@ import math
 
 import pytest
 from action_msgs.msg import GoalStatus
+from arm_state import home_plus
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
 from support import HOME, JOINTS, robot_seconds, wait_for
-from trajectories import TargetSpeedRecorder, cycles_without_target, distance_to_line, home_plus, point, timed, wave, waypoints
+from trajectories import TargetSpeedRecorder, cycles_without_target, distance_to_line, point, timed, wave, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import ErrorCode

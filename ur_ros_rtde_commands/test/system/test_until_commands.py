@@ -4,12 +4,13 @@ import time
 
 import pytest
 from action_msgs.msg import GoalStatus
+from arm_state import get_joint_speed, get_tcp_pose
 from geometry_msgs.msg import Twist, Vector3
 from support import HOME, wait_for
 
 from ur_ros_rtde_msgs.action import ContactDetection, MoveJ, MoveUntilContact, MoveUntilForce, SpeedL, ToolContact
 from ur_ros_rtde_msgs.msg import ErrorCode
-from ur_ros_rtde_msgs.srv import GetJointState, GetTcpPose
+from ur_ros_rtde_msgs.srv import GetTcpPose
 
 TABLE = 0.6  # m; the TCP is at 0.677 at home
 DOWN = Twist(linear=Vector3(z=-0.05))
@@ -18,10 +19,6 @@ SLOWLY_DOWN = Twist(linear=Vector3(z=-0.02))  # time enough for something to hap
 
 def height_now(client):
     return client.call(GetTcpPose, "get_tcp_pose").tcp_pose.pose.position.z
-
-
-def speed_now(client):
-    return max(map(abs, client.call(GetJointState, "get_joint_state").joint_state.velocity))
 
 
 @pytest.fixture
@@ -50,7 +47,7 @@ def test_move_until_contact_stays_where_it_stopped_without_retract(robot, table)
 def test_move_until_contact_counts_only_its_direction(robot, simulator):
     goal = robot.send(MoveUntilContact, "move_until_contact", twist=SLOWLY_DOWN, direction=Vector3(x=1.0), distance=0.1,
                       timeout=15.0)
-    wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
+    wait_for(lambda: get_joint_speed(robot) > 0.01, 10.0, "the arm to move")
     simulator.control("push", force=[0, 0, 30], duration=0.3)
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and not result.contact
@@ -65,7 +62,7 @@ def test_without_a_contact_it_ends_with_a_stop_by_distance_or_time(robot, action
     start = height_now(robot)
     status, result = robot.send(action, name, twist=DOWN, **fields, **more).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == code, result.message
-    assert speed_now(robot) < 0.01
+    assert get_joint_speed(robot) < 0.01
     expected = min(fields["distance"], 0.05 * fields["timeout"])
     assert start - result.final_state.tcp_pose.position.z == pytest.approx(expected, abs=0.015)
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
@@ -73,11 +70,11 @@ def test_without_a_contact_it_ends_with_a_stop_by_distance_or_time(robot, action
 
 def test_cancel_of_move_until_contact_leaves_the_arm_at_rest(robot):
     goal = robot.send(MoveUntilContact, "move_until_contact", twist=DOWN, distance=0.5, timeout=30.0)
-    wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
+    wait_for(lambda: get_joint_speed(robot) > 0.01, 10.0, "the arm to move")
     goal.cancel()
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
-    assert speed_now(robot) < 0.01 and height_now(robot) > 0.4
+    assert get_joint_speed(robot) < 0.01 and height_now(robot) > 0.4
 
 
 def test_move_until_force_stops_within_a_few_cycles_of_the_touch(robot, simulator, table):
@@ -93,7 +90,7 @@ def test_move_until_force_stops_within_a_few_cycles_of_the_touch(robot, simulato
 def test_move_until_force_looks_only_at_its_axes(robot, simulator):
     goal = robot.send(MoveUntilForce, "move_until_force", twist=SLOWLY_DOWN, axes=[True, False, False], frame=0, threshold=15.0,
                       distance=0.1, timeout=15.0)
-    wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
+    wait_for(lambda: get_joint_speed(robot) > 0.01, 10.0, "the arm to move")
     simulator.control("push", force=[0, 40, 0], duration=0.4)
     assert goal.wait_for_result()[1].error_code == ErrorCode.NOT_REACHED
 
@@ -101,7 +98,7 @@ def test_move_until_force_looks_only_at_its_axes(robot, simulator):
 def test_move_until_torque_is_stopped_by_a_torque_of_its_size(robot, simulator):
     goal = robot.send(MoveUntilForce, "move_until_torque", twist=SLOWLY_DOWN, threshold=3.0,
                       distance=0.3, timeout=15.0)
-    wait_for(lambda: speed_now(robot) > 0.01, 10.0, "the arm to move")
+    wait_for(lambda: get_joint_speed(robot) > 0.01, 10.0, "the arm to move")
     simulator.control("push", wrench=[0, 0, 0, 6, 0, 0], duration=2.0)
     result = goal.succeeded()
     size = (result.measured.x ** 2 + result.measured.y ** 2 + result.measured.z ** 2) ** 0.5

@@ -2,15 +2,11 @@
 
 import math
 
-from support import HOME, JOINTS
+from arm_state import home_plus
+from support import JOINTS
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from ur_ros_rtde_msgs.msg import JointWaypoint
-
-
-def home_plus(*angles):
-    """Home, with the joints turned by these angles, base first."""
-    return [home + angle for home, angle in zip(HOME, [*angles, *[0.0] * (6 - len(angles))])]
 
 
 def waypoints(*positions):
