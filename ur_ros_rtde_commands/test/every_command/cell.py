@@ -65,7 +65,7 @@ class WatchingClient(Client):
             self._status_subscriptions[name] = self.node.create_subscription(GoalStatusArray, f"{name}/_action/status", self._see,
                                                                              STATUS)
         goal = super().send_goal(action, name, message)
-        goal.ask_for_result_when_accepted()
+        goal.request_result_when_accepted()
         return goal
 
     def destroy_action_client(self, name):

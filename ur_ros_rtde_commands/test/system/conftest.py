@@ -8,9 +8,9 @@ __all__ = ["addresses", "client", "driver", "destroy_subscriptions_after_test", 
 
 @pytest.fixture
 def plugin_prefix(tmp_path):
-    """A prefix for the ament index in which a test puts a package with plugins."""
+    """Returns a function that creates an ament prefix with one plugin package in it."""
 
-    def make(package, description, libraries=()):
+    def create(package, description, libraries=()):
         index = tmp_path / "share" / "ament_index" / "resource_index"
         for kind, content in (("ur_ros_rtde__pluginlib__plugin", f"share/{package}/plugins.xml\n"), ("packages", "")):
             (index / kind).mkdir(parents=True, exist_ok=True)
@@ -22,4 +22,4 @@ def plugin_prefix(tmp_path):
             shutil.copy(library, tmp_path / "lib")
         return tmp_path
 
-    return make
+    return create

@@ -1,7 +1,7 @@
-"""control_msgs, where it is installed; else the interfaces of that name that the tests' build defines.
+"""Makes control_msgs importable: the installed package, or the definitions built with the tests.
 
-Import this before control_msgs. PLUGIN is the library of follow_joint_trajectory where it is not installed, LIBRARIES
-the folder of the interfaces' libraries.
+Import this before control_msgs. If control_msgs is not installed, PLUGIN is the library of follow_joint_trajectory and
+LIBRARIES the folder of the interface libraries. Otherwise both are None.
 """
 
 from interface_fallback import provide

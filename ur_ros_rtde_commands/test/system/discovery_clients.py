@@ -1,6 +1,7 @@
-"""Measures how soon new clients find the actions of a driver, also after other clients were killed. Prints JSON: seconds.
+"""Measures how long new clients take to discover the actions of a driver, optionally after other clients were killed.
 
-Each client is a process of its own, forked before it uses ROS: Fast DDS keeps the types that it knows for a whole process.
+Prints the times in seconds as JSON. Each client is a separate process, forked before it initializes ROS, because Fast DDS
+caches known types per process.
 """
 
 import argparse
@@ -16,21 +17,21 @@ from rclpy.action.graph import get_action_names_and_types
 
 from ur_ros_rtde_msgs.action import MoveJ
 
-STARTUP_LIMIT = 30.0  # s, for the clients that are killed to find their server
+STARTUP_LIMIT = 30.0  # s, for the clients to be killed to find their server
 
 
-def child(work):
-    """Runs `work(write)` in a process of its own. Returns its process id and the file to which it writes."""
-    reading, writing = os.pipe()
+def fork_child(work):
+    """Runs `work(write)` in a child process. Returns the process id and the file from which its output is read."""
+    read_end, write_end = os.pipe()
     process = os.fork()
     if process == 0:
-        os.close(reading)
+        os.close(read_end)
         try:
-            work(lambda text: os.write(writing, text.encode()))
+            work(lambda text: os.write(write_end, text.encode()))
         finally:
             os._exit(0)
-    os.close(writing)
-    return process, os.fdopen(reading)
+    os.close(write_end)
+    return process, os.fdopen(read_end)
 
 
 def action_client(name):
@@ -45,7 +46,7 @@ def wait_to_be_killed(write):
     rclpy.spin(node)
 
 
-def find(expected, limit, write):
+def find_actions(expected, limit, write):
     begin = time.monotonic()
     node, client = action_client("new_client")
     while True:
@@ -59,7 +60,7 @@ def find(expected, limit, write):
 
 
 def kill_clients(count):
-    clients = [child(wait_to_be_killed) for _ in range(count)]
+    clients = [fork_child(wait_to_be_killed) for _ in range(count)]
     late = [answer.readline() for _, answer in clients].count("late\n")
     for process, _ in clients:
         os.kill(process, signal.SIGKILL)
@@ -67,11 +68,11 @@ def kill_clients(count):
         os.waitpid(process, 0)
         answer.close()
     if late:
-        sys.exit(f"{late} of the {count} clients that were to be killed did not find move_j within {STARTUP_LIMIT:g} s")
+        sys.exit(f"{late} of the {count} clients to be killed did not find move_j within {STARTUP_LIMIT:g} s")
 
 
 def measure(expected, limit):
-    process, answer = child(lambda write: find(expected, limit, write))
+    process, answer = fork_child(lambda write: find_actions(expected, limit, write))
     with answer:
         result = json.loads(answer.read())
     os.waitpid(process, 0)
@@ -80,10 +81,10 @@ def measure(expected, limit):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("actions", help="the names that each client must find, with commas between")
-    parser.add_argument("--clients", type=int, default=10, help="new clients, one after the other")
-    parser.add_argument("--killed", type=int, default=0, help="clients that wait for move_j and are killed before")
-    parser.add_argument("--limit", type=float, default=30.0, help="seconds that a new client has")
+    parser.add_argument("actions", help="comma-separated names of the actions that each client has to discover")
+    parser.add_argument("--clients", type=int, default=10, help="number of new clients, started one after another")
+    parser.add_argument("--killed", type=int, default=0, help="number of clients that wait for move_j and are killed first")
+    parser.add_argument("--limit", type=float, default=30.0, help="timeout of a new client in seconds")
     options = parser.parse_args()
     expected = {f"/{name}" for name in options.actions.split(",")}
     kill_clients(options.killed)

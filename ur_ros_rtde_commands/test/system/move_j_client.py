@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Moves joint 1 by an action goal, prints the goal's id, and ends as it is told to, without a thought for the arm.
+"""Sends a move_j goal for the base joint, prints the goal id, and spins until it is terminated, without canceling the goal.
 
-move_j_client.py <joint 1 in rad> <namespace> [destroy]
+move_j_client.py <base joint in rad> <namespace> [destroy]
 
-With `destroy` it destroys its action client at the first line on stdin, and lives on.
+With `destroy`, it destroys its action client at the first line on stdin and keeps running.
 """
 
 import sys

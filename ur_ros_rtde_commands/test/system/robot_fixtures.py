@@ -1,4 +1,4 @@
-"""The fixtures of the tests on a simulated robot: the simulator, a driver that is linked to it, and a client."""
+"""Fixtures for tests with a simulated robot: the simulator, a driver connected to it, and a client."""
 
 import os
 import time
@@ -8,11 +8,11 @@ from support import HOME, RECOVERY_TIME_FACTOR, Client, Simulator, start_node, w
 
 from ur_ros_rtde_msgs.action import MoveJ
 
-RETRY = 0.05  # s
+RETRY_INTERVAL = 0.05  # s
 
 
 def _address(number):
-    """Loopback addresses of this run's own: ./ur test gives each test file one."""
+    """Returns a loopback address for this test run. `./ur test` assigns a different base address to each test file."""
     given = os.environ.get("UR_TEST_ADDRESS", "127.0.1.200").split(".")
     return ".".join([given[0], str(int(given[1]) + number), given[2], given[3]])
 
@@ -24,7 +24,7 @@ def addresses():
 
 @pytest.fixture(scope="module")
 def simulator(addresses, request):
-    """A module that tests recoveries may ask for their real durations: RECOVERY_TIME_FACTOR = 1.0."""
+    """Simulates recoveries at the speed that the test module sets: RECOVERY_TIME_FACTOR = 1.0 for real durations."""
     simulator = Simulator(addresses[0],
                           recovery_time_factor=getattr(request.module, "RECOVERY_TIME_FACTOR", RECOVERY_TIME_FACTOR))
     yield simulator
@@ -55,7 +55,7 @@ def driver(simulator):
 
 @pytest.fixture
 def processes():
-    """Keeps a test's processes; ends them in the opposite order."""
+    """Returns a function that registers a process. Registered processes are stopped in reverse order after the test."""
     kept = []
     yield lambda process: kept.append(process) or process
     for process in reversed(kept):
@@ -64,26 +64,26 @@ def processes():
 
 
 def make_ready(client, limit=30.0, joint_positions=HOME):
-    """Waits until the driver accepts a motion to these joint positions and the motion has succeeded."""
+    """Waits until the driver accepts a motion to these joint positions and the motion succeeds."""
 
-    def arrived():
+    def is_at_target():
         goal = client.send(MoveJ, "move_j", joint_positions=joint_positions, speed=3.0, acceleration=15.0)
         if goal.accepted and goal.result().success:
             return True
         reasons.append(client.refusal(goal).message if not goal.accepted else goal.result().message)
-        time.sleep(RETRY)
+        time.sleep(RETRY_INTERVAL)
         return False
 
     reasons = []
     try:
-        wait_for(arrived, limit, "the driver to take a motion")
+        wait_for(is_at_target, limit, "the driver to accept a motion")
     except AssertionError as error:
-        raise AssertionError(f"{error}; the last reason: {reasons[-1:]}") from None
+        raise AssertionError(f"{error}; last message: {reasons[-1:]}") from None
 
 
 @pytest.fixture
 def robot(simulator, driver, client):
-    """A driver that is ready, the arm at home, nothing in its way."""
+    """A client of a driver that is ready, with the arm at home and no obstacles."""
     assert driver.running(), driver.output()
     simulator.control("clear_surfaces")
     simulator.control("clear_pushes")

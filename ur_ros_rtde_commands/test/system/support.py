@@ -1,4 +1,4 @@
-"""What the tests of the nodes share: processes with their logs, the simulator's control port, and a client of the nodes."""
+"""Shared by the system tests: processes with their logs, the simulator's control port, and a client of the nodes."""
 
 import json
 import os
@@ -19,25 +19,26 @@ from ur_ros_rtde_msgs.msg import GoalRefused
 from ur_ros_rtde_msgs.srv import GetJointState
 
 TRANSIENT_LOCAL = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-TIMEOUT_FACTOR = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # with a sanitizer everything takes longer
-REAL_TIME_FACTOR = float(os.environ.get("UR_TEST_REAL_TIME_FACTOR", "1"))  # and the robot is slower, as the driver is
-RECOVERY_TIME_FACTOR = 0.2  # of the simulated robot's power on, brake release, unlock delay and safety restart
+TIMEOUT_FACTOR = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # scales all timeouts; programs with a sanitizer are slower
+REAL_TIME_FACTOR = float(os.environ.get("UR_TEST_REAL_TIME_FACTOR", "1"))  # slows down the simulated robot along with the driver
+RECOVERY_TIME_FACTOR = 0.2  # scales the simulator's durations of power on, brake release, protective stop delay and safety restart
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
 
 
 def wait_for(condition, limit, what):
-    """The first value of `condition` that is true; fails when there is none within `limit` s."""
+    """Returns the first true value of `condition()`. Fails if there is none within `limit` s."""
     end = time.monotonic() + TIMEOUT_FACTOR * limit
     while True:
         value = condition()
         if value:
             return value
-        assert time.monotonic() < end, f"waited {limit} s for {what}"
+        assert time.monotonic() < end, f"timeout after {limit} s waiting for {what}"
         time.sleep(0.005)
 
 
 def find_program(package, name):
+    """Returns the path of an installed program."""
     for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep):
         for file in (pathlib.Path(prefix, "lib", package, name), pathlib.Path(prefix, "bin", name)):
             if file.is_file():
@@ -46,7 +47,7 @@ def find_program(package, name):
 
 
 class Process:
-    """A program with its output."""
+    """A running program and the lines it has printed."""
 
     def __init__(self, command, env=None, stdin=False):
         self.lines = []
@@ -68,7 +69,7 @@ class Process:
                         f"'{text}' in the output:\n{self.output()}")
 
     def write(self, text):
-        """To the program's stdin."""
+        """Writes to the program's stdin."""
         self._process.stdin.write(text)
         self._process.stdin.flush()
 
@@ -83,7 +84,7 @@ class Process:
         try:
             code = self._process.wait(TIMEOUT_FACTOR * limit)
         except subprocess.TimeoutExpired:
-            raise AssertionError(f"it still runs after {limit} s:\n{self.output()}") from None
+            raise AssertionError(f"the process is still running after {limit} s:\n{self.output()}") from None
         self._reader.join(5.0)
         return code
 
@@ -104,7 +105,7 @@ class Process:
         self._process.wait(10.0)
 
     def stop(self):
-        """As Ctrl-C does; killed when it does not end by that."""
+        """Sends SIGINT; kills the process if it does not exit within 15 s."""
         if self.running():
             self.interrupt()
             try:
@@ -148,7 +149,7 @@ class Simulator:
         return self.control("state")["state"]
 
     def unlock_protective_stop(self):
-        """Returns whether the controller does; it refuses during the first seconds of a protective stop."""
+        """Returns whether the controller unlocks it. The controller refuses in the first seconds of a protective stop."""
         try:
             self.control("unlock_protective_stop")
             return True
@@ -156,7 +157,7 @@ class Simulator:
             return False
 
     def is_at_rest(self):
-        """No joint turns faster than 0.01 rad/s."""
+        """Returns whether all joints are slower than 0.01 rad/s."""
         return max(map(abs, self.state()["actual"]["velocity"])) < 0.01
 
     def kill(self):
@@ -169,10 +170,10 @@ class Simulator:
 
 
 def start_node(name, address, *parameters, namespace="", env=None, arguments=(), executable=None):
-    # Patient: with other tests beside it, a simulator on a small machine may be late by more than a robot ever is.
-    patience = ["silence_limit:=2.0", "watchdog_frequency:=2.0"]
+    # Generous timeouts: on a busy machine, a simulator may be delayed more than a real controller.
+    generous = ["silence_limit:=2.0", "watchdog_frequency:=2.0"]
     command = [executable or find_program("ur_ros_rtde", name), "--ros-args", "-p", f"robot_ip:={address}"]
-    parameters = [*(p for p in patience if not any(q.split(":=")[0] == p.split(":=")[0] for q in parameters)), *parameters]
+    parameters = [*(p for p in generous if not any(q.split(":=")[0] == p.split(":=")[0] for q in parameters)), *parameters]
     for parameter in parameters:
         command += ["-p", parameter]
     if namespace:
@@ -187,12 +188,12 @@ class Goal:
         self._result = None
 
     def answered(self):
-        """Accepted or refused."""
+        """Returns whether the goal has been accepted or rejected."""
         return self._future.done()
 
     @property
     def handle(self):
-        return wait_for(lambda: self._future.done() and self._future.result(), 10.0, "the answer to the goal")
+        return wait_for(lambda: self._future.done() and self._future.result(), 10.0, "the goal response")
 
     @property
     def accepted(self):
@@ -202,25 +203,25 @@ class Goal:
     def id(self):
         return bytes(self.handle.goal_id.uuid)
 
-    def ask_for_result_when_accepted(self):
-        """Requests the result on acceptance, in the executor's thread. Otherwise it is requested by ended()."""
+    def request_result_when_accepted(self):
+        """Requests the result on acceptance, in the executor's thread. Otherwise is_finished() requests it."""
 
-        def ask(future):
+        def request_result(future):
             handle = future.result()
             if handle is not None and handle.accepted:
                 self._result = handle.get_result_async()
 
-        self._future.add_done_callback(ask)
+        self._future.add_done_callback(request_result)
 
     def is_finished(self):
-        """Whether its result has come."""
+        """Returns whether the result has been received."""
         assert self.accepted, self._client.refusal(self)
         if self._result is None:
             self._result = self._client.call_in_executor(self.handle.get_result_async)
         return self._result.done()
 
     def wait_for_result(self, limit=30.0):
-        """Status and result."""
+        """Returns the status and the result."""
         wait_for(self.is_finished, limit, "the result")
         answer = self._result.result()
         return answer.status, answer.result
@@ -229,6 +230,7 @@ class Goal:
         return self.wait_for_result(limit)[1]
 
     def succeeded(self, limit=30.0):
+        """Asserts that the goal succeeds and returns its result."""
         status, result = self.wait_for_result(limit)
         assert status == GoalStatus.STATUS_SUCCEEDED and result.success, (status, result.error_code, result.message)
         assert result.error_code == 0
@@ -236,11 +238,11 @@ class Goal:
 
     def cancel(self):
         future = self._client.call_in_executor(self.handle.cancel_goal_async)
-        return wait_for(lambda: future.done() and future.result(), 10.0, "the answer to the cancel request")
+        return wait_for(lambda: future.done() and future.result(), 10.0, "the cancel response")
 
 
 class Client:
-    """A node of the test's own, served in a thread."""
+    """A node with action and service clients, spun in a thread of its own."""
 
     def __init__(self, namespace="", domain=None, name="test_client"):
         self.context = rclpy.Context()
@@ -261,10 +263,11 @@ class Client:
         self.context.try_shutdown()
 
     def call_in_executor(self, send):
-        """What `send` returns, called in the executor's thread: rclpy forgets an answer that comes while another thread is
-        still sending the request."""
+        """Calls `send` in the executor's thread and returns its result.
+
+        rclpy loses a response that arrives while another thread is still sending the request."""
         task = self._executor.create_task(send)
-        return wait_for(lambda: task.done() and task.result(), 10.0, "the executor to send")
+        return wait_for(lambda: task.done() and task.result(), 10.0, "the executor to send the request")
 
     def send(self, action, name, **fields):
         return self.send_goal(action, name, action.Goal(**fields))
@@ -280,7 +283,7 @@ class Client:
         return goal
 
     def destroy_action_client(self, name):
-        """Saves processor time: the executor handles every action client each time it wakes up."""
+        """Destroys an action client. This saves processor time: the executor checks every action client on each wake-up."""
         client = self._actions.pop(name, None)
         if client is not None:
             self.call_in_executor(lambda: client.destroy() or True)
@@ -291,11 +294,11 @@ class Client:
         except AssertionError as error:
             topics = {topic: self.node.count_publishers(f"{name}/_action/{topic}") for topic in ("feedback", "status")}
             services = sorted(service for service, _ in self.node.get_service_names_and_types() if f"/{name}/_action/" in service)
-            raise AssertionError(f"{error}; of its parts there are: {topics}, {services}") from None
+            raise AssertionError(f"{error}; found topics {topics} and services {services}") from None
 
     def refusal(self, goal):
         return wait_for(lambda: next((r for r in list(self.refusals) if bytes(r.goal_id.uuid) == goal.id), None), 10.0,
-                        "the reason on goal_refusals")
+                        "the message on goal_refusals")
 
     def call(self, service, name, limit=10.0, **fields):
         if name not in self._services:
@@ -303,25 +306,25 @@ class Client:
         client = self._services[name]
         wait_for(client.service_is_ready, 20.0, f"the service {name}")
         future = self.call_in_executor(lambda: client.call_async(service.Request(**fields)))
-        return wait_for(lambda: future.done() and future.result(), limit, f"the answer of {name}")
+        return wait_for(lambda: future.done() and future.result(), limit, f"the response of {name}")
 
     def subscribe(self, message, topic, transient_local=False):
-        """All messages from now on; the last one before, too, if they are latched."""
+        """Returns a list to which all received messages are appended."""
         messages = []
         qos = TRANSIENT_LOCAL if transient_local else QoSProfile(depth=2000, reliability=ReliabilityPolicy.RELIABLE)
         self._subscriptions.append(self.node.create_subscription(message, topic, messages.append, qos))
         return messages
 
     def destroy_subscriptions(self):
-        """Some subscriptions at 500 Hz and Python has time for nothing else: answers to goals come late, or not at all."""
+        """Destroys all subscriptions. A few of them at 500 Hz delay goal responses in Python considerably."""
         subscriptions, self._subscriptions = self._subscriptions, []
         for subscription in subscriptions:
-            self.call_in_executor(lambda gone=subscription: self.node.destroy_subscription(gone))
+            self.call_in_executor(lambda s=subscription: self.node.destroy_subscription(s))
 
     def messages_until_now(self, states):
-        """What listen() has collected of a state topic, once the present state has come there, too: topics lag behind results."""
+        """Returns the received messages of a state topic up to the current time. Topics lag behind results."""
         now = seconds(self.call(GetJointState, "get_joint_state").joint_state.header.stamp)
-        wait_for(lambda: states and seconds(states[-1].header.stamp) >= now, 20.0, "the state of now")
+        wait_for(lambda: states and seconds(states[-1].header.stamp) >= now, 20.0, "the current state on the topic")
         return list(states)
 
 
@@ -330,5 +333,5 @@ def seconds(stamp):
 
 
 def robot_seconds(stamp):
-    """Of the robot's time, where the stamp, or duration, is one of the host's."""
+    """Converts a stamp or duration of the host to seconds of the simulated robot's time."""
     return REAL_TIME_FACTOR * seconds(stamp)

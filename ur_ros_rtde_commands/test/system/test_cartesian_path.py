@@ -1,4 +1,4 @@
-"""execute_cartesian_path, on the simulator."""
+"""Tests of execute_cartesian_path on the simulator."""
 
 import math
 
@@ -13,7 +13,7 @@ from ur_ros_rtde_msgs.action import ExecuteCartesianPath
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 NAN = math.nan
-LAG = 0.03
+MIN_LOOKAHEAD = 0.03  # s
 
 
 def send(robot, *poses, **fields):
@@ -24,31 +24,31 @@ def point(pose):
     return (pose.position.x, pose.position.y, pose.position.z)
 
 
-def test_the_tcp_goes_straight_from_pose_to_pose(robot):
+def test_the_tcp_moves_in_straight_lines_between_poses(robot):
     start = get_tcp_pose(robot)
     down, aside = translated(start, z=-0.15), translated(start, y=0.1, z=-0.15)
     seen = robot.subscribe(PoseStamped, "tcp_pose")
-    result = send(robot, down, aside, lookahead_time=LAG).succeeded()
+    result = send(robot, down, aside, lookahead_time=MIN_LOOKAHEAD).succeeded()
     reached = result.final_state.tcp_pose
     assert point(reached) == pytest.approx(point(aside), abs=0.001)
-    # Each place is on the one line or on the other.
-    off = [min(math.dist((x, y), point(start)[:2]), math.dist((x, z), (point(down)[0], point(down)[2])))
-           for x, y, z in (point(message.pose) for message in robot.messages_until_now(seen))]
-    assert len(off) > 100 and max(off) < 0.001
+    # Each position lies on one of the two lines.
+    deviations = [min(math.dist((x, y), point(start)[:2]), math.dist((x, z), (point(down)[0], point(down)[2])))
+                  for x, y, z in (point(message.pose) for message in robot.messages_until_now(seen))]
+    assert len(deviations) > 100 and max(deviations) < 0.001
 
 
-def test_it_keeps_its_speed_and_goes_round_corners(robot):
+def test_keeps_its_speed_and_blends_corners(robot):
     start = get_tcp_pose(robot)
     corner, end = translated(start, z=-0.1), translated(start, y=0.1, z=-0.1)
-    stops = send(robot, corner, end, speed=0.1, lookahead_time=LAG).succeeded()
+    stops = send(robot, corner, end, speed=0.1, lookahead_time=MIN_LOOKAHEAD).succeeded()
     send(robot, start).succeeded()
     seen = robot.subscribe(PoseStamped, "tcp_pose")
-    rounds = send(robot, corner, end, speed=0.1, blend_radius=0.01, lookahead_time=LAG).succeeded()
+    rounds = send(robot, corner, end, speed=0.1, blend_radius=0.01, lookahead_time=MIN_LOOKAHEAD).succeeded()
     assert 0.2 / 0.1 - 0.1 < rounds.duration < stops.duration
     assert min(math.dist(point(message.pose), point(corner)) for message in robot.messages_until_now(seen)) == pytest.approx(0.01, abs=0.003)
 
 
-def test_without_limits_the_joints_are_slow(robot, simulator):
+def test_default_limits_make_the_joints_slow(robot, simulator):
     recorder = TargetSpeedRecorder(simulator)
     goal = send(robot, translated(get_tcp_pose(robot), y=0.6, z=-0.2), speed=3.0, rotation_speed=6.0)
     wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
@@ -56,10 +56,10 @@ def test_without_limits_the_joints_are_slow(robot, simulator):
     assert 0.9 < max(recorder.update()) < 1.05 * 1.03
 
 
-def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, simulator):
+def test_an_unreachable_point_on_the_path_aborts_the_goal_before_the_arm_moves(robot, simulator):
     start = get_tcp_pose(robot)
     before = simulator.state()["target"]["position"]
-    # From one side of the base to the other: the line leads through its axis.
+    # The line from one side of the base to the other passes through its axis.
     through = translated(start, x=-2.0 * start.position.x, y=-2.0 * start.position.y)
     goal = send(robot, through)
     if goal.accepted:
@@ -71,10 +71,10 @@ def test_what_cannot_be_reached_on_the_way_ends_it_before_anything_moves(robot, 
     assert simulator.state()["target"]["position"] == before
 
 
-def test_a_cancel_decelerates_on_the_line(robot, simulator):
+def test_cancel_decelerates_on_the_line(robot, simulator):
     start = get_tcp_pose(robot)
     seen = robot.subscribe(PoseStamped, "tcp_pose")
-    goal = send(robot, translated(start, z=-0.3), speed=0.1, lookahead_time=LAG)
+    goal = send(robot, translated(start, z=-0.3), speed=0.1, lookahead_time=MIN_LOOKAHEAD)
     wait_for(lambda: any(f.motion.progress > 0.1 for f in goal.feedback), 20.0, "motion")
     goal.cancel()
     status, result = goal.wait_for_result(10.0)
@@ -99,7 +99,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize("fields, code, what", REFUSED, ids=[what for _, _, what in REFUSED])
-def test_a_bad_path_is_refused_with_the_reason(driver, client, fields, code, what):
+def test_an_invalid_path_is_rejected_with_the_reason(driver, client, fields, code, what):
     goal = client.send(ExecuteCartesianPath, "execute_cartesian_path", **{"poses": [GOOD], **fields})
     assert not goal.accepted
     refusal = client.refusal(goal)

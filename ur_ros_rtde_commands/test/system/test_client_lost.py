@@ -1,4 +1,4 @@
-"""The client of a running goal disappears."""
+"""What happens to a running goal when its client disappears."""
 
 import os
 import pathlib
@@ -14,13 +14,13 @@ from unique_identifier_msgs.msg import UUID
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 
-AWAY = HOME[0] + 2.0  # 10 s away with the speed of move_j_client.py
+TARGET = HOME[0] + 2.0  # rad, a motion of 10 s at the speed of move_j_client.py
 
 
 class MoveJClient(Process):
     def __init__(self, *arguments, namespace=""):
         program = pathlib.Path(__file__).with_name("move_j_client.py")
-        super().__init__([sys.executable, program, AWAY, namespace, *arguments], stdin=True)
+        super().__init__([sys.executable, program, TARGET, namespace, *arguments], stdin=True)
         self.goal_id = bytes.fromhex(self.wait_for_output("goal ", 30.0).split()[1])
 
 
@@ -28,46 +28,46 @@ def wait_until_moving(simulator):
     wait_for(lambda: not simulator.is_at_rest(), 10.0, "the arm to move")
 
 
-def result(client, goal_id, limit=30.0):
-    """Of a goal that another client has sent."""
+def get_result(client, goal_id, limit=30.0):
+    """Returns the status and the result of a goal that another client has sent."""
     service = MoveJ.Impl.GetResultService
     answer = client.call(service, "move_j/_action/get_result", limit=limit, goal_id=UUID(uuid=list(goal_id)))
     return answer.status, answer.result
 
 
 def assert_arm_was_stopped(simulator, robot, goal_id):
-    status, end = result(robot, goal_id)
+    status, end = get_result(robot, goal_id)
     assert simulator.is_at_rest()
     assert status == GoalStatus.STATUS_ABORTED and not end.success
     assert end.error_code == ErrorCode.CLIENT_LOST and "on_client_lost" in end.message
-    assert abs(simulator.state()["actual"]["position"][0] - AWAY) > 0.2, "it has reached its target"
+    assert abs(simulator.state()["actual"]["position"][0] - TARGET) > 0.2, "the arm has reached its target"
     assert simulator.state()["safety_mode"] == "NORMAL"
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_the_arm_stops_at_once_when_its_client_ends(number, robot, simulator, driver, processes):
+def test_stops_the_arm_at_once_when_the_client_exits(number, robot, simulator, driver, processes):
     client = processes(MoveJClient())
     wait_until_moving(simulator)
     client.signal(number)
     client.wait(10.0)
-    wait_for(simulator.is_at_rest, 2.0 + 1.0 / REAL_TIME_FACTOR, "the arm to stand still")
+    wait_for(simulator.is_at_rest, 2.0 + 1.0 / REAL_TIME_FACTOR, "standstill")
     assert_arm_was_stopped(simulator, robot, client.goal_id)
     driver.wait_for_output("client_lost 19")
     make_ready(robot)
 
 
-def test_the_arm_stops_when_the_lease_of_a_killed_client_ends(robot, simulator, processes):
-    """The lease is that of the package's profile, which the environment of the tests names: 3 s."""
+def test_stops_the_arm_when_the_lease_of_a_killed_client_expires(robot, simulator, processes):
+    """The lease is 3 s, from the package's Fast DDS profile, which the environment of the tests selects."""
     assert {"FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE"} & os.environ.keys()
     client = processes(MoveJClient())
     wait_until_moving(simulator)
     client.kill()
-    wait_for(simulator.is_at_rest, 5.0 + 1.0 / REAL_TIME_FACTOR, "the arm to stand still")
+    wait_for(simulator.is_at_rest, 5.0 + 1.0 / REAL_TIME_FACTOR, "standstill")
     assert_arm_was_stopped(simulator, robot, client.goal_id)
     make_ready(robot)
 
 
-def test_the_arm_stops_when_a_client_destroys_its_action_client_and_lives(robot, simulator, processes):
+def test_stops_the_arm_when_a_running_client_destroys_its_action_client(robot, simulator, processes):
     client = processes(MoveJClient("destroy"))
     wait_until_moving(simulator)
     client.write("now\n")
@@ -77,8 +77,8 @@ def test_the_arm_stops_when_a_client_destroys_its_action_client_and_lives(robot,
     make_ready(robot)
 
 
-def test_the_goal_of_a_living_client_goes_on_when_others_end(robot, simulator, processes):
-    idle = processes(Process([sys.executable, "-c", IDLE]))
+def test_continues_the_goal_when_another_client_exits(robot, simulator, processes):
+    idle = processes(Process([sys.executable, "-c", IDLE_CLIENT]))
     idle.wait_for_output("ready")
     goal = robot.send(MoveJ, "move_j", joint_positions=[HOME[0] + 0.5, *HOME[1:]], speed=0.2, acceleration=0.5)
     wait_until_moving(simulator)
@@ -87,7 +87,7 @@ def test_the_goal_of_a_living_client_goes_on_when_others_end(robot, simulator, p
     goal.succeeded()
 
 
-IDLE = """
+IDLE_CLIENT = """
 import rclpy
 from rclpy.action import ActionClient
 from ur_ros_rtde_msgs.action import MoveJ
@@ -100,7 +100,7 @@ rclpy.spin(node)
 """
 
 
-def test_the_goal_goes_on_without_its_client_when_that_is_asked_for(addresses, processes):
+def test_continues_the_goal_of_a_lost_client_if_on_client_lost_is_continue(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
     processes(start_node("driver", addresses[1], "ur_type:=ur10e", "on_client_lost:=continue", namespace="continuing"))
     robot = Client("continuing", name="other_client")
@@ -110,8 +110,8 @@ def test_the_goal_goes_on_without_its_client_when_that_is_asked_for(addresses, p
         wait_until_moving(simulator)
         client.signal(signal.SIGTERM)
         client.wait(10.0)
-        status, end = result(robot, client.goal_id, 40.0)
+        status, end = get_result(robot, client.goal_id, 40.0)
         assert status == GoalStatus.STATUS_SUCCEEDED and end.success, end.message
-        assert simulator.state()["actual"]["position"][0] == pytest.approx(AWAY, abs=0.01)
+        assert simulator.state()["actual"]["position"][0] == pytest.approx(TARGET, abs=0.01)
     finally:
         robot.close()

@@ -1,4 +1,4 @@
-"""The commands of command_server, on the simulator."""
+"""Tests of the commands of command_server on the simulator."""
 
 import math
 
@@ -16,7 +16,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode, IOState
 NAN = math.nan
 
 
-def test_move_j_arrives_with_progress_and_says_where(robot):
+def test_move_j_reports_progress_and_the_final_state(robot):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.4), speed=0.6, acceleration=1.5)
     result = goal.succeeded()
     assert result.final_state.joint_positions == pytest.approx(home_plus(0.4), abs=0.005)
@@ -28,7 +28,7 @@ def test_move_j_arrives_with_progress_and_says_where(robot):
     assert (stamps[-1] - stamps[0]) / (len(stamps) - 1) == pytest.approx(0.05, abs=0.02)
 
 
-def test_move_l_goes_straight(robot):
+def test_move_l_moves_in_a_straight_line(robot):
     start = get_tcp_pose(robot)
     target = get_tcp_pose(robot)
     target.position.z -= 0.1
@@ -39,12 +39,12 @@ def test_move_l_goes_straight(robot):
     assert (reached.x, reached.y, reached.z) == pytest.approx((start.position.x, start.position.y, target.position.z),
                                                               abs=0.002)
     wait_for(lambda: poses[-1].pose.position.z == pytest.approx(target.position.z, abs=0.002), 10.0, "the last pose")
-    way = [pose.pose.position for pose in list(poses)]
-    assert sum(0.02 < start.position.z - at.z < 0.08 for at in way) > 20, "poses on the way"
-    assert all((at.x, at.y) == pytest.approx((start.position.x, start.position.y), abs=0.001) for at in way)
+    positions = [pose.pose.position for pose in list(poses)]
+    assert sum(0.02 < start.position.z - p.z < 0.08 for p in positions) > 20, "poses along the line"
+    assert all((p.x, p.y) == pytest.approx((start.position.x, start.position.y), abs=0.001) for p in positions)
 
 
-def test_a_quaternion_need_not_be_normalised(robot):
+def test_move_l_normalizes_the_quaternion(robot):
     target = get_tcp_pose(robot)
     target.position.z += 0.02
     for axis in "xyzw":
@@ -86,7 +86,7 @@ BAD_GOALS = [
 
 @pytest.mark.parametrize("action, name, fields, what, limit", BAD_GOALS,
                          ids=[f"{case[1]}-{case[3]}" for case in BAD_GOALS])
-def test_a_bad_goal_is_refused_with_field_value_and_limit(driver, simulator, client, action, name, fields, what, limit):
+def test_an_invalid_goal_is_rejected_with_field_value_and_limit(driver, simulator, client, action, name, fields, what, limit):
     goal = client.send(action, name, **fields)
     assert not goal.accepted
     refusal = client.refusal(goal)
@@ -96,13 +96,13 @@ def test_a_bad_goal_is_refused_with_field_value_and_limit(driver, simulator, cli
     driver.wait_for_output(what)
 
 
-def test_a_goal_after_a_bad_one_is_carried_out(robot):
+def test_a_valid_goal_succeeds_after_an_invalid_one(robot):
     assert not robot.send(MoveJ, "move_j", joint_positions=[0.0]).accepted
     robot.send(MoveJ, "move_j", joint_positions=home_plus(0.05)).succeeded()
 
 
 @pytest.mark.parametrize("x", [1.6, 2.9])
-def test_an_unreachable_pose_is_refused(robot, x):
+def test_an_unreachable_pose_is_rejected(robot, x):
     pose = get_tcp_pose(robot)
     pose.position.x, pose.position.y, pose.position.z = x, 0.0, 0.5
     goal = robot.send(MoveL, "move_l", pose=pose)
@@ -112,7 +112,7 @@ def test_an_unreachable_pose_is_refused(robot, x):
     assert "pose" in refusal.message
 
 
-def test_a_second_motion_is_refused_and_told_which_one_runs(robot):
+def test_a_second_motion_is_rejected_with_the_id_of_the_running_goal(robot):
     first = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.0), speed=0.5)
     wait_until_moving(robot)
     second = robot.send(SpeedL, "speed_l", twist=Twist(linear=Vector3(z=0.05)))
@@ -129,13 +129,13 @@ def test_a_second_motion_is_refused_and_told_which_one_runs(robot):
     (ServoJ, "servo_j", {"joint_positions": home_plus(1.0), "time": 4.0}),
     (SpeedL, "speed_l", {"twist": Twist(linear=Vector3(z=-0.1)), "time": 20.0}),
 ], ids=lambda value: value if isinstance(value, str) else "")
-def test_cancel_decelerates_and_tells_where_the_arm_stands(robot, action, name, fields):
+def test_cancel_decelerates_and_reports_the_final_state(robot, action, name, fields):
     if action is MoveL:
         fields = {**fields, "pose": get_tcp_pose(robot)}
         fields["pose"].position.z -= 0.4
     goal = robot.send(action, name, **fields)
     wait_until_moving(robot, 0.1)
-    wait_for(lambda: goal.feedback and seconds(goal.feedback[-1].motion.elapsed) > 0.6, 10.0, "the motion to be at speed")
+    wait_for(lambda: goal.feedback and seconds(goal.feedback[-1].motion.elapsed) > 0.6, 10.0, "the motion to reach its speed")
     states = robot.subscribe(JointState, "joint_states")
     wait_for(lambda: states, 10.0, "joint states")
     goal.cancel()
@@ -149,11 +149,11 @@ def test_cancel_decelerates_and_tells_where_the_arm_stands(robot, action, name, 
     times = [seconds(state.header.stamp) for state in recorded]
     begin = next(i for i, value in enumerate(speed) if value < 0.9 * speed[0])
     end = next(i for i, value in enumerate(speed) if value < 0.02)
-    assert len([i for i in range(begin, end)]) > 5, "it stopped dead instead of decelerating"
+    assert len([i for i in range(begin, end)]) > 5, "the arm stopped abruptly instead of decelerating"
     assert times[end] - times[0] < 2.5
 
 
-def test_stop_ends_the_motion_that_runs(robot):
+def test_stop_aborts_the_running_motion(robot):
     motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.8, acceleration=2.0)
     wait_until_moving(robot, 0.3)
     result = robot.send(Stop, "stop").succeeded()
@@ -165,18 +165,18 @@ def test_stop_ends_the_motion_that_runs(robot):
     assert "stop" in ended.message
 
 
-def test_stop_succeeds_when_nothing_moves(robot):
+def test_stop_succeeds_at_standstill(robot):
     robot.send(Stop, "stop").succeeded(5.0)
 
 
-def test_servo_j_arrives_in_its_time(robot):
+def test_servo_j_arrives_in_the_given_time(robot):
     goal = robot.send(ServoJ, "servo_j", joint_positions=home_plus(0.5), time=1.5)
     result = goal.succeeded()
     assert result.final_state.joint_positions == pytest.approx(home_plus(0.5), abs=0.015)
     assert robot_seconds(goal.feedback[-1].motion.elapsed) == pytest.approx(1.5, abs=1.0)
 
 
-def test_servo_j_refuses_what_the_joints_cannot_do_in_the_time(robot):
+def test_servo_j_rejects_a_time_that_is_too_short_for_the_joints(robot):
     goal = robot.send(ServoJ, "servo_j", joint_positions=home_plus(1.0), time=0.5)
     assert not goal.accepted
     refusal = robot.refusal(goal)
@@ -184,7 +184,7 @@ def test_servo_j_refuses_what_the_joints_cannot_do_in_the_time(robot):
     assert "shoulder_pan_joint" in refusal.message and "use a time of at least" in refusal.message
 
 
-def test_speed_l_moves_for_its_time_and_stops(robot):
+def test_speed_l_moves_for_the_given_time_and_stops(robot):
     start = get_tcp_pose(robot).position.z
     result = robot.send(SpeedL, "speed_l", twist=Twist(linear=Vector3(z=-0.1)), acceleration=1.0, time=1.0).succeeded()
     assert is_at_rest(robot)
@@ -201,7 +201,7 @@ def test_set_digital_output_switches_the_pin(robot, simulator, pin):
     assert not messages[-1].digital_outputs[pin]
 
 
-def test_outputs_are_switched_while_the_arm_moves(robot):
+def test_outputs_can_be_switched_during_a_motion(robot):
     motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.0), speed=0.5)
     wait_until_moving(robot)
     robot.send(SetDigitalOutput, "set_digital_output", pin=1, state=True).succeeded()
@@ -224,7 +224,7 @@ def test_zero_ft_sensor_reads_zero_afterwards(robot):
     assert abs(result.wrench.force.z) < 5.0
 
 
-def test_a_protective_stop_ends_the_goal_and_the_next_one_works_after_unlocking(robot, simulator):
+def test_a_protective_stop_aborts_the_goal_and_the_next_goal_succeeds_after_unlocking(robot, simulator):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
     wait_until_moving(robot)
     simulator.control("protective_stop", reason="a test")
@@ -234,16 +234,16 @@ def test_a_protective_stop_ends_the_goal_and_the_next_one_works_after_unlocking(
     refused = robot.send(MoveJ, "move_j", joint_positions=HOME)
     assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.PROTECTIVE_STOP
     wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
-    home = wait_for(lambda: _accepted(robot), 20.0, "a motion to be taken again")
+    home = wait_for(lambda: _send_accepted_goal(robot), 20.0, "a motion to be accepted again")
     home.succeeded()
 
 
-def _accepted(client):
+def _send_accepted_goal(client):
     goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0, acceleration=3.0)
     return goal if goal.accepted else None
 
 
-def test_an_emergency_stop_ends_the_goal(robot, simulator):
+def test_an_emergency_stop_aborts_the_goal(robot, simulator):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
     wait_until_moving(robot)
     simulator.control("emergency_stop", pressed=True)
@@ -255,30 +255,30 @@ def test_an_emergency_stop_ends_the_goal(robot, simulator):
         simulator.control("power", to="running")
 
 
-def test_the_stopped_program_ends_the_goal_and_is_not_resumed(robot, simulator):
+def test_stopping_the_program_aborts_the_goal_without_resuming_it(robot, simulator):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
     wait_until_moving(robot)
     simulator.control("stop_program")
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PROGRAM_STOPPED, result.message
-    wait_for(lambda: simulator.state()["program"]["state"] == "PLAYING", 10.0, "the control program to be back")
+    wait_for(lambda: simulator.state()["program"]["state"] == "PLAYING", 10.0, "the control program to be restarted")
     assert is_at_rest(robot)
 
 
-def test_a_dropped_link_ends_the_goal_and_the_arm_stops(robot, simulator):
+def test_a_lost_connection_aborts_the_goal_and_stops_the_arm(robot, simulator):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
     wait_until_moving(robot)
     simulator.control("drop_links", which="rtde")
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED
     assert result.error_code in (ErrorCode.LINK_LOST, ErrorCode.PROGRAM_STOPPED), result.message
-    wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 5.0, "the arm to stand still")
+    wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 5.0, "standstill")
     assert simulator.state()["actual"]["position"][0] < 1.9
 
 
-def test_many_goals_of_many_kinds_get_one_result_each(robot):
+def test_each_of_many_concurrent_goals_gets_one_result(robot):
     switches, motions = [], []
-    for i in range(10):  # few at a time: services of ROS keep ten requests
+    for i in range(10):  # in small groups, because ROS services queue at most ten requests
         switches += [robot.send(SetDigitalOutput, "set_digital_output", pin=pin, state=bool(i % 2)) for pin in range(4)]
         motions.append(robot.send(MoveJ, "move_j", joint_positions=home_plus(0.01 * i)))
         assert all(goal.accepted for goal in switches[-4:])

@@ -1,4 +1,4 @@
-"""dashboard_server: what it is told takes effect, what it is asked it answers, what cannot be is said."""
+"""dashboard_server: commands take effect, queries return the answer, and failures are reported."""
 
 import pytest
 from action_msgs.msg import GoalStatus
@@ -20,14 +20,14 @@ def server(simulator):
 
 @pytest.fixture
 def dashboard(server, simulator, client):
-    """Takes commands; the robot is running."""
+    """A client of a connected dashboard server. The robot is in remote control and running."""
     simulator.control("remote_control", on=True)
     simulator.control("power", to="running")
-    wait_for(lambda: _accepted(client), 20.0, "the dashboard server to be connected")
+    wait_for(lambda: _is_connected(client), 20.0, "the dashboard server to be connected")
     return client
 
 
-def _accepted(client):
+def _is_connected(client):
     goal = client.send(DashboardQuery, "dashboard/robot_mode")
     return goal.accepted and goal.succeeded()
 
@@ -40,22 +40,22 @@ def query(client, name):
     return client.send(DashboardQuery, f"dashboard/{name}").succeeded().answer
 
 
-def text(client, name, words):
+def send_text(client, name, words):
     return client.send(DashboardText, f"dashboard/{name}", text=words)
 
 
-WAIT = "def wait():\n  while True:\n    sync()\n  end\nend\n"
+WAIT_PROGRAM = "def wait():\n  while True:\n    sync()\n  end\nend\n"
 
 
 @pytest.fixture
 def program(dashboard, simulator):
-    """wait.urp, loaded and stopped, which runs until it is told otherwise."""
-    simulator.control("store_program", name="wait.urp", script=WAIT, load=True)
+    """Loads wait.urp, which runs until it is stopped. Returns its name."""
+    simulator.control("store_program", name="wait.urp", script=WAIT_PROGRAM, load=True)
     command(dashboard, "stop").succeeded()
     return "wait.urp"
 
 
-def test_queries_answer_without_their_label(dashboard):
+def test_queries_return_the_answer_without_its_label(dashboard):
     assert query(dashboard, "robot_mode") == "RUNNING"
     assert query(dashboard, "safety_mode") == "NORMAL"
     assert query(dashboard, "get_serial_number").isdigit()
@@ -63,7 +63,7 @@ def test_queries_answer_without_their_label(dashboard):
     assert query(dashboard, "program_state").startswith("STOPPED")
 
 
-def test_the_arm_is_switched_off_and_on_and_its_brakes_released(dashboard):
+def test_powers_the_arm_off_and_on_and_releases_the_brakes(dashboard):
     command(dashboard, "power_off").succeeded()
     assert query(dashboard, "robot_mode") == "POWER_OFF"
     goal = command(dashboard, "power_on")
@@ -74,14 +74,14 @@ def test_the_arm_is_switched_off_and_on_and_its_brakes_released(dashboard):
     assert query(dashboard, "robot_mode") == "RUNNING"
 
 
-def test_what_does_not_take_effect_in_time_is_a_failure(dashboard):
+def test_a_command_that_has_no_effect_within_the_timeout_fails(dashboard):
     command(dashboard, "power_off").succeeded()
     status, result = command(dashboard, "brake_release", timeout=0.1).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.TIMEOUT
     assert "RUNNING" in result.message and "0.1 s" in result.message
 
 
-def test_a_wait_can_be_canceled(dashboard):
+def test_cancel_ends_the_wait_for_the_effect(dashboard):
     command(dashboard, "power_off").succeeded()
     goal = command(dashboard, "brake_release")
     wait_for(lambda: goal.feedback, 10.0, "feedback")
@@ -90,16 +90,16 @@ def test_a_wait_can_be_canceled(dashboard):
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
 
 
-def test_a_protective_stop_is_unlocked_once_the_robot_allows_it(dashboard, simulator):
+def test_unlocks_a_protective_stop_once_the_controller_allows_it(dashboard, simulator):
     simulator.control("protective_stop", reason="a test")
     wait_for(lambda: query(dashboard, "safety_mode") == "PROTECTIVE_STOP", 5.0, "the protective stop")
     early = command(dashboard, "unlock_protective_stop").result()
     assert early.error_code == ErrorCode.REJECTED_BY_ROBOT and early.answer in early.message
-    wait_for(lambda: command(dashboard, "unlock_protective_stop").result().success, 10.0, "the unlocking")
+    wait_for(lambda: command(dashboard, "unlock_protective_stop").result().success, 10.0, "the protective stop to be unlocked")
     assert query(dashboard, "safety_mode") == "NORMAL"
 
 
-def test_a_program_is_played_paused_gone_on_with_and_stopped(dashboard, program):
+def test_plays_pauses_resumes_and_stops_a_program(dashboard, program):
     command(dashboard, "play").succeeded()
     assert query(dashboard, "program_state") == f"PLAYING {program}"
     assert query(dashboard, "running") == "true"
@@ -112,26 +112,26 @@ def test_a_program_is_played_paused_gone_on_with_and_stopped(dashboard, program)
     assert query(dashboard, "program_state") == f"STOPPED {program}"
 
 
-def test_a_program_is_loaded_by_its_name(dashboard, simulator, program):
-    simulator.control("store_program", name="other.urp", script=WAIT)
-    assert text(dashboard, "load", "other.urp").succeeded().answer == "Loading program: other.urp"
+def test_loads_a_program_by_name(dashboard, simulator, program):
+    simulator.control("store_program", name="other.urp", script=WAIT_PROGRAM)
+    assert send_text(dashboard, "load", "other.urp").succeeded().answer == "Loading program: other.urp"
     assert query(dashboard, "program_state") == "STOPPED other.urp"
     assert query(dashboard, "get_loaded_program") == "/programs/other.urp"
     assert query(dashboard, "is_program_saved").lower() == "true other.urp"
 
 
 @pytest.mark.parametrize("name", ["load", "load_installation"])
-def test_what_is_not_on_the_controllers_disk_is_not_loaded(dashboard, program, name):
-    result = text(dashboard, name, "nowhere.urp").result()
+def test_loading_a_file_that_does_not_exist_fails(dashboard, program, name):
+    result = send_text(dashboard, name, "nowhere.urp").result()
     assert result.error_code == ErrorCode.REJECTED_BY_ROBOT and result.answer == "File not found: nowhere.urp"
     assert query(dashboard, "get_loaded_program") == f"/programs/{program}"
 
 
-def test_an_installation_is_loaded(dashboard):
-    assert text(dashboard, "load_installation", "default.installation").succeeded().answer.startswith("Loading installation: ")
+def test_loads_an_installation(dashboard):
+    assert send_text(dashboard, "load_installation", "default.installation").succeeded().answer.startswith("Loading installation: ")
 
 
-def test_the_safety_system_is_restarted_after_a_fault(dashboard, simulator):
+def test_restarts_the_safety_system_after_a_fault(dashboard, simulator):
     simulator.control("fault", reason="a test")
     wait_for(lambda: query(dashboard, "safety_mode") == "FAULT", 5.0, "the fault")
     assert query(dashboard, "safety_status") == "FAULT"
@@ -140,19 +140,19 @@ def test_the_safety_system_is_restarted_after_a_fault(dashboard, simulator):
     assert query(dashboard, "robot_mode") == "POWER_OFF" and query(dashboard, "safety_mode") == "NORMAL"
 
 
-def test_the_operational_mode_is_taken_and_given_back(dashboard):
-    text(dashboard, "set_operational_mode", "automatic").succeeded()
+def test_sets_and_clears_the_operational_mode(dashboard):
+    send_text(dashboard, "set_operational_mode", "automatic").succeeded()
     assert query(dashboard, "get_operational_mode") == "AUTOMATIC"
     assert command(dashboard, "clear_operational_mode").succeeded().answer.startswith("No longer controlling")
     assert query(dashboard, "get_operational_mode") == "NONE"
 
 
-def test_a_line_is_written_into_the_log_of_the_controller(dashboard, simulator):
-    text(dashboard, "add_to_log", "a line of the test").succeeded()
+def test_writes_a_line_to_the_log_of_the_controller(dashboard, simulator):
+    send_text(dashboard, "add_to_log", "a line of the test").succeeded()
     assert any(entry["text"] == "a line of the test" for entry in simulator.control("log")["entries"])
 
 
-def test_the_controller_tells_what_it_is(dashboard):
+def test_queries_model_version_and_remote_control(dashboard):
     assert query(dashboard, "get_robot_model") == "UR10"
     assert query(dashboard, "version").startswith("5.25")
     assert query(dashboard, "is_in_remote_control") == "true"
@@ -160,44 +160,44 @@ def test_the_controller_tells_what_it_is(dashboard):
 
 @pytest.mark.parametrize("name, words", [("set_operational_mode", "manual, automatic"),
                                          ("generate_flight_report", "controller, software, system")])
-def test_only_words_that_the_controller_knows_are_sent(dashboard, name, words):
-    goal = text(dashboard, name, "nonsense")
+def test_an_argument_unknown_to_the_controller_is_rejected(dashboard, name, words):
+    goal = send_text(dashboard, name, "nonsense")
     assert not goal.accepted
     refusal = dashboard.refusal(goal)
     assert refusal.error_code == ErrorCode.INVALID_GOAL and "nonsense" in refusal.message and words in refusal.message
 
 
-def test_a_report_takes_its_time_and_questions_go_on_meanwhile(dashboard):
-    goal = text(dashboard, "generate_flight_report", "controller")
+def test_queries_are_answered_while_a_report_is_generated(dashboard):
+    goal = send_text(dashboard, "generate_flight_report", "controller")
     assert query(dashboard, "robot_mode") == "RUNNING"
     assert not goal.is_finished()
-    second = text(dashboard, "generate_flight_report", "system").result()
+    second = send_text(dashboard, "generate_flight_report", "system").result()
     assert second.error_code == ErrorCode.REJECTED_BY_ROBOT and "Another report" in second.message
     assert goal.succeeded().answer.startswith("Flight Report generated with id")
 
 
-def test_the_wait_for_a_report_can_be_canceled(dashboard):
-    goal = text(dashboard, "generate_flight_report", "software")
+def test_cancel_ends_the_wait_for_a_report(dashboard):
+    goal = send_text(dashboard, "generate_flight_report", "software")
     wait_for(goal.answered, 10.0, "the goal to be accepted")
     goal.cancel()
     status, result = goal.wait_for_result(5.0)
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
-    # The controller goes on with it: only then there may be another one.
-    wait_for(lambda: text(dashboard, "generate_support_file", "/programs").result().success, 30.0, "the support file")
+    # The controller continues to generate it and accepts another report only afterwards.
+    wait_for(lambda: send_text(dashboard, "generate_support_file", "/programs").result().success, 30.0, "the support file")
     command(dashboard, "save_log").succeeded()
 
 
-def test_any_line_can_be_sent_as_it_is(dashboard):
-    assert text(dashboard, "raw", "robotmode").succeeded().answer == "Robotmode: RUNNING"
-    assert text(dashboard, "raw", "make tea").succeeded().answer == "could not understand: 'make tea'"
-    # It ends a connection that is the line's own.
-    assert text(dashboard, "raw", "quit").succeeded().answer == "Disconnected"
+def test_raw_sends_any_line_unchanged(dashboard):
+    assert send_text(dashboard, "raw", "robotmode").succeeded().answer == "Robotmode: RUNNING"
+    assert send_text(dashboard, "raw", "make tea").succeeded().answer == "could not understand: 'make tea'"
+    # Raw lines use a separate connection, so that only this one is closed.
+    assert send_text(dashboard, "raw", "quit").succeeded().answer == "Disconnected"
     assert query(dashboard, "robot_mode") == "RUNNING"
 
 
 @pytest.mark.parametrize("action, name, fields", [(DashboardQuery, "get_user_role", {}),
                                                   (DashboardText, "set_user_role", {"text": "operator"})])
-def test_what_the_controller_is_too_new_for_is_refused_with_its_version(dashboard, action, name, fields):
+def test_a_command_missing_in_this_polyscope_version_is_rejected_with_the_version(dashboard, action, name, fields):
     goal = dashboard.send(action, f"dashboard/{name}", **fields)
     assert not goal.accepted
     refusal = dashboard.refusal(goal)
@@ -210,8 +210,8 @@ def test_a_cb3_has_user_roles_and_no_operational_modes(addresses, processes):
     processes(start_node("dashboard_server", addresses[2], namespace="old"))
     client = Client("old")
     try:
-        wait_for(lambda: _accepted(client), 20.0, "the dashboard server to be connected")
-        text(client, "set_user_role", "operator").succeeded()
+        wait_for(lambda: _is_connected(client), 20.0, "the dashboard server to be connected")
+        send_text(client, "set_user_role", "operator").succeeded()
         assert query(client, "get_user_role") == "OPERATOR"
         goal = command(client, "clear_operational_mode")
         assert not goal.accepted and client.refusal(goal).error_code == ErrorCode.NOT_SUPPORTED
@@ -219,25 +219,25 @@ def test_a_cb3_has_user_roles_and_no_operational_modes(addresses, processes):
         client.close()
 
 
-def test_a_shut_down_controller_is_gone(addresses, processes):
+def test_shutdown_disconnects_the_server(addresses, processes):
     processes(Simulator(addresses[3]))
     processes(start_node("dashboard_server", addresses[3], namespace="going"))
     client = Client("going")
     try:
-        wait_for(lambda: _accepted(client), 20.0, "the dashboard server to be connected")
+        wait_for(lambda: _is_connected(client), 20.0, "the dashboard server to be connected")
         assert command(client, "shutdown").succeeded().answer == "Shutting down"
-        wait_for(lambda: _not_connected(client), 15.0, "the loss to be noticed")
+        wait_for(lambda: _is_disconnected(client), 15.0, "the loss of the connection to be detected")
     finally:
         client.close()
 
 
-def test_popups_open_and_close(dashboard):
+def test_opens_and_closes_a_popup(dashboard):
     dashboard.send(DashboardText, "dashboard/popup", text="Please wait").succeeded()
     command(dashboard, "close_popup").succeeded()
 
 
 @pytest.mark.parametrize("text, what", [("", "0 bytes"), ("two\nlines", "control character"), ("x" * 1001, "1001 bytes")])
-def test_a_text_that_is_not_one_line_is_refused(dashboard, text, what):
+def test_a_text_that_is_not_one_line_is_rejected(dashboard, text, what):
     goal = dashboard.send(DashboardText, "dashboard/popup", text=text)
     assert not goal.accepted
     refusal = dashboard.refusal(goal)
@@ -245,13 +245,13 @@ def test_a_text_that_is_not_one_line_is_refused(dashboard, text, what):
 
 
 @pytest.mark.parametrize("timeout", [0.0, -1.0, float("nan"), 1e6])
-def test_a_bad_timeout_is_refused(dashboard, timeout):
+def test_an_invalid_timeout_is_rejected(dashboard, timeout):
     goal = command(dashboard, "power_on", timeout=timeout)
     assert not goal.accepted
     assert "timeout" in dashboard.refusal(goal).message
 
 
-def test_local_control_is_named_as_the_reason(dashboard, simulator):
+def test_local_control_is_reported_as_the_reason(dashboard, simulator):
     simulator.control("remote_control", on=False)
     try:
         result = command(dashboard, "power_off").result()
@@ -259,11 +259,11 @@ def test_local_control_is_named_as_the_reason(dashboard, simulator):
         assert query(dashboard, "is_in_remote_control") == "false"
     finally:
         simulator.control("remote_control", on=True)
-    # An e-Series keeps to the mode in which a client connected: this one is not kept to it.
+    # An e-Series controller applies the mode at the time of connection. The server must not be stuck in local control.
     command(dashboard, "power_off").succeeded()
 
 
-def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
+def test_starts_without_the_controller_and_reconnects(addresses, processes):
     address = addresses[1]
     server = processes(start_node("dashboard_server", address, namespace="early"))
     client = Client("early")
@@ -272,23 +272,23 @@ def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
         assert not refused.accepted
         assert client.refusal(refused).error_code == ErrorCode.LINK_LOST
         simulator = processes(Simulator(address))
-        wait_for(lambda: _accepted(client), 15.0, "the connection")
+        wait_for(lambda: _is_connected(client), 15.0, "the connection")
         simulator.kill()
-        wait_for(lambda: _not_connected(client), 15.0, "the loss to be noticed")
+        wait_for(lambda: _is_disconnected(client), 15.0, "the loss of the connection to be detected")
         simulator.start()
-        wait_for(lambda: _accepted(client), 15.0, "the connection to be back")
+        wait_for(lambda: _is_connected(client), 15.0, "the reconnection")
         assert server.running()
     finally:
         client.close()
 
 
-def _not_connected(client):
+def _is_disconnected(client):
     goal = client.send(DashboardQuery, "dashboard/robot_mode")
     return not goal.accepted or not goal.result().success
 
 
-def test_answers_that_are_no_text_do_not_reach_a_goal(dashboard, simulator):
-    """Bytes between the answers, a zero and line ends among them: a question goes over a connection of its own."""
+def test_binary_data_between_answers_does_not_affect_queries(dashboard, simulator):
+    """The data includes a zero byte and line ends. Each query uses a separate connection."""
     for size in (3, 40, 600):
         simulator.control("send_garbage", which="dashboard", bytes=size)
         assert query(dashboard, "safety_mode") == "NORMAL"

@@ -1,4 +1,4 @@
-"""New clients discover the actions, also after other clients were killed: see docs/discovery.md."""
+"""New clients discover the actions, also after other clients were killed. See docs/discovery.md."""
 
 import json
 import os
@@ -11,19 +11,19 @@ from support import TIMEOUT_FACTOR, start_node, wait_for
 
 CLIENTS = pathlib.Path(__file__).parent / "discovery_clients.py"
 PROFILES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
-LIMIT = 2.0  # s, on a machine on which other tests run
+LIMIT = 2.0  # s, allows for other tests running at the same time
 
 
 @pytest.fixture
 def no_profile(monkeypatch):
-    """The environment without `./ur`, in which no profile is chosen."""
+    """Removes the Fast DDS profile that `./ur` sets from the environment."""
     for variable in PROFILES:
         monkeypatch.delenv(variable, raising=False)
     return monkeypatch
 
 
 def actions(driver):
-    """All that the driver serves, by its log."""
+    """Returns the comma-separated actions of the driver, from its log."""
     lists = [driver.wait_for_output(text).partition(text)[2] for text in ("]: commands: ", "]: dashboard commands: ")]
     return ",".join(lists).replace(" ", "")
 
@@ -38,8 +38,7 @@ def test_new_clients_find_all_actions_after_others_were_killed(no_profile, addre
     assert max(client["seconds"] for client in found) < LIMIT * TIMEOUT_FACTOR, found
 
 
-
-def own_profile(tmp_path, text):
+def write_profile(tmp_path, text):
     file = tmp_path / "own.xml"
     file.write_text(f'<dds xmlns="http://www.eprosima.com"><profiles><participant profile_name="own" is_default_profile="true">'
                     f"<rtps>{text}</rtps></participant></profiles></dds>")
@@ -51,19 +50,19 @@ DISABLED = """<propertiesPolicy><properties><property><name>fastdds.type_propaga
 
 
 @pytest.mark.skipif(os.environ.get("ROS_DISTRO", "") < "kilted", reason="Fast DDS 2 has no type propagation")
-@pytest.mark.parametrize("text, said", [("<name>own</name>", True), (DISABLED, False)])
-def test_a_profile_of_the_user_that_keeps_type_propagation_is_named(no_profile, addresses, processes, tmp_path, text, said):
-    file = own_profile(tmp_path, text)
+@pytest.mark.parametrize("text, expected", [("<name>own</name>", True), (DISABLED, False)])
+def test_warns_of_a_user_profile_that_leaves_type_propagation_enabled(no_profile, addresses, processes, tmp_path, text, expected):
+    file = write_profile(tmp_path, text)
     driver = processes(start_node("driver", addresses[3], env={"FASTDDS_DEFAULT_PROFILES_FILE": file}))
     driver.wait_for_output("]: commands: ")
-    assert ("leaves fastdds.type_propagation enabled" in driver.output()) == said
-    assert (file in driver.output()) == said
+    assert ("leaves fastdds.type_propagation enabled" in driver.output()) == expected
+    assert (file in driver.output()) == expected
 
 
-def test_a_profile_in_the_working_directory_is_kept(no_profile, addresses, processes, tmp_path):
-    pathlib.Path(own_profile(tmp_path, "<name>own</name>")).rename(tmp_path / "DEFAULT_FASTDDS_PROFILES.xml")
+def test_uses_the_profile_in_the_working_directory(no_profile, addresses, processes, tmp_path):
+    pathlib.Path(write_profile(tmp_path, "<name>own</name>")).rename(tmp_path / "DEFAULT_FASTDDS_PROFILES.xml")
     no_profile.chdir(tmp_path)
     driver = processes(start_node("driver", addresses[3]))
-    wait_for(lambda: "]: commands: " in driver.output(), 15.0, "the start")
-    said = "DEFAULT_FASTDDS_PROFILES.xml leaves fastdds.type_propagation enabled" in driver.output()
-    assert said == (os.environ.get("ROS_DISTRO", "") >= "kilted"), driver.output()
+    wait_for(lambda: "]: commands: " in driver.output(), 15.0, "the driver to start")
+    warned = "DEFAULT_FASTDDS_PROFILES.xml leaves fastdds.type_propagation enabled" in driver.output()
+    assert warned == (os.environ.get("ROS_DISTRO", "") >= "kilted"), driver.output()

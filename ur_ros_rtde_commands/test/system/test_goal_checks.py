@@ -16,7 +16,7 @@ def pose_below(robot):
 
 @pytest.fixture
 def silent_controller(robot, simulator):
-    """The control program gets no commands, so that queries stay without an answer until its watchdog ends it after 1 s."""
+    """The control program receives no commands. Queries remain unanswered until its watchdog stops it after 1 s."""
     pose = pose_below(robot)
     robot.send(SetWatchdog, "set_watchdog", min_frequency=1.0).succeeded()
     simulator.control("lose_commands", which="rtde", clients="control", count=100000)

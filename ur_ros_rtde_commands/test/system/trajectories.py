@@ -1,4 +1,4 @@
-"""What the tests of trajectories share: waypoints, and what the simulator's target did."""
+"""Shared by the trajectory tests: waypoints, trajectories and the target that the simulator receives."""
 
 import math
 
@@ -14,7 +14,7 @@ def waypoints(*positions):
 
 
 def wave(count, size=0.3):
-    """Samples of a smooth closed curve that begins at home."""
+    """Returns samples of a smooth closed curve that begins at home."""
     angles = [2.0 * math.pi * i / (count - 1) for i in range(count)]
     return [home_plus(size * (1.0 - math.cos(a)), 0.5 * size * math.sin(a), -0.4 * size * math.sin(2.0 * a)) for a in angles]
 
@@ -30,31 +30,40 @@ def timed(*points, names=JOINTS):
     return JointTrajectory(joint_names=list(names), points=list(points))
 
 
-def distance_to_line(point_, start, end):
-    """In joint space, of the joint that is farthest off."""
+def distance_to_line(position, start, end):
+    """Returns the distance of the joint that deviates most from the line, in joint space."""
     along = [b - a for a, b in zip(start, end)]
-    part = sum((p - a) * d for p, a, d in zip(point_, start, along)) / sum(d * d for d in along)
-    return max(abs(p - a - part * d) for p, a, d in zip(point_, start, along))
+    part = sum((p - a) * d for p, a, d in zip(position, start, along)) / sum(d * d for d in along)
+    return max(abs(p - a - part * d) for p, a, d in zip(position, start, along))
 
 
 def cycles_without_target(simulator, after):
-    """Of the controller, from its cycle `after` on, between the first target of a stream and the last: it remembers two seconds."""
+    """Returns the number of controller cycles without a new target, between the first and the last target after cycle `after`.
+
+    The simulator's trace covers the last 2 s."""
     targets = {cycle for cycle, _, _ in simulator.control("trace", after=after)["repeats"]}
     return max(targets) - min(targets) + 1 - len(targets)
 
 
 class TargetSpeedRecorder:
-    """Follows the simulator's target in the background of a test: called in a wait_for."""
+    """Records the target speeds of the simulator, from construction on.
+
+    Call update() at least every 2 s, for example in wait_for(): the simulator's trace covers the last 2 s.
+    """
 
     def __init__(self, simulator):
         self._simulator = simulator
-        self._last = 0
-        self.speeds = []
+        self._last_cycle = 0
+        self._new_speeds()  # discards the past
+        self._speeds = []
 
     def update(self):
-        """The fastest target joint of each cycle since the last look."""
-        cycles = self._simulator.control("trace", after=self._last)["cycles"]
+        """Returns the speed of the fastest target joint in rad/s, of each cycle so far."""
+        self._speeds += self._new_speeds()
+        return self._speeds
+
+    def _new_speeds(self):
+        cycles = self._simulator.control("trace", after=self._last_cycle)["cycles"]
         if cycles:
-            self._last = cycles[-1][0]
-        self.speeds += [speed for _, _, speed in cycles]
-        return self.speeds
+            self._last_cycle = cycles[-1][0]
+        return [speed for _, _, speed in cycles]

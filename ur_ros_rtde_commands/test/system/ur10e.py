@@ -1,4 +1,4 @@
-"""Forward kinematics of the UR10e, from the DH parameters that UR publishes: what the answers of the controller are compared with."""
+"""Forward kinematics of the UR10e from the published DH parameters, as a reference for the controller's results."""
 
 import math
 
@@ -15,7 +15,7 @@ def _link(angle, a, d, alpha):
 
 
 def flange(q):
-    """In the base frame, 4 x 4."""
+    """Returns the flange pose in the base frame as a 4 x 4 matrix."""
     frame = np.eye(4)
     for angle, a, d, alpha in zip(q, A, D, ALPHA):
         frame = frame @ _link(angle, a, d, alpha)
@@ -23,7 +23,7 @@ def flange(q):
 
 
 def matrix(pose):
-    """Of a geometry_msgs/Pose, 4 x 4."""
+    """Converts a geometry_msgs/Pose to a 4 x 4 matrix."""
     o, p = pose.orientation, pose.position
     x, y, z, w = np.array([o.x, o.y, o.z, o.w]) / math.sqrt(o.x**2 + o.y**2 + o.z**2 + o.w**2)
     frame = np.eye(4)
@@ -35,7 +35,7 @@ def matrix(pose):
 
 
 def jacobian(q, tcp=np.eye(4), step=1e-6):
-    """Of the TCP in the base frame, by central differences."""
+    """Returns the Jacobian of the TCP in the base frame, by central differences."""
     columns = []
     for joint in range(6):
         forward, backward = (flange(np.array(q) + sign * step * np.eye(6)[joint]) @ tcp for sign in (1, -1))
