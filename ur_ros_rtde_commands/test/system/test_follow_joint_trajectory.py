@@ -1,8 +1,6 @@
-"""follow_joint_trajectory, as MoveIt uses it."""
+"""Tests of follow_joint_trajectory, the action that MoveIt uses."""
 
-import os
 import pathlib
-import shutil
 
 import control_msgs_fallback
 import pytest
@@ -13,13 +11,14 @@ from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from control_msgs.msg import JointComponentTolerance, JointTolerance
 from interface_fallback import type_hashes
+from plugin_prefix import create_plugin_prefix, prepend_path
 from support import HOME, JOINTS, start_node, wait_for
 from trajectories import point, timed
 
 Result = FollowJointTrajectory.Result
 CONFIG = pathlib.Path(__file__).parents[3] / "ur_ros_rtde" / "config" / "moveit"
 DESCRIPTION = pathlib.Path(__file__).parents[2] / "src" / "moveit" / "moveit_commands.xml"
-# Computed with rosidl from the published definitions: until 2025-06, and since, with two index fields more.
+# Computed with rosidl from the published definitions: before 2025-06, and the current one with two more index fields.
 HASHES = {"RIHS01_738ebcb7a2d7cfa42f9f1001cc99ce3a4383d1cfe508015d9be8485e4b1c66f6",
           "RIHS01_ff29901b2693f5deb847e96084a1c2cdb26e70b7c847be21859b70a55fb29cf0"}
 
@@ -28,17 +27,9 @@ HASHES = {"RIHS01_738ebcb7a2d7cfa42f9f1001cc99ce3a4383d1cfe508015d9be8485e4b1c66
 def driver(simulator, tmp_path_factory):
     env = {}
     if control_msgs_fallback.PLUGIN:
-        prefix = tmp_path_factory.mktemp("moveit")
-        index = prefix / "share" / "ament_index" / "resource_index"
-        for kind, content in (("ur_ros_rtde__pluginlib__plugin", "share/moveit/plugins.xml\n"), ("packages", "")):
-            (index / kind).mkdir(parents=True)
-            (index / kind / "moveit").write_text(content)
-        (prefix / "lib").mkdir()
-        shutil.copy(control_msgs_fallback.PLUGIN, prefix / "lib")
-        (prefix / "share" / "moveit").mkdir()
-        shutil.copy(DESCRIPTION, prefix / "share" / "moveit" / "plugins.xml")
-        env = {name: os.pathsep.join([str(path), os.environ.get(name, "")])
-               for name, path in (("AMENT_PREFIX_PATH", prefix), ("LD_LIBRARY_PATH", control_msgs_fallback.LIBRARIES))}
+        prefix = create_plugin_prefix(tmp_path_factory.mktemp("moveit"), "moveit", DESCRIPTION.read_text(),
+                                      [control_msgs_fallback.PLUGIN])
+        env = {**prepend_path("AMENT_PREFIX_PATH", prefix), **prepend_path("LD_LIBRARY_PATH", control_msgs_fallback.LIBRARIES)}
     driver = start_node("driver", simulator.address, "ur_type:=ur10e", env=env)
     yield driver
     driver.stop()
@@ -49,8 +40,8 @@ def send(robot, *points, names=JOINTS, **fields):
     return robot.send(FollowJointTrajectory, "follow_joint_trajectory", trajectory=timed(*points, names=names), **fields)
 
 
-def there_and(positions, seconds=1.0):
-    """As a planner sends it: positions and velocities, from where the arm is."""
+def planned_points(positions, seconds=1.0):
+    """Returns positions and velocities from home to `positions`, as a planner sends them."""
     return point(0.0, HOME, [0.0] * 6), point(seconds, positions, [0.0] * 6)
 
 
@@ -58,21 +49,21 @@ def tolerance(name, position=0.0, velocity=0.0, acceleration=0.0):
     return JointTolerance(name=name, position=position, velocity=velocity, acceleration=acceleration)
 
 
-def reason(robot, goal):
+def rejection_message(robot, goal):
     assert not goal.accepted
     return robot.refusal(goal).message
 
 
 @pytest.mark.skipif(control_msgs_fallback.PLUGIN is None, reason="control_msgs is installed")
-def test_the_interface_is_the_published_one():
+def test_type_hashes_match_the_published_interface():
     hashes = type_hashes("control_msgs")
     assert hashes["control_msgs/action/FollowJointTrajectory"] in HASHES
     assert (hashes["control_msgs/msg/JointTolerance"]
             == "RIHS01_c254f9cece0f3b733017b6990fd46d1326e25242d6b8844398c97d9a88e7d648")
 
 
-def test_a_plan_is_executed_with_feedback(robot):
-    goal = send(robot, *there_and(home_plus(0.4, 0.1)))
+def test_executes_a_plan_with_feedback(robot):
+    goal = send(robot, *planned_points(home_plus(0.4, 0.1)))
     status, result = goal.wait_for_result(20.0)
     assert status == GoalStatus.STATUS_SUCCEEDED and result.error_code == Result.SUCCESSFUL, result.error_string
     feedback = goal.feedback[len(goal.feedback) // 2]
@@ -82,7 +73,7 @@ def test_a_plan_is_executed_with_feedback(robot):
     assert abs(feedback.error.positions[0]) < 0.1 and feedback.desired.velocities[0] > 0.1
 
 
-def test_joints_may_come_in_any_order(robot):
+def test_accepts_joints_in_any_order(robot):
     order = (3, 0, 5, 1, 4, 2)
     target = home_plus(0.1, 0.05, -0.1, 0.2, 0.0, 0.3)
     names = ["left_" + JOINTS[i] for i in order]
@@ -93,9 +84,9 @@ def test_joints_may_come_in_any_order(robot):
     assert last.joint_names == names and last.actual.positions == pytest.approx([target[i] for i in order], abs=0.1)
 
 
-def test_a_new_goal_replaces_the_running_one(robot, simulator):
-    first = send(robot, *there_and(home_plus(1.0), 4.0))
-    wait_for(lambda: len(first.feedback) > 10, 10.0, "the first to move")
+def test_a_new_goal_preempts_the_running_one(robot, simulator):
+    first = send(robot, *planned_points(home_plus(1.0), 4.0))
+    wait_for(lambda: len(first.feedback) > 10, 10.0, "motion")
     second = send(robot, point(2.0, HOME, [0.0] * 6))
     assert second.accepted
     status, result = first.wait_for_result(10.0)
@@ -106,8 +97,8 @@ def test_a_new_goal_replaces_the_running_one(robot, simulator):
 
 
 def test_an_empty_trajectory_stops_the_running_one(robot, simulator):
-    first = send(robot, *there_and(home_plus(1.0), 4.0))
-    wait_for(lambda: len(first.feedback) > 10, 10.0, "the first to move")
+    first = send(robot, *planned_points(home_plus(1.0), 4.0))
+    wait_for(lambda: len(first.feedback) > 10, 10.0, "motion")
     status, result = send(robot, names=[]).wait_for_result(10.0)
     assert status == GoalStatus.STATUS_SUCCEEDED and result.error_code == Result.SUCCESSFUL
     assert first.wait_for_result(10.0)[0] == GoalStatus.STATUS_ABORTED
@@ -115,31 +106,31 @@ def test_an_empty_trajectory_stops_the_running_one(robot, simulator):
 
 
 def test_cancel_decelerates(robot, simulator):
-    goal = send(robot, *there_and(home_plus(1.0), 4.0))
+    goal = send(robot, *planned_points(home_plus(1.0), 4.0))
     wait_for(lambda: len(goal.feedback) > 10, 10.0, "motion")
     goal.cancel()
     assert goal.wait_for_result(10.0)[0] == GoalStatus.STATUS_CANCELED
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
-def test_a_path_tolerance_that_is_left_ends_it(robot):
-    goal = send(robot, *there_and(home_plus(0.8)), path_tolerance=[tolerance(JOINTS[0], 1e-6)])
+def test_a_path_tolerance_violation_aborts_the_goal(robot):
+    goal = send(robot, *planned_points(home_plus(0.8)), path_tolerance=[tolerance(JOINTS[0], 1e-6)])
     status, result = goal.wait_for_result(10.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == Result.PATH_TOLERANCE_VIOLATED
     assert "shoulder_pan_joint" in result.error_string and "tolerance" in result.error_string
 
 
-def test_a_goal_tolerance_that_is_not_met_in_time_ends_it(robot):
-    goal = send(robot, *there_and(home_plus(0.8)), goal_tolerance=[tolerance(JOINTS[0], 1e-9)],
+def test_a_goal_tolerance_violation_aborts_the_goal(robot):
+    goal = send(robot, *planned_points(home_plus(0.8)), goal_tolerance=[tolerance(JOINTS[0], 1e-9)],
                 goal_time_tolerance=Duration(nanosec=100_000_000))
     status, result = goal.wait_for_result(10.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == Result.GOAL_TOLERANCE_VIOLATED
     assert "0.10 s after the end" in result.error_string
 
 
-def test_it_begins_at_the_stamp(robot, simulator):
+def test_starts_at_the_header_stamp(robot, simulator):
     begin = simulator.state()["timestamp"]
-    trajectory = timed(*there_and(home_plus(0.2)))
+    trajectory = timed(*planned_points(home_plus(0.2)))
     trajectory.header.stamp = (robot.node.get_clock().now()).to_msg()
     trajectory.header.stamp.sec += 2
     goal = robot.send(FollowJointTrajectory, "follow_joint_trajectory", trajectory=trajectory)
@@ -147,11 +138,11 @@ def test_it_begins_at_the_stamp(robot, simulator):
     assert simulator.state()["timestamp"] - begin > 2.0
 
 
-def test_a_trajectory_of_the_past_is_refused(robot):
-    trajectory = timed(*there_and(home_plus(0.2)))
+def test_a_header_stamp_in_the_past_is_rejected(robot):
+    trajectory = timed(*planned_points(home_plus(0.2)))
     trajectory.header.stamp = robot.node.get_clock().now().to_msg()
     trajectory.header.stamp.sec -= 100
-    message = reason(robot, robot.send(FollowJointTrajectory, "follow_joint_trajectory", trajectory=trajectory))
+    message = rejection_message(robot, robot.send(FollowJointTrajectory, "follow_joint_trajectory", trajectory=trajectory))
     assert "header.stamp" in message and "s ago" in message
 
 
@@ -167,25 +158,25 @@ REFUSED = [
 
 
 @pytest.mark.parametrize("fields, what", REFUSED, ids=[what for _, what in REFUSED])
-def test_what_it_cannot_do_is_refused(robot, fields, what):
-    assert what in reason(robot, send(robot, *there_and(home_plus(0.1)), **fields))
+def test_unsupported_goals_are_rejected(robot, fields, what):
+    assert what in rejection_message(robot, send(robot, *planned_points(home_plus(0.1)), **fields))
 
 
-def test_start_elsewhere_and_bad_points_are_refused(robot):
-    assert "away" in reason(robot, send(robot, point(0.0, home_plus(0.3)), point(1.0, HOME)))
-    assert "times[1]" in reason(robot, send(robot, point(0.0, HOME), point(0.0, HOME)))
-    assert "7" in reason(robot, send(robot, point(0.0, HOME), point(1.0, home_plus(7.0))))
-    assert "rest" in reason(robot, send(robot, point(0.0, HOME, [0.0] * 6), point(1.0, HOME, [1.0] * 6)))
+def test_a_distant_start_and_invalid_points_are_rejected(robot):
+    assert "away" in rejection_message(robot, send(robot, point(0.0, home_plus(0.3)), point(1.0, HOME)))
+    assert "times[1]" in rejection_message(robot, send(robot, point(0.0, HOME), point(0.0, HOME)))
+    assert "7" in rejection_message(robot, send(robot, point(0.0, HOME), point(1.0, home_plus(7.0))))
+    assert "rest" in rejection_message(robot, send(robot, point(0.0, HOME, [0.0] * 6), point(1.0, HOME, [1.0] * 6)))
 
 
-def test_too_fast_for_the_arm_ends_before_it_moves(robot):
-    status, result = send(robot, *there_and(home_plus(2.0), 0.5)).wait_for_result(10.0)
+def test_a_trajectory_too_fast_for_the_arm_is_aborted_before_it_moves(robot):
+    status, result = send(robot, *planned_points(home_plus(2.0), 0.5)).wait_for_result(10.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == Result.INVALID_GOAL
     assert "velocity of shoulder_pan_joint" in result.error_string or "acceleration of" in result.error_string
 
 
-def test_a_protective_stop_ends_it(robot, simulator):
-    goal = send(robot, *there_and(home_plus(1.0), 4.0))
+def test_a_protective_stop_aborts_the_goal(robot, simulator):
+    goal = send(robot, *planned_points(home_plus(1.0), 4.0))
     wait_for(lambda: len(goal.feedback) > 10, 10.0, "motion")
     simulator.control("protective_stop")
     status, result = goal.wait_for_result(10.0)
@@ -194,7 +185,7 @@ def test_a_protective_stop_ends_it(robot, simulator):
     wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
 
 
-def test_the_example_configuration_is_for_this_action():
+def test_the_example_configuration_uses_this_action():
     controllers = yaml.safe_load((CONFIG / "moveit_controllers.yaml").read_text())
     manager = controllers["moveit_simple_controller_manager"]
     for name in manager["controller_names"]:

@@ -1,4 +1,4 @@
-"""Force mode, freedrive and teach mode, torques and external sensors, on the simulator's physics."""
+"""Tests of force mode, freedrive, teach mode, joint torques and external sensors, with the simulator's physics."""
 
 import math
 
@@ -20,21 +20,21 @@ def down(force):
 
 
 def press(robot, simulator, force, **fields):
-    """Force mode onto a surface five millimetres below the TCP, until the arm presses with `force`."""
+    """Activates force mode toward a surface 5 mm below the TCP and waits until the contact force reaches `force` in N."""
     robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
     simulator.control("place_surface", z=get_tcp_pose(robot).position.z - 0.005, stiffness=20000.0)
     goal = robot.send(ForceMode, "force_mode", task_frame=Pose(), compliant=ALONG_Z, wrench=down(force),
                       limits=[0.1, 0.1, 0.03, 0.5, 0.5, 0.5], **fields)
 
-    def felt():
+    def force_is_reached():
         return goal.feedback and goal.feedback[-1].wrench.force.z == pytest.approx(force, abs=0.15 * force)
 
     assert goal.accepted, robot.refusal(goal).message
-    wait_for(felt, 15.0, f"{force} N, now {[round(f.wrench.force.z, 1) for f in goal.feedback[-5:]]}")
+    wait_for(force_is_reached, 15.0, f"{force} N, now {[round(f.wrench.force.z, 1) for f in goal.feedback[-5:]]}")
     return goal
 
 
-def test_force_mode_presses_with_the_force_it_was_asked_for_until_it_is_canceled(robot, simulator):
+def test_force_mode_applies_the_wrench_until_it_is_canceled(robot, simulator):
     before = get_tcp_pose(robot).position
     goal = press(robot, simulator, 20.0)
     assert simulator.state()["force_mode"]
@@ -47,7 +47,7 @@ def test_force_mode_presses_with_the_force_it_was_asked_for_until_it_is_canceled
     assert before.z - after.z == pytest.approx(0.005, abs=0.003)
 
 
-def test_force_mode_ends_by_itself_after_its_duration(robot, simulator):
+def test_force_mode_ends_after_its_duration(robot, simulator):
     goal = robot.send(ForceMode, "force_mode", compliant=ALONG_Z, wrench=down(5.0), limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5],
                       duration=1.0)
     goal.succeeded()
@@ -56,7 +56,7 @@ def test_force_mode_ends_by_itself_after_its_duration(robot, simulator):
     assert progress == sorted(progress) and progress[-1] > 0.8
 
 
-def test_force_mode_ends_with_a_stop_of_the_robot(robot, simulator):
+def test_a_protective_stop_ends_force_mode(robot, simulator):
     goal = press(robot, simulator, 20.0)
     simulator.control("protective_stop", reason="a test")
     status, result = goal.wait_for_result()
@@ -66,7 +66,7 @@ def test_force_mode_ends_with_a_stop_of_the_robot(robot, simulator):
     wait_for(simulator.unlock_protective_stop, 15.0, "the protective stop to be unlocked")
 
 
-def test_a_motion_goes_along_a_surface_in_force_mode_that_was_started_and_is_changed_meanwhile(robot, simulator):
+def test_force_mode_can_be_changed_during_a_motion_along_a_surface(robot, simulator):
     robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
     simulator.control("place_surface", z=get_tcp_pose(robot).position.z - 0.005, stiffness=20000.0)
     fields = dict(compliant=ALONG_Z, limits=[0.1, 0.1, 0.03, 0.5, 0.5, 0.5])
@@ -85,12 +85,12 @@ def test_a_motion_goes_along_a_surface_in_force_mode_that_was_started_and_is_cha
     robot.send(ForceMode, "force_mode_start", wrench=down(30.0), **fields).succeeded()
     motion.succeeded()
     assert get_tcp_pose(robot).position.y == pytest.approx(target.position.y, abs=0.002)
-    assert simulator.state()["force_mode"] and pressing(30.0), "a motion that succeeds leaves it on"
+    assert simulator.state()["force_mode"] and pressing(30.0), "a successful motion leaves force mode active"
     robot.send(Trigger, "force_mode_stop").succeeded()
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
 
 
-def test_a_motion_that_is_canceled_ends_force_mode(robot, simulator):
+def test_canceling_a_motion_ends_force_mode(robot, simulator):
     robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
     motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.0), speed=0.3)
     wait_until_moving(robot)
@@ -99,7 +99,7 @@ def test_a_motion_that_is_canceled_ends_force_mode(robot, simulator):
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
 
 
-def test_damping_and_gain_are_set(robot):
+def test_sets_damping_and_gain_scaling_within_their_ranges(robot):
     robot.send(SetForceModeParameter, "force_mode_set_damping", value=0.5).succeeded()
     robot.send(SetForceModeParameter, "force_mode_set_gain_scaling", value=1.5).succeeded()
     for name, value in (("force_mode_set_damping", 1.5), ("force_mode_set_gain_scaling", 2.5)):
@@ -108,12 +108,12 @@ def test_damping_and_gain_are_set(robot):
 
 
 @pytest.mark.parametrize("action,name", [(Freedrive, "freedrive"), (TeachMode, "teach_mode")])
-def test_the_arm_can_be_pushed_while_it_is_guided_and_stands_still_afterwards(robot, simulator, action, name):
+def test_the_arm_yields_to_a_push_in_freedrive_and_is_at_rest_afterwards(robot, simulator, action, name):
     goal = robot.send(action, name)
-    wait_for(lambda: goal.accepted and simulator.state()["freedrive"], 10.0, "the arm to be free")
+    wait_for(lambda: goal.accepted and simulator.state()["freedrive"], 10.0, "freedrive")
     before = get_tcp_pose(robot).position
     simulator.control("push", force=[0.0, 60.0, 0.0], duration=3.0)
-    wait_for(lambda: abs(get_tcp_pose(robot).position.y - before.y) > 0.02, 10.0, "the arm to give way")
+    wait_for(lambda: abs(get_tcp_pose(robot).position.y - before.y) > 0.02, 10.0, "the arm to yield to the push")
     goal.cancel()
     assert goal.wait_for_result()[0] == GoalStatus.STATUS_SUCCEEDED
     assert not simulator.state()["freedrive"]
@@ -122,7 +122,7 @@ def test_the_arm_can_be_pushed_while_it_is_guided_and_stands_still_afterwards(ro
 
 @pytest.mark.parametrize("start,stop,action", [("freedrive_start", "freedrive_stop", Freedrive),
                                                ("teach_mode_start", "end_teach_mode", Trigger)])
-def test_motions_are_refused_while_somebody_may_hold_the_arm(robot, simulator, start, stop, action):
+def test_motions_are_rejected_in_freedrive(robot, simulator, start, stop, action):
     robot.send(action, start).succeeded()
     assert simulator.state()["freedrive"]
     refused = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1))
@@ -132,14 +132,14 @@ def test_motions_are_refused_while_somebody_may_hold_the_arm(robot, simulator, s
     robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1)).succeeded()
 
 
-def test_direct_torque_turns_a_joint_and_comes_to_rest(robot):
+def test_direct_torque_moves_a_joint_and_stops(robot):
     before = get_joint_state(robot).position[0]
     robot.send(DirectTorque, "direct_torque", joint_torques=[15.0, 0.0, 0.0, 0.0, 0.0, 0.0], duration=0.3,
                max_joint_speed=3.0).succeeded()
     assert get_joint_state(robot).position[0] > before + 0.01 and is_at_rest(robot)
 
 
-def test_direct_torque_ends_when_a_joint_gets_too_fast(robot):
+def test_direct_torque_aborts_when_a_joint_exceeds_max_joint_speed(robot):
     status, result = robot.send(DirectTorque, "direct_torque", joint_torques=[0.0, 0.0, 0.0, 0.0, 0.0, 10.0], duration=20.0,
                                 max_joint_speed=0.3).wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.SAFETY_VIOLATION), result.message
@@ -147,11 +147,11 @@ def test_direct_torque_ends_when_a_joint_gets_too_fast(robot):
     wait_for(lambda: is_at_rest(robot), 2.0, "standstill")
 
 
-def test_the_readings_of_an_external_sensor_count(robot, simulator):
+def test_uses_the_readings_of_an_external_sensor(robot, simulator):
     robot.send(EnableExternalFtSensor, "ft_rtde_input_enable", enable=True, sensor_mass=0.0).succeeded()
     assert simulator.state()["external_sensor"]
     robot.send(SetExternalForceTorque, "set_external_force_torque", wrench=Wrench(force=Vector3(z=12.0))).succeeded()
     wait_for(lambda: math.hypot(*simulator.state()["actual_tcp_force"][:3]) == pytest.approx(12.0, abs=2.0), 5.0,
-             "the force that was given")
+             "the force of the external sensor")
     robot.send(EnableExternalFtSensor, "ft_rtde_input_enable", enable=False).succeeded()
     assert not simulator.state()["external_sensor"]

@@ -23,7 +23,7 @@ def silent_controller(robot, simulator):
     yield pose
 
 
-def test_another_goal_is_executed_while_a_check_waits(robot, silent_controller):
+def test_executes_another_goal_while_a_check_is_pending(robot, silent_controller):
     waiting = robot.send(MoveL, "move_l", pose=silent_controller)
     robot.send(SetDigitalOutput, "set_standard_digital_output", pin=1, state=True).succeeded()
     assert not waiting.answered()
@@ -31,7 +31,7 @@ def test_another_goal_is_executed_while_a_check_waits(robot, silent_controller):
     assert robot.refusal(waiting).error_code != ErrorCode.NONE
 
 
-def test_stop_preempts_a_goal_whose_check_waits(robot, silent_controller):
+def test_stop_preempts_a_goal_whose_check_is_pending(robot, silent_controller):
     waiting = robot.send(MoveL, "move_l", pose=silent_controller)
     stop = robot.send(Stop, "stop")
     wait_for(stop.answered, 5.0, "the response to stop")
@@ -41,7 +41,7 @@ def test_stop_preempts_a_goal_whose_check_waits(robot, silent_controller):
     assert robot.refusal(waiting).error_code == ErrorCode.PREEMPTED
 
 
-def test_a_goal_whose_check_waits_does_not_move_after_cancel_all(robot, simulator):
+def test_a_goal_canceled_during_its_check_does_not_move_the_arm(robot, simulator):
     pose = pose_below(robot)
     before = simulator.state()["actual"]["position"]
     simulator.control("delay_links", which="rtde", clients="control", ms=300)
@@ -52,7 +52,7 @@ def test_a_goal_whose_check_waits_does_not_move_after_cancel_all(robot, simulato
     assert simulator.state()["actual"]["position"] == pytest.approx(before, abs=1e-3)
 
 
-def test_an_unreachable_pose_is_rejected_after_the_answer(robot):
+def test_an_unreachable_pose_is_rejected_after_the_check(robot):
     pose = Pose(position=get_tcp_pose(robot).position)
     pose.position.z += 1.1
     goal = robot.send(MoveL, "move_l", pose=pose)

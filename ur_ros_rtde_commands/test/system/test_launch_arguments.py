@@ -1,4 +1,4 @@
-"""The arguments of the launch files are the parameters of the nodes, and have priority over a file. Needs no launch."""
+"""Launch arguments match the parameters of the nodes and override a parameter file. Does not require the launch package."""
 
 import os
 import pathlib
@@ -14,28 +14,28 @@ from ur_ros_rtde import launch_arguments
 from ur_ros_rtde.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_name, to_values
 
 CONFIG = pathlib.Path(__file__).resolve().parents[3] / "ur_ros_rtde" / "config" / "driver.yaml"
-OF_ROS = {"use_sim_time"}
+ROS_PARAMETERS = {"use_sim_time"}
 
 
 @pytest.fixture(scope="module")
-def asker():
+def parameter_node():
     rclpy.init()
-    node = rclpy.create_node("asker")
+    node = rclpy.create_node("parameter_node")
     yield node
     node.destroy_node()
     rclpy.shutdown()
 
 
 @pytest.fixture
-def start(asker, addresses, tmp_path):
-    """Starts a program without a robot; gives the parameters that its nodes report."""
+def start(parameter_node, addresses, tmp_path):
+    """Returns a function that starts a program without a robot and returns the parameters of its nodes."""
     processes = []
 
     def run(*arguments, executable="driver", namespace=""):
         processes.append(Process([find_program("ur_ros_rtde", executable), "--ros-args", "-r", f"__ns:=/{namespace}",
                                   "-p", f"robot_ip:={addresses[3]}", *map(str, arguments)]))
         nodes = NODES if executable == "driver" else (executable,)
-        return {node: reported(asker, f"/{namespace}/{node}".replace("//", "/")) for node in nodes}
+        return {node: get_parameters(parameter_node, f"/{namespace}/{node}".replace("//", "/")) for node in nodes}
 
     yield run
     for process in processes:
@@ -43,22 +43,22 @@ def start(asker, addresses, tmp_path):
         print(process.output())
 
 
-def ask(asker, node, kind, **request):
+def call_parameter_service(parameter_node, node, kind, **request):
     name = {ListParameters: "list_parameters", DescribeParameters: "describe_parameters", GetParameters: "get_parameters"}[kind]
-    client = asker.create_client(kind, f"{node}/{name}")
+    client = parameter_node.create_client(kind, f"{node}/{name}")
     wait_for(client.service_is_ready, 20.0, f"{node}/{name}")
     future = client.call_async(kind.Request(**request))
-    rclpy.spin_until_future_complete(asker, future, timeout_sec=10.0)
-    asker.destroy_client(client)
-    assert future.done(), f"no answer of {node}/{name}"
+    rclpy.spin_until_future_complete(parameter_node, future, timeout_sec=10.0)
+    parameter_node.destroy_client(client)
+    assert future.done(), f"no response from {node}/{name}"
     return future.result()
 
 
-def reported(asker, node):
-    """{name: (value, descriptor)}; a name with a dot is a plugin's own."""
-    names = [name for name in ask(asker, node, ListParameters).result.names if "." not in name and name not in OF_ROS]
-    values = ask(asker, node, GetParameters, names=names).values
-    descriptors = ask(asker, node, DescribeParameters, names=names).descriptors
+def get_parameters(parameter_node, node):
+    """Returns {name: (value, descriptor)} without the parameters of plugins, whose names contain a dot."""
+    names = [name for name in call_parameter_service(parameter_node, node, ListParameters).result.names if "." not in name and name not in ROS_PARAMETERS]
+    values = call_parameter_service(parameter_node, node, GetParameters, names=names).values
+    descriptors = call_parameter_service(parameter_node, node, DescribeParameters, names=names).descriptors
     return {name: (parameter_value_to_python(value), descriptor)
             for name, value, descriptor in zip(names, values, descriptors)}
 
@@ -87,16 +87,16 @@ def test_every_parameter_is_a_launch_argument_with_its_type_default_limits_and_c
             assert limits(descriptor) == argument.limits, (node, argument.name)
             if choices(descriptor):
                 assert choices(descriptor) == argument.choices, (node, argument.name)
-            if argument.name != "robot_ip":  # which has no default
+            if argument.name != "robot_ip":  # has no default
                 expected = list(argument.default) if isinstance(argument.default, tuple) else argument.default
                 assert value == expected and type(value) is type(expected), (node, argument.name)
 
 
-GIVEN = {"tf_prefix": "left_", "on_busy": "preempt", "rtde_frequency": 100.0, "urcap_port": 50007, "restart_program": False,
+ARGUMENTS = {"tf_prefix": "left_", "on_busy": "preempt", "rtde_frequency": 100.0, "urcap_port": 50007, "restart_program": False,
          "plugins": ["move_j"]}
 
 
-# Every name under which a user's file may have a parameter, in the orders that matter.
+# All node names that a parameter file may use, in the orders that affect priority.
 @pytest.mark.parametrize("names", [["/**"], ["/**/command_server", "/**"], ["/left/command_server", "/**"],
                                    ["/**/command_server", "/left/command_server"], ["/left/*", "/*/command_server"]])
 @pytest.mark.parametrize("executable", ["driver", "command_server"])
@@ -104,20 +104,20 @@ def test_launch_arguments_have_priority_over_a_file(start, tmp_path, names, exec
     file = tmp_path / "mine.yaml"
     file.write_text("".join(f"{name}:\n  ros__parameters: {{on_busy: refuse, urcap_port: 50009, stream_gain: 500.0}}\n"
                             for name in names))
-    written = launch_arguments.write_parameters(GIVEN)
+    written = launch_arguments.write_parameters(ARGUMENTS)
     try:
         found = start("--params-file", file, "--params-file", written, executable=executable, namespace="left")
     finally:
         os.unlink(written)
     for node, parameters in found.items():
-        for name, value in GIVEN.items():
+        for name, value in ARGUMENTS.items():
             if name in parameters:
-                got = parameters[name][0]
-                assert (list(got) if isinstance(value, list) else got) == value, (node, name)
-    assert found["command_server"]["stream_gain"][0] == 500.0  # what is not given as an argument comes from the file
+                actual = parameters[name][0]
+                assert (list(actual) if isinstance(value, list) else actual) == value, (node, name)
+    assert found["command_server"]["stream_gain"][0] == 500.0  # not given as an argument, therefore from the file
 
 
-def test_the_parameter_file_to_copy_has_all_parameters_with_their_defaults():
+def test_the_parameter_file_contains_all_parameters_with_their_defaults():
     parameters = yaml.safe_load(CONFIG.read_text())["/**"]["ros__parameters"]
     assert parameters == {argument.name: argument.default for argument in PARAMETERS if argument.default != ()}
     for argument in PARAMETERS:
@@ -132,7 +132,7 @@ def test_every_default_and_every_choice_is_a_valid_value():
                 argument.value(text)
 
 
-@pytest.mark.parametrize("name, text, said", [
+@pytest.mark.parametrize("name, text, message", [
     ("ur_type", "ur11", 'ur_type is "ur11", it must be one of: '),
     ("on_busy", "maybe", 'on_busy is "maybe", it must be one of: refuse, preempt'),
     ("rtde_frequency", "fast", 'rtde_frequency is "fast", it must be a number from 1 to 500'),
@@ -143,10 +143,10 @@ def test_every_default_and_every_choice_is_a_valid_value():
     ("plugins", "move_j", 'plugins is "move_j", it must be a list of names'),
     ("plugins", "[", 'plugins is "[", it must be a list of names'),
 ])
-def test_a_wrong_value_is_refused_with_what_it_may_be(name, text, said):
+def test_an_invalid_value_is_rejected_with_the_valid_values(name, text, message):
     with pytest.raises(ArgumentError) as error:
         to_values(DRIVER, {name: text})
-    assert said in str(error.value)
+    assert message in str(error.value)
 
 
 def test_values_have_the_type_of_the_parameter():
@@ -155,6 +155,6 @@ def test_values_have_the_type_of_the_parameter():
         "rtde_frequency": 100.0, "urcap_port": 50007, "restart_program": False, "tf_prefix": "1", "plugins": ["move_j", "stop"]}
 
 
-def test_an_unknown_argument_is_refused_with_the_nearest_one():
+def test_an_unknown_argument_is_rejected_with_a_suggestion():
     with pytest.raises(ArgumentError, match="has no launch argument realtime_prio; did you mean realtime_priority?"):
         check_name("realtime_prio", [argument.name for argument in DRIVER], "driver.launch.py")

@@ -1,4 +1,4 @@
-"""Starting, ending, and addresses at which there is no robot."""
+"""Start, shutdown and loss of the controller, and addresses without a controller."""
 
 import os
 import socket
@@ -14,14 +14,11 @@ from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 NODES = ["robot_state_receiver", "command_server", "dashboard_server", "driver"]
-
-
-def far_away():
-    return [2.5, *HOME[1:]]
+FAR_TARGET = [2.5, *HOME[1:]]
 
 
 @pytest.mark.parametrize("name", NODES)
-def test_without_an_address_it_says_what_to_give(name):
+def test_a_missing_address_is_reported_with_an_example(name):
     process = start_node(name, "''")
     assert process.wait(15.0) == 2
     assert "robot_ip" in process.output() and "--ros-args -p robot_ip:=" in process.output()
@@ -41,7 +38,7 @@ def test_without_an_address_it_says_what_to_give(name):
     ("command_server", "realtime_priority:=100", "99"),
     ("robot_state_receiver", "realtime_priority:=-1", "realtime_priority"),
 ])
-def test_a_wrong_parameter_is_named_with_what_it_may_be(name, parameter, what):
+def test_an_invalid_parameter_is_reported_with_its_limits(name, parameter, what):
     process = start_node(name, "127.0.0.1", parameter)
     assert process.wait(15.0) == 2
     assert what in process.output()
@@ -54,18 +51,18 @@ def threads_with_priority(pid, priority):
 
 
 @pytest.mark.parametrize("name", ["robot_state_receiver", "command_server"])
-def test_a_realtime_priority_is_of_the_threads_that_follow_the_packages_or_its_refusal_is_said(name, simulator, processes):
+def test_applies_the_realtime_priority_to_the_receive_threads_or_reports_missing_permission(name, simulator, processes):
     process = processes(start_node(name, simulator.address, "realtime_priority:=20"))
     process.wait_for_output("connected to")
     if "realtime_priority 20 is not permitted" in process.output():
         assert not threads_with_priority(process.pid, 20)
     else:
-        # The receiver's own and ur_rtde's, which it starts.
+        # The receive thread of the node and the thread of ur_rtde that it starts.
         wait_for(lambda: len(threads_with_priority(process.pid, 20)) == 2, 5.0, "two threads of that priority")
 
 
 @pytest.mark.parametrize("name", NODES)
-def test_ctrl_c_ends_it_without_a_robot(name, addresses):
+def test_ctrl_c_stops_the_node_without_a_robot(name, addresses):
     process = start_node(name, addresses[3])
     process.wait_for_output(addresses[3])
     process.interrupt()
@@ -75,15 +72,15 @@ def test_ctrl_c_ends_it_without_a_robot(name, addresses):
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.05, 0.1, 0.2, 0.4])
-def test_ctrl_c_ends_it_while_it_starts(delay, simulator):
+def test_ctrl_c_stops_the_node_during_startup(delay, simulator):
     process = start_node("driver", simulator.address)
-    time.sleep(delay)  # the moment itself is the variation
+    time.sleep(delay)  # varies the phase of the startup
     process.interrupt()
     assert process.wait(15.0) in (0, -2), process.output()
 
 
 @pytest.mark.parametrize("name", ["driver", "command_server"])
-def test_no_controller_at_the_address_is_said_and_goals_are_refused_with_it(name, addresses, processes):
+def test_a_missing_controller_is_reported_and_goals_are_rejected(name, addresses, processes):
     server = processes(start_node(name, addresses[3], namespace="nobody"))
     client = Client("nobody")
     try:
@@ -97,8 +94,8 @@ def test_no_controller_at_the_address_is_said_and_goals_are_refused_with_it(name
         client.close()
 
 
-class SomethingElse:
-    """Listens where a controller would, and answers like a web server."""
+class HttpServer:
+    """Listens on the ports of a controller and responds like an HTTP server."""
 
     def __init__(self, address, ports=(29999, 30001, 30002, 30003, 30004)):
         self._sockets = []
@@ -122,8 +119,8 @@ class SomethingElse:
             listener.close()
 
 
-def test_something_else_at_the_address_does_no_harm(addresses, processes):
-    other = SomethingElse(addresses[2])
+def test_another_server_at_the_address_does_not_crash_the_driver(addresses, processes):
+    other = HttpServer(addresses[2])
     try:
         server = processes(start_node("driver", addresses[2], namespace="other"))
         client = Client("other")
@@ -140,10 +137,10 @@ def test_something_else_at_the_address_does_no_harm(addresses, processes):
         other.close()
 
 
-def test_ctrl_c_in_the_middle_of_a_motion_decelerates_and_gives_the_result(simulator, client, processes):
+def test_ctrl_c_during_a_motion_decelerates_and_sends_the_result(simulator, client, processes):
     driver = processes(start_node("driver", simulator.address, "ur_type:=ur10e"))
     make_ready(client)
-    goal = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.8, acceleration=2.0)
+    goal = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.8, acceleration=2.0)
     wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.5, 10.0, "the arm to move")
     begin = time.monotonic()
     driver.interrupt()
@@ -157,27 +154,27 @@ def test_ctrl_c_in_the_middle_of_a_motion_decelerates_and_gives_the_result(simul
     assert state["safety_mode"] == "NORMAL"
 
 
-def test_when_the_driver_is_killed_the_robot_stops_by_itself(simulator, processes):
-    driver = processes(start_node("driver", simulator.address, "ur_type:=ur10e", namespace="doomed"))
-    client = Client("doomed")
+def test_the_controller_stops_the_arm_when_the_driver_is_killed(simulator, processes):
+    driver = processes(start_node("driver", simulator.address, "ur_type:=ur10e", namespace="killed"))
+    client = Client("killed")
     try:
         make_ready(client)
-        client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.8, acceleration=2.0)
+        client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.8, acceleration=2.0)
         wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.5, 10.0, "the arm to move")
         driver.kill()
-        wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 3.0, "the arm to stand still")
+        wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 3.0, "standstill")
         assert simulator.state()["actual"]["position"][0] < 2.3
     finally:
         client.close()
 
 
-def test_a_controller_that_dies_ends_the_motion_and_is_found_again(addresses, processes):
+def test_loss_of_the_controller_aborts_the_motion_and_the_driver_reconnects(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    driver = processes(start_node("driver", addresses[1], namespace="frail"))
-    client = Client("frail")
+    driver = processes(start_node("driver", addresses[1], namespace="restarted"))
+    client = Client("restarted")
     try:
         make_ready(client)
-        goal = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.5)
+        goal = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.5)
         wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
         simulator.kill()
         status, result = goal.wait_for_result(10.0)
@@ -191,16 +188,16 @@ def test_a_controller_that_dies_ends_the_motion_and_is_found_again(addresses, pr
         client.close()
 
 
-def test_the_dashboard_and_the_commands_live_in_one_process(simulator, client, processes):
+def test_the_driver_serves_dashboard_and_commands_in_one_process(simulator, client, processes):
     processes(start_node("driver", simulator.address))
     make_ready(client)
     wait_for(lambda: client.send(DashboardCommand, "dashboard/close_popup").accepted, 10.0, "the dashboard server")
 
 
-def test_preempting_stops_the_motion_that_runs_and_carries_out_the_new_one(simulator, client, processes):
+def test_with_on_busy_preempt_a_new_goal_preempts_the_running_motion(simulator, client, processes):
     processes(start_node("driver", simulator.address, "on_busy:=preempt"))
     make_ready(client)
-    first = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.6)
+    first = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.6)
     wait_for(lambda: first.feedback and first.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
     second = client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.6)
     status, result = first.wait_for_result()
@@ -209,13 +206,13 @@ def test_preempting_stops_the_motion_that_runs_and_carries_out_the_new_one(simul
     second.succeeded()
 
 
-def test_a_controller_that_falls_silent_ends_the_motion_within_the_limit(addresses, processes):
+def test_a_silent_controller_aborts_the_motion_within_silence_limit(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
     processes(start_node("driver", addresses[1], "silence_limit:=0.3", namespace="silent"))
     client = Client("silent")
     try:
         make_ready(client)
-        goal = client.send(MoveJ, "move_j", joint_positions=far_away(), speed=0.5)
+        goal = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.5)
         wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
         simulator.process.pause()
         try:

@@ -1,4 +1,4 @@
-"""Motion commands: that the arm goes where and how it was told to."""
+"""Motion commands: the arm reaches the target along the specified path."""
 
 import math
 
@@ -23,33 +23,31 @@ def distance(a, b):
 
 
 def angle(a, b):
-    """Between two orientations."""
+    """Returns the angle between two orientations in rad."""
     dot = sum(getattr(a.orientation, axis) * getattr(b.orientation, axis) for axis in "xyzw")
     return 2.0 * math.acos(min(1.0, abs(dot)))
 
 
-class Track:
-    """Where the TCP was, as the simulator has it, while a goal was carried out."""
+class TcpTrack:
+    """The positions of the TCP in the simulator during the execution of a goal."""
 
     def __init__(self, simulator, goal):
         self.points = []
-        while not (goal.accepted and goal._result is not None and goal._result.done()):
-            if goal._result is None:
-                goal._result = goal._client.call_in_executor(goal.handle.get_result_async)
+        while not goal.is_finished():
             self.points.append(tuple(simulator.state()["actual_tcp_pose"][:3]))
         goal.succeeded()
 
-    def farthest_from_line(self, start, end):
-        way = [b - a for a, b in zip(start, end)]
+    def max_distance_from_line(self, start, end):
+        direction = [b - a for a, b in zip(start, end)]
         length = math.dist(start, end)
         farthest = 0.0
         for point in self.points:
-            along = sum(w * (p - s) for w, p, s in zip(way, point, start)) / length
-            foot = [s + along * w / length for s, w in zip(start, way)]
+            along = sum(w * (p - s) for w, p, s in zip(direction, point, start)) / length
+            foot = [s + along * w / length for s, w in zip(start, direction)]
             farthest = max(farthest, math.dist(point, foot))
         return farthest
 
-    def nearest_to(self, point):
+    def min_distance_to(self, point):
         return min(math.dist(point, other) for other in self.points)
 
 
@@ -57,13 +55,13 @@ def xyz(pose):
     return pose.position.x, pose.position.y, pose.position.z
 
 
-def test_move_j_ik_gets_the_tcp_to_the_pose(robot):
+def test_move_j_ik_reaches_the_pose(robot):
     target = translated(get_tcp_pose(robot), y=0.2, z=-0.1)
     result = robot.send(MoveJIK, "move_j_ik", pose=target, speed=0.8, acceleration=3.0).succeeded()
     assert distance(result.final_state.tcp_pose, target) < 0.002 and angle(result.final_state.tcp_pose, target) < 0.01
 
 
-def test_move_j_relative_adds_to_where_the_joints_are(robot):
+def test_move_j_relative_adds_to_the_current_joint_positions(robot):
     offsets = [0.2, 0.0, -0.1, 0.0, 0.0, 0.3]
     for _ in range(2):
         start = get_joint_positions(robot)
@@ -71,33 +69,33 @@ def test_move_j_relative_adds_to_where_the_joints_are(robot):
         assert list(result.final_state.joint_positions) == pytest.approx([a + b for a, b in zip(start, offsets)], abs=0.005)
 
 
-def test_move_j_relative_refuses_what_leads_out_of_the_joints_range(robot):
+def test_move_j_relative_rejects_targets_outside_the_joint_limits(robot):
     goal = robot.send(MoveJRelative, "move_j_relative", joint_offsets=[0.0, 0.0, 0.0, 0.0, 0.0, 6.5])
     assert not goal.accepted
     refusal = robot.refusal(goal)
     assert refusal.error_code == ErrorCode.INVALID_GOAL and "wrist_3_joint" in refusal.message
 
 
-def test_move_l_fk_keeps_to_a_straight_line(robot, simulator):
+def test_move_l_fk_moves_in_a_straight_line(robot, simulator):
     start = xyz(get_tcp_pose(robot))
     target = [HOME[0] + 0.3, *HOME[1:]]
     goal = robot.send(MoveLFK, "move_l_fk", joint_positions=target, speed=0.2, acceleration=1.0)
-    track = Track(simulator, goal)
+    track = TcpTrack(simulator, goal)
     assert get_joint_positions(robot) == pytest.approx(target, abs=0.005)
-    assert track.farthest_from_line(start, xyz(get_tcp_pose(robot))) < 0.002
+    assert track.max_distance_from_line(start, xyz(get_tcp_pose(robot))) < 0.002
 
 
 @pytest.mark.parametrize("frame, expected", [(MoveLRelative.Goal.BASE, (0.0, 0.0, 0.05)),
                                              (MoveLRelative.Goal.TOOL, (0.0, 0.0, -0.05))])
-def test_move_l_relative_goes_along_the_axes_of_its_frame(robot, frame, expected):
-    start = get_tcp_pose(robot)  # the tool looks down
+def test_move_l_relative_translates_along_the_axes_of_its_frame(robot, frame, expected):
+    start = get_tcp_pose(robot)  # the tool points down
     result = robot.send(MoveLRelative, "move_l_relative", frame=frame, translation=Vector3(z=0.05)).succeeded()
     end = result.final_state.tcp_pose
     assert [b - a for a, b in zip(xyz(start), xyz(end))] == pytest.approx(expected, abs=0.002)
     assert angle(start, end) < 0.01
 
 
-def test_move_l_relative_turns_about_the_tcp(robot):
+def test_move_l_relative_rotates_about_the_tcp(robot):
     start = get_tcp_pose(robot)
     result = robot.send(MoveLRelative, "move_l_relative", frame=MoveLRelative.Goal.BASE, rotation=Vector3(z=0.3),
                         speed=0.3).succeeded()
@@ -105,28 +103,28 @@ def test_move_l_relative_turns_about_the_tcp(robot):
     assert angle(start, result.final_state.tcp_pose) == pytest.approx(0.3, abs=0.01)
 
 
-def test_move_p_rounds_its_corner(robot, simulator):
+def test_move_p_blends_the_corner(robot, simulator):
     start = get_tcp_pose(robot)
     corner, end = translated(start, z=-0.1), translated(start, z=-0.1, y=0.15)
     goal = robot.send(MoveP, "move_p", poses=[corner, end], speed=0.1, blend_radius=0.03)
-    track = Track(simulator, goal)
+    track = TcpTrack(simulator, goal)
     assert distance(get_tcp_pose(robot), end) < 0.003
-    assert 0.004 < track.nearest_to(xyz(corner)) < 0.03, "the corner is cut, within the blend radius"
+    assert 0.004 < track.min_distance_to(xyz(corner)) < 0.03, "the corner is blended within the blend radius"
     assert {feedback.waypoint for feedback in goal.feedback} == {0, 1}
 
 
-def test_move_c_goes_round(robot, simulator):
+def test_move_c_follows_the_arc(robot, simulator):
     start = get_tcp_pose(robot)
     via, end = translated(start, x=0.05, y=0.05), translated(start, y=0.1)
-    track = Track(simulator, robot.send(MoveC, "move_c", via=via, pose=end, speed=0.1))
+    track = TcpTrack(simulator, robot.send(MoveC, "move_c", via=via, pose=end, speed=0.1))
     assert distance(get_tcp_pose(robot), end) < 0.003
     centre = xyz(translated(start, y=0.05))
     radii = [math.dist(point, centre) for point in track.points]
     assert max(abs(radius - 0.05) for radius in radii) < 0.003
-    assert track.nearest_to(xyz(via)) < 0.005
+    assert track.min_distance_to(xyz(via)) < 0.005
 
 
-def test_move_path_mixes_kinds_and_tells_its_waypoint(robot):
+def test_move_path_combines_motion_types_and_reports_the_waypoint(robot):
     start = get_tcp_pose(robot)
     joints = [HOME[0] + 0.3, *HOME[1:]]
     goal = robot.send(MovePath, "move_path", waypoints=[
@@ -139,9 +137,9 @@ def test_move_path_mixes_kinds_and_tells_its_waypoint(robot):
     assert seen == sorted(seen) and {1, 2} <= set(seen)
 
 
-def test_a_path_ends_with_the_controllers_own_words_when_it_cannot_go_on(robot):
+def test_a_path_that_cannot_be_continued_is_aborted_with_the_controllers_message(robot):
     start = get_tcp_pose(robot)
-    near = [translated(start, z=-0.002 * i) for i in range(1, 21)]  # as many as are asked for beforehand
+    near = [translated(start, z=-0.002 * i) for i in range(1, 21)]  # the number of waypoints that are checked in advance
     status, result = robot.send(MovePath, "move_path", waypoints=[
         PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, speed=0.2, acceleration=2.0)
         for pose in [*near, translated(start, x=-0.8)]]).wait_for_result()
@@ -151,7 +149,7 @@ def test_a_path_ends_with_the_controllers_own_words_when_it_cannot_go_on(robot):
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 
-def test_cancel_ends_a_path_at_rest_and_the_next_motion_works(robot):
+def test_cancel_stops_a_path_and_the_next_motion_succeeds(robot):
     start = get_tcp_pose(robot)
     goal = robot.send(MoveP, "move_p", poses=[translated(start, z=-0.15), translated(start, z=-0.15, y=0.3)], speed=0.1)
     wait_for(lambda: get_joint_speed(robot) > 0.05, 10.0, "the arm to move")
@@ -163,7 +161,7 @@ def test_cancel_ends_a_path_at_rest_and_the_next_motion_works(robot):
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 
-def test_a_path_refuses_what_is_wrong_in_it(robot):
+def test_move_path_rejects_invalid_waypoints(robot):
     good = PathWaypoint(type=PathWaypoint.MOVE_L, pose=get_tcp_pose(robot))
     for waypoints, text in (([], "1 to 1000"), ([good, PathWaypoint(type=7, pose=good.pose)], "waypoints[1].type"),
                             ([PathWaypoint(type=1, pose=good.pose, blend_radius=0.1)], "blend_radius"),
@@ -196,15 +194,15 @@ def test_the_deceleration_of_servo_motion_is_that_of_the_tcp(robot, action, name
     assert "deceleration" in message and message.endswith(" m/s^2"), message
 
 
-def test_speed_j_turns_for_its_time(robot):
+def test_speed_j_moves_for_the_given_time(robot):
     result = robot.send(SpeedJ, "speed_j", joint_velocities=[0.2, 0.0, 0.0, 0.0, 0.0, -0.4], acceleration=2.0,
                         time=1.0, deceleration=4.0).succeeded()
-    turned = [b - a for a, b in zip(HOME, result.final_state.joint_positions)]
-    assert turned[0] == pytest.approx(0.2, abs=0.06) and turned[5] == pytest.approx(2.0 * -turned[0], abs=0.02)
-    assert turned[1:5] == pytest.approx([0.0] * 4, abs=0.005)
+    moved = [b - a for a, b in zip(HOME, result.final_state.joint_positions)]
+    assert moved[0] == pytest.approx(0.2, abs=0.06) and moved[5] == pytest.approx(2.0 * -moved[0], abs=0.02)
+    assert moved[1:5] == pytest.approx([0.0] * 4, abs=0.005)
 
 
-def test_speed_j_refuses_what_a_joint_cannot_do(robot):
+def test_speed_j_rejects_velocities_above_the_joint_limit(robot):
     goal = robot.send(SpeedJ, "speed_j", joint_velocities=[2.5, 0.0, 0.0, 0.0, 0.0, 0.0])  # UR10e: 120 degrees/s
     assert not goal.accepted
     assert "shoulder_pan_joint" in robot.refusal(goal).message and "2.094" in robot.refusal(goal).message
@@ -214,20 +212,20 @@ def test_speed_j_refuses_what_a_joint_cannot_do(robot):
 def test_jog_moves_along_the_axes_of_its_frame(robot, frame, expected):
     start = get_tcp_pose(robot)
     result = robot.send(Jog, "jog", twist=Twist(linear=Vector3(z=0.1)), frame=frame, acceleration=2.0, time=1.0).succeeded()
-    way = [b - a for a, b in zip(xyz(start), xyz(result.final_state.tcp_pose))]
-    assert way == pytest.approx([0.0, 0.0, expected], abs=0.02)
+    translation = [b - a for a, b in zip(xyz(start), xyz(result.final_state.tcp_pose))]
+    assert translation == pytest.approx([0.0, 0.0, expected], abs=0.02)
 
 
-def test_jog_in_a_frame_of_ones_own(robot):
+def test_jog_moves_along_the_axes_of_a_custom_frame(robot):
     start = get_tcp_pose(robot)
-    turned = Pose(orientation=Quaternion(x=math.sqrt(0.5), y=0.0, z=0.0, w=math.sqrt(0.5)))  # its y is the base's z
-    result = robot.send(Jog, "jog", twist=Twist(linear=Vector3(y=-0.1)), frame=Jog.Goal.CUSTOM, custom_frame=turned,
+    frame = Pose(orientation=Quaternion(x=math.sqrt(0.5), y=0.0, z=0.0, w=math.sqrt(0.5)))  # its y axis is the z axis of the base
+    result = robot.send(Jog, "jog", twist=Twist(linear=Vector3(y=-0.1)), frame=Jog.Goal.CUSTOM, custom_frame=frame,
                         acceleration=2.0, time=0.5).succeeded()
-    way = [b - a for a, b in zip(xyz(start), xyz(result.final_state.tcp_pose))]
-    assert way == pytest.approx([0.0, 0.0, -0.05], abs=0.02)
+    translation = [b - a for a, b in zip(xyz(start), xyz(result.final_state.tcp_pose))]
+    assert translation == pytest.approx([0.0, 0.0, -0.05], abs=0.02)
 
 
-def test_jog_goes_on_until_cancel_which_is_a_success(robot):
+def test_jog_continues_until_cancel_and_succeeds(robot):
     goal = robot.send(Jog, "jog", twist=Twist(linear=Vector3(z=-0.05)))
     wait_for(lambda: get_joint_speed(robot) > 0.02, 10.0, "the arm to move")
     goal.cancel()
@@ -236,20 +234,20 @@ def test_jog_goes_on_until_cancel_which_is_a_success(robot):
     assert get_joint_speed(robot) < 0.01
 
 
-def test_servo_l_keeps_to_a_straight_line(robot, simulator):
+def test_servo_l_moves_in_a_straight_line(robot, simulator):
     start = get_tcp_pose(robot)
     target = translated(start, y=0.15, z=-0.1)
-    track = Track(simulator, robot.send(ServoL, "servo_l", pose=target, time=2.0))
+    track = TcpTrack(simulator, robot.send(ServoL, "servo_l", pose=target, time=2.0))
     assert distance(get_tcp_pose(robot), target) < 0.005
-    assert track.farthest_from_line(xyz(start), xyz(target)) < 0.005
+    assert track.max_distance_from_line(xyz(start), xyz(target)) < 0.005
 
 
-def test_servo_l_refuses_what_the_tcp_cannot_do_in_the_time(robot):
+def test_servo_l_rejects_a_time_that_is_too_short_for_the_tcp(robot):
     goal = robot.send(ServoL, "servo_l", pose=translated(get_tcp_pose(robot), z=-0.2), time=0.05)
     assert not goal.accepted and "use a time of at least" in robot.refusal(goal).message
 
 
-def test_servo_without_a_time_is_slow(robot, simulator):
+def test_servo_without_a_time_uses_the_default_speeds(robot, simulator):
     recorder = TargetSpeedRecorder(simulator)
     goal = robot.send(ServoJ, "servo_j", joint_positions=[1.5, *HOME[1:]])
     wait_for(lambda: recorder.update() and goal.is_finished(), 30.0, "the end")
@@ -258,10 +256,10 @@ def test_servo_without_a_time_is_slow(robot, simulator):
     start = get_tcp_pose(robot)
     begin = simulator.state()["timestamp"]
     robot.send(ServoL, "servo_l", pose=translated(start, y=0.3)).succeeded()
-    assert simulator.state()["timestamp"] - begin > 15.0 / 8.0 * 0.3 / 0.25  # as 0.25 m/s at most takes
+    assert simulator.state()["timestamp"] - begin > 15.0 / 8.0 * 0.3 / 0.25  # the duration at a maximum speed of 0.25 m/s
 
 
-def test_servo_c_gets_there(robot):
+def test_servo_c_reaches_the_pose(robot):
     target = translated(get_tcp_pose(robot), y=0.1)
     result = robot.send(ServoC, "servo_c", pose=target, speed=0.1).succeeded()
     assert distance(result.final_state.tcp_pose, target) < 0.005
@@ -275,7 +273,7 @@ def test_servo_c_gets_there(robot):
     ("speed_stop", SpeedL, "speed_l", {"twist": Twist(linear=Vector3(z=-0.1)), "time": 10.0}),
     ("stop_l", MoveJ, "move_j", {"joint_positions": [2.0, *HOME[1:]], "speed": 0.8, "acceleration": 2.0}),
 ])
-def test_stops_end_what_moves(robot, name, action, motion, fields):
+def test_stop_commands_preempt_the_running_motion(robot, name, action, motion, fields):
     if action is ServoL:
         fields = {**fields, "pose": translated(get_tcp_pose(robot), z=-0.2)}
     goal = robot.send(action, motion, **fields)
@@ -286,7 +284,7 @@ def test_stops_end_what_moves(robot, name, action, motion, fields):
     assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
 
 
-def test_stop_j_decelerates_as_it_was_told(robot):
+def test_stop_j_applies_the_deceleration(robot):
     times = {}
     for deceleration in (0.5, 4.0):
         robot.send(SpeedJ, "speed_j", joint_velocities=[0.6, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=4.0, time=10.0)

@@ -1,4 +1,4 @@
-"""Bringing the robot into operation from any state, and out of it."""
+"""Bringing the robot into operation from any state, and powering it down."""
 
 import pytest
 from action_msgs.msg import GoalStatus
@@ -18,44 +18,44 @@ def make_ready(robot, **fields):
     return result, [feedback.state for feedback in goal.feedback]
 
 
-def not_made_ready(robot, code, **fields):
+def fail_to_make_ready(robot, code, **fields):
     status, result = robot.send(MakeReady, "make_ready", **fields).wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, code), result.message
     return result.message
 
 
-def protectively_stopped(simulator):
+def wait_for_protective_stop(simulator):
     wait_for(lambda: simulator.state()["safety_mode"] == "PROTECTIVE_STOP", 5.0, "the protective stop")
 
 
-def test_a_robot_that_is_ready_is_ready_at_once(robot):
+def test_make_ready_returns_at_once_if_the_robot_is_ready(robot):
     _, states = make_ready(robot)
     assert states == []
 
 
-def test_from_off_to_ready_with_progress(robot, simulator):
+def test_make_ready_powers_on_with_progress(robot, simulator):
     robot.send(DashboardCommand, "stand_down").succeeded()
     assert simulator.state()["robot_mode"] == "POWER_OFF"
     _, states = make_ready(robot)
-    told = " / ".join(states)
-    assert told.index("powering on") < told.index("releasing the brakes"), told
+    progress = " / ".join(states)
+    assert progress.index("powering on") < progress.index("releasing the brakes"), progress
 
 
-def test_from_idle(robot, simulator):
+def test_make_ready_releases_the_brakes(robot, simulator):
     simulator.control("power", to="off")
     simulator.control("power", to="on")
-    wait_for(lambda: not robot.send(MoveJ, "move_j", joint_positions=HOME).accepted, 5.0, "the driver to notice")
+    wait_for(lambda: not robot.send(MoveJ, "move_j", joint_positions=HOME).accepted, 5.0, "the driver to detect the power off")
     _, states = make_ready(robot)
     assert any("brakes" in state for state in states)
 
 
-def test_from_a_protective_stop_with_its_popup_and_never_going_on_with_the_motion(robot, simulator):
+def test_make_ready_unlocks_a_protective_stop_without_resuming_the_motion(robot, simulator):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.5), speed=0.5)
     wait_until_moving(robot)
     robot.send(Trigger, "trigger_protective_stop").succeeded()
     assert goal.wait_for_result()[1].error_code == ErrorCode.PROTECTIVE_STOP
-    protectively_stopped(simulator)
-    assert "unlock_protective_stop" in not_made_ready(robot, ErrorCode.PROTECTIVE_STOP, unlock_protective_stop=False)
+    wait_for_protective_stop(simulator)
+    assert "unlock_protective_stop" in fail_to_make_ready(robot, ErrorCode.PROTECTIVE_STOP, unlock_protective_stop=False)
     robot.send(MakeReady, "make_ready").succeeded(60.0)
     stopped_at = simulator.state()["actual"]["position"][0]
     begin = simulator.state()["timestamp"]
@@ -63,7 +63,7 @@ def test_from_a_protective_stop_with_its_popup_and_never_going_on_with_the_motio
     assert simulator.state()["actual"]["position"][0] == pytest.approx(stopped_at, abs=1e-3)
 
 
-def test_a_protective_stop_can_be_triggered_while_a_script_moves_the_arm(robot, simulator):
+def test_trigger_protective_stop_stops_a_script(robot, simulator):
     goal = robot.send(SendScript, "send_script", script=f"movej({home_plus(1.5)}, a=1, v=0.5)")
     wait_until_moving(robot)
     robot.send(Trigger, "trigger_protective_stop").succeeded()
@@ -71,45 +71,45 @@ def test_a_protective_stop_can_be_triggered_while_a_script_moves_the_arm(robot, 
     make_ready(robot)
 
 
-def test_after_the_program_was_stopped(robot, simulator):
+def test_make_ready_restarts_a_stopped_program(robot, simulator):
     robot.send(DashboardCommand, "dashboard/stop").wait_for_result()
     make_ready(robot)
 
 
-def test_from_a_violation_only_when_it_is_allowed(robot, simulator):
+def test_make_ready_recovers_from_a_violation_only_with_restart_safety(robot, simulator):
     simulator.control("violation", reason="a test")
     wait_for(lambda: simulator.state()["safety_mode"] == "VIOLATION", 5.0, "the violation")
-    assert "restart_safety" in not_made_ready(robot, ErrorCode.SAFETY_VIOLATION)
+    assert "restart_safety" in fail_to_make_ready(robot, ErrorCode.SAFETY_VIOLATION)
     make_ready(robot, restart_safety=True)
 
 
-@pytest.mark.parametrize("trouble,way_out,code", [
+@pytest.mark.parametrize("blocker, remedy, code", [
     (("emergency_stop", {"pressed": True}), ("emergency_stop", {"pressed": False}), ErrorCode.EMERGENCY_STOP),
     (("safeguard", {"open": True}), ("safeguard", {"open": False}), ErrorCode.SAFEGUARD_STOP),
     (("remote_control", {"on": False}), ("remote_control", {"on": True}), ErrorCode.NOT_READY),
 ])
-def test_what_only_people_may_do_is_left_to_them(robot, simulator, trouble, way_out, code):
-    if trouble[0] == "remote_control":
+def test_make_ready_reports_conditions_that_require_an_operator(robot, simulator, blocker, remedy, code):
+    if blocker[0] == "remote_control":
         simulator.control("power", to="off")
-    simulator.control(trouble[0], **trouble[1])
+    simulator.control(blocker[0], **blocker[1])
     try:
         wait_for(lambda: robot.send(MakeReady, "make_ready").wait_for_result()[1].error_code == code, 10.0, "the reason")
     finally:
-        simulator.control(way_out[0], **way_out[1])
+        simulator.control(remedy[0], **remedy[1])
     make_ready(robot)
 
 
-def test_cancel_and_timeout_end_the_wait(robot, simulator):
+def test_cancel_and_timeout_end_make_ready(robot, simulator):
     simulator.control("power", to="off")
     goal = robot.send(MakeReady, "make_ready")
     wait_for(lambda: goal.feedback, 10.0, "the first step")
     goal.cancel()
     assert goal.wait_for_result()[0] == GoalStatus.STATUS_CANCELED
-    assert "still" in not_made_ready(robot, ErrorCode.TIMEOUT, timeout=0.01)
+    assert "still" in fail_to_make_ready(robot, ErrorCode.TIMEOUT, timeout=0.01)
     make_ready(robot)
 
 
-def test_stand_down_ends_the_motion_that_runs(robot, simulator):
+def test_stand_down_preempts_the_running_motion(robot, simulator):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.5), speed=0.5)
     wait_until_moving(robot)
     robot.send(DashboardCommand, "stand_down").succeeded()

@@ -1,5 +1,6 @@
-"""Which plugins command_server loads, and what it says of those it cannot."""
+"""Selection of plugins, and error messages for plugins that cannot be loaded."""
 
+from plugin_prefix import prepend_path
 from support import HOME, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, SetDigitalOutput
@@ -7,12 +8,7 @@ from ur_ros_rtde_msgs.action import MoveJ, SetDigitalOutput
 CLASS = '<class name="{name}" type="test::{type}" base_class_type="ur_ros_rtde::CommandPlugin"/>'
 
 
-def with_prefix(prefix):
-    import os
-    return {"AMENT_PREFIX_PATH": os.pathsep.join([str(prefix), os.environ["AMENT_PREFIX_PATH"]])}
-
-
-def test_unknown_names_are_errors_that_name_the_nearest_one(addresses, processes):
+def test_unknown_names_are_reported_with_a_suggestion(addresses, processes):
     server = processes(start_node("command_server", addresses[3], "plugins:=[move_j,move_jik]", "plugins_blacklist:=[speed_k]"))
     line = server.wait_for_output('"move_jik"')
     assert "parameter plugins " in line and "ERROR" in line and '"move_j_ik"' in line
@@ -20,7 +16,7 @@ def test_unknown_names_are_errors_that_name_the_nearest_one(addresses, processes
     assert server.wait_for_output("commands:").endswith("commands: move_j")
 
 
-def test_a_list_for_the_whole_process_may_have_names_of_each_server(addresses, processes):
+def test_one_list_may_contain_plugins_of_both_servers(addresses, processes):
     server = processes(start_node("driver", addresses[3], "plugins:=[move_j,dashboard/power_on,dashboard/powr_off]"))
     assert server.wait_for_output(" commands:").endswith(" commands: move_j")
     assert server.wait_for_output("dashboard commands:").endswith("dashboard commands: dashboard/power_on")
@@ -34,31 +30,31 @@ def test_a_blacklisted_plugin_is_not_loaded(addresses, processes):
     assert "stop" in loaded and "move_j" not in loaded and "move_l" not in loaded
 
 
-def test_a_broken_library_is_named_and_the_rest_goes_on(addresses, client, processes, plugin_prefix):
+def test_a_broken_library_is_reported_and_other_plugins_are_loaded(addresses, client, processes, plugin_prefix):
     prefix = plugin_prefix("broken_plugins", '<library path="broken">' + CLASS.format(name="broken", type="Broken") + "</library>")
     (prefix / "lib" / "libbroken.so").write_bytes(b"\x7fELF this is no library")
-    server = processes(start_node("command_server", addresses[3], env=with_prefix(prefix)))
+    server = processes(start_node("command_server", addresses[3], env=prepend_path("AMENT_PREFIX_PATH", prefix)))
     line = server.wait_for_output("plugin broken of package broken_plugins is left out")
     assert "libbroken.so" in line
     assert "move_j" in server.wait_for_output("commands:")
-    assert not client.send(MoveJ, "move_j", joint_positions=HOME).accepted  # it answers
+    assert not client.send(MoveJ, "move_j", joint_positions=HOME).accepted  # the server responds
 
 
-def test_a_missing_library_and_a_malformed_description_are_named(addresses, processes, plugin_prefix):
+def test_a_missing_library_and_a_malformed_description_are_reported(addresses, processes, plugin_prefix):
     prefix = plugin_prefix("missing", '<library path="nowhere">' + CLASS.format(name="gone", type="Gone") + "</library>")
-    (prefix / "share" / "torn").mkdir()
-    (prefix / "share" / "torn" / "plugins.xml").write_text("<library path='x'><class name=")
-    index = prefix / "share" / "ament_index" / "resource_index" / "ur_ros_rtde__pluginlib__plugin" / "torn"
-    index.write_text("share/torn/plugins.xml\n")
-    server = processes(start_node("command_server", addresses[3], env=with_prefix(prefix)))
+    (prefix / "share" / "malformed").mkdir()
+    (prefix / "share" / "malformed" / "plugins.xml").write_text("<library path='x'><class name=")
+    index = prefix / "share" / "ament_index" / "resource_index" / "ur_ros_rtde__pluginlib__plugin" / "malformed"
+    index.write_text("share/malformed/plugins.xml\n")
+    server = processes(start_node("command_server", addresses[3], env=prepend_path("AMENT_PREFIX_PATH", prefix)))
     server.wait_for_output("libnowhere.so")
-    server.wait_for_output("share/torn/plugins.xml")
+    server.wait_for_output("share/malformed/plugins.xml")
     assert "move_j" in server.wait_for_output("commands:")
 
 
-def test_an_action_name_taken_twice_is_reported(addresses, processes, plugin_prefix):
+def test_a_duplicate_action_name_is_reported(addresses, processes, plugin_prefix):
     prefix = plugin_prefix("zz_other", '<library path="other">' + CLASS.format(name="move_j", type="Other") + "</library>")
-    server = processes(start_node("command_server", addresses[3], env=with_prefix(prefix)))
+    server = processes(start_node("command_server", addresses[3], env=prepend_path("AMENT_PREFIX_PATH", prefix)))
     line = server.wait_for_output("plugin move_j of package zz_other")
     assert "package ur_ros_rtde_commands has one of that name already" in line
     assert "move_j" in server.wait_for_output("commands:")

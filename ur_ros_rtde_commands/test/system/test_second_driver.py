@@ -1,4 +1,4 @@
-"""More than one driver, or something else, on one robot: what is said, and that only one of them moves the arm."""
+"""Several drivers or another client on one robot: only one of them moves the arm, and the others report the conflict."""
 
 import pytest
 from robot_fixtures import make_ready
@@ -7,15 +7,15 @@ from support import HOME, Client, start_node, wait_for
 from ur_ros_rtde_msgs.action import MoveJ, SpeedJ
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode
 
-AWAY = [HOME[0] + 2.0, *HOME[1:]]
+TARGET = [HOME[0] + 2.0, *HOME[1:]]
 
 
-def comes_to(states, state, cause, limit=30.0):
+def wait_for_state(states, state, cause, limit=30.0):
     return wait_for(lambda: states and states[-1].state == state and states[-1].cause == cause and states[-1], limit,
                     f"state {state} with cause {cause}, not {states[-1:]}")
 
 
-def a_client(namespace):
+def client_in(namespace):
     client = Client(namespace)
     yield client
     client.close()
@@ -23,12 +23,12 @@ def a_client(namespace):
 
 @pytest.fixture
 def first_client():
-    yield from a_client("first")
+    yield from client_in("first")
 
 
 @pytest.fixture
 def other_client():
-    yield from a_client("other")
+    yield from client_in("other")
 
 
 @pytest.fixture
@@ -44,82 +44,82 @@ def states(other_client):
 
 
 @pytest.fixture
-def other(simulator, processes):
-    """Starts a driver in another namespace."""
+def start_other(simulator, processes):
+    """Returns a function that starts a driver in the namespace "other"."""
     return lambda *parameters: processes(start_node("driver", simulator.address, *parameters, namespace="other"))
 
 
-def test_a_second_driver_with_the_same_names_refuses_to_start_and_the_first_moves_on(first, first_client, simulator):
-    goal = first_client.send(MoveJ, "move_j", joint_positions=AWAY, speed=0.3)
+def test_a_second_driver_with_the_same_names_does_not_start_and_the_first_continues(first, first_client, simulator):
+    goal = first_client.send(MoveJ, "move_j", joint_positions=TARGET, speed=0.3)
     assert goal.accepted
     second = start_node("driver", simulator.address, namespace="first")
     assert second.wait(30.0) == 2
     refusal = [line for line in second.lines if "is already running" in line]
     assert len(refusal) == 1, second.output()
     assert "/first/" in refusal[0] and f"process {first.pid} on " in refusal[0] and "__ns" in refusal[0]
-    assert goal.succeeded().final_state.joint_positions[0] == pytest.approx(AWAY[0], abs=0.01)
+    assert goal.succeeded().final_state.joint_positions[0] == pytest.approx(TARGET[0], abs=0.01)
 
 
 @pytest.mark.parametrize("name", ["command_server", "dashboard_server", "robot_state_receiver"])
-def test_each_node_whose_name_another_process_has_refuses_to_start(name, first, simulator):
+def test_a_node_does_not_start_if_its_name_is_taken(name, first, simulator):
     second = start_node(name, simulator.address, namespace="first")
     assert second.wait(30.0) == 2
     assert f"/first/{name} is already running" in second.output()
 
 
-def test_a_driver_starts_again_at_once_after_it_was_killed(first, simulator, processes):
+def test_a_killed_driver_can_be_restarted_at_once(first, simulator, processes):
     first.kill()
     second = processes(start_node("driver", simulator.address, namespace="first"))
     second.wait_for_output("the robot is ready")
     assert second.running() and "is already running" not in second.output()
 
 
-def test_a_driver_in_another_namespace_says_who_has_the_robot_and_gets_it_when_it_is_free(
-        first, first_client, other, other_client, states, simulator):
-    second = other()
-    state = comes_to(states, DriverState.STOPPED, ErrorCode.ROBOT_IN_USE)
+def test_a_driver_in_another_namespace_reports_the_conflict_and_takes_over_a_released_robot(
+        first, first_client, start_other, other_client, states, simulator):
+    second = start_other()
+    state = wait_for_state(states, DriverState.STOPPED, ErrorCode.ROBOT_IN_USE)
     for part in ("in use", "input_int_register_23", "another driver", simulator.address):
         assert part in state.message, state.message
     assert sum("are in use" in line for line in second.lines) == 1, second.output()
-    goal = first_client.send(MoveJ, "move_j", joint_positions=AWAY, speed=0.5)
+    goal = first_client.send(MoveJ, "move_j", joint_positions=TARGET, speed=0.5)
     refused = other_client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.5)
     assert not refused.accepted
     assert other_client.refusal(refused).error_code == ErrorCode.ROBOT_IN_USE
     goal.succeeded()
     first.stop()
-    comes_to(states, DriverState.READY, ErrorCode.NONE)
+    wait_for_state(states, DriverState.READY, ErrorCode.NONE)
     other_client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0, acceleration=5.0).succeeded()
 
 
-def test_a_fieldbus_has_the_lower_registers_and_register_range_upper_is_the_way_out(simulator, other, other_client, states):
+def test_register_range_upper_avoids_the_registers_of_a_fieldbus(simulator, start_other, other_client, states):
     simulator.control("fieldbus")
     try:
-        driver = other()
-        assert "register_range:=upper" in comes_to(states, DriverState.STOPPED, ErrorCode.ROBOT_IN_USE).message
+        driver = start_other()
+        assert "register_range:=upper" in wait_for_state(states, DriverState.STOPPED, ErrorCode.ROBOT_IN_USE).message
         driver.stop()
-        other("register_range:=upper")
+        start_other("register_range:=upper")
         make_ready(other_client)
     finally:
         simulator.control("fieldbus", on=False)
 
 
-def test_a_ur_type_that_contradicts_the_controller_keeps_the_arm_from_being_moved(other, other_client, states):
-    other("ur_type:=ur5e")
-    state = comes_to(states, DriverState.STOPPED, ErrorCode.MODEL_MISMATCH)
+def test_a_wrong_ur_type_prevents_motion(start_other, other_client, states):
+    start_other("ur_type:=ur5e")
+    state = wait_for_state(states, DriverState.STOPPED, ErrorCode.MODEL_MISMATCH)
     assert "ur5e" in state.message and "ur_type:=ur10e" in state.message
     refused = other_client.send(MoveJ, "move_j", joint_positions=HOME)
     assert not refused.accepted and other_client.refusal(refused).error_code == ErrorCode.MODEL_MISMATCH
 
 
-def test_without_a_ur_type_the_limits_are_those_of_the_arm(other, other_client):
-    other().wait_for_output("is a ur10e")
+def test_without_ur_type_the_limits_of_the_connected_arm_apply(start_other, other_client):
+    start_other().wait_for_output("is a ur10e")
     make_ready(other_client)
     refused = other_client.send(SpeedJ, "speed_j", joint_velocities=[3.0, 0.0, 0.0, 0.0, 0.0, 0.0])
     assert not refused.accepted
     assert "2.0944" in other_client.refusal(refused).message
 
 
-def test_the_result_of_a_goal_that_a_driver_does_not_know_is_no_empty_one(first, first_client):
+def test_the_result_of_an_unknown_goal_is_an_error(first, first_client):
     answer = first_client.call(MoveJ.Impl.GetResultService, "/first/move_j/_action/get_result")
     assert not answer.result.success and answer.result.error_code == ErrorCode.EXCEPTION
     assert "no such goal" in answer.result.message

@@ -1,4 +1,4 @@
-"""Settings: that the robot has them, and what they do."""
+"""Settings: the controller applies them, and their effect."""
 
 import math
 
@@ -12,37 +12,37 @@ from ur_ros_rtde_msgs.action import (GetPose, SendScript, SetAnalogOutput, SetDi
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 
-def test_set_tcp_moves_the_poses_and_get_tcp_offset_tells_it(robot, simulator):
+def test_set_tcp_changes_the_tcp_pose_and_get_tcp_offset_returns_it(robot, simulator):
     flange = get_tcp_pose(robot).position
     quarter = Quaternion(z=math.sqrt(0.5), w=math.sqrt(0.5))
     robot.send(SetTcp, "set_tcp", pose=Pose(position=Point(z=0.2), orientation=quarter)).succeeded()
-    told = robot.send(GetPose, "get_tcp_offset").succeeded()
-    assert (told.pose.position.z, told.pose.orientation.z) == pytest.approx((0.2, math.sqrt(0.5)), abs=1e-6)
+    offset = robot.send(GetPose, "get_tcp_offset").succeeded()
+    assert (offset.pose.position.z, offset.pose.orientation.z) == pytest.approx((0.2, math.sqrt(0.5)), abs=1e-6)
     assert simulator.state()["tcp_offset"] == pytest.approx([0.0, 0.0, 0.2, 0.0, 0.0, math.pi / 2], abs=1e-6)
 
-    def moved():
-        at = get_tcp_pose(robot).position
-        return math.dist((at.x, at.y, at.z), (flange.x, flange.y, flange.z))
+    def distance():
+        tcp = get_tcp_pose(robot).position
+        return math.dist((tcp.x, tcp.y, tcp.z), (flange.x, flange.y, flange.z))
 
-    wait_for(lambda: moved() == pytest.approx(0.2, abs=1e-3), 2.0, "tcp_pose to follow")
+    wait_for(lambda: distance() == pytest.approx(0.2, abs=1e-3), 2.0, "tcp_pose to follow")
     robot.send(SetTcp, "set_tcp", pose=Pose()).succeeded()
 
 
-def test_set_target_payload_sets_mass_centre_and_inertia(robot, simulator):
+def test_set_target_payload_sets_mass_center_of_gravity_and_inertia(robot, simulator):
     inertia = [0.02, 0.03, 0.01, 0.001, 0.0, -0.002]
     robot.send(SetTargetPayload, "set_target_payload", mass=2.0, center_of_gravity=Vector3(x=0.01, z=0.06),
                inertia=inertia).succeeded()
     payload = simulator.state()["payload"]
     assert payload["mass"] == 2.0 and payload["center_of_gravity"] == pytest.approx([0.01, 0.0, 0.06])
-    told = robot.send(SendScript, "send_secondary_script", script="textmsg(get_target_payload_inertia())").succeeded().output
-    assert [float(value) for value in told[0].strip("[] ").split(",")] == pytest.approx(inertia, abs=1e-9)
+    output = robot.send(SendScript, "send_secondary_script", script="textmsg(get_target_payload_inertia())").succeeded().output
+    assert [float(value) for value in output[0].strip("[] ").split(",")] == pytest.approx(inertia, abs=1e-9)
     robot.send(SetPayload, "set_payload", mass=0.0).succeeded()
     assert simulator.state()["payload"]["center_of_gravity"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
 
 
 @pytest.mark.parametrize("name,first,count", [("set_standard_digital_output", 0, 8), ("set_configurable_digital_output", 8, 8),
                                               ("set_tool_digital_output", 16, 2)])
-def test_digital_outputs_by_kind(robot, simulator, name, first, count):
+def test_sets_standard_configurable_and_tool_digital_outputs(robot, simulator, name, first, count):
     for pin in (0, count - 1):
         for state in (True, False):
             robot.send(SetDigitalOutput, name, pin=pin, state=state).succeeded()
@@ -51,14 +51,14 @@ def test_digital_outputs_by_kind(robot, simulator, name, first, count):
     assert not refused.accepted and "pin" in robot.refusal(refused).message
 
 
-def test_analog_outputs_in_volts_and_amperes(robot, simulator):
+def test_sets_analog_outputs_as_voltage_and_current(robot, simulator):
     robot.send(SetAnalogOutput, "set_analog_output_voltage", pin=1, fraction=0.25).succeeded()
     assert simulator.state()["io"]["analog_outputs"][1] == pytest.approx(2.5)
     robot.send(SetAnalogOutput, "set_analog_output_current", pin=1, fraction=0.25).succeeded()
     assert simulator.state()["io"]["analog_outputs"][1] == pytest.approx(0.008)
 
 
-def test_input_registers_reach_programs(robot, simulator):
+def test_programs_read_the_input_registers(robot, simulator):
     robot.send(SetRegister, "set_input_int_register", index=19, value=-7.0).succeeded()
     robot.send(SetRegister, "set_input_double_register", index=22, value=0.125).succeeded()
     script = "textmsg(read_input_integer_register(19))\ntextmsg(read_input_float_register(22))"
@@ -69,17 +69,17 @@ def test_input_registers_reach_programs(robot, simulator):
         assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.INVALID_GOAL
 
 
-def test_gravity_has_to_be_about_one_g(robot):
+def test_gravity_has_to_be_about_9_82(robot):
     robot.send(SetGravity, "set_gravity", direction=Vector3(y=9.82 * math.sin(0.5), z=9.82 * math.cos(0.5))).succeeded()
     robot.send(SetGravity, "set_gravity", direction=Vector3(z=9.82)).succeeded()
     refused = robot.send(SetGravity, "set_gravity", direction=Vector3(z=1.0))
     assert not refused.accepted and "direction" in robot.refusal(refused).message
 
 
-def test_the_robot_keeps_running_with_a_faster_watchdog_and_stops_by_it(robot, driver, simulator):
+def test_a_faster_watchdog_stops_the_program_only_if_the_driver_is_silent(robot, driver, simulator):
     robot.send(SetWatchdog, "set_watchdog", min_frequency=4.0).succeeded()
     begin = simulator.state()["timestamp"]
-    wait_for(lambda: simulator.state()["timestamp"] > begin + 1.0, 10.0, "a second of the controller")
+    wait_for(lambda: simulator.state()["timestamp"] > begin + 1.0, 10.0, "one second of simulated time")
     assert simulator.state()["program"]["state"] == "PLAYING"
     driver.pause()
     try:
@@ -88,19 +88,19 @@ def test_the_robot_keeps_running_with_a_faster_watchdog_and_stops_by_it(robot, d
         driver.resume()
 
 
-def test_a_watchdog_that_is_faster_than_the_signs_of_life_is_refused(robot):
+def test_a_watchdog_faster_than_the_heartbeat_is_rejected(robot):
     refused = robot.send(SetWatchdog, "set_watchdog", min_frequency=60.0)
     assert not refused.accepted
     message = robot.refusal(refused).message
     assert "min_frequency" in message and "50" in message
 
 
-def test_an_output_that_does_not_change_because_nothing_comes_is_a_lost_link(robot, simulator):
+def test_set_output_without_received_packages_fails_with_link_lost(robot, simulator):
     simulator.control("stall_links", which="rtde")
     try:
         goal = robot.send(SetDigitalOutput, "set_standard_digital_output", pin=2, state=True)
-        told = goal.wait_for_result(10.0)[1] if goal.accepted else robot.refusal(goal)  # refused if the driver has seen it before
-        assert told.error_code == ErrorCode.LINK_LOST, told.message
+        outcome = goal.wait_for_result(10.0)[1] if goal.accepted else robot.refusal(goal)  # rejected if the loss was detected first
+        assert outcome.error_code == ErrorCode.LINK_LOST, outcome.message
     finally:
         simulator.control("drop_links", which="rtde")
-    wait_for(lambda: robot.send(SetDigitalOutput, "set_standard_digital_output", pin=2, state=True).accepted, 10.0, "the link")
+    wait_for(lambda: robot.send(SetDigitalOutput, "set_standard_digital_output", pin=2, state=True).accepted, 10.0, "the reconnection")

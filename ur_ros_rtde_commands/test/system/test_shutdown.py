@@ -1,4 +1,4 @@
-"""Ctrl-C on a launch file reaches the driver and the simulator at the same moment; on the driver alone, the robot stays."""
+"""Ctrl-C on a launch file reaches driver and simulator at the same time. Ctrl-C on the driver alone leaves the robot running."""
 
 import re
 
@@ -15,7 +15,7 @@ THREE_PROCESSES = ("robot_state_receiver", "command_server", "dashboard_server")
 
 
 class Cell:
-    """A simulator, the nodes on it, and a client, in a namespace of their own."""
+    """A simulator, its nodes and a client in a separate namespace."""
 
     def __init__(self, address, names):
         self.simulator = Simulator(address)
@@ -23,13 +23,13 @@ class Cell:
         self.client = Client("quiet")
 
     def interrupt(self, with_simulator):
-        """Returns what the nodes said from then on, after their end."""
-        said = [len(process.lines) for process in self.nodes]
+        """Interrupts the nodes, waits until they exit, and returns what they printed in between."""
+        counts = [len(process.lines) for process in self.nodes]
         for process in [self.simulator.process] * with_simulator + self.nodes:
             process.interrupt()
         for process in self.nodes:
             assert process.wait(15.0) == 0, process.output()
-        return [line for process, count in zip(self.nodes, said) for line in process.lines[count:]]
+        return [line for process, count in zip(self.nodes, counts) for line in process.lines[count:]]
 
     def stop(self):
         self.client.close()
@@ -46,31 +46,31 @@ def cell(request, addresses):
     print("\n".join(line for process in cell.nodes for line in process.lines))
 
 
-def looks_like_failures(lines):
+def find_failures(lines):
     matches = [(LOG_LINE.match(line), line) for line in lines]
     return [line for match, line in matches if match is None or match["level"] not in ("DEBUG", "INFO")]
 
 
 @pytest.mark.parametrize("with_simulator", [True, False], ids=["with the simulator", "alone"])
-def test_ctrl_c_after_a_motion_prints_nothing_that_looks_like_a_failure(cell, with_simulator):
+def test_ctrl_c_after_a_motion_prints_no_warnings_or_errors(cell, with_simulator):
     make_ready(cell.client)
     cell.client.send(MoveJ, "move_j", joint_positions=[0.2, *HOME[1:]], speed=1.0).succeeded()
-    assert not looks_like_failures(cell.interrupt(with_simulator))
+    assert not find_failures(cell.interrupt(with_simulator))
 
 
-def test_ctrl_c_in_a_motion_prints_nothing_that_looks_like_a_failure(cell):
+def test_ctrl_c_during_a_motion_prints_no_warnings_or_errors(cell):
     make_ready(cell.client)
     goal = cell.client.send(MoveJ, "move_j", joint_positions=[2.5, *HOME[1:]], speed=0.5)
     wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
     assert not goal.is_finished()  # requests the result while the server is available
-    assert not looks_like_failures(cell.interrupt(with_simulator=False))
+    assert not find_failures(cell.interrupt(with_simulator=False))
     assert goal.wait_for_result()[0] == GoalStatus.STATUS_ABORTED
     assert cell.simulator.is_at_rest()
 
 
-def test_ctrl_c_in_a_motion_warns_if_the_controller_ends_before_the_arm_has_stopped(cell):
+def test_ctrl_c_during_a_motion_warns_if_standstill_is_not_confirmed(cell):
     make_ready(cell.client)
     goal = cell.client.send(MoveJ, "move_j", joint_positions=[2.5, *HOME[1:]], speed=0.5)
     wait_for(lambda: goal.feedback and goal.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
-    warning, = looks_like_failures(cell.interrupt(with_simulator=True))
+    warning, = find_failures(cell.interrupt(with_simulator=True))
     assert "[WARN]" in warning and "standstill is not confirmed" in warning

@@ -1,4 +1,4 @@
-"""robot_state_receiver: topics, services, faked joint states, links that come and go."""
+"""robot_state_receiver: topics, services, fake joint states, and reconnection."""
 
 import math
 
@@ -26,20 +26,20 @@ def collect(client, message, topic, number, limit=15.0):
     return list(messages)
 
 
-def test_joint_states_have_the_names_and_the_order_of_moveit(receiver, client):
+def test_joint_states_have_the_names_and_the_order_of_the_robot_description(receiver, client):
     state = collect(client, JointState, "joint_states", 1)[0]
     assert list(state.name) == [f"left_{name}" for name in JOINTS]
     assert list(state.position) == pytest.approx(HOME, abs=0.01)
     assert len(state.velocity) == len(state.effort) == 6
 
 
-def test_efforts_are_torques_that_carry_the_arm(receiver, client):
+def test_efforts_are_the_torques_that_hold_the_arm(receiver, client):
     effort = collect(client, JointState, "joint_states", 1)[0].effort
     assert all(map(math.isfinite, effort))
-    assert 20.0 < abs(effort[1]) < 400.0  # the shoulder of a stretched UR10e
+    assert 20.0 < abs(effort[1]) < 400.0  # shoulder_lift_joint of a UR10e at home
 
 
-def test_the_pose_is_the_tools_in_the_base_frame(receiver, client, simulator):
+def test_tcp_pose_is_in_the_base_frame(receiver, client, simulator):
     pose = collect(client, PoseStamped, "tcp_pose", 1)[0]
     assert pose.header.frame_id == "left_base"
     tcp = simulator.state()["actual_tcp_pose"]
@@ -51,7 +51,7 @@ def test_the_pose_is_the_tools_in_the_base_frame(receiver, client, simulator):
     assert 2.0 * math.acos(min(1.0, abs(q.w))) == pytest.approx(min(angle, 2.0 * math.pi - angle), abs=1e-3)
 
 
-def test_the_wrench_is_in_the_frame_of_the_tool(receiver, client, simulator):
+def test_wrench_is_in_the_tool_frame(receiver, client, simulator):
     wrenches = client.subscribe(WrenchStamped, "wrench")
     simulator.control("push", force=[0.0, 0.0, 30.0], duration=0.5, frame="tool")
     wait_for(lambda: any(w.wrench.force.z > 25.0 for w in list(wrenches)), 10.0, "the push along the tool's axis")
@@ -60,13 +60,13 @@ def test_the_wrench_is_in_the_frame_of_the_tool(receiver, client, simulator):
     assert abs(strongest.wrench.force.x) < 8.0 and abs(strongest.wrench.force.y) < 8.0
 
 
-def test_io_state_shows_inputs_by_pin(receiver, client, simulator):
+def test_io_state_contains_the_inputs_by_pin(receiver, client, simulator):
     messages = client.subscribe(IOState, "io_state")
     for pin in (0, 9, 17):
         simulator.control("set_digital_input", number=pin, value=True)
         wait_for(lambda p=pin: messages and messages[-1].digital_inputs[p], 10.0, f"input {pin}")
         simulator.control("set_digital_input", number=pin, value=False)
-        wait_for(lambda p=pin: not messages[-1].digital_inputs[p], 10.0, f"input {pin} to go off")
+        wait_for(lambda p=pin: not messages[-1].digital_inputs[p], 10.0, f"input {pin} to be off")
 
 
 def test_all_messages_of_a_cycle_have_one_stamp(receiver, client):
@@ -79,7 +79,7 @@ def test_all_messages_of_a_cycle_have_one_stamp(receiver, client):
 
 
 def rate(client, topic, number):
-    """Messages for each of the robot's seconds by their stamps, the first of which may be late by the discovery."""
+    """Returns the messages per second of robot time, by their stamps. The first message is ignored: discovery may delay it."""
     states = client.subscribe(JointState, topic)
     wait_for(lambda: len(states) > number, 60.0, f"{number} messages of {topic}")
     stamps = [robot_seconds(state.header.stamp) for state in list(states)][1:]
@@ -87,24 +87,24 @@ def rate(client, topic, number):
     return (len(stamps) - 1) / (stamps[-1] - stamps[0])
 
 
-def is_about(measured, wanted):
-    """Of packages that come while the machine is busy elsewhere only the newest counts."""
-    return 0.6 * wanted < measured < 1.05 * wanted
+def is_about(measured, expected):
+    """Allows for dropped packages: if packages queue up on a busy machine, only the newest is published."""
+    return 0.6 * expected < measured < 1.05 * expected
 
 
-def test_it_publishes_at_the_rate_of_the_controller(receiver, simulator, client):
+def test_publishes_at_the_rate_of_the_controller(receiver, simulator, client):
     assert is_about(rate(client, "joint_states", 1500), 500.0)
 
 
 @pytest.mark.parametrize("frequency", [10.0, 300.0])
-def test_the_rate_can_be_chosen(simulator, client, processes, frequency):
+def test_publishes_at_the_configured_rate(simulator, client, processes, frequency):
     name = f"at_{frequency:.0f}_hz"
     processes(start_node("robot_state_receiver", simulator.address, f"rtde_frequency:={frequency}", namespace=name))
     number = 20 if frequency < 100 else 900
     assert is_about(rate(client, f"/{name}/joint_states", number), frequency)
 
 
-def test_in_the_driver_the_rate_of_the_state_can_be_chosen_apart_from_that_of_the_commands(simulator, client, processes):
+def test_the_driver_publishes_at_the_configured_rate(simulator, client, processes):
     processes(start_node("driver", simulator.address, "rtde_frequency:=40.0", namespace="in_one"))
     assert is_about(rate(client, "/in_one/joint_states", 80), 40.0)
 
@@ -115,27 +115,27 @@ def test_in_the_driver_the_rate_of_the_state_can_be_chosen_apart_from_that_of_th
     (GetWrench, "get_wrench", lambda a: a.wrench.header.frame_id == "left_tool0_controller"),
     (GetIOState, "get_io_state", lambda a: not any(a.io_state.digital_outputs)),
 ], ids=lambda value: value if isinstance(value, str) else "")
-def test_services_answer_from_the_newest_sample(receiver, client, service, name, field):
+def test_services_return_the_newest_sample(receiver, client, service, name, field):
     collect(client, JointState, "joint_states", 1)
     answer = client.call(service, name)
     assert answer.success and answer.error_code == ErrorCode.NONE, answer.message
     assert field(answer)
 
 
-def test_faked_joint_states_are_shown_and_the_real_state_goes_on(receiver, client):
+def test_fake_joint_states_replace_joint_states_but_not_the_services(receiver, client):
     shown = client.subscribe(JointState, "joint_states")
     publisher = client.node.create_publisher(JointState, "fake_joint_states", 10)
     wait_for(lambda: publisher.get_subscription_count(), 10.0, "the subscription of fake_joint_states")
     assert client.call(SetBool, "publish_fake_joint_states", data=True).success
     try:
-        # By name, in another order, and only some of them.
+        # A subset of the joints in another order.
         publisher.publish(JointState(name=["left_elbow_joint", "left_shoulder_pan_joint"], position=[0.25, -0.5]))
-        wait_for(lambda: shown and shown[-1].position[2] == 0.25, 10.0, "the faked elbow")
+        wait_for(lambda: shown and shown[-1].position[2] == 0.25, 10.0, "the fake elbow position")
         assert list(shown[-1].position) == pytest.approx([-0.5, HOME[1], 0.25, *HOME[3:]], abs=0.01)
         assert list(shown[-1].velocity) == [0.0] * 6
-        real = client.call(GetJointState, "get_joint_state")
-        assert real.success and list(real.joint_state.position) == pytest.approx(HOME, abs=0.01)
-        # What is wrong with a message is said, and nothing of it is taken.
+        actual = client.call(GetJointState, "get_joint_state")
+        assert actual.success and list(actual.joint_state.position) == pytest.approx(HOME, abs=0.01)
+        # An invalid message is reported and ignored.
         publisher.publish(JointState(name=["left_elbow_joint", "nonsense"], position=[1.0, 1.0]))
         receiver.wait_for_output('there is no joint "nonsense"')
         publisher.publish(JointState(name=["left_elbow_joint"], position=[]))
@@ -144,31 +144,31 @@ def test_faked_joint_states_are_shown_and_the_real_state_goes_on(receiver, clien
         assert shown[-1].position[2] == 0.25
     finally:
         assert client.call(SetBool, "publish_fake_joint_states", data=False).success
-    wait_for(lambda: shown[-1].position[2] == pytest.approx(HOME[2], abs=0.01), 10.0, "the real elbow")
+    wait_for(lambda: shown[-1].position[2] == pytest.approx(HOME[2], abs=0.01), 10.0, "the actual elbow position")
 
 
-def test_the_actual_joint_states_are_published_while_fake_ones_are_shown(receiver, client):
+def test_actual_joint_states_are_published_along_with_fake_joint_states(receiver, client):
     shown, actual = client.subscribe(JointState, "joint_states"), client.subscribe(JointState, "actual_joint_states")
     wait_for(lambda: len(shown) > 50 and len(actual) > 50, 20.0, "joint states of both topics")
     by_stamp = {seconds(state.header.stamp): state for state in list(shown)}
-    assert sum(by_stamp.get(seconds(state.header.stamp)) == state for state in list(actual)) > 25  # not fake: the same
+    assert sum(by_stamp.get(seconds(state.header.stamp)) == state for state in list(actual)) > 25  # identical without fake joint states
 
     assert client.call(SetBool, "publish_fake_joint_states", data=True).success
     try:
         publisher = client.node.create_publisher(JointState, "fake_joint_states", 10)
         wait_for(lambda: publisher.get_subscription_count(), 10.0, "the subscription of fake_joint_states")
         publisher.publish(JointState(name=["left_elbow_joint"], position=[0.25]))
-        wait_for(lambda: shown[-1].position[2] == 0.25, 10.0, "the fake elbow")
+        wait_for(lambda: shown[-1].position[2] == 0.25, 10.0, "the fake elbow position")
         stamp = seconds(shown[-1].header.stamp)
-        wait_for(lambda: seconds(actual[-1].header.stamp) > stamp, 10.0, "the actual state after that")
+        wait_for(lambda: seconds(actual[-1].header.stamp) > stamp, 10.0, "a later actual state")
         assert list(actual[-1].name) == [f"left_{name}" for name in JOINTS]
         assert list(actual[-1].position) == pytest.approx(HOME, abs=0.01)
-        assert any(actual[-1].effort)  # those that are shown with fake positions are zero
+        assert any(actual[-1].effort)  # efforts of fake joint states are zero
     finally:
         assert client.call(SetBool, "publish_fake_joint_states", data=False).success
 
 
-def test_any_number_of_receivers_follow_one_robot(simulator, client, processes):
+def test_several_receivers_can_connect_to_one_robot(simulator, client, processes):
     names = [f"watcher_{i}" for i in range(4)]
     for name in names:
         processes(start_node("robot_state_receiver", simulator.address, "rtde_frequency:=50.0", namespace=name))
@@ -176,7 +176,7 @@ def test_any_number_of_receivers_follow_one_robot(simulator, client, processes):
         assert collect(client, JointState, f"/{name}/joint_states", 20)
 
 
-def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
+def test_starts_without_the_controller_and_reconnects(addresses, processes):
     address = addresses[1]
     receiver = processes(start_node("robot_state_receiver", address, namespace="early"))
     client = Client("early")
@@ -192,24 +192,24 @@ def test_it_starts_before_the_robot_and_outlives_it(addresses, processes):
         assert client.call(GetJointState, "get_joint_state").success
 
         simulator.kill()
-        answer = wait_for(lambda: _failed(client.call(GetJointState, "get_joint_state")), 10.0, "the loss to be told")
+        answer = wait_for(lambda: _if_failed(client.call(GetJointState, "get_joint_state")), 10.0, "the loss of the connection")
         assert answer.error_code == ErrorCode.LINK_LOST and "for the last time" in answer.message
         assert list(answer.joint_state.position) == pytest.approx(HOME, abs=0.01)
 
         processes(simulator.start())
         number = len(states)
-        wait_for(lambda: len(states) > number + 10, 15.0, "joint states after the robot came back")
+        wait_for(lambda: len(states) > number + 10, 15.0, "joint states after the reconnection")
         assert client.call(GetJointState, "get_joint_state").success
         assert receiver.running()
     finally:
         client.close()
 
 
-def _failed(answer):
+def _if_failed(answer):
     return None if answer.success else answer
 
 
-def test_faked_joint_states_are_shown_without_a_robot(addresses, client, processes):
+def test_fake_joint_states_are_published_without_a_robot(addresses, client, processes):
     processes(start_node("robot_state_receiver", addresses[2], namespace="nowhere"))
     shown = client.subscribe(JointState, "/nowhere/joint_states")
     publisher = client.node.create_publisher(JointState, "/nowhere/fake_joint_states", 10)

@@ -1,4 +1,4 @@
-"""The transform base -> tool0_controller on /tf."""
+"""Tests of the transform base -> tool0_controller on /tf."""
 
 import os
 
@@ -15,12 +15,12 @@ LIBRARIES = interface_fallback.provide("tf2_msgs")
 
 from tf2_msgs.msg import TFMessage  # noqa: E402
 
-# Of the published definition.
+# Type hash of the published definition.
 HASH = "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"
 
 
-def receiver(address, *parameters, **options):
-    """robot_state_receiver as it is where tf2_msgs is installed."""
+def start_receiver(address, *parameters, **options):
+    """Starts robot_state_receiver with support for tf2_msgs: the installed program, or the one built with the tests."""
     if LIBRARIES is None:
         return start_node("robot_state_receiver", address, *parameters, **options)
     path = os.pathsep.join([str(LIBRARIES), os.environ.get("LD_LIBRARY_PATH", "")])
@@ -32,14 +32,14 @@ def transforms(messages, child):
     return [t for message in list(messages) for t in message.transforms if t.child_frame_id == child]
 
 
-def of_the_tcp(simulator, transform):
+def matches_tcp(simulator, transform):
     tcp = simulator.state()["actual_tcp_pose"]
     t = transform.transform.translation
     return (t.x, t.y, t.z) == pytest.approx(tcp[:3], abs=1e-3)
 
 
-def published(client, namespace):
-    """The topics of the receiver there, once all of it is known: the subscription is what it makes last."""
+def get_published_topics(client, namespace):
+    """Returns the published topics of the receiver, once discovery is complete. The receiver creates its subscription last."""
     receiver = ("robot_state_receiver", namespace)
 
     def complete():
@@ -54,12 +54,12 @@ def published(client, namespace):
 
 
 @pytest.mark.skipif(LIBRARIES is None, reason="tf2_msgs is installed")
-def test_the_interface_is_the_published_one():
+def test_type_hash_matches_the_published_interface():
     assert interface_fallback.type_hashes("tf2_msgs")["tf2_msgs/msg/TFMessage"] == HASH
 
 
-def test_the_tcp_pose_is_broadcast_with_the_stamp_of_tcp_pose(simulator, client, processes):
-    processes(receiver(simulator.address, "tf_prefix:=left_", namespace="with_tf"))
+def test_broadcasts_the_pose_and_the_stamp_of_tcp_pose(simulator, client, processes):
+    processes(start_receiver(simulator.address, "tf_prefix:=left_", namespace="with_tf"))
     poses = client.subscribe(PoseStamped, "/with_tf/tcp_pose")
     tf = client.subscribe(TFMessage, "/tf")
     child = "left_tool0_controller"
@@ -73,50 +73,50 @@ def test_the_tcp_pose_is_broadcast_with_the_stamp_of_tcp_pose(simulator, client,
         t, p = transform.transform.translation, pose.pose.position
         assert (t.x, t.y, t.z) == (p.x, p.y, p.z)
         assert transform.transform.rotation == pose.pose.orientation
-    assert of_the_tcp(simulator, matching[-1][0])
+    assert matches_tcp(simulator, matching[-1][0])
 
 
-def test_listeners_of_tf2_match(simulator, client, processes):
-    processes(receiver(simulator.address, "qos:=best_effort", namespace="best_effort"))
-    assert "/tf" in published(client, "/best_effort")
+def test_qos_is_compatible_with_tf2_listeners(simulator, client, processes):
+    processes(start_receiver(simulator.address, "qos:=best_effort", namespace="best_effort"))
+    assert "/tf" in get_published_topics(client, "/best_effort")
     publishers = client.node.get_publishers_info_by_topic("/tf")
     assert [publisher.node_namespace for publisher in publishers] == ["/best_effort"]
-    # tf2_ros::TransformListener asks for reliable messages.
+    # tf2_ros::TransformListener requests reliable messages.
     assert publishers[0].qos_profile.reliability == ReliabilityPolicy.RELIABLE
     assert publishers[0].qos_profile.durability == DurabilityPolicy.VOLATILE
 
 
-def test_the_broadcast_follows_the_robot_while_fake_joint_states_are_shown(simulator, client, processes):
-    processes(receiver(simulator.address, "tf_prefix:=faked_", namespace="faked"))
+def test_broadcasts_the_actual_pose_along_with_fake_joint_states(simulator, client, processes):
+    processes(start_receiver(simulator.address, "tf_prefix:=faked_", namespace="faked"))
     shown = client.subscribe(JointState, "/faked/joint_states")
     tf = client.subscribe(TFMessage, "/tf")
     publisher = client.node.create_publisher(JointState, "/faked/fake_joint_states", 10)
     wait_for(lambda: publisher.get_subscription_count() and shown, 15.0, "the receiver")
     assert client.call(SetBool, "/faked/publish_fake_joint_states", data=True).success
     publisher.publish(JointState(name=["faked_elbow_joint"], position=[0.25]))
-    wait_for(lambda: shown[-1].position[2] == 0.25, 10.0, "the fake elbow")
+    wait_for(lambda: shown[-1].position[2] == 0.25, 10.0, "the fake elbow position")
     number = len(tf)
-    wait_for(lambda: len(tf) > number + 20, 10.0, "transforms after that")
-    assert of_the_tcp(simulator, transforms(tf, "faked_tool0_controller")[-1])
+    wait_for(lambda: len(tf) > number + 20, 10.0, "later transforms")
+    assert matches_tcp(simulator, transforms(tf, "faked_tool0_controller")[-1])
 
 
-def test_the_topic_can_be_remapped_into_the_namespace(simulator, client, processes):
-    processes(receiver(simulator.address, namespace="own", arguments=["-r", "/tf:=tf"]))
+def test_tf_can_be_remapped_into_the_namespace(simulator, client, processes):
+    processes(start_receiver(simulator.address, namespace="own", arguments=["-r", "/tf:=tf"]))
     tf = client.subscribe(TFMessage, "/own/tf")
     assert wait_for(lambda: transforms(tf, "tool0_controller"), 15.0, "a transform")
 
 
-def test_the_broadcast_can_be_switched_off(simulator, client, processes):
-    processes(receiver(simulator.address, "publish_tf:=false", namespace="quiet"))
-    assert "/tf" not in published(client, "/quiet")
+def test_publish_tf_false_disables_the_broadcast(simulator, client, processes):
+    processes(start_receiver(simulator.address, "publish_tf:=false", namespace="quiet"))
+    assert "/tf" not in get_published_topics(client, "/quiet")
 
 
 @pytest.mark.skipif(LIBRARIES is None, reason="tf2_msgs is installed")
-def test_a_build_without_tf2_msgs_says_so(simulator, client, processes):
+def test_a_build_without_tf2_msgs_is_reported(simulator, client, processes):
     without = processes(start_node("robot_state_receiver", simulator.address, "tf_prefix:=plain_", namespace="plain"))
     line = without.wait_for_output("tf2_msgs was not found")
     assert "[INFO]" in line and "plain_tool0_controller" in line and "publish_tf" in line
-    assert "/tf" not in published(client, "/plain")
+    assert "/tf" not in get_published_topics(client, "/plain")
     silent = processes(start_node("robot_state_receiver", simulator.address, "publish_tf:=false", namespace="silent"))
-    assert "/tf" not in published(client, "/silent")
+    assert "/tf" not in get_published_topics(client, "/silent")
     assert "tf2_msgs" not in silent.output()

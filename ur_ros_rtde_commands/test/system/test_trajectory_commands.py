@@ -1,4 +1,4 @@
-"""execute_trajectory and execute_parametrized_trajectory, on the simulator."""
+"""Tests of execute_trajectory and execute_parametrized_trajectory on the simulator."""
 
 import math
 
@@ -15,7 +15,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 
 NAN = math.nan
 FAST = {"max_velocity": [1.8] * 6, "max_acceleration": [5.0] * 6}
-LAG = 0.03  # lookahead_time: as stiff as it gets
+MIN_LOOKAHEAD = 0.03  # s, the smallest lookahead_time
 
 
 def send(robot, positions, **fields):
@@ -26,7 +26,7 @@ def send_timed(robot, trajectory, **fields):
     return robot.send(ExecuteParametrizedTrajectory, "execute_parametrized_trajectory", trajectory=trajectory, **fields)
 
 
-def nearest(states, positions):
+def min_deviation(states, positions):
     return min(max(abs(a - b) for a, b in zip(state.position, positions)) for state in states)
 
 
@@ -34,66 +34,66 @@ def wait_for_progress(goal, progress):
     wait_for(lambda: any(f.motion.progress > progress for f in goal.feedback), 20.0, f"a progress of {progress}")
 
 
-def test_it_passes_through_every_waypoint(robot):
+def test_passes_through_every_waypoint(robot):
     corners = [HOME, home_plus(0.3), home_plus(0.3, 0.2), home_plus(0.1, 0.1, -0.2), HOME]
     states = robot.subscribe(JointState, "joint_states")
-    goal = send(robot, corners, lookahead_time=LAG)
+    goal = send(robot, corners, lookahead_time=MIN_LOOKAHEAD)
     result = goal.succeeded()
     assert result.final_state.joint_positions == pytest.approx(HOME, abs=0.005)
     states = robot.messages_until_now(states)
     for corner in corners:
-        assert nearest(states, corner) < 0.01
+        assert min_deviation(states, corner) < 0.01
     assert 0.0 < result.max_tracking_error < 0.02
 
 
-def test_it_takes_as_long_as_planned_and_says_where_it_is(robot, simulator):
+def test_takes_the_planned_time_and_reports_progress(robot, simulator):
     begin = simulator.state()["timestamp"]
-    goal = send(robot, wave(200), lookahead_time=LAG)
+    goal = send(robot, wave(200), lookahead_time=MIN_LOOKAHEAD)
     result = goal.succeeded()
-    took = simulator.state()["timestamp"] - begin
-    assert result.duration < took < 8.0 * result.duration + 2.0  # a host that is late takes longer
+    elapsed = simulator.state()["timestamp"] - begin
+    assert result.duration < elapsed < 8.0 * result.duration + 2.0  # longer on a busy host
     feedback = goal.feedback
     progress = [f.motion.progress for f in feedback]
     indices = [f.waypoint for f in feedback]
     assert progress == sorted(progress) and indices == sorted(indices) and indices[-1] <= 199
     assert all(abs(f.tracking_error) < 0.05 for f in feedback)
-    left = [f.time_left for f in feedback if f.time_left > 0.0]  # none while it is being planned
-    assert left == sorted(left, reverse=True) and left[0] <= result.duration
+    remaining = [f.time_left for f in feedback if f.time_left > 0.0]  # 0 during planning
+    assert remaining == sorted(remaining, reverse=True) and remaining[0] <= result.duration
 
 
-def test_a_speed_fraction_slows_it_down(robot):
+def test_speed_fraction_increases_the_duration(robot):
     fast = send(robot, [HOME, home_plus(0.3), HOME], **FAST).succeeded()
     slow = send(robot, [HOME, home_plus(0.3), HOME], speed_fraction=0.5, **FAST).succeeded()
     assert slow.duration == pytest.approx(2.0 * fast.duration, rel=1e-6)
 
 
-def fastest(simulator, goal):
-    """rad/s: of any joint's target until the goal has ended."""
+def max_target_speed(simulator, goal):
+    """Returns the maximum target speed of any joint until the goal has succeeded, in rad/s."""
     recorder = TargetSpeedRecorder(simulator)
     wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
     goal.succeeded()
     return max(recorder.update())
 
 
-def test_without_limits_it_is_slow(robot, simulator):
+def test_default_limits_are_slow(robot, simulator):
     goal = send(robot, [HOME, home_plus(1.2)])
-    assert fastest(simulator, goal) < 1.05 * 1.03
+    assert max_target_speed(simulator, goal) < 1.05 * 1.03
     assert goal.succeeded().duration == pytest.approx(1.2 / 1.05 + 1.05 / 1.4 + 1.4 / 100.0, abs=0.01)
 
 
-def test_limits_that_are_given_may_be_faster(robot, simulator):
+def test_given_limits_may_exceed_the_default_limits(robot, simulator):
     goal = send(robot, [HOME, home_plus(1.2)], max_velocity=[1.8] * 6, max_acceleration=[5.0] * 6)
     assert goal.succeeded().duration == pytest.approx(1.2 / 1.8 + 1.8 / 5.0 + 5.0 / 100.0, abs=0.01)
 
 
 @pytest.mark.parametrize("speed_fraction", [1.0, 0.3])
-def test_an_approach_is_slow_whatever_the_limits_are(robot, simulator, speed_fraction):
+def test_the_approach_uses_the_default_limits(robot, simulator, speed_fraction):
     goal = send(robot, [home_plus(0.8), home_plus(0.83)], approach=True, speed_fraction=speed_fraction, max_velocity=[2.0] * 6,
                 max_acceleration=[10.0] * 6)
-    assert fastest(simulator, goal) < 1.05 * speed_fraction * 1.05
+    assert max_target_speed(simulator, goal) < 1.05 * speed_fraction * 1.05
 
 
-def test_limits_of_a_joint_count(robot, simulator):
+def test_joint_limits_are_respected(robot, simulator):
     recorder = TargetSpeedRecorder(simulator)
     goal = send(robot, [HOME, home_plus(0.5)], max_velocity=[0.2] * 6, max_acceleration=[1.0] * 6, max_jerk=[10.0] * 6)
     wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
@@ -101,49 +101,49 @@ def test_limits_of_a_joint_count(robot, simulator):
     assert max(recorder.update()) < 0.2 * 1.03
 
 
-def test_corners_are_blended_within_the_tolerance(robot):
+def test_blends_corners_within_the_tolerance(robot):
     corner = home_plus(0.4)
     states = robot.subscribe(JointState, "joint_states")
-    through = send(robot, [HOME, corner, home_plus(0.4, 0.3)], lookahead_time=LAG).succeeded()
-    send(robot, [home_plus(0.4, 0.3), HOME], lookahead_time=LAG).succeeded()
+    through = send(robot, [HOME, corner, home_plus(0.4, 0.3)], lookahead_time=MIN_LOOKAHEAD).succeeded()
+    send(robot, [home_plus(0.4, 0.3), HOME], lookahead_time=MIN_LOOKAHEAD).succeeded()
     robot.messages_until_now(states)
     states.clear()
-    round_it = send(robot, [HOME, corner, home_plus(0.4, 0.3)], blend_tolerance=0.05, lookahead_time=LAG).succeeded()
-    assert round_it.duration < 0.95 * through.duration
-    assert nearest(robot.messages_until_now(states), corner) < 0.05 + 0.005
+    blended = send(robot, [HOME, corner, home_plus(0.4, 0.3)], blend_tolerance=0.05, lookahead_time=MIN_LOOKAHEAD).succeeded()
+    assert blended.duration < 0.95 * through.duration
+    assert min_deviation(robot.messages_until_now(states), corner) < 0.05 + 0.005
 
 
-def test_elsewhere_it_is_refused_or_approaches(robot):
-    elsewhere = [home_plus(0.2), home_plus(0.3)]
-    refused = send(robot, elsewhere)
+def test_a_distant_start_requires_approach(robot):
+    distant = [home_plus(0.2), home_plus(0.3)]
+    refused = send(robot, distant)
     assert not refused.accepted
     message = robot.refusal(refused).message
     assert "shoulder_pan_joint" in message and "0.2000 rad away" in message and "start_tolerance is 0.0100" in message
-    send(robot, elsewhere, approach=True).succeeded()
-    send(robot, [home_plus(0.3003), home_plus(0.25)]).succeeded()  # the last bit needs no approach
+    send(robot, distant, approach=True).succeeded()
+    send(robot, [home_plus(0.3003), home_plus(0.25)]).succeeded()  # within start_tolerance
     send(robot, [HOME], approach=True).succeeded()
 
 
-def test_one_waypoint_repetitions_and_reversals_are_no_problem(robot):
+def test_handles_single_repeated_and_reversed_waypoints(robot):
     send(robot, [HOME]).succeeded()
     send(robot, [HOME, HOME, HOME]).succeeded()
     send(robot, [HOME, home_plus(0.1), home_plus(0.1), HOME, home_plus(1e-7), home_plus(0.1), HOME]).succeeded()
 
 
-def test_ten_thousand_waypoints_are_planned_while_the_node_goes_on(robot):
-    goal = send(robot, wave(10000, 0.6), lookahead_time=LAG)
+def test_planning_ten_thousand_waypoints_does_not_block_the_node(robot):
+    goal = send(robot, wave(10000, 0.6), lookahead_time=MIN_LOOKAHEAD)
     assert goal.accepted
-    assert not send(robot, [HOME]).accepted  # answered meanwhile: busy
+    assert not send(robot, [HOME]).accepted  # rejected as busy during planning
     result = goal.succeeded(60.0)
     assert result.duration > 1.0
 
 
 @pytest.mark.parametrize("slider", [1.0, 0.3])
-def test_a_cancel_decelerates_along_the_path(robot, simulator, slider):
+def test_cancel_decelerates_along_the_path(robot, simulator, slider):
     simulator.control("speed_slider", fraction=slider)
     end = home_plus(1.0, -0.4, 0.5)
     states = robot.subscribe(JointState, "joint_states")
-    goal = send(robot, [HOME, end], max_velocity=[0.5] * 6, lookahead_time=LAG)
+    goal = send(robot, [HOME, end], max_velocity=[0.5] * 6, lookahead_time=MIN_LOOKAHEAD)
     wait_for_progress(goal, 0.2)
     goal.cancel()
     status, result = goal.wait_for_result(10.0)
@@ -154,17 +154,17 @@ def test_a_cancel_decelerates_along_the_path(robot, simulator, slider):
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
-def test_the_speed_slider_slows_the_time_axis(robot, simulator):
+def test_the_speed_slider_scales_the_duration(robot, simulator):
     simulator.control("speed_slider", fraction=0.4)
     begin = simulator.state()["timestamp"]
-    result = send(robot, [HOME, home_plus(0.5), HOME], lookahead_time=LAG, **FAST).succeeded(60.0)
+    result = send(robot, [HOME, home_plus(0.5), HOME], lookahead_time=MIN_LOOKAHEAD, **FAST).succeeded(60.0)
     assert simulator.state()["timestamp"] - begin > result.duration / 0.4
     simulator.control("speed_slider", fraction=1.0)
 
 
-def test_a_host_that_is_late_skips_nothing(robot, simulator, driver):
+def test_a_delayed_host_skips_no_part_of_the_trajectory(robot, simulator, driver):
     recorder = TargetSpeedRecorder(simulator)
-    goal = send(robot, [HOME, home_plus(0.8), HOME], max_velocity=[0.5] * 6, lookahead_time=LAG)
+    goal = send(robot, [HOME, home_plus(0.8), HOME], max_velocity=[0.5] * 6, lookahead_time=MIN_LOOKAHEAD)
     for progress in (0.1, 0.3, 0.6):
         wait_for_progress(goal, progress)
         cycle = simulator.state()["cycle"]
@@ -177,7 +177,7 @@ def test_a_host_that_is_late_skips_nothing(robot, simulator, driver):
     assert max(recorder.update()) < 0.5 * 1.05
 
 
-def test_too_far_behind_it_ends_and_stops(robot, simulator):
+def test_aborts_and_stops_if_the_tracking_error_is_too_large(robot, simulator):
     goal = send(robot, [HOME, home_plus(1.0)], max_tracking_error=0.0005, gain=100.0, lookahead_time=0.2)
     status, result = goal.wait_for_result(20.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED
@@ -185,7 +185,7 @@ def test_too_far_behind_it_ends_and_stops(robot, simulator):
     wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
 
 
-def test_a_protective_stop_ends_it(robot, simulator):
+def test_a_protective_stop_aborts_the_goal(robot, simulator):
     goal = send(robot, [HOME, home_plus(1.0)])
     wait_for_progress(goal, 0.1)
     simulator.control("protective_stop")
@@ -195,7 +195,7 @@ def test_a_protective_stop_ends_it(robot, simulator):
     make_ready(robot)
 
 
-BAD_PATHS = [
+INVALID_PATHS = [
     ({"waypoints": []}, "waypoints is empty"),
     ({"waypoints": waypoints(HOME, HOME[:5])}, "waypoint 1 has 5 values"),
     ({"waypoints": waypoints(HOME, home_plus(NAN))}, "waypoint 1 of shoulder_pan_joint is nan"),
@@ -217,8 +217,8 @@ BAD_PATHS = [
 ]
 
 
-@pytest.mark.parametrize("fields, what", BAD_PATHS, ids=[what for _, what in BAD_PATHS])
-def test_a_bad_path_is_refused_with_the_reason(driver, client, fields, what):
+@pytest.mark.parametrize("fields, what", INVALID_PATHS, ids=[what for _, what in INVALID_PATHS])
+def test_an_invalid_path_is_rejected_with_the_reason(driver, client, fields, what):
     goal = client.send(ExecuteTrajectory, "execute_trajectory", **{"waypoints": waypoints(HOME), **fields})
     assert not goal.accepted
     refusal = client.refusal(goal)
@@ -226,14 +226,14 @@ def test_a_bad_path_is_refused_with_the_reason(driver, client, fields, what):
 
 
 def arc(times, size=0.3):
-    """A motion from rest to rest, with its derivatives."""
+    """Returns points of a motion from rest to rest, with velocities and accelerations."""
     end = times[-1]
     w = math.pi / end
     return [point(t, home_plus(0.5 * size * (1 - math.cos(w * t))), [0.5 * size * w * math.sin(w * t)] + [0.0] * 5,
                   [0.5 * size * w * w * math.cos(w * t)] + [0.0] * 5) for t in times]
 
 
-def test_given_times_are_kept(robot, simulator):
+def test_keeps_the_given_times(robot, simulator):
     times = [0.0, 0.4, 0.5, 1.3, 2.0]
     points = arc(times)
     points[-1].velocities = [0.0] * 6
@@ -241,32 +241,35 @@ def test_given_times_are_kept(robot, simulator):
         make_ready(robot)
         states = robot.subscribe(JointState, "joint_states")
         before = simulator.state()["cycle"]
-        goal = send_timed(robot, timed(*points), lookahead_time=LAG, gain=2000.0, max_jerk=[1e5] * 6)
+        goal = send_timed(robot, timed(*points), lookahead_time=MIN_LOOKAHEAD, gain=2000.0, max_jerk=[1e5] * 6)
         assert goal.succeeded().duration == pytest.approx(2.0)
         moving = [s for s in robot.messages_until_now(states) if abs(s.position[0] - HOME[0]) > 0.002]
         robot.destroy_subscriptions()
-        if cycles_without_target(simulator, before) < 5:  # a late host makes a trajectory longer
+        if cycles_without_target(simulator, before) < 5:  # a delayed host prolongs the trajectory
             break
-    # From when the arm has left home to each position as planned: differences of the controller's stamps.
+    # Differences between the controller's stamps at which the arm passes these positions.
     crossed = {}
-    for part, wanted in ((0.25, 2.0 / 3.0), (0.5, 1.0), (0.75, 4.0 / 3.0)):
+    for part, planned in ((0.25, 2.0 / 3.0), (0.5, 1.0), (0.75, 4.0 / 3.0)):
         crossing = next(s for s in moving if s.position[0] - HOME[0] >= 0.3 * part)
-        crossed[wanted] = robot_seconds(crossing.header.stamp)
+        crossed[planned] = robot_seconds(crossing.header.stamp)
     assert crossed[1.0] - crossed[2.0 / 3.0] == pytest.approx(1.0 / 3.0, abs=0.05)
     assert crossed[4.0 / 3.0] - crossed[1.0] == pytest.approx(1.0 / 3.0, abs=0.05)
 
 
-def test_positions_alone_and_names_in_any_order(robot):
-    names = [JOINTS[i] for i in (5, 3, 1, 0, 2, 4)]
-    sort = lambda positions: [positions[i] for i in (5, 3, 1, 0, 2, 4)]  # noqa: E731
+def test_accepts_positions_without_velocities_and_names_in_any_order(robot):
+    order = (5, 3, 1, 0, 2, 4)
+
+    def reordered(values):
+        return [values[i] for i in order]
+
     target = home_plus(0.2, 0.1, 0.0, -0.1)
-    send_timed(robot, timed(point(0.0, sort(HOME)), point(1.0, sort(home_plus(0.1, 0.05, 0.0, -0.05))), point(2.0, sort(target)),
-                            names=names)).succeeded()
+    points = [point(0.0, reordered(HOME)), point(1.0, reordered(home_plus(0.1, 0.05, 0.0, -0.05))), point(2.0, reordered(target))]
+    send_timed(robot, timed(*points, names=reordered(JOINTS))).succeeded()
     result = send_timed(robot, timed(point(2.0, target), point(2.5, target), names=[])).succeeded()
     assert result.final_state.joint_positions == pytest.approx(target, abs=0.005)
 
 
-def test_too_fast_is_ended_with_the_first_limit_before_anything_moves(robot, simulator):
+def test_a_trajectory_that_exceeds_a_limit_is_aborted_before_the_arm_moves(robot, simulator):
     before = simulator.state()["target"]
     goal = send_timed(robot, timed(point(0.0, HOME), point(0.1, home_plus(0.5)), point(0.5, home_plus(0.5))))
     status, result = goal.wait_for_result(10.0)
@@ -275,7 +278,7 @@ def test_too_fast_is_ended_with_the_first_limit_before_anything_moves(robot, sim
     assert simulator.state()["target"] == before
 
 
-BAD_TIMES = [
+INVALID_TIMINGS = [
     (timed(point(0.0, HOME)), "trajectory.points has 1 points"),
     (timed(), "trajectory.points has 0 points"),
     (timed(point(0.0, HOME), point(0.0, HOME)), "times[1] is 0"),
@@ -291,8 +294,8 @@ BAD_TIMES = [
 ]
 
 
-@pytest.mark.parametrize("trajectory, what", BAD_TIMES, ids=[what for _, what in BAD_TIMES])
-def test_a_bad_timing_is_refused_with_the_reason(driver, client, trajectory, what):
+@pytest.mark.parametrize("trajectory, what", INVALID_TIMINGS, ids=[what for _, what in INVALID_TIMINGS])
+def test_an_invalid_timing_is_rejected_with_the_reason(driver, client, trajectory, what):
     goal = client.send(ExecuteParametrizedTrajectory, "execute_parametrized_trajectory", trajectory=trajectory)
     assert not goal.accepted
     refusal = client.refusal(goal)

@@ -1,4 +1,4 @@
-"""Several at once: two robots, each in its namespace with its prefix; many state receivers on one robot."""
+"""Two robots in separate namespaces with prefixes, and several state receivers on one robot."""
 
 import time
 
@@ -10,10 +10,10 @@ from support import HOME, JOINTS, Client, Simulator, seconds, start_node, wait_f
 from ur_ros_rtde_msgs.action import MoveJ
 
 RECEIVERS = 10
-LIMIT = 60.0  # s: of a busy machine
+LIMIT = 60.0  # s, allows for a busy machine
 
 
-def test_two_robots_move_at_once_and_apart(addresses, processes):
+def test_two_robots_move_independently_at_the_same_time(addresses, processes):
     clients = {}
     try:
         for side, address in zip(("left", "right"), addresses):
@@ -37,22 +37,22 @@ def test_two_robots_move_at_once_and_apart(addresses, processes):
 
 
 def connections(simulator):
-    """All that last: the driver asks the dashboard over further ones now and then."""
+    """Returns the permanent connections by port. The driver opens short connections to the dashboard as well."""
     return {port: number for port, number in simulator.state()["clients"].items() if port != "dashboard"}
 
 
-def test_ten_state_receivers_on_one_robot_have_the_same_states_while_it_moves(simulator, driver, client, processes):
+def test_ten_state_receivers_on_one_robot_publish_the_same_motion(simulator, driver, client, processes):
     for number in range(RECEIVERS):
         processes(start_node("robot_state_receiver", simulator.address, "rtde_frequency:=20.0", namespace=f"watcher_{number}"))
     make_ready(client)
     states = [client.subscribe(JointState, f"/watcher_{number}/joint_states") for number in range(RECEIVERS)]
-    wait_for(lambda: all(states), LIMIT, "joint states of all of them")
+    wait_for(lambda: all(states), LIMIT, "joint states of all receivers")
     before = connections(simulator)
     client.send(MoveJ, "move_j", joint_positions=[0.5, *HOME[1:]], speed=1.0).succeeded()
-    assert connections(simulator) == before, "one of them lost its connection"
+    assert connections(simulator) == before, "a receiver lost its connection"
     end = time.time()
     wait_for(lambda: all(seconds(messages[-1].header.stamp) > end for messages in states),
-             LIMIT, "a state after the motion of each of them")
+             LIMIT, "a state after the motion from each receiver")
     for messages in states:
         assert messages[-1].position[0] == pytest.approx(0.5, abs=0.005)
         assert max(state.position[0] for state in list(messages)) > min(state.position[0] for state in list(messages)) + 0.4

@@ -1,4 +1,4 @@
-"""Motions that end by what the tool meets."""
+"""Motions that end on contact, force or torque, and contact detection."""
 
 import time
 
@@ -12,9 +12,9 @@ from ur_ros_rtde_msgs.action import ContactDetection, MoveJ, MoveUntilContact, M
 from ur_ros_rtde_msgs.msg import ErrorCode
 from ur_ros_rtde_msgs.srv import GetTcpPose
 
-TABLE = 0.6  # m; the TCP is at 0.677 at home
+TABLE = 0.6  # m, height of the table; the TCP is at 0.677 m at home
 DOWN = Twist(linear=Vector3(z=-0.05))
-SLOWLY_DOWN = Twist(linear=Vector3(z=-0.02))  # time enough for something to happen meanwhile
+SLOWLY_DOWN = Twist(linear=Vector3(z=-0.02))  # slow enough to push the arm during the motion
 
 
 def height_now(client):
@@ -28,7 +28,7 @@ def table(simulator, robot):
     simulator.control("clear_surfaces")
 
 
-def test_move_until_contact_goes_back_to_where_the_contact_began(robot, table):
+def test_move_until_contact_retracts_to_the_contact(robot, table):
     result = robot.send(MoveUntilContact, "move_until_contact", twist=DOWN, distance=0.3, timeout=15.0).succeeded()
     assert result.contact
     assert result.contact_state.tcp_pose.position.z == pytest.approx(table, abs=0.002)
@@ -37,14 +37,14 @@ def test_move_until_contact_goes_back_to_where_the_contact_began(robot, table):
     assert result.contact_state.tcp_pose.orientation.x == pytest.approx(result.final_state.tcp_pose.orientation.x, abs=0.01)
 
 
-def test_move_until_contact_stays_where_it_stopped_without_retract(robot, table):
+def test_move_until_contact_without_retract_stays_at_the_stop_position(robot, table):
     result = robot.send(MoveUntilContact, "move_until_contact", twist=DOWN, distance=0.3, timeout=15.0,
                         retract=False).succeeded()
     assert result.contact
     assert result.final_state.tcp_pose.position.z < result.contact_state.tcp_pose.position.z
 
 
-def test_move_until_contact_counts_only_its_direction(robot, simulator):
+def test_move_until_contact_ignores_contacts_in_other_directions(robot, simulator):
     goal = robot.send(MoveUntilContact, "move_until_contact", twist=SLOWLY_DOWN, direction=Vector3(x=1.0), distance=0.1,
                       timeout=15.0)
     wait_for(lambda: get_joint_speed(robot) > 0.01, 10.0, "the arm to move")
@@ -58,7 +58,7 @@ def test_move_until_contact_counts_only_its_direction(robot, simulator):
                                           ({"distance": 0.5, "timeout": 1.0}, ErrorCode.TIMEOUT)])
 @pytest.mark.parametrize("action, name, more", [(MoveUntilContact, "move_until_contact", {}),
                                                 (MoveUntilForce, "move_until_force", {"threshold": 50.0})])
-def test_without_a_contact_it_ends_with_a_stop_by_distance_or_time(robot, action, name, more, fields, code):
+def test_without_contact_the_motion_stops_after_distance_or_timeout(robot, action, name, more, fields, code):
     start = height_now(robot)
     status, result = robot.send(action, name, twist=DOWN, **fields, **more).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == code, result.message
@@ -68,7 +68,7 @@ def test_without_a_contact_it_ends_with_a_stop_by_distance_or_time(robot, action
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 
-def test_cancel_of_move_until_contact_leaves_the_arm_at_rest(robot):
+def test_canceling_move_until_contact_stops_the_arm(robot):
     goal = robot.send(MoveUntilContact, "move_until_contact", twist=DOWN, distance=0.5, timeout=30.0)
     wait_for(lambda: get_joint_speed(robot) > 0.01, 10.0, "the arm to move")
     goal.cancel()
@@ -77,17 +77,17 @@ def test_cancel_of_move_until_contact_leaves_the_arm_at_rest(robot):
     assert get_joint_speed(robot) < 0.01 and height_now(robot) > 0.4
 
 
-def test_move_until_force_stops_within_a_few_cycles_of_the_touch(robot, simulator, table):
+def test_move_until_force_stops_within_a_few_cycles_of_the_contact(robot, simulator, table):
     before = simulator.control("trace")["cycles"][-1][0]
     result = robot.send(MoveUntilForce, "move_until_force", twist=DOWN, threshold=20.0, deceleration=10.0, distance=0.3,
                         timeout=15.0).succeeded()
     assert result.measured.z == pytest.approx(-20.0, abs=15.0) or result.measured.z == pytest.approx(20.0, abs=15.0)
-    # 20 N are 1 mm into the table at 20 kN/m; at 50 mm/s three cycles are 0.3 mm, the stop another 0.1 mm.
+    # 20 N correspond to 1 mm at 20 kN/m. At 50 mm/s, three cycles add 0.3 mm and the deceleration 0.1 mm.
     assert table - result.final_state.tcp_pose.position.z < 0.003
     assert simulator.control("trace")["cycles"][-1][0] > before
 
 
-def test_move_until_force_looks_only_at_its_axes(robot, simulator):
+def test_move_until_force_ignores_other_axes(robot, simulator):
     goal = robot.send(MoveUntilForce, "move_until_force", twist=SLOWLY_DOWN, axes=[True, False, False], frame=0, threshold=15.0,
                       distance=0.1, timeout=15.0)
     wait_for(lambda: get_joint_speed(robot) > 0.01, 10.0, "the arm to move")
@@ -95,19 +95,19 @@ def test_move_until_force_looks_only_at_its_axes(robot, simulator):
     assert goal.wait_for_result()[1].error_code == ErrorCode.NOT_REACHED
 
 
-def test_move_until_torque_is_stopped_by_a_torque_of_its_size(robot, simulator):
+def test_move_until_torque_stops_at_the_threshold(robot, simulator):
     goal = robot.send(MoveUntilForce, "move_until_torque", twist=SLOWLY_DOWN, threshold=3.0,
                       distance=0.3, timeout=15.0)
     wait_for(lambda: get_joint_speed(robot) > 0.01, 10.0, "the arm to move")
     simulator.control("push", wrench=[0, 0, 0, 6, 0, 0], duration=2.0)
     result = goal.succeeded()
-    size = (result.measured.x ** 2 + result.measured.y ** 2 + result.measured.z ** 2) ** 0.5
-    assert size == pytest.approx(3.0, abs=0.7)
+    magnitude = (result.measured.x ** 2 + result.measured.y ** 2 + result.measured.z ** 2) ** 0.5
+    assert magnitude == pytest.approx(3.0, abs=0.7)
 
 
-def test_what_the_sensor_reads_at_the_start_counts_as_zero(robot, simulator):
+def test_move_until_force_measures_relative_to_the_initial_force(robot, simulator):
     simulator.control("push", force=[0, 0, 60], duration=60.0)
-    time.sleep(8.0)  # of a half-sine of 60 s: some 24 N, rising by 3 N/s
+    time.sleep(8.0)  # at 8 s of a half-sine over 60 s: about 24 N, rising by 3 N/s
     status, result = robot.send(MoveUntilForce, "move_until_force", twist=DOWN, threshold=15.0, distance=0.03,
                                 timeout=10.0).wait_for_result()
     assert result.error_code == ErrorCode.NOT_REACHED, result.message
@@ -115,32 +115,32 @@ def test_what_the_sensor_reads_at_the_start_counts_as_zero(robot, simulator):
 
 @pytest.mark.parametrize("fields", [{"axes": [False, False, False]}, {"threshold": 0.0}, {"distance": float("nan")},
                                     {"frame": 2}])
-def test_move_until_force_refuses_what_could_not_end(robot, fields):
+def test_move_until_force_rejects_goals_that_could_not_end(robot, fields):
     goal = robot.send(MoveUntilForce, "move_until_force", twist=DOWN, **fields)
     assert not goal.accepted and next(iter(fields)) in robot.refusal(goal).message
 
 
-def test_tool_contact_tells_whether_the_tool_is_held_up(robot, simulator):
+def test_tool_contact_reports_a_contact_in_its_direction(robot, simulator):
     down = Twist(linear=Vector3(z=-1.0))
     assert not robot.send(ToolContact, "tool_contact", direction=down).succeeded().contact
     simulator.control("push", force=[0, 0, 60], duration=4.0)
 
-    def touched():
+    def find_contact():
         result = robot.send(ToolContact, "tool_contact", direction=down).succeeded()
         return result if result.contact else None
 
-    assert wait_for(touched, 3.0, "the contact").steps > 0
+    assert wait_for(find_contact, 3.0, "the contact").steps > 0
     assert not robot.send(ToolContact, "tool_contact", direction=Twist(linear=Vector3(z=1.0))).succeeded().contact
 
 
-def test_contact_detection_sees_a_contact_of_another_goals_motion(robot, table):
-    watch = robot.send(ContactDetection, "contact_detection", timeout=20.0)
+def test_contact_detection_detects_a_contact_during_another_goal(robot, table):
+    detection = robot.send(ContactDetection, "contact_detection", timeout=20.0)
     motion = robot.send(SpeedL, "speed_l", twist=DOWN, time=1.7)
-    result = watch.succeeded()
+    result = detection.succeeded()
     assert 0.5 < result.after < 5.0
     motion.wait_for_result()
 
 
-def test_contact_detection_ends_when_its_time_is_over(robot):
+def test_contact_detection_times_out(robot):
     status, result = robot.send(ContactDetection, "contact_detection", timeout=0.5).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.TIMEOUT
