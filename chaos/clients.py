@@ -6,7 +6,7 @@ import time
 from collections import Counter
 
 import messages
-from cell import CODES, WatchingClient
+from cell import CODES, StatusTrackingClient
 from goals import Mix
 
 ANSWER_LIMIT = 15.0  # s, from sending a goal to its acceptance or refusal
@@ -75,7 +75,7 @@ class GoalSender:
     def __init__(self, name, random, gate, journal):
         self._name, self._mix, self._gate, self._journal = name, Mix(random), gate, journal
         self._stop = threading.Event()
-        self._client = WatchingClient(name=name.replace(" ", "_"))
+        self._client = StatusTrackingClient(name=name.replace(" ", "_"))
         self.outcomes = Counter()
         self._thread = threading.Thread(target=self._run, name=name)
 
@@ -126,7 +126,7 @@ class GoalSender:
         status, result = goal.wait_for_result(RESULT_LIMIT)
         code = CODES[result.error_code]
         self._journal.write(self._name, f"  {plan.name} {goal.id.hex()[:8]}: {code}: {result.message}")
-        endings = self._client.endings(goal)
-        assert endings == {status}, f"{plan.name}, goal {goal.id.hex()}, has several final states: {endings}, result {status}"
+        states = self._client.get_terminal_states(goal)
+        assert states == {status}, f"{plan.name}, goal {goal.id.hex()}, has several final states: {states}, result {status}"
         self._client.forget(goal)
         return "succeeded" if result.success else f"failed, {code}"

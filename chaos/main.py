@@ -14,7 +14,7 @@ for folder in ("ur_ros_rtde_commands/test/system", "ur_ros_rtde_commands/test/ev
 
 import faults  # noqa: E402
 import report  # noqa: E402
-from cell import WatchingClient  # noqa: E402
+from cell import StatusTrackingClient  # noqa: E402
 from clients import RESULT_LIMIT, Gate, GoalSender  # noqa: E402
 from journal import Journal, Violation  # noqa: E402
 from robot import Robot  # noqa: E402
@@ -36,7 +36,7 @@ class Chaos:
         self._gate = Gate()
         self._watch = Watch(robot, self._gate, journal)
         self._loads = Loads(robot.driver.pid, journal, options.sanitizer)
-        self._probe = WatchingClient(name="probe")
+        self._probe = StatusTrackingClient(name="probe")
         self._clients = [GoalSender(f"client {number}", random.Random(f"{options.seed}/{number}"), self._gate, journal)
                          for number in range(options.clients)]
         self._status = say.Status(10.0)

@@ -46,7 +46,7 @@ class Field:
         return (int(found.group(1)), int(found.group(2))) if found and "[]" in self.type else None
 
     def too_low(self):
-        """A value below everything the comment allows; None if it names no such limit."""
+        """Returns a value below all allowed values. None if the comment states no lower limit."""
         if self._above_zero():
             return 0.0
         lows = [low for low, _ in self._ranges()]
@@ -55,6 +55,7 @@ class Field:
         return -1.0 if re.search(r"\bat most\b", self.comment) else None
 
     def too_high(self):
+        """Returns a value above all allowed values. None if the comment states no upper limit."""
         highs = [high for _, high in self._ranges()]
         highs += [_number(text) for text in re.findall(rf"\bat most ({NUMBER})", self.comment)]
         return max(highs) + max(1e-6, 1e-3 * abs(max(highs))) if highs else None
@@ -79,13 +80,13 @@ def _file(name):
 
 
 def paths(packages):
-    """The .action files of these packages."""
+    """Returns the .action files of these packages."""
     return sorted(file for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep) for package in packages
                   for file in pathlib.Path(prefix, "share", package, "action").glob("*.action"))
 
 
 def parse(file):
-    """The sections of an interface file, each a list of Fields."""
+    """Returns the sections of an interface file, each as a list of Fields."""
     parts = [[]]
     above = []  # the comment lines directly above a field
     for line in file.read_text().splitlines():
@@ -103,7 +104,7 @@ def parse(file):
 
 
 def fields(name, part=0):
-    """The fields of "ur_ros_rtde_msgs/action/MoveJ" or a message by name. Empty for packages of others."""
+    """Returns {name: Field} of a type such as "ur_ros_rtde_msgs/action/MoveJ". Empty if the interface file is not installed."""
     kind = name if name.count("/") == 2 else name.replace("/", "/msg/")
     try:
         return {field.name: field for field in parse(_file(kind))[part]}
@@ -116,7 +117,7 @@ def field(name, kind) -> Optional[Field]:
 
 
 def description(kind):
-    """The comment that a file begins with."""
+    """Returns the comment at the beginning of the file."""
     lines = _file(kind).read_text().splitlines()
     end = next(index for index, line in enumerate(lines) if not line.startswith("#"))
     return " ".join(line.strip("# ") for line in lines[:end])

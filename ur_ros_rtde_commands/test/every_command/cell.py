@@ -1,4 +1,4 @@
-"""A robot cell of a test's own: simulator, driver and client, on an address and in a ROS domain of their own."""
+"""A robot cell for one test: simulator, driver and client, with a separate address and ROS domain."""
 
 import fcntl
 import os
@@ -15,21 +15,20 @@ from support import HOME, Client, Simulator, start_node, wait_for
 from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, EnableExternalFtSensor, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
-LAST_DOMAIN = 101  # above it, ports may lie in the range the system gives out itself
-EXAMPLE_LIMIT = 20.0  # s, within which the example of the documentation has to succeed
+LAST_DOMAIN = 101  # ports of higher domains may be ephemeral ports of the system
+EXAMPLE_LIMIT = 20.0  # s, time limit of the examples in the documentation
 SETTINGS = ("tcp_offset", "payload", "io", "robot_mode", "safety_mode", "remote_control", "freedrive", "popup")
 STATUS = QoSProfile(depth=50, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 AT_REST = 0.01  # rad/s
-RETRY = 0.05  # s
-GAVE_UP = "restart_program is off: start the driver again"
-PREPARING = 3.0  # s to get home from wherever an example has led to
+RETRY_INTERVAL = 0.05  # s
+RESTART_DISABLED = "restart_program is off: start the driver again"
+PREPARE_LIMIT = 3.0  # s, to return home after an example
 CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper() and isinstance(value, int)}
 
 
 class Domain:
-    """A ROS domain that no other test of this machine has: the process that has locked its file owns it. The project's test runner does
-    the same."""
+    """A ROS domain that is unique on this machine. The process that locks its file owns it, as in the project's test runner."""
 
     def __init__(self):
         folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
@@ -48,21 +47,21 @@ class Domain:
 
 
 def address(number):
-    """Loopback addresses of this run's own: ./ur test gives each test file one."""
+    """Returns a loopback address for this test run. `./ur test` assigns a different base address to each test file."""
     given = os.environ.get("UR_TEST_ADDRESS", "127.0.1.200").split(".")
     return ".".join([given[0], str(int(given[1]) + number), given[2], given[3]])
 
 
-class WatchingClient(Client):
-    """Also keeps how goals ended by the status topics, on which an end that follows another would be seen."""
+class StatusTrackingClient(Client):
+    """Records the terminal states of goals from the status topics, which would reveal a second terminal state."""
 
     def __init__(self, domain=None, name="test_client"):
-        self._endings, self._status_subscriptions = {}, {}
+        self._terminal_states, self._status_subscriptions = {}, {}
         super().__init__(domain=domain, name=name)
 
     def send_goal(self, action, name, message):
         if name not in self._status_subscriptions:
-            self._status_subscriptions[name] = self.node.create_subscription(GoalStatusArray, f"{name}/_action/status", self._see,
+            self._status_subscriptions[name] = self.node.create_subscription(GoalStatusArray, f"{name}/_action/status", self._on_status,
                                                                              STATUS)
         goal = super().send_goal(action, name, message)
         goal.request_result_when_accepted()
@@ -74,17 +73,18 @@ class WatchingClient(Client):
         if subscription is not None:
             self.call_in_executor(lambda: self.node.destroy_subscription(subscription))
 
-    def _see(self, message):
+    def _on_status(self, message):
         for entry in message.status_list:
             if entry.status in TERMINAL:
-                self._endings.setdefault(bytes(entry.goal_info.goal_id.uuid), set()).add(entry.status)
+                self._terminal_states.setdefault(bytes(entry.goal_info.goal_id.uuid), set()).add(entry.status)
 
-    def endings(self, goal):
-        return wait_for(lambda: self._endings.get(goal.id), 5.0, "the goal's end on the status topic")
+    def get_terminal_states(self, goal):
+        """Waits for a terminal state of the goal on the status topic. Returns all of its terminal states."""
+        return wait_for(lambda: self._terminal_states.get(goal.id), 5.0, "a terminal state on the status topic")
 
     def forget(self, goal):
-        """For those who send goals for hours."""
-        self._endings.pop(goal.id, None)
+        """Removes the goal from the records, so that they do not grow in long runs."""
+        self._terminal_states.pop(goal.id, None)
 
 
 class Cell:
@@ -93,7 +93,7 @@ class Cell:
         self._domain = Domain()
         self._env = {"ROS_DOMAIN_ID": str(self._domain.number)}
         self.simulator = Simulator(address(number), model=setup.controller)
-        self.client = WatchingClient(self._domain.number, f"test_client_{number}")
+        self.client = StatusTrackingClient(self._domain.number, f"test_client_{number}")
         self.driver = None
         self.start_driver()
 
@@ -114,7 +114,7 @@ class Cell:
 
     def _dashboard_answers(self):
         goal = self.client.send(DashboardQuery, "dashboard/robot_mode")
-        return goal.accepted and goal.result().success or time.sleep(RETRY)
+        return goal.accepted and goal.result().success or time.sleep(RETRY_INTERVAL)
 
     # --- Goals ---
 
@@ -129,37 +129,38 @@ class Cell:
     def refusal(self, goal):
         return self.client.refusal(goal).message
 
-    # --- The state in which an example begins ---
+    # --- Initial state of an example ---
 
     def prepare(self, example=None):
-        """Arm at home, ready, nothing in its way, then the example's scene."""
+        """Moves the arm home, removes obstacles, and sets up the example's scene."""
         assert self.driver.running(), self.driver.output()
         try:
-            self.restore(PREPARING)
+            self.restore(PREPARE_LIMIT)
         except (AssertionError, OSError):
-            # What was there before left it so: a fresh controller, to which the driver has to connect in any case.
+            # The previous example left the controller in a state that requires a restart.
             self.restart_simulator()
             self.restore()
         for command in example.scene if example else ():
-            self._arrange(dict(command))
+            self._run_scene_command(dict(command))
 
-    def _arrange(self, command):
-        """One step of a scene; `then_wait` gives it time, in seconds of the simulator's."""
+    def _run_scene_command(self, command):
+        """Executes one command of a scene. `then_wait` is a delay afterwards, in seconds of simulated time."""
         seconds = command.pop("then_wait", 0.0)
         self.simulator.control(**command)
         end = self.simulator.state()["timestamp"] + seconds
-        wait_for(lambda: self.simulator.state()["timestamp"] >= end, 10.0 + 5.0 * seconds, f"{seconds} s")
+        wait_for(lambda: self.simulator.state()["timestamp"] >= end, 10.0 + 5.0 * seconds, f"{seconds} s of simulated time")
 
     def restore(self, limit=30.0):
+        """Restarts what has exited, resets the simulator and moves the arm home."""
         if not self.simulator.process.running():
             self.restart_simulator()
-        self.home(limit)
+        self._move_home(limit)
         if self.simulator.state()["external_sensor"]:  # without readings
             self.client.send(EnableExternalFtSensor, "ft_rtde_input_enable", enable=False).succeeded()
-        # That link looks for its server now and then only.
+        # The dashboard client reconnects at longer intervals.
         wait_for(self._dashboard_answers, 20.0, "the dashboard server")
 
-    def _undo(self):
+    def _reset_simulator(self):
         control = self.simulator.control
         for command in ("clear_surfaces", "clear_pushes"):
             control(command)
@@ -173,67 +174,67 @@ class Cell:
         if state["robot_mode"] != "RUNNING" and state["safety_mode"] in ("NORMAL", "REDUCED"):
             control("power", to="running")
 
-    def home(self, limit):
-        """By the driver's own means: returns when it takes motions."""
+    def _move_home(self, limit):
+        """Waits until the driver accepts motions and the arm is at home."""
         reasons = ["none"]
 
-        def there():
-            if any(GAVE_UP in line for line in list(self.driver.lines)):
+        def is_at_home():
+            if any(RESTART_DISABLED in line for line in list(self.driver.lines)):
                 self.driver.stop()
                 self.start_driver()
-            self._undo()
+            self._reset_simulator()
             goal = self.client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
             if goal.accepted and goal.result().success:
                 return True
             reasons.append(goal.result().message if goal.accepted else self.refusal(goal))
-            time.sleep(RETRY)
+            time.sleep(RETRY_INTERVAL)
             return False
 
         try:
-            wait_for(there, limit, "the driver to take a motion")
+            wait_for(is_at_home, limit, "the driver to accept a motion")
         except AssertionError as error:
-            raise AssertionError(f"{error}; the last reason: {reasons[-1]}") from None
+            raise AssertionError(f"{error}; last message: {reasons[-1]}") from None
 
-    def stop(self):
+    def stop_arm(self):
         """Ends a mode that a goal has left active: force mode or freedrive."""
         goal = self.client.send(Stop, "stop")
         if goal.accepted:
             goal.wait_for_result()
 
     def settings(self):
-        """What an example may leave changed for the next one."""
+        """Returns the part of the simulator's state that an example may leave changed."""
         state = self.simulator.state()
         return {name: state[name] for name in SETTINGS}
 
-    # --- Conditions after every event ---
+    # --- Checks and recovery after an event ---
 
     def at_rest(self):
         return max(map(abs, self.simulator.state()["actual"]["velocity"])) < AT_REST
 
     def wait_for_rest(self, limit=3.0):
-        wait_for(self.at_rest, limit, "the arm to stand still")
+        wait_for(self.at_rest, limit, "standstill")
 
-    def unlock(self):
-        """Of a protective stop, over the dashboard, which takes it 5 s after the stop at the earliest."""
-        if self.simulator.state()["safety_mode"] == "PROTECTIVE_STOP":  # without power there was none
-            self._until_it_succeeds("dashboard/unlock_protective_stop", timeout=10.0)
+    def unlock_protective_stop(self):
+        """Unlocks a protective stop with the dashboard, which is possible 5 s after the stop at the earliest."""
+        if self.simulator.state()["safety_mode"] == "PROTECTIVE_STOP":  # an arm without power cannot stop
+            self._repeat_until_success("dashboard/unlock_protective_stop", timeout=10.0)
 
     def power_up(self):
-        """Over the dashboard, which refuses while the safety system restarts."""
-        self._until_it_succeeds("dashboard/power_on", timeout=20.0)
+        """Powers the arm on with the dashboard, which refuses while the safety system restarts."""
+        self._repeat_until_success("dashboard/power_on", timeout=20.0)
         goal = self.client.send(DashboardCommand, "dashboard/brake_release", timeout=20.0)
         assert goal.accepted, self.refusal(goal)
         goal.succeeded()
 
-    def _until_it_succeeds(self, name, **fields):
+    def _repeat_until_success(self, name, **fields):
         def succeeded():
             goal = self.client.send(DashboardCommand, name, **fields)
-            return goal.accepted and goal.result().success or time.sleep(RETRY)
+            return goal.accepted and goal.result().success or time.sleep(RETRY_INTERVAL)
 
         wait_for(succeeded, 20.0, f"{name} to succeed")
 
 
-def described(status, result):
+def describe_result(status, result):
     name = {value: key for key, value in vars(GoalStatus).items() if key.startswith("STATUS_")}.get(status, status)
     return f"{name}, {CODES.get(result.error_code, result.error_code)}: {result.message}"
 

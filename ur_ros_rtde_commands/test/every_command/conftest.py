@@ -10,19 +10,21 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "system"))
 import documentation  # noqa: E402
 import messages  # noqa: E402
 import plugins  # noqa: E402
-from cells import Cells, Outcomes  # noqa: E402
+from cell_pool import CellPool, Outcomes  # noqa: E402
 
 
 def pytest_addoption(parser):
-    parser.addoption("--plugin", action="append", default=[], metavar="NAME", help="only this one; may be repeated")
+    parser.addoption("--plugin", action="append", default=[], metavar="NAME", help="test only this plugin; can be given several times")
     parser.addoption("--cells", type=int, default=int(os.environ.get("UR_TEST_CELLS", "3")), metavar="N",
-                     help="simulators and drivers at once")
+                     help="number of parallel cells, each with a simulator and a driver")
 
 
 @functools.lru_cache
 def examples():
-    """Of each plugin that is there and documented, test_documentation.py names those that are not; but for actions of others,
-    whose results are not ours."""
+    """Returns the examples of all installed plugins that are documented.
+
+    test_documentation.py reports undocumented plugins. Actions of other packages, whose results differ, are omitted.
+    """
     found = {}
     for section in documentation.sections():
         if section.name in plugins.find():
@@ -30,33 +32,33 @@ def examples():
                 found[section.name] = section.example()
             except ValueError:
                 pass
-    return {name: example for name, example in found.items() if messages.is_ours(example.type)}
+    return {name: example for name, example in found.items() if messages.has_standard_result(example.type)}
 
 
 def pytest_generate_tests(metafunc):
-    """A module may say for which examples it is: `concerns(example)`."""
+    """Parametrizes `plugin`. A module restricts the examples with a function `applies_to(example)`."""
     if "plugin" in metafunc.fixturenames:
         chosen = metafunc.config.getoption("--plugin")
-        concerns = getattr(metafunc.module, "concerns", lambda example: True)
+        applies_to = getattr(metafunc.module, "applies_to", lambda example: True)
         metafunc.parametrize("plugin", [name for name, example in sorted(examples().items())
-                                        if concerns(example) and (not chosen or name in chosen)])
+                                        if applies_to(example) and (not chosen or name in chosen)])
 
 
 @pytest.fixture(scope="session")
-def cells(request):
-    cells = Cells(request.config.getoption("--cells"))
-    yield cells
-    cells.close()
+def cell_pool(request):
+    pool = CellPool(request.config.getoption("--cells"))
+    yield pool
+    pool.close()
 
 
 @pytest.fixture(scope="module")
-def outcomes(request, cells):
-    """Of the module's function `scenario`, for all plugins whose tests are to run."""
+def outcomes(request, cell_pool):
+    """The outcomes of the module's function `scenario` for all selected plugins."""
     names = {item.callspec.params["plugin"] for item in request.session.items
              if item.module is request.module and "plugin" in getattr(getattr(item, "callspec", None), "params", {})}
-    return Outcomes(cells, request.module.scenario, [examples()[name] for name in sorted(names)])
+    return Outcomes(cell_pool, request.module.scenario, [examples()[name] for name in sorted(names)])
 
 
 @pytest.fixture
 def outcome(outcomes, plugin):
-    return outcomes.of(plugin)
+    return outcomes.get(plugin)

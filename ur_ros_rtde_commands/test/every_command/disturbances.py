@@ -1,4 +1,4 @@
-"""The disturbances themselves."""
+"""The disturbances that the tests cause during the execution of a goal."""
 
 from scenarios import Disturbance
 
@@ -20,7 +20,7 @@ def _start_driver(cell):
 
 
 PROTECTIVE_STOP = Disturbance("protective stop", lambda cell: cell.simulator.control("protective_stop", reason="a test"),
-                              (ErrorCode.PROTECTIVE_STOP,), lambda cell: cell.unlock(), again=True)
+                              (ErrorCode.PROTECTIVE_STOP,), lambda cell: cell.unlock_protective_stop(), repeat=True)
 EMERGENCY_STOP = Disturbance("emergency stop", lambda cell: cell.simulator.control("emergency_stop"),
                              (ErrorCode.EMERGENCY_STOP,), _release_emergency_stop)
 LINK_LOSS = Disturbance("link loss", lambda cell: cell.simulator.control("drop_links"),

@@ -1,4 +1,4 @@
-"""The documentation of the commands: docs/commands/*.md has a section with an example for each action."""
+"""Reads the documentation of the commands: docs/commands/*.md has a section with an example for each action."""
 
 import importlib.util
 import json
@@ -17,10 +17,10 @@ INDEX = FOLDER / "README.md"
 
 @dataclass(frozen=True)
 class Setup:
-    """Of a cell."""
+    """Configuration of a cell."""
 
-    controller: str = "ur10e"  # the model
-    parameters: Tuple[str, ...] = ()  # of the driver
+    controller: str = "ur10e"  # model of the arm
+    parameters: Tuple[str, ...] = ()  # parameters of the driver
 
 
 @dataclass
@@ -39,7 +39,7 @@ class Section:
     text: str
 
     def example(self):
-        """The first `ros2 action send_goal` of the section that sends to this action."""
+        """Returns the first `ros2 action send_goal` of the section for this action."""
         for command in _commands(self.text):
             if command[:3] == ["ros2", "action", "send_goal"]:
                 action, kind, goal = [word for word in command[3:] if word not in ("--feedback", "-f")]
@@ -51,8 +51,8 @@ class Section:
         found = re.search(rf"<!--\s*{name}:\s*(.*?)\s*-->", self.text, re.S)
         return found.group(1) if found else None
 
-    def is_for_this_machine(self):
-        """`<!-- needs: control_msgs -->`: its plugin is built where that package is."""
+    def is_available(self):
+        """Returns whether the package that the plugin requires is installed: `<!-- needs: control_msgs -->`."""
         needed = self._comment("needs")
         return needed is None or importlib.util.find_spec(needed) is not None
 
@@ -71,12 +71,12 @@ def _commands(text):
             try:
                 yield shlex.split(command, comments=True)
             except ValueError:
-                continue  # a quoted text goes on in the next line
+                continue  # a quoted text continues on the next line
             command = ""
 
 
 def sections():
-    """In the order of the files; a name may wrongly be there twice."""
+    """Returns the sections in the order of the files. Duplicate names are not removed."""
     found = []
     for file in sorted(FOLDER.glob("*.md")):
         if file == INDEX:
@@ -85,7 +85,7 @@ def sections():
         for title, text in zip(parts[1::2], parts[2::2]):
             # A heading of a higher level ends the section.
             found.append(Section(title.strip().strip("`"), file, re.split(r"^##? ", text, flags=re.M)[0]))
-    return [section for section in found if section.is_for_this_machine()]
+    return [section for section in found if section.is_available()]
 
 
 def section(name):

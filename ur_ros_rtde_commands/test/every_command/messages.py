@@ -1,4 +1,4 @@
-"""ROS messages by introspection: made from YAML, walked through, changed at a path."""
+"""Creates, traverses and modifies ROS messages by introspection."""
 
 import copy
 import importlib
@@ -13,18 +13,18 @@ INTEGERS = {f"{sign}int{bits}": ((0, 2**bits - 1) if sign else (-2**(bits - 1), 
 
 
 def load(name):
-    """The class of "ur_ros_rtde_msgs/action/MoveJ" or "geometry_msgs/Pose"."""
+    """Returns the class of a type such as "ur_ros_rtde_msgs/action/MoveJ" or "geometry_msgs/Pose"."""
     package, *kind, message = name.split("/")
     return getattr(importlib.import_module(f"{package}.{kind[0] if kind else 'msg'}"), message)
 
 
-def is_ours(action):
-    """Whether the action of that type ends with {success, error_code, message}."""
+def has_standard_result(action):
+    """Returns whether the result of the action type has the fields success, error_code and message."""
     return {"success", "error_code", "message"} <= set(load(action).Result.get_fields_and_field_types())
 
 
 def element_type(kind):
-    """Of an array or sequence; None for what is neither. "sequence<double, 3>" and "double[6]" give "double"."""
+    """Returns the element type of an array or sequence: "double" for "sequence<double, 3>" and "double[6]". Otherwise None."""
     found = re.fullmatch(r"sequence<([^,>]+).*>|(.+)\[\d+\]", kind)
     return (found.group(1) or found.group(2)) if found else None
 
@@ -34,7 +34,7 @@ def is_message(kind):
 
 
 def fill(message, values):
-    """Sets what the mapping `values` names; a wrong name or type raises with the field."""
+    """Sets the fields in the mapping `values`. Raises ValueError with the field if a name or type is wrong."""
     kinds = message.get_fields_and_field_types()
     for name, value in (values or {}).items():
         if name not in kinds:
@@ -52,7 +52,7 @@ def _converted(kind, value, present):
         return [_converted(element, item, None) for item in value]
     if is_message(kind):
         return fill(copy.deepcopy(present) if present is not None else load(kind)(), value)
-    # YAML knows 1 and 1.0 apart, who writes a goal does not.
+    # YAML distinguishes 1 and 1.0; both are accepted for floats.
     return float(value) if kind in FLOATS and isinstance(value, int) and not isinstance(value, bool) else value
 
 
@@ -61,11 +61,11 @@ class Leaf:
     path: Path
     kind: str
     owner: str  # the message type that the field belongs to, "" for the goal itself
-    field: str  # the field's name there
+    field: str  # the name of the field in its owner
 
 
 def leaves(message, path=(), owner=""):
-    """Every field that is no message, and every element of those that are arrays."""
+    """Yields all fields of primitive types, and all elements of arrays of primitive types."""
     for name, kind in message.get_fields_and_field_types().items():
         value, here, element = getattr(message, name), (*path, name), element_type(kind)
         if element is None:
@@ -82,7 +82,7 @@ def leaves(message, path=(), owner=""):
 
 
 def arrays(message, path=(), owner=""):
-    """Every field that is an array, however deep: as a Leaf whose path ends at the array."""
+    """Yields all array fields, including nested ones, as a Leaf whose path ends at the array."""
     for name, kind in message.get_fields_and_field_types().items():
         value, here, element = getattr(message, name), (*path, name), element_type(kind)
         if element is not None:
@@ -93,7 +93,7 @@ def arrays(message, path=(), owner=""):
 
 
 def messages_of(message, kind, path=()):
-    """Paths of all messages of type `kind` in it."""
+    """Yields the paths of all nested messages of type `kind`."""
     for name, found in message.get_fields_and_field_types().items():
         value, here, element = getattr(message, name), (*path, name), element_type(found)
         for where, item in ([(here, value)] if element is None else [((*here, i), item) for i, item in enumerate(value)]):
@@ -110,8 +110,8 @@ def at(message, path):
     return message
 
 
-def changed(message, path, value):
-    """A copy of the message with another value at the path."""
+def with_value(message, path, value):
+    """Returns a copy of the message with another value at the path."""
     copied = copy.deepcopy(message)
     owner = at(copied, path[:-1])
     if isinstance(path[-1], int):
@@ -122,5 +122,5 @@ def changed(message, path, value):
 
 
 def text(path):
-    """("waypoints", 0, "speed") as "waypoints[0].speed"."""
+    """Formats a path: ("waypoints", 0, "speed") becomes "waypoints[0].speed"."""
     return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path).lstrip(".")

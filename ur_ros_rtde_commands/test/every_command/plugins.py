@@ -1,4 +1,4 @@
-"""All plugins there are, found as the driver finds them: in the ament index."""
+"""Finds all installed plugins in the ament index, as the driver does."""
 
 import os
 import pathlib
@@ -10,20 +10,20 @@ RESOURCE = pathlib.Path("share", "ament_index", "resource_index", "ur_ros_rtde__
 
 @dataclass(frozen=True)
 class Plugin:
-    name: str  # of the action, "dashboard/power_on"
+    name: str  # name of the action, for example "dashboard/power_on"
     package: str
     dashboard: bool
 
 
-def _described(prefix, description, package):
-    # A file of several <library> elements has no single root of its own.
+def _parse_description(prefix, description, package):
+    # A file with several <library> elements has no single root element.
     text = (prefix / description).read_text()
     for entry in xml.fromstring(f"<all>{text}</all>").iter("class"):
         yield Plugin(entry.get("name"), package, entry.get("base_class_type").endswith("DashboardPlugin"))
 
 
 def find():
-    """By name; a package in an earlier prefix hides the same one in a later."""
+    """Returns {name: Plugin}. A package in an earlier prefix hides the same package in a later prefix."""
     found, packages = {}, set()
     for prefix in map(pathlib.Path, os.environ["AMENT_PREFIX_PATH"].split(os.pathsep)):
         for resource in sorted((prefix / RESOURCE).glob("*")):
@@ -31,6 +31,6 @@ def find():
                 continue
             packages.add(resource.name)
             for description in resource.read_text().split():
-                for plugin in _described(prefix, description, resource.name):
+                for plugin in _parse_description(prefix, description, resource.name):
                     found[plugin.name] = plugin
     return dict(sorted(found.items()))

@@ -1,4 +1,4 @@
-"""Every bad goal that follows from a command's types and comments is refused before acceptance, naming the field."""
+"""Each invalid goal derived from types and comments is rejected before acceptance, with the name of the field."""
 
 import re
 
@@ -7,26 +7,26 @@ import bad_goals
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 CODES = (ErrorCode.INVALID_GOAL, ErrorCode.UNREACHABLE, ErrorCode.SAFETY_VIOLATION)
-SHOWN = 20
-AT_ONCE = 8  # ROS services keep the last 10 requests, and the last 10 answers
+MAX_SHOWN = 20
+BATCH = 8  # goals at a time, because ROS services queue at most 10 requests and 10 responses
 
 
 def scenario(cell, example):
-    """What is wrong with the answers to the bad goals: one line each."""
+    """Returns the number of invalid goals, and one line for each errors response."""
     kind, good = cell.good_goal(example)
-    wrong = []
-    cases = bad_goals.make(example.action, example.type, good)
-    for begin in range(0, len(cases), AT_ONCE):
-        part = cases[begin:begin + AT_ONCE]
-        goals = [cell.client.send_goal(kind, example.action, case.goal) for case in part]
-        wrong += [text for case, goal in zip(part, goals) for text in _wrong(cell, case, goal)]
+    errors = []
+    cases = bad_goals.generate(example.action, example.type, good)
+    for begin in range(0, len(cases), BATCH):
+        batch = cases[begin:begin + BATCH]
+        goals = [cell.client.send_goal(kind, example.action, case.goal) for case in batch]
+        errors += [text for case, goal in zip(batch, goals) for text in _find_errors(cell, case, goal)]
         if any(goal.accepted for goal in goals):
-            cell.restart_simulator()  # what it switched on would be in the way of the next
+            cell.restart_simulator()  # a mode that the goal activated would affect the next one
     assert cell.driver.running(), cell.driver.output()
-    return len(cases), wrong
+    return len(cases), errors
 
 
-def _wrong(cell, case, goal):
+def _find_errors(cell, case, goal):
     if goal.accepted:
         goal.cancel()
         goal.wait_for_result()
@@ -34,9 +34,9 @@ def _wrong(cell, case, goal):
     refusal = cell.client.refusal(goal)
     if refusal.error_code not in CODES:
         return [f"{case.what}: refused with {refusal.error_code} instead of INVALID_GOAL: {refusal.message}"]
-    return [] if re.search(case.named, refusal.message) else [f"{case.what}: the reason does not name {case.named}: {refusal.message}"]
+    return [] if re.search(case.named, refusal.message) else [f"{case.what}: the message does not match {case.named}: {refusal.message}"]
 
 
-def test_bad_goals_are_refused_with_the_field(plugin, outcome):
-    number, wrong = outcome
-    assert not wrong, f"{len(wrong)} of {number} bad goals:\n" + "\n".join(wrong[:SHOWN])
+def test_invalid_goals_are_rejected_with_the_field(plugin, outcome):
+    count, errors = outcome
+    assert not errors, f"{len(errors)} of {count} invalid goals:\n" + "\n".join(errors[:MAX_SHOWN])

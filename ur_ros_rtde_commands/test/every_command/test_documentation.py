@@ -1,4 +1,4 @@
-"""Every command has its section with an example that fits; every field of every action says what it is."""
+"""Each command has a section with a valid example, and each field of the actions has a comment."""
 
 import re
 from collections import Counter
@@ -18,14 +18,14 @@ UNIT = re.compile(r"\d|[A-Z]{3,} or |\b(rad|m|s|N|Nm|Hz|kg|V|A)\b|see |index|who
 
 
 def action_file_paths():
-    """Of the packages that have plugins, and ours."""
+    """Returns the .action files of ur_ros_rtde_msgs and of all packages with plugins."""
     packages = {"ur_ros_rtde_msgs", *(plugin.package for plugin in PLUGINS.values())}
     return action_files.paths(packages)
 
 
 @pytest.fixture(scope="module")
 def types():
-    """Of the actions, as the driver that loads the plugins serves them; it needs no robot for that."""
+    """Types of the actions that the driver serves. The driver does not need a robot for this."""
     domain = Domain()
     driver = start_node("driver", "127.0.0.1", env={"ROS_DOMAIN_ID": str(domain.number)})
     client = Client(domain=domain.number)
@@ -41,23 +41,23 @@ def types():
         domain.close()
 
 
-def test_there_are_plugins():
+def test_finds_plugins():
     assert PLUGINS
 
 
 @pytest.mark.parametrize("name", PLUGINS)
-def test_a_command_has_one_section_with_an_example_of_its_type(name, types):
+def test_each_command_has_one_section_with_an_example_of_its_type(name, types):
     sections = [section for section in documentation.sections() if section.name == name]
     assert len(sections) == 1, f"{name} has {len(sections)} sections `### {name}` in docs/commands/*.md"
     example = sections[0].example()
     assert example.type == types[name]
     messages.fill(messages.load(example.type).Goal(), example.goal)
     prose = re.sub(r"```.*?```|<!--.*?-->", "", sections[0].text, flags=re.S).split()
-    assert len(prose) >= 3, f"the section {name} says nothing"
+    assert len(prose) >= 3, f"the section {name} has no text"
 
 
 @pytest.mark.parametrize("name", sorted(section.name for section in documentation.sections()))
-def test_a_documented_command_is_there(name):
+def test_each_documented_command_is_installed(name):
     assert name in PLUGINS, f"no plugin in the ament index is called {name}"
 
 
@@ -67,25 +67,25 @@ def test_no_command_is_documented_twice():
 
 
 @pytest.mark.parametrize("file", action_file_paths(), ids=lambda file: file.stem)
-def test_an_action_says_what_it_does_and_what_its_fields_are(file):
-    assert file.read_text().startswith("# "), "it begins with what the action does"
+def test_each_action_file_describes_the_action_and_its_fields(file):
+    assert file.read_text().startswith("# "), "the file must begin with a description of the action"
     goal, result, feedback = action_files.parse(file)
     for field in goal:
         assert field.comment or field.type == "bool", f"{field.name} has no comment"
         assert not field.numeric or UNIT.search(field.comment), f"{field.name}: '{field.comment}' has no unit and no range"
     assert [field.name for field in result[:3]] == ["success", "error_code", "message"]
-    told_apart = {"unit", "text"} & {field.name for field in result}  # a field that says what the number is
+    has_unit_field = {"unit", "text"} & {field.name for field in result}  # describes the number
     for field in [*result, *feedback]:
-        if field.numeric and not told_apart:
+        if field.numeric and not has_unit_field:
             assert field.comment or field.name == "value", f"{field.name} has no comment"
 
 
 @pytest.mark.parametrize("interface", ur_rtde_headers.HEADERS)
-def test_what_ur_rtde_can_do_is_an_action_or_left_out_with_a_reason(interface):
+def test_each_function_of_ur_rtde_is_an_action_or_excluded_with_a_reason(interface):
     functions = ur_rtde_headers.functions(interface)
     assert len(functions) > 5
     missing = ur_rtde_headers.uncovered(functions, set(PLUGINS), documentation.INDEX.read_text())
-    assert not missing, f"{len(missing)} of {len(functions)} functions of {interface} are neither an action nor left out: " \
+    assert not missing, f"{len(missing)} of {len(functions)} functions of {interface} are neither an action nor excluded:  " \
         + ", ".join(missing)
 
 
@@ -93,11 +93,11 @@ def test_what_ur_rtde_can_do_is_an_action_or_left_out_with_a_reason(interface):
                                             ("setTcp", "set_tcp"), ("powerOn", "power_on"), ("PolyscopeVersion", "polyscope_version"),
                                             ("moveUntilContact", "move_until_contact"), ("getFreedriveStatus", "get_freedrive_status"),
                                             ("isPoseWithinSafetyLimits", "is_pose_within_safety_limits"), ("robotmode", "robotmode")])
-def test_names_of_functions_become_names_of_actions(name, expected):
+def test_converts_function_names_to_action_names(name, expected):
     assert ur_rtde_headers.snake_case(name) == expected
 
 
-def test_the_index_is_read_as_it_says():
+def test_reads_covered_and_excluded_functions_from_the_index():
     index = "| action | ur_rtde | |\n|---|---|---|\n| `stop_l` | `stopL` | x |\n| `disconnect` | the driver's |\n| `reconnect` | |\n"
     assert ur_rtde_headers.uncovered(["stopL", "moveJ", "disconnect", "reconnect", "jogStart"], {"stop_l", "move_j"}, index) == [
         "reconnect", "jogStart"]

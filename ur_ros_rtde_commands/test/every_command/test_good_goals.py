@@ -1,10 +1,10 @@
-"""The example of each command's documentation, carried out on the simulator."""
+"""The documented example of each command succeeds on the simulator."""
 
-from cell import CODES, EXAMPLE_LIMIT, described
+from cell import CODES, EXAMPLE_LIMIT, describe_result
 from action_msgs.msg import GoalStatus
 
-# What these leave behind does not show in the simulator's state: the next example gets a fresh simulator.
-LASTING = ("set_", "enable_", "force_mode_start", "force_mode_set", "dashboard/shutdown")
+# The effects of these commands are not part of Cell.settings(). The simulator is restarted after them.
+PERSISTENT = ("set_", "enable_", "force_mode_start", "force_mode_set", "dashboard/shutdown")
 
 
 def scenario(cell, example):
@@ -14,10 +14,10 @@ def scenario(cell, example):
     assert goal.accepted, f"refused: {cell.refusal(goal)}"
     status, result = goal.wait_for_result(EXAMPLE_LIMIT)
     assert status == GoalStatus.STATUS_SUCCEEDED and result.success and CODES[result.error_code] == "NONE", \
-        described(status, result)
+        describe_result(status, result)
     if "/" not in example.action and hasattr(result, "final_state"):
         cell.wait_for_rest(0.5)
-    if not cell.simulator.process.running() or cell.settings() != before or example.action.startswith(LASTING):
+    if not cell.simulator.process.running() or cell.settings() != before or example.action.startswith(PERSISTENT):
         cell.restart_simulator()
     return result
 

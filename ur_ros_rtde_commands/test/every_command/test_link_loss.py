@@ -1,15 +1,15 @@
-"""What every command does in the middle of the loss of all links. Those that end at once are in test_momentary_commands.py."""
+"""Loss of all connections during each command. test_momentary_commands.py tests commands that end immediately."""
 
 import pytest
 from disturbances import LINK_LOSS
 from scenarios import disturb
-from scenarios import may_last as concerns  # noqa: F401
+from scenarios import has_feedback as applies_to  # noqa: F401
 
 
 def scenario(cell, example):
     return disturb(cell, example, LINK_LOSS)
 
 
-def test_link_loss_ends_the_goal_and_the_arm_stands_still(plugin, outcome):
+def test_link_loss_aborts_the_goal_with_the_arm_at_rest(plugin, outcome):
     if outcome is None:
-        pytest.skip("ends at once")
+        pytest.skip("ends immediately")

@@ -1,15 +1,15 @@
-"""What every command does in the middle of a protective stop. Those that end at once are in test_momentary_commands.py."""
+"""Protective stop during each command. test_momentary_commands.py tests commands that end immediately."""
 
 import pytest
 from disturbances import PROTECTIVE_STOP
 from scenarios import disturb
-from scenarios import may_last as concerns  # noqa: F401
+from scenarios import has_feedback as applies_to  # noqa: F401
 
 
 def scenario(cell, example):
     return disturb(cell, example, PROTECTIVE_STOP)
 
 
-def test_protective_stop_ends_the_goal_and_the_arm_stands_still(plugin, outcome):
+def test_protective_stop_aborts_the_goal_with_the_arm_at_rest(plugin, outcome):
     if outcome is None:
-        pytest.skip("ends at once")
+        pytest.skip("ends immediately")

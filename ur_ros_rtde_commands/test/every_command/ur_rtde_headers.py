@@ -1,9 +1,9 @@
-"""The public functions of ur_rtde's interfaces, and what docs/commands/README.md says of each.
+"""The public functions of ur_rtde's interfaces, and their rows in docs/commands/README.md.
 
-A function is covered by the action of its name: moveJ_IK by move_j_ik, powerOn by power_on or dashboard/power_on. Where the names
-differ, the row of the action in a table of the index has the function in one of its cells:
+A function is covered by the action of the same name: moveJ_IK by move_j_ik, powerOn by power_on or dashboard/power_on. If the
+names differ, a row of the index contains the action in the first cell and the function in another one:
     | `stop_l` | `stopL` | … |
-A function that is left out has a row of its own, with the reason:
+An excluded function has a separate row with the reason:
     | `disconnect` | ends the interface, which the driver owns |
 """
 
@@ -25,7 +25,7 @@ def _header(name):
 
 
 def functions(interface):
-    """Names of the public member functions, but for constructors and the destructor."""
+    """Returns the names of the public member functions without constructors and destructor."""
     text = re.sub(r"/\*.*?\*/|//[^\n]*", "", _header(HEADERS[interface]), flags=re.S)
     text = re.sub(r"=\s*\{[^{}]*\}", "", text)  # default arguments
     body = text[re.search(rf"class\s+(?:\w+\s+)*{interface}\b[^;]*?\{{", text).end():]
@@ -42,13 +42,13 @@ def functions(interface):
 
 
 def snake_case(name):
-    """moveJ_IK: move_j_ik; getActualTCPPose: get_actual_tcp_pose; setTcp: set_tcp."""
+    """Converts names: moveJ_IK to move_j_ik, getActualTCPPose to get_actual_tcp_pose, setTcp to set_tcp."""
     words = re.sub(r"([a-z0-9])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3_\2\4", name)
     return re.sub(r"_+", "_", words).lower()
 
 
 def index_rows(text):
-    """Of all tables: what the first cell names, the names in the other cells, and the text of the second cell."""
+    """Yields the names in the first cell, the names in the other cells, and the second cell, for each row of all tables."""
     for line in text.splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
         first = _CODE.findall(cells[0])
@@ -57,9 +57,9 @@ def index_rows(text):
 
 
 def uncovered(names, actions, index):
-    """Those functions that are neither an action nor left out with a reason."""
+    """Returns the functions that are neither covered by an action nor excluded with a reason."""
     rows = list(index_rows(index))
     mapped = {name for first, others, _ in rows if set(first) & actions for name in others}
-    left_out = {name for first, _, reason in rows if not set(first) & actions and reason for name in first}
-    return [name for name in names if name not in mapped | left_out
+    excluded = {name for first, _, reason in rows if not set(first) & actions and reason for name in first}
+    return [name for name in names if name not in mapped | excluded
             and not {snake_case(name), f"dashboard/{snake_case(name)}"} & actions]
