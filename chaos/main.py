@@ -19,7 +19,7 @@ from clients import RESULT_LIMIT, Gate, GoalSender  # noqa: E402
 from journal import Journal, Violation  # noqa: E402
 from robot import Robot  # noqa: E402
 from support import HOME, wait_for  # noqa: E402
-from ur_tools import say  # noqa: E402
+from ur_tools import console  # noqa: E402
 from watch import Loads, Watch  # noqa: E402
 
 from ur_ros_rtde_msgs.action import MoveJ  # noqa: E402
@@ -39,7 +39,7 @@ class Chaos:
         self._probe = StatusTrackingClient(name="probe")
         self._clients = [GoalSender(f"client {number}", random.Random(f"{options.seed}/{number}"), self._gate, journal)
                          for number in range(options.clients)]
-        self._status = say.Status(10.0)
+        self._status = console.Status(10.0)
         self._recoveries = defaultdict(list)
         self._begin = time.monotonic()
 

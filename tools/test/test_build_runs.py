@@ -3,7 +3,7 @@
 import sys
 
 import pytest
-from ur_tools import build, downloads, lock, say, system_packages, venv
+from ur_tools import build, console, downloads, lock, system_packages, venv
 from ur_tools.layout import Layout
 
 COLCON = r"""
@@ -105,7 +105,7 @@ def test_an_interrupted_build_is_continued(layout, monkeypatch):
 
 def test_a_failure_shows_its_reason_and_the_next_build_continues_there(layout):
     trouble(layout, "a.cpp:1: error: oh no")
-    with pytest.raises(say.Failure, match="did not build(.|\n)*FAILED: a.o\na.cpp:1: error: oh no"):
+    with pytest.raises(console.Failure, match="did not build(.|\n)*FAILED: a.o\na.cpp:1: error: oh no"):
         build.build(build.Options(layout))
     (layout.log / "trouble.txt").unlink()
     names = list(build.build(build.Options(layout)))
@@ -114,7 +114,7 @@ def test_a_failure_shows_its_reason_and_the_next_build_continues_there(layout):
 
 def test_a_disk_that_is_full_is_named(layout):
     trouble(layout, "a.cpp: fatal error: cannot write a.o: No space left on device")
-    with pytest.raises(say.Failure, match="The disk that holds .* is full"):
+    with pytest.raises(console.Failure, match="The disk that holds .* is full"):
         build.build(build.Options(layout))
 
 

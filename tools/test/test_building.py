@@ -6,7 +6,7 @@ import sys
 from collections import namedtuple
 
 import pytest
-from ur_tools import build, build_times, disk, lock, main, say, system_packages, venv
+from ur_tools import build, build_times, console, disk, lock, main, system_packages, venv
 from ur_tools.layout import Layout
 
 Usage = namedtuple("Usage", "total used free")
@@ -145,7 +145,7 @@ def test_there_is_no_output_when_everything_is_built(layout, monkeypatch, capsys
 
 def test_an_unknown_package_is_refused_before_anything_is_set_up(layout, monkeypatch):
     monkeypatch.setattr(system_packages, "ensure", lambda: pytest.fail("set up"))
-    with pytest.raises(say.Failure, match="no package ur_simulater"):
+    with pytest.raises(console.Failure, match="no package ur_simulater"):
         build.build(build.Options(layout, ["ur_simulater"]))
 
 
@@ -169,7 +169,7 @@ class Stamps:
 
 def test_the_progress_line_names_packages_files_and_the_remaining_time(layout, times, monkeypatch):
     shown, stamps = [], Stamps()
-    monkeypatch.setattr(say.Status, "show", lambda self, text: shown.append(text))
+    monkeypatch.setattr(console.Status, "show", lambda self, text: shown.append(text))
     output = layout.log / "colcon.txt"
     for name, text in (("messages", "[0/2] Re-checking\n[1/393] Building a\n[22/393] Building b\nwarning: c\n"),
                        ("driver", "-- Configuring\n[0/1] Re-running CMake...\n")):
@@ -195,7 +195,7 @@ def test_a_first_run_without_space_is_refused_before_it_begins(layout, tmp_path,
     monkeypatch.setattr(build, "STATE", tmp_path)
     monkeypatch.setattr(build, "Lock", lambda name: lock.Lock(name, tmp_path))
     monkeypatch.setattr(system_packages, "ensure", lambda: pytest.fail("set up"))
-    with pytest.raises(say.Failure, match="0.1 GB free, 2.5 GB needed"):
+    with pytest.raises(console.Failure, match="0.1 GB free, 2.5 GB needed"):
         build.build(build.Options(layout))
 
 
@@ -238,7 +238,7 @@ def test_a_second_build_waits_and_names_the_first(tmp_path, monkeypatch):
         first.stdin.write("\n")
         first.stdin.flush()
 
-    monkeypatch.setattr(lock.say, "step", on_message)
+    monkeypatch.setattr(lock.console, "step", on_message)
     assert first.stdout.readline() == "holding\n"
     with lock.Lock("build", tmp_path):
         assert first.wait(20.0) == 0
@@ -251,7 +251,7 @@ def test_a_lock_is_free_after_its_holder_was_killed(tmp_path, monkeypatch):
     assert first.stdout.readline() == "holding\n"
     first.kill()
     first.wait(20.0)
-    monkeypatch.setattr(lock.say, "step", lambda text: pytest.fail(text))
+    monkeypatch.setattr(lock.console, "step", lambda text: pytest.fail(text))
     with lock.Lock("build", tmp_path):
         pass
 
@@ -275,6 +275,6 @@ def test_a_checkout_that_cannot_be_written_is_named(tmp_path, monkeypatch):
         raise OSError(errno.EROFS, "Read-only file system")
 
     monkeypatch.setattr(lock.pathlib.Path, "open", refuse)
-    with pytest.raises(say.Failure, match="cannot be written: Read-only file system"):
+    with pytest.raises(console.Failure, match="cannot be written: Read-only file system"):
         with lock.Lock("build", tmp_path):
             pass

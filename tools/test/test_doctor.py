@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 import pytest
-from ur_tools import build, disk, doctor, say, system_packages, venv
+from ur_tools import build, console, disk, doctor, system_packages, venv
 from ur_tools.layout import ROOT, Layout
 
 ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
@@ -117,7 +117,7 @@ def test_loopback_addresses_that_cannot_be_used_fail(monkeypatch):
 def test_a_path_that_cannot_be_in_a_search_path_fails(monkeypatch, tmp_path, folder):
     monkeypatch.setattr(doctor, "ROOT", tmp_path / folder)
     assert doctor.checkout().state == doctor.FAILED
-    with pytest.raises(say.Failure, match="Move the checkout"):
+    with pytest.raises(console.Failure, match="Move the checkout"):
         build.check_path(pathlib.Path("/a") / folder)
 
 

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from ur_tools import cell, ports, say
+from ur_tools import console, ports, simulation
 from ur_tools.layout import ROOT, Layout
 from ur_tools.processes import Programs
 
@@ -50,7 +50,7 @@ def test_a_port_in_use_is_named_with_its_process_and_another_address(listening):
     pid = listening(ADDRESS, 30001)
     assert ports.in_use(ADDRESS, [29999, 30001]) == [30001]
     assert ports.holder(ADDRESS, 30001)[0] == pid
-    with pytest.raises(say.Failure) as failure:
+    with pytest.raises(console.Failure) as failure:
         ports.check(ADDRESS)
     text = str(failure.value)
     assert text.startswith(f"port 30001 (primary) of {ADDRESS}: in use by process {pid}: {sys.executable} -c")
@@ -84,7 +84,7 @@ def test_a_connection_that_is_closing_does_not_matter():
 
 @pytest.mark.parametrize("address, text", [("robot", "not an IPv4 address"), ("192.0.2.1", "no network interface")])
 def test_an_address_that_is_not_of_this_machine_is_refused(address, text):
-    with pytest.raises(say.Failure, match=text):
+    with pytest.raises(console.Failure, match=text):
         ports.check(address)
 
 
@@ -99,9 +99,9 @@ def test_a_simulator_that_does_not_start_is_not_taken_for_another_on_the_address
     failing = tmp_path / "simulator"
     failing.write_text("#!/bin/sh\necho port 29999 is in use by another process\nexit 1\n")
     failing.chmod(0o755)
-    monkeypatch.setattr(cell, "program", lambda *_: failing)
-    with Programs(tmp_path) as programs, pytest.raises(say.Failure, match="port 29999 is in use"):
-        cell.start_simulator(programs, Layout.of_environment(), dict(os.environ), ADDRESS, "ur10e")
+    monkeypatch.setattr(simulation, "program", lambda *_: failing)
+    with Programs(tmp_path) as programs, pytest.raises(console.Failure, match="port 29999 is in use"):
+        simulation.start_simulator(programs, Layout.of_environment(), dict(os.environ), ADDRESS, "ur10e")
 
 
 # --- Commands refuse before they build ------------------------------------------------------------------------------------

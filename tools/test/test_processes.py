@@ -6,7 +6,7 @@ import time
 
 import pytest
 from ur_tools.processes import Programs, group_is_alive
-from ur_tools.say import Failure
+from ur_tools.console import Failure
 
 # Ignores SIGINT and SIGTERM, and has a child that also does.
 STUBBORN = """

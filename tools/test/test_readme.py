@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from ur_ros_rtde.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
-from ur_tools import cell, main, packages, selection
+from ur_tools import main, packages, selection, simulation
 from ur_tools.environment import program
 from ur_tools.layout import Layout
 
@@ -87,7 +87,7 @@ def test_the_launch_arguments_are_declared():
 def test_the_launch_file_knows_the_models_of_the_driver():
     table = (ROOT / "ur_ros_rtde_trajectory" / "src" / "kinematics" / "arm_limits.cpp").read_text()
     assert list(MODELS) == re.findall(r'Model\{"(\w+)"', table)
-    assert MODELS == cell.MODELS
+    assert MODELS == simulation.MODELS
 
 
 def test_the_installation_with_ros_is_complete():

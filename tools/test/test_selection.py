@@ -4,7 +4,7 @@ import pathlib
 import subprocess
 
 import pytest
-from ur_tools import main, packages, say, selection, testing
+from ur_tools import console, main, packages, selection, testing
 from ur_tools.layout import ROOT
 
 STOP = "TEST_F(StopTest, KeepsItsLine)\n{\n}\nTEST_P(Angles, AreRead)\n{\n}\n"
@@ -24,13 +24,13 @@ FILES = {
     "driver_cli/package.xml": "<package><name>driver_cli</name><exec_depend>driver</exec_depend></package>",
     "driver_cli/CMakeLists.txt": "",
     "driver_cli/test/test_cli.py": "",
-    "tools/test/test_say.py": "from ur_tools import say\n",
+    "tools/test/test_console.py": "from ur_tools import console\n",
     "tools/test/test_demo.py": 'import ur_tools.demo\nsys.path.insert(0, ROOT / "driver/test/nodes")\n',
     "tools/test/test_readme.py": 'README = ROOT / "README.md"\n',
-    "tools/ur_tools/say.py": "",
-    "tools/ur_tools/cell.py": "from . import say\n",
-    "tools/ur_tools/demo.py": "from .cell import start\n",
-    "tools/ur_tools/main.py": "from . import say\n",
+    "tools/ur_tools/console.py": "",
+    "tools/ur_tools/simulation.py": "from . import console\n",
+    "tools/ur_tools/demo.py": "from .simulation import start\n",
+    "tools/ur_tools/main.py": "from . import console\n",
     "tools/cmake/sanitize.cmake": "",
     "docs/commands/io.md": "",
     "docs/simulator.md": "",
@@ -100,7 +100,7 @@ def affected(root, *names):
     ("Each/Angles.AreRead/0", ["driver: Each/Angles.AreRead/0"]),
     ("test_stop", ["driver: Each/Angles.AreRead/0", "driver: robot.StopTest.KeepsItsLine"]),
     ("goal_test", ["driver: goals"]),
-    ("tools", ["tools: test_demo", "tools: test_readme", "tools: test_say"]),
+    ("tools", ["tools: test_demo", "tools: test_readme", "tools: test_console"]),
 ])
 def test_a_name_selects_packages_files_and_cases(root, word, expected):
     assert chosen(root, named(root, word)) == expected
@@ -110,7 +110,7 @@ def test_several_names_select_the_union(root):
     assert chosen(root, named(root, "test_node", "StopTest")) == ["driver: robot.StopTest.KeepsItsLine", "driver: test_node"]
 
 
-@pytest.mark.parametrize("word, needed", [("test_cli", ["driver_cli"]), ("test_cancel", ["driver"]), ("test_say", None)])
+@pytest.mark.parametrize("word, needed", [("test_cli", ["driver_cli"]), ("test_cancel", ["driver"]), ("test_console", None)])
 def test_only_the_packages_of_the_tests_are_built(root, word, needed):
     assert named(root, word).packages == needed
 
@@ -118,8 +118,8 @@ def test_only_the_packages_of_the_tests_are_built(root, word, needed):
 @pytest.mark.parametrize("word, near", [("test_cansel", "test_cancel"), ("drivr", "driver"), ("StopTestt", "StopTest"),
                                         ("xyzzy", "Packages: messages, driver, driver_cli, tools")])
 def test_an_unknown_name_is_refused_with_near_ones(root, word, near):
-    with pytest.raises(say.Failure) as failure:
-        named(root, "test_say", word)
+    with pytest.raises(console.Failure) as failure:
+        named(root, "test_console", word)
     assert f'"{word}"' in str(failure.value) and near in str(failure.value)
 
 
@@ -138,14 +138,14 @@ def test_the_tests_of_this_checkout_have_names():
     ("driver/test/test_stop.cpp", sorted(ALL)),
     ("driver/test/nodes/support.py", [*sorted(ALL), "driver: test_cancel", "driver: test_node", "tools: test_demo"]),
     ("driver/src/stop.cpp", [*sorted(ALL), "driver: test_cancel", "driver: test_node", "driver_cli: test_cli", "tools: test_demo",
-                             "tools: test_readme", "tools: test_say"]),
-    ("driver_cli/CMakeLists.txt", ["driver_cli: test_cli", "tools: test_demo", "tools: test_readme", "tools: test_say"]),
+                             "tools: test_readme", "tools: test_console"]),
+    ("driver_cli/CMakeLists.txt", ["driver_cli: test_cli", "tools: test_demo", "tools: test_readme", "tools: test_console"]),
     ("docs/commands/io.md", ["driver: test_cancel"]),
     ("docs/simulator.md", []),
     ("README.md", ["tools: test_readme"]),
     ("tools/ur_tools/demo.py", ["tools: test_demo"]),
-    ("tools/ur_tools/say.py", ["tools: test_demo", "tools: test_say"]),
-    ("tools/test/test_say.py", ["tools: test_say"]),
+    ("tools/ur_tools/console.py", ["tools: test_demo", "tools: test_console"]),
+    ("tools/test/test_console.py", ["tools: test_console"]),
     ("demo/figure.py", ["tools: test_demo"]),
     ("LICENSE", []),
     (".gitignore", []),
@@ -161,8 +161,8 @@ def test_a_file_that_everything_depends_on_selects_all_tests(root, changed):
 
 
 def test_a_removed_test_is_not_run(root):
-    (root / "tools/test/test_say.py").unlink()
-    assert affected(root, "tools/test/test_say.py").packages == []
+    (root / "tools/test/test_console.py").unlink()
+    assert affected(root, "tools/test/test_console.py").packages == []
 
 
 def test_changes_are_counted_from_the_merge_base_with_uncommitted_ones(repository):
@@ -196,7 +196,7 @@ def test_the_default_base_is_origin_main_if_it_exists(repository):
 
 def test_an_unknown_base_is_named(repository):
     root, _ = repository
-    with pytest.raises(say.Failure, match="--base no_branch"):
+    with pytest.raises(console.Failure, match="--base no_branch"):
         selection.by_change("no_branch", packages.discover(root), root)
 
 

@@ -9,7 +9,7 @@ import sys
 import time
 from typing import Dict, List, Optional, Tuple
 
-from . import bench_discovery, bench_trajectory, boilerplate, cell, ports, say, realtime
+from . import bench_discovery, bench_trajectory, boilerplate, console, ports, realtime, simulation
 from .environment import program, run_environment
 from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
@@ -82,14 +82,14 @@ def _nodes(options: argparse.Namespace, priority: int) -> Dict[str, Tuple[str, .
     link = (f"realtime_priority:={priority}", f"silence_limit:={silence}")
     parameters: Dict[str, Tuple[str, ...]] = {"robot_state_receiver": link, "dashboard_server": (),
                                               "command_server": (*link, "watchdog_frequency:=2.0")}
-    names = ("command_server",) if options.stream else cell.NODES
+    names = ("command_server",) if options.stream else simulation.NODES
     return {name: parameters[name] for name in names}
 
 
 def _start(programs: Programs, layout: Layout, options: argparse.Namespace, env: Dict[str, str],
            priority: int) -> "tuple[Dict[str, int], float]":
     """Returns the process ids by name, and the time in s until the command server was ready."""
-    simulator = cell.start_simulator(programs, layout, env, options.address, options.model, "--real-time-factor",
+    simulator = simulation.start_simulator(programs, layout, env, options.address, options.model, "--real-time-factor",
                                      str(options.real_time_factor))
     if priority:  # the controller must not compete with the driver, as on a real robot
         realtime.make_realtime(simulator.process.pid, max(1, priority - 1))
@@ -97,7 +97,7 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace, env:
     ready = 0.0
     for node, parameters in _nodes(options, priority).items():
         begin = time.monotonic()
-        started = cell.start_node(programs, layout, env, node, options.address, *parameters)
+        started = simulation.start_node(programs, layout, env, node, options.address, *parameters)
         pids[node] = started.process.pid
         if node == "command_server":
             programs.wait_until(lambda: "the robot is ready" in started.output and "commands: " in started.output, 20.0,
@@ -117,7 +117,7 @@ def _measure(programs: Programs, layout: Layout, options: argparse.Namespace, pi
     for name, pid in pids.items():
         command += ["--pid", f"{name}={pid}"]
     if programs.run(command, env, 300.0 + 2.0 * options.seconds / options.real_time_factor) != 0:
-        raise say.Failure("the measurement failed, see above")
+        raise console.Failure("the measurement failed, see above")
     return json.loads(output.read_text())
 
 
@@ -134,15 +134,15 @@ def _session(layout: Layout, options: argparse.Namespace, priority: int = 0) -> 
 
 
 def _print(figures: dict) -> None:
-    say.line(f"{'':30} {'':16} {'measured':>10} {'target':>8}  ratio")
+    console.line(f"{'':30} {'':16} {'measured':>10} {'target':>8}  ratio")
     for name, part, target, unit in TARGETS:
         value = figures.get(name)
         if part is not None and value is not None:
             value = value.get(part)
         if value is not None:
-            say.line(f"{name:30} {part or '':16} {value:10.3f} {target:8g}  {value / target:5.2f}  {unit}")
+            console.line(f"{name:30} {part or '':16} {value:10.3f} {target:8g}  {value / target:5.2f}  {unit}")
         elif name in figures:
-            say.line(f"{name:30} {part or '':16} nothing measured")
+            console.line(f"{name:30} {part or '':16} nothing measured")
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
@@ -150,22 +150,22 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         return bench_trajectory.run(options, layout)
     figures: dict = {}
     if not options.stream:
-        say.step("Measuring state and goals, for about 45 s")
+        console.step("Measuring state and goals, for about 45 s")
         figures = _session(layout, options)
-        say.step("Measuring discovery, for about a minute")
+        console.step("Measuring discovery, for about a minute")
         figures["new client finds all actions"] = bench_discovery.measure(layout, options.address, KILLED_CLIENTS, NEW_CLIENTS)
     stream = argparse.Namespace(**{**vars(options), "stream": True})
-    say.step(f"Measuring the servo stream, for about {2 * (12.0 + options.seconds / options.real_time_factor):.0f} s")
+    console.step(f"Measuring the servo stream, for about {2 * (12.0 + options.seconds / options.real_time_factor):.0f} s")
     figures["servo stream"] = _session(layout, stream)["servo stream"]
     if realtime.realtime_allowed(options.realtime_priority):
         figures["servo stream, real-time"] = _session(layout, stream, options.realtime_priority)["servo stream"]
     else:
-        say.line(f"Not measured with real-time priority {options.realtime_priority}: this user may not have it")
+        console.line(f"Not measured with real-time priority {options.realtime_priority}: this user may not have it")
     _print(figures)
     if not options.stream:
-        say.line("\n" + boilerplate.table())
+        console.line("\n" + boilerplate.table())
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(cell.main(parse, run, check))
+    sys.exit(simulation.main(parse, run, check))

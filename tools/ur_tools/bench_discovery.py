@@ -4,7 +4,7 @@ import json
 import subprocess
 from typing import Dict
 
-from . import cell, say
+from . import console, simulation
 from .environment import FASTDDS_PROFILES, run_environment
 from .layout import ROOT, Layout
 from .processes import Program, Programs
@@ -25,15 +25,15 @@ def measure(layout: Layout, address: str, killed: int, clients: int) -> Dict[str
     for variable in FASTDDS_PROFILES:
         env.pop(variable, None)
     with Programs(layout.log / "bench") as programs:
-        driver = cell.start_node(programs, layout, env, "driver", address)
+        driver = simulation.start_node(programs, layout, env, "driver", address)
         programs.wait_until(lambda: all(text in driver.output for text in LISTS), 20.0, "the driver's actions")
         command = [str(layout.python), str(CLIENTS), actions(driver), "--killed", str(killed), "--clients", str(clients)]
         result = subprocess.run(command, env=env, stdout=subprocess.PIPE, text=True, timeout=TIME_LIMIT)
     if result.returncode != 0:
-        raise say.Failure("the clients did not find the driver, see above")
+        raise console.Failure("the clients did not find the driver, see above")
     found = json.loads(result.stdout)
     incomplete = [client for client in found if client["missing"]]
     if incomplete:
-        raise say.Failure(f"{len(incomplete)} of {len(found)} new clients did not find all actions")
+        raise console.Failure(f"{len(incomplete)} of {len(found)} new clients did not find all actions")
     seconds = sorted(client["seconds"] for client in found)
     return {"p50": seconds[len(seconds) // 2], "max": seconds[-1]}

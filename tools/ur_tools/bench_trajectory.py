@@ -9,7 +9,7 @@ import sys
 from typing import List
 
 from . import build as building
-from . import say
+from . import console
 from .environment import run_environment
 from .layout import ROOT, Layout
 
@@ -35,33 +35,33 @@ def _oracle_python(layout: Layout) -> pathlib.Path:
     stamp = folder / "ur_stamp.txt"
     if stamp.is_file() and stamp.read_text() == " ".join(ORACLES):
         return python
-    say.step("Installing the solvers")
+    console.step("Installing the solvers")
     for command in ([str(layout.python), "-m", "venv", "--clear", str(folder)],
                     [str(python), "-m", "pip", "install", "--disable-pip-version-check", "-q", *ORACLES]):
         result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         if result.returncode != 0:
-            raise say.Failure(f"`{' '.join(command)}` failed:\n{say.tail(result.stdout, 10)}")
+            raise console.Failure(f"`{' '.join(command)}` failed:\n{console.tail(result.stdout, 10)}")
     stamp.write_text(" ".join(ORACLES))
     return python
 
 
 def _run(command: List[str], env) -> None:
     if subprocess.run(command, env=env).returncode != 0:
-        raise say.Failure(f"{pathlib.Path(command[0]).name} failed, see above")
+        raise console.Failure(f"{pathlib.Path(command[0]).name} failed, see above")
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
     building.build(building.Options(layout, ["ur_ros_rtde_trajectory"], True))
     env = run_environment(layout)
     programs = layout.build / "ur_ros_rtde_trajectory" / "test"
-    say.step(f"Planning {options.paths} random paths, with jerk limits and without")
+    console.step(f"Planning {options.paths} random paths, with jerk limits and without")
     sys.stdout.flush()
     _run([str(programs / "trajectory_bench"), str(options.paths)], env)
     if options.oracle <= 0:
         return 0
     python = _oracle_python(layout)
     for what, jerk, step in COMPARISONS:
-        say.step(f"Durations of {options.oracle} paths {what}: ratio to the solver's, below 1 is shorter")
+        console.step(f"Durations of {options.oracle} paths {what}: ratio to the solver's, below 1 is shorter")
         sys.stdout.flush()
         paths = layout.log / "trajectory_paths.bin"
         paths.parent.mkdir(parents=True, exist_ok=True)

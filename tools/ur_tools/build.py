@@ -9,7 +9,7 @@ import time
 from dataclasses import dataclass
 from typing import Dict, List, Optional, Set, Tuple
 
-from . import build_times, disk, downloads, say, system_packages, venv
+from . import build_times, console, disk, downloads, system_packages, venv
 from .build_times import BuildTimes, Forecast
 from .environment import build_environment
 from .layout import ROOT, STATE, Layout
@@ -27,7 +27,7 @@ def check_path(root: pathlib.Path) -> None:
     """Raises Failure if the path has characters that separate entries in PATH or CMake lists, or that need quoting. Spaces are allowed."""
     wrong = [character for character in _NOT_IN_PATHS if character in str(root)]
     if wrong:
-        raise say.Failure(f"The checkout's path {root} contains {' '.join(wrong)}, which cannot be in a search path or a CMake "
+        raise console.Failure(f"The checkout's path {root} contains {' '.join(wrong)}, which cannot be in a search path or a CMake "
                           "list. Move the checkout.")
 
 
@@ -110,7 +110,7 @@ class Progress:
         self._forecast = forecast
         self._seen = 0
         self._running: Dict[str, float] = {}
-        self._status = say.Status()
+        self._status = console.Status()
         self.failed: List[str] = []
         self.done: Set[str] = set()
 
@@ -173,20 +173,20 @@ def _colcon(options: Options, names: List[str], folders: List[pathlib.Path], tes
             "--cmake-force-configure", "--cmake-args", *cmake_arguments(options, tests)]
 
 
-def _failure(layout: Layout, progress: Progress, output: pathlib.Path) -> say.Failure:
+def _failure(layout: Layout, progress: Progress, output: pathlib.Path) -> console.Failure:
     parts = []
     for name in progress.failed:
         log = layout.log / "latest_build" / name / "stdout_stderr.log"
         text = log.read_text(errors="replace") if log.is_file() else ""
         # Only warnings of other files precede the first failure.
         at = next((at for at in (text.find("FAILED: "), text.find("CMake Error")) if at >= 0), -1)
-        shown = "\n".join(text[at:].splitlines()[:40]) if at >= 0 else say.tail(text)
+        shown = "\n".join(text[at:].splitlines()[:40]) if at >= 0 else console.tail(text)
         parts.append(f"{name} did not build ({log}):\n{shown}")
     if any("No space left on device" in part for part in parts):
         parts.append(disk.full_message(layout.build))
     if not parts:
-        parts.append(f"colcon failed ({output}):\n{say.tail(output.read_text(errors='replace'), 20)}")
-    return say.Failure("\n\n".join(parts))
+        parts.append(f"colcon failed ({output}):\n{console.tail(output.read_text(errors='replace'), 20)}")
+    return console.Failure("\n\n".join(parts))
 
 
 def _forget(layout: Layout, names: List[str]) -> None:
@@ -285,7 +285,7 @@ def setup(layout: Layout) -> None:
     with Lock("build"):
         pending = _pending_setup(layout)
         if pending:
-            say.step(pending.text(Options(layout)))
+            console.step(pending.text(Options(layout)))
         _setup(layout, pending)
 
 
@@ -295,7 +295,7 @@ def _chosen(options: Options) -> Dict[str, Package]:
         try:
             packages = with_dependencies(packages, options.packages)
         except KeyError as error:
-            raise say.Failure(str(error.args[0]))
+            raise console.Failure(str(error.args[0]))
     return packages
 
 
@@ -317,7 +317,7 @@ def build(options: Options) -> Dict[str, Package]:
         packages = _chosen(options)
         pending, stamps = _pending(options, packages)  # another ./ur may have built them while this one waited
         if pending:
-            say.step(pending.text(options))
+            console.step(pending.text(options))
         _setup(options.layout, pending)
         if pending.outdated:
             _build(options, packages, pending, stamps)
@@ -325,8 +325,8 @@ def build(options: Options) -> Dict[str, Package]:
 
 
 def _build(options: Options, packages: Dict[str, Package], pending: Pending, stamps: Stamps) -> None:
-    say.step(f"Building {', '.join(pending.outdated)} for ROS 2 {options.layout.ros.capitalize()}"
+    console.step(f"Building {', '.join(pending.outdated)} for ROS 2 {options.layout.ros.capitalize()}"
              + (f" ({options.layout.variant})" if options.layout.variant else ""))
     start = time.monotonic()
     _run_colcon(options, packages, pending.outdated, stamps, pending.tests)
-    say.line(f"    built in {time.monotonic() - start:.0f} s")
+    console.line(f"    built in {time.monotonic() - start:.0f} s")

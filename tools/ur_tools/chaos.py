@@ -11,7 +11,7 @@ import random
 import sys
 from typing import List
 
-from . import cell, ports, say
+from . import console, ports, simulation
 from .environment import run_environment
 from .layout import PROGRAM, ROOT, SANITIZERS, Layout
 from .processes import Programs
@@ -48,7 +48,7 @@ def check(options: argparse.Namespace) -> None:
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
     what = f"{options.faults} faults" if options.faults else f"{options.minutes:g} minutes without faults"
-    say.step(f"Seed {options.seed}: {what}, {options.clients} clients")
+    console.step(f"Seed {options.seed}: {what}, {options.clients} clients")
     log = options.log or layout.log / "chaos" / str(options.seed)
     command = [str(layout.python), str(ROOT / "chaos" / "main.py"), "--log", str(log)]
     for name in ("address", "faults", "minutes", "seed", "clients"):
@@ -60,10 +60,10 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     with Programs(log) as programs:
         code = programs.run(command, env, limit)
     if code != 0:
-        say.line(f"To repeat these goals and faults: ./ur chaos --faults {options.faults} --seed {options.seed} "
+        console.line(f"To repeat these goals and faults: ./ur chaos --faults {options.faults} --seed {options.seed} "
                  f"--minutes {options.minutes:g} --clients {options.clients}")
     return code
 
 
 if __name__ == "__main__":
-    sys.exit(cell.main(parse, run, check))
+    sys.exit(simulation.main(parse, run, check))

@@ -11,7 +11,7 @@ import tempfile
 import time
 from typing import List
 
-from . import cell, ports, say
+from . import console, ports, simulation
 from .environment import run_environment
 from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
@@ -30,8 +30,8 @@ PARAMETERS = {"robot_state_receiver": ("rtde_frequency:=125.0", "silence_limit:=
 def parse(arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=f"{PROGRAM} demo", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--model", type=str.lower, choices=cell.MODELS, metavar="MODEL", default="ur10e",
-                        help="arm to simulate: " + ", ".join(cell.MODELS) + " (default: ur10e)")
+    parser.add_argument("--model", type=str.lower, choices=simulation.MODELS, metavar="MODEL", default="ur10e",
+                        help="arm to simulate: " + ", ".join(simulation.MODELS) + " (default: ur10e)")
     parser.add_argument("--threshold", type=float, default=20.0, metavar="N",
                         help="force along the flange Z axis that stops the arm, newtons, 5 to 100 (default: 20)")
     parser.add_argument("--speed", type=float, default=0.1, metavar="M/S",
@@ -58,25 +58,25 @@ def parse(arguments: List[str]) -> argparse.Namespace:
 def check(options: argparse.Namespace) -> None:
     """Raises Failure if the output folder cannot be written or the address is in use."""
     if not options.output.is_dir():
-        raise say.Failure(f"--output {options.output}: there is no such folder. Create it: `mkdir -p {options.output}`")
+        raise console.Failure(f"--output {options.output}: there is no such folder. Create it: `mkdir -p {options.output}`")
     try:
         tempfile.TemporaryFile(dir=options.output).close()  # a permission check would miss a read-only or full disk
     except OSError as error:
-        raise say.Failure(f"--output {options.output}: the folder cannot be written: {error.strerror}") from None
+        raise console.Failure(f"--output {options.output}: the folder cannot be written: {error.strerror}") from None
     ports.check(options.address)
 
 
 def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> None:
     env = run_environment(layout)
-    say.step(f"Starting the simulated controller of a {options.model.upper()} at {options.address}")
-    cell.start_simulator(programs, layout, env, options.address, options.model)
-    say.step("Starting the nodes " + ", ".join(cell.NODES))
-    for node in cell.NODES:
-        cell.start_node(programs, layout, env, node, options.address, *PARAMETERS.get(node, ()))
+    console.step(f"Starting the simulated controller of a {options.model.upper()} at {options.address}")
+    simulation.start_simulator(programs, layout, env, options.address, options.model)
+    console.step("Starting the nodes " + ", ".join(simulation.NODES))
+    for node in simulation.NODES:
+        simulation.start_node(programs, layout, env, node, options.address, *PARAMETERS.get(node, ()))
 
 
 def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace) -> int:
-    say.step("move_down_until_force")
+    console.step("move_down_until_force")
     command = [layout.python, ROOT / "demo" / "force_experiment.py", "--address", options.address, "--model",
                options.model.upper().replace("E", "e"), "--threshold", options.threshold, "--speed", options.speed,
                "--drop", options.drop, "--output", options.output]
@@ -84,7 +84,7 @@ def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace)
 
 
 def _keep_running(programs: Programs, options: argparse.Namespace) -> None:
-    say.line(f"The simulator ({options.address}) and the nodes run until Ctrl-C. To use them, open another terminal: ./ur shell")
+    console.line(f"The simulator ({options.address}) and the nodes run until Ctrl-C. To use them, open another terminal: ./ur shell")
     while True:
         programs.check()
         time.sleep(0.2)
@@ -96,11 +96,11 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         _start(programs, layout, options)
         code = _experiment(programs, layout, options)
         if code != 0:
-            say.line(f"The demo failed. Logs of the simulator and the nodes: {logs}")
+            console.line(f"The demo failed. Logs of the simulator and the nodes: {logs}")
         elif options.keep_running:
             _keep_running(programs, options)
     return code
 
 
 if __name__ == "__main__":
-    sys.exit(cell.main(parse, run, check))
+    sys.exit(simulation.main(parse, run, check))

@@ -3,7 +3,7 @@
 import pathlib
 import shutil
 
-from . import say
+from . import console
 
 FIRST_RUN = 2.5e9  # bytes: virtual environment, pip's cache, a build with tests
 LATER = 0.3e9
@@ -24,5 +24,5 @@ def full_message(path: pathlib.Path) -> str:
 def check(path: pathlib.Path, needed: float) -> None:
     available = free(path)
     if available < needed:
-        raise say.Failure(f"Not enough space on the disk that holds {path}: {available / 1e9:.1f} GB free, "
+        raise console.Failure(f"Not enough space on the disk that holds {path}: {available / 1e9:.1f} GB free, "
                           f"{needed / 1e9:.1f} GB needed.")

@@ -11,7 +11,7 @@ import time
 from dataclasses import dataclass
 from typing import Callable, List, Tuple
 
-from . import build, disk, ports, say, system_packages, venv
+from . import build, console, disk, ports, system_packages, venv
 from .layout import ROOT, STATE, Layout
 
 OK, NOTE, FAILED = "ok", "note", "FAILED"
@@ -76,7 +76,7 @@ def system() -> Finding:
 def python() -> Finding:
     try:
         return Finding("Python", OK, venv.find_python())
-    except say.Failure as failure:
+    except console.Failure as failure:
         first, _, rest = str(failure).partition("\n")
         return Finding("Python", FAILED, first, rest)
 
@@ -84,7 +84,7 @@ def python() -> Finding:
 def checkout() -> Finding:
     try:
         build.check_path(ROOT)
-    except say.Failure as failure:
+    except console.Failure as failure:
         return Finding("checkout", FAILED, str(failure))
     folder = STATE if STATE.exists() else ROOT
     try:
@@ -125,7 +125,7 @@ def loopback() -> Finding:
     try:
         for address in TEST_ADDRESSES:
             ports.in_use(address, [0])
-    except say.Failure as failure:
+    except console.Failure as failure:
         return Finding("loopback", FAILED, str(failure).replace("--address ", ""),
                        "Parallel tests use one loopback address each. On Linux: ip addr add 127.0.0.1/8 dev lo; ip link set lo up")
     return Finding("loopback", OK, f"{', '.join(TEST_ADDRESSES)} can be used")
@@ -171,10 +171,10 @@ def jitter() -> Finding:
 
 
 def show(finding: Finding) -> None:
-    say.line(f"{finding.state:7} {finding.what:16} {finding.text}")
+    console.line(f"{finding.state:7} {finding.what:16} {finding.text}")
     for line in finding.advice.splitlines():
         for part in textwrap.wrap(line.strip(), 105, break_long_words=False, break_on_hyphens=False):
-            say.line(f"{'':24} {part}")
+            console.line(f"{'':24} {part}")
 
 
 def run(layout: Layout) -> int:
@@ -185,6 +185,6 @@ def run(layout: Layout) -> int:
         finding = check()
         failed += finding.state == FAILED
         show(finding)
-    say.line(f"{failed} problem{'s' * (failed > 1)} must be solved first." if failed else
+    console.line(f"{failed} problem{'s' * (failed > 1)} must be solved first." if failed else
              "This machine can build and run everything.")
     return 1 if failed else 0

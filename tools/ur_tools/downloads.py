@@ -7,7 +7,7 @@ import subprocess
 import time
 from typing import Tuple
 
-from . import say
+from . import console
 from .layout import DOWNLOADS, ROOT, Layout
 
 MEGABYTES = 4
@@ -37,9 +37,9 @@ def ensure(layout: Layout) -> None:
     if _is_valid(archive):
         return
     if archive.exists():
-        say.line(f"    {archive.relative_to(ROOT)} is damaged; downloading it again")
+        console.line(f"    {archive.relative_to(ROOT)} is damaged; downloading it again")
         archive.unlink()
-    say.step("Downloading the sources of ur_rtde")
+    console.step("Downloading the sources of ur_rtde")
     # --no-binary for this package only: pip prepares its metadata with build tools, which may be wheels.
     command = [str(layout.python), "-I", "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps",
                "--no-binary", "ur-rtde", "--require-hashes", "--requirement", str(PIN), "--dest", str(DOWNLOADS)]
@@ -50,6 +50,6 @@ def ensure(layout: Layout) -> None:
             return
         if attempt < 3:
             time.sleep(3.0 * attempt)
-    raise say.Failure(f"The sources of ur_rtde could not be downloaded in three attempts:\n{say.tail(result.stdout, 12)}\n"
+    raise console.Failure(f"The sources of ur_rtde could not be downloaded in three attempts:\n{console.tail(result.stdout, 12)}\n"
                       "Check the network connection. pip's settings (`pip config list`) select a proxy or a mirror. "
                       f"On a machine without a network, copy the archive to {archive}.")

@@ -9,7 +9,7 @@ import tempfile
 import threading
 from typing import Dict, IO, Optional, Set
 
-from .say import Failure
+from .console import Failure
 
 MARK = "UR_TEST_RUN"  # environment variable of every process that a test run starts
 LAST_DOMAIN = 101  # the ports of higher domains may be ephemeral ports

@@ -7,7 +7,7 @@ import subprocess
 from dataclasses import dataclass
 from typing import List
 
-from . import say
+from . import console
 from .build import Options, build, cmake_arguments
 from .environment import build_environment
 from .layout import ROOT, Layout
@@ -45,7 +45,7 @@ def check_format(layout: Layout) -> Check:
         return Check("sources: formatting", True)
     result = _clang_format(layout, "--dry-run", "--Werror")
     wrong = sorted({line.split(":")[0] for line in result.stdout.splitlines() if "clang-format-violations" in line})
-    text = "\n".join("    " + name for name in wrong) or say.tail(result.stdout, 10)
+    text = "\n".join("    " + name for name in wrong) or console.tail(result.stdout, 10)
     return Check("sources: formatting", result.returncode == 0, f"{text}\n    Run `./ur format`.")
 
 
@@ -71,8 +71,8 @@ def checks(layout: Layout) -> List[Check]:
 def format_sources(layout: Layout) -> int:
     result = _clang_format(layout, "-i")
     if result.returncode:
-        raise say.Failure(result.stdout)
-    say.line(f"{len(cpp_files())} C++ files are formatted")
+        raise console.Failure(result.stdout)
+    console.line(f"{len(cpp_files())} C++ files are formatted")
     return 0
 
 
@@ -93,12 +93,12 @@ def _databases(layout: Layout) -> List[pathlib.Path]:
 def tidy(layout: Layout) -> List[Check]:
     program = next((found for found in map(shutil.which, ("clang-tidy-19", "clang-tidy")) if found), None)
     if program is None:
-        raise say.Failure("clang-tidy is not installed: sudo apt-get install -y clang-tidy")
+        raise console.Failure("clang-tidy is not installed: sudo apt-get install -y clang-tidy")
     found = []
     for database in _databases(layout):
         sources = [path for path in cpp_files() if path.suffix == ".cpp" and str(path) in database.read_text()]
         for source in sources:
-            say.line(f"    {source.relative_to(ROOT)}")
+            console.line(f"    {source.relative_to(ROOT)}")
             result = subprocess.run([program, "--quiet", "-p", str(database.parent), str(source)], cwd=ROOT,
                                     stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True)
             ok = "warning:" not in result.stdout and "error:" not in result.stdout
@@ -110,7 +110,7 @@ def run(layout: Layout, with_tidy: bool) -> int:
     everything = checks(layout) + (tidy(layout) if with_tidy else [])
     for check in everything:
         if not check.ok:
-            say.line(f"FAILED  {check.name}\n{check.text}")
+            console.line(f"FAILED  {check.name}\n{check.text}")
     bad = sum(1 for check in everything if not check.ok)
-    say.line(f"{len(everything) - bad} checks passed, {bad} failed")
+    console.line(f"{len(everything) - bad} checks passed, {bad} failed")
     return 1 if bad else 0

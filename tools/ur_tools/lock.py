@@ -7,7 +7,7 @@ import pathlib
 import sys
 from typing import IO, Optional
 
-from . import say
+from . import console
 from .layout import STATE
 
 _NOT_WRITABLE = (errno.EACCES, errno.EPERM, errno.EROFS)
@@ -50,7 +50,7 @@ class Lock:
             return self._path.open("a+")
         except OSError as error:
             if error.errno in _NOT_WRITABLE:
-                raise say.Failure(f"{self._path.parent} cannot be written: {error.strerror}.\n"
+                raise console.Failure(f"{self._path.parent} cannot be written: {error.strerror}.\n"
                                   "./ur writes all its files there. Use a writable checkout.") from None
             raise
 
@@ -59,7 +59,7 @@ class Lock:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             file.seek(0)
-            say.step(f"Waiting for {file.read() or 'another ./ur'}, which is running in this checkout")
+            console.step(f"Waiting for {file.read() or 'another ./ur'}, which is running in this checkout")
             fcntl.flock(file, fcntl.LOCK_EX)
 
     def _is_current(self, file: IO[str]) -> bool:

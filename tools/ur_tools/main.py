@@ -13,7 +13,7 @@ import sys
 from typing import List, Optional, Tuple
 
 from . import build as building
-from . import disk, doctor, lint, new, say, testing
+from . import console, disk, doctor, lint, new, testing
 from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
@@ -55,13 +55,13 @@ def _build(options: argparse.Namespace, tests: bool = False, packages: Optional[
 
 def command_build(options: argparse.Namespace) -> int:
     _build(options, options.tests, options.package)
-    say.line("Everything is built." + (" `./ur shell` opens a shell in which it is found." if PROGRAM == "./ur" else ""))
+    console.line("Everything is built." + (" `./ur shell` opens a shell in which it is found." if PROGRAM == "./ur" else ""))
     return 0
 
 
 def command_test(options: argparse.Namespace) -> int:
     if options.names and options.changed:
-        raise say.Failure("./ur test takes names or --changed, not both")
+        raise console.Failure("./ur test takes names or --changed, not both")
     return testing.run(testing.Options(_layout(options), options.names, options.changed or bool(options.base), options.base,
                                        options.jobs, options.timeout, options.repeat))
 
@@ -79,7 +79,7 @@ def command_shell(options: argparse.Namespace) -> int:
     if command:
         return subprocess.run(command, env=env).returncode
     shell = env.get("SHELL", "/bin/sh")
-    say.line(f"This shell has ROS 2 {layout.ros.capitalize()} and this project's packages; `exit` leaves it. `ur` has the commands of "
+    console.line(f"This shell has ROS 2 {layout.ros.capitalize()} and this project's packages; `exit` leaves it. `ur` has the commands of "
              "./ur; `ur --help` lists them. The wheels do not contain the program `ros2`.")
     if os.path.basename(shell) == "bash":
         env["PS1"] = "(ur) \\w\\$ "
@@ -165,7 +165,7 @@ def command_clean(options: argparse.Namespace) -> int:
     with Lock("test"), Lock("build"):
         for folder in folders:
             if folder.exists():
-                say.line(f"removing {folder.relative_to(ROOT)}")
+                console.line(f"removing {folder.relative_to(ROOT)}")
                 shutil.rmtree(folder)
     return 0
 
@@ -304,7 +304,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return 2
     try:
         return options.function(options)
-    except say.Failure as failure:
+    except console.Failure as failure:
         print(f"\n{failure}", file=sys.stderr)
         return 1
     except BrokenPipeError:  # `./ur doctor | head`

@@ -5,7 +5,7 @@ import re
 from typing import Dict
 from xml.sax.saxutils import escape
 
-from . import say
+from . import console
 from .layout import ROOT
 
 TEMPLATES = ROOT / "tools" / "templates"
@@ -19,7 +19,7 @@ _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 def _checked(what: str, name: str) -> str:
     if not _NAME.fullmatch(name):
-        raise say.Failure(f"{what} is \"{name}\": it must be lower case letters, digits and single underscores and begin with a "
+        raise console.Failure(f"{what} is \"{name}\": it must be lower case letters, digits and single underscores and begin with a "
                           "letter, as in pick_part")
     return name
 
@@ -32,7 +32,7 @@ def _snake(pascal: str) -> str:
 def _pascal(name: str) -> str:
     pascal = "".join(part.capitalize() for part in name.split("_"))
     if _snake(pascal) != name:
-        raise say.Failure(f"the name is \"{name}\": rosidl names the header of its interface {pascal} {_snake(pascal)}; use that name")
+        raise console.Failure(f"the name is \"{name}\": rosidl names the header of its interface {pascal} {_snake(pascal)}; use that name")
     return pascal
 
 
@@ -47,9 +47,9 @@ def create(kind: str, name: str, package: str, folder: pathlib.Path, description
     escaped = {placeholder: escape(word) for placeholder, word in words.items()}
     target = folder / words["my_package"]
     if not folder.is_dir():
-        raise say.Failure(f"there is no folder {folder}; create it, or choose another with --directory")
+        raise console.Failure(f"there is no folder {folder}; create it, or choose another with --directory")
     if target.exists():
-        raise say.Failure(f"{target} exists already; remove it, or choose another name with --package")
+        raise console.Failure(f"{target} exists already; remove it, or choose another name with --package")
     for templates in (TEMPLATES / part for part in KINDS[kind]):
         for source in sorted(path for path in templates.rglob("*") if path.is_file()):
             file = target / _filled(str(source.relative_to(templates)), words)
@@ -74,7 +74,7 @@ def run(kind: str, name: str, package: str, folder: pathlib.Path, description: s
     purposes = {path: _purpose(path, kind, bool(description)) for path in target.rglob("*") if path.is_file()}
     width = max(len(str(file.relative_to(folder))) for file in purposes)
     for file in sorted(purposes, key=lambda path: (not purposes[path], path)):
-        say.line(f"    {str(file.relative_to(folder)):{width}}  {purposes[file]}".rstrip())
-    say.line("Change the files with a remark. Then build the package with `colcon build` in the workspace (in `./ur shell` if ROS is not "
+        console.line(f"    {str(file.relative_to(folder)):{width}}  {purposes[file]}".rstrip())
+    console.line("Change the files with a remark. Then build the package with `colcon build` in the workspace (in `./ur shell` if ROS is not "
              "installed); docs/writing_a_plugin.md continues from there.")
     return 0

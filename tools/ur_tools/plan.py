@@ -21,7 +21,7 @@ import subprocess
 import sys
 from typing import List, Mapping
 
-from . import cell, say
+from . import console, simulation
 from .environment import program, run_environment
 from .layout import PROGRAM, ROOT, Layout
 
@@ -42,7 +42,7 @@ def _run(command: List[str], text: str, env: Mapping[str, str]) -> str:
     result = subprocess.run(command, input=text, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                             universal_newlines=True)
     if result.returncode != 0:
-        raise say.Failure(result.stderr.strip())
+        raise console.Failure(result.stderr.strip())
     return result.stdout
 
 
@@ -56,22 +56,22 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     goal = _goal_as_json(layout, options, env)
     try:
         answer = _run([str(program(layout, "ur_ros_rtde_trajectory", "plan_trajectory"))], goal, env)
-    except say.Failure as failure:
-        raise say.Failure(f"{options.file}: {failure}") from None
+    except console.Failure as failure:
+        raise console.Failure(f"{options.file}: {failure}") from None
     plan = json.loads(answer)
     use = plan["use"]
-    say.line(f"{len(plan['waypoint_times'])} waypoints, {plan['duration']:.3f} s, planned in "
+    console.line(f"{len(plan['waypoint_times'])} waypoints, {plan['duration']:.3f} s, planned in "
              f"{1e3 * plan['planning_time']:.1f} ms")
-    say.line(f"largest use of the limits: velocity {use['velocity']:.4f}, acceleration {use['acceleration']:.4f}, "
+    console.line(f"largest use of the limits: velocity {use['velocity']:.4f}, acceleration {use['acceleration']:.4f}, "
              f"jerk {use['jerk']:.4f}")
     if options.json:
         options.json.write_text(answer)
-        say.line(f"samples: {options.json}")
+        console.line(f"samples: {options.json}")
     if options.plot:
         _run([str(layout.python), str(ROOT / "tools" / "ur_tools" / "plan_figure.py"), str(options.plot)], answer, env)
-        say.line(f"figure: {options.plot}")
+        console.line(f"figure: {options.plot}")
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(cell.main(parse, run))
+    sys.exit(simulation.main(parse, run))

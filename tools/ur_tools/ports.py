@@ -8,7 +8,7 @@ import socket
 import struct
 from typing import Dict, List, Optional, Tuple
 
-from . import say
+from . import console
 
 PORTS = {"dashboard": 29999, "primary": 30001, "secondary": 30002, "real-time": 30003, "RTDE": 30004, "control": 30099}
 _LISTEN = "0A"
@@ -19,7 +19,7 @@ def in_use(address: str, ports: "List[int]") -> List[int]:
     try:
         socket.inet_aton(address)
     except OSError:
-        raise say.Failure(f"--address {address}: not an IPv4 address, as in 127.0.0.2") from None
+        raise console.Failure(f"--address {address}: not an IPv4 address, as in 127.0.0.2") from None
     found = []
     for port in ports:
         with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
@@ -29,10 +29,10 @@ def in_use(address: str, ports: "List[int]") -> List[int]:
                 probe.listen(1)  # bind() succeeds next to a listener that has SO_REUSEADDR
             except OSError as error:
                 if error.errno == errno.EADDRNOTAVAIL:
-                    raise say.Failure(f"--address {address}: no network interface of this machine has that address. "
+                    raise console.Failure(f"--address {address}: no network interface of this machine has that address. "
                                       "Loopback addresses are 127.0.0.1, 127.0.0.2 and so on.") from None
                 if error.errno != errno.EADDRINUSE:
-                    raise say.Failure(f"port {port} of {address} cannot be opened: {error.strerror}") from None
+                    raise console.Failure(f"port {port} of {address} cannot be opened: {error.strerror}") from None
                 found.append(port)
     return found
 
@@ -103,5 +103,5 @@ def check(address: str) -> None:
     """Raises Failure if a simulated controller cannot open its ports on the address."""
     taken = in_use(address, list(PORTS.values()))
     if taken:
-        raise say.Failure(f"{explain(address, taken)}\nStop that process, or use another address: "
+        raise console.Failure(f"{explain(address, taken)}\nStop that process, or use another address: "
                           f"--address {another_address(address)}")

@@ -17,7 +17,7 @@ import subprocess
 import time
 from typing import Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
-from .say import Failure, tail
+from .console import Failure, tail
 
 # Signals, each with the time in s that a program has to exit.
 GENTLY: Tuple[Tuple[int, float], ...] = ((signal.SIGINT, 5.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))

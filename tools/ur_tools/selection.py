@@ -8,7 +8,7 @@ import subprocess
 from dataclasses import dataclass, field
 from typing import Callable, Dict, Iterable, List, Optional, Set
 
-from . import say
+from . import console
 from .layout import ROOT
 from .packages import Package
 
@@ -99,7 +99,7 @@ def by_name(words: List[str], packages: Dict[str, Package], root: pathlib.Path =
     matching: Dict[str, List[Source]] = {word: [one for one in known if _matches(word, one, folders)] for word in words}
     for word, found in matching.items():
         if not found:
-            raise say.Failure(_unknown(word, known, folders))
+            raise console.Failure(_unknown(word, known, folders))
 
     def chooses(package: str, name: str, path: Optional[pathlib.Path]) -> bool:
         for word in words:
@@ -138,13 +138,13 @@ def changed_files(base: str, root: pathlib.Path = ROOT) -> List[str]:
     """Returns the files changed since the merge base of HEAD and `base`, including uncommitted and new ones."""
     common = _git("merge-base", base, "HEAD", root=root)
     if common.returncode != 0:
-        raise say.Failure(f"--base {base}: git finds no commit that it shares with HEAD. {common.stderr.strip()}".rstrip())
+        raise console.Failure(f"--base {base}: git finds no commit that it shares with HEAD. {common.stderr.strip()}".rstrip())
     found: Set[str] = set()
     for arguments in (("diff", "--name-only", "--no-renames", "-z", common.stdout.strip()),
                       ("ls-files", "--others", "--exclude-standard", "-z")):
         result = _git(*arguments, root=root)
         if result.returncode != 0:
-            raise say.Failure(f"git {arguments[0]} failed: {result.stderr.strip()}")
+            raise console.Failure(f"git {arguments[0]} failed: {result.stderr.strip()}")
         found.update(name for name in result.stdout.split("\0") if name)
     return sorted(found)
 
@@ -266,6 +266,6 @@ def by_change(base: str, packages: Dict[str, Package], root: pathlib.Path = ROOT
     for name in names:
         affected.add(name)
     selection = affected.selection()
-    say.line(f"{len(names)} file{'s' * (len(names) != 1)} changed since {base}"
+    console.line(f"{len(names)} file{'s' * (len(names) != 1)} changed since {base}"
              + (": all tests" if affected.everything else ""))
     return selection

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 from typing import List
 
-from . import say
+from . import console
 from .layout import ROOT
 
 LIST = ROOT / "tools" / "system_packages.txt"
@@ -40,7 +40,7 @@ def absent() -> List[str]:
 
 def ensure() -> None:
     if not shutil.which("dpkg-query"):
-        say.line("    this machine has no dpkg: the equivalents of these Debian packages must be installed: " + " ".join(needed()))
+        console.line("    this machine has no dpkg: the equivalents of these Debian packages must be installed: " + " ".join(needed()))
         return
     names = absent()
     if not names:
@@ -49,8 +49,8 @@ def ensure() -> None:
     try:
         prefix = _prefix()
     except PermissionError:
-        raise say.Failure(f"These system packages are missing. Install them, then run ./ur again:\n\n    sudo {command}\n")
-    say.step("Installing system packages: " + " ".join(names))
+        raise console.Failure(f"These system packages are missing. Install them, then run ./ur again:\n\n    sudo {command}\n")
+    console.step("Installing system packages: " + " ".join(names))
     env = dict(os.environ, DEBIAN_FRONTEND="noninteractive")
     if prefix:
         prefix = prefix + ["env", "DEBIAN_FRONTEND=noninteractive"]
@@ -58,5 +58,5 @@ def ensure() -> None:
         result = subprocess.run(prefix + part.split(), env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                 universal_newlines=True)
     if result.returncode != 0:
-        raise say.Failure(f"`{command}` failed:\n{say.tail(result.stdout, 15)}\n"
+        raise console.Failure(f"`{command}` failed:\n{console.tail(result.stdout, 15)}\n"
                           "Check the network connection and the package sources of this machine.")

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, List
 
 from . import build as building
-from . import boilerplate, isolation, lint, say, selection
+from . import boilerplate, console, isolation, lint, selection
 from .layout import ROOT, Layout
 from .lock import Lock
 from .packages import Package, discover
@@ -49,7 +49,7 @@ def _ctest(layout: Layout, package: Package) -> List[Test]:
     for entry in json.loads(listing)["tests"]:
         command = entry.get("command")
         if not command:
-            raise say.Failure(f"{package.name}: the test {entry['name']} has no program; was it built?")
+            raise console.Failure(f"{package.name}: the test {entry['name']} has no program; was it built?")
         if any("pytest" in part for part in command):
             continue  # _pytest() collects these files
         properties = {item["name"]: item["value"] for item in entry.get("properties", [])}
@@ -100,7 +100,7 @@ def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result
     times = Times(options.layout.durations)
     schedule = Schedule([_job(test, times) for test in tests], len(os.sched_getaffinity(0)), options.jobs)
     results: List[Result] = []
-    status = say.Status()
+    status = console.Status()
     with ThreadPoolExecutor(schedule.most) as pool:
         running: "Dict[Future, Job]" = {}
         try:
@@ -125,10 +125,10 @@ def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result
     return results
 
 
-def _report(status: say.Status, result: Result, done: int, total: int) -> None:
+def _report(status: console.Status, result: Result, done: int, total: int) -> None:
     if result.failures:
         status.keep(f"FAILED  {result.test.name} ({result.seconds:.1f} s)")
-        status.keep("\n".join("        " + text for text in say.tail(result.output, SHOWN_LINES).splitlines()))
+        status.keep("\n".join("        " + text for text in console.tail(result.output, SHOWN_LINES).splitlines()))
     status.show(f"{done}/{total} {result.test.name}")
 
 
@@ -148,7 +148,7 @@ def _diagnose(runner: Runner, results: List[Result]) -> Dict[str, str]:
     """Repeats failed tests alone. Returns, for each failed case, whether it fails then; the results remain as they are."""
     verdicts: Dict[str, str] = {}
     for result in (result for result in results if result.failures):
-        say.line(f"repeating alone, as a diagnosis: {result.test.name}")
+        console.line(f"repeating alone, as a diagnosis: {result.test.name}")
         alone = runner.run(_only_failed_cases(result))
         if alone is None:
             break
@@ -168,20 +168,20 @@ def _summary(results: List[Result], checks: List[lint.Check], verdicts: Dict[str
     """Prints the counts and the failures. Returns the exit status, to which `verdicts` contribute nothing."""
     passed = sum(result.passed for result in results) + sum(1 for check in checks if check.ok)
     failed = sum(len(result.failures) for result in results) + sum(1 for check in checks if not check.ok)
-    say.line("")
+    console.line("")
     by_package: Dict[str, List[Result]] = {}
     for result in results:
         by_package.setdefault(result.test.package, []).append(result)
     for name, group in sorted(by_package.items()):
-        say.line(f"    {name:28} {sum(r.passed for r in group):5} passed {sum(len(r.failures) for r in group):4} failed")
+        console.line(f"    {name:28} {sum(r.passed for r in group):5} passed {sum(len(r.failures) for r in group):4} failed")
     names = sorted({_case_name(result, case) for result in results for case in result.failures}
                    | {check.name for check in checks if not check.ok})
     if names:
-        say.line("Failed:")
+        console.line("Failed:")
         for name in names:
-            say.line(f"    {name}" + (f" ({verdicts[name]})" if name in verdicts else ""))
-    say.line(f"{seconds:.0f} s")
-    say.line(f"{passed} passed, {failed} failed")
+            console.line(f"    {name}" + (f" ({verdicts[name]})" if name in verdicts else ""))
+    console.line(f"{seconds:.0f} s")
+    console.line(f"{passed} passed, {failed} failed")
     return 1 if failed or passed == 0 else 0
 
 
@@ -202,16 +202,16 @@ def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[
     with Lock("test"):
         tests = _collect(options, packages, chosen)
         if options.names and not tests:
-            raise say.Failure(f"no test has {' or '.join(options.names)} in its name")
+            raise console.Failure(f"no test has {' or '.join(options.names)} in its name")
         runner = Runner(options.layout, isolation.fresh_folder(options.layout.base / "test"), options.timeout)
         checks = [] if options.names else lint.checks(options.layout)
         for check in checks:
             if not check.ok:
-                say.line(f"FAILED  {check.name}\n{check.text}")
-        say.step(f"Running {len(tests)} test{'s' * (len(tests) != 1)}")
+                console.line(f"FAILED  {check.name}\n{check.text}")
+        console.step(f"Running {len(tests)} test{'s' * (len(tests) != 1)}")
         with isolation.CleanUp():
             results = _run_all(options, runner, tests)
             verdicts = _diagnose(runner, results) if options.repeat == 1 else {}
     if not (options.names or options.changed):
-        say.line("\n" + boilerplate.table())
+        console.line("\n" + boilerplate.table())
     return _summary(results, checks, verdicts, time.monotonic() - start)

