@@ -32,7 +32,7 @@ def test_lines_are_counted_from_class_to_export_without_comments():
     assert boilerplate.measure(SOURCE) == {"a": 4}
 
 
-def test_commands_that_share_a_file_share_its_lines():
+def test_the_lines_of_a_file_are_divided_among_its_commands():
     assert boilerplate.measure(SOURCE + 'UR_ROS_RTDE_EXPORT(B, "b")\n') == {"a": 2.5, "b": 2.5}
 
 
@@ -62,7 +62,7 @@ def test_every_exported_plugin_is_found():
     assert len(COMMANDS) == len({command.name for command in COMMANDS}) == described
 
 
-def test_the_list_of_long_commands_is_as_short_as_it_can_be():
+def test_the_list_of_long_commands_has_no_needless_entries():
     lines = {command.name: command for command in COMMANDS}
     needless = [name for name, most in LONG.items() if name not in lines or lines[name].lines <= lines[name].target
                 or lines[name].lines < most - SLACK]

@@ -19,11 +19,11 @@ for name in names:
     folder = log / "latest_build" / name
     folder.mkdir(parents=True, exist_ok=True)
     (build / name).mkdir(parents=True, exist_ok=True)
-    trouble = log / "trouble.txt"
-    if trouble.exists() and name == names[2]:
+    failure = log / "failure.txt"
+    if failure.exists() and name == names[2]:
         for file in ("stdout.log", "stdout_stderr.log"):
-            (folder / file).write_text("[1/4] Building a.o\nFAILED: a.o\n" + trouble.read_text())
-        if trouble.read_text() == "hangs":
+            (folder / file).write_text("[1/4] Building a.o\nFAILED: a.o\n" + failure.read_text())
+        if failure.read_text() == "hangs":
             time.sleep(60)
         print("Failed   <<<", name, "[0.1s, exited with code 1]", flush=True)
         sys.exit(1)
@@ -36,7 +36,7 @@ for name in names:
 
 @pytest.fixture
 def state(tmp_path, monkeypatch):
-    """The folder .ur of a checkout in a path with spaces."""
+    """The folder .ur of a checkout whose path contains spaces."""
     state = tmp_path / "a path with spaces" / ".ur"
     monkeypatch.setattr("ur_tools.layout.STATE", state)
     monkeypatch.setattr(build, "STATE", state)
@@ -45,7 +45,7 @@ def state(tmp_path, monkeypatch):
 
 @pytest.fixture
 def layout(state, monkeypatch):
-    """A checkout in which everything is set up and nothing is built."""
+    """A checkout that is set up and has no built packages."""
     monkeypatch.setattr(build, "Lock", lambda name: lock.Lock(name, state))
     monkeypatch.setattr(system_packages, "absent", list)
     monkeypatch.setattr(venv, "is_current", lambda _: True)
@@ -64,29 +64,29 @@ def calls(layout):
     return [line.split() for line in (layout.log / "calls.txt").read_text().splitlines()]
 
 
-def trouble(layout, text):
+def make_third_package_fail(layout, text):
     layout.log.mkdir(parents=True, exist_ok=True)
-    (layout.log / "trouble.txt").write_text(text)
+    (layout.log / "failure.txt").write_text(text)
 
 
-def test_in_a_path_with_spaces_everything_is_built_once(layout, capsys):
+def test_builds_everything_once_in_a_path_with_spaces(layout, capsys):
     names = list(build.build(build.Options(layout)))
-    said = capsys.readouterr().out
-    assert said.splitlines()[0].startswith(f"==> Builds {len(names)} packages, about ")
-    assert all(f"finished {name}" in said for name in names)
+    printed = capsys.readouterr().out
+    assert printed.splitlines()[0].startswith(f"==> Builds {len(names)} packages, about ")
+    assert all(f"finished {name}" in printed for name in names)
     build.build(build.Options(layout))
     assert calls(layout) == [names]
     assert capsys.readouterr().out == ""
 
 
-def test_the_times_of_a_build_are_kept_for_the_next_forecast(layout):
+def test_stores_build_times_for_the_next_forecast(layout):
     build.build(build.Options(layout))
     seconds, steps = build._times(build.Options(layout)).last("rcl_cxx", False)
     assert steps == 4 and seconds < 30.0
 
 
 def test_an_interrupted_build_is_continued(layout, monkeypatch):
-    trouble(layout, "hangs")
+    make_third_package_fail(layout, "hangs")
     update = build.Progress.update
 
     def interrupted(self):
@@ -98,27 +98,27 @@ def test_an_interrupted_build_is_continued(layout, monkeypatch):
     monkeypatch.setattr(build.Progress, "update", interrupted)
     with pytest.raises(KeyboardInterrupt):
         build.build(build.Options(layout))
-    (layout.log / "trouble.txt").unlink()
+    (layout.log / "failure.txt").unlink()
     names = list(build.build(build.Options(layout)))
     assert calls(layout) == [names, names[2:]]
 
 
-def test_a_failure_shows_its_reason_and_the_next_build_continues_there(layout):
-    trouble(layout, "a.cpp:1: error: oh no")
+def test_a_failure_is_shown_and_the_next_build_continues_with_the_failed_package(layout):
+    make_third_package_fail(layout, "a.cpp:1: error: oh no")
     with pytest.raises(console.Failure, match="did not build(.|\n)*FAILED: a.o\na.cpp:1: error: oh no"):
         build.build(build.Options(layout))
-    (layout.log / "trouble.txt").unlink()
+    (layout.log / "failure.txt").unlink()
     names = list(build.build(build.Options(layout)))
     assert calls(layout)[1] == names[2:]
 
 
-def test_a_disk_that_is_full_is_named(layout):
-    trouble(layout, "a.cpp: fatal error: cannot write a.o: No space left on device")
+def test_a_full_disk_is_reported(layout):
+    make_third_package_fail(layout, "a.cpp: fatal error: cannot write a.o: No space left on device")
     with pytest.raises(console.Failure, match="The disk that holds .* is full"):
         build.build(build.Options(layout))
 
 
-def test_an_interrupted_installation_of_the_wheels_is_continued_in_the_same_environment(state, monkeypatch):
+def test_an_interrupted_installation_of_the_wheels_continues_in_the_same_environment(state, monkeypatch):
     layout = Layout("kilted")
     python = layout.venv / "bin" / "python"
     assert state in python.parents

@@ -22,7 +22,7 @@ class Clock:
 
 @pytest.fixture
 def layout(tmp_path, monkeypatch):
-    """A checkout in which nothing has been made."""
+    """A checkout without any generated files."""
     monkeypatch.setattr("ur_tools.layout.STATE", tmp_path)
     return Layout("kilted")
 
@@ -38,14 +38,14 @@ def test_durations_are_rounded(seconds, text):
     assert build_times.rounded(seconds) == text
 
 
-# --- The forecast -----------------------------------------------------------------------------------------------------
+# --- Forecast ---------------------------------------------------------------------------------------------------------
 
 
-def test_the_reference_names_every_package():
+def test_the_reference_contains_every_package():
     assert set(build_times.REFERENCE) == set(build.discover())
 
 
-def test_before_anything_is_built_the_forecast_is_the_reference(times):
+def test_the_first_forecast_is_the_reference(times):
     forecast = build_times.Forecast(times, {"messages": True, "driver": True}, False, Clock())
     assert forecast.remaining() == pytest.approx(400.0)
 
@@ -65,11 +65,11 @@ def test_the_remaining_time_follows_the_measured_speed(times):
         forecast.step("messages", step * 40, 400)
         remaining.append(forecast.remaining())
     assert remaining == sorted(remaining, reverse=True)
-    assert remaining[4] < 60.0  # the reference says 150
+    assert remaining[4] < 60.0  # 150 according to the reference
     assert remaining[-1] == 0.0
 
 
-def test_files_are_counted_over_all_packages_and_the_total_is_an_estimate_until_all_have_begun(times):
+def test_the_total_number_of_files_is_an_estimate_until_all_packages_have_started(times):
     forecast = build_times.Forecast(times, {"messages": True, "driver": True}, False, Clock())
     forecast.step("messages", 30, 400)
     assert forecast.files() == (30, 400 + 100, False)
@@ -112,10 +112,10 @@ def test_a_damaged_file_of_times_is_ignored(tmp_path):
     assert build_times.BuildTimes(tmp_path / "times.json", 2).last("messages", False) is None
 
 
-# --- The first line -----------------------------------------------------------------------------------------------------
+# --- First line ---------------------------------------------------------------------------------------------------------
 
 
-def test_the_first_run_says_what_is_downloaded_and_built_and_how_long_it_takes(layout):
+def test_the_first_run_reports_downloads_packages_and_duration(layout):
     names = list(build.discover())
     pending = build.Pending([], True, True, names, False)
     text = pending.text(build.Options(layout, jobs=2))
@@ -124,7 +124,7 @@ def test_the_first_run_says_what_is_downloaded_and_built_and_how_long_it_takes(l
     assert text == f"First run: downloads about {megabytes} MB, builds {len(names)} packages, about {minutes} on 2 cores"
 
 
-def test_a_rebuild_says_how_long_at_most_and_how_long_last_time(layout):
+def test_a_rebuild_reports_the_maximum_and_the_last_duration(layout):
     (layout.build / "rcl_cxx").mkdir(parents=True)
     (layout.build / "rcl_cxx" / ".ninja_log").write_text("")
     layout.venv.mkdir()
@@ -143,7 +143,7 @@ def test_there_is_no_output_when_everything_is_built(layout, monkeypatch, capsys
     assert capsys.readouterr().out == ""
 
 
-def test_an_unknown_package_is_refused_before_anything_is_set_up(layout, monkeypatch):
+def test_an_unknown_package_is_rejected_before_the_setup(layout, monkeypatch):
     monkeypatch.setattr(system_packages, "ensure", lambda: pytest.fail("set up"))
     with pytest.raises(console.Failure, match="no package ur_simulater"):
         build.build(build.Options(layout, ["ur_simulater"]))
@@ -156,7 +156,7 @@ def test_the_memory_limits_the_number_of_jobs(monkeypatch, cores, gigabytes, job
     assert build.default_jobs() == jobs
 
 
-# --- The progress -------------------------------------------------------------------------------------------------------
+# --- Progress -----------------------------------------------------------------------------------------------------------
 
 
 class Stamps:
@@ -167,7 +167,7 @@ class Stamps:
         self.written.append((name, tests))
 
 
-def test_the_progress_line_names_packages_files_and_the_remaining_time(layout, times, monkeypatch):
+def test_the_progress_line_shows_packages_files_and_the_remaining_time(layout, times, monkeypatch):
     shown, stamps = [], Stamps()
     monkeypatch.setattr(console.Status, "show", lambda self, text: shown.append(text))
     output = layout.log / "colcon.txt"
@@ -187,10 +187,10 @@ def test_the_progress_line_names_packages_files_and_the_remaining_time(layout, t
     assert stamps.written == [("messages", False)] and progress.done == {"messages"} and progress.failed == ["driver"]
 
 
-# --- The disk -----------------------------------------------------------------------------------------------------------
+# --- Disk ---------------------------------------------------------------------------------------------------------------
 
 
-def test_a_first_run_without_space_is_refused_before_it_begins(layout, tmp_path, monkeypatch):
+def test_a_first_run_without_disk_space_is_rejected_at_the_start(layout, tmp_path, monkeypatch):
     monkeypatch.setattr(disk.shutil, "disk_usage", lambda _: Usage(10**10, 10**10, 10**8))
     monkeypatch.setattr(build, "STATE", tmp_path)
     monkeypatch.setattr(build, "Lock", lambda name: lock.Lock(name, tmp_path))
@@ -199,7 +199,7 @@ def test_a_first_run_without_space_is_refused_before_it_begins(layout, tmp_path,
         build.build(build.Options(layout))
 
 
-def test_the_space_of_a_folder_that_does_not_exist_is_that_of_its_parent(tmp_path):
+def test_free_space_of_a_missing_folder_is_that_of_its_parent(tmp_path):
     assert disk.free(tmp_path / "not" / "there") == pytest.approx(disk.free(tmp_path), rel=0.5)
 
 
@@ -214,7 +214,7 @@ def test_errors_of_the_file_system_are_explained(monkeypatch, capsys, number, te
     assert text in capsys.readouterr().err
 
 
-# --- Two at once --------------------------------------------------------------------------------------------------------
+# --- Locks ------------------------------------------------------------------------------------------------------------
 
 HOLDER = """
 import pathlib, sys
@@ -227,13 +227,13 @@ with Lock("build", pathlib.Path({folder!r})):
 """
 
 
-def test_a_second_build_waits_and_names_the_first(tmp_path, monkeypatch):
+def test_a_second_build_waits_and_reports_the_first(tmp_path, monkeypatch):
     code = HOLDER.format(path=sys.path, folder=str(tmp_path))
     first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    said = []
+    printed = []
 
     def on_message(text):
-        said.append(text)
+        printed.append(text)
         assert first.poll() is None  # it is still holding the lock
         first.stdin.write("\n")
         first.stdin.flush()
@@ -242,10 +242,10 @@ def test_a_second_build_waits_and_names_the_first(tmp_path, monkeypatch):
     assert first.stdout.readline() == "holding\n"
     with lock.Lock("build", tmp_path):
         assert first.wait(20.0) == 0
-    assert said == [f"Waiting for `./ur build --tests` (process {first.pid}), which is running in this checkout"]
+    assert printed == [f"Waiting for `./ur build --tests` (process {first.pid}), which is running in this checkout"]
 
 
-def test_a_lock_is_free_after_its_holder_was_killed(tmp_path, monkeypatch):
+def test_a_lock_is_released_when_its_holder_is_killed(tmp_path, monkeypatch):
     code = HOLDER.format(path=sys.path, folder=str(tmp_path))
     first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     assert first.stdout.readline() == "holding\n"
@@ -256,7 +256,7 @@ def test_a_lock_is_free_after_its_holder_was_killed(tmp_path, monkeypatch):
         pass
 
 
-def test_a_lock_whose_file_was_removed_in_the_meantime_is_acquired_again(tmp_path, monkeypatch):
+def test_a_lock_is_acquired_again_if_its_file_was_removed_in_the_meantime(tmp_path, monkeypatch):
     taken = lock.Lock("build", tmp_path)
     lock_file = lock.Lock._lock
 
@@ -270,7 +270,7 @@ def test_a_lock_whose_file_was_removed_in_the_meantime_is_acquired_again(tmp_pat
         assert "process" in (tmp_path / "build.lock").read_text()
 
 
-def test_a_checkout_that_cannot_be_written_is_named(tmp_path, monkeypatch):
+def test_a_read_only_checkout_is_reported(tmp_path, monkeypatch):
     def refuse(*_unused, **_more):
         raise OSError(errno.EROFS, "Read-only file system")
 

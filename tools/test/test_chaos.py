@@ -30,7 +30,7 @@ def chaos(*arguments):
                             stderr=subprocess.STDOUT, text=True)
 
 
-def test_a_short_run_finds_nothing():
+def test_a_short_run_finds_no_violation():
     process = chaos("--address", ADDRESS, "--faults", "20", "--seed", "3")
     output, _ = process.communicate(timeout=240)
     assert process.returncode == 0, output
@@ -38,7 +38,7 @@ def test_a_short_run_finds_nothing():
     assert re.search(r"fault +count +recovery p50 +max", output) and re.search(r"succeeded +\d+", output)
 
 
-def driver_of(process, log):
+def driver_pid(process, log):
     """Returns the process id of the driver from the journal."""
     deadline = time.monotonic() + 60.0
     while True:
@@ -49,9 +49,9 @@ def driver_of(process, log):
         time.sleep(0.05)
 
 
-def test_a_violation_ends_the_run_with_the_seed_and_the_log(tmp_path):
+def test_a_violation_ends_the_run_and_reports_seed_and_logs(tmp_path):
     process = chaos("--address", ADDRESS, "--faults", "1000", "--seed", "11", "--log", str(tmp_path))
-    os.kill(driver_of(process, tmp_path / "journal.log"), signal.SIGKILL)
+    os.kill(driver_pid(process, tmp_path / "journal.log"), signal.SIGKILL)
     output, _ = process.communicate(timeout=120)
     assert process.returncode == 1
     assert "VIOLATED: " in output and "seed 11" in output and str(tmp_path / "journal.log") in output
@@ -59,7 +59,7 @@ def test_a_violation_ends_the_run_with_the_seed_and_the_log(tmp_path):
 
 
 @pytest.mark.parametrize("arguments", [("--faults", "-1"), ("--clients", "0"), ("--minutes", "-2")])
-def test_options_out_of_range_are_refused(arguments):
+def test_options_out_of_range_are_rejected(arguments):
     process = chaos(*arguments)
     output, _ = process.communicate(timeout=30)
     assert process.returncode == 2 and "cannot be negative" in output
@@ -71,24 +71,24 @@ def test_help_explains_the_options():
         assert option in output
 
 
-def drawn(seed):
+def draw(seed):
     mix = goals.Mix(random.Random(seed))
     sequence = faults.sequence(random.Random(seed))
     return [mix.next().text() for _ in range(50)], [fault.text() for fault in itertools.islice(sequence, 50)]
 
 
-def test_the_seed_draws_the_same_goals_and_faults_again():
-    assert drawn(5) == drawn(5)
-    assert drawn(5) != drawn(6)
+def test_the_same_seed_gives_the_same_goals_and_faults():
+    assert draw(5) == draw(5)
+    assert draw(5) != draw(6)
 
 
-def test_goals_that_are_drawn_fit_their_actions():
+def test_random_goals_match_their_action_types():
     mix = goals.Mix(random.Random(1))
     for _ in range(300):
         mix.next().message()
 
 
-def test_resources_that_grow_after_the_warm_up_are_named():
+def test_resources_that_grow_after_the_warm_up_are_reported():
     loads = watch.Loads(os.getpid())
     loads.samples = [(0.0, 50 + 2 * number, 20, 60.0) for number in range(40)]
     assert loads.verdict() == ["descriptors grew from 80 to 110"]

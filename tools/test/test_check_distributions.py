@@ -24,13 +24,13 @@ class Headers:
         return folder.endswith("my_msgs")
 
 
-def test_another_compiler_gets_the_options_of_the_build_and_writes_nothing():
+def test_another_compiler_receives_the_options_of_the_build_and_writes_no_files():
     assert check.rewrite(COMMAND, "g++-11", PREFIX, None) == [
         "g++-11", "-fsyntax-only", "-Werror", '-DNAME="x"', "-I/src/include", "-isystem", "/opt/wheels/include/rcl", "-isystem",
         "/install/include/my_msgs", "-isystem", "/usr/include/eigen3", "-O3", "-Wall", "/src/a.cpp"]
 
 
-def test_the_headers_of_the_distribution_take_the_place_of_those_of_the_build():
+def test_the_headers_of_the_distribution_replace_those_of_the_build():
     assert check.rewrite(COMMAND, "g++-11", PREFIX, Headers()) == [
         "g++-11", "-fsyntax-only", "-Werror", '-DNAME="x"', "-I/src/include", "-isystem", "/usr/include/eigen3", "-O3", "-Wall",
         "/src/a.cpp", "-isystem", "/humble/rcl/include"]
@@ -38,7 +38,7 @@ def test_the_headers_of_the_distribution_take_the_place_of_those_of_the_build():
 
 @pytest.fixture
 def project(tmp_path, monkeypatch):
-    """One file that includes a header of ROS, with the header of the build and that of another distribution."""
+    """A file that includes a ROS header, which exists in the build and in another distribution."""
     monkeypatch.setattr(check, "ROOT", tmp_path)
     for folder, text in (("wheels", "int old_name();"), ("rolling", "int new_name();")):
         (tmp_path / folder).mkdir()
@@ -52,7 +52,7 @@ def project(tmp_path, monkeypatch):
     return types.SimpleNamespace(build=build, prefix=tmp_path / "wheels", files="", jobs=1, rolling=tmp_path / "rolling")
 
 
-def test_a_file_that_compiles_with_the_build_fails_where_the_distribution_lacks_a_name(project, capsys):
+def test_a_name_missing_in_the_distribution_is_an_error(project, capsys):
     assert check.check("c++", project, None) == 0
     assert check.check("c++", project, Headers(project.rolling)) == 1
     assert "old_name" in capsys.readouterr().out

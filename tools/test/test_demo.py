@@ -1,4 +1,4 @@
-"""./ur demo without the build: pushes are ignored, the contact stops the arm, and both files are written."""
+"""./ur demo without the build step: pushes are ignored, contact stops the arm, and both files are written."""
 
 import csv
 import os
@@ -30,7 +30,7 @@ def demo(*arguments):
     return subprocess.run([*COMMAND, *arguments], env=environment(), capture_output=True, text=True, timeout=120)
 
 
-def log_of_the_robot(address):
+def robot_log(address):
     with ControlPort(address) as control:
         entries = control.request("log")["entries"]
     return "\n".join(f"{entry['timestamp']:.3f} {entry['source']}: {entry['text']}" for entry in entries[-40:])
@@ -41,7 +41,7 @@ def first_motions():
     return [line.split("  #")[0].strip() for line in re.search(r"```bash\n(.*?)```", section, re.S)[1].splitlines()]
 
 
-def test_two_pushes_are_ignored_and_the_contact_stops_the_arm(tmp_path):
+def test_ignores_two_pushes_and_stops_on_contact(tmp_path):
     result = demo("--address", os.environ.get("UR_TEST_ADDRESS", "127.0.1.201"), "--drop", "0.2", "--speed", "0.15",
                   "--output", str(tmp_path))
     assert result.returncode == 0, result.stdout + result.stderr
@@ -64,14 +64,14 @@ def test_the_first_motions_of_the_readme_work_while_the_demo_keeps_running(tmp_p
         assert len(lines) == 5
         for line in lines:
             done = subprocess.run(["bash", "-c", line], cwd=ROOT, env=shell, capture_output=True, text=True, timeout=60)
-            assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}\n{log_of_the_robot(address)}"
+            assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}\n{robot_log(address)}"
     finally:
         running.interrupt()
         code = running.wait(30.0)
     assert code == 130
 
 
-def test_another_simulator_on_the_address_is_left_alone(tmp_path):
+def test_another_simulator_on_the_address_is_not_used(tmp_path):
     address = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
     simulator = Process([program(Layout.of_environment(), "ur_simulator", "ur_simulator"), "--address", address])
     try:
@@ -95,7 +95,7 @@ def test_the_packages_that_the_demo_imports_are_built():
     assert "ur_ros_rtde_gripper_commands" not in built
 
 
-def test_options_out_of_range_are_named_with_their_limits():
+def test_options_out_of_range_are_rejected_with_their_limits():
     result = demo("--threshold", "1000")
     assert result.returncode == 2
     assert "--threshold 1000: must be from 5 to 100" in result.stderr

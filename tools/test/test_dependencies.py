@@ -1,4 +1,4 @@
-"""package.xml declares the packages that build files find and Python files import."""
+"""package.xml declares all packages that CMake files find and Python files import."""
 
 import ast
 import re
@@ -38,7 +38,7 @@ def is_test(path):
     return "test" in path.parts or "bench" in path.parts
 
 
-def looked_for(text):
+def found_packages(text):
     """Returns the packages of find_package(), also in a loop over a list, and gmock, which GTest's package file includes."""
     text = re.sub(r'"[^"]*"', '""', text)  # messages may mention find_package()
     names = set(re.findall(r"find_package\(([\w-]+)", text))
@@ -63,7 +63,7 @@ def undeclared(names, known):
 def test_cmake_packages_are_declared(name):
     for path in files(name, "CMakeLists.txt", "*.cmake"):
         known = declared(name, ANY if is_test(path) else BUILD)
-        assert not undeclared(looked_for(path.read_text()), known), path
+        assert not undeclared(found_packages(path.read_text()), known), path
 
 
 @pytest.mark.parametrize("name", PACKAGES)
@@ -79,8 +79,8 @@ def test_imported_python_modules_are_declared(name):
 def test_executables_that_launch_files_start_are_declared(name):
     for path in files(name, "*.launch.py"):
         text = path.read_text()
-        asked_for = re.search(r"^PACKAGES = \((.*?)\)", text, re.M | re.S)  # whether they are installed
-        known = declared(name, RUN) | set(re.findall(r'"(\w+)"', asked_for.group(1) if asked_for else ""))
+        required = re.search(r"^PACKAGES = \((.*?)\)", text, re.M | re.S)  # whether they are installed
+        known = declared(name, RUN) | set(re.findall(r'"(\w+)"', required.group(1) if required else ""))
         assert set(re.findall(r'package="(\w+)"', text)) <= known, path
 
 

@@ -16,15 +16,15 @@ ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
 
 @pytest.fixture
 def may_install(monkeypatch):
-    """may_install(False): neither root nor sudo without a password."""
+    """Returns a function that sets whether ./ur may install packages. False: neither root nor sudo without a password."""
     def set_to(allowed):
         monkeypatch.setattr(doctor, "_may_install", lambda: allowed)
 
     return set_to
 
 
-def a_compiler(folder, lines):
-    path = folder / "a_compiler"
+def make_compiler(folder, lines):
+    path = folder / "make_compiler"
     path.write_text("#!/bin/sh\n" + lines)
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
     return str(path)
@@ -38,33 +38,33 @@ def test_this_machine_can_build_and_run():
     assert result.stdout.splitlines()[-1] == "This machine can build and run everything."
 
 
-def test_the_status_is_1_when_something_prevents_work(monkeypatch, capsys):
+def test_the_exit_status_is_1_if_a_check_fails(monkeypatch, capsys):
     monkeypatch.setattr(doctor, "compiler", lambda: doctor.Finding("compiler", doctor.FAILED, "old", "Install a new one."))
     monkeypatch.setattr(doctor, "CYCLES", 2)
     assert doctor.run(Layout.of_environment()) == 1
-    said = capsys.readouterr().out
-    assert "FAILED  compiler         old\n" + 25 * " " + "Install a new one.\n" in said
-    assert said.splitlines()[-1] == "1 problem must be solved first."
+    printed = capsys.readouterr().out
+    assert "FAILED  compiler         old\n" + 25 * " " + "Install a new one.\n" in printed
+    assert printed.splitlines()[-1] == "1 problem must be solved first."
 
 
-def test_a_compiler_of_c_plus_plus_20_is_named_with_its_version():
+def test_a_compiler_with_c_plus_plus_20_is_reported_with_its_version():
     found = doctor.compiler()
     assert found.state == doctor.OK and any(character.isdigit() for character in found.text)
 
 
-def test_a_compiler_without_c_plus_plus_20_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setenv("CXX", a_compiler(tmp_path, 'case "$1" in --version) echo old 7.5;; *) exit 1;; esac\n'))
+def test_a_compiler_without_c_plus_plus_20_fails(tmp_path, monkeypatch):
+    monkeypatch.setenv("CXX", make_compiler(tmp_path, 'case "$1" in --version) echo old 7.5;; *) exit 1;; esac\n'))
     found = doctor.compiler()
     assert found.state == doctor.FAILED and found.text == "old 7.5: does not compile C++20" and "CXX=" in found.advice
 
 
-def test_a_compiler_that_does_not_exist_is_refused(monkeypatch):
+def test_a_compiler_that_does_not_exist_fails(monkeypatch):
     monkeypatch.setenv("CXX", "/no/such/compiler")
     assert doctor.compiler().state == doctor.FAILED
 
 
 @pytest.mark.parametrize("allowed, state", [(True, doctor.NOTE), (False, doctor.FAILED)])
-def test_a_missing_compiler_fails_where_ur_cannot_install_it(monkeypatch, may_install, allowed, state):
+def test_a_missing_compiler_fails_if_ur_cannot_install_it(monkeypatch, may_install, allowed, state):
     monkeypatch.delenv("CXX", raising=False)
     monkeypatch.setattr(doctor.shutil, "which", lambda _: None)
     may_install(allowed)
@@ -73,7 +73,7 @@ def test_a_missing_compiler_fails_where_ur_cannot_install_it(monkeypatch, may_in
 
 @pytest.mark.parametrize("allowed, state, advice", [(True, doctor.NOTE, "./ur installs them"),
                                                     (False, doctor.FAILED, "sudo apt-get install")])
-def test_missing_system_packages_are_named(monkeypatch, may_install, allowed, state, advice):
+def test_missing_system_packages_are_reported(monkeypatch, may_install, allowed, state, advice):
     monkeypatch.setattr(system_packages, "absent", lambda: ["libfmt-dev"])
     monkeypatch.setattr(doctor.shutil, "which", lambda _: "/usr/bin/dpkg-query")
     may_install(allowed)
@@ -81,7 +81,7 @@ def test_missing_system_packages_are_named(monkeypatch, may_install, allowed, st
     assert (found.state, found.text) == (state, "missing: libfmt-dev") and advice in found.advice
 
 
-def test_no_usable_python_fails_with_what_was_found(monkeypatch):
+def test_a_missing_python_fails_with_the_found_versions(monkeypatch):
     monkeypatch.setattr(venv, "_candidates", lambda: ["/no/such/python"])
     found = doctor.python()
     assert found.state == doctor.FAILED and "3.10, 3.11 or 3.12" in found.text and "/no/such/python" in found.advice
@@ -93,13 +93,13 @@ def test_a_full_disk_fails(monkeypatch):
     assert found.state == doctor.FAILED and found.text.startswith("0.1 GB free")
 
 
-def test_little_memory_is_noted_with_the_number_of_jobs(monkeypatch):
+def test_little_memory_is_reported_with_the_number_of_jobs(monkeypatch):
     monkeypatch.setattr(doctor.os, "sysconf", lambda name: 4096 if name == "SC_PAGE_SIZE" else int(1.5e9 / 4096))
     found = doctor.memory()
     assert found.state == doctor.NOTE and "builds with 1 job" in found.text
 
 
-def test_ports_in_use_are_noted_with_another_address(monkeypatch):
+def test_ports_in_use_are_reported_with_another_address(monkeypatch):
     monkeypatch.setattr(doctor, "DEMO_ADDRESS", ADDRESS)
     with socket.create_server((ADDRESS, 30004)):
         found = doctor.demo_ports()
@@ -114,18 +114,18 @@ def test_loopback_addresses_that_cannot_be_used_fail(monkeypatch):
 
 
 @pytest.mark.parametrize("folder", ["a:b", "a;b", 'a"b', "a$b"])
-def test_a_path_that_cannot_be_in_a_search_path_fails(monkeypatch, tmp_path, folder):
+def test_a_path_that_is_invalid_in_a_search_path_fails(monkeypatch, tmp_path, folder):
     monkeypatch.setattr(doctor, "ROOT", tmp_path / folder)
     assert doctor.checkout().state == doctor.FAILED
     with pytest.raises(console.Failure, match="Move the checkout"):
         build.check_path(pathlib.Path("/a") / folder)
 
 
-def test_a_path_with_spaces_is_fine():
+def test_a_path_with_spaces_is_accepted():
     build.check_path(pathlib.Path("/home of ann/ur driver"))
 
 
-def test_a_checkout_that_cannot_be_written_fails(monkeypatch):
+def test_a_read_only_checkout_fails(monkeypatch):
     monkeypatch.setattr(doctor, "STATE", pathlib.Path("/proc"))
     found = doctor.checkout()
     assert found.state == doctor.FAILED and found.text.startswith("/proc cannot be written")
@@ -140,13 +140,13 @@ EVEN = [0.1] * 500
     (EVEN[10:] + [1.0] * 10, 0.0, doctor.NOTE, "1.00 ms (p99)"),
     (EVEN, 0.2, doctor.NOTE, "20 % of the processor time goes to other virtual machines"),
 ])
-def test_the_jitter_is_judged(late, stolen, state, text):
+def test_the_jitter_is_compared_with_the_limits(late, stolen, state, text):
     found = doctor.judge_jitter(late, stolen)
     assert found.state == state and text in found.text
 
 
 def test_wake_up_latencies_are_measured_against_the_clock(monkeypatch):
-    """With a clock that is 3 ms late in the third cycle."""
+    """The clock is 3 ms late in the third cycle."""
     now = [0.0]
 
     def sleep(seconds):
@@ -161,5 +161,5 @@ def test_wake_up_latencies_are_measured_against_the_clock(monkeypatch):
     assert late[2] == pytest.approx(3.0) and late[:2] == pytest.approx([0.0, 0.0]) and late[4:] == pytest.approx([0.0, 0.0])
 
 
-def test_the_measurement_takes_a_second():
+def test_the_measurement_takes_one_second():
     assert doctor.CYCLE * doctor.CYCLES == 1.0

@@ -1,4 +1,4 @@
-"""The environment in which programs run."""
+"""The environment of the programs that `./ur` starts."""
 
 import os
 import pathlib
@@ -21,25 +21,25 @@ def layout(monkeypatch):
     return Layout.of_environment()
 
 
-def said_with(variable, profiles):
+def output_with(variable, profiles):
     env = {name: value for name, value in os.environ.items() if name not in VARIABLES}
     result = subprocess.run([sys.executable, "-c", PARTICIPANT], env={**env, variable: str(profiles)}, capture_output=True,
                             text=True, timeout=60)
     return result.stdout + result.stderr
 
 
-def test_the_fast_dds_profile_is_set_and_understood(layout, tmp_path):
+def test_sets_a_valid_fast_dds_profile(layout, tmp_path):
     env = run_environment(layout)
     variable, = (name for name in VARIABLES if name in env)
     profiles = pathlib.Path(env[variable])
-    assert said_with(variable, profiles) == ""
+    assert output_with(variable, profiles) == ""
     wrong = tmp_path / "wrong.xml"
     wrong.write_text(profiles.read_text().replace(HEARTBEAT[variable], "heart_period"))
-    assert "XML" in said_with(variable, wrong)
+    assert "XML" in output_with(variable, wrong)
 
 
 @pytest.mark.parametrize("variable", VARIABLES)
-def test_a_profile_of_the_user_is_kept(layout, monkeypatch, variable):
+def test_keeps_the_profile_of_the_user(layout, monkeypatch, variable):
     monkeypatch.setenv(variable, "mine.xml")
     env = run_environment(layout)
     assert {name: env.get(name) for name in VARIABLES} == {**dict.fromkeys(VARIABLES), variable: "mine.xml"}

@@ -5,14 +5,14 @@ import sys
 from ur_tools import isolation
 
 
-def test_domains_in_use_at_the_same_time_differ():
+def test_concurrent_domains_differ():
     with isolation.Domain() as first, isolation.Domain() as second:
         assert first.number != second.number
         assert 1 <= min(first.number, second.number) and max(first.number, second.number) <= isolation.LAST_DOMAIN
         assert first.environment()["UR_TEST_ADDRESS"] != second.environment()["UR_TEST_ADDRESS"]
 
 
-def test_a_domain_in_use_by_another_process_is_not_given_out():
+def test_does_not_reserve_a_domain_of_another_process():
     code = ("import sys; sys.path[:0] = %r\n"
             "from ur_tools.isolation import Domain\n"
             "with Domain() as domain:\n"
@@ -26,7 +26,7 @@ def test_a_domain_in_use_by_another_process_is_not_given_out():
     other.communicate("\n", timeout=20.0)
 
 
-def test_clean_up_removes_unused_shared_memory_of_the_run_and_nothing_older(tmp_path, monkeypatch):
+def test_clean_up_removes_only_unused_shared_memory_of_the_run(tmp_path, monkeypatch):
     monkeypatch.setattr(isolation, "_SHARED_MEMORY", tmp_path)
     monkeypatch.setattr(isolation, "_kill_stray_processes", lambda: None)
     (tmp_path / "fastrtps_old").write_text("")

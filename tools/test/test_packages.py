@@ -13,25 +13,25 @@ def make_package(root, name, *depends):
     return folder
 
 
-def test_packages_come_after_those_they_depend_on(tmp_path):
+def test_packages_follow_their_dependencies(tmp_path):
     make_package(tmp_path, "a_driver", "z_messages", "rcl")
     make_package(tmp_path, "z_messages")
     assert list(packages.discover(tmp_path)) == ["z_messages", "a_driver"]
 
 
-def test_a_folder_without_a_build_file_is_no_package(tmp_path):
+def test_a_folder_without_a_build_file_is_not_a_package(tmp_path):
     (make_package(tmp_path, "unfinished") / "CMakeLists.txt").unlink()
     assert packages.discover(tmp_path) == {}
 
 
-def test_a_circle_of_dependencies_is_named(tmp_path):
+def test_a_dependency_cycle_is_reported(tmp_path):
     make_package(tmp_path, "a", "b")
     make_package(tmp_path, "b", "a")
     with pytest.raises(ValueError, match="a -> b -> a"):
         packages.discover(tmp_path)
 
 
-def test_asking_for_a_package_includes_what_it_needs_and_nothing_else(tmp_path):
+def test_selecting_a_package_includes_exactly_its_dependencies(tmp_path):
     make_package(tmp_path, "driver", "messages")
     make_package(tmp_path, "messages")
     make_package(tmp_path, "simulator")
@@ -39,7 +39,7 @@ def test_asking_for_a_package_includes_what_it_needs_and_nothing_else(tmp_path):
     assert list(packages.with_dependencies(found, ["driver"])) == ["messages", "driver"]
 
 
-def test_asking_for_an_unknown_package_names_the_known_ones(tmp_path):
+def test_an_unknown_package_is_rejected_with_the_known_ones(tmp_path):
     make_package(tmp_path, "driver")
     with pytest.raises(KeyError, match="no package drivr; there are: driver"):
         packages.with_dependencies(packages.discover(tmp_path), ["drivr"])

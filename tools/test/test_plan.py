@@ -30,7 +30,7 @@ FAST = "time_from_start: {sec: 1, nanosec: 200000000}"
 
 
 def plan(tmp_path, text, *options):
-    """Without ./ur in front, which would build."""
+    """Runs the program directly, because ./ur would build first."""
     file = tmp_path / "plan.yaml"
     file.write_text(text)
     env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT / "tools"), os.environ.get("PYTHONPATH", "")])}
@@ -38,7 +38,7 @@ def plan(tmp_path, text, *options):
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
 
 
-def test_a_path_is_planned_and_drawn(tmp_path):
+def test_plans_and_draws_a_path(tmp_path):
     result = plan(tmp_path, PATH, "--model", "ur10e", "--plot", tmp_path / "plan.png", "--json", tmp_path / "plan.json")
     assert result.returncode == 0, result.stdout
     assert "3 waypoints" in result.stdout and "largest use of the limits" in result.stdout
@@ -49,14 +49,14 @@ def test_a_path_is_planned_and_drawn(tmp_path):
     assert max(abs(value) for row in samples["jerk"] for value in row) <= 100.0
 
 
-def test_the_documented_file_is_planned(tmp_path):
+def test_plans_the_documented_file(tmp_path):
     page = (ROOT / "docs" / "trajectory.md").read_text()
     text, = re.findall(r"```yaml\n(.*?)```", page, re.S)
     result = plan(tmp_path, text)
     assert result.returncode == 0 and "3 waypoints" in result.stdout, result.stdout
 
 
-def test_given_times_are_kept(tmp_path):
+def test_keeps_the_given_times(tmp_path):
     result = plan(tmp_path, TIMED)
     assert result.returncode == 0 and "2 waypoints, 2.000 s" in result.stdout, result.stdout
 
@@ -67,7 +67,7 @@ def velocities(tmp_path, text):
     return [abs(value) for row in json.loads((tmp_path / "plan.json").read_text())["samples"]["velocity"] for value in row]
 
 
-def test_a_path_without_limits_is_slow_and_given_times_are_a_choice(tmp_path):
+def test_default_limits_are_slow_and_given_limits_and_times_may_be_faster(tmp_path):
     far = f"waypoints:\n  - positions: {HOME}\n  - positions: [1.2, -1.57, 1.57, -1.57, -1.57, 0.0]\n"
     assert 1.0 < max(velocities(tmp_path, far)) <= 1.05
     assert 1.7 < max(velocities(tmp_path, far + "max_velocity: [1.8, 1.8, 1.8, 1.8, 1.8, 1.8]\n"
@@ -93,13 +93,13 @@ def test_a_path_without_limits_is_slow_and_given_times_are_a_choice(tmp_path):
     ("waypoints: []\nwaypoints: []", "plan.yaml:2: not YAML: the field waypoints is given twice"),
     ("7", "plan.yaml:1: the goal is 7: expected a mapping"),
 ])
-def test_what_cannot_be_planned_is_refused_with_the_reason(tmp_path, text, what):
+def test_an_invalid_goal_is_rejected_with_the_reason(tmp_path, text, what):
     result = plan(tmp_path, text)
     assert result.returncode == 1 and what in result.stdout, result.stdout
     assert "Traceback" not in result.stdout and "json" not in result.stdout.lower() and result.stdout.count("plan.yaml") == 1
 
 
-def test_a_file_that_is_not_there_is_named(tmp_path):
+def test_a_missing_file_is_reported(tmp_path):
     result = plan(tmp_path, PATH, "--model", "ur99")
     assert result.returncode == 1 and 'model is "ur99"' in result.stdout, result.stdout
     result = subprocess.run([sys.executable, "-m", "ur_tools.plan", "nowhere.yaml"], cwd=ROOT / "tools", stdout=subprocess.PIPE,
@@ -107,7 +107,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
     assert result.returncode == 1 and "nowhere.yaml: No such file" in result.stdout, result.stdout
 
 
-def test_joints_may_have_any_order_and_a_prefix(tmp_path):
+def test_accepts_joints_in_any_order_and_with_a_prefix(tmp_path):
     names = ["left_elbow_joint", "left_shoulder_pan_joint", *(f"left_{name}_joint" for name in
              ("shoulder_lift", "wrist_1", "wrist_2", "wrist_3"))]
     points = "".join(f"    - {{positions: [1.57, {pan}, -1.57, 0, 0, 0], time_from_start: {{sec: {time}}}}}\n"
@@ -120,8 +120,8 @@ def test_joints_may_have_any_order_and_a_prefix(tmp_path):
 
 
 @pytest.mark.parametrize("action, text", [("execute_trajectory", PATH), ("execute_parametrized_trajectory", TIMED)])
-def test_the_file_is_the_goal_of_an_action(tmp_path, action, text):
-    """`ur call` understands it, and `./ur plan` what `ur call --show` prints."""
+def test_the_file_has_the_format_of_an_action_goal(tmp_path, action, text):
+    """`ur call` accepts the file, and `./ur plan` accepts the output of `ur call --show`."""
     assert plan(tmp_path, text).returncode == 0
     command = [str(program(Layout.of_environment(), "ur_ros_rtde_cli", "ur")), "call", action, "--show", "--file", "plan.yaml"]
     shown = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
@@ -130,6 +130,6 @@ def test_the_file_is_the_goal_of_an_action(tmp_path, action, text):
     assert first.split(", planned")[0] == second.split(", planned")[0] and " waypoints, " in first
 
 
-def test_the_help_needs_no_build():
+def test_the_help_requires_no_build():
     result = subprocess.run([sys.executable, str(ROOT / "ur"), "plan", "--help"], stdout=subprocess.PIPE, text=True, timeout=60)
     assert result.returncode == 0 and "--plot" in result.stdout and "blend_tolerance" in result.stdout

@@ -25,7 +25,7 @@ sys.stdin.readline()
 
 @pytest.fixture
 def listening():
-    """Returns a function that starts a process which listens on a port, and returns its id."""
+    """Returns a function that starts a process that listens on a port and returns its process id."""
     started = []
 
     def start(address, port):
@@ -40,13 +40,13 @@ def listening():
         process.communicate("\n", timeout=20.0)
 
 
-def test_free_ports_are_free_and_stay_so():
+def test_free_ports_are_reported_as_free_repeatedly():
     for _unused in range(2):
         assert ports.in_use(ADDRESS, list(ports.PORTS.values())) == []
     ports.check(ADDRESS)
 
 
-def test_a_port_in_use_is_named_with_its_process_and_another_address(listening):
+def test_a_port_in_use_is_reported_with_its_process_and_another_address(listening):
     pid = listening(ADDRESS, 30001)
     assert ports.in_use(ADDRESS, [29999, 30001]) == [30001]
     assert ports.holder(ADDRESS, 30001)[0] == pid
@@ -58,20 +58,20 @@ def test_a_port_in_use_is_named_with_its_process_and_another_address(listening):
     assert other != ADDRESS and ports.in_use(other, list(ports.PORTS.values())) == []
 
 
-def test_a_listener_on_all_addresses_has_the_port_as_well(listening):
+def test_a_listener_on_all_addresses_occupies_the_port(listening):
     port = 30098  # not used by a controller: simulators of other tests are running
     pid = listening("0.0.0.0", port)
     assert ports.in_use(ADDRESS, [port]) == [port]
     assert ports.holder(ADDRESS, port)[0] == pid
 
 
-def test_a_listener_on_another_address_does_not_matter(listening):
+def test_a_listener_on_another_address_is_ignored(listening):
     listening("127.0.2.1", 30001)
     assert ports.in_use(ADDRESS, [30001]) == []
 
 
-def test_a_connection_that_is_closing_does_not_matter():
-    """Its port is in TIME_WAIT, and the simulator may reuse it."""
+def test_a_connection_in_time_wait_is_ignored():
+    """The simulator can reuse a port in TIME_WAIT."""
     listener = socket.create_server((ADDRESS, 30001), reuse_port=False)
     client = socket.create_connection((ADDRESS, 30001))
     server, _ = listener.accept()
@@ -83,18 +83,18 @@ def test_a_connection_that_is_closing_does_not_matter():
 
 
 @pytest.mark.parametrize("address, text", [("robot", "not an IPv4 address"), ("192.0.2.1", "no network interface")])
-def test_an_address_that_is_not_of_this_machine_is_refused(address, text):
+def test_an_address_of_another_machine_is_rejected(address, text):
     with pytest.raises(console.Failure, match=text):
         ports.check(address)
 
 
-def test_a_process_of_another_user_is_not_named(monkeypatch):
+def test_a_process_of_another_user_is_reported_without_its_name(monkeypatch):
     monkeypatch.setattr(ports, "holder", lambda *_: None)
     assert ports.explain(ADDRESS, [30001, 30002]) == (
         f"ports 30001 (primary), 30002 (secondary) of {ADDRESS}: in use by a process of another user")
 
 
-def test_a_simulator_that_does_not_start_is_not_taken_for_another_on_the_address(listening, tmp_path, monkeypatch):
+def test_a_simulator_that_fails_to_start_is_reported_despite_another_on_the_address(listening, tmp_path, monkeypatch):
     listening(ADDRESS, ports.PORTS["dashboard"])
     failing = tmp_path / "simulator"
     failing.write_text("#!/bin/sh\necho port 29999 is in use by another process\nexit 1\n")
@@ -104,10 +104,10 @@ def test_a_simulator_that_does_not_start_is_not_taken_for_another_on_the_address
         simulation.start_simulator(programs, Layout.of_environment(), dict(os.environ), ADDRESS, "ur10e")
 
 
-# --- Commands refuse before they build ------------------------------------------------------------------------------------
+# --- Checks before the build -----------------------------------------------------------------------------------------------
 
 
-def refused(*arguments):
+def run_without_build(*arguments):
     """Runs `./ur` with a build that fails the test. Returns its status and stderr."""
     code = (f"import sys; sys.path.insert(0, {str(ROOT / 'tools')!r})\n"
             "from ur_tools import build, main\n"
@@ -119,10 +119,10 @@ def refused(*arguments):
 
 
 @pytest.mark.parametrize("command", ["demo", "bench", "chaos"])
-def test_ports_in_use_are_found_before_anything_is_built(listening, command):
+def test_ports_in_use_are_reported_before_the_build(listening, command):
     pid = listening(ADDRESS, 29999)
     arguments = ["--output", str(ROOT)] if command == "demo" else []
-    code, text = refused(command, "--address", ADDRESS, *arguments)
+    code, text = run_without_build(command, "--address", ADDRESS, *arguments)
     assert code == 1 and f"in use by process {pid}" in text and "--address" in text
 
 
@@ -133,6 +133,6 @@ def test_ports_in_use_are_found_before_anything_is_built(listening, command):
     (["--model", "ur99"], 2, "invalid choice: 'ur99'"),
     (["--address", "192.0.2.1"], 1, "no network interface"),
 ])
-def test_wrong_arguments_of_the_demo_are_refused_before_anything_is_built(arguments, expected, text):
-    code, said = refused("demo", "--address", ADDRESS, *arguments)
-    assert code == expected and text in said
+def test_invalid_arguments_of_the_demo_are_rejected_before_the_build(arguments, expected, text):
+    code, printed = run_without_build("demo", "--address", ADDRESS, *arguments)
+    assert code == expected and text in printed

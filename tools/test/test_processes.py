@@ -8,8 +8,8 @@ import pytest
 from ur_tools.processes import Programs, group_is_alive
 from ur_tools.console import Failure
 
-# Ignores SIGINT and SIGTERM, and has a child that also does.
-STUBBORN = """
+# Ignores SIGINT and SIGTERM, as does its child process.
+IGNORES_SIGNALS = """
 import signal, subprocess, sys, time
 for number in (signal.SIGINT, signal.SIGTERM):
     signal.signal(number, signal.SIG_IGN)
@@ -24,14 +24,14 @@ def python(code):
     return [sys.executable, "-c", code]
 
 
-def test_leaving_the_block_ends_every_program(tmp_path):
+def test_leaving_the_block_stops_all_programs(tmp_path):
     with Programs(tmp_path) as programs:
         sleeper = programs.start("sleeper", python("import time; print('up', flush=True); time.sleep(60)"))
         programs.wait_until(lambda: "up" in sleeper.output, 10.0, "the sleeper")
     assert not sleeper.running
 
 
-def test_an_exception_in_the_block_ends_every_program(tmp_path):
+def test_an_exception_in_the_block_stops_all_programs(tmp_path):
     with pytest.raises(RuntimeError):
         with Programs(tmp_path) as programs:
             sleeper = programs.start("sleeper", python("import time; time.sleep(60)"))
@@ -41,7 +41,7 @@ def test_an_exception_in_the_block_ends_every_program(tmp_path):
 
 def test_a_program_that_ignores_signals_is_killed_with_its_children(tmp_path):
     with Programs(tmp_path) as programs:
-        stubborn = programs.start("stubborn", python(STUBBORN))
+        stubborn = programs.start("stubborn", python(IGNORES_SIGNALS))
         programs.wait_until(lambda: "ready" in stubborn.output, 10.0, "the program")
         stubborn.stop(QUICK)
         assert not stubborn.running
@@ -64,13 +64,13 @@ def test_waiting_fails_at_its_limit(tmp_path):
             programs.wait_until(lambda: False, 0.1, "the dashboard")
 
 
-def test_a_program_that_does_not_exist_is_named(tmp_path):
+def test_a_missing_program_is_reported(tmp_path):
     with Programs(tmp_path) as programs:
         with pytest.raises(Failure, match="ghost cannot be started"):
             programs.start("ghost", [str(tmp_path / "ghost")])
 
 
-def test_a_terminated_parent_leaves_no_program_behind(tmp_path):
+def test_programs_are_stopped_when_the_parent_is_terminated(tmp_path):
     code = f"""
 import pathlib, sys, time
 sys.path[:0] = {sys.path!r}

@@ -12,13 +12,13 @@ from ur_tools.environment import workspace_environment
 from ur_tools.layout import ROOT, Layout
 
 
-def outside(*arguments, cwd=ROOT):
+def run_outside(*arguments, cwd=ROOT):
     """Runs ./ur in an environment without ROS."""
     env = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "AMENT_PREFIX_PATH", CHECKOUT_VARIABLE)}
     return subprocess.run([sys.executable, str(ROOT / "ur"), *arguments], cwd=cwd, env=env, capture_output=True, text=True, timeout=60)
 
 
-def inside(*arguments, cwd=ROOT):
+def run_inside(*arguments, cwd=ROOT):
     """Runs ur in the environment of ./ur shell."""
     return subprocess.run(["ur", *arguments], cwd=cwd, env=workspace_environment(Layout.of_environment()), capture_output=True,
                           text=True, timeout=60)
@@ -30,35 +30,35 @@ def commands_in(text):
 
 def test_the_help_lists_the_same_commands():
     expected = {*COMMANDS, *CHECKOUT_COMMANDS}
-    for result, name in ((outside("--help"), "./ur"), (inside("--help"), "ur")):
+    for result, name in ((run_outside("--help"), "./ur"), (run_inside("--help"), "ur")):
         assert result.returncode == 0 and f"usage: {name} " in result.stdout, result.stderr
         assert commands_in(result.stdout) == expected
         assert "==SUPPRESS==" not in result.stdout
 
 
 @pytest.mark.parametrize("command", [*COMMANDS, *CHECKOUT_COMMANDS])
-def test_every_command_has_a_help(command):
-    for run in (outside, inside):
+def test_every_command_has_help(command):
+    for run in (run_outside, run_inside):
         result = run(command, "--help")
         assert result.returncode == 0 and "usage: " in result.stdout.lower(), result.stderr
 
 
-def test_commands_of_the_checkout_run_inside_where_the_user_is(tmp_path):
-    result = inside("new", "command", "wag", cwd=tmp_path)
+def test_commands_of_the_checkout_run_in_the_working_directory(tmp_path):
+    result = run_inside("new", "command", "wag", cwd=tmp_path)
     assert result.returncode == 0 and (tmp_path / "wag_command" / "package.xml").is_file(), result.stderr
 
 
-def test_commands_of_the_installed_program_run_outside(tmp_path):
-    result = outside("plugins", "move_l", cwd=tmp_path)
-    assert result.returncode == 0 and result.stdout == inside("plugins", "move_l").stdout, result.stderr
+def test_commands_of_the_installed_program_run_from_the_checkout(tmp_path):
+    result = run_outside("plugins", "move_l", cwd=tmp_path)
+    assert result.returncode == 0 and result.stdout == run_inside("plugins", "move_l").stdout, result.stderr
     assert "move_l_relative" in result.stdout
-    result = outside("call", "move_j", "--show", "{speed: 2}", cwd=tmp_path)
+    result = run_outside("call", "move_j", "--show", "{speed: 2}", cwd=tmp_path)
     assert result.returncode == 0 and "speed: 2.0" in result.stdout, result.stderr
 
 
 @pytest.mark.parametrize("command, mentions", [("buidl", "did you mean build?"), ("cal", "did you mean call?"), ("qqq", "demo, test")])
 def test_an_unknown_command_is_explained(command, mentions):
-    for run in (outside, inside):
+    for run in (run_outside, run_inside):
         result = run(command)
         assert result.returncode == 2 and f"there is no command {command}" in result.stderr and mentions in result.stderr
 

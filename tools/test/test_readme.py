@@ -23,7 +23,7 @@ def blocks():
 
 
 @pytest.mark.parametrize("text", [README, CONTRIBUTING], ids=["README", "CONTRIBUTING"])
-def test_every_link_leads_to_a_file(text):
+def test_every_link_refers_to_an_existing_file(text):
     targets = re.findall(r"\]\(([^)#]+)\)", text)
     assert targets
     for target in targets:
@@ -38,7 +38,7 @@ def test_every_file_in_a_command_exists():
 
 @pytest.mark.parametrize("document", [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))], ids=lambda file: file.stem)
 def test_every_command_of_ur_is_known(document):
-    """Finds `./ur …` anywhere, and `ur …` at the begin of a line or of code."""
+    """Finds `./ur …` anywhere, and `ur …` at the beginning of a line or of code."""
     for command in set(re.findall(r"(?:\./ur |^ur |`ur )([a-z]+)\b", document.read_text(), re.M)):
         result = subprocess.run([sys.executable, str(ROOT / "ur"), command, "--help"], capture_output=True, text=True,
                                 timeout=60)
@@ -52,20 +52,20 @@ def test_the_options_of_the_contributors_commands_are_known():
         main._parse(line.split())  # exits with an unknown one
 
 
-def test_the_names_in_the_examples_of_ur_test_choose_tests():
+def test_the_names_in_the_examples_of_ur_test_select_tests():
     found = packages.discover(ROOT)
     examples = re.findall(r"^\./ur test (\w[\w ]*?) *(?:#.*)?$", CONTRIBUTING, re.M)
     assert len(examples) >= 2
     for words in examples:
-        selection.by_name(words.split(), found)  # refuses an unknown one
+        selection.by_name(words.split(), found)  # raises an error for an unknown name
 
 
-def test_every_folder_of_packages_is_in_the_table_of_contributing():
+def test_contributing_lists_every_package_folder():
     for package in packages.discover(ROOT).values():
         assert f"`{package.folder.name}`" in CONTRIBUTING, package.name
 
 
-def test_the_goal_of_each_ur_call_fits_its_action():
+def test_the_goal_of_each_ur_call_matches_its_action():
     calls = [shlex.split(line, comments=True) for block in blocks() for line in block.splitlines() if line.startswith("ur call")]
     assert calls
     for _, call, *arguments in calls:
@@ -84,14 +84,14 @@ def test_the_launch_arguments_are_declared():
                 check_name(name, [argument.name for argument in LAUNCH_FILES[launch_file]], f"{launch_file}.launch.py")
 
 
-def test_the_launch_file_knows_the_models_of_the_driver():
+def test_launch_file_and_driver_have_the_same_models():
     table = (ROOT / "ur_ros_rtde_trajectory" / "src" / "kinematics" / "arm_limits.cpp").read_text()
     assert list(MODELS) == re.findall(r'Model\{"(\w+)"', table)
     assert MODELS == simulation.MODELS
 
 
 def test_the_installation_with_ros_is_complete():
-    """In this order: each step needs those before it."""
+    """The steps must be in this order, because each one requires the previous ones."""
     block = next(block for block in blocks() if "colcon build" in block)
     steps = ["source /opt/ros/", "mkdir -p ~/ros2_ws/src && cd ~/ros2_ws", "git clone <this repository> src/",
              "rosdep install --from-paths src --ignore-src -y", "colcon build", "source install/setup.bash", "ros2 launch"]
@@ -104,7 +104,7 @@ def test_every_program_that_ros2_run_starts_is_installed():
         assert program in (ROOT / package / "CMakeLists.txt").read_text(), program
 
 
-def test_the_goal_sent_by_ros2_fits_its_action():
+def test_the_goal_sent_by_ros2_matches_its_action():
     line = next(line for block in blocks() for line in block.splitlines() if "send_goal" in line)
     name, fields = re.search(r"ur_ros_rtde_msgs/action/(\w+) \"\{(.*)\}\"", line).groups()
     goal = (ROOT / "ur_ros_rtde_msgs" / "action" / f"{name}.action").read_text().split("---")[0]

@@ -1,4 +1,4 @@
-"""Which tests run at the same time."""
+"""The scheduling of parallel tests."""
 
 import json
 
@@ -10,7 +10,7 @@ from ur_tools.schedule import Cost, Job, Schedule, Times
 
 
 class Simulation:
-    """Runs a schedule in simulated time: each job takes what its cost says."""
+    """Runs a schedule in simulated time. The duration of each job is given by its cost."""
 
     def __init__(self, jobs, cores=2, most=0):
         self.now = 0.0
@@ -38,17 +38,17 @@ def test_the_longest_test_starts_first():
     assert Simulation(jobs((1.0, 1.0), (9.0, 1.0), (5.0, 1.0)), cores=1).begins == {1: 0.0, 2: 9.0, 0: 14.0}
 
 
-def test_tests_that_mostly_wait_run_together():
+def test_tests_with_low_load_run_in_parallel():
     simulation = Simulation(jobs(*[(10.0, 0.2)] * 8))
     assert simulation.now == 10.0
 
 
-def test_the_cores_are_never_promised_twice():
+def test_the_cores_are_not_overcommitted():
     simulation = Simulation(jobs(*[(10.0, 0.5)] * 9, (3.0, 1.0), (2.0, 0.7)))
     assert simulation.peak <= 2 * schedule.BUSY
 
 
-def test_a_test_with_more_load_than_the_machine_has_runs_alone():
+def test_a_test_with_more_load_than_cores_runs_alone():
     simulation = Simulation(jobs((5.0, 4.0), (9.0, 0.1)))
     assert sorted(simulation.begins.values()) == [0.0, 9.0]
 
@@ -59,8 +59,8 @@ def test_an_exclusive_test_runs_alone():
     assert simulation.begins[0] + 5.0 <= begin and simulation.begins[2] in (0.0, begin + 4.0)
 
 
-def test_short_tests_fill_in_without_delaying_a_long_one_that_waits_for_room():
-    # The second needs the room of the first. Beside the first there is room for tests that end before it does.
+def test_short_tests_run_early_only_if_they_do_not_delay_a_long_one():
+    # The second test requires the cores of the first. Tests that end before the first may run next to it.
     simulation = Simulation(jobs((10.0, 1.0), (9.0, 1.2), (4.0, 0.7), (7.0, 0.6)))
     assert simulation.begins[1] == 10.0
     assert simulation.begins[3] == 0.0 and simulation.begins[2] >= 10.0
@@ -70,7 +70,7 @@ def test_the_number_of_tests_at_a_time_can_be_limited():
     assert Simulation(jobs(*[(1.0, 0.1)] * 6), most=1).now == pytest.approx(6.0)
 
 
-def test_measured_times_are_kept_and_known_ones_are_the_default(tmp_path, monkeypatch):
+def test_measured_times_are_stored_and_reference_times_are_the_default(tmp_path, monkeypatch):
     monkeypatch.setattr(schedule, "REFERENCE", {"known": (7.0, 0.3)})
     file = tmp_path / "durations.json"
     times = Times(file)
@@ -81,13 +81,13 @@ def test_measured_times_are_kept_and_known_ones_are_the_default(tmp_path, monkey
 
 
 @pytest.mark.parametrize("text", ["", "{", json.dumps({"known": 3.0})])
-def test_a_file_of_times_that_cannot_be_read_is_ignored(tmp_path, monkeypatch, text):
+def test_an_unreadable_file_of_times_is_ignored(tmp_path, monkeypatch, text):
     monkeypatch.setattr(schedule, "REFERENCE", {"known": (7.0, 0.3)})
     (tmp_path / "durations.json").write_text(text)
     assert Times(tmp_path / "durations.json").cost("known", True) == Cost(7.0, 0.3)
 
 
-def test_every_reference_time_is_of_a_test_file():
+def test_every_reference_time_belongs_to_a_test_file():
     for name in REFERENCE:
         package, _, file = name.partition(": ")
         assert (ROOT / package / "test" / f"{file}.py").is_file(), name

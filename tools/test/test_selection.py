@@ -70,7 +70,7 @@ def collected(root):
     return found
 
 
-def chosen(root, selected):
+def select(root, selected):
     return sorted(name for name, path in collected(root).items() if selected.chooses(name.split(":")[0], name, path))
 
 
@@ -103,11 +103,11 @@ def affected(root, *names):
     ("tools", ["tools: test_demo", "tools: test_readme", "tools: test_console"]),
 ])
 def test_a_name_selects_packages_files_and_cases(root, word, expected):
-    assert chosen(root, named(root, word)) == expected
+    assert select(root, named(root, word)) == expected
 
 
 def test_several_names_select_the_union(root):
-    assert chosen(root, named(root, "test_node", "StopTest")) == ["driver: robot.StopTest.KeepsItsLine", "driver: test_node"]
+    assert select(root, named(root, "test_node", "StopTest")) == ["driver: robot.StopTest.KeepsItsLine", "driver: test_node"]
 
 
 @pytest.mark.parametrize("word, needed", [("test_cli", ["driver_cli"]), ("test_cancel", ["driver"]), ("test_console", None)])
@@ -117,7 +117,7 @@ def test_only_the_packages_of_the_tests_are_built(root, word, needed):
 
 @pytest.mark.parametrize("word, near", [("test_cansel", "test_cancel"), ("drivr", "driver"), ("StopTestt", "StopTest"),
                                         ("xyzzy", "Packages: messages, driver, driver_cli, tools")])
-def test_an_unknown_name_is_refused_with_near_ones(root, word, near):
+def test_an_unknown_name_is_rejected_with_similar_ones(root, word, near):
     with pytest.raises(console.Failure) as failure:
         named(root, "test_console", word)
     assert f'"{word}"' in str(failure.value) and near in str(failure.value)
@@ -151,13 +151,13 @@ def test_the_tests_of_this_checkout_have_names():
     (".gitignore", []),
 ])
 def test_a_changed_file_selects_the_tests_that_it_can_affect(root, changed, expected):
-    assert chosen(root, affected(root, changed)) == expected
+    assert select(root, affected(root, changed)) == expected
 
 
 @pytest.mark.parametrize("changed", ["messages/action/Move.action", "wheels/kilted.txt", "tools/cmake/sanitize.cmake",
                                      "a_new_folder/file"])
 def test_a_file_that_everything_depends_on_selects_all_tests(root, changed):
-    assert chosen(root, affected(root, changed)) == sorted(collected(root))
+    assert select(root, affected(root, changed)) == sorted(collected(root))
 
 
 def test_a_removed_test_is_not_run(root):
@@ -165,7 +165,7 @@ def test_a_removed_test_is_not_run(root):
     assert affected(root, "tools/test/test_console.py").packages == []
 
 
-def test_changes_are_counted_from_the_merge_base_with_uncommitted_ones(repository):
+def test_changes_include_uncommitted_ones_since_the_merge_base(repository):
     root, git = repository
     git("checkout", "-qb", "work")
     (root / "driver/src/stop.cpp").write_text("// committed\n")
@@ -194,16 +194,16 @@ def test_the_default_base_is_origin_main_if_it_exists(repository):
     assert selection.default_base(root) == "origin/main"
 
 
-def test_an_unknown_base_is_named(repository):
+def test_an_unknown_base_is_reported(repository):
     root, _ = repository
     with pytest.raises(console.Failure, match="--base no_branch"):
         selection.by_change("no_branch", packages.discover(root), root)
 
 
-def test_without_changes_nothing_is_built_and_nothing_runs(repository, capsys):
+def test_without_changes_no_packages_are_built_and_no_tests_run(repository, capsys):
     root, _ = repository
     found = selection.by_change("HEAD", packages.discover(root), root)
-    assert found.packages == [] and chosen(root, found) == []
+    assert found.packages == [] and select(root, found) == []
     assert capsys.readouterr().out == "0 files changed since HEAD\n"
 
 

@@ -12,11 +12,11 @@ def test_other_paths_are_ignored(text):
     assert not lint._MACHINE_SPECIFIC.search(text)
 
 
-def test_the_list_of_system_packages_has_one_name_a_line(tmp_path):
+def test_the_list_of_system_packages_has_one_name_per_line(tmp_path):
     file = tmp_path / "list.txt"
     file.write_text("# comment\ng++\n\nlibfmt-dev  # formatting\n")
     assert system_packages.needed(file) == ["g++", "libfmt-dev"]
 
 
-def test_a_package_that_is_not_installed_is_missing():
+def test_a_package_that_is_not_installed_is_reported_as_missing():
     assert system_packages.missing(["no-such-package-anywhere"]) == ["no-such-package-anywhere"]

@@ -1,4 +1,4 @@
-"""./ur test: a failure fails the run even if it does not recur alone; options are passed to the right program."""
+"""./ur test: a failure fails the run even if the repetition succeeds. Options are passed to the correct program."""
 
 import pathlib
 import sys
@@ -39,7 +39,7 @@ def test_files_of_the_same_name_have_different_test_names(tmp_path):
     assert [test.name for test in found] == ["driver: nodes/test_shutdown", "driver: typed/test_shutdown"]
 
 
-def test_a_file_that_measures_time_is_given_a_core(tmp_path):
+def test_a_file_that_measures_time_reserves_a_core(tmp_path):
     (tmp_path / "test_a.py").write_text("MEASURES_TIME = True\n")
     (tmp_path / "test_b.py").write_text("")
     tests = testing._pytest(Layout.of_environment(), "driver", tmp_path)
@@ -69,7 +69,7 @@ def test_a_test_whose_failed_cases_have_no_names_is_repeated_as_a_whole(command,
 
 
 class FakeRunner:
-    """Lets each case fail, or not, when it is repeated."""
+    """Determines whether the repetition of a case fails."""
 
     def __init__(self, fails_alone):
         self._failures = ["Suite.bad"] if fails_alone else []
@@ -111,7 +111,7 @@ def test_the_processor_time_of_a_test_includes_its_child_processes(tmp_path, mon
     ("import os, signal; os.kill(os.getpid(), signal.SIGABRT)", 20.0, "ended by signal 6"),
     ("print('the reason'); raise SystemExit(3)", 20.0, "the reason"),
 ])
-def test_a_program_that_does_not_succeed_is_a_failure(tmp_path, monkeypatch, program, limit, explanation):
+def test_a_program_that_fails_is_reported_with_the_reason(tmp_path, monkeypatch, program, limit, explanation):
     found = run_program(tmp_path, monkeypatch, program, limit)
     assert (found.passed, found.failures) == (0, [""]) and explanation in found.output
 
@@ -124,6 +124,6 @@ def test_a_program_that_does_not_succeed_is_a_failure(tmp_path, monkeypatch, pro
     (["sim", "--", "--help"], "kilted", False, ["--help"]),
     (["sim", "--model", "ur3e"], "kilted", False, ["--model", "ur3e"]),
 ])
-def test_options_that_a_command_does_not_know_go_to_its_program(arguments, ros, debug, forwarded):
+def test_unknown_options_of_a_command_are_forwarded_to_its_program(arguments, ros, debug, forwarded):
     options = main._parse(arguments)
     assert (options.ros, options.debug, main._forwarded(options)) == (ros, debug, forwarded)

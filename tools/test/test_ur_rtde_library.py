@@ -55,7 +55,7 @@ def configure(tmp_path):
 
 @pytest.fixture
 def other_headers(tmp_path):
-    """Headers of another ur_rtde, as far as ur_ros_rtde includes them."""
+    """The headers of another ur_rtde that ur_ros_rtde includes."""
     folder = tmp_path / "other" / "ur_rtde"
     folder.mkdir(parents=True)
     for name in ("dashboard_client.h", "rtde_control_interface.h", "rtde_io_interface.h", "rtde_receive_interface.h"):
@@ -85,7 +85,7 @@ def test_a_target_of_another_installation_is_an_error(configure):
     assert "Remove find_package(ur_rtde)" in text
 
 
-def test_finding_the_package_twice_is_no_error(configure):
+def test_finding_the_package_twice_succeeds(configure):
     code, text = configure("function(find_it)\n  find_package(ur_rtde_vendor REQUIRED)\nendfunction()\nfind_it()")
     assert code == 0, text
 

@@ -26,7 +26,7 @@ def test_each_patch_states_defect_evidence_fix_and_upstream_candidate(patch):
     assert fields == ["Defect", "Evidence", "Fix", "Upstream candidate"]
 
 
-def test_the_page_lists_the_patches_in_their_order():
+def test_the_page_lists_the_patches_in_order():
     assert [row[1] for row in ROW.findall(PAGE)] == [patch.name for patch in PATCHES]
 
 

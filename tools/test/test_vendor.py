@@ -47,11 +47,11 @@ def pack(unpacked: pathlib.Path, archive: pathlib.Path, root: str, leave_out=())
 
 
 def test_an_archive_with_another_layout_is_accepted(configure, unpacked, tmp_path):
-    code, said = configure(pack(unpacked, tmp_path / "ur_rtde-v1.6.5.tar.xz", "ur_rtde-v1.6.5", ("tcp_socket.cpp",)))
-    assert code == 0, said
+    code, printed = configure(pack(unpacked, tmp_path / "ur_rtde-v1.6.5.tar.xz", "ur_rtde-v1.6.5", ("tcp_socket.cpp",)))
+    assert code == 0, printed
     sources = tmp_path / "build" / "source" / "ur_rtde"
     assert (sources / "scripts" / "rtde_control.script").is_file()
-    assert not (sources / "src" / "rtde_python_bindings.cpp").exists()  # a file that nothing verifies is not used
+    assert not (sources / "src" / "rtde_python_bindings.cpp").exists()  # unverified files are not used
 
 
 def test_an_archive_is_downloaded_once(configure, unpacked, tmp_path):
@@ -62,38 +62,38 @@ def test_an_archive_is_downloaded_once(configure, unpacked, tmp_path):
     assert configure(url=url)[0] == 0
 
 
-def test_a_changed_file_is_named(configure, unpacked, tmp_path):
+def test_a_changed_file_is_reported(configure, unpacked, tmp_path):
     changed = tmp_path / "changed"
     subprocess.run(["cp", "-r", unpacked, changed], check=True)
     with (changed / "src" / "rtde.cpp").open("a") as file:
         file.write("\n")
-    code, said = configure(pack(changed, tmp_path / "changed.tar.xz", "ur_rtde-1.6.5"))
+    code, printed = configure(pack(changed, tmp_path / "changed.tar.xz", "ur_rtde-1.6.5"))
     assert code != 0
-    assert "the SHA-256 of src/rtde.cpp is" in said
-    assert "UR_RTDE_ARCHIVE=<path>" in said
+    assert "the SHA-256 of src/rtde.cpp is" in printed
+    assert "UR_RTDE_ARCHIVE=<path>" in printed
 
 
-def test_a_missing_file_is_named(configure, unpacked, tmp_path):
-    code, said = configure(pack(unpacked, tmp_path / "part.tar.xz", "ur_rtde-1.6.5", ("rtde.cpp",)))
+def test_a_missing_file_is_reported(configure, unpacked, tmp_path):
+    code, printed = configure(pack(unpacked, tmp_path / "part.tar.xz", "ur_rtde-1.6.5", ("rtde.cpp",)))
     assert code != 0
-    assert "it has no src/rtde.cpp" in said
+    assert "it has no src/rtde.cpp" in printed
 
 
-def test_a_file_that_is_no_archive(configure, tmp_path):
+def test_a_file_that_is_not_an_archive_is_reported(configure, tmp_path):
     (tmp_path / "page.tar.gz").write_text("<html>sign in</html>")
-    code, said = configure(tmp_path / "page.tar.gz")
+    code, printed = configure(tmp_path / "page.tar.gz")
     assert code != 0
-    assert "page.tar.gz is not an archive with ur_rtde's sources" in said
+    assert "page.tar.gz is not an archive with ur_rtde's sources" in printed
 
 
-def test_an_archive_that_is_not_there(configure):
-    code, said = configure("/nowhere/ur_rtde.tar.gz")
+def test_a_missing_archive_is_reported(configure):
+    code, printed = configure("/nowhere/ur_rtde.tar.gz")
     assert code != 0
-    assert "it is `/nowhere/ur_rtde.tar.gz`, and there is no such file" in said
+    assert "it is `/nowhere/ur_rtde.tar.gz`, and there is no such file" in printed
 
 
-def test_no_access_to_the_archive(configure):
-    code, said = configure()
+def test_a_failed_download_is_reported(configure):
+    code, printed = configure()
     assert code != 0
-    assert "cannot be downloaded from file:///nowhere/ur_rtde-v1.6.5.tar.gz" in said
-    assert "-DUR_RTDE_ARCHIVE=<path>" in said
+    assert "cannot be downloaded from file:///nowhere/ur_rtde-v1.6.5.tar.gz" in printed
+    assert "-DUR_RTDE_ARCHIVE=<path>" in printed

@@ -21,10 +21,10 @@ def environment():
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory):
+def workspace(tmp_path_factory):
     """Returns the folder and the output of each block."""
     folder = tmp_path_factory.mktemp("reader")
-    # As in a terminal, with job control. The next block begins when the driver is ready.
+    # Job control as in a terminal. The next block begins when the driver is ready.
     script = "set -em\ntrap 'kill %1 %2 2> /dev/null || true' EXIT\n"
     for number, block in enumerate(BLOCKS):
         script += f"echo '=== {number}'\n{block}" + (READY if "driver --ros-args" in block else "")
@@ -35,27 +35,27 @@ def done(tmp_path_factory):
     return folder / "my_workspace", re.split(r"^=== \d+\n", result.stdout, flags=re.M)[1:]
 
 
-def output(done, command):
+def output(workspace, command):
     """Returns the output of the block with this command."""
-    return next(text for block, text in zip(BLOCKS, done[1]) if command in block)
+    return next(text for block, text in zip(BLOCKS, workspace[1]) if command in block)
 
 
-def test_the_command_moves_the_arm_and_a_bad_goal_is_refused(done):
-    assert "success: true" in output(done, '"{angle: 0.2}"')
-    assert "refused: angle is 7 rad" in output(done, '"{angle: 7}"')
+def test_the_command_moves_the_arm_and_rejects_an_invalid_goal(workspace):
+    assert "success: true" in output(workspace, '"{angle: 0.2}"')
+    assert "refused: angle is 7 rad" in output(workspace, '"{angle: 7}"')
 
 
-def test_the_dashboard_command_tells_and_asks(done):
-    assert "answer: RUNNING" in output(done, "dashboard/tell")
+def test_the_dashboard_command_shows_a_text_and_queries_the_mode(workspace):
+    assert "answer: RUNNING" in output(workspace, "dashboard/tell")
 
 
-def test_the_extension_runs_on_the_controller(done):
-    text = output(done, "ur call twist")
+def test_the_extension_runs_on_the_controller(workspace):
+    text = output(workspace, "ur call twist")
     assert "success: true" in text and re.search(r"position: 0\.3\b", text), text
 
 
-def test_the_new_plugins_are_listed(done):
-    listed = output(done, "ur plugins\n").splitlines()
+def test_the_new_plugins_are_listed(workspace):
+    listed = output(workspace, "ur plugins\n").splitlines()
     for plugin, package, description in (("wag", "my_commands", "Turns wrist 3 by an angle and back"),
                                          ("twist", "my_extensions", "Turns wrist 3 by an angle, by a program on the controller"),
                                          ("dashboard/tell", "my_dashboard", "Shows a text on the teach pendant and asks for the robot mode")):
@@ -63,9 +63,9 @@ def test_the_new_plugins_are_listed(done):
 
 
 @pytest.mark.parametrize("file", re.findall(r"<!-- file: (\S+) -->", PAGE))
-def test_the_code_on_the_page_is_the_code_that_was_written(done, file):
+def test_the_code_on_the_page_matches_the_written_files(workspace, file):
     code = re.search(rf"<!-- file: {re.escape(file)} -->\n```cpp\n(.*?)```", PAGE, re.S).group(1)
-    assert code in pathlib.Path(done[0].parent, "my_workspace", file).read_text()
+    assert code in pathlib.Path(workspace[0].parent, "my_workspace", file).read_text()
 
 
 def test_every_kind_of_plugin_is_on_the_page():
@@ -85,7 +85,7 @@ def test_the_description_is_in_one_file(tmp_path, kind):
 
 @pytest.mark.parametrize("kind, to_change", [("command", {".action", ".cpp"}), ("dashboard", {".cpp"}),
                                              ("extension", {".action", ".cpp"})])
-def test_a_given_description_needs_no_change_of_a_file(tmp_path, kind, to_change):
+def test_a_given_description_requires_no_edit(tmp_path, kind, to_change):
     result = subprocess.run([str(ROOT / "ur"), "new", kind, "wag", "--description", "Wags & more."], cwd=tmp_path, capture_output=True,
                             text=True, timeout=60)
     assert result.returncode == 0, result.stderr
@@ -96,7 +96,7 @@ def test_a_given_description_needs_no_change_of_a_file(tmp_path, kind, to_change
 
 
 @pytest.mark.parametrize("name, mentions", [("Bad", "lower case"), ("a__b", "single underscores"), ("part_2", "part2")])
-def test_an_invalid_name_is_refused_with_the_reason(tmp_path, name, mentions):
+def test_an_invalid_name_is_rejected_with_the_reason(tmp_path, name, mentions):
     result = subprocess.run([str(ROOT / "ur"), "new", "command", name], cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert result.returncode == 1 and mentions in result.stderr and not list(tmp_path.iterdir())
 

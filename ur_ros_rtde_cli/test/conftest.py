@@ -1,5 +1,5 @@
 import pathlib
 import sys
 
-# The helpers of the driver's node tests are used here, too.
+# These tests use the helpers of the system tests of the driver.
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde_commands" / "test" / "system"))

@@ -1,4 +1,4 @@
-"""`ur` as its user types it."""
+"""Tests of the program `ur` on the simulator."""
 
 import contextlib
 import csv
@@ -22,8 +22,8 @@ from support import HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_progr
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, MoveJ
 
-DISCOVERY = str(4.0 * TIMEOUT_FACTOR)  # s, in which all actions are found
-EMPTY_DOMAIN = "102"  # nothing runs there: domains of tests are below 102
+DISCOVERY = str(4.0 * TIMEOUT_FACTOR)  # s, time limit for the discovery of all actions
+EMPTY_DOMAIN = "102"  # an unused domain: tests use domains below 102
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,7 @@ def running():
     driver = start_node("driver", simulator.address, "ur_type:=ur10e")
     client = Client()
     try:
-        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to take a motion")
+        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to accept a motion")
         yield simulator
     finally:
         client.close()
@@ -41,7 +41,7 @@ def running():
 
 
 def ur(*arguments, limit=60.0, domain=None):
-    """Return code and output."""
+    """Returns the exit code and the output."""
     process = Process([find_program("ur_ros_rtde_cli", "ur"), *arguments], {} if domain is None else {"ROS_DOMAIN_ID": domain})
     return process.wait(limit), process.output()
 
@@ -50,7 +50,7 @@ def goal(**fields):
     return yaml.safe_dump(fields, default_flow_style=True, width=1000).strip()
 
 
-def test_a_goal_is_sent_and_its_result_printed(running):
+def test_sends_a_goal_and_prints_its_result(running):
     turned = [HOME[0] + 0.3, *HOME[1:]]
     code, output = ur("call", "move_j", "--quiet", goal(joint_positions=turned, speed=1))
     assert code == 0, output
@@ -58,7 +58,7 @@ def test_a_goal_is_sent_and_its_result_printed(running):
     assert result["success"] and result["final_state"]["joint_positions"] == pytest.approx(turned, abs=0.005)
 
 
-def test_a_refused_goal_ends_with_2_and_the_reason(running):
+def test_a_rejected_goal_exits_with_2_and_the_reason(running):
     code, output = ur("call", "move_j", goal(joint_positions=[0.0, 1.0]))
     assert code == 2 and "joint_positions has 2 values" in output, output
 
@@ -70,35 +70,35 @@ def test_a_refused_goal_ends_with_2_and_the_reason(running):
     ("7", ["expected a mapping"]),
     ("{joint_positions: 1.0}", ["joint_positions is 1.0", "expected a list of numbers"]),
 ])
-def test_a_wrong_field_is_named_without_a_server(text, mentions):
+def test_an_invalid_field_is_reported_without_a_server(text, mentions):
     code, output = ur("call", "move_j", text, domain=EMPTY_DOMAIN)
     assert code == 2 and all(part in output for part in mentions), output
 
 
-def test_a_goal_of_a_shared_type_is_checked_when_the_server_is_found(running):
+def test_checks_a_goal_of_a_shared_type_when_the_server_is_discovered(running):
     code, output = ur("call", "set_standard_digital_output", "{pim: 1}")
     assert code == 2 and "there is no field pim; did you mean pin?" in output, output
 
 
 @pytest.mark.parametrize("number", ["nan", ".nan", "inf", "-.inf"])
-def test_nan_and_infinity_reach_the_driver_which_refuses_them(running, number):
+def test_nan_and_infinity_are_sent_and_rejected_by_the_driver(running, number):
     code, output = ur("call", "move_j", f"{{joint_positions: {HOME}, speed: {number}}}")
     assert code == 2 and "refused: speed is" in output, output
 
 
-def test_the_nearest_names_are_suggested(running):
+def test_suggests_similar_names(running):
     code, output = ur("call", "movej", "--wait", DISCOVERY)
     hint, error = output.splitlines()
     assert code == 2 and hint.startswith("no plugin is named movej; did you mean move_j "), output
     assert error.startswith("no server of /movej; did you mean move_j "), output
 
 
-def test_a_name_that_resembles_none_is_answered_with_those_there_are(running):
+def test_lists_the_available_actions_if_no_name_is_similar(running):
     code, output = ur("call", "qqq", "--wait", DISCOVERY)
     assert code == 2 and "/move_l" in output and "/dashboard/power_on" in output, output
 
 
-def test_a_goal_is_read_from_a_file(running, tmp_path):
+def test_reads_a_goal_from_a_file(running, tmp_path):
     file = tmp_path / "goal.yaml"
     file.write_text(f"# both ways\njoint_positions: {HOME}\nspeed: 1e0\n")
     code, output = ur("call", "move_j", "--file", str(file))
@@ -111,12 +111,12 @@ def test_a_goal_is_read_from_a_file(running, tmp_path):
 
 
 def feedback_lines(output):
-    """Time and feedback of each line."""
+    """Returns time and feedback of each line."""
     found = (re.fullmatch(r"(\d+\.\d) s  (\{.*\})", line) for line in output.splitlines())
     return [(float(match.group(1)), yaml.safe_load(match.group(2))) for match in found if match]
 
 
-def test_all_feedback_is_shown_once_a_second_without_a_terminal(at_home):
+def test_shows_feedback_once_per_second_without_a_terminal(at_home):
     points = [HOME, [HOME[0] + 0.4, *HOME[1:]]]
     limits = {name: [value] * 6 for name, value in (("max_velocity", 0.1), ("max_acceleration", 1.0))}
     code, output = ur("call", "execute_trajectory", goal(waypoints=[{"positions": point} for point in points], **limits))
@@ -129,7 +129,7 @@ def test_all_feedback_is_shown_once_a_second_without_a_terminal(at_home):
     assert progress == sorted(progress) and progress[0] < progress[-1]
 
 
-def test_all_feedback_is_shown_on_a_terminal(at_home):
+def test_shows_feedback_on_a_terminal(at_home):
     terminal, end = pty.openpty()
     fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
     turned = [HOME[0] + 0.2, *HOME[1:]]
@@ -137,7 +137,7 @@ def test_all_feedback_is_shown_on_a_terminal(at_home):
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=end)
     os.close(end)
     shown = b""
-    with contextlib.suppress(OSError):  # EIO: all its ends are closed
+    with contextlib.suppress(OSError):  # EIO: the other side of the terminal is closed
         while True:
             shown += os.read(terminal, 65536)
     os.close(terminal)
@@ -149,12 +149,12 @@ def test_all_feedback_is_shown_on_a_terminal(at_home):
     assert max(len(line) for line in re.sub(r"\x1b\[\d*[AJ]", "", text).replace("\r", "").split("\n")) < 100
 
 
-def test_nested_fields_and_arrays_of_messages_can_be_given(running):
+def test_accepts_nested_fields_and_arrays_of_messages(running):
     code, output = ur("call", "move_l", "{pose: {position: {z: 9}, orientation: {w: 1}}}")
     assert code == 2 and "reach" in output, output
 
 
-def test_the_fields_of_a_goal_are_shown_without_a_server():
+def test_shows_the_fields_of_a_goal_without_a_server():
     code, output = ur("call", "move_j", "--show", "{acceleration: 2}", domain=EMPTY_DOMAIN)
     assert code == 0 and yaml.safe_load(output) == {"joint_positions": [], "speed": 0.5, "acceleration": 2.0}, output
 
@@ -176,7 +176,7 @@ def wait_until_moving(simulator):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_cancels_the_goal_and_shows_where_the_arm_stands(at_home, number):
+def test_a_signal_cancels_the_goal_and_prints_the_final_state(at_home, number):
     process = Process(slow_motion())
     wait_until_moving(at_home)
     process.signal(number)
@@ -193,7 +193,7 @@ def test_timeout_cancels_the_goal(at_home):
     assert "error_code: 4" in process.output(), process.output()
 
 
-def test_the_arm_stops_when_nobody_reads_the_output_any_more(at_home, tmp_path):
+def test_a_closed_output_cancels_the_goal(at_home, tmp_path):
     errors = tmp_path / "errors"
     with errors.open("w") as file:
         process = subprocess.Popen(slow_motion(), stdout=subprocess.PIPE, stderr=file)
@@ -204,7 +204,7 @@ def test_the_arm_stops_when_nobody_reads_the_output_any_more(at_home, tmp_path):
     assert errors.read_text().splitlines() == ["canceling (SIGPIPE), interrupt again to quit without the result"]
 
 
-def test_the_result_can_be_piped_into_head(at_home):
+def test_the_result_can_be_piped_to_head(at_home):
     turned = goal(joint_positions=[HOME[0] + 0.1, *HOME[1:]], speed=1)
     process = Process(["bash", "-c", 'set -o pipefail; "$@" | head -1', "bash", *slow_motion()[:-1], turned])
     assert process.wait(30.0) == 0, process.output()
@@ -213,9 +213,9 @@ def test_the_result_can_be_piped_into_head(at_home):
 
 
 @pytest.fixture
-def stubborn():
-    """The goals of a server of move_j that neither cancels nor ends them, in the namespace of that name."""
-    client = Client("stubborn", name="stubborn_server")
+def unresponsive_server():
+    """A move_j server that neither cancels nor finishes goals. Returns the goals that it has received."""
+    client = Client("unresponsive", name="unresponsive_server")
     goals = []
     end = Future()
 
@@ -232,36 +232,36 @@ def stubborn():
     client.close()
 
 
-def test_a_second_signal_ends_the_wait_for_the_result(stubborn):
-    process = Process([*slow_motion()[:2], "--namespace", "stubborn", *slow_motion()[2:]])
-    wait_for(lambda: stubborn, 20.0, "the goal")
+def test_a_second_signal_exits_without_the_result(unresponsive_server):
+    process = Process([*slow_motion()[:2], "--namespace", "unresponsive", *slow_motion()[2:]])
+    wait_for(lambda: unresponsive_server, 20.0, "the goal")
     process.signal(signal.SIGTERM)
     begin = time.monotonic()
     process.wait_for_output("canceling (SIGTERM)")
-    time.sleep(1.1)  # what comes earlier belongs to the first one
+    time.sleep(1.1)  # an earlier signal counts as the first one
     process.signal(signal.SIGTERM)
     assert process.wait(10.0) == 128 + signal.SIGTERM, process.output()
-    assert time.monotonic() - begin < 8.0, "it has waited for its limit of 10 s"
+    assert time.monotonic() - begin < 8.0, "the program waited for its limit of 10 s"
 
 
-def test_the_state_is_shown(running):
+def test_shows_the_state(running):
     code, output = ur("state")
     assert code == 0 and "elbow_joint" in output and "tcp position" in output, output
 
 
-def test_no_driver_is_said_after_the_wait():
+def test_a_missing_driver_is_reported_after_the_wait():
     process = Process([find_program("ur_ros_rtde_cli", "ur"), "state", "--wait", "0.5", "--namespace", "nobody"])
     assert process.wait(20.0) == 2 and "Does robot_state_receiver run" in process.output()
 
 
-def test_plugins_are_listed_with_package_and_description():
+def test_lists_plugins_with_package_and_description():
     code, output = ur("plugins", "move_l")
     assert code == 0 and ["move_l", "ur_ros_rtde_commands", "Moves"] in [line.split()[:3] for line in output.splitlines()], output
 
 
 @pytest.fixture
 def own_plugin(tmp_path, monkeypatch):
-    """A package with the plugin `wag` in a prefix of its own; gives its share folder."""
+    """A package with the plugin `wag` in a separate prefix. Returns its share folder."""
     share = tmp_path / "share" / "my_commands"
     index = tmp_path / "share" / "ament_index" / "resource_index"
     for resource, content in (("packages", ""), ("ur_ros_rtde__pluginlib__plugin", "share/my_commands/plugins.xml\n"),
@@ -282,18 +282,18 @@ def listed_description():
     return " ".join(output.split()[2:])
 
 
-def test_a_plugin_without_description_has_that_of_its_action_file_or_package(own_plugin):
+def test_a_missing_description_is_taken_from_the_action_file_or_the_package(own_plugin):
     assert listed_description() == "Turns wrist 3 and back"
     (own_plugin / "action" / "Wag.action").write_text("float64 angle\n---\n---\n")
     assert listed_description() == "What it is about"
 
 
-def test_a_description_in_plugins_xml_comes_first(own_plugin):
+def test_a_description_in_plugins_xml_has_priority(own_plugin):
     (own_plugin / "plugins.xml").write_text('<library path="x"><class name="wag" type="x::Wag"><description>Wags</description></class></library>')
     assert listed_description() == "Wags"
 
 
-def test_a_recording_has_the_rows_it_says(running, tmp_path):
+def test_record_reports_the_number_of_rows(running, tmp_path):
     file = tmp_path / "run.csv"
     code, output = ur("record", str(file), "timestamp", "actual_q", "--time", "1")
     assert code == 0, output
@@ -304,7 +304,7 @@ def test_a_recording_has_the_rows_it_says(running, tmp_path):
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_every_command_explains_itself_without_ros(command):
+def test_help_of_every_command_works_without_ros(command):
     code = f"""
 import sys
 for missing in ("rclpy", "ament_index_python", "numpy", "yaml", "ur_ros_rtde_msgs"):
@@ -316,7 +316,7 @@ main(["{command}", "--help"])
     assert result.returncode == 0 and f"usage: ur {command}" in result.stdout, result.stderr
 
 
-def test_the_help_lists_all_commands_and_where_the_others_are(monkeypatch):
+def test_the_help_lists_all_commands_and_those_of_the_checkout(monkeypatch):
     monkeypatch.delenv(CHECKOUT_VARIABLE, raising=False)
     for arguments, expected in (((), 2), (("--help",), 0)):
         code, output = ur(*arguments)
@@ -332,7 +332,7 @@ def test_a_command_that_is_not_installed_is_explained(monkeypatch, command, ment
     assert code == 2 and mentions in output, output
 
 
-def test_the_commands_of_a_checkout_are_handed_to_its_script(monkeypatch, tmp_path):
+def test_commands_of_the_checkout_are_passed_to_its_script(monkeypatch, tmp_path):
     script = tmp_path / "ur"
     script.write_text('#!/bin/sh\necho "checkout: $@"\nexit 7\n')
     script.chmod(0o755)

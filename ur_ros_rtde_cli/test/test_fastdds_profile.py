@@ -22,27 +22,27 @@ def selected_profiles():
     return {variable: os.environ[variable] for variable in VARIABLES if variable in os.environ}
 
 
-def test_the_profile_of_the_package_is_used():
+def test_uses_the_profile_of_the_package():
     fastdds_profile.use()
     file, = selected_profiles().values()
     assert "leaseDuration" in pathlib.Path(file).read_text()
 
 
 @pytest.mark.parametrize("variable", VARIABLES)
-def test_a_profile_in_the_environment_is_kept(monkeypatch, variable):
+def test_keeps_a_profile_in_the_environment(monkeypatch, variable):
     monkeypatch.setenv(variable, "mine.xml")
     fastdds_profile.use()
     assert selected_profiles() == {variable: "mine.xml"}
 
 
 @pytest.mark.parametrize("name", LOCAL_FILES)
-def test_a_profile_in_the_working_directory_is_kept(name):
+def test_keeps_a_profile_in_the_working_directory(name):
     pathlib.Path(name).touch()
     fastdds_profile.use()
     assert selected_profiles() == {}
 
 
-def test_no_profile_is_set_without_an_installed_driver(monkeypatch):
+def test_sets_no_profile_without_an_installed_driver(monkeypatch):
     monkeypatch.setenv("AMENT_PREFIX_PATH", "/nowhere")
     fastdds_profile.use()
     assert selected_profiles() == {}

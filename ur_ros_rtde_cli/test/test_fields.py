@@ -18,7 +18,7 @@ def read(text, message):
 
 @pytest.mark.parametrize("text, value", [("1", 1.0), ("1e-3", 0.001), ("-2E3", -2000.0), ("inf", math.inf), ("-inf", -math.inf),
                                          (".inf", math.inf), ("+.5", 0.5), ("-Infinity", -math.inf)])
-def test_common_notations_of_numbers_are_accepted(text, value):
+def test_accepts_common_notations_of_numbers(text, value):
     assert read(f"speed: {text}", MoveJ.Goal()).speed == value
     assert list(read(f"joint_positions: [{text}]", MoveJ.Goal()).joint_positions) == [value]
 
@@ -28,12 +28,12 @@ def test_nan_is_a_number(text):
     assert math.isnan(read(f"speed: {text}", MoveJ.Goal()).speed)
 
 
-def test_fields_that_are_not_given_keep_their_values():
+def test_omitted_fields_keep_their_values():
     goal = read("", MoveJ.Goal(acceleration=3.0))
     assert (goal.speed, goal.acceleration) == (0.5, 3.0)
 
 
-def test_nested_messages_and_lists_of_them_are_read():
+def test_reads_nested_messages_and_lists_of_messages():
     goal = read("trajectory: {joint_names: [a], points: [{positions: [1], time_from_start: {sec: 2}}]}",
                 ExecuteParametrizedTrajectory.Goal())
     point, = goal.trajectory.points
@@ -70,7 +70,7 @@ def test_nested_messages_and_lists_of_them_are_read():
     (MoveJ.Goal, "{speed: [", "not YAML: line "),
     (MoveJ.Goal, "speed: \x00", "not YAML"),
 ])
-def test_an_error_names_field_value_and_expected_type(message, text, expected):
+def test_an_error_states_field_value_and_expected_type(message, text, expected):
     with pytest.raises(CliError) as error:
         read(text, message())
     assert expected in str(error.value)
@@ -86,7 +86,7 @@ def test_an_error_names_field_value_and_expected_type(message, text, expected):
     ("gain: 1\n\tgain: 2\n", 2, "not YAML"),
     ("7\n", 1, "expected a mapping"),
 ])
-def test_an_error_in_a_file_names_file_and_line(tmp_path, text, line, expected):
+def test_an_error_in_a_file_states_file_and_line(tmp_path, text, line, expected):
     file = tmp_path / "goal.yaml"
     file.write_text(text)
     with pytest.raises(CliError) as error:
@@ -95,7 +95,7 @@ def test_an_error_in_a_file_names_file_and_line(tmp_path, text, line, expected):
 
 
 @pytest.mark.parametrize("content, expected", [(None, "No such file"), (b"\xff\xfe", "is not a text file")])
-def test_a_file_that_cannot_be_read_is_named(tmp_path, content, expected):
+def test_an_unreadable_file_is_reported(tmp_path, content, expected):
     file = pathlib.Path(tmp_path, "goal.yaml")
     if content is not None:
         file.write_bytes(content)
@@ -104,7 +104,7 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path, content, expected):
     assert str(file) in str(error.value) and expected in str(error.value)
 
 
-def test_shown_messages_can_be_read_again():
+def test_printed_messages_can_be_read_back():
     goal = ForceMode.Goal(compliant=[True, False, True, False, False, False])
     assert read(fields.to_yaml(goal), ForceMode.Goal()) == goal
     assert "\n" not in fields.to_yaml_line(goal) and read(fields.to_yaml_line(goal), ForceMode.Goal()) == goal

@@ -38,7 +38,7 @@ def run(code):
     return result.stdout
 
 
-def test_every_type_is_found():
+def test_finds_every_type():
     assert run(FIND_ALL).strip() == "all found"
 
 

@@ -10,7 +10,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 
 @pytest.fixture
 def gripper(simulator, robot):
-    """The client of a robot whose gripper is open and holds nothing."""
+    """A client of a robot with an open, empty gripper."""
     simulator.control("gripper", stuck=False, object=0.0)
     robot.send(SgRelease, "sg_release", target_width=0.075).succeeded()
     return robot
@@ -44,7 +44,7 @@ def test_opens_and_reports_the_width(gripper):
     ({"target_width": 0.03, "tool_index": 4}, ["tool_index is 4", "3"]),
     ({"target_width": 0.03, "timeout": 0.0}, ["timeout is 0"]),
 ])
-def test_a_value_out_of_range_is_refused_with_the_limit(gripper, fields, mentions):
+def test_a_value_out_of_range_is_rejected_with_the_limit(gripper, fields, mentions):
     goal = gripper.send(SgGrip, "sg_grip", **fields)
     assert not goal.accepted
     refusal = gripper.refusal(goal)
@@ -63,14 +63,14 @@ def test_a_stuck_gripper_times_out_and_the_driver_stays_ready(gripper, simulator
 def test_cancel_ends_the_goal_and_the_driver_stays_ready(gripper, simulator):
     simulator.control("gripper", stuck=True)
     goal = gripper.send(SgGrip, "sg_grip", target_width=0.02, timeout=30.0)
-    wait_for(lambda: simulator.control("gripper")["busy"], 10.0, "the gripper to begin")
+    wait_for(lambda: simulator.control("gripper")["busy"], 10.0, "the gripper to move")
     goal.cancel()
     assert goal.result().error_code == ErrorCode.CANCELED
     simulator.control("gripper", stuck=False)
     make_ready(gripper, 10.0)
 
 
-def test_a_robot_without_the_urcap_refuses_gripper_commands_and_stays_ready(client, addresses):
+def test_a_robot_without_the_urcap_rejects_gripper_commands_and_stays_ready(client, addresses):
     bare = Simulator(addresses[1], urcap=None)
     driver = start_node("driver", bare.address, "ur_type:=ur10e", namespace="bare")
     other = Client("bare")
@@ -85,7 +85,7 @@ def test_a_robot_without_the_urcap_refuses_gripper_commands_and_stays_ready(clie
         reported = [line for line in start if "OnRobot" in line]
         assert len(reported) == 1 and "INFO" in reported[0], driver.output()
         assert all(name in reported[0] for name in ("sg_get_width", "sg_grip", "sg_release")), reported
-        # Goals of make_ready() may be refused because the robot is not ready yet.
+        # Goals of make_ready() may be rejected because the robot is not ready yet.
         assert not [line for line in start if "ERROR" in line or ("WARN" in line and "refused: starting" not in line)], start
     finally:
         other.close()

@@ -16,7 +16,7 @@ def running():
     driver = start_node("driver", simulator.address)
     client = Client()
     try:
-        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to take a motion")
+        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to accept a motion")
         yield simulator
     finally:
         client.close()

@@ -39,11 +39,11 @@ def test_a_surface_stops_the_motion(robot, simulator):
 def test_lateral_forces_are_ignored(robot, simulator, axis):
     wrenches = robot.subscribe(WrenchStamped, "wrench")
     goal = down(robot, distance=0.1)
-    wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.01, 10.0, "the arm to go down")
+    wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.01, 10.0, "the arm to move down")
     push = [0.0] * 6
     push["xyz".index(axis)] = 30.0
     simulator.control("push", wrench=push, duration=0.3, frame="tool")
-    wait_for(lambda: any(abs(getattr(w.wrench.force, axis)) > 25.0 for w in list(wrenches)), 10.0, "the push to be felt")
+    wait_for(lambda: any(abs(getattr(w.wrench.force, axis)) > 25.0 for w in list(wrenches)), 10.0, "the force of the push")
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED, result.message
     assert result.distance == pytest.approx(0.1, abs=0.003)
@@ -51,7 +51,7 @@ def test_lateral_forces_are_ignored(robot, simulator, axis):
 
 def test_a_force_along_the_axis_stops_the_motion(robot, simulator):
     goal = down(robot, distance=0.3)
-    wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.01, 10.0, "the arm to go down")
+    wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.01, 10.0, "the arm to move down")
     simulator.control("push", wrench=[0.0, 0.0, -30.0, 0.0, 0.0, 0.0], duration=0.4, frame="tool")
     result = goal.succeeded()
     assert result.force < -20.0 and result.distance < 0.2
@@ -67,7 +67,7 @@ def test_fails_with_not_reached_without_contact(robot, simulator):
 def test_the_sensor_is_zeroed_at_the_start(robot, simulator):
     simulator.control("attach_load", mass=3.0)
     try:
-        wait_for(lambda: abs(simulator.state()["actual_tcp_force"][2]) > 20.0, 5.0, "the load to be felt")
+        wait_for(lambda: abs(simulator.state()["actual_tcp_force"][2]) > 20.0, 5.0, "the force of the load")
         assert down(robot, distance=0.05).result().error_code == ErrorCode.NOT_REACHED
     finally:
         simulator.control("attach_load", mass=0.0)
@@ -75,7 +75,7 @@ def test_the_sensor_is_zeroed_at_the_start(robot, simulator):
 
 def test_cancel_decelerates_to_standstill(robot, simulator):
     goal = down(robot, distance=0.3)
-    wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.02, 10.0, "the arm to go down")
+    wait_for(lambda: goal.feedback and goal.feedback[-1].distance > 0.02, 10.0, "the arm to move down")
     goal.cancel()
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
@@ -84,7 +84,7 @@ def test_cancel_decelerates_to_standstill(robot, simulator):
 
 @pytest.mark.parametrize("field, value", [("force", 0.0), ("distance", 0.0), ("speed", 2.0), ("acceleration", float("nan")),
                                           ("deceleration", 0.0)])
-def test_an_invalid_goal_is_refused(robot, field, value):
+def test_an_invalid_goal_is_rejected(robot, field, value):
     goal = down(robot, **{field: value})
     assert not goal.accepted
     refusal = robot.refusal(goal)

@@ -37,7 +37,7 @@ def test_fails_with_not_reached_within_the_radius_without_contact(robot, simulat
 
 def test_cancel_ends_the_loop_on_the_controller_and_stops_the_arm(robot, simulator):
     goal = search(robot, radius=0.05)
-    wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the search to begin")
+    wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the arm to move")
     goal.cancel()
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED
@@ -47,7 +47,7 @@ def test_cancel_ends_the_loop_on_the_controller_and_stops_the_arm(robot, simulat
 
 def test_a_protective_stop_aborts_with_its_error_code(robot, simulator):
     goal = search(robot, radius=0.05)
-    wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the search to begin")
+    wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the arm to move")
     simulator.control("protective_stop", reason="of the test")
     assert goal.result().error_code == ErrorCode.PROTECTIVE_STOP
     assert simulator.state()["at_rest"]

@@ -13,7 +13,7 @@ os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 @pytest.fixture
 def launch():
-    """Returns a function that starts `ros2 launch`. Each launch is ended with Ctrl-C."""
+    """Returns a function that starts `ros2 launch`. Each launch is stopped with Ctrl-C."""
     launches = []
 
     def start(*arguments):
@@ -22,13 +22,13 @@ def launch():
 
     yield start
     for each in launches:
-        each.end()
+        each.stop()
 
 
 @pytest.fixture(scope="module")
 def driver():
-    """The driver, started as in the README."""
+    """The driver, started as described in the README."""
     launch = Launch("ur_ros_rtde", "driver.launch.py", "sim:=true")
     ready(launch)
     yield launch
-    launch.end()
+    launch.stop()

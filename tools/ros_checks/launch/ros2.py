@@ -1,4 +1,4 @@
-"""Runs `ros2` as a user does."""
+"""Runs the program `ros2`."""
 
 import os
 import pathlib
@@ -18,7 +18,7 @@ def ros2(*arguments, limit=60.0):
 
 
 class Launch:
-    """A running `ros2 launch`. end() sends Ctrl-C."""
+    """A running `ros2 launch`. stop() sends Ctrl-C."""
 
     def __init__(self, *arguments):
         self.lines = []
@@ -47,7 +47,7 @@ class Launch:
         self._reader.join(5.0)
         return code
 
-    def end(self):
+    def stop(self):
         if self.running():
             os.killpg(self._process.pid, signal.SIGINT)
             try:
@@ -61,7 +61,7 @@ class Launch:
 def wait_for(condition, limit, what):
     end = time.monotonic() + limit
     while not condition():
-        assert time.monotonic() < end, f"waited {limit} s for {what}"
+        assert time.monotonic() < end, f"timeout after {limit} s waiting for {what}"
         time.sleep(0.05)
 
 
@@ -81,6 +81,6 @@ def ready(launch, namespace=""):
 
 
 def parameter(node, name):
-    code, said = ros2("param", "get", "--hide-type", node, name)
-    assert code == 0, said
-    return said.strip()
+    code, printed = ros2("param", "get", "--hide-type", node, name)
+    assert code == 0, printed
+    return printed.strip()

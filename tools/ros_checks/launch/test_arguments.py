@@ -1,11 +1,11 @@
-"""Arguments of the launch files: all are declared, wrong ones are refused with one message, given ones reach the nodes."""
+"""Arguments of the launch files: all are declared, invalid ones are rejected with one message, valid ones reach the nodes."""
 
 import pytest
 from ros2 import ROOT, parameter, ready, ros2
 from ur_ros_rtde.launch_arguments import DRIVER, MOVEIT, PER_ROBOT, TWO_ROBOTS
 
 DRIVER_FILE = ("launch", "ur_ros_rtde", "driver.launch.py")
-FOREIGN = '''
+INCLUDING_LAUNCH_FILE = '''
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
@@ -22,19 +22,19 @@ def generate_launch_description():
 '''
 
 
-def errors(said):
-    return [line for line in said.splitlines() if "ERROR" in line]
+def errors(printed):
+    return [line for line in printed.splitlines() if "ERROR" in line]
 
 
 @pytest.mark.parametrize("launch_file, arguments", [("driver", DRIVER), ("two_robots", (*TWO_ROBOTS, *DRIVER)),
                                                     ("moveit", (*MOVEIT, *DRIVER))])
 def test_show_args_lists_all_with_description_and_default(launch_file, arguments):
-    code, said = ros2("launch", "ur_ros_rtde", f"{launch_file}.launch.py", "--show-args")
-    assert code == 0, said
+    code, printed = ros2("launch", "ur_ros_rtde", f"{launch_file}.launch.py", "--show-args")
+    assert code == 0, printed
     for argument in arguments:
-        assert f"'{argument.name}':" in said
+        assert f"'{argument.name}':" in printed
     for argument in (argument for argument in arguments if argument.name != "ur_type"):
-        assert argument.help in said and f"(default: '{argument.default_text}')" in said
+        assert argument.help in printed and f"(default: '{argument.default_text}')" in printed
 
 
 @pytest.mark.parametrize("given, message", [
@@ -47,11 +47,11 @@ def test_show_args_lists_all_with_description_and_default(launch_file, arguments
     ("params_file:=/nowhere.yaml", 'params_file is "/nowhere.yaml": the file does not exist'),
     ("on_busy:=refuse", "the address of the robot is missing: set robot_ip:=<address>, or sim:=true"),
 ])
-def test_a_wrong_argument_is_refused_with_one_message_and_nothing_is_started(given, message):
-    code, said = ros2(*DRIVER_FILE, given)
+def test_an_invalid_argument_is_rejected_with_one_message_before_any_process_starts(given, message):
+    code, printed = ros2(*DRIVER_FILE, given)
     assert code != 0
-    assert len(errors(said)) == 1 and message in errors(said)[0], said
-    assert "process started" not in said
+    assert len(errors(printed)) == 1 and message in errors(printed)[0], printed
+    assert "process started" not in printed
 
 
 @pytest.mark.parametrize("given, message", [
@@ -60,40 +60,40 @@ def test_a_wrong_argument_is_refused_with_one_message_and_nothing_is_started(giv
     ("left_robot_ip:=192.168.0.10", "the address of the right robot is missing: set right_robot_ip:=<address>"),
     ("on_bussy:=preempt", "did you mean on_busy?"),
 ])
-def test_a_wrong_argument_of_two_robots_is_refused_with_one_message(given, message):
-    code, said = ros2("launch", "ur_ros_rtde", "two_robots.launch.py", given)
+def test_an_invalid_argument_of_two_robots_is_rejected_with_one_message(given, message):
+    code, printed = ros2("launch", "ur_ros_rtde", "two_robots.launch.py", given)
     assert code != 0
-    assert len(errors(said)) == 1 and message in errors(said)[0], said
+    assert len(errors(printed)) == 1 and message in errors(printed)[0], printed
 
 
-def test_moveit_names_the_missing_packages():
-    code, said = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "sim:=true")
-    if "needs packages that are not installed" not in said:
+def test_moveit_reports_missing_packages():
+    code, printed = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "sim:=true")
+    if "needs packages that are not installed" not in printed:
         pytest.skip("MoveIt is installed")
     assert code != 0
-    assert len(errors(said)) == 1 and "ur_moveit_config" in said and "sudo apt install ros-$ROS_DISTRO-ur" in said
-    assert "process started" not in said
+    assert len(errors(printed)) == 1 and "ur_moveit_config" in printed and "sudo apt install ros-$ROS_DISTRO-ur" in printed
+    assert "process started" not in printed
 
 
-def test_moveit_refuses_arguments_that_its_configuration_does_not_support():
-    code, said = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "tf_prefix:=left_")
-    assert code != 0 and "moveit.launch.py has no launch argument tf_prefix" in said
+def test_moveit_rejects_arguments_that_its_configuration_does_not_support():
+    code, printed = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "tf_prefix:=left_")
+    assert code != 0 and "moveit.launch.py has no launch argument tf_prefix" in printed
 
 
-def test_arguments_of_an_including_launch_file_are_not_refused(launch, tmp_path):
+def test_arguments_of_an_including_launch_file_are_accepted(launch, tmp_path):
     file = tmp_path / "cell.launch.py"
-    file.write_text(FOREIGN.replace("ARGUMENTS", "{'sim': 'true', 'sim_ip': '127.0.0.41', 'on_busy': 'preempt'}"))
+    file.write_text(INCLUDING_LAUNCH_FILE.replace("ARGUMENTS", "{'sim': 'true', 'sim_ip': '127.0.0.41', 'on_busy': 'preempt'}"))
     started = launch(file, "cell:=two", "rviz:=true", "tf_prefix:=cell_")
     ready(started)
     assert parameter("/command_server", "on_busy") == "preempt"
     assert parameter("/robot_state_receiver", "tf_prefix") == "cell_"
 
 
-def test_a_wrong_argument_passed_by_an_including_launch_file_is_refused(tmp_path):
+def test_an_invalid_argument_passed_by_an_including_launch_file_is_rejected(tmp_path):
     file = tmp_path / "cell.launch.py"
-    file.write_text(FOREIGN.replace("ARGUMENTS", "{'sim': 'true', 'on_bussy': 'preempt'}"))
-    code, said = ros2("launch", file, "cell:=two")
-    assert code != 0 and "driver.launch.py has no launch argument on_bussy; did you mean on_busy?" in said
+    file.write_text(INCLUDING_LAUNCH_FILE.replace("ARGUMENTS", "{'sim': 'true', 'on_bussy': 'preempt'}"))
+    code, printed = ros2("launch", file, "cell:=two")
+    assert code != 0 and "driver.launch.py has no launch argument on_bussy; did you mean on_busy?" in printed
 
 
 @pytest.mark.parametrize("one_process", ["true", "false"])
@@ -109,11 +109,11 @@ def test_arguments_reach_the_nodes_and_have_priority_over_a_file(launch, tmp_pat
     assert parameter("/left/robot_state_receiver", "tf_prefix") == "left_"
     assert parameter("/left/command_server", "stream_gain") == "500.0"  # only in the file
     assert parameter("/left/command_server", "watchdog_frequency") == "10.0"  # in neither
-    code, said = ros2("topic", "echo", "--once", "--field", "name", "/left/joint_states")
-    assert code == 0 and "left_shoulder_pan_joint" in said
+    code, printed = ros2("topic", "echo", "--once", "--field", "name", "/left/joint_states")
+    assert code == 0 and "left_shoulder_pan_joint" in printed
 
 
-def test_two_robots_have_their_own_names_and_ports_and_share_the_other_arguments(launch):
+def test_two_robots_have_separate_names_and_ports_and_share_the_other_arguments(launch):
     started = launch("ur_ros_rtde", "two_robots.launch.py", "sim:=true", "left_sim_ip:=127.0.0.43", "right_sim_ip:=127.0.0.44",
                      "on_busy:=preempt", "right_ur_type:=ur5e")
     for side, port, address in (("left", "50002", "127.0.0.43"), ("right", "50003", "127.0.0.44")):
@@ -122,14 +122,14 @@ def test_two_robots_have_their_own_names_and_ports_and_share_the_other_arguments
         assert parameter(f"/{side}/command_server", "robot_ip") == address
         assert parameter(f"/{side}/command_server", "on_busy") == "preempt"
         assert parameter(f"/{side}/robot_state_receiver", "tf_prefix") == f"{side}_"
-        code, said = ros2("action", "send_goal", f"/{side}/move_j", "ur_ros_rtde_msgs/action/MoveJ",
+        code, printed = ros2("action", "send_goal", f"/{side}/move_j", "ur_ros_rtde_msgs/action/MoveJ",
                           "{joint_positions: [0.1, -1.57, 1.57, -1.57, -1.57, 0.0]}")
-        assert code == 0 and "success: true" in said, said
+        assert code == 0 and "success: true" in printed, printed
     assert parameter("/right/command_server", "ur_type") == "ur5e"
     assert set(PER_ROBOT) >= {"namespace", "tf_prefix", "urcap_port"}
 
 
-def test_a_driver_that_cannot_start_ends_the_launch_with_its_reason(launch):
+def test_a_driver_that_fails_to_start_ends_the_launch_with_its_message(launch):
     started = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.45", "robot_state_fields:=[no_such_field]")
     started.wait(60.0)
     assert sum("no_such_field" in line for line in started.lines) == 1, started.output()
@@ -141,14 +141,14 @@ def test_an_occupied_urcap_port_is_reported_with_a_remedy(launch):
     second = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.47", "control_mode:=control_urcap", "urcap_port:=50046",
                     "namespace:=second")
     second.wait_for("50046")
-    said = [line for line in second.lines if "50046" in line]
-    assert len(said) == 1 and "choose another urcap_port" in said[0], second.output()
+    printed = [line for line in second.lines if "50046" in line]
+    assert len(printed) == 1 and "choose another urcap_port" in printed[0], second.output()
 
 
-def test_ctrl_c_ends_driver_and_simulator(launch):
+def test_ctrl_c_stops_driver_and_simulator(launch):
     started = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.48")
     ready(started)
-    started.end()
+    started.stop()
     assert not started.running()
     assert "process has died" not in started.output()
 

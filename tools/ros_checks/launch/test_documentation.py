@@ -33,26 +33,26 @@ def arguments(line, tmp_path):
 
 def test_the_readme_moves_the_simulated_robot(driver):
     line, = lines(README, "action send_goal")
-    code, said = ros2(*shlex.split(line)[1:])
-    assert code == 0 and "Feedback:" in said and "success: true" in said and "SUCCEEDED" in said, said
-    code, said = ros2("topic", "echo", "--once", "/joint_states")
-    assert code == 0 and "position:\n- 0.2\n" in re.sub(r"- 0\.(19999|2000)\d*", "- 0.2", said), said
+    code, printed = ros2(*shlex.split(line)[1:])
+    assert code == 0 and "Feedback:" in printed and "success: true" in printed and "SUCCEEDED" in printed, printed
+    code, printed = ros2("topic", "echo", "--once", "/joint_states")
+    assert code == 0 and "position:\n- 0.2\n" in re.sub(r"- 0\.(19999|2000)\d*", "- 0.2", printed), printed
     run, = lines(README, "run")
-    code, said = ros2(*shlex.split(run)[1:])
-    assert code == 0, said
+    code, printed = ros2(*shlex.split(run)[1:])
+    assert code == 0, printed
 
 
 def test_nodes_and_parameters_are_listed(driver):
-    code, said = ros2("node", "list")
-    assert code == 0 and {f"/{node}" for node in NODES} <= set(said.split())
-    code, said = ros2("param", "list", "/command_server")
-    assert code == 0 and {"on_busy", "urcap_port", "watchdog_frequency"} <= set(said.split())
-    code, said = ros2("param", "describe", "/command_server", "on_busy")
-    assert code == 0 and "Type: string" in said and "Read only: true" in said, said
-    code, said = ros2("action", "list", "-t")
-    assert "/move_j [ur_ros_rtde_msgs/action/MoveJ]" in said, said
-    code, said = ros2("service", "call", "/get_joint_state", "ur_ros_rtde_msgs/srv/GetJointState", "{}")
-    assert code == 0 and "success=True" in said, said
+    code, printed = ros2("node", "list")
+    assert code == 0 and {f"/{node}" for node in NODES} <= set(printed.split())
+    code, printed = ros2("param", "list", "/command_server")
+    assert code == 0 and {"on_busy", "urcap_port", "watchdog_frequency"} <= set(printed.split())
+    code, printed = ros2("param", "describe", "/command_server", "on_busy")
+    assert code == 0 and "Type: string" in printed and "Read only: true" in printed, printed
+    code, printed = ros2("action", "list", "-t")
+    assert "/move_j [ur_ros_rtde_msgs/action/MoveJ]" in printed, printed
+    code, printed = ros2("service", "call", "/get_joint_state", "ur_ros_rtde_msgs/srv/GetJointState", "{}")
+    assert code == 0 and "success=True" in printed, printed
 
 
 def test_follow_joint_trajectory_has_the_published_type(driver):
@@ -64,21 +64,21 @@ def test_follow_joint_trajectory_has_the_published_type(driver):
 
 @pytest.mark.parametrize("line", cases("interface show"))
 def test_interfaces_exist(line):
-    code, said = ros2(*shlex.split(line)[1:])
-    assert code == 0 and said, said
+    code, printed = ros2(*shlex.split(line)[1:])
+    assert code == 0 and printed, printed
 
 
 @pytest.mark.parametrize("line", cases("service call"))
 def test_services_answer(driver, line, tmp_path):
-    code, said = ros2(*arguments(line, tmp_path))
-    assert code == 0 and "response:" in said, said
+    code, printed = ros2(*arguments(line, tmp_path))
+    assert code == 0 and "response:" in printed, printed
 
 
 @pytest.mark.parametrize("line", cases("action send_goal"))
 def test_goals_are_accepted_or_refused_by_their_server(driver, line, tmp_path):
     """Checks types and fields of the goals. The tests in ur_ros_rtde_commands/test/every_command check that they succeed."""
     try:
-        said = ros2(*arguments(line, tmp_path), limit=20.0)[1]
+        printed = ros2(*arguments(line, tmp_path), limit=20.0)[1]
     except subprocess.TimeoutExpired as expired:  # a long motion: the arm stops because its client has exited
-        said = (expired.stdout or b"").decode()
-    assert "Goal accepted" in said or "Goal was rejected" in said or "control_msgs" in line, said
+        printed = (expired.stdout or b"").decode()
+    assert "Goal accepted" in printed or "Goal was rejected" in printed or "control_msgs" in line, printed

@@ -1,9 +1,9 @@
-"""Durations of this project's trajectories against independent time-optimal solvers on the same paths.
+"""Compares the durations of this project's trajectories with independent time-optimal solvers on the same paths.
 
     trajectory_export paths.bin 0 100 1 0.02 && python3 oracle.py paths.bin        # with jerk limits, against copp-py
     trajectory_export paths.bin 0 100 0 0.005 && python3 oracle.py paths.bin       # without, against toppra
 
-Needs numpy and copp-py or toppra. Prints one line per path and the ratios' median and worst.
+Requires numpy and copp-py or toppra. Prints one line per path, and the median and the maximum of the ratios.
 """
 
 import logging
@@ -33,10 +33,10 @@ def paths(name):
 
 
 def with_jerk(limits, rows):
-    """Successive convex programs around the exported speeds, until the duration settles."""
+    """Solves successive convex programs around the exported speeds until the duration converges."""
     import copp_py as copp
 
-    # In units of s in which the stations are about 0.01 apart, the solver's numbers are of similar size.
+    # The path parameter is scaled to about 0.01 between stations, so that the solver's variables have similar magnitudes.
     unit = 0.01 * len(rows) / (rows[-1, 0] - rows[0, 0])
     s = (rows[:, 0] - rows[0, 0]) * unit
     d1, d2, d3 = (np.ascontiguousarray(rows[:, k:k + 6]) / unit ** n for n, k in enumerate((2, 8, 14), 1))
@@ -56,7 +56,7 @@ def with_jerk(limits, rows):
             try:
                 profile = solver.solve(problem, copp.clarabel.Options(allow_almost_solved=True))
                 break
-            except Exception:  # a numerical failure of the oracle; its other formulation may do
+            except Exception:  # a numerical failure of the solver; the other formulation may succeed
                 continue
         if profile is None:
             break
