@@ -1,4 +1,4 @@
-"""Starts a node of rcl_cxx in a process of its own and checks it with rclpy."""
+"""Starts a node of rcl_cxx in a separate process and tests it with rclpy."""
 
 import fcntl
 import os
@@ -14,8 +14,8 @@ LIMIT = 10.0
 _own_domain = None
 
 
-def _take_own_domain():
-    """Takes a ROS domain that no other test on this machine uses, by locking a file until the process ends.
+def _reserve_domain():
+    """Reserves a ROS domain that is unique on this machine, by locking a file until the process exits.
 
     The project's test runner does the same and sets the domain in the environment.
     """
@@ -37,7 +37,7 @@ def _take_own_domain():
 # Before rclpy is used for the first time.
 os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 if "ROS_DOMAIN_ID" not in os.environ:
-    os.environ["ROS_DOMAIN_ID"] = _take_own_domain()
+    os.environ["ROS_DOMAIN_ID"] = _reserve_domain()
 
 import pytest  # noqa: E402
 import rclpy  # noqa: E402
@@ -45,7 +45,7 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 
 
 def eventually(condition, limit=LIMIT):
-    """Returns the value of the condition as soon as it is true; fails after the limit."""
+    """Returns the first true value of `condition()`. Fails if there is none within `limit` s."""
     end = time.monotonic() + limit
     while True:
         value = condition()
@@ -63,7 +63,7 @@ def result_of(future, limit=LIMIT):
 
 
 class NodeProcess:
-    """The test node, with arguments of its own."""
+    """A process of the test node."""
 
     def __init__(self, *arguments, ready=True):
         environment = dict(os.environ, RCUTILS_LOGGING_USE_STDOUT="0")
@@ -85,7 +85,7 @@ class NodeProcess:
             lines.append(line)
 
     def stop(self, sig=signal.SIGINT):
-        """Returns the exit code and sets `self.seconds_to_stop`."""
+        """Sends the signal and returns the exit code. Sets `self.seconds_to_stop`."""
         start = time.monotonic()
         if self.process.poll() is None:
             self.process.send_signal(sig)
@@ -97,7 +97,7 @@ class NodeProcess:
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
-            raise AssertionError("the node did not end") from None
+            raise AssertionError("the node did not exit") from None
         finally:
             for reader in self._readers:
                 reader.join()
@@ -132,11 +132,11 @@ class Ros:
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
 
-    def in_executor(self, function):
-        """The function's value, computed in the thread of the executor.
+    def call_in_executor(self, function):
+        """Calls the function in the executor's thread and returns its result.
 
-        rclpy's action client wants that: made in another thread, the executor may meet it half-made, and used in
-        another thread, it loses an answer that arrives before it has noted the question.
+        rclpy's action client is not thread-safe: the executor may access a client that another thread is still
+        constructing, and it loses a response that arrives before another thread has registered the request.
         """
         return result_of(self.executor.create_task(function))
 
@@ -148,8 +148,8 @@ class Ros:
         finally:
             self.node.destroy_client(client)
 
-    def listen(self, message_type, topic, qos):
-        """Returns a list that grows with the messages of the topic, once the publisher is matched."""
+    def subscribe(self, message_type, topic, qos):
+        """Waits for the publisher of the topic. Returns a list to which all received messages are appended."""
         messages = []
         self.node.create_subscription(message_type, topic, messages.append, qos)
         eventually(lambda: self.node.count_publishers(topic) > 0)
@@ -165,7 +165,7 @@ def ros():
 
 @pytest.fixture
 def start_node():
-    """Starts further nodes. After a failed test they are killed and their output is printed."""
+    """Returns a function that starts further nodes. After a failed test, they are killed and their output is printed."""
     processes = []
 
     def start(*arguments, **options):
@@ -181,7 +181,7 @@ def start_node():
 
 @pytest.fixture(scope="module")
 def test_node():
-    """The node that all tests of a file share."""
+    """The node shared by all tests of a file."""
     process = NodeProcess()
     yield process
     assert process.stop() == 0

@@ -1,4 +1,4 @@
-"""An action server of rcl_cxx, used by rclpy's action client."""
+"""An action server of rcl_cxx with action clients of rclpy."""
 
 import threading
 
@@ -21,7 +21,7 @@ class Client:
     def __init__(self, ros, name):
         self.ros = ros
         self.name = name
-        self.client = ros.in_executor(lambda: ActionClient(ros.node, Fibonacci, name))
+        self.client = ros.call_in_executor(lambda: ActionClient(ros.node, Fibonacci, name))
         assert self.client.wait_for_server(LIMIT)
 
     def send(self, order, feedback=None):
@@ -29,15 +29,15 @@ class Client:
         return result_of(self.start(order, callback))
 
     def start(self, order, feedback_callback=None):
-        return self.ros.in_executor(lambda: self.client.send_goal_async(Fibonacci.Goal(order=order),
+        return self.ros.call_in_executor(lambda: self.client.send_goal_async(Fibonacci.Goal(order=order),
                                                                         feedback_callback=feedback_callback))
 
     def result(self, goal):
-        """A future."""
-        return self.ros.in_executor(goal.get_result_async)
+        """Returns a future of the result."""
+        return self.ros.call_in_executor(goal.get_result_async)
 
     def cancel_goal(self, goal):
-        return result_of(self.ros.in_executor(goal.cancel_goal_async))
+        return result_of(self.ros.call_in_executor(goal.cancel_goal_async))
 
     def run(self, order):
         return result_of(self.result(self.send(order)))
@@ -60,14 +60,14 @@ def client(ros, test_node):
     client = Client(ros, "/fibonacci")
     yield client
     client.cancel()
-    ros.in_executor(client.client.destroy)
+    ros.call_in_executor(client.client.destroy)
 
 
 def ids(goals):
     return sorted(bytes(goal.goal_id.uuid) for goal in goals)
 
 
-def test_a_goal_gives_feedback_and_a_result(client):
+def test_a_goal_has_feedback_and_a_result(client):
     def run():
         feedback = []
         goal = client.send(8, feedback)
@@ -78,13 +78,13 @@ def test_a_goal_gives_feedback_and_a_result(client):
         assert list(answer.result.sequence) == [0, 1, 1, 2, 3, 5, 8, 13]
         return feedback
 
-    # Feedback is for those whom the server has discovered; the first goals of a client may be quicker than that.
+    # The server sends feedback only to discovered subscriptions. The first goals of a client may precede the discovery.
     feedback = eventually(lambda: [message for message in [run()] if len(message) == 6])[0]
     assert [len(message.sequence) for message in feedback] == [3, 4, 5, 6, 7, 8]
     assert list(feedback[-1].sequence) == [0, 1, 1, 2, 3, 5, 8, 13]
 
 
-def test_a_result_can_be_asked_for_before_and_after_the_end_and_twice(client):
+def test_a_result_can_be_requested_before_and_after_the_end_and_repeatedly(client):
     goal = client.send(20)
     before = [client.result(goal), client.result(goal)]
     assert [result_of(future).status for future in before] == [GoalStatus.STATUS_SUCCEEDED] * 2
@@ -93,19 +93,19 @@ def test_a_result_can_be_asked_for_before_and_after_the_end_and_twice(client):
     assert after.result == result_of(before[0]).result
 
 
-def test_a_refused_goal_is_refused_and_the_reason_logged(client, test_node):
+def test_a_rejected_goal_is_logged_with_the_reason(client, test_node):
     assert not client.send(-3).accepted
     eventually(lambda: any("/fibonacci: goal" in line and "refused: order is -3, it must not be negative" in line
                            for line in test_node.errors))
 
 
-def test_a_goal_whose_check_throws_is_refused(client, test_node):
+def test_a_goal_whose_check_throws_is_rejected(client, test_node):
     assert not client.send(THROW_IN_GOAL).accepted
     eventually(lambda: any("the goal handler failed" in line for line in test_node.errors))
 
 
 def test_many_goals_run_at_the_same_time(client):
-    # Not more at a time than the depth of services, 10.
+    # At most 10 at a time, the queue depth of services.
     goals = [client.start(order) for order in range(20, 28)]
     handles = [result_of(goal) for goal in goals]
     assert all(handle.accepted for handle in handles)
@@ -113,7 +113,7 @@ def test_many_goals_run_at_the_same_time(client):
     assert [len(result.result.sequence) for result in results] == list(range(20, 28))
 
 
-def test_a_goal_is_canceled(client):
+def test_cancels_a_goal(client):
     goal = client.send(RUN_UNTIL_CANCELED)
     result = client.result(goal)
     answer = client.cancel_goal(goal)
@@ -122,7 +122,7 @@ def test_a_goal_is_canceled(client):
     assert result_of(result).status == GoalStatus.STATUS_CANCELED
 
 
-def test_a_cancellation_may_be_refused(client):
+def test_a_server_may_reject_a_cancel_request(client):
     goal = client.send(REFUSE_CANCEL)
     answer = client.cancel_goal(goal)
     assert answer.return_code == CancelGoal.Response.ERROR_REJECTED
@@ -144,7 +144,7 @@ def test_a_goal_may_be_canceled_by_the_handler_itself(client):
     assert result_of(client.result(goal)).status == GoalStatus.STATUS_CANCELED
 
 
-def test_an_ended_goal_cannot_be_canceled(client):
+def test_a_finished_goal_cannot_be_canceled(client):
     goal = client.send(3)
     result_of(client.result(goal))
     answer = client.cancel_goal(goal)
@@ -157,7 +157,7 @@ def test_an_unknown_goal_cannot_be_canceled_and_has_no_result(client):
     assert client.result_by_id(unknown).status == GoalStatus.STATUS_UNKNOWN
 
 
-def test_all_goals_are_canceled_at_once(client):
+def test_cancels_all_goals_with_one_request(client):
     goals = [client.send(RUN_UNTIL_CANCELED) for _ in range(3)]
     answer = client.cancel()
     assert answer.return_code == CancelGoal.Response.ERROR_NONE
@@ -169,20 +169,20 @@ def test_all_goals_are_canceled_at_once(client):
     assert not nothing.goals_canceling
 
 
-def test_goals_up_to_a_stamp_are_canceled(client):
+def test_cancels_goals_up_to_a_stamp(client):
     early, middle, late = (client.send(RUN_UNTIL_CANCELED) for _ in range(3))
     assert ids(client.cancel(stamp=middle.stamp).goals_canceling) == ids([early, middle])
     assert result_of(client.result(middle)).status == GoalStatus.STATUS_CANCELED
     assert ids(client.cancel().goals_canceling) == ids([late])
 
 
-def test_goals_up_to_a_stamp_and_one_more_are_canceled(client):
+def test_cancels_goals_up_to_a_stamp_and_the_goal_with_the_given_id(client):
     early, middle, late = (client.send(RUN_UNTIL_CANCELED) for _ in range(3))
     assert ids(client.cancel(late.goal_id, early.stamp).goals_canceling) == ids([early, late])
     assert ids(client.cancel().goals_canceling) == ids([middle])
 
 
-def test_cancellations_race_with_results_and_every_goal_ends_once(client):
+def test_each_goal_ends_once_when_cancel_requests_race_with_results(client):
     outcomes = set()
     for order in range(2, 14):
         goal = client.send(order)
@@ -227,11 +227,11 @@ def test_several_clients_have_goals_and_cancel_them_concurrently(ros, client):
     (CANCELED_UNASKED, GoalStatus.STATUS_ABORTED),
     (FINISH_TWICE, GoalStatus.STATUS_SUCCEEDED),
 ])
-def test_every_accepted_goal_gets_one_result(client, order, status):
+def test_each_accepted_goal_has_one_result(client, order, status):
     assert client.run(order).status == status
 
 
-def test_misuse_is_logged(client, test_node):
+def test_misuse_of_a_goal_handle_is_logged(client, test_node):
     client.run(FINISH_TWICE)
     client.run(DROP_HANDLE)
     eventually(lambda: any("second result: false" in line for line in test_node.errors))
@@ -239,10 +239,10 @@ def test_misuse_is_logged(client, test_node):
     eventually(lambda: any("its handle was released without a result" in line for line in test_node.errors))
 
 
-def test_the_status_of_goals_is_published_for_late_comers_too(ros, client):
+def test_late_subscribers_receive_the_goal_status(ros, client):
     goal = client.send(RUN_UNTIL_CANCELED)
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    arrays = ros.listen(GoalStatusArray, "/fibonacci/_action/status", latched)
+    transient_local = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    arrays = ros.subscribe(GoalStatusArray, "/fibonacci/_action/status", transient_local)
 
     def status():
         return {bytes(entry.goal_info.goal_id.uuid): entry.status for array in arrays[-1:]
@@ -253,7 +253,7 @@ def test_the_status_of_goals_is_published_for_late_comers_too(ros, client):
     eventually(lambda: status() == GoalStatus.STATUS_CANCELED)
     seen = [entry.status for array in arrays for entry in array.status_list
             if bytes(entry.goal_info.goal_id.uuid) == bytes(goal.goal_id.uuid)]
-    assert seen == sorted(seen), "executing, canceling, canceled: no way back"
+    assert seen == sorted(seen), "the status must not return to an earlier state"
 
 
 def test_results_expire(ros, test_node):
@@ -274,12 +274,12 @@ def test_active_goals_do_not_expire(ros, test_node):
     assert result_of(client.result(goal)).status == GoalStatus.STATUS_CANCELED
 
 
-def test_goals_are_answered_when_the_node_ends(ros, start_node):
+def test_goals_receive_a_result_when_the_node_shuts_down(ros, start_node):
     process = start_node("--ros-args", "-r", "__ns:=/ending")
     client = Client(ros, "/ending/fibonacci")
     goals = [client.send(RUN_UNTIL_CANCELED) for _ in range(3)]
     results = [client.result(goal) for goal in goals]
-    # A request is here before the next one of the same client is answered.
+    # The server receives a request before it answers a later request of the same client.
     client.result_by_id(UUID(uuid=list(range(16))))
     assert process.stop() == 0
     assert [result_of(result).status for result in results] == [GoalStatus.STATUS_ABORTED] * 3

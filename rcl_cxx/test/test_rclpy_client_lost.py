@@ -1,4 +1,4 @@
-"""The client of an active goal is a process that ends."""
+"""The process of a client exits while its goal is active."""
 
 import os
 import signal
@@ -42,7 +42,7 @@ class ClientProcess:
                                         text=True, env={**os.environ, **environment})
         self.goal_id = UUID(uuid=list(bytes.fromhex(self.process.stdout.readline())))
 
-    def end(self, number):
+    def kill(self, number):
         self.process.send_signal(number)
         self.process.wait(LIMIT)
 
@@ -73,19 +73,19 @@ def result(ros, goal_id):
 
 
 @pytest.mark.parametrize("number, limit", [(signal.SIGTERM, 1.0), (signal.SIGINT, 1.0), (signal.SIGKILL, 4.0)])
-def test_the_end_of_a_client_is_noticed(ros, test_node, start, number, limit):
+def test_detects_that_a_client_has_exited(ros, test_node, start, number, limit):
     client, before = start(), len(losses(test_node))
-    client.end(number)
+    client.kill(number)
     begin = time.monotonic()
     eventually(lambda: len(losses(test_node)) == before + 1)
     assert time.monotonic() - begin < limit
     assert result(ros, client.goal_id).status == GoalStatus.STATUS_ABORTED
 
 
-def test_a_client_that_lives_is_not_taken_for_one_that_has_ended(ros, test_node, start):
+def test_a_running_client_is_not_considered_lost(ros, test_node, start):
     client, other, before = start(), start(), len(losses(test_node))
-    other.end(signal.SIGKILL)
+    other.kill(signal.SIGKILL)
     eventually(lambda: len(losses(test_node)) == before + 1)
     assert result(ros, other.goal_id).status == GoalStatus.STATUS_ABORTED
-    client.end(signal.SIGTERM)
+    client.kill(signal.SIGTERM)
     eventually(lambda: len(losses(test_node)) == before + 2)

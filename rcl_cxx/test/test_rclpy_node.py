@@ -1,4 +1,4 @@
-"""A node of rcl_cxx in the graph: names, types, quality of service, /rosout, remaps, and how it ends."""
+"""A node of rcl_cxx in the ROS graph: names, types, quality of service, /rosout, remapping and shutdown."""
 
 import signal
 import time
@@ -10,7 +10,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 ROSOUT = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 ACTION_SERVICES = {"cancel_goal": "action_msgs/srv/CancelGoal", "get_result": "test_msgs/action/Fibonacci_GetResult",
@@ -21,7 +21,7 @@ PARAMETER_SERVICES = {"describe_parameters": "DescribeParameters", "get_paramete
 
 
 def of_node(query, name="test_node", namespace="/"):
-    """Returns the result of the query once discovery is complete: when it has not changed for a while."""
+    """Returns the result of the query when it has been stable for a while, which means that discovery is complete."""
     def stable():
         try:
             first = dict(query(name, namespace))
@@ -66,16 +66,16 @@ def test_the_node_has_its_topics_with_their_types(ros, test_node):
     ("/parameter_events", DurabilityPolicy.VOLATILE, 1000),
     ("/rosout", DurabilityPolicy.TRANSIENT_LOCAL, 1000),
 ])
-def test_its_topics_have_the_quality_of_service_of_rclcpp(ros, test_node, topic, durability, depth):
+def test_topics_have_the_quality_of_service_of_rclcpp(ros, test_node, topic, durability, depth):
     info = eventually(lambda: [info for info in ros.node.get_publishers_info_by_topic(topic)
                                if info.node_name == "test_node"])[0]
     assert info.qos_profile.reliability == ReliabilityPolicy.RELIABLE
     assert info.qos_profile.durability == durability
-    assert info.qos_profile.depth in (0, depth), "discovery need not tell the depth"
+    assert info.qos_profile.depth in (0, depth), "discovery may omit the depth"
 
 
-def test_messages_go_there_and_back(ros, test_node):
-    heard = ros.listen(String, "/echo", 10)
+def test_publishes_and_receives_messages(ros, test_node):
+    heard = ros.subscribe(String, "/echo", 10)
     publisher = ros.node.create_publisher(String, "/say", 10)
 
     def echoed():
@@ -85,31 +85,31 @@ def test_messages_go_there_and_back(ros, test_node):
     assert eventually(echoed)[0].data == "hello"
 
 
-def test_a_latched_message_waits_for_late_comers(ros, test_node):
-    messages = ros.listen(String, "/latched", LATCHED)
+def test_late_subscribers_receive_a_transient_local_message(ros, test_node):
+    messages = ros.subscribe(String, "/latched", TRANSIENT_LOCAL)
     assert eventually(lambda: messages)[0].data == "from before"
 
 
 def test_an_incompatible_quality_of_service_is_logged(ros, start_node):
     process = start_node("--ros-args", "-r", "__ns:=/qos")
-    ros.node.create_subscription(String, "/qos/echo", lambda _: None, LATCHED)
+    ros.node.create_subscription(String, "/qos/echo", lambda _: None, TRANSIENT_LOCAL)
     eventually(lambda: any("an incompatible quality of service (durability" in line for line in process.errors))
     assert process.stop() == 0
 
 
-def test_services_answer(ros, test_node):
+def test_services_respond(ros, test_node):
     answer = ros.call(SetBool, "/set_bool", SetBool.Request(data=True))
     assert (answer.success, answer.message) == (True, "on")
 
 
-def test_a_service_that_throws_answers_and_logs(ros, test_node):
+def test_a_service_that_throws_responds_and_logs_the_error(ros, test_node):
     assert ros.call(Trigger, "/failing", Trigger.Request()).message == "half done"
     eventually(lambda: any("service failing: the service handler failed" in line for line in test_node.errors))
     assert ros.call(SetBool, "/set_bool", SetBool.Request()).message == "off"
 
 
-def test_the_log_goes_to_console_and_rosout(ros, test_node):
-    messages = ros.listen(Log, "/rosout", ROSOUT)
+def test_logs_to_console_and_rosout(ros, test_node):
+    messages = ros.subscribe(Log, "/rosout", ROSOUT)
     assert ros.call(Trigger, "/test_node/log", Trigger.Request()).success
 
     def of(name):
@@ -123,13 +123,13 @@ def test_the_log_goes_to_console_and_rosout(ros, test_node):
     assert any("[test_node]: a warning with 42" in line for line in test_node.errors)
 
 
-def test_the_log_level_can_be_chosen(start_node):
+def test_the_log_level_can_be_set(start_node):
     process = start_node("--ros-args", "--log-level", "test_node:=fatal", "-p", "use_sim_time:=false")
     assert process.stop() == 0
     assert not [line for line in process.errors if "WARN" in line]
 
 
-def test_names_are_remapped_and_prefixed(ros, start_node):
+def test_names_are_remapped_and_moved_to_the_namespace(ros, start_node):
     process = start_node("--ros-args", "-r", "__ns:=/left/arm", "-r", "__node:=driver", "-r", "echo:=/loud/echo", "-r",
                           "fibonacci:=count")
     services = of_node(ros.node.get_service_names_and_types_by_node, "driver", "/left/arm")
@@ -142,7 +142,7 @@ def test_names_are_remapped_and_prefixed(ros, start_node):
 
 
 @pytest.mark.parametrize("sig, name", [(signal.SIGINT, "SIGINT"), (signal.SIGTERM, "SIGTERM")])
-def test_a_signal_ends_it_soon_with_success(sig, name, start_node):
+def test_a_signal_stops_the_node_with_exit_code_0(sig, name, start_node):
     process = start_node()
     assert process.stop(sig) == 0
     assert f"stopped by {name}\n" in process.output
@@ -156,7 +156,7 @@ def test_the_node_leaves_the_graph(ros, start_node):
     eventually(lambda: ("leaving", "/") not in ros.node.get_node_names_and_namespaces())
 
 
-def test_arguments_that_nobody_knows_end_it_with_their_names(start_node):
+def test_unknown_ros_arguments_are_reported_and_stop_the_node(start_node):
     process = start_node("--ros-args", "--sped", "1", ready=False)
     assert process.wait() == 2
     assert "unknown ROS arguments: --sped 1" in "".join(process.errors)

@@ -1,4 +1,4 @@
-"""The parameters of a node of rcl_cxx, seen and set from rclpy."""
+"""The parameters of a node of rcl_cxx, accessed with rclpy."""
 
 import pytest
 from conftest import LIMIT, eventually, result_of
@@ -28,7 +28,7 @@ def set_one(client, name, value, type_=None):
     return result_of(client.set_parameters([Parameter(name, type_, value)])).results[0]
 
 
-def test_all_are_listed(client):
+def test_lists_all_parameters(client):
     answer = result_of(client.list_parameters()).result
     assert sorted(name for name in answer.names if not name.startswith("declared_")) == NAMES
     assert sorted(answer.prefixes) == ["robot", "robot.tool"]
@@ -39,11 +39,11 @@ def test_all_are_listed(client):
     (["robot"], 0, ["robot.host", "robot.tool.mass"]),
     ([], 1, [name for name in NAMES if "." not in name]),
 ])
-def test_listing_keeps_to_prefix_and_depth(client, prefixes, depth, names):
+def test_lists_parameters_by_prefix_and_depth(client, prefixes, depth, names):
     assert sorted(result_of(client.list_parameters(prefixes, depth)).result.names) == names
 
 
-def test_they_have_their_types(client):
+def test_returns_the_types_of_parameters(client):
     names = ["switch", "count", "speed", "robot.host", "bytes", "flags", "integers", "home", "names"]
     types = list(result_of(client.get_parameter_types(names)).types)
     assert types == [ParameterType.PARAMETER_BOOL, ParameterType.PARAMETER_INTEGER, ParameterType.PARAMETER_DOUBLE,
@@ -52,7 +52,7 @@ def test_they_have_their_types(client):
                      ParameterType.PARAMETER_DOUBLE_ARRAY, ParameterType.PARAMETER_STRING_ARRAY]
 
 
-def test_they_have_their_values(client):
+def test_returns_the_values_of_parameters(client):
     switch, host, home, flags, data = get(client, "switch", "robot.host", "home", "flags", "bytes")
     assert switch.bool_value is True
     assert host.string_value == "localhost"
@@ -61,7 +61,7 @@ def test_they_have_their_values(client):
     assert [bytes(byte)[0] for byte in data.byte_array_value] == [1, 255]
 
 
-def test_they_describe_themselves(client):
+def test_returns_the_descriptors_of_parameters(client):
     speed, count, model = result_of(client.describe_parameters(["speed", "count", "model"])).descriptors
     assert (speed.name, speed.type) == ("speed", ParameterType.PARAMETER_DOUBLE)
     assert speed.description == "in m/s"
@@ -73,7 +73,7 @@ def test_they_describe_themselves(client):
     assert not speed.dynamic_typing
 
 
-def test_unknown_ones_give_empty_answers_as_with_rclcpp(ros, test_node):
+def test_unknown_parameters_give_empty_responses_as_in_rclcpp(ros, test_node):
     assert not ros.call(GetParameters, "/test_node/get_parameters", GetParameters.Request(names=["nothing"])).values
     assert not ros.call(DescribeParameters, "/test_node/describe_parameters",
                         DescribeParameters.Request(names=["speed", "nothing"])).descriptors
@@ -81,7 +81,7 @@ def test_unknown_ones_give_empty_answers_as_with_rclcpp(ros, test_node):
                         ListParameters.Request(prefixes=["nothing"])).result.names
 
 
-def test_they_can_be_set(client):
+def test_sets_parameters(client):
     assert set_one(client, "speed", 1.5).successful
     assert get(client, "speed")[0].double_value == 1.5
     assert set_one(client, "names", ["x"]).successful
@@ -97,7 +97,7 @@ def test_they_can_be_set(client):
     ("model", "ur3e", "read-only"),
     ("nothing", 1, "'nothing' cannot be set because it was not declared"),
 ])
-def test_what_does_not_suit_is_refused_with_the_reason(client, name, value, reason):
+def test_an_invalid_value_is_rejected_with_the_reason(client, name, value, reason):
     before = get(client, name)
     answer = set_one(client, name, value)
     assert not answer.successful
@@ -105,14 +105,14 @@ def test_what_does_not_suit_is_refused_with_the_reason(client, name, value, reas
     assert get(client, name) == before
 
 
-def test_several_are_set_each_for_itself(client):
+def test_sets_several_parameters_independently(client):
     answers = result_of(client.set_parameters([Parameter("count", value=4), Parameter("model", value="x"),
                                                Parameter("limit", value=5)])).results
     assert [answer.successful for answer in answers] == [True, False, True]
     assert [value.integer_value for value in get(client, "count", "limit")] == [4, 5]
 
 
-def test_several_are_set_atomically_or_not_at_all(client):
+def test_sets_several_parameters_atomically(client):
     count = get(client, "count")[0].integer_value
     refused = result_of(client.set_parameters_atomically([Parameter("count", value=count + 1),
                                                           Parameter("speed", value=99.0)])).result
@@ -123,11 +123,11 @@ def test_several_are_set_atomically_or_not_at_all(client):
     assert get(client, "count")[0].integer_value == count + 1
 
 
-def test_changes_are_announced(ros, client):
-    events = ros.listen(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
+def test_publishes_parameter_events_for_changes(ros, client):
+    events = ros.subscribe(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
 
     def announced():
-        set_one(client, "switch", False)  # again and again: the subscription may not be matched from the other side
+        set_one(client, "switch", False)  # repeatedly: the publisher may not have matched the subscription yet
         return [event for event in events if event.node == "/test_node"]
 
     event = eventually(announced)[0]
@@ -137,8 +137,8 @@ def test_changes_are_announced(ros, client):
     assert not event.new_parameters and not event.deleted_parameters
 
 
-def test_declarations_are_announced(ros, test_node):
-    events = ros.listen(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
+def test_publishes_parameter_events_for_declarations(ros, test_node):
+    events = ros.subscribe(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
 
     def announced():
         assert ros.call(Trigger, "/test_node/declare", Trigger.Request()).success
@@ -149,7 +149,7 @@ def test_declarations_are_announced(ros, test_node):
     assert parameter.value.integer_value == 5
 
 
-def test_command_line_and_file_override_defaults(ros, tmp_path, start_node):
+def test_command_line_and_parameter_file_override_defaults(ros, tmp_path, start_node):
     file = tmp_path / "parameters.yaml"
     file.write_text("/**/test_node:\n  ros__parameters:\n    speed: 2\n    robot: {host: from_file}\n")
     process = start_node("--ros-args", "-r", "__ns:=/robot", "--params-file", str(file), "-p", "count:=9", "-p",
@@ -166,11 +166,11 @@ def test_command_line_and_file_override_defaults(ros, tmp_path, start_node):
     ("speed:=9.0", "parameter 'speed' is limited to the range 0 to 3, it cannot be 9.0"),
     ("count:=many", "parameter 'count' is of type integer, it cannot be 'many'"),
 ])
-def test_bad_overrides_end_the_node_with_a_clear_message(override, message, start_node):
+def test_an_invalid_override_stops_the_node_with_a_message(override, message, start_node):
     process = start_node("--ros-args", "-p", override, ready=False)
     assert process.wait() == 2
     assert message in "".join(process.errors)
 
 
-def test_requests_of_no_parameters_are_answered(ros, test_node):
+def test_responds_to_requests_without_parameters(ros, test_node):
     assert ros.call(SetParameters, "/test_node/set_parameters", SetParameters.Request()).results == []

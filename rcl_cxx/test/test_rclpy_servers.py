@@ -1,4 +1,4 @@
-"""Clients of rcl_cxx and servers of rclpy."""
+"""Clients of rcl_cxx with servers of rclpy."""
 
 import threading
 
@@ -14,7 +14,7 @@ from test_msgs.action import Fibonacci
 
 
 class Servers:
-    """An action server and a service of rclpy, with special behaviour for some orders."""
+    """An action server and a service of rclpy whose behavior depends on the order."""
 
     def __init__(self, node):
         group = ReentrantCallbackGroup()
@@ -71,8 +71,8 @@ def servers(test_node):
 
 @pytest.fixture
 def outcome(ros, test_node):
-    """Lets the node make one call and returns its outcome."""
-    messages = ros.listen(String, "/outcome", 10)
+    """Returns a function that makes the node send one request and returns its outcome."""
+    messages = ros.subscribe(String, "/outcome", 10)
 
     def call(kind, number):
         publisher = ros.node.create_publisher(String, f"/call_{kind}", 10)
@@ -85,7 +85,7 @@ def outcome(ros, test_node):
     return call
 
 
-def test_a_service_is_called(servers, outcome):
+def test_calls_a_service(servers, outcome):
     assert outcome("service", 1) == "yes"
     assert outcome("service", 0) == "no"
 
@@ -95,14 +95,14 @@ def test_a_goal_succeeds(servers, outcome):
     assert (status, elements) == ("succeeded", "8")
 
 
-def test_an_aborted_goal_is_told_apart(servers, outcome):
+def test_reports_an_aborted_goal(servers, outcome):
     assert outcome("action", 3).startswith("aborted 3")
 
 
-def test_a_refused_goal_is_told_apart(servers, outcome):
+def test_reports_a_rejected_goal(servers, outcome):
     assert "goal refused" in outcome("action", -1)
 
 
-def test_a_goal_that_takes_too_long_is_canceled(servers, outcome):
+def test_cancels_a_goal_after_the_timeout(servers, outcome):
     assert "no result within the timeout, cancel requested" in outcome("action", 1000)
     assert servers.canceled.wait(LIMIT)
