@@ -10,7 +10,7 @@ from cell import CODES, StatusTrackingClient
 from goals import Mix
 
 ANSWER_LIMIT = 15.0  # s, from sending a goal to its acceptance or refusal
-RESULT_LIMIT = 45.0  # s, from acceptance to the result, with the longest example and the longest fault
+RESULT_LIMIT = 45.0  # s, from acceptance to the result, for the longest example with the longest fault
 PAUSE = 0.02  # s, between two goals
 PAUSE_AFTER_REFUSAL = 0.2  # s
 
@@ -21,7 +21,7 @@ class Gate:
     def __init__(self):
         self._changed = threading.Condition()
         self._open = True
-        self._live = 0
+        self._active = 0
         self._idle_since = time.monotonic()
 
     def set(self, is_open):
@@ -35,14 +35,14 @@ class Gate:
             self._changed.wait_for(lambda: self._open or stop.is_set())
             if stop.is_set():
                 return False
-            self._live += 1
+            self._active += 1
             return True
 
     @contextlib.contextmanager
     def bypass(self):
         """Counts a goal of the run itself, which is never blocked."""
         with self._changed:
-            self._live += 1
+            self._active += 1
         try:
             yield
         finally:
@@ -50,7 +50,7 @@ class Gate:
 
     def leave(self):
         with self._changed:
-            self._live -= 1
+            self._active -= 1
             self._idle_since = time.monotonic()
             self._changed.notify_all()
 
@@ -62,11 +62,11 @@ class Gate:
     def idle_for(self):
         """Returns the time since the last goal ended, s; 0 while one is active."""
         with self._changed:
-            return 0.0 if self._live else time.monotonic() - self._idle_since
+            return 0.0 if self._active else time.monotonic() - self._idle_since
 
     def wait_until_idle(self, limit):
         with self._changed:
-            return self._changed.wait_for(lambda: self._live == 0, limit)
+            return self._changed.wait_for(lambda: self._active == 0, limit)
 
 
 class GoalSender:

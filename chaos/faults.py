@@ -10,8 +10,8 @@ LINKS = ("rtde", "dashboard", "script", "realtime", "all")
 class Kind:
     name: str
     weight: float
-    longest: float  # s, maximum duration; 0: an event without a duration
-    happen: Callable  # of the robot and of random
+    max_duration: float  # s; 0: an event without a duration
+    cause: Callable  # function of the robot and of a random number generator
 
 
 def _control(command, **fields):
@@ -90,19 +90,19 @@ KINDS = (
 @dataclass(frozen=True)
 class Fault:
     kind: Kind
-    after: float  # s, without a fault before it
-    lasts: float  # s, duration
+    delay: float  # s, without a fault before this one
+    duration: float  # s
     quiet: bool  # no new goals until the fault is over, so that the arm must come to rest
-    seed: int  # of the random values of its kind
+    seed: int  # seed of the random values of its kind
 
     def text(self):
-        return f"{self.kind.name} for {self.lasts:.2f} s{', no new goals' if self.quiet else ''}"
+        return f"{self.kind.name} for {self.duration:.2f} s{', no new goals' if self.quiet else ''}"
 
 
 def sequence(random):
     """Yields faults without end. The same seed gives the same faults."""
     while True:
         kind = random.choices(KINDS, [kind.weight for kind in KINDS])[0]
-        shortest = min(0.05, kind.longest)
-        yield Fault(kind, random.uniform(0.1, 0.8), random.uniform(shortest, kind.longest), random.random() < 0.5,
+        min_duration = min(0.05, kind.max_duration)
+        yield Fault(kind, random.uniform(0.1, 0.8), random.uniform(min_duration, kind.max_duration), random.random() < 0.5,
                     random.randrange(2**32))

@@ -20,7 +20,7 @@ from journal import Journal, Violation  # noqa: E402
 from robot import Robot  # noqa: E402
 from support import HOME, wait_for  # noqa: E402
 from ur_tools import console  # noqa: E402
-from watch import Loads, Watch  # noqa: E402
+from monitor import ArmMonitor, ResourceMonitor  # noqa: E402
 
 from ur_ros_rtde_msgs.action import MoveJ  # noqa: E402
 from ur_ros_rtde_msgs.msg import ErrorCode  # noqa: E402
@@ -34,8 +34,8 @@ class Chaos:
     def __init__(self, options, journal, robot):
         self._options, self._journal, self._robot = options, journal, robot
         self._gate = Gate()
-        self._watch = Watch(robot, self._gate, journal)
-        self._loads = Loads(robot.driver.pid, journal, options.sanitizer)
+        self._monitor = ArmMonitor(robot, self._gate, journal)
+        self._resources = ResourceMonitor(robot.driver.pid, journal, options.sanitizer)
         self._probe = StatusTrackingClient(name="probe")
         self._clients = [GoalSender(f"client {number}", random.Random(f"{options.seed}/{number}"), self._gate, journal)
                          for number in range(options.clients)]
@@ -45,7 +45,7 @@ class Chaos:
 
     def run(self):
         self._wait_until_ready(30.0)
-        self._watch.start()
+        self._monitor.start()
         for client in self._clients:
             client.start()
         try:
@@ -56,7 +56,7 @@ class Chaos:
                 client.stop()
             for client in self._clients:
                 client.join()
-            self._watch.stop()
+            self._monitor.stop()
             self._probe.close()
             self._status.clear()
 
@@ -85,14 +85,14 @@ class Chaos:
     # --- One fault ---
 
     def _fault(self, fault):
-        self._wait(fault.after)
+        self._wait(fault.delay)
         if fault.quiet:
             self._gate.set(False)
         self._journal.write("fault", fault.text())
         if fault.kind.name == "push":
-            self._watch.excused.set()
-        fault.kind.happen(self._robot, random.Random(fault.seed))
-        self._wait(fault.lasts)
+            self._monitor.paused.set()
+        fault.kind.cause(self._robot, random.Random(fault.seed))
+        self._wait(fault.duration)
         self._robot.clear()
         self._journal.write("fault", "cleared")
         self._gate.restart_idle_time()
@@ -100,7 +100,7 @@ class Chaos:
         with self._gate.bypass():
             ready = self._wait_until_ready()
         self._recoveries[fault.kind.name].append(ready - cleared if ready else None)
-        self._watch.excused.clear()
+        self._monitor.paused.clear()
         if fault.quiet:
             self._check_standstill()
         self._gate.set(True)
@@ -110,8 +110,8 @@ class Chaos:
         if not self._gate.wait_until_idle(RESULT_LIMIT):
             raise Violation(f"a goal has no result {RESULT_LIMIT:g} s after the last fault")
         self._journal.check()
-        wait_for(lambda: self._robot.joint_speed() < 0.02, REST_LIMIT, "the arm to stand still after the last goal")
-        self._loads.sample()
+        wait_for(lambda: self._robot.joint_speed() < 0.02, REST_LIMIT, "standstill after the last goal")
+        self._resources.sample()
 
     def _wait_until_ready(self, limit=READY_LIMIT):
         """Waits until a motion is accepted, or refused because another one runs.
@@ -133,7 +133,7 @@ class Chaos:
         try:
             goal, when = wait_for(answered, limit, "a motion to be accepted again")
         except AssertionError as error:
-            raise Violation(f"{error}; the last reason: {reasons[-1:]}") from None
+            raise Violation(f"{error}; last messages: {reasons[-1:]}") from None
         if goal is not None:
             goal.wait_for_result(RESULT_LIMIT)
         return when if goal is not None or len(reasons) > 1 else None
@@ -145,7 +145,7 @@ class Chaos:
         with self._gate.bypass():
             self._wait_until_ready()
             self._probe.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
-        grown = self._loads.verdict()
+        grown = self._resources.find_growth()
         if grown:
             raise Violation("the driver's " + "; ".join(grown))
 
@@ -164,7 +164,7 @@ class Chaos:
 
     def tables(self):
         return [*report.faults(self._recoveries), *report.goals(client.outcomes for client in self._clients),
-                f"    driver: {self._loads.text()}", f"    {time.monotonic() - self._begin:.0f} s"]
+                f"    driver: {self._resources.text()}", f"    {time.monotonic() - self._begin:.0f} s"]
 
 
 def _run(options, journal):

@@ -73,7 +73,7 @@ class Robot:
         return max(map(abs, self.simulator.state()["actual"]["velocity"]))
 
 
-def load_of(pid):
+def get_resource_usage(pid):
     """Returns the number of descriptors and threads, and the resident memory (MB) of a process."""
     process = pathlib.Path(f"/proc/{pid}")
     pages = int((process / "statm").read_text().split()[1])

@@ -21,7 +21,7 @@ import clients  # noqa: E402
 import faults  # noqa: E402
 import goals  # noqa: E402
 import journal  # noqa: E402
-import watch  # noqa: E402
+import monitor  # noqa: E402
 
 
 def chaos(*arguments):
@@ -89,28 +89,28 @@ def test_random_goals_match_their_action_types():
 
 
 def test_resources_that_grow_after_the_warm_up_are_reported():
-    loads = watch.Loads(os.getpid())
-    loads.samples = [(0.0, 50 + 2 * number, 20, 60.0) for number in range(40)]
-    assert loads.verdict() == ["descriptors grew from 80 to 110"]
-    loads.samples = [(0.0, 50, 20, 60.0)] * 10 + [(0.0, 80, 30, 90.0)] * 30  # the warm-up
-    assert loads.verdict() == []
-    loads.samples = [(0.0, 44, 27, 80.0)] * 3 + [(0.0, 24, 25, 80.0)] + [(0.0, 44, 27, 80.0)] * 6  # a reconnection
-    assert loads.verdict() == []
+    resources = monitor.ResourceMonitor(os.getpid())
+    resources.samples = [(0.0, 50 + 2 * number, 20, 60.0) for number in range(40)]
+    assert resources.find_growth() == ["descriptors grew from 80 to 110"]
+    resources.samples = [(0.0, 50, 20, 60.0)] * 10 + [(0.0, 80, 30, 90.0)] * 30  # the warm-up
+    assert resources.find_growth() == []
+    resources.samples = [(0.0, 44, 27, 80.0)] * 3 + [(0.0, 24, 25, 80.0)] + [(0.0, 44, 27, 80.0)] * 6  # a reconnection
+    assert resources.find_growth() == []
 
 
 def test_memory_is_not_compared_with_a_sanitizer():
     samples = [(0.0, 50, 20, 60.0 + 5.0 * number) for number in range(40)]
     for sanitizer, grown in ((False, ["memory (MB) grew from 135 to 210"]), (True, [])):
-        loads = watch.Loads(os.getpid(), keeps_freed_memory=sanitizer)
-        loads.samples = samples
-        assert loads.verdict() == grown
+        resources = monitor.ResourceMonitor(os.getpid(), keeps_freed_memory=sanitizer)
+        resources.samples = samples
+        assert resources.find_growth() == grown
 
 
-@pytest.mark.parametrize("speed, live, violated", [(0.5, 0, True), (0.5, 1, False), (0.0, 0, False)])
-def test_a_motion_without_a_goal_is_a_violation(tmp_path, monkeypatch, speed, live, violated):
+@pytest.mark.parametrize("speed, active, violated", [(0.5, 0, True), (0.5, 1, False), (0.0, 0, False)])
+def test_a_motion_without_a_goal_is_a_violation(tmp_path, monkeypatch, speed, active, violated):
     gate, log = clients.Gate(), journal.Journal(tmp_path / "journal.log")
-    monkeypatch.setattr(gate, "idle_for", lambda: 0.0 if live else 5.0)
-    watcher = watch.Watch(None, gate, log)
-    watcher._check_state({"actual": {"velocity": [0.0, -speed, 0.0, 0.0, 0.0, 0.0]}})
+    monkeypatch.setattr(gate, "idle_for", lambda: 0.0 if active else 5.0)
+    arm_monitor = monitor.ArmMonitor(None, gate, log)
+    arm_monitor._check_state({"actual": {"velocity": [0.0, -speed, 0.0, 0.0, 0.0, 0.0]}})
     assert bool(log.violation) == violated
     log.close()

@@ -6,21 +6,21 @@ import threading
 import time
 
 from control_port import ControlPort, ControlPortError
-from robot import load_of
+from robot import get_resource_usage
 
 PERIOD = 0.1  # s
 REST_AFTER = 1.0  # s, after the end of the last goal
 AT_REST = 0.02  # rad/s
 
 
-class Watch:
+class ArmMonitor:
     """Checks that the arm moves only while a goal is active, and that the driver runs."""
 
     def __init__(self, robot, gate, journal):
         self._robot, self._gate, self._journal = robot, gate, journal
         self._stop = threading.Event()
-        self.excused = threading.Event()  # the arm is pushed, or has no power
-        self._thread = threading.Thread(target=self._run, name="watch")
+        self.paused = threading.Event()  # the arm may move without a goal, because it is pushed or has no power
+        self._thread = threading.Thread(target=self._run, name="monitor")
 
     def start(self):
         self._thread.start()
@@ -44,11 +44,11 @@ class Watch:
     def _check_state(self, state):
         speed = max(map(abs, state["actual"]["velocity"]))
         idle = self._gate.idle_for()
-        if speed > AT_REST and idle > REST_AFTER and not self.excused.is_set():
+        if speed > AT_REST and idle > REST_AFTER and not self.paused.is_set():
             self._journal.violate("arm", f"moves at {speed:.3f} rad/s, {idle:.1f} s after the last goal ended")
 
 
-class Loads:
+class ResourceMonitor:
     """Compares descriptors, threads and memory of the driver after the warm-up with those at the end."""
 
     EXTRA_DESCRIPTORS = 6
@@ -56,17 +56,17 @@ class Loads:
     EXTRA_MEMORY = 12.0  # MB; the memory that the allocator keeps varies
 
     def __init__(self, pid, journal=None, keeps_freed_memory=False):
-        """`keeps_freed_memory`: a sanitizer does, so that the memory is not compared."""
+        """If `keeps_freed_memory` is set, as for a sanitizer, the memory is not compared."""
         self._pid, self._journal = pid, journal
         self._limits = (self.EXTRA_DESCRIPTORS, self.EXTRA_THREADS, math.inf if keeps_freed_memory else self.EXTRA_MEMORY)
         self.samples = []
 
     def sample(self):
-        self.samples.append((time.monotonic(), *load_of(self._pid)))
+        self.samples.append((time.monotonic(), *get_resource_usage(self._pid)))
         if self._journal:
             self._journal.write("driver", "{} descriptors, {} threads, {:.1f} MB".format(*self.samples[-1][1:]))
 
-    def verdict(self):
+    def find_growth(self):
         """Returns what has grown from the second quarter, after the warm-up, to the last quarter."""
         if len(self.samples) < 8:
             return []
