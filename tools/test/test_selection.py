@@ -100,7 +100,7 @@ def affected(root, *names):
     ("Each/Angles.AreRead/0", ["driver: Each/Angles.AreRead/0"]),
     ("test_stop", ["driver: Each/Angles.AreRead/0", "driver: robot.StopTest.KeepsItsLine"]),
     ("goal_test", ["driver: goals"]),
-    ("tools", ["tools: test_demo", "tools: test_readme", "tools: test_console"]),
+    ("tools", ["tools: test_console", "tools: test_demo", "tools: test_readme"]),
 ])
 def test_a_name_selects_packages_files_and_cases(root, word, expected):
     assert select(root, named(root, word)) == expected
@@ -137,14 +137,14 @@ def test_the_tests_of_this_checkout_have_names():
     ("driver/test/typed/test_cancel.py", ["driver: test_cancel"]),
     ("driver/test/test_stop.cpp", sorted(ALL)),
     ("driver/test/nodes/support.py", [*sorted(ALL), "driver: test_cancel", "driver: test_node", "tools: test_demo"]),
-    ("driver/src/stop.cpp", [*sorted(ALL), "driver: test_cancel", "driver: test_node", "driver_cli: test_cli", "tools: test_demo",
-                             "tools: test_readme", "tools: test_console"]),
-    ("driver_cli/CMakeLists.txt", ["driver_cli: test_cli", "tools: test_demo", "tools: test_readme", "tools: test_console"]),
+    ("driver/src/stop.cpp", [*sorted(ALL), "driver: test_cancel", "driver: test_node", "driver_cli: test_cli", "tools: test_console",
+                             "tools: test_demo", "tools: test_readme"]),
+    ("driver_cli/CMakeLists.txt", ["driver_cli: test_cli", "tools: test_console", "tools: test_demo", "tools: test_readme"]),
     ("docs/commands/io.md", ["driver: test_cancel"]),
     ("docs/simulator.md", []),
     ("README.md", ["tools: test_readme"]),
     ("tools/ur_tools/demo.py", ["tools: test_demo"]),
-    ("tools/ur_tools/console.py", ["tools: test_demo", "tools: test_console"]),
+    ("tools/ur_tools/console.py", ["tools: test_console", "tools: test_demo"]),
     ("tools/test/test_console.py", ["tools: test_console"]),
     ("demo/figure.py", ["tools: test_demo"]),
     ("LICENSE", []),
