@@ -9,9 +9,9 @@ import time
 from pathlib import Path
 
 import rclpy
-from commands import Commands
+from goal_latency import GoalLatency
 from servo_stream import servo_stream
-from stream_latency import latencies, percentile, receive_in_python
+from state_latency import latencies, percentile, receive_in_python
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
 from control_port import ControlPort  # noqa: E402
@@ -58,10 +58,10 @@ def state_figures(options, control):
 
 
 def goal_figures(options, control):
-    commands = Commands(control)
-    figures = {"goal to first RTDE command": summary(commands.goal_to_command(options.repeat)),
-               "cancel to deceleration": summary(commands.cancel_to_deceleration(options.repeat // 2))}
-    commands.close()
+    latency = GoalLatency(control)
+    figures = {"goal to first RTDE command": summary(latency.goal_to_command(options.repeat)),
+               "cancel to deceleration": summary(latency.cancel_to_deceleration(options.repeat // 2))}
+    latency.close()
     return figures
 
 

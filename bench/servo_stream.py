@@ -10,7 +10,7 @@ from collections import Counter
 import rclpy
 from rclpy.action import ActionClient
 from rclpy.node import Node
-from stream_latency import percentile
+from state_latency import percentile
 from ur_ros_rtde_msgs.action import ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import JointWaypoint
 
@@ -22,13 +22,13 @@ POLL = 0.5  # s; the trace keeps the last 1024 repeated commands, 2 s in the rob
 
 def _path(start, seconds):
     """Returns waypoints of two round trips of the base joint that take this time at 0.4 rad/s."""
-    there = list(start)
-    there[0] += 0.4 * seconds / 4.0
-    return [JointWaypoint(positions=list(positions)) for positions in (start, there, start, there, start)]
+    target = list(start)
+    target[0] += 0.4 * seconds / 4.0
+    return [JointWaypoint(positions=list(positions)) for positions in (start, target, start, target, start)]
 
 
 def _trace(control, node, outcome):
-    """Returns (cycle, host time in ns) of each target's arrival, and the host time in ns of each cycle, when the goal has ended."""
+    """Waits for the result. Returns (cycle, host time in ns) of the arrival of each target, and the host time in ns of each cycle."""
     arrivals, cycles, last = [], {}, 0
     while not outcome.done():
         end = time.monotonic() + POLL
@@ -42,9 +42,9 @@ def _trace(control, node, outcome):
     return arrivals, cycles
 
 
-def _beyond_tolerance(off):
+def _beyond_tolerance(deviations):
     """Returns the percentage of deviations (ms) beyond the tolerance."""
-    return 100.0 * sum(abs(value) > TOLERANCE for value in off) / len(off)
+    return 100.0 * sum(abs(value) > TOLERANCE for value in deviations) / len(deviations)
 
 
 def _intervals(moments, factor):
@@ -52,13 +52,13 @@ def _intervals(moments, factor):
     return [(end - begin) * 1e-6 * factor for begin, end in zip(moments, moments[1:])]
 
 
-def _off_package(arrivals, cycles, factor):
+def _deviations_from_packages(arrivals, cycles, factor):
     """Returns how much longer the intervals of targets are than those of the packages that they answer, ms."""
     known = [(when, cycles[cycle]) for cycle, when in arrivals if cycle in cycles]
     return [a - b for a, b in zip(*(_intervals(moments, factor) for moments in zip(*known)))]
 
 
-def _not_once(arrivals):
+def _cycles_without_single_target(arrivals):
     """Returns the percentage of cycles that received no target, or several."""
     count = Counter(cycle for cycle, _ in arrivals)
     cycles = range(min(count), max(count) + 1)
@@ -68,11 +68,11 @@ def _not_once(arrivals):
 def figures(arrivals, cycles, factor):
     """Returns the figures of a stream, in % and ms, from [(cycle, ns of arrival)] and {cycle: ns of its package}."""
     answers = [(when - cycles[number]) * 1e-6 for number, when in arrivals if number in cycles]
-    off = [ms - INTERVAL for ms in _intervals([when for _, when in arrivals], factor)]
-    cycles_off = [ms - INTERVAL for ms in _intervals([cycles[number] for number in sorted(cycles)], factor)]
+    deviations = [ms - INTERVAL for ms in _intervals([when for _, when in arrivals], factor)]
+    cycle_deviations = [ms - INTERVAL for ms in _intervals([cycles[number] for number in sorted(cycles)], factor)]
     return {"answer p50": percentile(answers, 0.5), "answer p99.9": percentile(answers, 0.999), "count": len(answers),
-            "off package": _beyond_tolerance(_off_package(arrivals, cycles, factor)), "off 2 ms": _beyond_tolerance(off),
-            "cycles off 2 ms": _beyond_tolerance(cycles_off), "not once a cycle": _not_once(arrivals)}
+            "off package": _beyond_tolerance(_deviations_from_packages(arrivals, cycles, factor)), "off 2 ms": _beyond_tolerance(deviations),
+            "cycles off 2 ms": _beyond_tolerance(cycle_deviations), "not once a cycle": _cycles_without_single_target(arrivals)}
 
 
 def servo_stream(control, seconds, factor):

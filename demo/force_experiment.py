@@ -22,11 +22,11 @@ from control_port import ControlPort
 
 DISCOVERY_LIMIT = 20.0  # s
 READY_LIMIT = 15.0  # s, from the first refusal until the robot is ready
-LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-NOT_YET = (ErrorCode.NOT_READY, ErrorCode.LINK_LOST)  # the driver may still be connecting
+TRANSIENT_LOCAL = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+CONNECTING = (ErrorCode.NOT_READY, ErrorCode.LINK_LOST)  # the driver may still be connecting
 STANDSTILL = 0.002  # rad/s
 NEW_LINE = "\n" if sys.stdout.isatty() else ""  # after the progress line, which is shown on a terminal only
-AFTERWARDS = 0.8  # s, recorded after standstill
+RECORDING_AFTER_STANDSTILL = 0.8  # s, recorded after standstill
 
 
 class Experiment:
@@ -34,7 +34,7 @@ class Experiment:
         self.node, self.control, self.options = node, control, options
         self.recorder = Recorder(node)
         self.client = ActionClient(node, MoveDownUntilForce, "move_down_until_force")
-        node.create_subscription(GoalRefused, "goal_refusals", self.on_refusal, LATCHED)
+        node.create_subscription(GoalRefused, "goal_refusals", self.on_refusal, TRANSIENT_LOCAL)
         self.refusals = {}
         self.goal_handle = self.result = None
         self.pushes = []
@@ -44,7 +44,7 @@ class Experiment:
         deadline = time.monotonic() + limit
         while not condition():
             if time.monotonic() > deadline:
-                raise SystemExit(f"waited {limit:g} s for {what}: see the logs of the nodes")
+                raise SystemExit(f"timeout after {limit:g} s waiting for {what}: see the logs of the nodes")
             rclpy.spin_once(self.node, timeout_sec=0.02)
 
     def prepare(self):
@@ -64,7 +64,7 @@ class Experiment:
         deadline = time.monotonic() + READY_LIMIT
         while not self.accepted(goal):
             refusal = self.refusals.get(bytes(self.goal_handle.goal_id.uuid))
-            if refusal is None or refusal.error_code not in NOT_YET or time.monotonic() > deadline:
+            if refusal is None or refusal.error_code not in CONNECTING or time.monotonic() > deadline:
                 raise SystemExit(f"goal refused: {refusal.message if refusal else 'see the log of command_server'}")
         self.recorder.start()
         print("goal accepted")
@@ -72,7 +72,7 @@ class Experiment:
 
     def accepted(self, goal):
         sent = self.client.send_goal_async(goal, feedback_callback=self.on_feedback)
-        self.wait(sent.done, 10.0, "the answer to the goal")
+        self.wait(sent.done, 10.0, "the goal response")
         self.goal_handle = sent.result()
         goal_id = bytes(self.goal_handle.goal_id.uuid)
         self.wait(lambda: self.goal_handle.accepted or goal_id in self.refusals, 10.0, "the reason for the refusal")
@@ -109,8 +109,8 @@ class Experiment:
             self.push(axis)
         self.wait(self.result.done, limit, "the result")
         print(NEW_LINE, end="")
-        end = self.recorder.now() + AFTERWARDS
-        self.wait(lambda: self.recorder.now() > end, 10.0 * AFTERWARDS, "the end of the recording")
+        end = self.recorder.now() + RECORDING_AFTER_STANDSTILL
+        self.wait(lambda: self.recorder.now() > end, 10.0 * RECORDING_AFTER_STANDSTILL, "the end of the recording")
         return self.result.result().result
 
     def events(self):

@@ -60,7 +60,7 @@ def test_waiting_fails_at_once_with_the_log_if_a_program_exits(tmp_path):
 def test_waiting_fails_at_its_limit(tmp_path):
     with Programs(tmp_path) as programs:
         programs.start("sleeper", python("import time; time.sleep(60)"))
-        with pytest.raises(Failure, match="waited 0.1 s for the dashboard"):
+        with pytest.raises(Failure, match="timeout after 0.1 s waiting for the dashboard"):
             programs.wait_until(lambda: False, 0.1, "the dashboard")
 
 

@@ -144,7 +144,7 @@ class Programs:
             self.check()
             if time.monotonic() > deadline:
                 logs = ", ".join(str(program.log) for program in self._programs)
-                raise Failure(f"waited {limit:g} s for {what}. Logs: {logs}")
+                raise Failure(f"timeout after {limit:g} s waiting for {what}. Logs: {logs}")
             time.sleep(0.02)
 
     def stop_all(self) -> None:

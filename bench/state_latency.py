@@ -35,13 +35,13 @@ def receive_in_python(seconds):
     """Returns [(stamp, time of reception)] in ns of joint_states."""
     received = []
 
-    def take(message):
+    def on_joint_state(message):
         stamp = message.header.stamp
         received.append((stamp.sec * 1_000_000_000 + stamp.nanosec, time.time_ns()))
 
     node = Node("bench_subscriber")
     qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
-    node.create_subscription(JointState, "joint_states", take, qos)
+    node.create_subscription(JointState, "joint_states", on_joint_state, qos)
     executor = rclpy.executors.SingleThreadedExecutor()
     executor.add_node(node)
     limit = time.monotonic() + 15.0

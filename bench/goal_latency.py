@@ -1,4 +1,4 @@
-"""Latency from a goal to its first RTDE command, and from a cancel request to the begin of the deceleration.
+"""Latency from a goal to its first RTDE command, and from a cancel request to the start of the deceleration.
 
 The goal is sent by a Python client; the effect is taken from the simulator's trace.
 """
@@ -11,8 +11,7 @@ from rclpy.node import Node
 from ur_ros_rtde_msgs.action import MoveJ, SetPayload
 
 
-
-class Commands:
+class GoalLatency:
     def __init__(self, control):
         self.control = control
         self.node = Node("bench_commands")
@@ -28,7 +27,7 @@ class Commands:
     def _finish(self, future, limit=30.0):
         rclpy.spin_until_future_complete(self.node, future, timeout_sec=limit)
         if not future.done():
-            raise SystemExit(f"bench: no answer within {limit:g} s")
+            raise SystemExit(f"bench: no response within {limit:g} s")
         return future.result()
 
     def _accepted(self, client, goal):
