@@ -71,7 +71,8 @@ def figures(arrivals, cycles, factor):
     deviations = [ms - INTERVAL for ms in _intervals([when for _, when in arrivals], factor)]
     cycle_deviations = [ms - INTERVAL for ms in _intervals([cycles[number] for number in sorted(cycles)], factor)]
     return {"answer p50": percentile(answers, 0.5), "answer p99.9": percentile(answers, 0.999), "count": len(answers),
-            "off package": _beyond_tolerance(_deviations_from_packages(arrivals, cycles, factor)), "off 2 ms": _beyond_tolerance(deviations),
+            "off package": _beyond_tolerance(_deviations_from_packages(arrivals, cycles, factor)),
+            "off 2 ms": _beyond_tolerance(deviations),
             "cycles off 2 ms": _beyond_tolerance(cycle_deviations), "not once a cycle": _cycles_without_single_target(arrivals)}
 
 

@@ -28,7 +28,7 @@ def check_path(root: pathlib.Path) -> None:
     wrong = [character for character in _NOT_IN_PATHS if character in str(root)]
     if wrong:
         raise console.Failure(f"The checkout's path {root} contains {' '.join(wrong)}, which cannot be in a search path or a CMake "
-                          "list. Move the checkout.")
+                              "list. Move the checkout.")
 
 
 def default_jobs() -> int:
@@ -326,7 +326,7 @@ def build(options: Options) -> Dict[str, Package]:
 
 def _build(options: Options, packages: Dict[str, Package], pending: Pending, stamps: Stamps) -> None:
     console.step(f"Building {', '.join(pending.outdated)} for ROS 2 {options.layout.ros.capitalize()}"
-             + (f" ({options.layout.variant})" if options.layout.variant else ""))
+                 + (f" ({options.layout.variant})" if options.layout.variant else ""))
     start = time.monotonic()
     _run_colcon(options, packages, pending.outdated, stamps, pending.tests)
     console.line(f"    built in {time.monotonic() - start:.0f} s")

@@ -61,7 +61,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         code = programs.run(command, env, limit)
     if code != 0:
         console.line(f"To repeat these goals and faults: ./ur chaos --faults {options.faults} --seed {options.seed} "
-                 f"--minutes {options.minutes:g} --clients {options.clients}")
+                     f"--minutes {options.minutes:g} --clients {options.clients}")
     return code
 
 

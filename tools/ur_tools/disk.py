@@ -25,4 +25,4 @@ def check(path: pathlib.Path, needed: float) -> None:
     available = free(path)
     if available < needed:
         raise console.Failure(f"Not enough space on the disk that holds {path}: {available / 1e9:.1f} GB free, "
-                          f"{needed / 1e9:.1f} GB needed.")
+                              f"{needed / 1e9:.1f} GB needed.")

@@ -186,5 +186,5 @@ def run(layout: Layout) -> int:
         failed += finding.state == FAILED
         show(finding)
     console.line(f"{failed} problem{'s' * (failed > 1)} must be solved first." if failed else
-             "This machine can build and run everything.")
+                 "This machine can build and run everything.")
     return 1 if failed else 0

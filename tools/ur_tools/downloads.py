@@ -51,5 +51,5 @@ def ensure(layout: Layout) -> None:
         if attempt < 3:
             time.sleep(3.0 * attempt)
     raise console.Failure(f"The sources of ur_rtde could not be downloaded in three attempts:\n{console.tail(result.stdout, 12)}\n"
-                      "Check the network connection. pip's settings (`pip config list`) select a proxy or a mirror. "
-                      f"On a machine without a network, copy the archive to {archive}.")
+                          "Check the network connection. pip's settings (`pip config list`) select a proxy or a mirror. "
+                          f"On a machine without a network, copy the archive to {archive}.")

@@ -51,7 +51,7 @@ class Lock:
         except OSError as error:
             if error.errno in _NOT_WRITABLE:
                 raise console.Failure(f"{self._path.parent} cannot be written: {error.strerror}.\n"
-                                  "./ur writes all its files there. Use a writable checkout.") from None
+                                      "./ur writes all its files there. Use a writable checkout.") from None
             raise
 
     def _lock(self, file: IO[str]) -> None:

@@ -20,7 +20,7 @@ _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 def _checked(what: str, name: str) -> str:
     if not _NAME.fullmatch(name):
         raise console.Failure(f"{what} is \"{name}\": it must be lower case letters, digits and single underscores and begin with a "
-                          "letter, as in pick_part")
+                              "letter, as in pick_part")
     return name
 
 
@@ -76,5 +76,5 @@ def run(kind: str, name: str, package: str, folder: pathlib.Path, description: s
     for file in sorted(purposes, key=lambda path: (not purposes[path], path)):
         console.line(f"    {str(file.relative_to(folder)):{width}}  {purposes[file]}".rstrip())
     console.line("Change the files with a remark. Then build the package with `colcon build` in the workspace (in `./ur shell` if ROS is not "
-             "installed); docs/writing_a_plugin.md continues from there.")
+                 "installed); docs/writing_a_plugin.md continues from there.")
     return 0

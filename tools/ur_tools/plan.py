@@ -61,9 +61,9 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     plan = json.loads(answer)
     use = plan["use"]
     console.line(f"{len(plan['waypoint_times'])} waypoints, {plan['duration']:.3f} s, planned in "
-             f"{1e3 * plan['planning_time']:.1f} ms")
+                 f"{1e3 * plan['planning_time']:.1f} ms")
     console.line(f"largest use of the limits: velocity {use['velocity']:.4f}, acceleration {use['acceleration']:.4f}, "
-             f"jerk {use['jerk']:.4f}")
+                 f"jerk {use['jerk']:.4f}")
     if options.json:
         options.json.write_text(answer)
         console.line(f"samples: {options.json}")

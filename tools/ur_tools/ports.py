@@ -30,7 +30,7 @@ def in_use(address: str, ports: "List[int]") -> List[int]:
             except OSError as error:
                 if error.errno == errno.EADDRNOTAVAIL:
                     raise console.Failure(f"--address {address}: no network interface of this machine has that address. "
-                                      "Loopback addresses are 127.0.0.1, 127.0.0.2 and so on.") from None
+                                          "Loopback addresses are 127.0.0.1, 127.0.0.2 and so on.") from None
                 if error.errno != errno.EADDRINUSE:
                     raise console.Failure(f"port {port} of {address} cannot be opened: {error.strerror}") from None
                 found.append(port)
@@ -104,4 +104,4 @@ def check(address: str) -> None:
     taken = in_use(address, list(PORTS.values()))
     if taken:
         raise console.Failure(f"{explain(address, taken)}\nStop that process, or use another address: "
-                          f"--address {another_address(address)}")
+                              f"--address {another_address(address)}")

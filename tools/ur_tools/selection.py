@@ -267,5 +267,5 @@ def by_change(base: str, packages: Dict[str, Package], root: pathlib.Path = ROOT
         affected.add(name)
     selection = affected.selection()
     console.line(f"{len(names)} file{'s' * (len(names) != 1)} changed since {base}"
-             + (": all tests" if affected.everything else ""))
+                 + (": all tests" if affected.everything else ""))
     return selection

@@ -59,4 +59,4 @@ def ensure() -> None:
                                 universal_newlines=True)
     if result.returncode != 0:
         raise console.Failure(f"`{command}` failed:\n{console.tail(result.stdout, 15)}\n"
-                          "Check the network connection and the package sources of this machine.")
+                              "Check the network connection and the package sources of this machine.")

@@ -61,7 +61,7 @@ def find_python() -> str:
             return os.path.realpath(python)
         refused.append(f"    {python} {why}")
     raise console.Failure("The ROS 2 wheels need Python 3.10, 3.11 or 3.12. Found:\n" + "\n".join(dict.fromkeys(refused)) +
-                      "\nInstall one with its venv module and headers, or select it: UR_PYTHON=/path/to/python3.11 ./ur ...")
+                          "\nInstall one with its venv module and headers, or select it: UR_PYTHON=/path/to/python3.11 ./ur ...")
 
 
 def _stamp(layout: Layout) -> str:
@@ -97,9 +97,9 @@ def _pip_install(layout: Layout) -> None:
             time.sleep(3.0 * attempt)
     text = log.read_text(errors="replace")
     raise console.Failure(f"The Python packages could not be installed in three attempts. The end of {log}:\n"
-                      f"{console.tail(text, 12)}\n"
-                      "Check the network connection. pip's settings (`pip config list`) select a proxy or a mirror. Then run ./ur "
-                      "again: downloaded packages are kept.")
+                          f"{console.tail(text, 12)}\n"
+                          "Check the network connection. pip's settings (`pip config list`) select a proxy or a mirror. Then run ./ur "
+                          "again: downloaded packages are kept.")
 
 
 def _run_pip(command: List[str], env: dict, log: pathlib.Path) -> int:
@@ -137,7 +137,7 @@ def ensure(layout: Layout) -> None:
                                 stderr=subprocess.STDOUT, universal_newlines=True)
         if result.returncode != 0:
             raise console.Failure(f"`{python} -m venv` failed:\n{console.tail(result.stdout, 10)}\n"
-                              "On Debian and Ubuntu, install the package python3-venv.")
+                                  "On Debian and Ubuntu, install the package python3-venv.")
     console.step(f"Installing ROS 2 {layout.ros.capitalize()} and the build tools as wheels")
     _pip_install(layout)
     (layout.venv / STAMP).write_text(_stamp(layout))

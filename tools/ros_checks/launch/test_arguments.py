@@ -123,7 +123,7 @@ def test_two_robots_have_separate_names_and_ports_and_share_the_other_arguments(
         assert parameter(f"/{side}/command_server", "on_busy") == "preempt"
         assert parameter(f"/{side}/robot_state_receiver", "tf_prefix") == f"{side}_"
         code, printed = ros2("action", "send_goal", f"/{side}/move_j", "ur_ros_rtde_msgs/action/MoveJ",
-                          "{joint_positions: [0.1, -1.57, 1.57, -1.57, -1.57, 0.0]}")
+                             "{joint_positions: [0.1, -1.57, 1.57, -1.57, -1.57, 0.0]}")
         assert code == 0 and "success: true" in printed, printed
     assert parameter("/right/command_server", "ur_type") == "ur5e"
     assert set(PER_ROBOT) >= {"namespace", "tf_prefix", "urcap_port"}

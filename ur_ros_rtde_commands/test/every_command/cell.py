@@ -61,8 +61,8 @@ class StatusTrackingClient(Client):
 
     def send_goal(self, action, name, message):
         if name not in self._status_subscriptions:
-            self._status_subscriptions[name] = self.node.create_subscription(GoalStatusArray, f"{name}/_action/status", self._on_status,
-                                                                             STATUS)
+            self._status_subscriptions[name] = self.node.create_subscription(GoalStatusArray, f"{name}/_action/status",
+                                                                             self._on_status, STATUS)
         goal = super().send_goal(action, name, message)
         goal.request_result_when_accepted()
         return goal
@@ -105,7 +105,7 @@ class Cell:
 
     def start_driver(self):
         self.driver = start_node("driver", self.simulator.address, f"ur_type:={self.setup.controller}", *self.setup.parameters,
-                           env=self._env)
+                                 env=self._env)
 
     def restart_simulator(self):
         if self.simulator.process.running():

@@ -34,7 +34,9 @@ def _find_errors(cell, case, goal):
     refusal = cell.client.refusal(goal)
     if refusal.error_code not in CODES:
         return [f"{case.what}: refused with {refusal.error_code} instead of INVALID_GOAL: {refusal.message}"]
-    return [] if re.search(case.named, refusal.message) else [f"{case.what}: the message does not match {case.named}: {refusal.message}"]
+    if not re.search(case.named, refusal.message):
+        return [f"{case.what}: the message does not match {case.named}: {refusal.message}"]
+    return []
 
 
 def test_invalid_goals_are_rejected_with_the_field(plugin, outcome):

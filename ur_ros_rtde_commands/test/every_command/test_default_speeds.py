@@ -11,7 +11,7 @@ MAX_DEFAULTS = {"rad/s": 1.05, "rad/s^2": 1.4, "m/s": 0.25, "m/s^2": 1.2}
 UNIT = re.compile(r"\b(?:rad|m)/s(?:\^2)?(?![\w^])")
 # The meaning of an empty list of limits if the goal specifies times.
 LIMITS_OF_TIMED_GOALS = {("ExecuteParametrizedTrajectory", "max_velocity"): "Empty: the speed limits of the arm model",
-            ("ExecuteParametrizedTrajectory", "max_acceleration"): "Empty: 5 for each joint"}
+                         ("ExecuteParametrizedTrajectory", "max_acceleration"): "Empty: 5 for each joint"}
 
 ACTIONS = sorted({f"{file.parents[1].name}/action/{file.stem}" for file in action_files.paths(
     {"ur_ros_rtde_msgs", *(plugin.package for plugin in plugins.find().values())})})

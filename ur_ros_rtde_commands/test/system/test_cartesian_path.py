@@ -45,7 +45,8 @@ def test_keeps_its_speed_and_blends_corners(robot):
     seen = robot.subscribe(PoseStamped, "tcp_pose")
     rounds = send(robot, corner, end, speed=0.1, blend_radius=0.01, lookahead_time=MIN_LOOKAHEAD).succeeded()
     assert 0.2 / 0.1 - 0.1 < rounds.duration < stops.duration
-    assert min(math.dist(point(message.pose), point(corner)) for message in robot.messages_until_now(seen)) == pytest.approx(0.01, abs=0.003)
+    distances = [math.dist(point(message.pose), point(corner)) for message in robot.messages_until_now(seen)]
+    assert min(distances) == pytest.approx(0.01, abs=0.003)
 
 
 def test_default_limits_make_the_joints_slow(robot, simulator):

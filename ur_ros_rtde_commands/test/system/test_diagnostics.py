@@ -94,10 +94,12 @@ def test_reports_what_prevents_motion(receiver, simulator, arrays):
     assert (reported["safety mode"], reported["robot mode"]) == ("NORMAL", "RUNNING")
     assert 0.0 <= float(reported["speed scaling"]) <= 1.0 and 10.0 < float(reported["hottest joint"].split()[0]) < 75.0
     simulator.control("protective_stop", reason="a test")
-    entry(arrays, full_name("robot"), lambda s: s.level == DiagnosticStatus.WARN and "PROTECTIVE_STOP" in s.message, "the protective stop")
+    entry(arrays, full_name("robot"), lambda s: s.level == DiagnosticStatus.WARN and "PROTECTIVE_STOP" in s.message,
+          "the protective stop")
     simulator.control("power", to="running")
     simulator.control("emergency_stop")
-    entry(arrays, full_name("robot"), lambda s: s.level == DiagnosticStatus.ERROR and "EMERGENCY_STOP" in s.message, "the emergency stop")
+    entry(arrays, full_name("robot"), lambda s: s.level == DiagnosticStatus.ERROR and "EMERGENCY_STOP" in s.message,
+          "the emergency stop")
     simulator.control("emergency_stop", pressed=False)
     simulator.control("power", to="running")
     entry(arrays, full_name("robot"), lambda s: s.level == DiagnosticStatus.OK, "the robot to be OK")

@@ -30,7 +30,8 @@ def actions(driver):
 
 def test_new_clients_find_all_actions_after_others_were_killed(no_profile, addresses, processes):
     driver = processes(start_node("driver", addresses[3]))
-    command = [sys.executable, str(CLIENTS), actions(driver), "--clients", "10", "--killed", "5", "--limit", str(10.0 * TIMEOUT_FACTOR)]
+    command = [sys.executable, str(CLIENTS), actions(driver), "--clients", "10", "--killed", "5",
+               "--limit", str(10.0 * TIMEOUT_FACTOR)]
     result = subprocess.run(command, stdout=subprocess.PIPE, timeout=200.0 * TIMEOUT_FACTOR, text=True, check=True)
     found = json.loads(result.stdout)
     assert len(found) == 10

@@ -56,7 +56,8 @@ def call_parameter_service(parameter_node, node, kind, **request):
 
 def get_parameters(parameter_node, node):
     """Returns {name: (value, descriptor)} without the parameters of plugins, whose names contain a dot."""
-    names = [name for name in call_parameter_service(parameter_node, node, ListParameters).result.names if "." not in name and name not in ROS_PARAMETERS]
+    listed = call_parameter_service(parameter_node, node, ListParameters).result.names
+    names = [name for name in listed if "." not in name and name not in ROS_PARAMETERS]
     values = call_parameter_service(parameter_node, node, GetParameters, names=names).values
     descriptors = call_parameter_service(parameter_node, node, DescribeParameters, names=names).descriptors
     return {name: (parameter_value_to_python(value), descriptor)
@@ -93,7 +94,7 @@ def test_every_parameter_is_a_launch_argument_with_its_type_default_limits_and_c
 
 
 ARGUMENTS = {"tf_prefix": "left_", "on_busy": "preempt", "rtde_frequency": 100.0, "urcap_port": 50007, "restart_program": False,
-         "plugins": ["move_j"]}
+             "plugins": ["move_j"]}
 
 
 # All node names that a parameter file may use, in the orders that affect priority.

@@ -14,7 +14,8 @@ from ur_ros_rtde_msgs.srv import GetTcpPose
 
 POSE_COMMANDS = [(MoveL, "move_l"), (MoveJIK, "move_j_ik"), (ServoL, "servo_l"), (ServoC, "servo_c")]
 QUARTER_TURN = math.pi / 2.0
-IDENTITY = [0.0, -QUARTER_TURN, QUARTER_TURN, -QUARTER_TURN, QUARTER_TURN, QUARTER_TURN]  # joint positions at which the axes of tool and base coincide
+# Joint positions at which the axes of tool and base coincide.
+IDENTITY = [0.0, -QUARTER_TURN, QUARTER_TURN, -QUARTER_TURN, QUARTER_TURN, QUARTER_TURN]
 
 
 def flange_pose(simulator):

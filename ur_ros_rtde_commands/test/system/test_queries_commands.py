@@ -29,7 +29,8 @@ def to_matrix(result):
 def test_forward_kinematics_matches_the_dh_parameters(robot):
     at_flange = query(robot, GetForwardKinematics, "get_forward_kinematics", joint_positions=OTHER_POSITIONS).pose
     assert ur10e.matrix(at_flange) == pytest.approx(ur10e.flange(OTHER_POSITIONS), abs=1e-6)
-    at_tool = query(robot, GetForwardKinematics, "get_forward_kinematics", joint_positions=OTHER_POSITIONS, use_tcp=True, tcp=TOOL).pose
+    at_tool = query(robot, GetForwardKinematics, "get_forward_kinematics", joint_positions=OTHER_POSITIONS, use_tcp=True,
+                    tcp=TOOL).pose
     assert ur10e.matrix(at_tool) == pytest.approx(ur10e.flange(OTHER_POSITIONS) @ ur10e.matrix(TOOL), abs=1e-6)
 
 
@@ -74,7 +75,7 @@ def test_the_jacobian_is_the_derivative_of_the_pose(robot):
     actual = to_matrix(query(robot, GetJacobian, "get_jacobian", joint_positions=OTHER_POSITIONS, use_tcp=True, tcp=TOOL))
     assert actual == pytest.approx(ur10e.jacobian(OTHER_POSITIONS, tool), abs=1e-5)
     change = to_matrix(query(robot, GetJacobian, "get_jacobian_time_derivative", joint_positions=OTHER_POSITIONS,
-                            joint_velocities=VELOCITIES, use_tcp=True, tcp=TOOL))
+                             joint_velocities=VELOCITIES, use_tcp=True, tcp=TOOL))
     later, before = (ur10e.jacobian(np.array(OTHER_POSITIONS) + sign * 1e-4 * np.array(VELOCITIES), tool) for sign in (1, -1))
     assert change == pytest.approx((later - before) / 2e-4, abs=1e-3)
     present = to_matrix(query(robot, GetJacobian, "get_jacobian"))
@@ -93,7 +94,7 @@ def test_coriolis_torques_follow_from_the_mass_matrix(robot):
     # Lagrange: dM/dt qd - 1/2 d(qd' M qd)/dq
     expected = sum(slope * rate for slope, rate in zip(slopes, qd)) @ qd - 0.5 * np.array([qd @ slope @ qd for slope in slopes])
     actual = query(robot, GetCoriolisTorques, "get_coriolis_and_centrifugal_torques", joint_positions=list(q),
-                joint_velocities=list(qd)).joint_torques
+                   joint_velocities=list(qd)).joint_torques
     assert list(actual) == pytest.approx(list(expected), abs=2e-3)
 
 
@@ -143,7 +144,7 @@ def test_step_time_and_status(robot):
 
 def test_queries_do_not_change_output_registers(robot):
     query(robot, SendScript, "send_secondary_script",
-        script="write_output_integer_register(13, -42)\nwrite_output_float_register(14, 2.5)")
+          script="write_output_integer_register(13, -42)\nwrite_output_float_register(14, 2.5)")
     query(robot, GetMassMatrix, "get_mass_matrix")  # returns 36 values
     wait_for(lambda: query(robot, GetRegister, "get_output_int_register", index=13).value == -42, 2.0, "the register")
     assert query(robot, GetRegister, "get_output_double_register", index=14).value == 2.5

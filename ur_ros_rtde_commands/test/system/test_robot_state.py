@@ -119,8 +119,8 @@ def test_robot_state_is_not_published_without_configured_fields(simulator, state
 
 
 @pytest.mark.parametrize("names, message", [('["actual_q", "actual_position"]', '"actual_position" is not an RTDE output'),
-                                         ('["actual_q", "actual_q"]', '"actual_q" occurs twice'),
-                                         ('["output_int_register_48"]', '"output_int_register_48" is not an RTDE output')])
+                                            ('["actual_q", "actual_q"]', '"actual_q" occurs twice'),
+                                            ('["output_int_register_48"]', '"output_int_register_48" is not an RTDE output')])
 def test_an_invalid_field_prevents_the_start_with_its_name(simulator, processes, names, message):
     receiver = processes(start_node("robot_state_receiver", simulator.address, f"robot_state_fields:={names}", namespace="wrong"))
     assert receiver.wait(15.0) == 2
@@ -129,7 +129,8 @@ def test_an_invalid_field_prevents_the_start_with_its_name(simulator, processes,
 
 def test_a_field_unsupported_by_the_controller_is_reported(addresses, processes):
     processes(Simulator(addresses[1], model="ur10"))
-    receiver = processes(start_node("robot_state_receiver", addresses[1], 'robot_state_fields:=["actual_current_as_torque"]', namespace="old"))
+    receiver = processes(start_node("robot_state_receiver", addresses[1], 'robot_state_fields:=["actual_current_as_torque"]',
+                                    namespace="old"))
     receiver.wait_for_output("this controller does not have actual_current_as_torque")
 
 

@@ -71,7 +71,7 @@ def test_io_state_contains_the_inputs_by_pin(receiver, client, simulator):
 
 def test_all_messages_of_a_cycle_have_one_stamp(receiver, client):
     topics = {name: client.subscribe(kind, name) for name, kind in (("joint_states", JointState), ("tcp_pose", PoseStamped),
-                                                                 ("wrench", WrenchStamped), ("io_state", IOState))}
+                                                                    ("wrench", WrenchStamped), ("io_state", IOState))}
     wait_for(lambda: all(len(messages) > 100 for messages in topics.values()), 20.0, "100 messages of each topic")
     stamps = [{seconds(message.header.stamp) for message in list(messages)[20:80]} for messages in topics.values()]
     common = set.intersection(*({seconds(m.header.stamp) for m in list(messages)} for messages in topics.values()))
@@ -151,7 +151,8 @@ def test_actual_joint_states_are_published_along_with_fake_joint_states(receiver
     shown, actual = client.subscribe(JointState, "joint_states"), client.subscribe(JointState, "actual_joint_states")
     wait_for(lambda: len(shown) > 50 and len(actual) > 50, 20.0, "joint states of both topics")
     by_stamp = {seconds(state.header.stamp): state for state in list(shown)}
-    assert sum(by_stamp.get(seconds(state.header.stamp)) == state for state in list(actual)) > 25  # identical without fake joint states
+    # Both topics are identical without fake joint states.
+    assert sum(by_stamp.get(seconds(state.header.stamp)) == state for state in list(actual)) > 25
 
     assert client.call(SetBool, "publish_fake_joint_states", data=True).success
     try:

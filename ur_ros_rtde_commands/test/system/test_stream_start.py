@@ -13,7 +13,7 @@ from trajectories import TargetSpeedRecorder
 def driver(simulator):
     # The jump limits and the short timeout allow first messages that would require a high speed.
     driver = start_node("driver", simulator.address, "ur_type:=ur10e", "stream_timeout:=0.2", "stream_max_joint_jump:=0.5",
-                  "stream_max_linear_jump:=0.5")
+                        "stream_max_linear_jump:=0.5")
     yield driver
     driver.stop()
     print(driver.output())

@@ -214,7 +214,7 @@ def test_messages_are_ignored_while_another_topic_controls_the_arm(robot, driver
 def test_with_on_busy_preempt_a_goal_preempts_a_topic(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
     processes(start_node("driver", simulator.address, "ur_type:=ur10e", "on_busy:=preempt", f"stream_timeout:={TIMEOUT}",
-                   namespace="other"))
+                         namespace="other"))
     client = Client("other")
     try:
         make_ready(client)
@@ -248,7 +248,8 @@ INVALID_MESSAGES = [
 ]
 
 
-@pytest.mark.parametrize("kind, topic, message, text", [case[1:] for case in INVALID_MESSAGES], ids=[case[0] for case in INVALID_MESSAGES])
+@pytest.mark.parametrize("kind, topic, message, text", [case[1:] for case in INVALID_MESSAGES],
+                         ids=[case[0] for case in INVALID_MESSAGES])
 def test_an_invalid_message_ends_control_by_the_topic_and_is_logged_once(robot, driver, kind, topic, message, text):
     warning = f"/{topic}: messages are ignored"
     before = len(log_lines(driver, warning))

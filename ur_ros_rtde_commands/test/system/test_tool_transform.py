@@ -25,7 +25,7 @@ def start_receiver(address, *parameters, **options):
         return start_node("robot_state_receiver", address, *parameters, **options)
     path = os.pathsep.join([str(LIBRARIES), os.environ.get("LD_LIBRARY_PATH", "")])
     return start_node("robot_state_receiver", address, *parameters, env={"LD_LIBRARY_PATH": path},
-                executable=LIBRARIES / "robot_state_receiver", **options)
+                      executable=LIBRARIES / "robot_state_receiver", **options)
 
 
 def transforms(messages, child):
