@@ -85,7 +85,7 @@ def test_each_function_of_ur_rtde_is_an_action_or_excluded_with_a_reason(interfa
     functions = ur_rtde_headers.functions(interface)
     assert len(functions) > 5
     missing = ur_rtde_headers.uncovered(functions, set(PLUGINS), documentation.INDEX.read_text())
-    assert not missing, f"{len(missing)} of {len(functions)} functions of {interface} are neither an action nor excluded:  " \
+    assert not missing, f"{len(missing)} of {len(functions)} functions of {interface} are neither an action nor excluded: " \
         + ", ".join(missing)
 
 
