@@ -105,7 +105,7 @@ PARAMETERS = (
     Argument("urcap_port", 50002, "Port at which the External Control URCap requests the control program.", limits=(1, 65535)),
     Argument("register_range", "lower", "General purpose registers of the driver. lower: 0 to 23. upper: 24 to 47, for robots on "
              "which a fieldbus uses the lower registers.", ("lower", "upper")),
-    Argument("watchdog_frequency", 10.0, "Minimum rate in Hz of the driver's signs of life. The robot stops the arm after "
+    Argument("watchdog_frequency", 10.0, "Minimum rate in Hz of the driver's heartbeats. The robot stops the arm after "
              "1/watchdog_frequency s without one. 0 disables the watchdog.", limits=(0.0, 50.0)),
     Argument("restart_program", True, "Restarts the control program after it was stopped. The interrupted motion is not resumed."),
     Argument("on_busy", "refuse", "What happens to a motion goal while another motion runs. refuse: it is refused. preempt: it "
