@@ -9,6 +9,7 @@ import pytest
 from ur_tools import packages
 from ur_tools.layout import ROOT
 
+BACKGROUND = True
 PACKAGES = packages.discover(ROOT)
 BUILD = {"depend", "build_depend", "buildtool_depend"}
 RUN = {"depend", "exec_depend"}

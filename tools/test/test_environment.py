@@ -9,6 +9,7 @@ import pytest
 from ur_tools.environment import FASTDDS_PROFILES, run_environment
 from ur_tools.layout import Layout
 
+BACKGROUND = True
 PARTICIPANT = "import rclpy; rclpy.init(); rclpy.create_node('reader_of_profiles'); rclpy.shutdown()"
 VARIABLES = tuple(FASTDDS_PROFILES)
 HEARTBEAT = {"FASTDDS_DEFAULT_PROFILES_FILE": "heartbeat_period", "FASTRTPS_DEFAULT_PROFILES_FILE": "heartbeatPeriod"}

@@ -9,6 +9,7 @@ import sys
 import pytest
 from ur_tools.layout import ROOT
 
+BACKGROUND = True
 PREFIX = pathlib.Path(sys.prefix)
 FAST = ROOT / "wheels" / "generators"
 BUILD = next(PREFIX.parent.glob("build*/ur_ros_rtde_msgs"))  # of any variant

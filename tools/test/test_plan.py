@@ -11,6 +11,7 @@ import pytest
 from ur_tools.environment import program
 from ur_tools.layout import Layout
 
+BACKGROUND = True
 ROOT = pathlib.Path(__file__).parents[2]
 HOME = "[0.0, -1.57, 1.57, -1.57, -1.57, 0.0]"
 PATH = f"""

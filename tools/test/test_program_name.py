@@ -11,6 +11,8 @@ from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
 from ur_tools.environment import workspace_environment
 from ur_tools.layout import ROOT, Layout
 
+BACKGROUND = True
+
 
 def run_outside(*arguments, cwd=ROOT):
     """Runs ./ur in an environment without ROS."""

@@ -12,6 +12,7 @@ from ur_tools import main, packages, selection, simulation
 from ur_tools.environment import program
 from ur_tools.layout import Layout
 
+BACKGROUND = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text()
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text()

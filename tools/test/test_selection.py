@@ -7,6 +7,7 @@ import pytest
 from ur_tools import console, main, packages, selection, testing
 from ur_tools.layout import ROOT
 
+BACKGROUND = True
 STOP = "TEST_F(StopTest, KeepsItsLine)\n{\n}\nTEST_P(Angles, AreRead)\n{\n}\n"
 FILES = {
     "messages/package.xml": "<package><name>messages</name></package>",

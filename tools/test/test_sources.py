@@ -1,6 +1,8 @@
 import pytest
 from ur_tools import lint, system_packages
 
+BACKGROUND = True
+
 
 @pytest.mark.parametrize("text", ["see /" + "work/main", "cd /" + "root/x", "/" + "home/anna/ws"])
 def test_a_machine_specific_path_is_found(text):

@@ -7,6 +7,7 @@ import pytest
 from ur_tools.environment import workspace_environment
 from ur_tools.layout import ROOT, Layout
 
+BACKGROUND = True
 SONAME = "libur_rtde_vendor.so.1.6"
 LAYOUT = Layout.of_environment()
 HEADERS = LAYOUT.install / "include" / "ur_rtde_vendor"

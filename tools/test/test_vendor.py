@@ -8,6 +8,7 @@ import pytest
 from ur_tools.downloads import ur_rtde_archive
 from ur_tools.layout import ROOT
 
+BACKGROUND = True
 VENDOR = ROOT / "ur_rtde_vendor"
 PROJECT = f"""
 cmake_minimum_required(VERSION 3.18)

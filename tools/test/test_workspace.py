@@ -11,6 +11,8 @@ from colcon_core import package_discovery, package_identification
 from ur_tools import new, packages
 from ur_tools.layout import ROOT
 
+BACKGROUND = True
+
 
 def checkout(folder: pathlib.Path) -> pathlib.Path:
     """Copies tracked and new files, as `git clone` would, without build results."""

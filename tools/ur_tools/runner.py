@@ -15,6 +15,8 @@ from .environment import run_environment
 from .layout import ROOT, SANITIZERS, Layout
 from .processes import end_group
 
+BACKGROUND_NICENESS = 15  # of background tests: they get about 3 % of a core that other tests use all the time
+LOWEST_PRIORITY = 19
 SANITIZED_PATIENCE = 4.0  # programs with a sanitizer are slower by about this factor
 SANITIZED_REAL_TIME_FACTOR = 0.5  # lets the simulated robot's time pass at half speed, so that its cycles are not late
 
@@ -29,7 +31,9 @@ class Test:
     limit: float  # s
     env: Dict[str, str] = field(default_factory=dict)
     exclusive: bool = False  # runs while no other test does
+    background: bool = False  # runs with low priority, in addition to the other tests
     least_load: float = 0.0  # cores that it is given, even if it uses less
+    load: Optional[float] = None  # cores that it is given instead of its measured load
 
     @property
     def package(self) -> str:
@@ -113,6 +117,14 @@ def _processor_seconds(pid: int) -> float:
     return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
 
 
+def _lower_priority(pid: int) -> None:
+    """Lets the processes of other tests run before this process and the children that it will start."""
+    try:
+        os.setpriority(os.PRIO_PROCESS, pid, min(LOWEST_PRIORITY, os.getpriority(os.PRIO_PROCESS, 0) + BACKGROUND_NICENESS))
+    except ProcessLookupError:
+        pass  # it has exited
+
+
 class Runner:
     """Runs tests of one build. `run` may be called from several threads."""
 
@@ -157,6 +169,8 @@ class Runner:
         with log.open("wb") as output:
             process = subprocess.Popen(command, cwd=test.folder, env=env, stdin=subprocess.DEVNULL, stdout=output,
                                        stderr=subprocess.STDOUT, start_new_session=True)
+        if test.background:
+            _lower_priority(process.pid)
         with self._lock:
             self._running.add(process)
         in_time = _wait(process, limit)

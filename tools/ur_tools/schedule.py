@@ -58,43 +58,62 @@ class Job:
     what: object
     cost: Cost
     exclusive: bool = False  # runs alone
+    background: bool = False  # has low priority: uses the processor time that the other jobs leave
     expected_end: float = 0.0
 
 
 class Schedule:
     """Starts the longest waiting test as soon as its load fits beside the running tests.
 
-    While that test does not fit, shorter ones are started as long as they do not delay it (EASY backfilling).
+    While that test does not fit, shorter ones are started as long as they do not delay it (EASY backfilling). Background tests run in
+    addition, as many as there are cores.
     """
 
     def __init__(self, jobs: Iterable[Job], cores: int, most: int = 0, clock: Callable[[], float] = time.monotonic):
         """`most`: how many tests may run at a time; 0: as many as the machine can take."""
         self._limit = BUSY * cores
         self.most = most or min(MOST_JOBS, JOBS_PER_CORE * cores)
+        self._background_most = min(self.most, cores)
         self._clock = clock
-        self._waiting = sorted(jobs, key=lambda job: -job.cost.seconds)
+        jobs = list(jobs)
+        self._waiting = sorted((job for job in jobs if not job.background), key=lambda job: -job.cost.seconds)
+        # The duration of a background test depends on the tests beside it.
+        self._background = sorted((job for job in jobs if job.background), key=lambda job: -job.cost.seconds * job.cost.load)
         self._running: List[Job] = []
+        self._running_background: List[Job] = []
 
     def __bool__(self) -> bool:
-        return bool(self._waiting or self._running)
+        return bool(self._waiting or self._background or self._running or self._running_background)
 
     def take(self) -> Optional[Job]:
         """Returns a test to start now, or None: wait until a running test has ended."""
+        if len(self._running) + len(self._running_background) >= self.most:
+            return None
         now = self._clock()
         chosen = self._choose(now)
         if chosen is not None:
             self._waiting.remove(chosen)
             chosen.expected_end = now + chosen.cost.seconds
             self._running.append(chosen)
+        elif self._takes_background():
+            chosen = self._background.pop(0)
+            self._running_background.append(chosen)
         return chosen
 
     def end(self, job: Job) -> None:
-        self._running.remove(job)
+        (self._running_background if job.background else self._running).remove(job)
+
+    def _takes_background(self) -> bool:
+        """Background tests start when no exclusive test runs or is the next one."""
+        return (bool(self._background) and len(self._running_background) < self._background_most
+                and not any(job.exclusive for job in [*self._running, *self._waiting[:1]]))
 
     def _choose(self, now: float) -> Optional[Job]:
-        if not self._waiting or len(self._running) >= self.most:
+        if not self._waiting:
             return None
         first = self._waiting[0]
+        if first.exclusive and self._running_background:
+            return None
         if self._fits(first, self._running):
             return first
         start = self._earliest_start(first)

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import time
@@ -21,6 +22,10 @@ from .schedule import Job, Schedule, Times
 DEFAULT_LIMIT = 120.0
 PYTEST_LIMIT = 600.0
 MEASURES_TIME = "MEASURES_TIME = True"  # a line of a pytest file that needs a core for itself
+# A line of a pytest file that uses more cores than these only for processes with a low priority.
+DECLARED_LOAD = re.compile(r"^LOAD = (\d+\.\d+)", re.M)
+BACKGROUND = "BACKGROUND = True"  # a line of a pytest file whose result does not depend on how fast it runs
+BACKGROUND_LABEL = "background"  # the same for a CTest test
 SHOWN_LINES = 60  # of a failed test's output
 FAILS_ALONE, PASSES_ALONE = "fails alone too", "passes alone: depends on load or on other tests"
 
@@ -58,16 +63,22 @@ def _ctest(layout: Layout, package: Package) -> List[Test]:
         env = dict(pair.split("=", 1) for pair in properties.get("ENVIRONMENT", []))
         tests.append(Test(f"{package.name}: {entry['name']}", command,
                           pathlib.Path(properties.get("WORKING_DIRECTORY", folder)),
-                          float(properties.get("TIMEOUT", DEFAULT_LIMIT)), env, bool(properties.get("RUN_SERIAL"))))
+                          float(properties.get("TIMEOUT", DEFAULT_LIMIT)), env, bool(properties.get("RUN_SERIAL")),
+                          BACKGROUND_LABEL in properties.get("LABELS", [])))
     return tests
 
 
 def _pytest(layout: Layout, name: str, folder: pathlib.Path) -> List[Test]:
     # Without the cache provider, which writes into the sources.
     command = [str(layout.python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "--color=no", "-ra", "--disable-warnings"]
-    return [Test(f"{name}: {file.relative_to(folder).with_suffix('')}", [*command, str(file)], ROOT, PYTEST_LIMIT,
-                 least_load=float(MEASURES_TIME in file.read_text().splitlines()))
-            for file in sorted(folder.rglob("test_*.py"))]
+    tests = []
+    for file in sorted(folder.rglob("test_*.py")):
+        text = file.read_text()
+        lines, load = text.splitlines(), DECLARED_LOAD.search(text)
+        tests.append(Test(f"{name}: {file.relative_to(folder).with_suffix('')}", [*command, str(file)], ROOT, PYTEST_LIMIT,
+                          background=BACKGROUND in lines, least_load=float(MEASURES_TIME in lines),
+                          load=float(load.group(1)) if load else None))
+    return tests
 
 
 def _collect(options: Options, packages: Dict[str, Package], chosen: selection.Selection) -> List[Test]:
@@ -93,7 +104,8 @@ def _select(options: Options) -> selection.Selection:
 
 def _job(test: Test, times: Times) -> Job:
     cost = times.cost(test.name, test.is_pytest)
-    return Job(test, replace(cost, load=max(cost.load, test.least_load)), test.exclusive)
+    load = max(cost.load, test.least_load) if test.load is None else test.load
+    return Job(test, replace(cost, load=load), test.exclusive, test.background)
 
 
 def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result]:

@@ -9,6 +9,7 @@ import pytest
 import yaml
 from ur_ros_rtde_cli import fields
 
+BACKGROUND = True
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "docs" / "commands"
 
 

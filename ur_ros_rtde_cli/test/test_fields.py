@@ -11,6 +11,8 @@ from ur_ros_rtde_cli.errors import CliError
 
 from ur_ros_rtde_msgs.action import DashboardText, ExecuteParametrizedTrajectory, ExecuteTrajectory, ForceMode, MoveJ, SetDigitalOutput
 
+BACKGROUND = True
+
 
 def read(text, message):
     return fields.Document(text).fill(message)
