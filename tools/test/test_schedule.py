@@ -30,8 +30,8 @@ class Simulation:
             timetable.end(job)
 
 
-def jobs(*costs, exclusive=()):
-    return [Job(number, Cost(*cost), number in exclusive) for number, cost in enumerate(costs)]
+def jobs(*costs, exclusive=(), background=()):
+    return [Job(number, Cost(*cost), number in exclusive, number in background) for number, cost in enumerate(costs)]
 
 
 def test_the_longest_test_starts_first():
@@ -68,6 +68,22 @@ def test_short_tests_run_early_only_if_they_do_not_delay_a_long_one():
 
 def test_the_number_of_tests_at_a_time_can_be_limited():
     assert Simulation(jobs(*[(1.0, 0.1)] * 6), most=1).now == pytest.approx(6.0)
+
+
+def test_background_tests_run_beside_the_others_as_many_as_there_are_cores():
+    simulation = Simulation(jobs((10.0, 1.8), (4.0, 1.0), (3.0, 1.0), (2.0, 1.0), background=[1, 2, 3]))
+    assert simulation.begins == {0: 0.0, 1: 0.0, 2: 0.0, 3: 3.0}
+
+
+def test_no_background_test_runs_beside_an_exclusive_one():
+    simulation = Simulation(jobs((5.0, 0.1), (6.0, 0.1), (3.0, 0.5), (4.0, 0.5), exclusive=[0], background=[2, 3]))
+    begin = simulation.begins[0]
+    assert all(simulation.begins[number] >= begin + 5.0 or simulation.begins[number] + duration <= begin
+               for number, duration in ((1, 6.0), (2, 3.0), (3, 4.0)))
+
+
+def test_background_tests_count_among_the_tests_at_a_time():
+    assert Simulation(jobs((2.0, 0.1), (3.0, 0.1), background=[1]), most=1).now == pytest.approx(5.0)
 
 
 def test_measured_times_are_stored_and_reference_times_are_the_default(tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 """./ur test: a failure fails the run even if the repetition succeeds. Options are passed to the correct program."""
 
+import os
 import pathlib
 import sys
 
@@ -47,6 +48,26 @@ def test_a_file_that_measures_time_reserves_a_core(tmp_path):
     times.record("driver: test_a", 10.0, 1.0)
     times.record("driver: test_b", 10.0, 1.0)
     assert [testing._job(test, times).cost.load for test in tests] == [1.0, 0.1]
+
+
+def test_a_file_may_declare_its_load(tmp_path):
+    (tmp_path / "test_a.py").write_text("LOAD = 0.5  # cores\n")
+    test, = testing._pytest(Layout.of_environment(), "driver", tmp_path)
+    times = schedule.Times(tmp_path / "durations.json")
+    times.record("driver: test_a", 10.0, 15.0)
+    assert testing._job(test, times).cost == schedule.Cost(10.0, 0.5)
+
+
+def test_a_background_test_has_a_low_priority(tmp_path, monkeypatch):
+    (tmp_path / "test_a.py").write_text("BACKGROUND = True\n")
+    test, = testing._pytest(Layout.of_environment(), "driver", tmp_path)
+    assert testing._job(test, schedule.Times(tmp_path / "durations.json")).background
+    # The program is still starting when its priority is lowered.
+    program = "import os, time\ntime.sleep(0.5)\nprint(f'niceness {os.nice(0)}')\nraise SystemExit(1)"
+    monkeypatch.setattr(runner, "ROOT", tmp_path)
+    test = runner.Test("a: test", [sys.executable, "-c", program], tmp_path, 20.0, background=True)
+    output = runner.Runner(Layout.of_environment(), tmp_path).run(test).output
+    assert f"niceness {min(19, os.nice(0) + runner.BACKGROUND_NICENESS)}" in output
 
 
 def result(command, failures):

@@ -25,6 +25,10 @@ GENTLY: Tuple[Tuple[int, float], ...] = ((signal.SIGINT, 5.0), (signal.SIGTERM, 
 
 def group_is_alive(group: int) -> bool:
     """Returns whether a process of the group is running. Zombies do not count."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
     for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
             fields = stat.read_text().rpartition(")")[2].split()

@@ -3,7 +3,9 @@
 import os
 import pathlib
 import re
+import shutil
 import subprocess
+import tempfile
 import threading
 import time
 import xml.etree.ElementTree as xml
@@ -117,6 +119,14 @@ def _processor_seconds(pid: int) -> float:
     return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
 
 
+def _bytecode_folder(layout: Layout) -> pathlib.Path:
+    """Returns where Python caches its bytecode: not beside the sources. The bytecode of earlier temporary files is removed."""
+    folder = layout.base / "bytecode"
+    temporary = pathlib.Path(tempfile.gettempdir()).resolve()
+    shutil.rmtree(folder / temporary.relative_to(temporary.anchor), ignore_errors=True)
+    return folder
+
+
 def _lower_priority(pid: int) -> None:
     """Lets the processes of other tests run before this process and the children that it will start."""
     try:
@@ -140,7 +150,8 @@ class Runner:
             self._env["UR_TEST_REAL_TIME_FACTOR"] = str(SANITIZED_REAL_TIME_FACTOR)
         self._env["UR_TEST_PATIENCE"] = str(self._patience)
         self._env["ROS_LOG_DIR"] = str(folder / "ros")
-        self._env["PYTHONDONTWRITEBYTECODE"] = "1"
+        self._env.pop("PYTHONDONTWRITEBYTECODE", None)
+        self._env["PYTHONPYCACHEPREFIX"] = str(_bytecode_folder(layout))
         self._env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
         self._env[isolation.MARK] = str(os.getpid())
         self._lock = threading.Lock()

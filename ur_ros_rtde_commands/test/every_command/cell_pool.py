@@ -1,6 +1,6 @@
 """Runs scenarios for many plugins in parallel in a pool of cells."""
 
-import queue
+import threading
 from concurrent.futures import ThreadPoolExecutor
 
 from cell import Cell
@@ -13,18 +13,19 @@ class CellPool:
     """A pool of cells. Cells are created on demand and reused."""
 
     def __init__(self, count):
-        self._slots = queue.LifoQueue()  # the number of a cell, or the cell if it has been created
-        for number in reversed(range(count)):
-            self._slots.put(number)
+        self._free = [*reversed(range(count))]  # slots: the number of a cell, or the cell if it has been created
+        self._busy = []  # setups of the running scenarios
+        self._changed = threading.Condition()
         self._pool = ThreadPoolExecutor(count)
 
     def submit(self, scenario, *arguments):
         return self._pool.submit(self._run, scenario, arguments)
 
     def _run(self, scenario, arguments):
-        slot = self._slots.get()
+        setup = getattr(arguments[0], "setup", Setup())
+        slot = self._take(setup)
         try:
-            slot = self._cell_for(getattr(arguments[0], "setup", Setup()), slot)
+            slot = self._cell_for(setup, slot)
             outcome = self._run_scenario(scenario, slot, arguments)
             if hasattr(arguments[0], "action"):
                 slot.client.destroy_action_client(arguments[0].action)
@@ -36,7 +37,24 @@ class CellPool:
                 slot = slot.number
             raise
         finally:
-            self._slots.put(slot)
+            self._give_back(setup, slot)
+
+    def _take(self, setup):
+        """Returns a free slot, preferably a cell with this setup. A setup other than the default gets only one cell."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._free and (setup == Setup() or setup not in self._busy))
+            matching = [slot for slot in self._free if isinstance(slot, Cell) and slot.setup == setup]
+            empty = [slot for slot in self._free if not isinstance(slot, Cell)]
+            slot = [*self._free, *empty, *matching][-1]
+            self._free.remove(slot)
+            self._busy.append(setup)
+            return slot
+
+    def _give_back(self, setup, slot):
+        with self._changed:
+            self._busy.remove(setup)
+            self._free.append(slot)
+            self._changed.notify_all()
 
     @staticmethod
     def _cell_for(setup, slot):
@@ -58,8 +76,7 @@ class CellPool:
 
     def close(self):
         self._pool.shutdown(wait=True, cancel_futures=True)
-        while not self._slots.empty():
-            slot = self._slots.get()
+        for slot in self._free:
             if isinstance(slot, Cell):
                 slot.close()
 
@@ -68,7 +85,9 @@ class Outcomes:
     """The results of `scenario(cell, example)` for each example, by action name."""
 
     def __init__(self, pool, scenario, examples):
-        self._futures = {example.action: pool.submit(scenario, example) for example in examples}
+        # Examples with the same setup follow each other, because another setup needs a new cell.
+        ordered = sorted(examples, key=lambda example: (example.setup.controller, example.setup.parameters))
+        self._futures = {example.action: pool.submit(scenario, example) for example in ordered}
 
     def get(self, name, limit=600.0):
         """Returns the result of the scenario for this action, or raises its exception."""

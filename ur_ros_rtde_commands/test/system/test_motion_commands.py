@@ -5,7 +5,7 @@ import math
 import pytest
 from action_msgs.msg import GoalStatus
 from arm_state import get_joint_positions, get_joint_speed, get_tcp_pose, translated
-from geometry_msgs.msg import Pose, Quaternion, Twist, Vector3
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from sensor_msgs.msg import JointState
 from support import HOME, REAL_TIME_FACTOR, wait_for
 from trajectories import TargetSpeedRecorder

@@ -27,7 +27,7 @@ constexpr int register_offset(const RobotOptions & options)
 ///
 /// A control interface is active or pending. Only an active one is returned by control(). The control program
 /// of a pending one does not run: it was suspended, or the External Control URCap has not started it yet.
-/// Both receive the watchdog's signs of life.
+/// Both receive the watchdog's heartbeat.
 class RtdeInterfaces {
  public:
   /// `scripts` must outlive this object.
