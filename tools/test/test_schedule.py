@@ -61,7 +61,7 @@ def test_an_exclusive_test_runs_alone():
 
 def test_short_tests_run_early_only_if_they_do_not_delay_a_long_one():
     # The second test requires the cores of the first. Tests that end before the first may run next to it.
-    simulation = Simulation(jobs((10.0, 1.0), (9.0, 1.2), (4.0, 0.7), (7.0, 0.6)))
+    simulation = Simulation(jobs((10.0, 1.0), (9.0, 1.2), (4.0, 0.75), (7.0, 0.6)))
     assert simulation.begins[1] == 10.0
     assert simulation.begins[3] == 0.0 and simulation.begins[2] >= 10.0
 
