@@ -4,7 +4,6 @@
 #include <cmath>
 #include <deque>
 
-#include "timing/jerk_solver.hpp"
 #include "timing/speed_spline.hpp"
 #include "timing/topp_ra.hpp"
 
@@ -150,7 +149,7 @@ std::vector<double> cumulative_times(const std::vector<double> & times)
 
 }  // namespace
 
-InitialTiming initial_timing(const Grid & grid, const Limits & limits)
+InitialTiming initial_timing(const Grid & grid, const Limits & limits, JerkSolver & solver)
 {
   const Profile unlimited_jerk = solve_topp_ra(grid, limits);
   const std::vector<double> ramp = jerk_limited_ramps(grid, limits);
@@ -163,7 +162,7 @@ InitialTiming initial_timing(const Grid & grid, const Limits & limits)
   std::vector<double> time = cumulative_times(unlimited_jerk.time);
   ramp_fraction = sliding_mean(sliding_min(ramp_fraction, time, half_window), time, half_window);
   const LimitFractions limit_fractions(grid);
-  JerkSolver solver(grid, limits, limit_fractions);
+  solver.set_problem(grid, limit_fractions);
   std::vector<double> squared_speeds(last + 1, 0.0);
   for (int round = 0;; ++round) {
     for (std::size_t m = 1; m < last; ++m) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "timing/grid.hpp"
+#include "timing/jerk_solver.hpp"
 
 namespace ur_ros_rtde::trajectory {
 
@@ -12,7 +12,8 @@ struct InitialTiming {
   std::vector<double> w;
 };
 
-InitialTiming initial_timing(const Grid & grid, const Limits & limits);
+/// `solver` is used to evaluate the limits.
+InitialTiming initial_timing(const Grid & grid, const Limits & limits, JerkSolver & solver);
 
 /// Initial timing from `profile`, with the coefficients of its speed spline.
 InitialTiming initial_timing_from(const Grid & grid, Profile profile);

@@ -1,26 +1,28 @@
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "timing/jerk_solver.hpp"
 
 // One iteration of the solver: the linear system of the perturbed KKT conditions and the step lengths.
 
 namespace ur_ros_rtde::trajectory {
-namespace {
-
-constexpr double fraction_to_boundary = 0.95;  // fraction-to-boundary rule
-
-}  // namespace
 
 void JerkSolver::assemble(double target)
 {
+  std::fill(begin_models_.begin(), begin_models_.end(), QuadraticModel{});
+  std::fill(end_models_.begin(), end_models_.end(), QuadraticModel{});
+  for_each_block([&](const auto & block) {
+    block.add_to((block.station == block.interval ? begin_models_ : end_models_)[block.interval], target);
+  });
   system_.clear(count());
   for (std::size_t i = 0; i < count(); ++i) {
     if (i > 0) {
-      add_station(i, target);
+      add_time_and_speed(i, target);
+      scatter_model(i, i, begin_models_[i]);
     }
-    add_interval(i, target);
+    if (i + 1 < count()) {
+      scatter_model(i, i + 1, end_models_[i]);
+    }
   }
   for (const std::size_t fixed : {std::size_t{0}, count() - 1}) {  // zero at rest
     system_.diagonal[fixed] = 1.0;
@@ -30,65 +32,20 @@ void JerkSolver::assemble(double target)
   system_.first[count() - 2] = system_.second[count() - 3] = 0.0;
 }
 
-void JerkSolver::add_station(std::size_t m, double target)
+void JerkSolver::add_time_and_speed(std::size_t m, double target)
 {
-  const Multipliers & l = multipliers_[m];
-  const double f = limit_fractions_.acceleration[m];
-  const Joints pa = grid_.d2[m] * inverse_acceleration_;
-  const Joints pb = grid_.d1[m] * inverse_acceleration_;
-  const Joints plus = (f - acceleration_use_[m]).inverse();
-  const Joints minus = (f + acceleration_use_[m]).inverse();
-  const Joints stiffness = l.station_plus * plus + l.station_minus * minus;
-  const Joints push = target * (plus - minus);
-  Model model;
-  model.aa = (stiffness * pa * pa).sum();
-  model.ab = (stiffness * pa * pb).sum();
-  model.bb = (stiffness * pb * pb).sum();
-  model.ga = (push * pa).sum();
-  model.gb = (push * pb).sum();
-
+  QuadraticModel & model = begin_models_[m];
   const double room = max_a_[m] - a_[m];
-  model.aa += l.speed / (max_a_[m] * room);
+  model.aa += speed_[m].value / (max_a_[m] * room);
   model.ga += target / room;
 
   const double time = weight_[m] * spline_->speed(m) / std::sqrt(a_[m]);
   model.ga -= 0.5 * time / a_[m];
   model.aa += 0.3 * time / (a_[m] * a_[m]);
-  scatter_model(m, m, model);
-}
-
-void JerkSolver::add_interval(std::size_t i, double target)
-{
-  const Multipliers & l = multipliers_[i];
-  const double f = limit_fractions_.jerk[i];
-  scatter_model(i, begin_jerk_[i].at, jerk_model(begin_jerk_[i], f, l.begin_plus, l.begin_minus, target));
-  scatter_model(i, end_jerk_[i].at, jerk_model(end_jerk_[i], f, l.end_plus, l.end_minus, target));
-}
-
-JerkSolver::Model JerkSolver::jerk_model(const JerkRow & row, double f, const Joints & plus,
-                                         const Joints & minus, double target)
-{
-  const Joints up = (f - row.value).inverse();
-  const Joints down = (f + row.value).inverse();
-  const Joints both = plus * up + minus * down;
-  const Joints tilt = row.tangent * (plus * up - minus * down);
-  const Joints push = target * (up - down);
-  const Joints weighted_a = both * row.pa + tilt;
-  Model model;
-  model.aa = ((weighted_a + tilt) * row.pa + (row.tangent * row.tangent) * both).sum();
-  model.ab = (weighted_a * row.pb).sum();
-  model.ac = (weighted_a * row.pc).sum();
-  model.bb = (both * row.pb * row.pb).sum();
-  model.bc = (both * row.pb * row.pc).sum();
-  model.cc = (both * row.pc * row.pc).sum();
-  model.ga = (push * row.pa).sum() + target * row.tangent * (up + down).sum();
-  model.gb = (push * row.pb).sum();
-  model.gc = (push * row.pc).sum();
-  return model;
 }
 
 // Adds a quadratic model in (a_m, b_m, c_i), m = i or i + 1, to the linear system in w.
-void JerkSolver::scatter_model(std::size_t i, std::size_t m, const Model & model)
+void JerkSolver::scatter_model(std::size_t i, std::size_t m, const QuadraticModel & model)
 {
   // Rows of a, b, c over (w_(i-1), w_i, w_(i+1)).
   const double shift_left = spline_->at(i).g;  // 0 at the ends
@@ -130,88 +87,60 @@ void JerkSolver::scatter_model(std::size_t i, std::size_t m, const Model & model
   }
 }
 
-JerkSolver::StepLengths JerkSolver::step_lengths(const std::vector<double> & dw, double target)
+StepLengths JerkSolver::step_lengths(const std::vector<double> & dw, double target)
 {
-  StepLengths steps;
-  for (std::size_t i = 0; i < count(); ++i) {
-    if (i > 0) {
-      station_step_lengths(i, spline_->a(dw, i), spline_->b(dw, i), target, steps);
-    }
-    const double f = limit_fractions_.jerk[i];
-    const double dc = (spline_->b(dw, i + 1) - spline_->b(dw, i)) / spline_->duration(i);
-    const Multipliers & l = multipliers_[i];
-    Multipliers & d = multiplier_step_[i];
-    const auto move = [&](const JerkRow & row) {
-      const double da = spline_->a(dw, row.at);
-      return std::pair<Joints, double>(row.pa * da + row.pb * spline_->b(dw, row.at) + row.pc * dc,
-                                       row.tangent * da);
-    };
-    const auto [begin, begin_tangent] = move(begin_jerk_[i]);
-    const auto [end, end_tangent] = move(end_jerk_[i]);
-    update_multipliers(f - begin_jerk_[i].value, begin + begin_tangent, l.begin_plus, target, d.begin_plus,
-                       steps);
-    update_multipliers(f + begin_jerk_[i].value, begin_tangent - begin, l.begin_minus, target, d.begin_minus,
-                       steps);
-    update_multipliers(f - end_jerk_[i].value, end + end_tangent, l.end_plus, target, d.end_plus, steps);
-    update_multipliers(f + end_jerk_[i].value, end_tangent - end, l.end_minus, target, d.end_minus, steps);
+  StepLengths lengths;
+  for (std::size_t m = 0; m <= count(); ++m) {
+    da_[m] = spline_->a(dw, m);
+    db_[m] = spline_->b(dw, m);
   }
-  return steps;
+  for (std::size_t i = 0; i < count(); ++i) {
+    dc_[i] = (db_[i + 1] - db_[i]) / spline_->duration(i);
+    if (i > 0) {
+      step_speed(i, da_[i], target, lengths);
+    }
+  }
+  for_each_block([&](auto & block) {
+    block.step(da_[block.station], db_[block.station], dc_[block.interval], target, lengths);
+  });
+  return lengths;
 }
 
-// One side of six constraints with slack `room`, of which a full step consumes `used`: computes the
-// multiplier step and reduces the step lengths.
-void JerkSolver::update_multipliers(const Joints & room, const Joints & used, const Joints & multiplier,
-                                    double target, Joints & change, StepLengths & steps)
+void JerkSolver::step_speed(std::size_t m, double da, double target, StepLengths & lengths)
 {
-  const Joints inverse = room.inverse();
-  change = (target + multiplier * used) * inverse - multiplier;
-  const double fastest = (used * inverse).maxCoeff();
-  const double dual = (-change / multiplier).maxCoeff();
-  steps.primal =
-      fastest * steps.primal > fraction_to_boundary ? fraction_to_boundary / fastest : steps.primal;
-  steps.dual = dual * steps.dual > fraction_to_boundary ? fraction_to_boundary / dual : steps.dual;
-}
-
-void JerkSolver::station_step_lengths(std::size_t m, double da, double db, double target, StepLengths & steps)
-{
-  const Multipliers & l = multipliers_[m];
-  Multipliers & d = multiplier_step_[m];
-  const double f = limit_fractions_.acceleration[m];
-  const Joints dx = (grid_.d2[m] * da + grid_.d1[m] * db) * inverse_acceleration_;
-  update_multipliers(f - acceleration_use_[m], dx, l.station_plus, target, d.station_plus, steps);
-  update_multipliers(f + acceleration_use_[m], -dx, l.station_minus, target, d.station_minus, steps);
-
+  SpeedMultiplier & multiplier = speed_[m];
   const double room = 1.0 - a_[m] / max_a_[m];
   const double used = da / max_a_[m];
-  d.speed = (target + l.speed * used) / room - l.speed;
+  multiplier.step = (target + multiplier.value * used) / room - multiplier.value;
   if (used > 0.0) {
-    steps.primal = std::min(steps.primal, fraction_to_boundary * room / used);
+    lengths.primal = std::min(lengths.primal, fraction_to_boundary * room / used);
   }
   if (da < 0.0) {
-    steps.primal = std::min(steps.primal, -0.8 * a_[m] / da);
+    lengths.primal = std::min(lengths.primal, -0.8 * a_[m] / da);
   }
-  if (d.speed < 0.0) {
-    steps.dual = std::min(steps.dual, -fraction_to_boundary * l.speed / d.speed);
+  if (multiplier.step < 0.0) {
+    lengths.dual = std::min(lengths.dual, -fraction_to_boundary * multiplier.value / multiplier.step);
   }
 }
 
-void JerkSolver::advance(const std::vector<double> & dw, const StepLengths & steps)
+// Takes the step. Returns the mean complementarity afterwards.
+double JerkSolver::advance(const std::vector<double> & dw, const StepLengths & lengths)
 {
   for (std::size_t i = 0; i < count(); ++i) {
-    w_[i] += steps.primal * dw[i];
-    Multipliers & l = multipliers_[i];
-    const Multipliers & d = multiplier_step_[i];
-    if (i > 0) {
-      l.station_plus += steps.dual * d.station_plus;
-      l.station_minus += steps.dual * d.station_minus;
-      l.speed += steps.dual * d.speed;
-    }
-    l.begin_plus += steps.dual * d.begin_plus;
-    l.begin_minus += steps.dual * d.begin_minus;
-    l.end_plus += steps.dual * d.end_plus;
-    l.end_minus += steps.dual * d.end_minus;
+    w_[i] += lengths.primal * dw[i];
   }
-  evaluate();
+  set_states();
+  double sum = 0.0;
+  for (std::size_t m = 1; m < count(); ++m) {
+    speed_[m].value += lengths.dual * speed_[m].step;
+    sum += speed_[m].value * (1.0 - a_[m] / max_a_[m]);
+  }
+  for_each_block([&](auto & block) {
+    block.advance_multipliers(lengths.dual);
+    evaluate(block);
+    sum += block.complementarity();
+  });
+  return sum / rows_;
 }
 
 }  // namespace ur_ros_rtde::trajectory

@@ -34,11 +34,13 @@ Expected<std::shared_ptr<Motion>> parameterize_path(std::shared_ptr<const Path> 
 {
   auto motion = std::make_shared<Motion>();
   motion->path = std::move(path);
+  const Limits inner = with_margin(limits);
+  JerkSolver solver(inner);
   for (const auto & [first, last] : motion->path->segments()) {
     if (stop.stop_requested()) {
       return failure(ErrorCode::canceled, "planning was canceled");
     }
-    parameterize_segment(*motion, first, last, limits);
+    parameterize_segment(*motion, first, last, inner, solver);
   }
   if (auto status = verify_and_slow(*motion, limits); !status) {
     return tl::unexpected(status.error());

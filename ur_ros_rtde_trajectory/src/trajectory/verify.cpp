@@ -19,26 +19,31 @@ Point point_at(const Motion & motion, const TimingLawPiece & piece, double time)
 }
 
 // Maximum of equally spaced values, including the vertex of the parabola through every three of them.
-struct Peak {
-  Joints largest = Joints::Zero();
+template <int rows>
+class Peak {
+ public:
+  using Rows = Eigen::Array<double, rows, 1>;
 
-  void add(const Joints & value)
+  void add(const Rows & value)
   {
-    largest = largest.max(value);
+    largest_ = largest_.max(value);
     if (++count_ >= 3) {
-      const Joints curvature = (2.0 * before_ - first_ - value).max(1e-12);
-      const Joints slope = value - first_;
-      largest = (slope.abs() < 2.0 * curvature)
-                    .select(largest.max(before_ + slope * slope / (8.0 * curvature)), largest);
+      const Rows curvature = (2.0 * before_ - first_ - value).max(1e-12);
+      const Rows slope = value - first_;
+      largest_ = (slope.abs() < 2.0 * curvature)
+                     .select(largest_.max(before_ + slope * slope / (8.0 * curvature)), largest_);
     }
     first_ = before_;
     before_ = value;
   }
 
+  const Rows & largest() const { return largest_; }
+
  private:
   int count_ = 0;
-  Joints first_ = Joints::Zero();
-  Joints before_ = Joints::Zero();
+  Rows largest_ = Rows::Zero();
+  Rows first_ = Rows::Zero();
+  Rows before_ = Rows::Zero();
 };
 
 // Largest ratio of the speed to the maximum speed of the path. The speed is a polynomial in time, so few
@@ -101,19 +106,43 @@ std::optional<LimitViolation> violation_at(const Point & point, const Limits & l
 
 }  // namespace
 
+namespace {
+
+// On a line, the values of all joints are proportional to speed, acceleration and jerk along it.
+PieceUtilization line_utilization(const Motion & motion, const TimingLawPiece & piece, const Limits & limits,
+                                  int inner)
+{
+  Peak<3> peak;
+  for (int k = 0; k <= inner + 1; ++k) {
+    const PathState state = piece.at(piece.start + piece.duration * k / (inner + 1));
+    peak.add({std::abs(state.v), std::abs(state.a), std::abs(state.j)});
+  }
+  const PathPiece & line = motion.path->pieces[piece.piece];
+  const Joints direction = line.c[1].abs() / line.length;
+  return {direction * peak.largest()[0] / limits.velocity, direction * peak.largest()[1] / limits.acceleration,
+          direction * peak.largest()[2] / limits.jerk, max_speed_ratio(motion, piece, inner)};
+}
+
+}  // namespace
+
 PieceUtilization piece_utilization(const Motion & motion, const TimingLawPiece & piece, const Limits & limits,
                                    int inner)
 {
-  Peak velocity;
-  Peak acceleration;
-  Peak jerk;
+  const PathPiece & curve = motion.path->pieces[piece.piece];
+  if (curve.is_line() && curve.length > 0.0) {
+    return line_utilization(motion, piece, limits, inner);
+  }
+  Peak<joint_count> velocity;
+  Peak<joint_count> acceleration;
+  Peak<joint_count> jerk;
   for (int k = 0; k <= inner + 1; ++k) {
     const Point point = point_at(motion, piece, piece.start + piece.duration * k / (inner + 1));
-    velocity.add(point.velocity.abs() / limits.velocity);
-    acceleration.add(point.acceleration.abs() / limits.acceleration);
-    jerk.add(point.jerk.abs() / limits.jerk);
+    velocity.add(point.velocity.abs());
+    acceleration.add(point.acceleration.abs());
+    jerk.add(point.jerk.abs());
   }
-  return {velocity.largest, acceleration.largest, jerk.largest, max_speed_ratio(motion, piece, inner)};
+  return {velocity.largest() / limits.velocity, acceleration.largest() / limits.acceleration,
+          jerk.largest() / limits.jerk, max_speed_ratio(motion, piece, inner)};
 }
 
 Utilization max_utilization(const Motion & motion, std::size_t begin, const Limits & limits)

@@ -1,0 +1,185 @@
+#include "timing/jerk_limited_timing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <numeric>
+
+#include "timing/initial_timing.hpp"
+#include "timing/limit_refinement.hpp"
+#include "timing/resampling.hpp"
+#include "timing/topp_ra.hpp"
+
+namespace ur_ros_rtde::trajectory {
+namespace {
+
+constexpr double min_station_step = 0.002;         // s, between stations
+constexpr std::size_t min_blend_intervals = 6;     // intervals in a blend
+constexpr double max_rough_factor = 8.0;           // longest step of the rough grid, in fine steps
+constexpr double min_rough_stations = 300.0;       // on the rough grid
+constexpr double min_stations_per_piece = 12.0;    // with fewer, an adaptive grid has no advantage
+
+// Accepted slowdown of the motion instead of another solution, by the number of previous refinements.
+constexpr std::array accepted_slowdown{0.0, 8e-4, 1.5e-3, 3e-3, 5e-3, 0.01, 0.01, 0.01};
+constexpr std::size_t max_rounds = accepted_slowdown.size();
+
+// Timing of one segment of the path. The pieces of the timing law from `begin` on belong to it, one for each
+// interval of the grid.
+class JerkLimitedTiming {
+ public:
+  JerkLimitedTiming(Motion & motion, std::size_t first, std::size_t last, const Limits & limits,
+                    JerkSolver & solver)
+      : motion_(motion), begin_(motion.timing.size()), limits_(limits), solver_(solver)
+  {
+    coarse_grid_ = coarse_grid(*motion.path, first, last);
+    estimate_ = solve_topp_ra(coarse_grid_, limits);
+    duration_ = std::accumulate(estimate_.time.begin(), estimate_.time.end(), 0.0);
+    const double jerk_time = (limits.acceleration / limits.jerk).minCoeff();
+    step_ = std::min(std::max(0.3 * jerk_time, min_station_step), duration_ / 100.0);
+    rough_step_ = std::clamp(duration_ / min_rough_stations, step_, max_rough_factor * step_);
+    has_long_pieces_ = duration_ > min_stations_per_piece * step_ * static_cast<double>(last - first);
+  }
+
+  bool can_adapt_grid() const { return has_long_pieces_ && rough_step_ > step_; }
+
+  // Solves on a rough grid, then on a grid that is fine only where the jerk changes. Returns false if the
+  // result exceeds a limit by much.
+  bool solve_with_adaptive_grid()
+  {
+    set_uniform_grid(rough_step_);
+    const Profile rough = solve(initial_timing(grid_, limits_, solver_), Accuracy{4.0, {0.1}, false});
+    ResampledMotion fine =
+        resample(motion_, begin_, adaptive_spacing(grid_, rough, limits_, step_, max_stations),
+                 min_blend_intervals);
+    set_grid(std::move(fine.grid));
+    long_interval_ = 1.05 * step_;
+    solve(initial_timing_from(grid_, std::move(fine.profile)), Accuracy{1.0, {0.1, 0.02}, true});
+    return refine() < 1.01;
+  }
+
+  void solve_with_uniform_grid()
+  {
+    long_interval_ = std::numeric_limits<double>::infinity();
+    set_uniform_grid(step_);
+    solve(initial_timing(grid_, limits_, solver_), Accuracy{4.0, {0.1, 0.02}, false});
+    refine();
+  }
+
+ private:
+  // Optimality gap of the start and after each speed spline.
+  struct Accuracy {
+    double initial_gap;
+    std::initializer_list<double> gaps;
+    bool near_solution;
+  };
+
+  void set_grid(Grid grid)
+  {
+    grid_ = std::move(grid);
+    fractions_ = LimitFractions(grid_);
+  }
+
+  void set_uniform_grid(double step)
+  {
+    set_grid(time_spaced_grid(*motion_.path, coarse_grid_, estimate_,
+                              std::max(step, duration_ / max_stations), min_blend_intervals));
+  }
+
+  // Solves on the grid. The solution replaces that in `motion`.
+  Profile solve(InitialTiming start, const Accuracy & accuracy)
+  {
+    SpeedSpline spline(grid_, start.profile);
+    solver_.set_problem(grid_, fractions_, long_interval_, accuracy.near_solution);
+    solver_.start(spline, std::move(start.w), accuracy.initial_gap);
+    Profile profile;
+    for (const double gap : accuracy.gaps) {
+      if (!profile.v.empty()) {
+        spline = SpeedSpline(grid_, profile);
+        solver_.set_spline(spline);
+      }
+      solver_.iterate(profile.v.empty() ? 40 : 20, gap);
+      profile = spline.profile(grid_, solver_.coefficients());
+    }
+    motion_.timing.resize(begin_);
+    motion_.append(grid_, profile, false);
+    return profile;
+  }
+
+  // Subdivides intervals and tightens limits where the solution exceeds the limits between stations, and solves
+  // again with higher accuracy. Returns the factor by which the motion still has to be slowed down.
+  double refine()
+  {
+    for (std::size_t round = 0;; ++round) {
+      const std::vector<IntervalUtilization> use = interval_utilization(motion_, begin_, limits_);
+      double slowdown = std::isfinite(motion_.duration()) ? 1.0 : std::numeric_limits<double>::infinity();
+      bool any_too_long = false;
+      for (const IntervalUtilization & interval : use) {
+        slowdown = std::max(slowdown, interval.slowdown());
+        any_too_long = any_too_long || interval.too_long;
+      }
+      const bool accepted = round > 0 && slowdown <= 1.0 + accepted_slowdown[std::min(round, max_rounds - 1)];
+      if (accepted || round == max_rounds || !std::isfinite(slowdown)) {
+        return slowdown;
+      }
+      tighten_limits(use, fractions_);
+      Profile start;
+      if (any_too_long) {
+        ResampledMotion fine = subdivide(motion_, begin_, grid_, use, fractions_);
+        grid_ = std::move(fine.grid);
+        start = std::move(fine.profile);
+      } else {
+        start = profile_of_motion();
+      }
+      solve(initial_timing_from(grid_, std::move(start)), Accuracy{0.1, {0.004}, true});
+    }
+  }
+
+  // State of the motion at the stations.
+  Profile profile_of_motion() const
+  {
+    Profile profile;
+    for (std::size_t k = begin_; k < motion_.timing.size(); ++k) {
+      const PathState state = motion_.timing[k].at(motion_.timing[k].start);
+      profile.v.push_back(state.v);
+      profile.alpha.push_back(state.a);
+      profile.time.push_back(motion_.timing[k].duration);
+    }
+    profile.v.push_back(0.0);
+    profile.alpha.push_back(0.0);
+    return profile;
+  }
+
+  Motion & motion_;
+  std::size_t begin_;
+  const Limits & limits_;
+  JerkSolver & solver_;
+  Grid coarse_grid_;
+  Profile estimate_;                 // on the coarse grid, without jerk limits
+  double duration_ = 0.0;            // s, of the estimate
+  double step_ = 0.0;                // s, between stations where the jerk changes
+  double rough_step_ = 0.0;          // s, between the stations of the rough grid
+  bool has_long_pieces_ = false;     // compared with the step
+  double long_interval_ = std::numeric_limits<double>::infinity();  // s
+  Grid grid_;
+  LimitFractions fractions_;
+};
+
+}  // namespace
+
+Grid coarse_grid(const Path & path, std::size_t first, std::size_t last)
+{
+  return uniform_grid(path, first, last, std::clamp<std::size_t>(1500 / (last - first), 4, 12));
+}
+
+void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, const Limits & limits,
+                         JerkSolver & solver)
+{
+  JerkLimitedTiming timing(motion, first, last, limits, solver);
+  if (!timing.can_adapt_grid() || !timing.solve_with_adaptive_grid()) {
+    timing.solve_with_uniform_grid();
+  }
+}
+
+}  // namespace ur_ros_rtde::trajectory
