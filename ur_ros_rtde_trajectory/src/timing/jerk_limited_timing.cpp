@@ -17,12 +17,14 @@ namespace {
 
 constexpr double min_station_step = 0.002;         // s, between stations
 constexpr std::size_t min_blend_intervals = 6;     // intervals in a blend
+constexpr double max_rough_stations = 20000.0;
+constexpr double max_adaptive_stations = 30000.0;
 constexpr double max_rough_factor = 8.0;           // longest step of the rough grid, in fine steps
 constexpr double min_rough_stations = 300.0;       // on the rough grid
 constexpr double min_stations_per_piece = 12.0;    // with fewer, an adaptive grid has no advantage
 
 // Accepted slowdown of the motion instead of another solution, by the number of previous refinements.
-constexpr std::array accepted_slowdown{0.0, 8e-4, 1.5e-3, 3e-3, 5e-3, 0.01, 0.01, 0.01};
+constexpr std::array accepted_slowdown{0.0, 1e-3, 2e-3, 3e-3, 5e-3, 0.01, 0.01, 0.01};
 constexpr std::size_t max_rounds = accepted_slowdown.size();
 
 // Timing of one segment of the path. The pieces of the timing law from `begin` on belong to it, one for each
@@ -48,33 +50,26 @@ class JerkLimitedTiming {
   // result exceeds a limit by much.
   bool solve_with_adaptive_grid()
   {
-    set_uniform_grid(rough_step_);
-    const Profile rough = solve(initial_timing(grid_, limits_, solver_), Accuracy{4.0, {0.1}, false});
+    set_uniform_grid(std::max(rough_step_, duration_ / max_rough_stations));
+    const Profile rough = solve(initial_timing(grid_, limits_, solver_), 4.0, {0.1});
     ResampledMotion fine =
-        resample(motion_, begin_, adaptive_spacing(grid_, rough, limits_, step_, max_stations),
+        resample(motion_, begin_, adaptive_spacing(grid_, rough, limits_, step_, max_adaptive_stations),
                  min_blend_intervals);
     set_grid(std::move(fine.grid));
     long_interval_ = 1.05 * step_;
-    solve(initial_timing_from(grid_, std::move(fine.profile)), Accuracy{1.0, {0.1, 0.02}, true});
+    solve(initial_timing_from(grid_, std::move(fine.profile)), 1.0, {0.1, 0.02}, true);
     return refine() < 1.01;
   }
 
   void solve_with_uniform_grid()
   {
     long_interval_ = std::numeric_limits<double>::infinity();
-    set_uniform_grid(step_);
-    solve(initial_timing(grid_, limits_, solver_), Accuracy{4.0, {0.1, 0.02}, false});
+    set_uniform_grid(std::max(step_, duration_ / max_stations));
+    solve(initial_timing(grid_, limits_, solver_), 4.0, {0.1, 0.02});
     refine();
   }
 
  private:
-  // Optimality gap of the start and after each speed spline.
-  struct Accuracy {
-    double initial_gap;
-    std::initializer_list<double> gaps;
-    bool near_solution;
-  };
-
   void set_grid(Grid grid)
   {
     grid_ = std::move(grid);
@@ -83,18 +78,19 @@ class JerkLimitedTiming {
 
   void set_uniform_grid(double step)
   {
-    set_grid(time_spaced_grid(*motion_.path, coarse_grid_, estimate_,
-                              std::max(step, duration_ / max_stations), min_blend_intervals));
+    set_grid(time_spaced_grid(*motion_.path, coarse_grid_, estimate_, step, min_blend_intervals));
   }
 
-  // Solves on the grid. The solution replaces that in `motion`.
-  Profile solve(InitialTiming start, const Accuracy & accuracy)
+  // Solves on the grid. The solution replaces that in `motion`. `gaps`: optimality gaps of the successive speed
+  // splines. `near_solution`: of the start.
+  Profile solve(InitialTiming start, double initial_gap, std::initializer_list<double> gaps,
+                bool near_solution = false)
   {
     SpeedSpline spline(grid_, start.profile);
-    solver_.set_problem(grid_, fractions_, long_interval_, accuracy.near_solution);
-    solver_.start(spline, std::move(start.w), accuracy.initial_gap);
+    solver_.set_problem(grid_, fractions_, long_interval_, near_solution);
+    solver_.start(spline, std::move(start.w), initial_gap);
     Profile profile;
-    for (const double gap : accuracy.gaps) {
+    for (const double gap : gaps) {
       if (!profile.v.empty()) {
         spline = SpeedSpline(grid_, profile);
         solver_.set_spline(spline);
@@ -132,7 +128,7 @@ class JerkLimitedTiming {
       } else {
         start = profile_of_motion();
       }
-      solve(initial_timing_from(grid_, std::move(start)), Accuracy{0.1, {0.004}, true});
+      solve(initial_timing_from(grid_, std::move(start)), 0.1, {0.004}, true);
     }
   }
 
