@@ -21,9 +21,9 @@ struct StepLengths {
 
 inline constexpr double fraction_to_boundary = 0.95;  // fraction-to-boundary rule
 
-/// Limits of one quantity of several joints, |ka sa a + kb sa b + kc sc c| <= limit, with a and b of a station
-/// and c of an interval; their multipliers and the steps of these. Only the scales sa and sc and the tangent
-/// depend on the current iterate.
+/// Limits of one quantity of several joints, |ka sa a + kb sa b + kc sc c| <= limit, with a and b of a
+/// station and c of an interval; their multipliers and the steps of these. Only the scales sa and sc and the
+/// tangent depend on the current iterate.
 template <int rows>
 struct ConstraintBlock {
   using Rows = Eigen::Array<double, rows, 1>;

@@ -93,7 +93,7 @@ std::vector<double> sliding_mean(const std::vector<double> & values, const std::
 InitialTiming initial_timing_from(const Grid & grid, Profile profile)
 {
   const std::size_t count = grid.intervals();
-  InitialTiming start{std::move(profile), std::vector<double>(count, 0.0)};
+  InitialTiming start{std::move(profile), std::vector<double>(count, 0.0), {}};
   const SpeedSpline spline(grid, start.profile);
   for (std::size_t m = 1; m < count; ++m) {
     // Each station contributes to both adjacent coefficients: a_m = (1 - l) w_(m-1) + l w_m, b_m = g (w_m -
@@ -173,6 +173,7 @@ InitialTiming initial_timing(const Grid & grid, const Limits & limits, JerkSolve
     // its speed.
     std::vector<double> excess = solver.limit_ratios(SpeedSpline(grid, start.profile), start.w);
     if (round == 4 || *std::max_element(excess.begin(), excess.end()) < 1.5) {
+      start.highest_speed = unlimited_jerk.v;
       return start;
     }
     excess.push_back(excess.back());
@@ -185,6 +186,46 @@ InitialTiming initial_timing(const Grid & grid, const Limits & limits, JerkSolve
       ramp_fraction[m] *= slower[m];
     }
   }
+}
+
+std::optional<Profile> lift_dips(const Grid & grid, const Profile & profile,
+                                 const std::vector<double> & highest_speed)
+{
+  constexpr double dip = 0.15;       // of the highest speed
+  constexpr double recovered = 0.5;  // of the highest speed
+  const std::size_t last = grid.stations() - 1;
+  Profile lifted = profile;
+  bool found = false;
+  for (std::size_t m = 2; m + 2 <= last; ++m) {
+    const bool is_minimum = profile.v[m] <= profile.v[m - 1] && profile.v[m] < profile.v[m + 1];
+    if (!is_minimum || profile.v[m] > dip * highest_speed[m]) {
+      continue;
+    }
+    std::size_t left = m;
+    std::size_t right = m;
+    while (left > 0 && profile.v[left] < recovered * highest_speed[left]) {
+      --left;
+    }
+    while (right < last && profile.v[right] < recovered * highest_speed[right]) {
+      ++right;
+    }
+    if (left == 0 || right == last) {
+      continue;
+    }
+    found = true;
+    double length = 0.0;
+    for (std::size_t i = left; i < right; ++i) {
+      length += grid.width(i);
+    }
+    const double slope = (profile.v[right] - profile.v[left]) / length;
+    for (std::size_t i = left; i < right; ++i) {
+      lifted.v[i + 1] = lifted.v[i] + slope * grid.width(i);
+      lifted.alpha[i + 1] = slope * lifted.v[i + 1];
+      lifted.time[i] = 2.0 * grid.width(i) / (lifted.v[i] + lifted.v[i + 1]);
+    }
+    m = right;
+  }
+  return found ? std::optional(std::move(lifted)) : std::nullopt;
 }
 
 }  // namespace ur_ros_rtde::trajectory

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "timing/jerk_solver.hpp"
 
 namespace ur_ros_rtde::trajectory {
@@ -10,6 +12,7 @@ namespace ur_ros_rtde::trajectory {
 struct InitialTiming {
   Profile profile;
   std::vector<double> w;
+  std::vector<double> highest_speed;  ///< without jerk limits, of each station; only set by initial_timing
 };
 
 /// `solver` is used to evaluate the limits.
@@ -17,5 +20,12 @@ InitialTiming initial_timing(const Grid & grid, const Limits & limits, JerkSolve
 
 /// Initial timing from `profile`, with the coefficients of its speed spline.
 InitialTiming initial_timing_from(const Grid & grid, Profile profile);
+
+/// Looks for places where `profile` is far slower than `highest_speed`, the speed without jerk limits,
+/// although neither the path nor an end requires it: local optima of the solver, which occur in very short
+/// intervals. Replaces each of them by a smooth transition. The result exceeds the limits there. Returns
+/// nullopt if there is none.
+std::optional<Profile> lift_dips(const Grid & grid, const Profile & profile,
+                                 const std::vector<double> & highest_speed);
 
 }  // namespace ur_ros_rtde::trajectory

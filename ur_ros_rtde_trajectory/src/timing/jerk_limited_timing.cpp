@@ -15,13 +15,13 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double min_station_step = 0.002;         // s, between stations
-constexpr std::size_t min_blend_intervals = 6;     // intervals in a blend
+constexpr double min_station_step = 0.002;      // s, between stations
+constexpr std::size_t min_blend_intervals = 6;  // intervals in a blend
 constexpr double max_rough_stations = 20000.0;
 constexpr double max_adaptive_stations = 30000.0;
-constexpr double max_rough_factor = 8.0;           // longest step of the rough grid, in fine steps
-constexpr double min_rough_stations = 300.0;       // on the rough grid
-constexpr double min_stations_per_piece = 12.0;    // with fewer, an adaptive grid has no advantage
+constexpr double max_rough_factor = 8.0;         // longest step of the rough grid, in fine steps
+constexpr double min_rough_stations = 300.0;     // on the rough grid
+constexpr double min_stations_per_piece = 12.0;  // with fewer, an adaptive grid has no advantage
 
 // Accepted slowdown of the motion instead of another solution, by the number of previous refinements.
 constexpr std::array accepted_slowdown{0.0, 1e-3, 2e-3, 3e-3, 5e-3, 0.01, 0.01, 0.01};
@@ -51,7 +51,7 @@ class JerkLimitedTiming {
   bool solve_with_adaptive_grid()
   {
     set_uniform_grid(std::max(rough_step_, duration_ / max_rough_stations));
-    const Profile rough = solve(initial_timing(grid_, limits_, solver_), 4.0, {0.1});
+    const Profile rough = solve_from_scratch({0.1});
     ResampledMotion fine =
         resample(motion_, begin_, adaptive_spacing(grid_, rough, limits_, step_, max_adaptive_stations),
                  min_blend_intervals);
@@ -65,7 +65,7 @@ class JerkLimitedTiming {
   {
     long_interval_ = std::numeric_limits<double>::infinity();
     set_uniform_grid(std::max(step_, duration_ / max_stations));
-    solve(initial_timing(grid_, limits_, solver_), 4.0, {0.1, 0.02});
+    solve_from_scratch({0.1, 0.02});
     refine();
   }
 
@@ -81,8 +81,29 @@ class JerkLimitedTiming {
     set_grid(time_spaced_grid(*motion_.path, coarse_grid_, estimate_, step, min_blend_intervals));
   }
 
-  // Solves on the grid. The solution replaces that in `motion`. `gaps`: optimality gaps of the successive speed
-  // splines. `near_solution`: of the start.
+  Profile solve_from_scratch(std::initializer_list<double> gaps)
+  {
+    const InitialTiming start = initial_timing(grid_, limits_, solver_);
+    Profile profile = solve(start, 4.0, gaps);
+    if (auto lifted = lift_dips(grid_, profile, start.highest_speed)) {
+      const double before = motion_.duration();
+      Profile other = solve(initial_timing_from(grid_, std::move(*lifted)), 4.0, gaps);
+      if (motion_.duration() < before) {
+        return other;
+      }
+      replace_motion(profile);
+    }
+    return profile;
+  }
+
+  void replace_motion(const Profile & profile)
+  {
+    motion_.timing.resize(begin_);
+    motion_.append(grid_, profile, false);
+  }
+
+  // Solves on the grid. The solution replaces that in `motion`. `gaps`: optimality gaps of the successive
+  // speed splines. `near_solution`: of the start.
   Profile solve(InitialTiming start, double initial_gap, std::initializer_list<double> gaps,
                 bool near_solution = false)
   {
@@ -98,13 +119,12 @@ class JerkLimitedTiming {
       solver_.iterate(profile.v.empty() ? 40 : 20, gap);
       profile = spline.profile(grid_, solver_.coefficients());
     }
-    motion_.timing.resize(begin_);
-    motion_.append(grid_, profile, false);
+    replace_motion(profile);
     return profile;
   }
 
-  // Subdivides intervals and tightens limits where the solution exceeds the limits between stations, and solves
-  // again with higher accuracy. Returns the factor by which the motion still has to be slowed down.
+  // Subdivides intervals and tightens limits where the solution exceeds the limits between stations, and
+  // solves again with higher accuracy. Returns the factor by which the motion still has to be slowed down.
   double refine()
   {
     for (std::size_t round = 0;; ++round) {
@@ -152,11 +172,11 @@ class JerkLimitedTiming {
   const Limits & limits_;
   JerkSolver & solver_;
   Grid coarse_grid_;
-  Profile estimate_;                 // on the coarse grid, without jerk limits
-  double duration_ = 0.0;            // s, of the estimate
-  double step_ = 0.0;                // s, between stations where the jerk changes
-  double rough_step_ = 0.0;          // s, between the stations of the rough grid
-  bool has_long_pieces_ = false;     // compared with the step
+  Profile estimate_;              // on the coarse grid, without jerk limits
+  double duration_ = 0.0;         // s, of the estimate
+  double step_ = 0.0;             // s, between stations where the jerk changes
+  double rough_step_ = 0.0;       // s, between the stations of the rough grid
+  bool has_long_pieces_ = false;  // compared with the step
   double long_interval_ = std::numeric_limits<double>::infinity();  // s
   Grid grid_;
   LimitFractions fractions_;

@@ -11,8 +11,8 @@ inline constexpr double max_stations = 50000;  // of a segment
 Grid coarse_grid(const Path & path, std::size_t first, std::size_t last);
 
 /// Appends the time-optimal motion along pieces [first, last) of the path under velocity, acceleration and
-/// jerk limits, from rest to rest. The solution may exceed the limits slightly between its stations. `solver`:
-/// for the same limits; its memory is reused.
+/// jerk limits, from rest to rest. The solution may exceed the limits slightly between its stations.
+/// `solver`: for the same limits; its memory is reused.
 void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, const Limits & limits,
                          JerkSolver & solver);
 

@@ -86,7 +86,7 @@ Joints JerkSolver::closeness(const ConstraintBlock<joint_count> & block) const
   const double b = b_[block.station];
   double scale = 1.0;
   Joints constant = block.ka * a;
-  Joints slope = block.kb.max(-1e12);
+  Joints slope = block.kb;
   if (block.is_jerk()) {
     const double v = std::sqrt(a);
     constant = (block.ka * a + block.kb * b) * v;
@@ -101,7 +101,8 @@ Joints JerkSolver::closeness(const ConstraintBlock<joint_count> & block) const
   const double least = high.minCoeff();
   const double most = low.maxCoeff();
   const double span = std::max(least - most, 1e-3 * range.minCoeff());
-  return span * (high - most).min(least - low).max(0.1 * span).inverse();
+  const Joints result = span * (high - most).min(least - low).max(0.1 * span).inverse();
+  return result.isNaN().select(Joints::Ones(), result);  // at vanishing speed
 }
 
 template <int rows>
@@ -178,7 +179,8 @@ void JerkSolver::set_middle(ConstraintBlock<rows> & block) const
   const double slope = (spline_->speed(i + 1) - v) / spline_->duration(i);
   // Time at which the interval is half covered.
   const double time = width / (v + std::sqrt(std::max(v * v + 2.0 * slope * half, 0.0)));
-  const Joints d1 = 0.5 * (grid_->d1[i] + grid_->d1[i + 1]) + 0.125 * width * (grid_->d2[i] - grid_->d2[i + 1]);
+  const Joints d1 =
+      0.5 * (grid_->d1[i] + grid_->d1[i + 1]) + 0.125 * width * (grid_->d2[i] - grid_->d2[i + 1]);
   const Joints d2 =
       1.5 / width * (grid_->d1[i + 1] - grid_->d1[i]) - 0.25 * (grid_->d2[i] + grid_->d2[i + 1]);
   // b = b_i + c t and a = a_i + 2 b_i s + 2 c * (integral of t over s)

@@ -40,8 +40,8 @@ struct LimitFractions {
 ///   subject to  a <= a_max,  |q'' a + q' b| <= A,  |q''' a + 3 q'' b + q' c / v^| <= J / sqrt(a)
 ///
 /// J / sqrt(a) is convex. Its tangent at the current iterate is a lower bound, so every iterate keeps the
-/// true limits and is an executable timing. The cost of each step is linear in the number of stations. On a
-/// straight line, the rows of all joints are proportional, so a single row replaces them.
+/// true limits at the stations. The cost of each step is linear in the number of stations. On a straight
+/// line, the rows of all joints are proportional, so a single row replaces them.
 class JerkSolver {
  public:
   explicit JerkSolver(const Limits & limits);
@@ -51,7 +51,8 @@ class JerkSolver {
   /// acceleration limits in their middle, too. `near_solution`: the start is close to the solution, so the
   /// limits of joints that are far from binding are left out. The memory of the previous problem is reused.
   void set_problem(const Grid & grid, const LimitFractions & limit_fractions,
-                   double long_interval = std::numeric_limits<double>::infinity(), bool near_solution = false);
+                   double long_interval = std::numeric_limits<double>::infinity(),
+                   bool near_solution = false);
   /// Initializes with coefficients `w` of `spline`, scaled down until they keep the limits. `gap`: estimated
   /// distance from the optimum, as a fraction of the duration.
   void start(const SpeedSpline & spline, std::vector<double> w, double gap);
@@ -78,7 +79,8 @@ class JerkSolver {
   void add_blocks();
   void add_block(const ConstraintBlock<joint_count> & block);
   template <int rows>
-  void add_rows(const ConstraintBlock<joint_count> & block, const std::array<std::uint8_t, joint_count> & joints);
+  void add_rows(const ConstraintBlock<joint_count> & block,
+                const std::array<std::uint8_t, joint_count> & joints);
   Joints closeness(const ConstraintBlock<joint_count> & block) const;
   unsigned required_joints(const ConstraintBlock<joint_count> & block) const;
   template <int rows>

@@ -16,8 +16,8 @@ struct IntervalUtilization {
   double slowdown() const;
 };
 
-/// Utilization of the limits by the pieces of the timing law of `motion` from `begin` on, one for each interval
-/// of a segment.
+/// Utilization of the limits by the pieces of the timing law of `motion` from `begin` on, one for each
+/// interval of a segment.
 std::vector<IntervalUtilization> interval_utilization(const Motion & motion, std::size_t begin,
                                                       const Limits & limits);
 

@@ -10,8 +10,8 @@ struct ResampledMotion {
   Profile profile;
 };
 
-/// Places stations along the pieces of the timing law of `motion` from `begin` on, which belong to one segment
-/// of the path. `spacing`: time between two stations, for each of these pieces. A blend has at least
+/// Places stations along the pieces of the timing law of `motion` from `begin` on, which belong to one
+/// segment of the path. `spacing`: time between two stations, for each of these pieces. A blend has at least
 /// `min_blend_intervals` intervals.
 ResampledMotion resample(const Motion & motion, std::size_t begin, const std::vector<double> & spacing,
                          std::size_t min_blend_intervals);

@@ -58,9 +58,17 @@ double max_speed_ratio(const Motion & motion, const TimingLawPiece & piece, int 
   return largest;
 }
 
-int steps_of(const TimingLawPiece & piece, double step)
+// A piece that covers a large part of a blend needs more points, because the derivatives of the path change.
+int steps_of(const Motion & motion, const TimingLawPiece & piece, double step)
 {
-  return std::max(6, static_cast<int>(std::ceil(piece.duration / step)));
+  constexpr double points_per_blend = 200.0;
+  const PathPiece & curve = motion.path->pieces[piece.piece];
+  double steps = std::max(6.0, piece.duration / step);
+  if (curve.degree > 3) {
+    const double covered = (piece.at(piece.end()).u - piece.at(piece.start).u) / curve.length;
+    steps = std::max(steps, points_per_blend * std::min(covered, 1.0));
+  }
+  return static_cast<int>(std::ceil(steps));
 }
 
 std::optional<LimitViolation> limit_violation(Quantity quantity, const Joints & value, const Joints & limit,
@@ -119,8 +127,9 @@ PieceUtilization line_utilization(const Motion & motion, const TimingLawPiece & 
   }
   const PathPiece & line = motion.path->pieces[piece.piece];
   const Joints direction = line.c[1].abs() / line.length;
-  return {direction * peak.largest()[0] / limits.velocity, direction * peak.largest()[1] / limits.acceleration,
-          direction * peak.largest()[2] / limits.jerk, max_speed_ratio(motion, piece, inner)};
+  return {direction * peak.largest()[0] / limits.velocity,
+          direction * peak.largest()[1] / limits.acceleration, direction * peak.largest()[2] / limits.jerk,
+          max_speed_ratio(motion, piece, inner)};
 }
 
 }  // namespace
@@ -150,7 +159,7 @@ Utilization max_utilization(const Motion & motion, std::size_t begin, const Limi
   Utilization largest;
   for (std::size_t k = begin; k < motion.timing.size(); ++k) {
     const PieceUtilization use = piece_utilization(motion, motion.timing[k], limits,
-                                                   steps_of(motion.timing[k], verification_step) - 1);
+                                                   steps_of(motion, motion.timing[k], verification_step) - 1);
     largest.velocity = std::max({largest.velocity, use.velocity.maxCoeff(), use.speed});
     largest.acceleration = std::max(largest.acceleration, use.acceleration.maxCoeff());
     largest.jerk = std::max(largest.jerk, use.jerk.maxCoeff());
@@ -162,7 +171,7 @@ std::optional<LimitViolation> first_violation(const Motion & motion, const Limit
                                               Utilization & use)
 {
   for (const TimingLawPiece & piece : motion.timing) {
-    const int steps = steps_of(piece, step);
+    const int steps = steps_of(motion, piece, step);
     for (int k = 0; k <= steps; ++k) {
       const double time = piece.start + piece.duration * k / steps;
       const Point point = point_at(motion, piece, time);

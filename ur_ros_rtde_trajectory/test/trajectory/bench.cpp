@@ -11,8 +11,11 @@
 
 #include "checks.hpp"
 #include "random_paths.hpp"
+#include "ur_ros_rtde_trajectory/default_speeds.hpp"
 
 using namespace ur_ros_rtde::trajectory;
+using ur_ros_rtde::default_joint_acceleration;
+using ur_ros_rtde::default_joint_speed;
 
 namespace {
 
@@ -99,12 +102,18 @@ void random_paths(unsigned first, unsigned count, bool jerk)
       totals.ms_per_waypoint[totals.ms_per_waypoint.size() / 2], totals.ms_per_waypoint.back());
 }
 
-void planning_time(const char * what, const std::vector<Joints> & waypoints, const PathOptions & options)
+Limits same_limits(double velocity, double acceleration)
 {
   Limits limits;
-  limits.velocity.setConstant(3.14);
-  limits.acceleration.setConstant(default_acceleration);
+  limits.velocity.setConstant(velocity);
+  limits.acceleration.setConstant(acceleration);
   limits.jerk.setConstant(default_jerk);
+  return limits;
+}
+
+void planning_time(const char * what, const std::vector<Joints> & waypoints, const PathOptions & options,
+                   const Limits & limits = same_limits(3.14, default_acceleration))
+{
   double best = 1e9;
   double duration = 0.0;
   for (int round = 0; round < 5; ++round) {
@@ -155,10 +164,10 @@ std::vector<Joints> curve(int count)
   return points;
 }
 
-std::vector<Joints> jumps(int count)
+std::vector<Joints> jumps(int count, double size = 1.0)
 {
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> between(-1.0, 1.0);
+  std::uniform_real_distribution<double> between(-size, size);
   std::vector<Joints> points(static_cast<std::size_t>(count));
   for (Joints & q : points) {
     for (double & value : q) {
@@ -178,6 +187,11 @@ int main(int argc, char ** argv)
   planning_time("smooth curve, blended within 0.01 rad", curve(1000), {.blend_tolerance = 0.01});
   planning_time("jumps, a stop at every waypoint", jumps(1000), {});
   planning_time("jumps, blended within 0.05 rad", jumps(1000), {.blend_tolerance = 0.05});
+  const Limits slow = same_limits(default_joint_speed, default_joint_acceleration);
+  for (const int waypoints : {3, 10, 120}) {
+    planning_time("long jumps at default speed, blended within 0.05 rad", jumps(waypoints, 2.0),
+                  {.blend_tolerance = 0.05}, slow);
+  }
   stops();
   for (const bool jerk : {true, false}) {
     if (count == 0) {

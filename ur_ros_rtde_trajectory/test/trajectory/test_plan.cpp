@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "checks.hpp"
 #include "random_paths.hpp"
+#include "trajectory/motion.hpp"
 #include "ur_ros_rtde_trajectory/plan.hpp"
 
 namespace ur_ros_rtde::trajectory::test {
@@ -179,6 +182,80 @@ TEST(SampleTest, DerivativesMatchFiniteDifferences)
     EXPECT_LT(((after.position - before.position) / (2 * h) - here.velocity).abs().maxCoeff(), 1e-6);
     EXPECT_LT(((after.velocity - before.velocity) / (2 * h) - here.acceleration).abs().maxCoeff(), 1e-3);
   }
+}
+
+// Low accelerations and a high jerk limit: long phases in which the jerk is constant.
+Limits slow_limits()
+{
+  return same_limits(1.05, 1.4, 100.0);
+}
+
+std::vector<Joints> jumps(unsigned seed, std::size_t count)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> between(-2.0, 2.0);
+  std::vector<Joints> points(count);
+  for (Joints & point : points) {
+    for (double & value : point) {
+      value = between(random);
+    }
+  }
+  return points;
+}
+
+TEST(AdaptiveGridTest, KeepsAllLimitsOfSlowRandomPaths)
+{
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const RandomPath path = random_path(seed);
+    if (path.waypoints.size() > 40) {
+      continue;
+    }
+    const auto plan = plan_path(path.waypoints, slow_limits(), path.options);
+    ASSERT_TRUE(plan) << "seed " << seed << ": " << plan.error().message;
+    const Utilization use = finite_difference_utilization(*plan, slow_limits());
+    EXPECT_LE(use.velocity, 1.0) << "seed " << seed;
+    EXPECT_LE(use.acceleration, 1.0) << "seed " << seed;
+    EXPECT_LE(use.jerk, 1.0) << "seed " << seed;
+    EXPECT_LE(max_waypoint_deviation(*plan, path.waypoints), path.options.blend_tolerance + 1e-8)
+        << "seed " << seed;
+  }
+}
+
+TEST(AdaptiveGridTest, KeepsAllLimitsBetweenDistantStations)
+{
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const auto plan = plan_path(jumps(seed, 15), slow_limits(), {.blend_tolerance = 0.05});
+    ASSERT_TRUE(plan) << plan.error().message;
+    const auto use = plan->verify(slow_limits(), 1e-4);
+    ASSERT_TRUE(use) << "seed " << seed << ": " << use.error().message;
+    EXPECT_LE(std::max({use->velocity, use->acceleration, use->jerk}), 1.0) << "seed " << seed;
+  }
+}
+
+TEST(AdaptiveGridTest, NeedsFewStationsForLongMotions)
+{
+  const std::size_t waypoints = 40;
+  const auto plan = plan_path(jumps(7, waypoints), slow_limits(), {.blend_tolerance = 0.05});
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_LT(plan->motion().timing.size(), 130 * waypoints);  // at equal distances: 700 for each waypoint
+}
+
+// The durations are those with stations at equal distances of time, 4.2 ms.
+TEST(AdaptiveGridTest, TakesHardlyLongerThanWithStationsAtEqualDistances)
+{
+  const auto plan = plan_path(jumps(7, 120), slow_limits(), {.blend_tolerance = 0.05});
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_LT(plan->duration(), 1.005 * 347.470);
+}
+
+TEST(ShortLineTest, DoesNotSlowDownTheMotionBetweenTwoBlends)
+{
+  // A line of 0.25 mrad between two blends. Nothing requires a low speed there; a plan that nearly stops
+  // there takes 2.07 s.
+  const RandomPath path = random_path(141);
+  const auto plan = plan_path(path.waypoints, random_limits(141, true), path.options);
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_LT(plan->duration(), 1.75);
 }
 
 TEST(ManyWaypointsTest, PlansTheMaximumNumberOfWaypoints)
