@@ -2,10 +2,12 @@
 
 #include <chrono>
 #include <memory>
-#include <rcl_cxx/context.hpp>
-#include <rcl_cxx/node.hpp>
 #include <string>
 #include <vector>
+
+namespace rcl_cxx {
+class Node;
+}
 
 namespace ur_ros_rtde {
 
@@ -19,6 +21,9 @@ class Server {
   /// names of those that did not end.
   virtual std::vector<std::string> close() { return {}; }
 };
+
+/// In the order of their start. Destroyed in reverse order.
+using Servers = std::vector<std::unique_ptr<Server>>;
 
 /// Time for the goals to end at shutdown: a stop, including its fallbacks.
 constexpr std::chrono::milliseconds close_limit{5000};

@@ -8,6 +8,7 @@
 #include <memory>
 #include <rcl_cxx/error.hpp>
 #include <rcl_cxx/executor.hpp>
+#include <rcl_cxx/node.hpp>
 #include <string>
 #include <thread>
 #include <vector>
