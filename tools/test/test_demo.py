@@ -7,7 +7,8 @@ import subprocess
 import sys
 
 from ur_tools import packages
-from ur_tools.demo import PACKAGES
+from ur_tools.demo import packages as packages_of_demo
+from ur_tools.demo import parse
 from ur_tools.environment import program, workspace_environment
 from ur_tools.layout import ROOT, Layout
 
@@ -86,13 +87,14 @@ def test_another_simulator_on_the_address_is_not_used(tmp_path):
 
 
 def test_the_packages_that_the_demo_imports_are_built():
-    built = packages.with_dependencies(packages.discover(), PACKAGES)
+    built = packages.with_dependencies(packages.discover(), packages_of_demo(parse([])))
     used = set()
     for file in (ROOT / "demo").glob("*.py"):
         used.update(re.findall(r"^from (\w+)\.(?:action|msg|srv) import", file.read_text(), re.M))
     assert "ur_ros_rtde_tutorials" in used
     assert used & set(packages.discover()) <= set(built)
-    assert "ur_ros_rtde_gripper_commands" not in built
+    assert not {"ur_ros_rtde_gripper_commands", "ur_ros_rtde_commands", "ur_ros_rtde_cli"} & set(built)
+    assert "ur_ros_rtde_commands" in packages_of_demo(parse(["--keep-running"]))
 
 
 def test_options_out_of_range_are_rejected_with_their_limits():

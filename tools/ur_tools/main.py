@@ -95,7 +95,7 @@ def _python_command(name: str, options: argparse.Namespace) -> int:
     parsed = module.parse(arguments)
     if hasattr(module, "check"):
         module.check(parsed)
-    _build(options, packages=getattr(module, "PACKAGES", None))
+    _build(options, packages=module.packages(parsed) if hasattr(module, "packages") else None)
     env = {**os.environ, "UR_LAYOUT": f"{layout.ros}:{layout.variant}", "PYTHONPATH": str(ROOT / "tools"),
            "PYTHONDONTWRITEBYTECODE": "1"}
     os.execve(sys.executable, [sys.executable, "-m", f"ur_tools.{name}", *arguments], env)
