@@ -40,8 +40,8 @@ def measure(text: str) -> "Dict[str, float]":
 
 def commands(sources: pathlib.Path = SOURCES) -> List[Command]:
     found = []
-    for file in sorted(sources.glob("*/*.cpp")):
-        group = file.parent.name
+    for file in sorted(sources.glob("*/**/*.cpp")):
+        group = file.relative_to(sources).parts[0]
         target = DASHBOARD_TARGET if group == "dashboard" else COMMAND_TARGET
         found += [Command(name, lines, group, target) for name, lines in measure(file.read_text()).items()]
     return found
