@@ -25,7 +25,7 @@ def layout(monkeypatch):
 def output_with(variable, profiles):
     env = {name: value for name, value in os.environ.items() if name not in VARIABLES}
     result = subprocess.run([sys.executable, "-c", PARTICIPANT], env={**env, variable: str(profiles)}, capture_output=True,
-                            text=True, timeout=60)
+                            text=True, timeout=300)
     return result.stdout + result.stderr
 
 

@@ -39,7 +39,7 @@ def generate(folder, generator, output, fast):
     program = PREFIX / "lib" / generator / generator
     extra = ["--typesupports", "rosidl_typesupport_fastrtps_cpp"] if generator == "rosidl_typesupport_cpp" else []
     env = {**os.environ, "PYTHONPATH": str(FAST) if fast else ""}
-    result = subprocess.run([sys.executable, program, "--generator-arguments-file", file, *extra], env=env, timeout=120,
+    result = subprocess.run([sys.executable, program, "--generator-arguments-file", file, *extra], env=env, timeout=300,
                             capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
     return {str(path.relative_to(folder / output)): path.read_text() for path in (folder / output).rglob("*") if path.is_file()}

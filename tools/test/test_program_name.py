@@ -17,13 +17,13 @@ BACKGROUND = True
 def run_outside(*arguments, cwd=ROOT):
     """Runs ./ur in an environment without ROS."""
     env = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "AMENT_PREFIX_PATH", CHECKOUT_VARIABLE)}
-    return subprocess.run([sys.executable, str(ROOT / "ur"), *arguments], cwd=cwd, env=env, capture_output=True, text=True, timeout=60)
+    return subprocess.run([sys.executable, str(ROOT / "ur"), *arguments], cwd=cwd, env=env, capture_output=True, text=True, timeout=300)
 
 
 def run_inside(*arguments, cwd=ROOT):
     """Runs ur in the environment of ./ur shell."""
     return subprocess.run(["ur", *arguments], cwd=cwd, env=workspace_environment(Layout.of_environment()), capture_output=True,
-                          text=True, timeout=60)
+                          text=True, timeout=300)
 
 
 def commands_in(text):
@@ -70,5 +70,5 @@ def test_the_shell_keeps_its_build(monkeypatch):
     monkeypatch.setenv("UR_LAYOUT", "jazzy:debug")
     code = "from ur_tools import main; options = main._parse(['build']); print(main._layout(options))"
     env = {**os.environ, "PYTHONPATH": str(pathlib.Path(ROOT, "tools"))}
-    result = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=60)
+    result = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=300)
     assert result.stdout.strip() == str(Layout("jazzy", "debug")), result.stderr

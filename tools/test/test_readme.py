@@ -42,7 +42,7 @@ def test_every_command_of_ur_is_known(document):
     """Finds `./ur …` anywhere, and `ur …` at the beginning of a line or of code."""
     for command in set(re.findall(r"(?:\./ur |^ur |`ur )([a-z]+)\b", document.read_text(), re.M)):
         result = subprocess.run([sys.executable, str(ROOT / "ur"), command, "--help"], capture_output=True, text=True,
-                                timeout=60)
+                                timeout=300)
         assert result.returncode == 0, (command, result.stderr)
 
 
@@ -71,7 +71,7 @@ def test_the_goal_of_each_ur_call_matches_its_action():
     assert calls
     for _, call, *arguments in calls:
         result = subprocess.run([str(program(Layout.of_environment(), "ur_ros_rtde_cli", "ur")), call, *arguments, "--show"],
-                                capture_output=True, text=True, timeout=60)
+                                capture_output=True, text=True, timeout=300)
         assert result.returncode == 0, (arguments, result.stderr)
 
 

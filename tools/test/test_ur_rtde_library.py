@@ -30,7 +30,7 @@ int main()
 
 def run(*command):
     result = subprocess.run([str(part) for part in command], env=workspace_environment(LAYOUT), capture_output=True, text=True,
-                            timeout=120)
+                            timeout=300)
     return result.returncode, " ".join((result.stdout + result.stderr).split())
 
 

@@ -26,7 +26,7 @@ def configure(tmp_path):
     def run(archive="", url="file:///nowhere/ur_rtde-v1.6.5.tar.gz"):
         (tmp_path / "CMakeLists.txt").write_text(PROJECT.replace("URL", url))
         result = subprocess.run(["cmake", "-S", tmp_path, "-B", tmp_path / "build", f"-DUR_RTDE_ARCHIVE={archive}"],
-                                capture_output=True, text=True, timeout=120)
+                                capture_output=True, text=True, timeout=300)
         return result.returncode, " ".join((result.stdout + result.stderr).split())
 
     return run

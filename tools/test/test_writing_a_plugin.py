@@ -16,7 +16,7 @@ BLOCKS = re.findall(r"```bash\n(.*?)```", PAGE, re.S)
 BUILD_LIMIT = 480.0  # s, on two busy cores
 LOAD = 0.2  # cores, of everything but the builds
 # The builds get the processor time that other tests leave.
-LOW_PRIORITY = 'colcon() { nice -n 15 "$(type -P colcon)" "$@"; }\n'
+LOW_PRIORITY = 'colcon() { nice -n 5 "$(type -P colcon)" "$@"; }\n'
 READY = "until ur call get_robot_status --quiet > /dev/null 2>&1; do sleep 0.2; done\n"
 
 
