@@ -2,7 +2,7 @@
 
 #include <string>
 #include <ur_ros_rtde/check.hpp>
-#include <ur_ros_rtde_robot/program/script_extension.hpp>
+#include <ur_ros_rtde_robot/script/script_extension.hpp>
 #include <utility>
 
 namespace ur_ros_rtde_gripper_commands {

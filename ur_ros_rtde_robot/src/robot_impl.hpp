@@ -4,11 +4,11 @@
 #include <chrono>
 #include <functional>
 
+#include "connection/rtde/control_scripts.hpp"
 #include "connection/rtde/rtde_interfaces.hpp"
 #include "motion/motion_stopper.hpp"
 #include "motion/motion_tracker.hpp"
 #include "program/control_program_manager.hpp"
-#include "program/control_scripts.hpp"
 #include "program/execution/extension_runner.hpp"
 #include "program/execution/script_runner.hpp"
 #include "program/script_server.hpp"

@@ -8,6 +8,7 @@
 
 #include "support.hpp"
 #include "ur_ros_rtde_robot/connection/interfaces.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde::test {
 

@@ -13,6 +13,7 @@
 #include "ur_ros_rtde/outcome.hpp"
 #include "ur_ros_rtde/registers.hpp"
 #include "ur_ros_rtde_robot/connection/interfaces.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ur_ros_rtde_robot/connection/interfaces.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 #include "ur_ros_rtde_trajectory/limits.hpp"
 

@@ -2,6 +2,7 @@
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde_robot/connection/interfaces.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
 namespace {

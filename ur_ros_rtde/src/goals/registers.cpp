@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "ur_ros_rtde_robot/program/extension_registers.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_robot/script/extension_registers.hpp"
 
 namespace ur_ros_rtde {
 namespace {

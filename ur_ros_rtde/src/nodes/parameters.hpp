@@ -8,7 +8,7 @@
 #include "nodes/robot_state_receiver.hpp"
 #include "teleoperation/options.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
-#include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_robot/robot_options.hpp"
 
 namespace ur_ros_rtde {
 

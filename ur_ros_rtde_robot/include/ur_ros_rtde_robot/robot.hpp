@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,7 +15,9 @@
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_robot/program/extension_options.hpp"
 #include "ur_ros_rtde_robot/program/script.hpp"
-#include "ur_ros_rtde_robot/program/script_extension.hpp"
+#include "ur_ros_rtde_robot/robot_options.hpp"
+#include "ur_ros_rtde_robot/robot_status.hpp"
+#include "ur_ros_rtde_robot/script/script_extension.hpp"
 #include "ur_ros_rtde_robot/state/sample.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
@@ -29,58 +30,6 @@ class RTDEReceiveInterface;
 }  // namespace ur_rtde
 
 namespace ur_ros_rtde {
-
-enum class ControlMode {
-  upload,         ///< the driver sends ur_rtde's control script; requires remote control on e-Series
-  control_urcap,  ///< the External Control URCap fetches the script when its program is played on the robot
-};
-
-constexpr double min_watchdog_frequency = 1.0;  // Hz
-/// A CB3 controller sends a package, and receives a heartbeat, every 8 ms: two within 1/50 s.
-constexpr double max_watchdog_frequency = 50.0;  // Hz
-
-struct RobotOptions {
-  std::string address;
-  /// Hz, rate of the samples; see StateReceiverOptions.
-  double frequency = 0.0;
-  ControlMode control_mode = ControlMode::upload;
-  std::uint16_t urcap_port = 50002;
-  /// Use the general purpose registers 24-47 instead of 0-23, for example if a fieldbus uses the lower range.
-  /// The mass matrix and the Jacobians of PolyScope 5.23 and later need registers of both ranges and are not
-  /// available then.
-  bool upper_range_registers = false;
-  /// Model of the arm, see arm_limits(); empty: as reported by the controller. If it contradicts the
-  /// controller, motions are refused.
-  std::string model;
-  std::chrono::milliseconds connect_timeout{500};
-  std::chrono::milliseconds retry_interval{250};
-  std::chrono::milliseconds silence_limit{100};
-  /// Hz, min_watchdog_frequency to max_watchdog_frequency; 0: no watchdog. The robot program stops the arm if
-  /// it receives no heartbeat from this process for 1/watchdog_frequency s.
-  double watchdog_frequency = 10.0;
-  /// Restart the control program after it was stopped (with control_urcap: by a lost connection), as soon as
-  /// the robot is ready. An interrupted motion is never resumed.
-  bool restart_program = true;
-  /// SCHED_FIFO priority, 1 to 99, of the threads that answer each package with a target: the receiving
-  /// thread and the threads that send a sequence of targets. 0: none. Logs a warning if not permitted.
-  int realtime_priority = 0;
-};
-
-enum class RobotState {
-  disconnected,  ///< no controller at the address
-  connecting,    ///< controller found; interfaces and control program are being set up
-  ready,         ///< accepts motion commands, or runs a script in place of the control program
-  stopped,       ///< connected, but unable to move; see the cause
-};
-
-const char * to_string(RobotState state);
-
-struct RobotStatus {
-  RobotState state = RobotState::disconnected;
-  ErrorCode cause = ErrorCode::none;
-  /// The problem and its remedy; empty if ready.
-  std::string message;
-};
 
 /// One robot. Connects ur_rtde's four interfaces in the background, in any power-up order, and reconnects
 /// them after a reboot, a pulled cable or a stopped program. Provides the functions that commands share:

@@ -18,7 +18,8 @@
 #include "state/arm_model.hpp"
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
-#include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_robot/robot_options.hpp"
+#include "ur_ros_rtde_robot/robot_status.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
 namespace ur_ros_rtde {

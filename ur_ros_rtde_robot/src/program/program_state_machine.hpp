@@ -4,7 +4,8 @@
 #include <span>
 #include <string>
 
-#include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_robot/robot_options.hpp"
+#include "ur_ros_rtde_robot/state/sample.hpp"
 
 namespace ur_ros_rtde {
 

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "program/program_state_machine.hpp"
-#include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_robot/robot_options.hpp"
+#include "ur_ros_rtde_robot/robot_status.hpp"
 
 namespace ur_ros_rtde {
 

@@ -6,7 +6,7 @@
 
 #include "script/fault.hpp"
 #include "script/script_text.hpp"
-#include "ur_ros_rtde_robot/program/script_extension.hpp"
+#include "ur_ros_rtde_robot/script/script_extension.hpp"
 
 namespace ur_ros_rtde::script {
 

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <string_view>
 
-#include "ur_ros_rtde_robot/program/extension_registers.hpp"
+#include "ur_ros_rtde_robot/script/extension_registers.hpp"
 
 namespace ur_ros_rtde::script {
 namespace {

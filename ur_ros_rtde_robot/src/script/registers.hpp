@@ -3,7 +3,7 @@
 #include <string>
 
 #include "script/fault.hpp"
-#include "ur_ros_rtde_robot/program/script_extension.hpp"
+#include "ur_ros_rtde_robot/script/script_extension.hpp"
 
 namespace ur_ros_rtde::script {
 

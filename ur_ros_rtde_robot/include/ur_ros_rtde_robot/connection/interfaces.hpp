@@ -10,5 +10,3 @@
 #ifndef UR_RTDE_VENDOR_HEADERS
 #error "These are not the ur_rtde headers of ur_rtde_vendor. Remove find_package(ur_rtde) from this project."
 #endif
-
-#include "ur_ros_rtde_robot/robot.hpp"

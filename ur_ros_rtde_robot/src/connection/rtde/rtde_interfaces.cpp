@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "connection/ports.hpp"
+#include "connection/script_check.hpp"
 #include "connection/tcp_socket.hpp"
-#include "program/script_check.hpp"
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 

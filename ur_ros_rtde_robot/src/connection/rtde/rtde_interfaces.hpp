@@ -9,10 +9,16 @@
 #include <string_view>
 #include <utility>
 
-#include "program/control_scripts.hpp"
+#include "connection/rtde/control_scripts.hpp"
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
+#include "ur_ros_rtde_robot/connection/locked.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
-#include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_robot/robot_options.hpp"
+
+namespace ur_rtde {
+class RTDEControlInterface;
+class RTDEIOInterface;
+}  // namespace ur_rtde
 
 namespace ur_ros_rtde {
 
@@ -66,7 +72,7 @@ class RtdeInterfaces {
   /// The control program of the active connection has missed its heartbeat although no command delays it:
   /// another program runs in its place.
   bool control_heartbeat_lost() const;
-  /// Sends a sign of life to the control program's watchdog. Does not wait for a command under way.
+  /// Sends a heartbeat to the control program's watchdog. Does not wait for a command under way.
   void kick_watchdog();
 
  private:

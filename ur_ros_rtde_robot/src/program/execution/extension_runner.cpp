@@ -8,7 +8,7 @@
 #include "motion/motion_blocker.hpp"
 #include "state/wait_until.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
-#include "ur_ros_rtde_robot/program/extension_registers.hpp"
+#include "ur_ros_rtde_robot/script/extension_registers.hpp"
 
 namespace ur_ros_rtde {
 namespace {

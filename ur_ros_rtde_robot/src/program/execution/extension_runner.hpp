@@ -5,9 +5,9 @@
 #include <string>
 
 #include "connection/primary_connection.hpp"
+#include "connection/rtde/control_scripts.hpp"
 #include "connection/rtde/rtde_interfaces.hpp"
 #include "motion/motion_tracker.hpp"
-#include "program/control_scripts.hpp"
 #include "ur_ros_rtde_robot/program/extension_options.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 

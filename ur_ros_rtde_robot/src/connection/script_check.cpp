@@ -1,4 +1,4 @@
-#include "program/script_check.hpp"
+#include "connection/script_check.hpp"
 
 #include <utility>
 

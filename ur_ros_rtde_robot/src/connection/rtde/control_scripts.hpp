@@ -8,7 +8,7 @@
 
 #include "script/control_script.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
-#include "ur_ros_rtde_robot/program/script_extension.hpp"
+#include "ur_ros_rtde_robot/script/script_extension.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {

@@ -1,4 +1,4 @@
-#include "program/control_scripts.hpp"
+#include "connection/rtde/control_scripts.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
