@@ -35,7 +35,7 @@ enum class ProgramEvent : std::uint8_t {
   link_lost,          ///< the RTDE connection of the samples is lost
   control_link_lost,  ///< only the connection to the control program is lost
   sample,             ///< the newest sample shows ProgramObservation::program
-  heartbeat_lost,     ///< a program runs, but gives no sign of life of the control program
+  heartbeat_lost,     ///< a program runs, but without the heartbeat of the control program
   inspection,         ///< the manager examines the robot, in any condition
   robot_ready,        ///< nothing but the program on the robot prevents a start
   program_started,
