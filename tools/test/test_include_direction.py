@@ -1,0 +1,43 @@
+"""Include directives between the directories of a package point in one direction."""
+
+import pathlib
+import re
+
+import pytest
+from ur_tools.layout import ROOT
+
+BACKGROUND = True
+
+# From the top down: a directory may include headers of the directories after it. Headers in the package's own folder are free.
+DIRECTORIES = {
+    "ur_ros_rtde_robot": ("program", "motion", "state", "connection", "script"),
+}
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
+
+
+def directory(path, package):
+    """Returns the directory of a file in src or in include/<package>, or None for a file that is in no directory."""
+    parts = [part for part in pathlib.PurePath(path).parts if part not in ("src", "include", package)]
+    return parts[0] if len(parts) > 1 else None
+
+
+def upward_includes(package, order):
+    folder = ROOT / package
+    for file in sorted(path for root in ("src", "include") for path in (folder / root).rglob("*.[ch]pp")):
+        source = directory(file.relative_to(folder), package)
+        for header in INCLUDE.findall(file.read_text()):
+            target = directory(header, package)
+            if source in order and target in order and order.index(target) < order.index(source):
+                yield f"{file.relative_to(ROOT)} includes {header}"
+
+
+@pytest.mark.parametrize("package, order", DIRECTORIES.items())
+def test_directories_include_only_those_below_them(package, order):
+    assert not list(upward_includes(package, order))
+
+
+@pytest.mark.parametrize("package, order", DIRECTORIES.items())
+def test_each_directory_has_a_place(package, order):
+    folders = {path.name for root in (ROOT / package / "src", ROOT / package / "include" / package) for path in root.iterdir()
+               if path.is_dir()}
+    assert folders == set(order)
