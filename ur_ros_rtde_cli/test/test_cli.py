@@ -303,6 +303,13 @@ def test_record_reports_the_number_of_rows(running, tmp_path):
     assert code == 2 and str(file) in output, output
 
 
+def test_prints_a_urdf_without_nodes():
+    code, output = ur("urdf", "--model", "ur5e", "--tf-prefix", "left_", domain=EMPTY_DOMAIN)
+    assert code == 0 and output.startswith("<?xml") and 'name="left_tool0"' in output, output
+    code, output = ur("urdf", "--model", "ur5f", domain=EMPTY_DOMAIN)
+    assert code == 2 and output.startswith('model is "ur5f"'), output
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_help_of_every_command_works_without_ros(command):
     code = f"""

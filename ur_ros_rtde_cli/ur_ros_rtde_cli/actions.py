@@ -23,7 +23,7 @@ def load(name: str, kind: str) -> Any:
 
 
 def type_of_plugin(name: str) -> Optional[str]:
-    """Returns the action type that has the name of an installed plugin, for which no server is needed. None if there is none."""
+    """Returns the action type of an installed plugin, which is known without a server, or None."""
     package = next((package for plugin, package, _ in installed() if plugin == name), None)
     found = None if package is None else action_type(name, package)
     return None if found is None else "/action/".join(found)

@@ -15,7 +15,9 @@ from .interruptions import Interrupted
 COMMANDS = {"call": "send a goal, show its feedback and print its result",
             "state": "show the state of the robot, once or continuously",
             "plugins": "list the installed plugins with package and description",
-            "record": "record RTDE outputs of the robot to a CSV file"}
+            "record": "record RTDE outputs of the robot to a CSV file",
+            "urdf": "print the URDF of an arm"}
+WITHOUT_NODES = ("plugins", "urdf")  # commands that communicate with no node
 
 # Commands of the script `ur` in a checkout. They are not installed.
 CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "shell", "new", "format", "lint", "doctor", "clean")
@@ -24,7 +26,8 @@ CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "
 CHECKOUT_VARIABLE = "UR_CHECKOUT"
 
 DESCRIPTION = """\
-Calls actions of ur_ros_rtde, shows and records the state of the robot, and lists the plugins.
+Calls actions of ur_ros_rtde, shows and records the state of the robot, lists the plugins and prints
+URDFs.
 
 Exit code: 0 success, 1 failure, 2 goal refused or wrong arguments, 128 plus the signal number after a signal.
 """
@@ -49,7 +52,7 @@ def _parse_arguments(command: str, arguments: List[str]) -> argparse.Namespace:
     module = importlib.import_module(f"{__package__}.{command}")
     parser = argparse.ArgumentParser(prog=f"ur {command}", description=module.__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    if command != "plugins":
+    if command not in WITHOUT_NODES:
         parser.add_argument("--namespace", default="", metavar="NS", help="namespace of the nodes of the robot (default: none)")
     module.add_arguments(parser)
     parser.set_defaults(run=module.run)
@@ -85,7 +88,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         if command not in COMMANDS:
             raise _unknown_command(command)
         options = _parse_arguments(command, arguments[1:])
-        if command != "plugins":
+        if command not in WITHOUT_NODES:
             from . import fastdds_profile, lazy_imports  # imported here because --help does not need ROS
             lazy_imports.enable()
             fastdds_profile.use()

@@ -56,7 +56,7 @@ class _ActionConnection:
             action, goal = self._load_and_fill(kind)
         if self._options.show:
             return None, goal
-        # A client that is created while the announcements of the server still arrive would be discovered in parts.
+        # A client that is created while announcements of the server are still arriving would be discovered only in part.
         client = ActionClient(self._session.node, action, self.name)
         if not self._session.wait(client.server_is_ready, self._options.wait, GRAPH_POLL_PERIOD):
             raise CliError(f"the server of {self.name} does not respond")
