@@ -62,19 +62,13 @@ json reduced_mode(ControlPortContext & context, RequestFields & fields)
   return require_success(context.safety.set_reduced(on));
 }
 
-json violation(ControlPortContext & context, RequestFields & fields)
+/// Triggers a violation or a fault of the safety system.
+template <void (Safety::*trigger)(std::string_view reason)>
+json trigger_failure(ControlPortContext & context, RequestFields & fields)
 {
   const std::string reason = fields.string("reason", "caused through the control port");
   fields.reject_unknown();
-  context.safety.trigger_violation(reason);
-  return json::object();
-}
-
-json fault(ControlPortContext & context, RequestFields & fields)
-{
-  const std::string reason = fields.string("reason", "caused through the control port");
-  fields.reject_unknown();
-  context.safety.trigger_fault(reason);
+  (context.safety.*trigger)(reason);
   return json::object();
 }
 
@@ -191,8 +185,9 @@ constexpr std::array robot_command_table{
     Command{"safeguard", "open true|false (true)", "Opens the safeguard, or closes and resets it.",
             safeguard},
     Command{"reduced_mode", "on true|false (true)", "Switches reduced mode on or off.", reduced_mode},
-    Command{"violation", "reason", "Triggers a safety violation.", violation},
-    Command{"fault", "reason", "Triggers a safety fault.", fault},
+    Command{"violation", "reason", "Triggers a safety violation.",
+            trigger_failure<&Safety::trigger_violation>},
+    Command{"fault", "reason", "Triggers a safety fault.", trigger_failure<&Safety::trigger_fault>},
     Command{"restart_safety", "", "Restarts the safety system after a violation or fault.",
             call_pendant<&Pendant::restart_safety>},
     Command{"power", "to off|on|release_brakes|running",

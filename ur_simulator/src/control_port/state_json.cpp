@@ -5,6 +5,10 @@ namespace {
 
 using nlohmann::json;
 
+/// rad/s. The servo approaches its target exponentially: for 15 ms after a motion, the joints still move,
+/// more slowly than the sensors of a robot can resolve.
+constexpr double standstill_speed = 1e-3;
+
 template <typename Derived>
 json to_json_array(const Eigen::MatrixBase<Derived> & values)
 {
@@ -106,7 +110,7 @@ void add_motion(json & result, const ControlPortContext & context)
                  {"payload", payload_to_json(s.payload)},
                  {"speed_slider", s.speed_slider},
                  {"speed_scaling", s.speed_scaling},
-                 {"at_rest", context.arm.at_rest()},
+                 {"at_rest", context.arm.at_rest(standstill_speed)},
                  {"steady", s.steady},
                  {"freedrive", s.freedrive},
                  {"force_mode", context.arm.in_force_mode()},

@@ -24,6 +24,15 @@ Vector6 read_wrench(RequestFields & fields)
   return wrench;
 }
 
+/// Executes a function of the world that has no arguments.
+template <void (World::*function)()>
+json call_world(ControlPortContext & context, RequestFields & fields)
+{
+  fields.reject_unknown();
+  (context.world.*function)();
+  return json::object();
+}
+
 json push(ControlPortContext & context, RequestFields & fields)
 {
   Push push;
@@ -32,13 +41,6 @@ json push(ControlPortContext & context, RequestFields & fields)
   push.tool_frame = fields.choice("frame", frames, "base") == "tool";
   fields.reject_unknown();
   context.world.push(push);
-  return json::object();
-}
-
-json clear_pushes(ControlPortContext & context, RequestFields & fields)
-{
-  fields.reject_unknown();
-  context.world.clear_pushes();
   return json::object();
 }
 
@@ -65,13 +67,6 @@ json remove_surface(ControlPortContext & context, RequestFields & fields)
   if (!context.world.remove_surface(id)) {
     throw RequestError("field 'id' is " + std::to_string(id) + ": there is no such surface");
   }
-  return json::object();
-}
-
-json clear_surfaces(ControlPortContext & context, RequestFields & fields)
-{
-  fields.reject_unknown();
-  context.world.clear_surfaces();
   return json::object();
 }
 
@@ -148,13 +143,13 @@ json gripper(ControlPortContext & context, RequestFields & fields)
 constexpr std::array world_command_table{
     Command{"push", "force [3] N or wrench [6] N, N m; duration s (0.3); frame base|tool (base)",
             "Pushes at the TCP: a half sine with this peak.", push},
-    Command{"clear_pushes", "", "Ends all pushes.", clear_pushes},
+    Command{"clear_pushes", "", "Ends all pushes.", call_world<&World::clear_pushes>},
     Command{"place_surface",
             "z m, or point [3] m with normal [3] ([0, 0, 1]); stiffness N/m (20000); damping N s/m (50); "
             "friction (0)",
             "Adds an elastic half space and returns its id.", place_surface},
     Command{"remove_surface", "id", "Removes one surface.", remove_surface},
-    Command{"clear_surfaces", "", "Removes all surfaces.", clear_surfaces},
+    Command{"clear_surfaces", "", "Removes all surfaces.", call_world<&World::clear_surfaces>},
     Command{"attach_load", "mass kg; center_of_gravity [3] m in the flange frame ([0, 0, 0])",
             "Sets the actual load at the flange, independent of the payload setting.", attach_load},
     Command{"set_sensor_noise", "force N; torque N m (0)",

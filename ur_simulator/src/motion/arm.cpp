@@ -138,10 +138,10 @@ void Arm::stop_all(double deceleration)
   impl_->replace_with_stop(valid ? deceleration : fault_deceleration);
 }
 
-bool Arm::at_rest() const
+bool Arm::at_rest(double tolerance) const
 {
   return impl_->current_motion() == nullptr && impl_->setpoint.velocity.isZero(0.0) &&
-         impl_->servo_loop.velocity().isZero(1e-6);
+         impl_->servo_loop.velocity().isZero(tolerance);
 }
 
 void Arm::pause()

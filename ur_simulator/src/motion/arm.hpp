@@ -120,8 +120,9 @@ class Arm {
   /// Stops any motion at `deceleration` (rad/s^2 of the fastest joint) and discards it, as a protective stop
   /// does.
   void stop_all(double deceleration);
-  /// True if no motion is active and the target and actual joints stand still.
-  bool at_rest() const;
+  /// True if no motion is active, the target stands still, and the actual joints are not faster than
+  /// `tolerance` (rad/s).
+  bool at_rest(double tolerance = 1e-6) const;
 
   /// Ramps the speed scaling down to 0 and keeps the motion; resume() ramps it up again. speedj and speedl
   /// end.

@@ -40,8 +40,9 @@ void ProgramRunner::start(urscript::Program program)
 void ProgramRunner::start_secondary(std::unique_ptr<urscript::Machine> machine)
 {
   if (secondary_programs_.size() == max_secondary_programs) {
-    context_.log.error(program_source, fmt::format("{} secondary programs run already: '{}' was not started",
-                                                   max_secondary_programs, machine->program().name()));
+    context_.log.error(program_source,
+                       fmt::format("{} secondary programs are running already: '{}' was not started",
+                                   max_secondary_programs, machine->program().name()));
     return;
   }
   secondary_programs_.push_back(std::move(machine));

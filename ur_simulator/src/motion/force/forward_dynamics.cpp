@@ -54,13 +54,16 @@ Vector6 ForwardDynamics::next_velocity(const Setpoint & setpoint, const Vector6 
 Vector6 ForwardDynamics::constrained_velocity(const Vector6 & velocity, const ConstraintJacobian & jacobian,
                                               const ConstraintVelocity & target) const
 {
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-  using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-  const Columns response = effective_inertia_.ldlt().solve(jacobian.transpose());
-  Square mobility = jacobian * response;
+  // Fixed sizes compile and run faster: the rows of absent constraints are zero and have no effect.
+  const Eigen::Index count = jacobian.rows();
+  Matrix6 rows = Matrix6::Zero();
+  rows.topRows(count) = jacobian;
+  Vector6 error = rows * velocity;
+  error.head(count) -= target;
+  const Matrix6 response = effective_inertia_.ldlt().solve(Matrix6(rows.transpose()));
   // At a singularity some constraint cannot be met by any joint velocity; the regularization softens it.
-  mobility.diagonal().array() += 1e-6;
-  return velocity - response * mobility.ldlt().solve(jacobian * velocity - target);
+  const Matrix6 mobility = rows * response + 1e-6 * Matrix6::Identity();
+  return velocity - response * mobility.ldlt().solve(error);
 }
 
 }  // namespace ur_simulator

@@ -1,5 +1,3 @@
-#include "kinematics/inverse_kinematics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "common/pose.hpp"
 #include "kinematics/forward_kinematics.hpp"
+#include "kinematics/inverse_kinematics.hpp"
 #include "support/random_vectors.hpp"
 
 namespace ur_simulator {

@@ -1,6 +1,6 @@
-#include "urscript/script_reader.hpp"
-
 #include <gtest/gtest.h>
+
+#include "urscript/script_reader.hpp"
 
 namespace ur_simulator::urscript {
 namespace {

@@ -1,10 +1,9 @@
-#include "kinematics/forward_kinematics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "common/pose.hpp"
+#include "kinematics/forward_kinematics.hpp"
 #include "kinematics/inverse_kinematics.hpp"
 #include "support/random_vectors.hpp"
 

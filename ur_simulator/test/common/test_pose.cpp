@@ -1,10 +1,10 @@
-#include "common/pose.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "common/pose.hpp"
 
 namespace ur_simulator {
 namespace {

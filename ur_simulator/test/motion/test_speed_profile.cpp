@@ -1,11 +1,10 @@
-#include "motion/path/speed_profile.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "motion/path/path_clock.hpp"
+#include "motion/path/speed_profile.hpp"
 
 namespace ur_simulator {
 namespace {

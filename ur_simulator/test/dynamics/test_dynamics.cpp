@@ -1,5 +1,3 @@
-#include "dynamics/dynamics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -7,6 +5,7 @@
 #include <numbers>
 
 #include "common/pose.hpp"
+#include "dynamics/dynamics.hpp"
 #include "kinematics/forward_kinematics.hpp"
 #include "support/random_vectors.hpp"
 

@@ -1,80 +1,11 @@
-// Runs the control script of the installed ur_rtde against the simulated arm. The build defines the path of
-// the script.
+// Runs the control script of the installed ur_rtde against the simulated arm.
 #include <chrono>
-#include <fstream>
 #include <iostream>
-#include <sstream>
 
-#include "script_fixture.hpp"
+#include "control_script_fixture.hpp"
 
 namespace ur_simulator {
 namespace {
-
-using urscript::MachineStatus;
-
-// Prepares the script for PolyScope 5.25 as ur_rtde's ScriptClient does: selects the lines of that version
-// and inserts the register offset.
-std::string uploaded_script(const std::string & offset)
-{
-  std::ifstream file(UR_RTDE_CONTROL_SCRIPT);
-  std::stringstream result;
-  result << "def rtde_control():\n";
-  std::string line;
-  while (std::getline(file, line)) {
-    if (!line.empty() && line[0] == '$') {
-      const bool alternative = line.size() > 9 && line[5] == '|';
-      const std::size_t marker = alternative ? 10 : 5;
-      const int minor = std::stoi(line.substr(3, 2));
-      if (line[1] == '5' && minor > 25) {
-        continue;
-      }
-      line.replace(0, marker, std::string(marker, ' '));
-    }
-    result << line << "\n";
-    if (line.find("# float register offset") != std::string::npos ||
-        line.find("# int register offset") != std::string::npos) {
-      result << offset;
-    }
-  }
-  result << "end\n";
-  return result.str();
-}
-
-class ControlScriptTest : public ::testing::Test {
- protected:
-  void SetUp() override
-  {
-    fixture.run(uploaded_script("0"));
-    fixture.until([&] { return output(0) == 1; }, 0.1);
-  }
-
-  std::int32_t output(std::size_t i) const { return fixture.state.outputs.integers[i]; }
-
-  void parameters(const Vector6 & six, std::initializer_list<double> more = {})
-  {
-    for (std::size_t i = 0; i < 6; ++i) {
-      fixture.state.inputs.doubles[i] = six[static_cast<Eigen::Index>(i)];
-    }
-    std::copy(more.begin(), more.end(), fixture.state.inputs.doubles.begin() + 6);
-  }
-
-  /// Sends one command like ur_rtde: waits until the script reports `done`, then until it is ready again.
-  double command(std::int32_t id, double limit = 30.0)
-  {
-    fixture.state.inputs.integers[0] = id;
-    const double time = fixture.until([&] { return output(0) == 2; }, limit);
-    fixture.state.inputs.integers[0] = 0;
-    fixture.until([&] { return output(0) == 1; }, 0.1);
-    return time;
-  }
-
-  void expect_running()
-  {
-    EXPECT_EQ(fixture.machine->status(), MachineStatus::running) << fixture.machine->error().message;
-  }
-
-  ScriptFixture fixture;
-};
 
 TEST_F(ControlScriptTest, ReportsItsStateAndIdleProgress)
 {
@@ -221,7 +152,7 @@ TEST_F(ControlScriptTest, ProcessesTheCommandsOfNewerControllers)
   for (const std::int32_t id : {26, 27, 38, 58, 67, 68, 69, 70, 71}) {
     fixture.state.inputs.integers[0] = id;
     fixture.cycles(3);
-    EXPECT_EQ(fixture.machine->status(), MachineStatus::running)
+    EXPECT_EQ(fixture.machine->status(), urscript::MachineStatus::running)
         << id << ": " << fixture.machine->error().message;
     fixture.state.inputs.integers[0] = 0;
     fixture.cycles(2);
@@ -233,7 +164,7 @@ TEST_F(ControlScriptTest, EndsOnCommand)
 {
   fixture.state.inputs.integers[0] = 255;
   fixture.finish(0.1);
-  EXPECT_EQ(fixture.machine->status(), MachineStatus::finished);
+  EXPECT_EQ(fixture.machine->status(), urscript::MachineStatus::finished);
 }
 
 TEST_F(ControlScriptTest, ARejectedCommandEndsItWithAReason)
@@ -242,7 +173,7 @@ TEST_F(ControlScriptTest, ARejectedCommandEndsItWithAReason)
     fixture.state.inputs.integers[0] = command;
     fixture.cycles(10);
   }
-  EXPECT_EQ(fixture.machine->status(), MachineStatus::failed);
+  EXPECT_EQ(fixture.machine->status(), urscript::MachineStatus::failed);
   EXPECT_NE(fixture.machine->error().message.find("freedrive"), std::string::npos)
       << fixture.machine->error().message;
 }
@@ -263,6 +194,36 @@ TEST_F(ControlScriptTest, UsesFewInstructions)
   fixture.cycles(10);
   EXPECT_LT(fixture.machine->instructions(), 2500U);
   RecordProperty("instructions", static_cast<int>(fixture.machine->instructions()));
+}
+
+TEST_F(ControlScriptTest, StopsAtAContactThatIsDetectedDuringACommand)
+{
+  constexpr std::int32_t start_contact_detection = 62;
+  constexpr std::int32_t read_contact_detection = 64;
+  constexpr std::int32_t move_l = 3;
+  constexpr double distance = 0.02;
+  Surface table;
+  table.point = fixture.state.actual_tcp_pose.head<3>() - distance * Vector3::UnitZ();
+  fixture.world.place_surface(table);
+  const double contact_height = fixture.state.actual_tcp_pose[2] - distance;
+  parameters((Vector6() << 0.0, 0.0, -1.0, 0.0, 0.0, 0.0).finished());
+  command(start_contact_detection);
+  Vector6 target = fixture.state.target_tcp_pose;
+  target[2] -= 0.06;
+  parameters(target, {0.05, 0.5});
+  fixture.state.inputs.integers[1] = 1;
+  command(move_l);
+
+  // A late host clears its command only after the contact.
+  fixture.state.inputs.integers[0] = read_contact_detection;
+  const auto & messages = fixture.host.messages;
+  fixture.until([&] { return std::count(messages.begin(), messages.end(), "contact_thread finished") > 0; },
+                5.0);
+  fixture.cycles(2);
+  fixture.state.inputs.integers[0] = 0;
+  fixture.cycles(1500);
+  EXPECT_NEAR(fixture.state.target_tcp_pose[2], contact_height, 2e-3);
+  expect_running();
 }
 
 }  // namespace
