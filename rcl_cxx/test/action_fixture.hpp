@@ -11,11 +11,12 @@
 
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "rcl_cxx_test/action_client.hpp"
+#include "rcl_cxx_test/action_server.hpp"
 #include "rcl_cxx_test/client.hpp"
 #include "ros_fixture.hpp"
 
 using Fibonacci = test_msgs::action::Fibonacci;
-using Handle = rcl_cxx::ServerGoalHandle<Fibonacci>;
+using Handle = rcl_cxx::TypedGoalHandle<Fibonacci>;
 using rcl_cxx::CancelCode;
 using rcl_cxx::GoalStatus;
 
@@ -40,7 +41,7 @@ class Actions : public Spinning {
 
   void serve(const rcl_cxx::ActionServerOptions & options = {})
   {
-    rcl_cxx::ActionServerCallbacks<Fibonacci> handlers;
+    rcl_cxx::TypedCallbacks<Fibonacci> handlers;
     handlers.handle_goal = [this](const rcl_cxx::GoalUUID & id, const Fibonacci::Goal & goal) {
       return on_goal ? on_goal(id, goal) : rcl_cxx::GoalResponse{};
     };
@@ -62,7 +63,7 @@ class Actions : public Spinning {
       discarded.push_back(id);
     };
     handlers.fill_missing_result = on_missing_result;
-    server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers), options);
+    server = rcl_cxx::create_action_server<Fibonacci>(*node, "fibonacci", std::move(handlers), options);
     client = rcl_cxx::create_action_client<Fibonacci>(*node, "fibonacci");
     ASSERT_TRUE(client->wait_for_action_server(kLimit));
   }
@@ -122,6 +123,6 @@ class Actions : public Spinning {
   std::function<void(std::shared_ptr<Handle>)> on_accepted;
   std::function<bool(Handle &)> on_cancel;
   std::function<void(GoalStatus, Fibonacci::Result &)> on_missing_result;
-  std::shared_ptr<rcl_cxx::ActionServer<Fibonacci>> server;
+  rcl_cxx::ActionServer::SharedPtr server;
   std::shared_ptr<rcl_cxx::ActionClient<Fibonacci>> client;
 };

@@ -209,7 +209,7 @@ TEST_F(ClientLostTest, MayDestroyItsServerInTheHandler)
 {
   serve();
   auto other = std::make_unique<OtherProcess>();
-  rcl_cxx::ActionServerCallbacks<Fibonacci> handlers;
+  rcl_cxx::TypedCallbacks<Fibonacci> handlers;
   std::promise<void> called;
   handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) { handles.push_back(std::move(handle)); };
   handlers.on_client_lost = [&](Handle &) {
@@ -217,7 +217,7 @@ TEST_F(ClientLostTest, MayDestroyItsServerInTheHandler)
     called.set_value();
   };
   server.reset();
-  server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers));
+  server = rcl_cxx::create_action_server<Fibonacci>(*node, "fibonacci", std::move(handlers));
   ASSERT_TRUE(other->client->wait_for_action_server(kLimit));
   other->send_accepted_goal();
   other.reset();
@@ -226,14 +226,14 @@ TEST_F(ClientLostTest, MayDestroyItsServerInTheHandler)
 
 TEST_F(ClientLostTest, LeavesOtherGoalsToBeWatchedWhenTheHandlerThrows)
 {
-  rcl_cxx::ActionServerCallbacks<Fibonacci> handlers;
+  rcl_cxx::TypedCallbacks<Fibonacci> handlers;
   std::atomic<int> calls{0};
   handlers.handle_accepted = [this](std::shared_ptr<Handle> handle) { handles.push_back(std::move(handle)); };
   handlers.on_client_lost = [&](Handle &) {
     ++calls;
     throw std::runtime_error("is logged");
   };
-  server = node->create_action_server<Fibonacci>("fibonacci", std::move(handlers));
+  server = rcl_cxx::create_action_server<Fibonacci>(*node, "fibonacci", std::move(handlers));
   auto other = std::make_unique<OtherProcess>();
   other->send_accepted_goal();
   other->send_accepted_goal();

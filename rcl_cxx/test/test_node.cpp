@@ -7,6 +7,7 @@
 #include <mutex>
 #include <rcl_cxx/rcl_cxx.hpp>
 #include <rcl_cxx_test/action_client.hpp>
+#include <rcl_cxx_test/action_server.hpp>
 #include <rcl_cxx_test/client.hpp>
 #include <std_msgs/msg/string.hpp>
 #include <std_srvs/srv/set_bool.hpp>
@@ -19,7 +20,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Fibonacci = test_msgs::action::Fibonacci;
-using Handle = rcl_cxx::ServerGoalHandle<Fibonacci>;
+using Handle = rcl_cxx::TypedGoalHandle<Fibonacci>;
 using String = std_msgs::msg::String;
 
 // Orders with a special meaning instead of a number of elements.
@@ -43,7 +44,7 @@ class Counting {
   Counting(rcl_cxx::Node & node, const std::string & name, const rcl_cxx::ActionServerOptions & options = {})
       : logger_(node.get_logger())
   {
-    rcl_cxx::ActionServerCallbacks<Fibonacci> handlers;
+    rcl_cxx::TypedCallbacks<Fibonacci> handlers;
     handlers.handle_goal = [](const rcl_cxx::GoalUUID &, const Fibonacci::Goal & goal) {
       return check(goal);
     };
@@ -51,7 +52,7 @@ class Counting {
     handlers.handle_cancel = [](Handle & handle) { return grant_cancel(handle); };
     handlers.on_canceling = [this](Handle &) { wake_.notify_all(); };
     handlers.on_client_lost = [](Handle & handle) { handle.abort(); };
-    server_ = node.create_action_server<Fibonacci>(name, std::move(handlers), options);
+    server_ = rcl_cxx::create_action_server<Fibonacci>(node, name, std::move(handlers), options);
   }
 
   ~Counting()
@@ -162,7 +163,7 @@ class Counting {
   std::condition_variable wake_;
   bool stopping_ = false;
   std::vector<std::thread> threads_;
-  std::shared_ptr<rcl_cxx::ActionServer<Fibonacci>> server_;
+  rcl_cxx::ActionServer::SharedPtr server_;
 };
 
 /// Calls servers of rclpy: each message starts an action or service call in a thread, which publishes its

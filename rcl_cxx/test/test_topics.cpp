@@ -65,6 +65,22 @@ TEST_F(TopicTest, TransientLocalReachesLateSubscriber)
   EXPECT_EQ(future.get(), "from before");
 }
 
+TEST_F(TopicTest, MessagesCanBeTakenWithoutAnExecutor)
+{
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::transient_local(2));
+  publisher->publish(text("first"));
+  publisher->publish(text("second"));
+  rcl_cxx::Node without_executor(context, "other", "/test");
+  const auto subscription = without_executor.create_subscription<String>(
+      "topic", rcl_cxx::QoS::transient_local(2), [](const String &) { ADD_FAILURE() << "has no executor"; });
+  String message;
+  ASSERT_TRUE(eventually([&] { return subscription->take(message); }));
+  EXPECT_EQ(message.data, "first");
+  ASSERT_TRUE(eventually([&] { return subscription->take(message); }));
+  EXPECT_EQ(message.data, "second");
+  EXPECT_FALSE(subscription->take(message));
+}
+
 TEST_F(TopicTest, GivesMessagesThatCanBeKept)
 {
   std::mutex mutex;

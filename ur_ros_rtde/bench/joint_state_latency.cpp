@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <memory>
 #include <sensor_msgs/msg/joint_state.hpp>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,9 +23,10 @@ int main(int argc, char ** argv)
 {
   const int seconds = argc > 1 ? std::atoi(argv[1]) : 0;
   if (seconds < 1 || seconds > 600) {
-    std::fprintf(stderr, "usage: joint_state_latency SECONDS (1 to 600)\n");
+    std::fprintf(stderr, "usage: joint_state_latency SECONDS (1 to 600) [reliable] [--ros-args ...]\n");
     return 2;
   }
+  const bool reliable = argc > 2 && std::string_view(argv[2]) == "reliable";
   auto context = std::make_shared<rcl_cxx::Context>(argc, argv);
   rcl_cxx::Node node(context, "joint_state_latency");
   rcl_cxx::Executor executor(context);
@@ -32,7 +34,8 @@ int main(int argc, char ** argv)
   std::vector<std::pair<std::int64_t, std::int64_t>> received;
   received.reserve(static_cast<std::size_t>(seconds) * 600);
   const auto subscription = node.create_subscription<sensor_msgs::msg::JointState>(
-      "joint_states", rcl_cxx::QoS::sensor_data(), [&](const sensor_msgs::msg::JointState & message) {
+      "joint_states", reliable ? rcl_cxx::QoS::reliable(10) : rcl_cxx::QoS::sensor_data(),
+      [&](const sensor_msgs::msg::JointState & message) {
         const auto & stamp = message.header.stamp;
         received.emplace_back(std::int64_t{stamp.sec} * 1'000'000'000 + stamp.nanosec,
                               nanoseconds(std::chrono::system_clock::now()));

@@ -23,16 +23,16 @@ class GoalServerTest : public testing::Test {
 };
 
 /// An action whose result cannot be filled in.
-class FaultyServer : public GoalServer<Trigger> {
+class FaultyServer : public GoalServer {
  public:
   FaultyServer(rcl_cxx::Node & node, PluginHost & host) : active_goals_(host, "/faulty")
   {
-    start_server(node, "faulty", active_goals_, false);
+    start_server(node, rcl_cxx::action_type<Trigger>(), "faulty", active_goals_, false);
   }
   ~FaultyServer() override { stop_server(); }
 
  private:
-  rcl_cxx::GoalDecision accept_goal(const GoalUUID & id, const Trigger::Goal &) override
+  rcl_cxx::GoalDecision accept_goal(const GoalUUID & id, const void *) override
   {
     return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
@@ -43,11 +43,15 @@ class FaultyServer : public GoalServer<Trigger> {
   void abort_unstarted(Handle & handle, const Outcome & outcome) override
   {
     Trigger::Result result;
-    finish(handle, result, outcome);
+    finish(handle, &result, outcome);
   }
-  void fill_result(const Outcome &, Trigger::Result &) const override
+  void write_outcome(const Outcome &, void *) const override
   {
     throw std::runtime_error("a fault in fill_result");
+  }
+  void write_failure(const Outcome & outcome, void * result) const override
+  {
+    write_standard_fields(outcome, *static_cast<Trigger::Result *>(result));
   }
 
   ActiveGoals active_goals_;

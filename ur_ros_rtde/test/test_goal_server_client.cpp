@@ -37,12 +37,12 @@ struct SpinningNode {
 };
 
 /// Goals that go on until they have to end.
-class EndlessCommand : public GoalServer<Trigger> {
+class EndlessCommand : public GoalServer {
  public:
   EndlessCommand(rcl_cxx::Node & node, bool stop_when_client_lost)
       : host_(node), active_goals_(host_, "/endless")
   {
-    start_server(node, "endless", active_goals_, stop_when_client_lost);
+    start_server(node, rcl_cxx::action_type<Trigger>(), "endless", active_goals_, stop_when_client_lost);
   }
   ~EndlessCommand() override
   {
@@ -54,7 +54,7 @@ class EndlessCommand : public GoalServer<Trigger> {
   std::promise<ErrorCode> ended;
 
  private:
-  rcl_cxx::GoalDecision accept_goal(const rcl_cxx::GoalUUID & id, const Trigger::Goal &) override
+  rcl_cxx::GoalDecision accept_goal(const rcl_cxx::GoalUUID & id, const void *) override
   {
     return active_goals_.accept(id, [](GoalContext &) { return Status(); });
   }
@@ -67,13 +67,22 @@ class EndlessCommand : public GoalServer<Trigger> {
     }
     const auto why = context.stop_request->reason();
     Trigger::Result result;
-    finish(handle, result, why ? Outcome(*why) : Outcome::success());
+    finish(handle, &result, why ? Outcome(*why) : Outcome::success());
     ended.set_value(static_cast<ErrorCode>(result.error_code));
   }
   void abort_unstarted(Handle & handle, const Outcome & outcome) override
   {
     Trigger::Result result;
-    finish(handle, result, outcome);
+    finish(handle, &result, outcome);
+  }
+
+  void write_outcome(const Outcome & outcome, void * result) const override
+  {
+    write_standard_fields(outcome, *static_cast<Trigger::Result *>(result));
+  }
+  void write_failure(const Outcome & outcome, void * result) const override
+  {
+    write_outcome(outcome, result);
   }
 
   PluginHost host_;

@@ -83,12 +83,14 @@ class Node {
   }
 
   template <typename A>
-  std::shared_ptr<ActionServer<A>> create_action_server(const std::string & action,
-                                                        ActionServerCallbacks<A> callbacks,
-                                                        const ActionServerOptions & options = {})
+  ActionServer::SharedPtr create_action_server(const std::string & action, ActionServerCallbacks callbacks,
+                                               const ActionServerOptions & options = {})
   {
-    return std::make_shared<ActionServer<A>>(impl_, action, std::move(callbacks), options);
+    return create_action_server(action_type<A>(), action, std::move(callbacks), options);
   }
+  ActionServer::SharedPtr create_action_server(const ActionType & type, const std::string & action,
+                                               ActionServerCallbacks callbacks,
+                                               const ActionServerOptions & options = {});
 
   /// Declares a parameter and returns its value: that of the command line or parameter file, else the
   /// default. An integer override of a floating-point parameter is converted.

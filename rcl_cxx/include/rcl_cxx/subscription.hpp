@@ -33,6 +33,9 @@ class SubscriptionBase {
 
   const std::string & get_topic_name() const noexcept;
 
+ protected:
+  bool take(void * message);
+
  private:
   std::shared_ptr<detail::SubscriptionImpl> impl_;
 };
@@ -54,6 +57,10 @@ class Subscription : public SubscriptionBase {
                          topic, qos)
   {
   }
+
+  /// Takes the oldest message for which the callback has not been called, and does not call it. Works before
+  /// the node has an executor. Returns false if there is no message. @throws Error
+  bool take(M & message) { return SubscriptionBase::take(&message); }
 
  private:
   template <typename F>

@@ -37,7 +37,7 @@ void ActionServerImpl::check_clients()
     return;
   }
   for (const auto & goal : goals) {
-    std::shared_ptr<ServerGoalHandleBase> handle;
+    std::shared_ptr<ServerGoalHandle> handle;
     {
       const std::lock_guard lock(mutex_);
       if (!goal->client || !goal->client->is_lost(*known, ClientWatch::Clock::now())) {
@@ -49,7 +49,7 @@ void ActionServerImpl::check_clients()
     if (handle && handle->is_active()) {
       RCL_CXX_WARN(node()->get_logger(), "{}: goal {}: its client has disappeared", name_,
                    goal->id().short_string());
-      call("on_client_lost", goal->id(), [&] { erased_.on_client_lost(*handle); });
+      call("on_client_lost", goal->id(), [&] { callbacks_.on_client_lost(*handle); });
     }
   }
 }

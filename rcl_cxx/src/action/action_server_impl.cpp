@@ -10,6 +10,7 @@
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_compat.hpp"
 #include "rcl_support/rcl_error.hpp"
+#include "rcl_support/type_support.hpp"
 
 namespace rcl_cxx {
 namespace detail {
@@ -29,13 +30,16 @@ constexpr std::chrono::milliseconds kExpiryRetry{20};
 constexpr std::chrono::milliseconds kClientCheckPeriod{50};
 }  // namespace
 
-ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const std::string & name,
-                                   ErasedActionServer erased, const ActionServerOptions & options)
+ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const ActionType & type,
+                                   const std::string & name, ActionServerCallbacks callbacks,
+                                   const ActionServerOptions & options)
     : Waitable(std::move(node), fmt::format("action server {}", name)),
-      erased_(std::move(erased)),
+      type_(type),
+      type_support_(middleware_type_support(*type.type_support())),
+      callbacks_(std::move(callbacks)),
       sender_(std::make_shared<ResponseSender>(this->node()))
 {
-  if (!erased_.handle_accepted) {
+  if (!callbacks_.handle_accepted) {
     throw Error(fmt::format("{}: the callback handle_accepted is missing", label()));
   }
   rcl_action_server_options_t rcl_options = rcl_action_server_get_default_options();
@@ -46,18 +50,19 @@ ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const std::st
   result_timeout_ = std::chrono::nanoseconds(rcl_options.result_timeout.nanoseconds);
   NodeImpl & owner = *this->node();
   name_ = owner.resolve(name, false);
-  const std::lock_guard lock(owner.mutex());
+  const auto lock = owner.lock_to_create(label());
   check_rcl(compat::timer_init_canceled(&rcl_timer_, owner.get_clock().handle(), owner.get_context().handle(),
                                         kCenturyNs),
             label(), "cannot create a timer");
   const rcl_ret_t code =
       compat::action_server_init(&server_, owner.handle(), &rcl_timer_, owner.get_clock().handle(),
-                                 erased_.type_support, name.c_str(), &rcl_options);
+                                 &type_support_, name.c_str(), &rcl_options);
   if (code != RCL_RET_OK) {
     const std::string reason = take_rcl_error();
     ignore_rcl(rcl_timer_fini(&rcl_timer_));
     throw Error(fmt::format("{}: cannot be created (rcl error {}: {})", label(), code, reason), code);
   }
+  reset_type_support_error();
 }
 
 ActionServerImpl::~ActionServerImpl()
@@ -80,7 +85,7 @@ void ActionServerImpl::set_on_ready_callbacks()
     return timer;
   };
   expiry_timer_ = make_timer(std::chrono::hours(1), &ActionServerImpl::expire_goals);
-  if (erased_.on_client_lost) {
+  if (callbacks_.on_client_lost) {
     client_timer_ = make_timer(kClientCheckPeriod, &ActionServerImpl::check_clients);
   }
   shutdown_callback_ = node()->get_context().add_callback(ContextImpl::Phase::action_servers, [weak] {
@@ -140,9 +145,11 @@ ActionServerImpl::Goals ActionServerImpl::get_active_goals() const
 
 std::shared_ptr<void> ActionServerImpl::make_missing_result(const GoalUUID & id, GoalStatus status) const
 {
-  std::shared_ptr<void> response = erased_.make_result_response(status);
-  if (erased_.fill_missing_result) {
-    call("fill_missing_result", id, [&] { erased_.fill_missing_result(status, response.get()); });
+  std::shared_ptr<void> response = make_message(type_.result_response);
+  type_.set_status(response.get(), status);
+  if (callbacks_.fill_missing_result) {
+    call("fill_missing_result", id,
+         [&] { callbacks_.fill_missing_result(status, type_.get_result(response.get())); });
   }
   return response;
 }
@@ -350,13 +357,15 @@ void ActionServerImpl::schedule_expiry_locked()
 }
 }  // namespace detail
 
-ActionServerBase::ActionServerBase(std::shared_ptr<detail::NodeImpl> node, const std::string & action,
-                                   detail::ErasedActionServer erased, const ActionServerOptions & options)
-    : impl_(detail::make_waitable<detail::ActionServerImpl>(std::move(node), action, std::move(erased),
-                                                            options))
+ActionServer::ActionServer(std::shared_ptr<detail::NodeImpl> node, const ActionType & type,
+                           const std::string & action, ActionServerCallbacks callbacks,
+                           const ActionServerOptions & options)
+    : impl_(detail::make_waitable<detail::ActionServerImpl>(std::move(node), type, action,
+                                                            std::move(callbacks), options))
 {
 }
-ActionServerBase::~ActionServerBase()
+
+ActionServer::~ActionServer()
 {
   impl_->retire();
 }

@@ -24,8 +24,8 @@ class TimerImpl;
 /// it.
 class ActionServerImpl : public Waitable {
  public:
-  ActionServerImpl(std::shared_ptr<NodeImpl> node, const std::string & name, ErasedActionServer erased,
-                   const ActionServerOptions & options);
+  ActionServerImpl(std::shared_ptr<NodeImpl> node, const ActionType & type, const std::string & name,
+                   ActionServerCallbacks callbacks, const ActionServerOptions & options);
   ~ActionServerImpl() override;
 
   const std::string & get_action_name() const noexcept { return name_; }
@@ -73,10 +73,10 @@ class ActionServerImpl : public Waitable {
   GoalDecision handle_goal(const GoalUUID & id, const void * request) noexcept;
   void send_decision(const GoalUUID & id, const GoalRequest & request, const GoalResponse & response);
   void reject(const GoalUUID & id, const rmw_request_id_t & request_id, const std::string & reason);
-  tl::expected<std::shared_ptr<ServerGoalHandleBase>, std::string> accept(
-      const GoalUUID & id, const std::shared_ptr<void> & request);
-  void send_acceptance(const rmw_request_id_t & request, std::shared_ptr<ServerGoalHandleBase> handle);
-  void run_accepted(const std::shared_ptr<ServerGoalHandleBase> & handle) noexcept;
+  tl::expected<std::shared_ptr<ServerGoalHandle>, std::string> accept(const GoalUUID & id,
+                                                                      const std::shared_ptr<void> & request);
+  void send_acceptance(const rmw_request_id_t & request, std::shared_ptr<ServerGoalHandle> handle);
+  void run_accepted(const std::shared_ptr<ServerGoalHandle> & handle) noexcept;
   void discard(const GoalUUID & id) noexcept;
   void take_cancel();
   void process_cancel(const action_msgs::srv::CancelGoal::Request & request,
@@ -114,7 +114,9 @@ class ActionServerImpl : public Waitable {
   void watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request);
   void check_clients();
 
-  const ErasedActionServer erased_;
+  const ActionType & type_;
+  const rosidl_action_type_support_t type_support_;  ///< of the middleware
+  const ActionServerCallbacks callbacks_;
   const std::shared_ptr<ResponseSender> sender_;
   std::string name_;
   std::chrono::nanoseconds result_timeout_{0};

@@ -64,14 +64,14 @@ void ActionServerImpl::respond(ResponseFunction send, const rmw_request_id_t & r
 
 void ActionServerImpl::take_goal()
 {
-  const std::shared_ptr<void> request = erased_.make_goal_request();
+  const std::shared_ptr<void> request = make_message(type_.goal_request);
   rmw_request_id_t request_id;
   const rcl_ret_t code = rcl_action_take_goal_request(&server_, &request_id, request.get());
   if (nothing_to_take(code)) {
     return;
   }
   check_rcl(code, name_, "cannot take a goal");
-  const GoalUUID id = erased_.goal_id_of_goal_request(request.get());
+  const GoalUUID id = type_.get_goal_id(request.get());
   // rcl_action checks this only after handle_goal.
   if (is_known(id)) {
     return reject(id, request_id, "a goal with this id exists already");
@@ -94,7 +94,7 @@ void ActionServerImpl::reject(const GoalUUID & id, const rmw_request_id_t & requ
                               const std::string & reason)
 {
   RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
-  respond(&rcl_action_send_goal_response, request_id, erased_.make_goal_response(false, 0, 0));
+  respond(&rcl_action_send_goal_response, request_id, make_message(type_.goal_response));
 }
 
 void ActionServerImpl::send_decision(const GoalUUID & id, const GoalRequest & request,
@@ -113,17 +113,16 @@ void ActionServerImpl::send_decision(const GoalUUID & id, const GoalRequest & re
 
 void ActionServerImpl::discard(const GoalUUID & id) noexcept
 {
-  if (erased_.on_goal_discarded) {
-    call("on_goal_discarded", id, [&] { erased_.on_goal_discarded(id); });
+  if (callbacks_.on_goal_discarded) {
+    call("on_goal_discarded", id, [&] { callbacks_.on_goal_discarded(id); });
   }
 }
 
 void ActionServerImpl::send_acceptance(const rmw_request_id_t & request,
-                                       std::shared_ptr<ServerGoalHandleBase> handle)
+                                       std::shared_ptr<ServerGoalHandle> handle)
 {
-  const std::int64_t stamp = handle->get_goal_stamp();
-  auto response = erased_.make_goal_response(true, static_cast<std::int32_t>(stamp / kNsPerSecond),
-                                             static_cast<std::uint32_t>(stamp % kNsPerSecond));
+  auto response = make_message(type_.goal_response);
+  type_.set_goal_response(response.get(), true, handle->get_goal_stamp());
   respond(&rcl_action_send_goal_response, request, std::move(response), {},
           [this, request, handle](bool delivered) {
             const auto goal = find(handle->get_goal_id());
@@ -146,7 +145,7 @@ void ActionServerImpl::send_acceptance(const rmw_request_id_t & request,
 GoalDecision ActionServerImpl::handle_goal(const GoalUUID & id, const void * request) noexcept
 {
   try {
-    return erased_.handle_goal ? erased_.handle_goal(id, request) : GoalResponse{};
+    return callbacks_.handle_goal ? callbacks_.handle_goal(id, type_.get_goal(request)) : GoalResponse{};
   } catch (const std::exception & error) {
     return GoalResponse{tl::unexpect, error.what()};
   } catch (...) {
@@ -154,7 +153,7 @@ GoalDecision ActionServerImpl::handle_goal(const GoalUUID & id, const void * req
   }
 }
 
-tl::expected<std::shared_ptr<ServerGoalHandleBase>, std::string> ActionServerImpl::accept(
+tl::expected<std::shared_ptr<ServerGoalHandle>, std::string> ActionServerImpl::accept(
     const GoalUUID & id, const std::shared_ptr<void> & request)
 {
   const std::lock_guard lock(mutex_);
@@ -171,16 +170,16 @@ tl::expected<std::shared_ptr<ServerGoalHandleBase>, std::string> ActionServerImp
   const auto goal = std::make_shared<ServerGoalImpl>(self, id, *rcl_handle);
   goals_.emplace(id, goal);
   goal->update(GOAL_EVENT_EXECUTE);
-  std::shared_ptr<ServerGoalHandleBase> handle = erased_.make_handle(goal, request);
+  auto handle = std::make_shared<ServerGoalHandle>(goal, type_, request);
   goal->handle = handle;
   return handle;
 }
 
-void ActionServerImpl::run_accepted(const std::shared_ptr<ServerGoalHandleBase> & handle) noexcept
+void ActionServerImpl::run_accepted(const std::shared_ptr<ServerGoalHandle> & handle) noexcept
 {
   bool returned = false;
   call("handle_accepted", handle->get_goal_id(), [&] {
-    erased_.handle_accepted(handle);
+    callbacks_.handle_accepted(handle);
     returned = true;
   });
   if (!returned) {
@@ -247,7 +246,7 @@ void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Reques
 
 bool ActionServerImpl::try_to_cancel(ServerGoalImpl & goal)
 {
-  std::shared_ptr<ServerGoalHandleBase> handle;
+  std::shared_ptr<ServerGoalHandle> handle;
   {
     const std::lock_guard lock(mutex_);
     handle = goal.handle.lock();
@@ -257,8 +256,8 @@ bool ActionServerImpl::try_to_cancel(ServerGoalImpl & goal)
     goal.in_handle_cancel = true;
   }
   bool accepted = false;
-  if (erased_.handle_cancel) {
-    call("handle_cancel", goal.id(), [&] { accepted = erased_.handle_cancel(*handle); });
+  if (callbacks_.handle_cancel) {
+    call("handle_cancel", goal.id(), [&] { accepted = callbacks_.handle_cancel(*handle); });
   }
   {
     const std::lock_guard lock(mutex_);
@@ -270,22 +269,22 @@ bool ActionServerImpl::try_to_cancel(ServerGoalImpl & goal)
       return false;
     }
   }
-  if (erased_.on_canceling) {
-    call("on_canceling", goal.id(), [&] { erased_.on_canceling(*handle); });
+  if (callbacks_.on_canceling) {
+    call("on_canceling", goal.id(), [&] { callbacks_.on_canceling(*handle); });
   }
   return true;
 }
 
 bool ActionServerImpl::take_result()
 {
-  const std::shared_ptr<void> request = erased_.make_result_request();
+  const std::shared_ptr<void> request = make_message(type_.result_request);
   rmw_request_id_t request_id;
   const rcl_ret_t code = rcl_action_take_result_request(&server_, &request_id, request.get());
   if (nothing_to_take(code)) {
     return false;
   }
   check_rcl(code, name_, "cannot take a result request");
-  const GoalUUID id = erased_.goal_id_of_result_request(request.get());
+  const GoalUUID id = type_.get_goal_id_of_result_request(request.get());
   const auto goal = find(id);
   if (!goal) {
     respond(&rcl_action_send_result_response, request_id, make_missing_result(id, GoalStatus::unknown));

@@ -43,7 +43,7 @@ class ServerGoalImpl {
   /// The server is gone: the goal is no longer active.
   void orphan() noexcept { status_ = GoalStatus::aborted; }
 
-  std::weak_ptr<ServerGoalHandleBase> handle;
+  std::weak_ptr<ServerGoalHandle> handle;
   bool in_handle_cancel = false;
   std::shared_ptr<void> result_response;          // set with a terminal status, constant from then on
   std::vector<rmw_request_id_t> result_requests;  // waiting for the result

@@ -130,7 +130,10 @@ bool ContextImpl::shutdown(const std::string & reason)
   run_callbacks(Phase::pre_shutdown);
   run_callbacks(Phase::action_servers);
   run_callbacks(Phase::rosout);
-  const rcl_ret_t code = rcl_shutdown(&context_);
+  const rcl_ret_t code = [this] {
+    const std::lock_guard no_creation(creation_mutex_);
+    return rcl_shutdown(&context_);
+  }();
   if (code != RCL_RET_OK) {
     RCL_CXX_ERROR(context_logger(), "shutdown: {}", take_rcl_error());
   }

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,6 +46,8 @@ class ContextImpl : public std::enable_shared_from_this<ContextImpl> {
   void remove_callback(std::size_t id);
 
   rcl_context_t * handle() noexcept { return &context_; }
+  /// To hold while an entity is created: rcl is not shut down meanwhile.
+  std::shared_mutex & creation_mutex() noexcept { return creation_mutex_; }
   const std::vector<std::string> & non_ros_arguments() const noexcept { return non_ros_arguments_; }
 
  private:
@@ -63,6 +66,7 @@ class ContextImpl : public std::enable_shared_from_this<ContextImpl> {
   const std::chrono::milliseconds signal_grace_;
 
   std::atomic<State> state_{State::running};
+  std::shared_mutex creation_mutex_;
   mutable std::mutex mutex_;  // guards what follows
   mutable std::condition_variable state_changed_;
   std::string reason_;

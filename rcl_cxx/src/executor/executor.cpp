@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "context/context_impl.hpp"
-#include "executor/event_queue.hpp"
+#include "events/event_queue.hpp"
 #include "executor/waitable.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_cxx/error.hpp"

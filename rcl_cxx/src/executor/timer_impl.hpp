@@ -5,7 +5,7 @@
 #include <memory>
 #include <mutex>
 
-#include "executor/event_queue.hpp"
+#include "events/event_queue.hpp"
 #include "executor/waitable.hpp"
 
 namespace rcl_cxx::detail {

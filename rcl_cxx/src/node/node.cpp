@@ -82,6 +82,13 @@ std::string Node::resolve_topic_name(const std::string & topic) const
   return impl_->resolve(topic, false);
 }
 
+ActionServer::SharedPtr Node::create_action_server(const ActionType & type, const std::string & action,
+                                                   ActionServerCallbacks callbacks,
+                                                   const ActionServerOptions & options)
+{
+  return std::make_shared<ActionServer>(impl_, type, action, std::move(callbacks), options);
+}
+
 std::string Node::resolve_service_name(const std::string & service) const
 {
   return impl_->resolve(service, true);

@@ -56,6 +56,15 @@ NodeImpl::~NodeImpl()
   ignore_rcl(rcl_node_fini(&node_));
 }
 
+NodeImpl::CreationLock NodeImpl::lock_to_create(const std::string & label)
+{
+  CreationLock lock{std::unique_lock(mutex_), std::shared_lock(context_impl_->creation_mutex())};
+  if (!context_impl_->ok()) {
+    throw Error(fmt::format("{}: cannot be created: shutting down", label), RCL_RET_ERROR);
+  }
+  return lock;
+}
+
 std::string NodeImpl::resolve(const std::string & name, bool is_service) const
 {
   const rcl_allocator_t allocator = rcl_get_default_allocator();

@@ -5,10 +5,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <shared_mutex>
 #include <string>
 
 #include "context/context_impl.hpp"
-#include "executor/event_queue.hpp"
+#include "events/event_queue.hpp"
 #include "node/ros_clock.hpp"
 #include "rcl_cxx/logging.hpp"
 #include "rcl_cxx/parameter.hpp"
@@ -27,6 +28,13 @@ class NodeImpl {
   /// To hold while an rcl entity of this node is initialized or finalized: rcl does not guard the node's
   /// tables.
   std::mutex & mutex() noexcept { return mutex_; }
+  struct CreationLock {
+    std::unique_lock<std::mutex> node;
+    std::shared_lock<std::shared_mutex> context;
+  };
+  /// To hold while the entity `label` is initialized: locks mutex(), and rcl is not shut down meanwhile.
+  /// @throws Error during and after a shutdown
+  CreationLock lock_to_create(const std::string & label);
   PendingEvents & pending_events() noexcept { return pending_events_; }
   RosClock & get_clock() noexcept { return clock_; }
   ContextImpl & get_context() noexcept { return *context_impl_; }

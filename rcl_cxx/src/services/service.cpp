@@ -6,6 +6,7 @@
 #include "executor/waitable.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_error.hpp"
+#include "rcl_support/type_support.hpp"
 #include "services/response_sender.hpp"
 
 namespace rcl_cxx {
@@ -45,9 +46,11 @@ ServiceImpl::ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, c
 {
   rcl_service_options_t options = rcl_service_get_default_options();
   options.qos = qos.get_rmw_qos_profile();
-  const std::lock_guard lock(this->node()->mutex());
-  check_rcl(rcl_service_init(&service_, this->node()->handle(), erased_.type_support, name.c_str(), &options),
+  const auto lock = this->node()->lock_to_create(label());
+  check_rcl(rcl_service_init(&service_, this->node()->handle(), middleware_type_support(erased_.type_support),
+                             name.c_str(), &options),
             label(), "cannot be created");
+  reset_type_support_error();
   name_ = rcl_service_get_service_name(&service_);
 }
 

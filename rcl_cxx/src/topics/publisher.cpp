@@ -9,6 +9,7 @@
 #include "executor/waitable.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_error.hpp"
+#include "rcl_support/type_support.hpp"
 #include "topics/qos_event.hpp"
 
 namespace rcl_cxx {
@@ -51,9 +52,11 @@ PublisherImpl::PublisherImpl(std::shared_ptr<NodeImpl> node,
 {
   rcl_publisher_options_t options = rcl_publisher_get_default_options();
   options.qos = qos.get_rmw_qos_profile();
-  const std::lock_guard lock(this->node()->mutex());
-  check_rcl(rcl_publisher_init(&publisher_, this->node()->handle(), type_support, topic.c_str(), &options),
+  const auto lock = this->node()->lock_to_create(label());
+  check_rcl(rcl_publisher_init(&publisher_, this->node()->handle(), middleware_type_support(type_support),
+                               topic.c_str(), &options),
             label(), "cannot be created");
+  reset_type_support_error();
   topic_ = rcl_publisher_get_topic_name(&publisher_);
 }
 

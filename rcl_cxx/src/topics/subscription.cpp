@@ -6,6 +6,7 @@
 #include "executor/waitable.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_error.hpp"
+#include "rcl_support/type_support.hpp"
 #include "topics/qos_event.hpp"
 
 namespace rcl_cxx {
@@ -17,6 +18,9 @@ class SubscriptionImpl : public Waitable {
   ~SubscriptionImpl() override;
 
   const std::string & get_topic_name() const noexcept { return topic_; }
+
+  /// Returns false if there is no message.
+  bool take(void * message);
 
   void set_on_ready_callbacks() override;
 
@@ -40,11 +44,13 @@ SubscriptionImpl::SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscri
 {
   rcl_subscription_options_t options = rcl_subscription_get_default_options();
   options.qos = qos.get_rmw_qos_profile();
-  const std::lock_guard lock(this->node()->mutex());
-  const rcl_ret_t code = rcl_subscription_init(&subscription_, this->node()->handle(), erased_.type_support,
-                                               topic.c_str(), &options);
+  const auto lock = this->node()->lock_to_create(label());
+  const rcl_ret_t code =
+      rcl_subscription_init(&subscription_, this->node()->handle(),
+                            middleware_type_support(erased_.type_support), topic.c_str(), &options);
   ignore_rcl(rcl_subscription_options_fini(&options));
   check_rcl(code, label(), "cannot be created");
+  reset_type_support_error();
   topic_ = rcl_subscription_get_topic_name(&subscription_);
 }
 
@@ -83,14 +89,21 @@ void SubscriptionImpl::execute(std::size_t source)
   if (!message_ || message_.use_count() > 1) {
     message_ = erased_.make_message();
   }
+  if (take(message_.get())) {
+    erased_.callback(message_);
+  }
+}
+
+bool SubscriptionImpl::take(void * message)
+{
   rmw_message_info_t info = rmw_get_zero_initialized_message_info();
-  const rcl_ret_t code = rcl_take(&subscription_, message_.get(), &info, nullptr);
+  const rcl_ret_t code = rcl_take(&subscription_, message, &info, nullptr);
   if (code == RCL_RET_SUBSCRIPTION_TAKE_FAILED) {
     rcl_reset_error();
-    return;
+    return false;
   }
   check_rcl(code, label(), "cannot take a message");
-  erased_.callback(message_);
+  return true;
 }
 }  // namespace detail
 
@@ -102,6 +115,10 @@ SubscriptionBase::SubscriptionBase(std::shared_ptr<detail::NodeImpl> node, detai
 SubscriptionBase::~SubscriptionBase()
 {
   impl_->close();
+}
+bool SubscriptionBase::take(void * message)
+{
+  return impl_->take(message);
 }
 const std::string & SubscriptionBase::get_topic_name() const noexcept
 {

@@ -1,13 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <rcl_cxx/node.hpp>
-#include <string>
+#include <utility>
 
-#include "ur_ros_rtde/command_traits.hpp"
-#include "ur_ros_rtde/detail/command_executor.hpp"
-#include "ur_ros_rtde/detail/goal_server.hpp"
-#include "ur_ros_rtde/plugin.hpp"
+#include "ur_ros_rtde/detail/command_base.hpp"
 
 namespace ur_ros_rtde {
 
@@ -34,7 +30,7 @@ namespace ur_ros_rtde {
 /// `bool success, uint16 error_code, string message`. The fields `ArmState final_state` of the result and
 /// `MotionFeedback motion` of the feedback are filled in if `A` has them.
 template <typename A>
-class Command : public CommandPlugin, private GoalServer<A> {
+class Command : public CommandBase {
  public:
   using Action = A;
   using Goal = typename A::Goal;
@@ -42,76 +38,44 @@ class Command : public CommandPlugin, private GoalServer<A> {
   using Feedback = typename A::Feedback;
   using Run = GoalRun<A>;
 
-  ~Command() override { this->stop_server(); }
+  ~Command() override { CommandBase::stop_action_server(); }
 
   /// Checks the fields of the goal, then what depends on the robot. Runs in the executor's thread and must
   /// not wait.
   virtual void check(const Goal &, Check &) const {}
   /// Executes the goal in a thread of its own.
   virtual Outcome run(const Goal & goal, Run & run) = 0;
-  /// How goals share the robot with the goals of other commands. Asked once.
-  virtual CommandTraits traits() const { return {}; }
   /// How the arm is stopped if it moves when run() ends or has to end.
   virtual StopOptions stop_options(const Goal &) const { return {}; }
-
-  void start_action_server(CommandHost & host, const std::string & name) override;
-  void stop_action_server() override { this->stop_server(); }
+  /// Writes the outcome into the result. Override it for results that begin with other fields.
+  virtual void fill_result(const Outcome & outcome, Result & result) const
+  {
+    write_standard_fields(outcome, result);
+  }
 
  private:
-  using Handle = rcl_cxx::ServerGoalHandle<A>;
-  rcl_cxx::GoalDecision accept_goal(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
-  void execute_goal(Handle & handle, GoalContext & context) override;
-  void abort_unstarted(Handle & handle, const Outcome & outcome) override;
-  void send_result(Handle & handle, Run & run, const Outcome & outcome);
+  static const Goal & typed(const void * goal) { return *static_cast<const Goal *>(goal); }
 
-  std::string name_;
-  std::unique_ptr<CommandExecutor> executor_;
-};
-
-template <typename A>
-void Command<A>::start_action_server(CommandHost & host, const std::string & name)
-{
-  name_ = name;
-  executor_ = std::make_unique<CommandExecutor>(host, host.node().resolve_service_name(name), traits(),
-                                                script_extension() ? name : std::string());
-  this->start_server(host.node(), name, executor_->goals(), executor_->stops_when_client_lost());
-}
-
-template <typename A>
-rcl_cxx::GoalDecision Command<A>::accept_goal(const rcl_cxx::GoalUUID & id, const Goal & goal)
-{
-  return executor_->accept(id, [&](Check & result) { check(goal, result); });
-}
-
-template <typename A>
-void Command<A>::execute_goal(Handle & handle, GoalContext & context)
-{
-  Run goal_run(executor_->host().robot(), context.stop_request, executor_->needs_motion(),
-               [&handle](const Feedback & feedback) { handle.publish_feedback(feedback); });
-  goal_run.on_warning([&](const std::string & text) { executor_->goals().warn(handle.get_goal_id(), text); });
-  const auto stop = [&] { return stop_options(handle.get_goal()); };
-  const Outcome outcome = executor_->execute(handle.get_goal_id(), context, stop, [&] {
-    goal_run.set_preempted_goal(context.preempted_goal);
-    goal_run.set_plugin(name_);
-    return run(handle.get_goal(), goal_run);
-  });
-  send_result(handle, goal_run, goal_run.with_warnings(outcome));
-}
-
-template <typename A>
-void Command<A>::abort_unstarted(Handle & handle, const Outcome & outcome)
-{
-  Run run(executor_->host().robot(), std::make_shared<StopRequest>(), false, {});
-  send_result(handle, run, outcome);
-}
-
-template <typename A>
-void Command<A>::send_result(Handle & handle, Run & run, const Outcome & outcome)
-{
-  if constexpr (requires { run.result().final_state; }) {
-    run.result().final_state = run.arm_state();
+  const rcl_cxx::ActionType & action_type() const final { return rcl_cxx::action_type<A>(); }
+  void check_goal(const void * goal, Check & result) const final { check(typed(goal), result); }
+  StopOptions stop_options_of(const void * goal) const final { return stop_options(typed(goal)); }
+  std::unique_ptr<ur_ros_rtde::Run> make_run(Robot & robot, std::shared_ptr<StopRequest> stop_request,
+                                             bool moves, PublishFeedback publish) const final
+  {
+    return std::make_unique<Run>(robot, std::move(stop_request), moves, std::move(publish));
   }
-  this->finish(handle, run.result(), outcome);
-}
+  Outcome run_goal(const void * goal, ur_ros_rtde::Run & goal_run) final
+  {
+    return run(typed(goal), static_cast<Run &>(goal_run));
+  }
+  void write_outcome(const Outcome & outcome, void * result) const final
+  {
+    fill_result(outcome, *static_cast<Result *>(result));
+  }
+  void write_failure(const Outcome & outcome, void * result) const final
+  {
+    write_standard_fields(outcome, *static_cast<Result *>(result));
+  }
+};
 
 }  // namespace ur_ros_rtde

@@ -1,21 +1,15 @@
 #pragma once
 
 #include <memory>
-#include <rcl_cxx/node.hpp>
 #include <string>
 #include <ur_ros_rtde_msgs/action/dashboard_command.hpp>
 #include <ur_ros_rtde_msgs/action/dashboard_query.hpp>
 #include <ur_ros_rtde_msgs/action/dashboard_text.hpp>
 
-#include "ur_ros_rtde/check.hpp"
-#include "ur_ros_rtde/dashboard_run.hpp"
-#include "ur_ros_rtde/detail/goal_server.hpp"
-#include "ur_ros_rtde/plugin.hpp"
+#include "ur_ros_rtde/detail/dashboard_command_base.hpp"
 
 namespace ur_ros_rtde {
 
-/// Success if the dashboard server is connected.
-Status dashboard_ready(const DashboardConnection & link);
 /// Fails unless `text` is one of `texts`. Every text is allowed if `texts` is empty.
 void check_text(const std::string & text, const std::vector<std::string> & texts, Check & check);
 
@@ -30,7 +24,7 @@ void check_text(const std::string & text, const std::vector<std::string> & texts
 ///     };
 ///     UR_ROS_RTDE_EXPORT(PowerOff, "dashboard/power_off")
 template <typename A>
-class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
+class DashboardCommand : public DashboardCommandBase {
  public:
   using Action = A;
   using Goal = typename A::Goal;
@@ -40,27 +34,43 @@ class DashboardCommand : public DashboardPlugin, private GoalServer<A> {
   using Limits = DashboardLimits;
   using Run = DashboardGoalRun<A>;
 
-  ~DashboardCommand() override { this->stop_server(); }
+  ~DashboardCommand() override { DashboardCommandBase::stop_action_server(); }
 
   virtual Request request(const Goal &) const { return {}; }
-  virtual Limits limits() const { return {}; }
   /// By default checks the fields `timeout` and `text` of the goal, if it has them.
   virtual void check(const Goal & goal, Check & check) const;
   /// By default executes request().
   virtual Outcome run(const Goal & goal, Run & run);
 
-  void start_action_server(DashboardHost & host, const std::string & name) override;
-  void stop_action_server() override { this->stop_server(); }
+  /// Writes the outcome into the result. Override it for results that begin with other fields.
+  virtual void fill_result(const Outcome & outcome, Result & result) const
+  {
+    write_standard_fields(outcome, result);
+  }
 
  private:
-  using Handle = rcl_cxx::ServerGoalHandle<A>;
-  rcl_cxx::GoalDecision accept_goal(const rcl_cxx::GoalUUID & id, const Goal & goal) override;
-  void execute_goal(Handle & handle, GoalContext & context) override;
-  void abort_unstarted(Handle & handle, const Outcome & outcome) override;
-  void send_result(Handle & handle, Run & run, const Outcome & outcome);
+  static const Goal & typed(const void * goal) { return *static_cast<const Goal *>(goal); }
 
-  DashboardConnection * link_ = nullptr;
-  std::unique_ptr<ActiveGoals> goals_;
+  const rcl_cxx::ActionType & action_type() const final { return rcl_cxx::action_type<A>(); }
+  void check_goal(const void * goal, Check & result) const final { check(typed(goal), result); }
+  std::unique_ptr<DashboardRun> make_run(DashboardConnection & connection,
+                                         std::shared_ptr<StopRequest> stop_request,
+                                         PublishFeedback publish) const final
+  {
+    return std::make_unique<Run>(connection, std::move(stop_request), std::move(publish));
+  }
+  Outcome run_goal(const void * goal, DashboardRun & goal_run) final
+  {
+    return run(typed(goal), static_cast<Run &>(goal_run));
+  }
+  void write_outcome(const Outcome & outcome, void * result) const final
+  {
+    fill_result(outcome, *static_cast<Result *>(result));
+  }
+  void write_failure(const Outcome & outcome, void * result) const final
+  {
+    write_standard_fields(outcome, *static_cast<Result *>(result));
+  }
 };
 
 template <typename A>
@@ -84,58 +94,6 @@ Outcome DashboardCommand<A>::run(const Goal & goal, Run & run)
   } else {
     return run.execute(wanted, wanted.timeout);
   }
-}
-
-template <typename A>
-void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::string & name)
-{
-  link_ = &host.link();
-  goals_ = std::make_unique<ActiveGoals>(host, host.node().resolve_service_name(name));
-  this->start_server(host.node(), name, *goals_, false);
-}
-
-template <typename A>
-rcl_cxx::GoalDecision DashboardCommand<A>::accept_goal(const rcl_cxx::GoalUUID & id, const Goal & goal)
-{
-  return goals_->accept(id, [&](GoalContext &) -> Status {
-    Check result;
-    check(goal, result);
-    if (!result.ok()) {
-      return tl::unexpected(*result.error());
-    }
-    const Status ready = dashboard_ready(*link_);
-    return ready ? supported(goals_->action(), limits(), *link_) : ready;
-  });
-}
-
-template <typename A>
-void DashboardCommand<A>::execute_goal(Handle & handle, GoalContext & context)
-{
-  Run goal_run(*link_, context.stop_request, [&]([[maybe_unused]] const std::string & state) {
-    if constexpr (requires(Feedback & feedback) { feedback.state; }) {
-      Feedback feedback;
-      feedback.state = state;
-      handle.publish_feedback(feedback);
-    }
-  });
-  const Outcome outcome = guarded(*context.stop_request, [&] { return run(handle.get_goal(), goal_run); });
-  send_result(handle, goal_run, outcome);
-}
-
-template <typename A>
-void DashboardCommand<A>::abort_unstarted(Handle & handle, const Outcome & outcome)
-{
-  Run run(*link_, std::make_shared<StopRequest>(), {});
-  send_result(handle, run, outcome);
-}
-
-template <typename A>
-void DashboardCommand<A>::send_result(Handle & handle, Run & run, const Outcome & outcome)
-{
-  if constexpr (requires { run.result().answer; }) {
-    run.result().answer = run.answer();
-  }
-  this->finish(handle, run.result(), outcome);
 }
 
 }  // namespace ur_ros_rtde

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ur_ros_rtde/detail/publish_feedback.hpp"
 #include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/outcome.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
@@ -50,14 +51,15 @@ struct DashboardLimits {
 /// Fails (not_supported) with the supported versions if the controller is not within `limits`. Succeeds while
 /// its version is unknown.
 Status supported(const std::string & action, const DashboardLimits & limits,
-                 const DashboardConnection & link);
+                 const DashboardConnection & connection);
 
 /// Gives a dashboard command access to the dashboard server while it executes a goal, in the goal's thread.
 class DashboardRun {
  public:
-  using PublishState = std::function<void(const std::string &)>;
-
-  DashboardRun(DashboardConnection & link, std::shared_ptr<StopRequest> stop_request, PublishState publish);
+  DashboardRun(DashboardConnection & connection, std::shared_ptr<StopRequest> stop_request);
+  virtual ~DashboardRun() = default;
+  DashboardRun(const DashboardRun &) = delete;
+  DashboardRun & operator=(const DashboardRun &) = delete;
 
   /// Sends a line to the dashboard server and returns its answer. Throws RobotError (link_lost, timeout after
   /// 5 s).
@@ -84,29 +86,55 @@ class DashboardRun {
 
   /// The last answer to a command or query, for the result.
   const std::string & answer() const { return answer_; }
+  /// Fills in `answer` and returns the result, an A::Result.
+  virtual void * finish_result() = 0;
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// Publishes the answer to the query of an expected state, when it changes.
+  virtual void publish_state(const std::string & state) = 0;
   Outcome rejection(const std::string & line);
   Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout);
 
-  DashboardConnection & link_;
+  DashboardConnection & connection_;
   std::shared_ptr<StopRequest> stop_request_;
-  PublishState publish_;
   std::string answer_;
 };
 
-/// DashboardRun with the result of action `A`.
+/// DashboardRun with the result and the feedback of action `A`.
 template <typename A>
 class DashboardGoalRun : public DashboardRun {
  public:
-  using DashboardRun::DashboardRun;
+  DashboardGoalRun(DashboardConnection & connection, std::shared_ptr<StopRequest> stop_request,
+                   PublishFeedback publish)
+      : DashboardRun(connection, std::move(stop_request)), publish_(std::move(publish))
+  {
+  }
+
   /// Set the fields that are specific to the action. `success`, `error_code`, `message` and `answer` are
   /// filled in by the base class.
   typename A::Result & result() { return result_; }
 
+  void * finish_result() override
+  {
+    if constexpr (requires { result_.answer; }) {
+      result_.answer = answer();
+    }
+    return &result_;
+  }
+
  private:
+  void publish_state([[maybe_unused]] const std::string & state) override
+  {
+    if constexpr (requires(typename A::Feedback & feedback) { feedback.state; }) {
+      typename A::Feedback feedback;
+      feedback.state = state;
+      publish_(&feedback);
+    }
+  }
+
   typename A::Result result_;
+  PublishFeedback publish_;
 };
 
 }  // namespace ur_ros_rtde

@@ -64,11 +64,14 @@ class CommandHost : public PluginHost {
 
 class DashboardHost : public PluginHost {
  public:
-  DashboardHost(rcl_cxx::Node & node, DashboardConnection & link) : PluginHost(node), link_(link) {}
-  DashboardConnection & link() { return link_; }
+  DashboardHost(rcl_cxx::Node & node, DashboardConnection & connection)
+      : PluginHost(node), connection_(connection)
+  {
+  }
+  DashboardConnection & connection() { return connection_; }
 
  private:
-  DashboardConnection & link_;
+  DashboardConnection & connection_;
 };
 
 }  // namespace ur_ros_rtde

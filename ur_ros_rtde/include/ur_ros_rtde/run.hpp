@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <ur_ros_rtde_msgs/msg/motion_feedback.hpp>
 #include <vector>
 
+#include "ur_ros_rtde/detail/publish_feedback.hpp"
 #include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/outcome.hpp"
 #include "ur_ros_rtde/registers.hpp"
@@ -107,6 +109,9 @@ class Run {
   /// Empty before the first sample.
   std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> motion_feedback() const;
 
+  /// Fills in `final_state` and returns the result, an A::Result. Null if this is not the run of a goal.
+  virtual void * finish_result() { return nullptr; }
+
  protected:
   /// Called 20 times per second during waits.
   virtual void publish_feedback() {}
@@ -122,6 +127,7 @@ class Run {
   Robot & robot_;
   std::shared_ptr<StopRequest> stop_request_;
   bool moves_;
+  std::uint32_t link_;  ///< Sample::link at the begin
   double progress_ = 0.0;
   std::string preempted_goal_;
   std::string plugin_;
@@ -137,9 +143,7 @@ class Run {
 template <typename A>
 class GoalRun : public Run {
  public:
-  using Publish = std::function<void(const typename A::Feedback &)>;
-
-  GoalRun(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves, Publish publish)
+  GoalRun(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves, PublishFeedback publish)
       : Run(robot, std::move(stop_request), moves), publish_(std::move(publish))
   {
   }
@@ -151,7 +155,15 @@ class GoalRun : public Run {
   typename A::Feedback & feedback() { return feedback_; }
   /// Publishes the feedback. Needed only if the feedback has no field `motion`; otherwise it is published
   /// during waits.
-  void publish() { publish_(feedback_); }
+  void publish() { publish_(&feedback_); }
+
+  void * finish_result() override
+  {
+    if constexpr (requires { result_.final_state; }) {
+      result_.final_state = arm_state();
+    }
+    return &result_;
+  }
 
  private:
   void publish_feedback() override
@@ -159,14 +171,14 @@ class GoalRun : public Run {
     if constexpr (requires(typename A::Feedback & feedback) { feedback.motion; }) {
       if (auto motion = motion_feedback()) {
         feedback_.motion = *motion;
-        publish_(feedback_);
+        publish_(&feedback_);
       }
     }
   }
 
   typename A::Result result_;
   typename A::Feedback feedback_;
-  Publish publish_;
+  PublishFeedback publish_;
 };
 
 }  // namespace ur_ros_rtde

@@ -39,26 +39,16 @@ bool is_one_of(const std::string & state, const std::vector<std::string> & state
 }
 }  // namespace
 
-Status dashboard_ready(const DashboardConnection & link)
-{
-  const LinkStatus status = link.link();
-  if (status.connected) {
-    return {};
-  }
-  return failure(ErrorCode::link_lost, status.error.message.empty()
-                                           ? std::string("not yet connected to the dashboard server")
-                                           : status.error.message);
-}
-
 void check_text(const std::string & text, const std::vector<std::string> & texts, Check & check)
 {
   check.that(texts.empty() || std::find(texts.begin(), texts.end(), text) != texts.end(),
              fmt::format("text is \"{}\", it may be {}", text, fmt::join(texts, ", ")));
 }
 
-Status supported(const std::string & action, const DashboardLimits & limits, const DashboardConnection & link)
+Status supported(const std::string & action, const DashboardLimits & limits,
+                 const DashboardConnection & connection)
 {
-  const auto version = link.version();
+  const auto version = connection.version();
   if (!version) {
     return {};
   }
@@ -72,15 +62,14 @@ Status supported(const std::string & action, const DashboardLimits & limits, con
                              availability("a CB3", limits.cb3)));
 }
 
-DashboardRun::DashboardRun(DashboardConnection & link, std::shared_ptr<StopRequest> stop_request,
-                           PublishState publish)
-    : link_(link), stop_request_(std::move(stop_request)), publish_(std::move(publish))
+DashboardRun::DashboardRun(DashboardConnection & connection, std::shared_ptr<StopRequest> stop_request)
+    : connection_(connection), stop_request_(std::move(stop_request))
 {
 }
 
 std::string DashboardRun::send(const std::string & line)
 {
-  auto answer = link_.request(line, answer_limit, stop_request_->token());
+  auto answer = connection_.request(line, answer_limit, stop_request_->token());
   if (!answer) {
     throw RobotError(answer.error());
   }
@@ -102,8 +91,8 @@ Outcome DashboardRun::query(const std::string & question)
 
 Outcome DashboardRun::raw(const std::string & line, double timeout)
 {
-  const auto answer = link_.request(line, std::chrono::ceil<std::chrono::milliseconds>(Seconds(timeout)),
-                                    stop_request_->token());
+  const auto answer = connection_.request(
+      line, std::chrono::ceil<std::chrono::milliseconds>(Seconds(timeout)), stop_request_->token());
   if (!answer) {
     if (auto why = stop_reason()) {
       return *why;
@@ -142,7 +131,7 @@ Outcome DashboardRun::rejection(const std::string & line)
                             answer + ": this version of PolyScope does not have it");
   }
   // Queried again: the value known from the heartbeat may be older than the command.
-  if (link_.in_remote_control() && send("is in remote control") == "false") {
+  if (connection_.in_remote_control() && send("is in remote control") == "false") {
     answer += ": the robot is in local control, switch it to remote on the teach pendant";
   }
   return Outcome::failure(ErrorCode::rejected_by_robot, answer);
@@ -155,7 +144,7 @@ Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point de
     const std::string state = query_value(expected.query);
     if (state != shown) {
       shown = state;
-      publish_(state);
+      publish_state(state);
     }
     if (is_one_of(state, expected.states)) {
       return Outcome::success(fmt::format("{} is {}", expected.query, state));

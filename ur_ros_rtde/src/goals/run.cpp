@@ -84,7 +84,11 @@ std::function<double(const Sample &)> distance_to_pose(const std::vector<double>
 }  // namespace
 
 Run::Run(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves)
-    : robot_(robot), stop_request_(std::move(stop_request)), moves_(moves), mark_(robot.mark_motion())
+    : robot_(robot),
+      stop_request_(std::move(stop_request)),
+      moves_(moves),
+      link_(robot.latest().value_or(Sample{}).link),
+      mark_(robot.mark_motion())
 {
 }
 
@@ -121,6 +125,9 @@ std::optional<StopReason> Run::stop_reason() const
   if (moves_) {
     if (Status possible = robot_.motion_possible(); !possible) {
       return possible.error();
+    }
+    if (state().link != link_) {
+      return Error{ErrorCode::link_lost, connection_replaced};
     }
   }
   return std::nullopt;

@@ -30,14 +30,18 @@ CommandServer::~CommandServer()
   plugins_.stop();
 }
 
-void CommandServer::start()
+void CommandServer::load_plugins()
 {
   const ReportProblem report = log_plugin_problems(node_);
   plugins_.load(
       select_plugins(find_plugins(report), command_base, choice_.plugins, choice_.blacklist, report), report);
   add_extensions(report);
-  robot_->start();
-  plugins_.start(*host_, report);
+  robot_->connect();
+}
+
+void CommandServer::create_actions()
+{
+  plugins_.start(*host_, log_plugin_problems(node_));
   RCL_CXX_INFO(node_->get_logger(), "commands: {}", fmt::join(plugins_.names(), ", "));
 }
 

@@ -21,7 +21,9 @@ class CommandServer : public Server {
 
   rcl_cxx::Node & node() override { return *node_; }
   Robot & robot() { return *robot_; }
-  void start() override;
+  void load_plugins() override;
+  void create_actions() override;
+  void start() override { robot_->start(); }
   std::vector<std::string> close() override;
 
  private:

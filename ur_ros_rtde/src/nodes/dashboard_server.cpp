@@ -15,8 +15,8 @@ DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context)
   DashboardConnectionOptions options;
   options.address = declare_robot_ip(*node_);
   choice_ = declare_plugin_choice(*node_);
-  link_ = std::make_unique<DashboardConnection>(options, log_connection(*node_));
-  host_ = std::make_unique<DashboardHost>(*node_, *link_);
+  connection_ = std::make_unique<DashboardConnection>(options, log_connection(*node_));
+  host_ = std::make_unique<DashboardHost>(*node_, *connection_);
 }
 
 DashboardServer::~DashboardServer()
@@ -25,14 +25,17 @@ DashboardServer::~DashboardServer()
   plugins_.stop();
 }
 
-void DashboardServer::start()
+void DashboardServer::load_plugins()
 {
-  link_->start();
   const ReportProblem report = log_plugin_problems(node_);
   plugins_.load(
       select_plugins(find_plugins(report), dashboard_base, choice_.plugins, choice_.blacklist, report),
       report);
-  plugins_.start(*host_, report);
+}
+
+void DashboardServer::create_actions()
+{
+  plugins_.start(*host_, log_plugin_problems(node_));
   RCL_CXX_INFO(node_->get_logger(), "dashboard commands: {}", fmt::join(plugins_.names(), ", "));
 }
 

@@ -17,13 +17,15 @@ class DashboardServer : public Server {
   ~DashboardServer() override;
 
   rcl_cxx::Node & node() override { return *node_; }
-  void start() override;
+  void load_plugins() override;
+  void create_actions() override;
+  void start() override { connection_->start(); }
   std::vector<std::string> close() override;
 
  private:
   PluginSet<DashboardPlugin, DashboardHost> plugins_;  // destroyed last, because it unloads the libraries
   rcl_cxx::Node::SharedPtr node_;
-  std::unique_ptr<DashboardConnection> link_;
+  std::unique_ptr<DashboardConnection> connection_;
   std::unique_ptr<DashboardHost> host_;
   PluginChoice choice_;
 };

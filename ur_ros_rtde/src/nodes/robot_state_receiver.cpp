@@ -34,7 +34,7 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
       field_topics_(node,
                     {options_.address, options_.tf_prefix, options_.qos, options_.frequency, options_.fields},
                     log_connection(node)),
-      recording_(node, options_.address),
+      recording_(node, options_.address, log_to(node.get_logger())),
       diagnostics_(node, options_.address, [this] { return diagnose(); })
 {
   const rcl_cxx::QoS qos = rcl_cxx::QoS::from_name(options_.qos);

@@ -16,6 +16,10 @@ class Server {
  public:
   virtual ~Server() = default;
   virtual rcl_cxx::Node & node() = 0;
+  /// Called in this order, the first one before the node has an executor. Neither affects the robot.
+  virtual void load_plugins() {}
+  virtual void create_actions() {}
+  /// Connects to the robot. Runs after load_plugins(), concurrently with create_actions().
   virtual void start() = 0;
   /// Called at shutdown while communication still works. Stops all goals within close_limit. Returns the
   /// names of those that did not end.

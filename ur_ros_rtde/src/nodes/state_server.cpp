@@ -39,7 +39,11 @@ SharedStateServer::SharedStateServer(const rcl_cxx::Context::SharedPtr & context
                        version,
                        version ? version->frequency() : 0.0};
   });
-  robot.on_sample([this](const Sample & sample) { receiver_->publish(sample); });
+  robot.on_sample([this](const Sample & sample) {
+    if (started_) {
+      receiver_->publish(sample);
+    }
+  });
 }
 
 }  // namespace ur_ros_rtde

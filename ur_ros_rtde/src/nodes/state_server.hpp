@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 
@@ -30,9 +31,10 @@ class SharedStateServer : public Server {
  public:
   SharedStateServer(const rcl_cxx::Context::SharedPtr & context, Robot & robot);
   rcl_cxx::Node & node() override { return *node_; }
-  void start() override {}
+  void start() override { started_ = true; }
 
  private:
+  std::atomic<bool> started_ = false;
   rcl_cxx::Node::SharedPtr node_;
   std::unique_ptr<RobotStateReceiver> receiver_;
 };

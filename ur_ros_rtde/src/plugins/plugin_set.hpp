@@ -36,12 +36,21 @@ class PluginSet {
     }
   }
 
-  /// Starts the action servers, with the same handling of errors.
+  /// Starts the action servers, with the same handling of errors. Ends silently at a shutdown.
   void start(Host & host, const ReportProblem & report)
   {
-    with_each("start_action_server() threw", report, [&host](const PluginEntry & entry, Plugin & plugin) {
-      plugin.start_action_server(host, entry.name);
-    });
+    const auto running = [&host] { return host.node().get_context()->ok(); };
+    const auto report_if_running = [&](const std::string & problem) {
+      if (running()) {
+        report(problem);
+      }
+    };
+    with_each("start_action_server() threw", report_if_running,
+              [&](const PluginEntry & entry, Plugin & plugin) {
+                if (running()) {
+                  plugin.start_action_server(host, entry.name);
+                }
+              });
   }
 
   /// Calls `step` for each plugin, in the order of their names. A plugin whose call throws is reported with

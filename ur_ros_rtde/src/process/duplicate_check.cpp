@@ -11,6 +11,7 @@ namespace ur_ros_rtde {
 namespace {
 /// Longest time for discovery. After that, this process is in use and must not exit.
 constexpr std::chrono::seconds start_phase{10};
+constexpr const char * remedy = "stop one of them, or use a different namespace (--ros-args -r __ns:=/…)";
 
 std_msgs::msg::Header this_process()
 {
@@ -43,19 +44,42 @@ DuplicateCheck::DuplicateCheck(rcl_cxx::Node & node, std::function<void(const st
   publisher_->publish(own_);
 }
 
+std::optional<std::string> DuplicateCheck::find_older()
+{
+  for (Instance other; subscription_->take(other);) {
+    if (is_older(other)) {
+      return refusal(other);
+    }
+  }
+  return std::nullopt;
+}
+
 void DuplicateCheck::on_instance(const Instance & other)
 {
   if (age(other) == age(own_)) {
     return;
   }
-  const std::string what = fmt::format("another node with the name {} is already running ({})",
-                                       node_.get_fully_qualified_name(), other.frame_id);
-  const std::string remedy = "stop one of them, or use a different namespace (--ros-args -r __ns:=/…)";
   if (std::chrono::steady_clock::now() - begin_ > start_phase) {
-    RCL_CXX_ERROR(node_.get_logger(), "{}; both answer the same clients: {}", what, remedy);
-  } else if (age(other) < age(own_)) {
-    refuse_(fmt::format("{}, so this process exits: {}", what, remedy));
+    RCL_CXX_ERROR(node_.get_logger(), "{}; both answer the same clients: {}", conflict_with(other), remedy);
+  } else if (is_older(other)) {
+    refuse_(refusal(other));
   }
+}
+
+bool DuplicateCheck::is_older(const Instance & other) const
+{
+  return age(other) < age(own_);
+}
+
+std::string DuplicateCheck::conflict_with(const Instance & other) const
+{
+  return fmt::format("another node with the name {} is already running ({})",
+                     node_.get_fully_qualified_name(), other.frame_id);
+}
+
+std::string DuplicateCheck::refusal(const Instance & other) const
+{
+  return fmt::format("{}, so this process exits: {}", conflict_with(other), remedy);
 }
 
 }  // namespace ur_ros_rtde

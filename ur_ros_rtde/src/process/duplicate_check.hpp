@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <rcl_cxx/node.hpp>
 #include <std_msgs/msg/header.hpp>
 #include <string>
@@ -16,10 +17,15 @@ class DuplicateCheck {
   /// Calls `refuse` with the reason if an older process is found shortly after the start; later, an error is
   /// logged. Runs in the executor's thread.
   DuplicateCheck(rcl_cxx::Node & node, std::function<void(const std::string & why)> refuse);
+  /// For use before the node has an executor: the reason to refuse, if an older process has been found.
+  std::optional<std::string> find_older();
 
  private:
   using Instance = std_msgs::msg::Header;
   void on_instance(const Instance & other);
+  bool is_older(const Instance & other) const;
+  std::string conflict_with(const Instance & other) const;
+  std::string refusal(const Instance & other) const;
 
   rcl_cxx::Node & node_;
   const std::function<void(const std::string &)> refuse_;

@@ -16,15 +16,18 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Where a version of Fast DDS looks for profiles: the file that an environment variable names, and the
-/// working directory. Only the package_file for the installed version is installed.
+/// working directory. Only the files of this package for the installed version are installed.
 struct ProfileSource {
   const char * variable;
   const char * local_file;
-  const char * package_file;
+  const char * client_file;
+  const char * node_file;
 };
 constexpr std::array sources{
-    ProfileSource{"FASTDDS_DEFAULT_PROFILES_FILE", "DEFAULT_FASTDDS_PROFILES.xml", "fastdds.xml"},
-    ProfileSource{"FASTRTPS_DEFAULT_PROFILES_FILE", "DEFAULT_FASTRTPS_PROFILES.xml", "fastrtps.xml"},
+    ProfileSource{"FASTDDS_DEFAULT_PROFILES_FILE", "DEFAULT_FASTDDS_PROFILES.xml", "fastdds.xml",
+                  "fastdds_nodes.xml"},
+    ProfileSource{"FASTRTPS_DEFAULT_PROFILES_FILE", "DEFAULT_FASTRTPS_PROFILES.xml", "fastrtps.xml",
+                  "fastrtps.xml"},
 };
 
 bool is_present(const fs::path & file)
@@ -33,10 +36,19 @@ bool is_present(const fs::path & file)
   return fs::exists(file, ignored);
 }
 
-std::optional<fs::path> chosen_profile()
+bool is_same_file(const fs::path & one, const fs::path & other)
+{
+  std::error_code ignored;
+  return fs::equivalent(one, other, ignored);
+}
+
+/// Returns the profile of the user. The profile of this package for clients, which may be in the environment,
+/// is not one of the user.
+std::optional<fs::path> chosen_profile(const fs::path & folder)
 {
   for (const ProfileSource & source : sources) {
-    if (const char * const file = std::getenv(source.variable)) {
+    const char * const file = std::getenv(source.variable);
+    if (file != nullptr && !is_same_file(file, folder / source.client_file)) {
       return file;
     }
     if (is_present(source.local_file)) {
@@ -66,11 +78,11 @@ std::optional<fs::path> config_folder()
 void use_fastdds_profile()
 {
   const auto folder = config_folder();
-  if (!folder || chosen_profile()) {
+  if (!folder || chosen_profile(*folder)) {
     return;
   }
   for (const ProfileSource & source : sources) {
-    if (const fs::path file = *folder / source.package_file; is_present(file)) {
+    if (const fs::path file = *folder / source.node_file; is_present(file)) {
       ::setenv(source.variable, file.c_str(), 1);
     }
   }
@@ -80,8 +92,8 @@ void report_fastdds_profile(const rcl_cxx::Logger & logger)
 {
   constexpr const char * property = "fastdds.type_propagation";
   const auto folder = config_folder();
-  const auto profile = chosen_profile();
-  const bool needed = folder && is_present(*folder / "fastdds.xml");  // not with Fast DDS 2
+  const auto profile = folder ? chosen_profile(*folder) : std::nullopt;
+  const bool needed = folder && is_present(*folder / "fastdds_nodes.xml");  // not with Fast DDS 2
   if (needed && profile && is_present(*profile) && !mentions(*profile, property)) {
     RCL_CXX_INFO(logger,
                  "the Fast DDS profile {} leaves {} enabled: after a client was killed, new clients may not "

@@ -1,25 +1,35 @@
 #include "process/process.hpp"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <functional>
+#include <future>
 #include <memory>
+#include <optional>
 #include <rcl_cxx/error.hpp>
 #include <rcl_cxx/executor.hpp>
 #include <rcl_cxx/node.hpp>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "process/duplicate_check.hpp"
 #include "process/fastdds_profile.hpp"
+#include "process/host_name_lock.hpp"
 
 namespace ur_ros_rtde {
 namespace {
-/// Time to discover an older process with a node of the same name on an idle machine.
-constexpr std::chrono::milliseconds discovery_time{300};
+using Clock = std::chrono::steady_clock;
+
+/// Time to discover an older process on another host with a node of the same name, on an idle network.
+constexpr std::chrono::milliseconds discovery_time{200};
+/// The same on this host if there is one, however busy the host is.
+constexpr std::chrono::seconds local_discovery_time{3};
+constexpr std::chrono::milliseconds discovery_check_period{10};
 
 void close_servers(const Servers & servers)
 {
@@ -41,47 +51,113 @@ void close_servers(const Servers & servers)
   std::_Exit(1);
 }
 
-/// Sets `refused` and shuts down if another process has a node with one of these names.
-std::vector<std::unique_ptr<DuplicateCheck>> start_duplicate_checks(
-    const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & refused)
+using DuplicateChecks = std::vector<std::unique_ptr<DuplicateCheck>>;
+
+void refuse_start(const rcl_cxx::Node & node, const std::string & why, std::atomic<bool> & refused)
 {
-  std::vector<std::unique_ptr<DuplicateCheck>> checks;
+  if (!refused.exchange(true)) {
+    RCL_CXX_FATAL(node.get_logger(), "{}", why);
+    node.get_context()->shutdown(why);
+  }
+}
+
+DuplicateChecks start_duplicate_checks(const Servers & servers, std::atomic<bool> & refused)
+{
+  DuplicateChecks checks;
   for (const auto & server : servers) {
     rcl_cxx::Node & node = server->node();
-    checks.push_back(std::make_unique<DuplicateCheck>(node, [&node, &context, &refused](const auto & why) {
-      if (!refused.exchange(true)) {
-        RCL_CXX_FATAL(node.get_logger(), "{}", why);
-        context->shutdown(why);
-      }
-    }));
+    checks.push_back(std::make_unique<DuplicateCheck>(
+        node, [&node, &refused](const std::string & why) { refuse_start(node, why, refused); }));
   }
   return checks;
 }
 
-void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & refused)
+/// True if another process of this host has a node with one of these names, possibly in another network of
+/// ROS.
+bool reserve_names(const Servers & servers, std::vector<std::unique_ptr<HostNameLock>> & names)
 {
-  const auto checks = start_duplicate_checks(context, servers, refused);
-  const auto callback = context->add_pre_shutdown_callback([&servers] { close_servers(servers); });
-  {
-    std::vector<std::unique_ptr<rcl_cxx::Executor>> executors;
-    std::vector<std::jthread> threads;
+  const char * domain = std::getenv("ROS_DOMAIN_ID");
+  bool taken = false;
+  for (const auto & server : servers) {
+    names.push_back(std::make_unique<HostNameLock>(fmt::format(
+        "ur_ros_rtde/{}{}", domain != nullptr ? domain : "0", server->node().get_fully_qualified_name())));
+    taken = taken || names.back()->taken_by_other();
+  }
+  return taken;
+}
+
+/// Starts the servers at `when` if no older process has been found until then. Otherwise returns the reason.
+std::optional<std::string> start_if_unique(const rcl_cxx::Context & context, const Servers & servers,
+                                           const DuplicateChecks & checks, Clock::time_point when)
+{
+  do {
+    for (const auto & check : checks) {
+      if (auto why = check->find_older()) {
+        return why;
+      }
+    }
+    if (context.wait_for_shutdown_begin(discovery_check_period)) {
+      return std::nullopt;
+    }
+  } while (Clock::now() < when);
+  for (const auto & server : servers) {
+    server->start();
+  }
+  return std::nullopt;
+}
+
+void spin_if_unique(const rcl_cxx::Context::SharedPtr & context, const rcl_cxx::Node & node,
+                    const std::shared_future<std::optional<std::string>> & duplicate)
+{
+  if (!duplicate.get()) {
+    rcl_cxx::Executor executor(context);
+    executor.add_node(node);
+    executor.spin();
+  }
+}
+
+/// Creates the actions while older processes are being discovered and the robot is being connected, so that
+/// clients discover the actions early. Goals are kept until the node has an executor: a process that must not
+/// start does not answer them. Returns the reason not to start, or nothing after the shutdown.
+std::optional<std::string> run_servers(const rcl_cxx::Context::SharedPtr & context, const Servers & servers,
+                                       const DuplicateChecks & checks, Clock::time_point start)
+{
+  const auto duplicate = std::async(std::launch::async, [&] {
+                           return start_if_unique(*context, servers, checks, start);
+                         }).share();
+  std::vector<std::future<void>> running;
+  try {
     for (const auto & server : servers) {
       // One executor per node, so that nodes do not delay each other.
-      rcl_cxx::Executor & executor = *executors.emplace_back(std::make_unique<rcl_cxx::Executor>(context));
-      executor.add_node(server->node());
-      threads.emplace_back([&executor] { executor.spin(); });
+      running.push_back(std::async(std::launch::async, spin_if_unique, std::cref(context),
+                                   std::cref(server->node()), std::cref(duplicate)));
     }
-    try {
-      // Before clients can discover the actions of a node that must not start.
-      if (!context->wait_for_shutdown_begin(discovery_time)) {
-        for (const auto & server : servers) {
-          server->start();
-        }
-      }
-    } catch (...) {
-      context->shutdown("a node could not start");
-      throw;
+    for (const auto & server : servers) {
+      server->create_actions();
     }
+    for (auto & server : running) {
+      server.get();
+    }
+    return duplicate.get();
+  } catch (...) {
+    context->shutdown("a node could not start");
+    throw;
+  }
+}
+
+void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & refused)
+{
+  const auto begin = Clock::now();
+  std::vector<std::unique_ptr<HostNameLock>> names;
+  const bool taken = reserve_names(servers, names);
+  const auto checks = start_duplicate_checks(servers, refused);
+  for (const auto & server : servers) {
+    server->load_plugins();
+  }
+  const auto callback = context->add_pre_shutdown_callback([&servers] { close_servers(servers); });
+  const auto start = begin + (taken ? Clock::duration(local_discovery_time) : discovery_time);
+  if (const auto why = run_servers(context, servers, checks, start)) {
+    refuse_start(servers.front()->node(), *why, refused);
   }
   context->remove_shutdown_callback(callback);
 }

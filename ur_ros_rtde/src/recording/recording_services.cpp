@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "nodes/node_log.hpp"
+#include <utility>
 
 namespace ur_ros_rtde {
 
-RecordingServices::RecordingServices(rcl_cxx::Node & node, const std::string & address)
+RecordingServices::RecordingServices(rcl_cxx::Node & node, const std::string & address, LogFunction log)
     : node_(node),
-      recorder_(address, log_to(node.get_logger())),
+      recorder_(address, std::move(log)),
       start_recording_(node.create_service<Start>(
           "start_recording", [this](const auto & request, auto & response) { start(request, response); })),
       stop_recording_(node.create_service<Stop>("stop_recording",

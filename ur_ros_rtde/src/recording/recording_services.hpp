@@ -12,7 +12,8 @@ namespace ur_ros_rtde {
 /// The services start_recording and stop_recording. The destructor ends an active recording.
 class RecordingServices {
  public:
-  RecordingServices(rcl_cxx::Node & node, const std::string & address);
+  /// `address`: of the robot. `log`: for messages about a running recording.
+  RecordingServices(rcl_cxx::Node & node, const std::string & address, LogFunction log);
 
  private:
   using Start = ur_ros_rtde_msgs::srv::StartRecording;

@@ -79,6 +79,7 @@ class JointFollower : public TargetFollower {
   void begin(const Sample & sample, double cycle, const ArmLimits & limits) override
   {
     cycle_ = cycle;
+    setpoint_time_ = sample.controller_time / cycle;
     limits_ = limits;
     from_ = to_ = at_ = sample.actual_q;
     line_.begin(0.0);
@@ -114,7 +115,9 @@ class JointFollower : public TargetFollower {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       at_[i] = from_[i] + share * (to_[i] - from_[i]);
     }
-    run.control()->servoJ(to_ur(at_), 0.0, 0.0, cycle_, options_.lookahead_time, options_.gain);
+    setpoint_time_ += elapsed / cycle_;
+    run.control()->servoJ(to_ur(at_), 0.0, 0.0, cycle_, options_.lookahead_time, options_.gain,
+                          setpoint_time_);
     return {};
   }
 
@@ -122,6 +125,7 @@ class JointFollower : public TargetFollower {
   const TeleoperationOptions options_;
   ArmLimits limits_{};
   double cycle_ = 0.0;
+  double setpoint_time_ = 0.0;  // cycles; lets the control program bridge late setpoints
   Vector6 from_{}, to_{}, at_{};
   LineProgress line_;
   LineDuration duration_;

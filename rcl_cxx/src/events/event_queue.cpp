@@ -1,9 +1,7 @@
-#include "executor/event_queue.hpp"
+#include "events/event_queue.hpp"
 
 #include <algorithm>
 #include <utility>
-
-#include "executor/timer_impl.hpp"
 
 namespace rcl_cxx::detail {
 void EventQueue::push(Event event)
