@@ -2,6 +2,7 @@
 
 #include <string>
 #include <ur_ros_rtde/check.hpp>
+#include <ur_ros_rtde/outcome.hpp>
 #include <ur_ros_rtde_robot/script/script_extension.hpp>
 #include <utility>
 
@@ -20,14 +21,27 @@ inline ur_ros_rtde::ScriptExtension make_extension(std::string snippet)
           .urcap_functions = {"get_sg_Width", "sg_grip", "sg_release"}};
 }
 
-inline void check_width(ur_ros_rtde::Check & check, double width)
-{
-  check.in_range("target_width", width, min_width, max_width, "m");
-}
-
 inline void check_tool_index(ur_ros_rtde::Check & check, int index)
 {
   check.in_range("tool_index", index, 0, max_tool_index);
+}
+
+/// Checks the fields that goals of sg_grip and sg_release have in common.
+template <typename Goal>
+void check_motion(ur_ros_rtde::Check & check, const Goal & goal)
+{
+  check.in_range("target_width", goal.target_width, min_width, max_width, "m");
+  check_tool_index(check, goal.tool_index);
+  check.above_zero("timeout", goal.timeout, 60.0, "s");
+}
+
+/// Runs the snippet, which writes the width to output register 19, and sets the width in the result.
+template <typename Run>
+ur_ros_rtde::Outcome trigger_and_read_width(Run & run, double timeout)
+{
+  auto outcome = run.trigger(timeout);
+  run.result().width = run.registers().get_double(19) / millimeters_per_meter;
+  return outcome;
 }
 
 }  // namespace ur_ros_rtde_gripper_commands

@@ -19,9 +19,7 @@ class SgGetWidth : public ur_ros_rtde::Extension<action::SgGetWidth> {
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
     run.registers().set_int(19, goal.tool_index);
-    auto outcome = run.trigger(2.0);
-    run.result().width = run.registers().get_double(19) / millimeters_per_meter;
-    return outcome;
+    return trigger_and_read_width(run, 2.0);
   }
 };
 

@@ -14,12 +14,7 @@ class SgGrip : public ur_ros_rtde::Extension<action::SgGrip> {
     )");
   }
 
-  void check(const Goal & goal, ur_ros_rtde::Check & check) const override
-  {
-    check_width(check, goal.target_width);
-    check_tool_index(check, goal.tool_index);
-    check.above_zero("timeout", goal.timeout, 60.0, "s");
-  }
+  void check(const Goal & goal, ur_ros_rtde::Check & check) const override { check_motion(check, goal); }
 
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
@@ -27,9 +22,7 @@ class SgGrip : public ur_ros_rtde::Extension<action::SgGrip> {
     run.registers().set_int(19, goal.gentle);
     run.registers().set_int(20, goal.tool_index);
     run.registers().set_int(21, goal.depth_compensation);
-    auto outcome = run.trigger(goal.timeout);
-    run.result().width = run.registers().get_double(19) / millimeters_per_meter;
-    return outcome;
+    return trigger_and_read_width(run, goal.timeout);
   }
 };
 

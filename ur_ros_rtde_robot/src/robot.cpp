@@ -26,14 +26,20 @@ void Robot::on_sample(std::function<void(const Sample &)> function)
   impl_->sample_function = std::move(function);
 }
 
-void Robot::start()
+void Robot::connect()
 {
   impl_->state.start();
   impl_->dashboard.start();
+  impl_->manager.start();
+}
+
+void Robot::start()
+{
+  connect();
   if (impl_->options.control_mode == ControlMode::control_urcap) {
     impl_->server.start();
   }
-  impl_->manager.start();
+  impl_->manager.claim();
 }
 
 RobotStatus Robot::status() const
@@ -109,7 +115,12 @@ std::optional<Sample> Robot::latest() const
 
 bool Robot::wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop) const
 {
-  return impl_->state.wait_for_next(last, limit, std::move(stop));
+  if (!impl_->state.wait_for_next(last, limit, std::move(stop))) {
+    return false;
+  }
+  // The receiving thread may not have done so yet, and the caller asks for motion_progress() next.
+  impl_->tracker.add(last);
+  return true;
 }
 
 Status Robot::motion_possible() const

@@ -101,7 +101,8 @@ TEST_F(StatedModelTest, PreventsMotionIfItContradictsTheController)
   make_robot_with("ur5e");
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::model_mismatch));
   const auto message = robot->status().message;
-  for (const char * part : {"ur_type is ur5e", "ur10e", own_address().c_str(), "ur_type:=ur10e"}) {
+  for (const auto & part :
+       std::vector<std::string>{"ur_type is ur5e", "ur10e", own_address(), "ur_type:=ur10e"}) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
   }
   EXPECT_EQ(robot->ready_to_move().error().code, ErrorCode::model_mismatch);

@@ -227,7 +227,7 @@ TEST_F(ExternalControlTest, DistinguishesTheControlProgramFromAnotherOne)
   ASSERT_TRUE(eventually([&] {
     return robot->status().message.find("not the control program") != std::string::npos;
   })) << robot->status().message;
-  EXPECT_NE(robot->status().message.find("nobody has fetched it"), std::string::npos);
+  EXPECT_NE(robot->status().message.find("the External Control URCap has not fetched it"), std::string::npos);
   EXPECT_TRUE(robot->latest()->program_running()) << "it is left alone";
   controller.control({{"command", "stop_program"}});
   ASSERT_TRUE(waits_for_play());

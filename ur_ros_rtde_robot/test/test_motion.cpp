@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "motion/motion_blocker.hpp"
+#include "motion/motion_tracker.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 
 namespace ur_ros_rtde {
@@ -55,6 +57,120 @@ TEST(StandstillDetectorTest, RestartsAfterAReconnection)
   later.link = 1;
   detector.add(later);
   EXPECT_FALSE(detector.at_rest());
+}
+
+constexpr unsigned operation_shift = 24;
+constexpr std::uint32_t running_bit = 1U << 15U;
+
+/// Feeds a MotionTracker with one package per cycle of a control program that has run one operation.
+struct ArrivalTest : testing::Test {
+  MotionTracker tracker;
+  Sample sample{};
+
+  void SetUp() override
+  {
+    sample.runtime_state = RuntimeState::playing;
+    add(1U << 16U);
+    add(2U << 16U);  // the program has written its status
+  }
+  bool add(std::uint32_t status)
+  {
+    sample.async = {status};
+    ++sample.sequence;
+    sample.controller_time += 0.002;
+    tracker.add(sample);
+    return tracker.view().at_rest;
+  }
+  /// A move that ends with this package, one cycle after the arm has moved.
+  bool end_move()
+  {
+    const auto actual = std::exchange(sample.actual_qd, Vector6{0.5});
+    const auto target = std::exchange(sample.target_qd, Vector6{0.5});
+    add(1U << operation_shift | running_bit);
+    sample.actual_qd = actual;
+    sample.target_qd = target;
+    return add(1U << operation_shift);
+  }
+};
+
+TEST_F(ArrivalTest, IsProvenByThePackageInWhichTheOperationEnds)
+{
+  EXPECT_TRUE(end_move());
+  EXPECT_TRUE(add(1U << operation_shift));
+}
+
+TEST_F(ArrivalTest, IsNotProvenByTheTargetAlone)
+{
+  sample.actual_qd[3] = 0.011;
+  EXPECT_FALSE(end_move());
+  sample.actual_qd[3] = 0.009;
+  EXPECT_TRUE(add(1U << operation_shift)) << "the arm has followed";
+}
+
+TEST_F(ArrivalTest, IsNotProvenWhereAnOscillatingArmTurnsAround)
+{
+  sample.target_q[1] = 0.5;
+  sample.actual_q[1] = 0.502;
+  EXPECT_FALSE(end_move());
+}
+
+TEST_F(ArrivalTest, IsNotProvenWhileTheTargetMoves)
+{
+  sample.target_qd[5] = 1e-9;
+  EXPECT_FALSE(end_move());
+  sample.target_qd[5] = 0.0;
+  EXPECT_FALSE(add(1U << operation_shift)) << "something else has moved the target";
+}
+
+TEST_F(ArrivalTest, IsNotProvenWhileTheOperationRuns)
+{
+  add(1U << operation_shift | running_bit);
+  sample.actual_qd[0] = 0.5;
+  add(1U << operation_shift | running_bit);
+  sample.actual_qd[0] = 0.0;
+  EXPECT_FALSE(add(1U << operation_shift | running_bit)) << "a stop at a waypoint";
+}
+
+TEST_F(ArrivalTest, DoesNotApplyOnceTheArmHasLeftTheTarget)
+{
+  EXPECT_TRUE(end_move());
+  sample.actual_qd[2] = 0.5;
+  EXPECT_FALSE(add(1U << operation_shift));
+  sample.actual_qd[2] = 0.0;
+  EXPECT_FALSE(add(1U << operation_shift)) << "compliant motion turns around";
+}
+
+TEST_F(ArrivalTest, DoesNotApplyToAnotherProgram)
+{
+  sample.runtime_state = RuntimeState::stopped;
+  EXPECT_FALSE(end_move());
+  sample.runtime_state = RuntimeState::playing;
+  EXPECT_FALSE(add(1U << operation_shift));
+  EXPECT_FALSE(add(3U << 16U)) << "the new program has written its first status";
+}
+
+TEST_F(ArrivalTest, TreatsNaNAsMotion)
+{
+  sample.actual_q[4] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(end_move());
+}
+
+TEST_F(ArrivalTest, IsProvenForAnOperationBetweenTwoPackages)
+{
+  sample.actual_qd[0] = 0.5;
+  add(2U << 16U);
+  sample.actual_qd[0] = 0.0;
+  EXPECT_TRUE(add(1U << operation_shift));
+}
+
+TEST_F(ArrivalTest, IgnoresASampleThatItHas)
+{
+  EXPECT_TRUE(end_move());
+  auto old = sample;
+  old.sequence -= 1;
+  old.actual_qd[0] = 0.5;
+  tracker.add(old);
+  EXPECT_TRUE(tracker.view().at_rest);
 }
 
 TEST(AsyncStatusTest, DecodesTheControlScriptsWord)

@@ -29,6 +29,24 @@ TEST_F(RobotConnectionTest, BecomesReadyWithinTwoSeconds)
   EXPECT_NE(robot->dashboard()->robotmode().find("RUNNING"), std::string::npos);
 }
 
+TEST_F(RobotConnectionTest, AffectsTheRobotOnlyAfterTheStart)
+{
+  controller.start();
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "PLAYING"; }));
+  robot = std::make_unique<Robot>(robot_options(), log.function());
+  robot->connect();
+  ASSERT_TRUE(eventually([&] { return log.count("is a ur10e") == 1; })) << log.text();
+  EXPECT_TRUE(robot->latest());
+  EXPECT_FALSE(eventually([&] { return robot->status().state != RobotState::disconnected; }, 500ms));
+  EXPECT_EQ(controller.state().at("program").at("state"), "PLAYING");
+  EXPECT_THROW(robot->io(), RobotError);
+  robot->start();
+  EXPECT_TRUE(becomes_ready());
+  EXPECT_EQ(log.count("is a ur10e"), 1U) << log.text();
+}
+
 TEST_F(RobotConnectionTest, BecomesReadyOnEarlyVersionsOfPolyscope5)
 {
   for (const char * version : {"5.0.0", "5.3.0"}) {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <thread>
 
 #include "robot_fixture.hpp"
@@ -37,6 +39,67 @@ TEST_F(RobotMotionTest, IsNotFinishedByTheEndOfThePreviousOne)
     EXPECT_NEAR(robot->latest()->actual_q[5], q[5], 1e-3) << "motion " << i;
   }
 }
+
+bool stands(const Sample & sample)
+{
+  const auto all = [](const Vector6 & values, double limit) {
+    return std::all_of(values.begin(), values.end(), [limit](double v) { return std::abs(v) < limit; });
+  };
+  return all(sample.target_qd, 1e-12) && all(sample.actual_qd, StandstillDetector::velocity);
+}
+
+/// Evaluates each package when it arrives, so that a late host changes nothing.
+struct RobotArrivalTest : RobotFixture, testing::WithParamInterface<double> {
+  std::optional<MotionMark> mark;
+  std::size_t packages_at_rest = 0;   ///< until the motion was reported as finished
+  std::vector<Sample> after_the_end;  ///< from that package on
+
+  ~RobotArrivalTest() override { robot.reset(); }  // no packages arrive while the members are destroyed
+
+  void add(const Sample & sample)
+  {
+    const std::lock_guard lock(mutex);
+    if (after_the_end.empty()) {
+      packages_at_rest = stands(sample) ? packages_at_rest + 1 : 0;
+    }
+    if (mark && (!after_the_end.empty() || robot->motion_progress(*mark).finished())) {
+      after_the_end.push_back(sample);
+    }
+  }
+};
+
+TEST_P(RobotArrivalTest, IsReportedAtOnceAndNeverEarly)
+{
+  controller.start();
+  robot = std::make_unique<Robot>(robot_options(), log.function());
+  robot->on_sample([this](const Sample & sample) { add(sample); });
+  robot->start();
+  ASSERT_TRUE(becomes_ready());
+  auto q = robot->receive()->getActualQ();
+  q[5] += 0.5;
+  q[0] -= 0.3;
+  {
+    const std::lock_guard lock(mutex);
+    mark = robot->mark_motion();
+  }
+  ASSERT_TRUE(robot->control()->moveJ(q, 1.0, GetParam(), true));
+  const auto seen = [this] {
+    const std::lock_guard lock(mutex);
+    return after_the_end.size() > 100;
+  };
+  ASSERT_TRUE(eventually(seen, 10s));
+  const std::lock_guard lock(mutex);
+  EXPECT_LE(packages_at_rest, 3U)
+      << "the control program reports its end one package after the target stands";
+  for (const Sample & sample : after_the_end) {
+    ASSERT_TRUE(stands(sample));
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      ASSERT_NEAR(sample.actual_q[i], q[i], 1e-3);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Accelerations, RobotArrivalTest, testing::Values(1.4, 3.0, 15.0));
 
 TEST_F(RobotMotionTest, ToTheCurrentPositionEnds)
 {

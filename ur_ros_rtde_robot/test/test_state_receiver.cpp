@@ -218,6 +218,54 @@ TEST_F(StateReceiverTest, ReconnectsAfterARestartOfTheController)
   EXPECT_GT(receiver->latest()->sequence, last->sequence);
 }
 
+/// The shortest of several reconnections, because a busy host delays some of them.
+TEST_F(StateReceiverTest, ReplacesALostConnectionAtOnce)
+{
+  controller.start();
+  auto options = receiver_options();
+  options.retry_interval = 100ms;
+  const auto receiver = this->receiver(options);
+  auto shortest = Clock::duration::max();
+  for (std::uint32_t link = 1; link <= 5; ++link) {
+    ASSERT_TRUE(eventually([&] { return receiver->latest() && receiver->latest()->link == link; }))
+        << log.text();
+    const auto begin = receiver->latest()->received;
+    // Connections that break sooner are replaced at the retry interval.
+    ASSERT_TRUE(
+        eventually([&] { return receiver->latest()->received > begin + 2 * options.retry_interval; }));
+    controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+    Sample last = *receiver->latest();
+    while (last.link == link) {
+      const auto received = last.received;
+      ASSERT_TRUE(receiver->wait_for_next(last, 5s)) << log.text();
+      shortest = last.link == link ? shortest : std::min(shortest, last.received - received);
+    }
+  }
+  RecordProperty("interruption_us",
+                 std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(shortest).count()));
+  EXPECT_LT(shortest, 50ms);
+  EXPECT_EQ(log.count("closed the RTDE connection; connected again"), 5U) << log.text();
+}
+
+TEST_F(StateReceiverTest, ConnectsSoonAfterTheControllerHasStarted)
+{
+  auto options = receiver_options();
+  options.retry_interval = 10s;  // the delay is 1 % of the outage
+  auto shortest = Clock::duration::max();
+  for (int i = 0; i < 3; ++i) {
+    const auto receiver = this->receiver(options);
+    ASSERT_FALSE(eventually([&] { return receiver->link().connected; }, 200ms));
+    controller.start();
+    const auto started = Clock::now();
+    ASSERT_TRUE(connected(*receiver)) << log.text();
+    shortest = std::min(shortest, Clock::now() - started);
+    controller.stop();
+  }
+  RecordProperty("connected_after_us",
+                 std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(shortest).count()));
+  EXPECT_LT(shortest, 50ms);
+}
+
 TEST_F(StateReceiverTest, DetectsClosedAndResetConnections)
 {
   controller.start();

@@ -26,25 +26,25 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
   Outcome run(const Goal & goal, Run & run) override
   {
     run.control()->zeroFtSensor();
-    if (auto why = run.sleep_for(20ms)) {  // until RTDE packages contain the zeroed force
-      return *why;
+    if (auto stop_reason = run.sleep_for(20ms)) {  // until RTDE packages contain the zeroed force
+      return *stop_reason;
     }
     auto goal_pose = run.receive()->getActualTCPPose();
     const double start = goal_pose[2];
     goal_pose[2] -= goal.distance;
     run.control()->moveL(goal_pose, goal.speed, goal.acceleration, true);
     while (true) {
-      auto f = run.flange_force();
-      report(goal, run, f[2], start);
-      if (std::abs(f[2]) > goal.force) {
+      const double force = run.flange_force()[2];
+      report(goal, run, force, start);
+      if (std::abs(force) > goal.force) {
         run.control()->stopJ(goal.deceleration, true);
         break;
       }
       if (run.motion_ended()) {
         return end_of_motion(goal, run);
       }
-      if (auto why = run.sleep_for(2ms)) {
-        return *why;
+      if (auto stop_reason = run.sleep_for(2ms)) {
+        return *stop_reason;
       }
     }
     return wait_for_standstill(goal, run, start);
@@ -72,8 +72,8 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
   {
     const double force = run.result().force;
     const double stop = run.state().controller_time;
-    if (auto why = run.until_standstill()) {
-      return *why;
+    if (auto stop_reason = run.until_standstill()) {
+      return *stop_reason;
     }
     report(goal, run, force, start);
     run.result().stopping_time = run.state().controller_time - stop;

@@ -2,39 +2,27 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include "wait_for_duration.hpp"
 
 namespace ur_ros_rtde {
 namespace {
 constexpr double max_duration = 86400.0;  // s
-constexpr std::chrono::hours unlimited{24 * 365};
-constexpr double clock_reserve = 5.0;  // s, for a controller whose clock is slower than this one
 }  // namespace
 
-std::optional<StopReason> wait_for_duration(Run & run, double duration,
-                                            const std::function<void(const Sample &)> & observe)
+void end_mode(Run & run, EndFunction end, const std::string & mode)
 {
-  const double begin = run.state().controller_time;
-  const bool limited = duration > 0.0;
-  const auto elapsed = [&] {
-    const Sample now = run.state();
-    const double time = now.controller_time - begin;
-    run.progress(limited ? std::clamp(time / duration, 0.0, 1.0) : 0.0);
-    if (observe) {
-      observe(now);
-    }
-    return limited && time >= duration;
-  };
-  const std::chrono::duration<double> limit(duration + clock_reserve);
-  return run.until(elapsed,
-                   limited ? std::chrono::duration_cast<std::chrono::nanoseconds>(limit) : unlimited);
+  check_result(((*run.control().hold()).*end)(), "end " + mode);
 }
 
-std::optional<StopReason> wait_for_duration_or_cancel(Run & run, double duration,
-                                                      const std::function<void(const Sample &)> & observe)
+Outcome end_mode_after(Run & run, double duration, EndFunction end, const std::string & mode,
+                       const std::function<void(const Sample &)> & observe)
 {
-  auto stop_reason = wait_for_duration(run, duration, observe);
-  return stop_reason && stop_reason->code == ErrorCode::canceled ? std::nullopt : stop_reason;
+  const auto stop_reason = wait_for_duration(run, duration, observe);
+  if (stop_reason && stop_reason->code != ErrorCode::canceled) {
+    return *stop_reason;
+  }
+  end_mode(run, end, mode);
+  return Outcome::success();
 }
 
 void check_modes_inactive(Run & run, std::uint32_t modes, const std::string & requested_mode)

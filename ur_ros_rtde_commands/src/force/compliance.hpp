@@ -9,13 +9,13 @@
 
 namespace ur_ros_rtde {
 
-/// Waits for `duration` (s of the controller's clock), or until the goal has to stop if it is 0. Calls
-/// `observe` with every sample.
-std::optional<StopReason> wait_for_duration(Run & run, double duration,
-                                            const std::function<void(const Sample &)> & observe = {});
-/// The same for a mode that lasts as long as its goal: a cancel ends the wait successfully.
-std::optional<StopReason> wait_for_duration_or_cancel(
-    Run & run, double duration, const std::function<void(const Sample &)> & observe = {});
+/// A function of ur_rtde that ends a mode.
+using EndFunction = bool (ur_rtde::RTDEControlInterface::*)();
+void end_mode(Run & run, EndFunction end, const std::string & mode);
+/// Waits for the end of a mode that lasts as long as its goal, and ends it: after `duration` (see
+/// wait_for_duration()), or at a cancel, which counts as success.
+Outcome end_mode_after(Run & run, double duration, EndFunction end, const std::string & mode,
+                       const std::function<void(const Sample &)> & observe = {});
 
 /// Throws RobotError (busy) if one of ur_rtde's `modes` (RTDEControlInterface::MOTION_…) is active, which
 /// excludes `requested_mode`.

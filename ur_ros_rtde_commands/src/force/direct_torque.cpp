@@ -4,7 +4,9 @@
 #include <cmath>
 #include <ur_ros_rtde_msgs/action/direct_torque.hpp>
 
-#include "force/compliance.hpp"
+#include "check_result.hpp"
+#include "ur_ros_rtde/command.hpp"
+#include "wait_for_duration.hpp"
 
 namespace ur_ros_rtde {
 namespace {

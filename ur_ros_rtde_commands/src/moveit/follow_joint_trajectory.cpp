@@ -118,10 +118,9 @@ void FollowJointTrajectory::start_action_server(CommandHost & host, const std::s
     options.floating_point_range = rcl_cxx::FloatingPointRange{low, high};
     return host.node().declare_parameter(name + "." + what, value, options);
   };
-  servo_.lookahead_time =
-      declare("lookahead_time", 0.03, 0.03, 0.2,
-              "s: lookahead of the smoothing in the controller; the arm lags behind by about this time");
-  servo_.gain = declare("gain", 2000.0, 100.0, 2000.0, "of the controller's position control");
+  servo_.parameters.lookahead_time =
+      declare("lookahead_time", 0.03, 0.03, 0.2, "s: lookahead of the smoothing in the controller");
+  servo_.parameters.gain = declare("gain", 2000.0, 100.0, 2000.0, "of the controller's position control");
   servo_.max_tracking_error =
       declare("max_tracking_error", 0.3, 0.001, 3.14,
               "rad: above this error the goal is aborted and the arm stops, regardless of "

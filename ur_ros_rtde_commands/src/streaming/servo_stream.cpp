@@ -18,7 +18,9 @@ using trajectory::Trajectory;
 
 /// s. Lower limit of the time that the arm takes to follow a setpoint.
 constexpr double min_servo_lag = 0.1;
-constexpr double lag_reserve = 0.1;    // s, beyond lookahead_time
+constexpr double lag_reserve = 0.1;  // s, beyond lookahead_time
+/// Longer gaps between setpoints are not bridged by the control program.
+constexpr double bridged_cycles = ur_rtde::RTDEControlInterface::SERVO_EXTRAPOLATION_CYCLES + 1;
 constexpr double stopped_rate = 0.01;  // the rate below which braking is not necessary
 constexpr std::chrono::seconds package_timeout{1};
 constexpr double servo_stop_deceleration = 5.0;  // m/s^2; the arm is already at rest
@@ -35,6 +37,14 @@ double requested_rate(const Sample & sample)
   return std::clamp(std::min(sample.speed_scaling, sample.target_speed_fraction), 0.0, 1.0);
 }
 
+/// The motion at a rate of the time axis.
+JointMotion scaled(const trajectory::Point & point, const TimeScaling & time_scaling)
+{
+  const double rate = time_scaling.rate();
+  return {point.position, point.velocity * rate,
+          point.acceleration * (rate * rate) + point.velocity * time_scaling.rate_dot()};
+}
+
 }  // namespace
 
 ServoStream::ServoStream(Run & run, ServoSettings settings, SetpointCallback on_setpoint)
@@ -42,10 +52,19 @@ ServoStream::ServoStream(Run & run, ServoSettings settings, SetpointCallback on_
       settings_(std::move(settings)),
       on_setpoint_(std::move(on_setpoint)),
       cycle_(cycle_of(run.robot())),
-      servo_lag_(std::max(settings_.lookahead_time, min_servo_lag)),
+      setpoint_time_(run.state().controller_time / cycle_),
       target_(trajectory::joint_count)
 {
   state_.sample = run.state();
+}
+
+TimeScaling ServoStream::make_time_scaling(double rate, double time) const
+{
+  const TimeScaling::Servo servo{.cycle = cycle_,
+                                 .lag = std::max(settings_.parameters.lookahead_time, min_servo_lag),
+                                 .bridged_cycles = bridged_cycles,
+                                 .lead = settings_.parameters.lookahead_time};
+  return TimeScaling(servo, rate, time);
 }
 
 Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
@@ -54,29 +73,39 @@ Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
   state_.sample = run_.state();
   const Joints end = plan.sample(plan.duration()).position;
   std::copy(end.begin(), end.end(), target_.begin());
-  TimeScaling time_scaling(cycle_, servo_lag_, requested_rate(state_.sample));
-  while (time_scaling.time() < plan.duration()) {
+  TimeScaling time_scaling = make_time_scaling(requested_rate(state_.sample));
+  // The last setpoint is sent twice, because the control program extrapolates from the last two.
+  for (bool at_end = time_scaling.time() >= plan.duration(); !at_end;) {
+    at_end = time_scaling.time() >= plan.duration();
     const double before = state_.sample.controller_time;
-    if (const auto stop_reason = run_.next(state_.sample)) {
-      elapsed_ = state_.sample.controller_time - before;
+    const auto stop_reason = run_.next(state_.sample);
+    add_elapsed(before);
+    if (stop_reason) {
       brake(plan, limits, time_scaling);
       return *stop_reason;
     }
-    elapsed_ = state_.sample.controller_time - before;
     time_scaling.advance(elapsed_, requested_rate(state_.sample), plan.sample(time_scaling.time()), limits);
-    if (Status sent = send(plan, time_scaling.time()); !sent) {
+    if (Status sent = send(plan, limits, time_scaling); !sent) {
       return sent;
     }
   }
   return Outcome::success();
 }
 
-Status ServoStream::send(const Trajectory & plan, double time)
+void ServoStream::add_elapsed(double before)
 {
-  state_.time = std::min(time, plan.duration());
+  elapsed_ = state_.sample.controller_time - before;
+  setpoint_time_ += std::clamp(elapsed_ / cycle_, 0.0, bridged_cycles);
+}
+
+Status ServoStream::send(const Trajectory & plan, const Limits & limits, const TimeScaling & time_scaling)
+{
+  state_.time = std::min(time_scaling.time(), plan.duration());
   state_.desired = plan.sample(state_.time);
-  std::copy(state_.desired.position.begin(), state_.desired.position.end(), target_.begin());
-  run_.control()->servoJ(target_, 0.0, 0.0, cycle_, settings_.lookahead_time, settings_.gain);
+  const ServoParameters & servo = settings_.parameters;
+  const Joints setpoint = servo_setpoint(scaled(state_.desired, time_scaling), servo, limits);
+  std::copy(setpoint.begin(), setpoint.end(), target_.begin());
+  run_.control()->servoJ(target_, 0.0, 0.0, cycle_, servo.lookahead_time, servo.gain, setpoint_time_);
   update_tracking_error();
   if (state_.tracking_error > settings_.max_tracking_error) {
     return failure(ErrorCode::not_reached,
@@ -90,7 +119,7 @@ Status ServoStream::send(const Trajectory & plan, double time)
 void ServoStream::update_tracking_error()
 {
   const Sample & sample = state_.sample;
-  const double oldest = sample.controller_time - settings_.lookahead_time - lag_reserve;
+  const double oldest = sample.controller_time - settings_.parameters.lookahead_time - lag_reserve;
   targets_.push_back({sample.controller_time, state_.desired.position, state_.desired.velocity});
   while (targets_.front().controller_time < oldest) {
     targets_.pop_front();
@@ -114,7 +143,7 @@ bool ServoStream::next_package()
   const auto deadline = std::chrono::steady_clock::now() + package_timeout;
   while (std::chrono::steady_clock::now() < deadline && run_.robot().motion_possible()) {
     if (run_.robot().wait_for_next(state_.sample, std::chrono::milliseconds(10))) {
-      elapsed_ = state_.sample.controller_time - before;
+      add_elapsed(before);
       return static_cast<bool>(run_.robot().motion_possible());
     }
   }
@@ -129,7 +158,7 @@ bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits,
       return false;
     }
     time_scaling.advance(elapsed_, time_scaling.rate(), plan.sample(time_scaling.time()), limits);
-    if (!send(plan, time_scaling.time())) {
+    if (!send(plan, limits, time_scaling)) {
       return false;
     }
   }
@@ -155,7 +184,7 @@ void ServoStream::brake(const Trajectory & plan, const Limits & limits, TimeScal
     }
     const Trajectory stop = search.get();
     if (time_scaling.time() <= from) {
-      TimeScaling braking(cycle_, servo_lag_, 1.0, time_scaling.time() / rate);
+      TimeScaling braking = make_time_scaling(1.0, time_scaling.time() / rate);
       continue_until(stop, limits, braking, settings_.preempted_by_stop);
       return;
     }

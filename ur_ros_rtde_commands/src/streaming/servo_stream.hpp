@@ -4,14 +4,14 @@
 #include <functional>
 #include <vector>
 
+#include "streaming/servo_setpoint.hpp"
 #include "ur_ros_rtde/run.hpp"
 #include "ur_ros_rtde_trajectory/time_scaling.hpp"
 
 namespace ur_ros_rtde {
 
 struct ServoSettings {
-  double lookahead_time = 0.1;      ///< s, 0.03 to 0.2
-  double gain = 600.0;              ///< 100 to 2000
+  ServoParameters parameters;
   double max_tracking_error = 0.3;  ///< rad
   /// True if the goal was preempted by a command that determines the deceleration. The arm then does not
   /// brake along the path.
@@ -23,14 +23,15 @@ struct StreamState {
   double time = 0.0;  ///< s since the start of the trajectory
   trajectory::Point desired;
   Sample sample;
-  /// Setpoint minus actual value. The arm follows a setpoint after about lookahead_time, so it is compared
-  /// with the nearest setpoint of the last lookahead_time + 0.1 s.
+  /// Desired minus actual value. The setpoints make the arm follow the plan without delay. On a robot that is
+  /// slower, it is compared with the nearest desired position of the last lookahead_time + 0.1 s.
   trajectory::Joints position_error, velocity_error;
   double tracking_error = 0.0;  ///< rad, the largest of all joints
 };
 
-/// Sends a plan to the controller as targets of servoJ, one with each of its packages, on a TimeScaling. The
-/// rate follows the controller's speed scaling and the speed slider, which servoJ itself ignores.
+/// Sends a plan to the controller as setpoints of servoJ, one with each of its packages, on a TimeScaling.
+/// The rate follows the controller's speed scaling and the speed slider, which servoJ itself ignores. Each
+/// setpoint carries its time in cycles of the controller, with which the control program bridges late ones.
 class ServoStream {
  public:
   /// Called after each setpoint. A failure ends the stream.
@@ -52,9 +53,12 @@ class ServoStream {
     trajectory::Joints position, velocity;
   };
 
-  Status send(const trajectory::Trajectory & plan, double time);
+  Status send(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
+              const trajectory::TimeScaling & time_scaling);
   void update_tracking_error();
   bool next_package();
+  void add_elapsed(double before);
+  trajectory::TimeScaling make_time_scaling(double rate, double time = 0.0) const;
   /// Streams the plan until its end or until `done`. False if the arm can no longer be moved.
   bool continue_until(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
                       trajectory::TimeScaling & time_scaling, const std::function<bool()> & done);
@@ -65,9 +69,9 @@ class ServoStream {
   const ServoSettings settings_;
   const SetpointCallback on_setpoint_;
   const double cycle_;
-  const double servo_lag_;  // s, the time that the arm takes to follow a setpoint
   StreamState state_;
   double elapsed_ = 0.0;  // s between the last two packages
+  double setpoint_time_;  // cycles
   std::vector<double> target_;
   std::deque<Target> targets_;
   double max_tracking_error_ = 0.0;

@@ -265,10 +265,11 @@ def test_stopping_the_program_aborts_the_goal_without_resuming_it(robot, simulat
     assert is_at_rest(robot)
 
 
-def test_a_lost_connection_aborts_the_goal_and_stops_the_arm(robot, simulator):
+@pytest.mark.parametrize("clients", ["all", "receive", "control"])
+def test_a_lost_connection_aborts_the_goal_and_stops_the_arm(robot, simulator, clients):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
     wait_until_moving(robot)
-    simulator.control("drop_links", which="rtde")
+    simulator.control("drop_links", which="rtde", clients=clients)
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED
     assert result.error_code in (ErrorCode.LINK_LOST, ErrorCode.PROGRAM_STOPPED), result.message

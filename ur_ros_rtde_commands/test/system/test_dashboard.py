@@ -68,7 +68,8 @@ def test_powers_the_arm_off_and_on_and_releases_the_brakes(dashboard):
     assert query(dashboard, "robot_mode") == "POWER_OFF"
     goal = command(dashboard, "power_on")
     assert goal.succeeded().answer.startswith("Powering on")
-    assert goal.feedback[-1].state == "IDLE"
+    # ROS does not order feedback and result.
+    wait_for(lambda: goal.feedback and goal.feedback[-1].state == "IDLE", 5.0, "the feedback of the new robot mode")
     assert query(dashboard, "robot_mode") == "IDLE"
     command(dashboard, "brake_release").succeeded()
     assert query(dashboard, "robot_mode") == "RUNNING"

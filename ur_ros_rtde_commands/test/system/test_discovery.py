@@ -12,6 +12,7 @@ from support import TIMEOUT_FACTOR, start_node, wait_for
 CLIENTS = pathlib.Path(__file__).parent / "discovery_clients.py"
 PROFILES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
 LIMIT = 2.0  # s, allows for other tests running at the same time
+FAST_DDS_3 = os.environ.get("ROS_DISTRO", "") >= "kilted"
 
 
 @pytest.fixture
@@ -39,6 +40,31 @@ def test_new_clients_find_all_actions_after_others_were_killed(no_profile, addre
     assert max(client["seconds"] for client in found) < LIMIT * TIMEOUT_FACTOR, found
 
 
+def announcement_threads(process):
+    """Returns the scheduling policies of the flow controllers' threads. The profile of the nodes sets the policy."""
+    threads = pathlib.Path(f"/proc/{process.pid}/task").iterdir()
+    return [os.sched_getscheduler(int(thread.name)) for thread in threads if (thread / "comm").read_text().startswith("dds.asyn")]
+
+
+@pytest.mark.skipif(not FAST_DDS_3, reason="the profile for Fast DDS 2 has no flow controller")
+@pytest.mark.parametrize("environment", [{}, {"FASTDDS_DEFAULT_PROFILES_FILE": os.environ.get("FASTDDS_DEFAULT_PROFILES_FILE", "")}],
+                         ids=["none", "clients"])
+def test_nodes_use_the_profile_for_nodes(environment, no_profile, addresses, processes):
+    """Also if the profile for clients is in the environment."""
+    driver = processes(start_node("driver", addresses[3], env=environment))
+    driver.wait_for_output("]: commands: ")
+    assert os.SCHED_BATCH in announcement_threads(driver)
+
+
+def test_nodes_load_no_introspection_type_supports(addresses, processes):
+    """With them, the middleware also keeps a description of each type. Together they take 9 MB."""
+    driver = processes(start_node("driver", addresses[3]))
+    driver.wait_for_output("]: commands: ")
+    libraries = pathlib.Path(f"/proc/{driver.pid}/maps").read_text()
+    assert "libur_ros_rtde_msgs__rosidl_typesupport_fastrtps_cpp.so" in libraries
+    assert "libur_ros_rtde_msgs__rosidl_typesupport_introspection_cpp.so" not in libraries
+
+
 def write_profile(tmp_path, text):
     file = tmp_path / "own.xml"
     file.write_text(f'<dds xmlns="http://www.eprosima.com"><profiles><participant profile_name="own" is_default_profile="true">'
@@ -50,7 +76,7 @@ DISABLED = """<propertiesPolicy><properties><property><name>fastdds.type_propaga
 </properties></propertiesPolicy>"""
 
 
-@pytest.mark.skipif(os.environ.get("ROS_DISTRO", "") < "kilted", reason="Fast DDS 2 has no type propagation")
+@pytest.mark.skipif(not FAST_DDS_3, reason="Fast DDS 2 has no type propagation")
 @pytest.mark.parametrize("text, expected", [("<name>own</name>", True), (DISABLED, False)])
 def test_warns_of_a_user_profile_that_leaves_type_propagation_enabled(no_profile, addresses, processes, tmp_path, text, expected):
     file = write_profile(tmp_path, text)
@@ -58,6 +84,7 @@ def test_warns_of_a_user_profile_that_leaves_type_propagation_enabled(no_profile
     driver.wait_for_output("]: commands: ")
     assert ("leaves fastdds.type_propagation enabled" in driver.output()) == expected
     assert (file in driver.output()) == expected
+    assert os.SCHED_BATCH not in announcement_threads(driver)
 
 
 def test_uses_the_profile_in_the_working_directory(no_profile, addresses, processes, tmp_path):
@@ -66,4 +93,4 @@ def test_uses_the_profile_in_the_working_directory(no_profile, addresses, proces
     driver = processes(start_node("driver", addresses[3]))
     wait_for(lambda: "]: commands: " in driver.output(), 15.0, "the driver to start")
     warned = "DEFAULT_FASTDDS_PROFILES.xml leaves fastdds.type_propagation enabled" in driver.output()
-    assert warned == (os.environ.get("ROS_DISTRO", "") >= "kilted"), driver.output()
+    assert warned == FAST_DDS_3, driver.output()

@@ -47,6 +47,10 @@ class Robot {
   void on_status(std::function<void(const RobotStatus &)> function);
   /// Called with each package on the receiving thread; must return quickly. Set before start().
   void on_sample(std::function<void(const Sample &)> function);
+  /// Optional first step of start(): receives samples and detects the model, but leaves inputs, program and
+  /// status() alone.
+  void connect();
+  /// Starts the control program as soon as possible.
   void start();
 
   RobotStatus status() const;
@@ -72,7 +76,7 @@ class Robot {
 
   /// The newest sample; none before the first.
   std::optional<Sample> latest() const;
-  /// See StateReceiver::wait_for_next().
+  /// See StateReceiver::wait_for_next(). motion_progress() and moving() then include this sample.
   bool wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop = {}) const;
 
   /// Success if a motion can continue now; else the reason why not: a safety stop, a stopped program, a lost

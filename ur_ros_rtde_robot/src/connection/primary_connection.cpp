@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "connection/big_endian.hpp"
 #include "connection/ports.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
@@ -21,15 +22,6 @@ constexpr std::uint8_t robot_state = 16;
 constexpr std::uint8_t robot_message = 20;
 
 enum class MessageKind : std::uint8_t { text = 0, key = 7, runtime_exception = 10 };
-
-std::uint32_t big_endian(std::span<const std::byte> data)
-{
-  std::uint32_t value = 0;
-  for (const std::byte byte : data.first(4)) {
-    value = value << 8U | std::to_integer<std::uint32_t>(byte);
-  }
-  return value;
-}
 
 std::string text_of(std::span<const std::byte> data)
 {
@@ -87,7 +79,7 @@ std::optional<PrimaryMessage> exception_message(std::span<const std::byte> body)
     return std::nullopt;
   }
   PrimaryMessage message{PrimaryMessage::Kind::error, text_of(body.subspan(text_begin))};
-  const auto line = static_cast<std::int32_t>(big_endian(body));
+  const auto line = static_cast<std::int32_t>(big_endian(body.first(4)));
   message.line = line > 0 ? line : line_in(message.text);
   return message;
 }
@@ -120,12 +112,12 @@ std::optional<std::int32_t> robot_type_of(std::span<const std::byte> package)
     return std::nullopt;
   }
   for (auto rest = package.subspan(header); rest.size() >= header;) {
-    const std::size_t size = big_endian(rest);
+    const std::size_t size = big_endian(rest.first(4));
     if (size < header || size > rest.size()) {
       break;
     }
     if (std::to_integer<std::uint8_t>(rest[4]) == configuration && size >= type_begin + 4) {
-      return static_cast<std::int32_t>(big_endian(rest.subspan(type_begin)));
+      return static_cast<std::int32_t>(big_endian(rest.subspan(type_begin, 4)));
     }
     rest = rest.subspan(size);
   }
@@ -139,7 +131,7 @@ bool PrimaryReader::feed(std::span<const std::byte> bytes)
   buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
   std::span<const std::byte> rest(buffer_);
   while (rest.size() >= shortest_package) {
-    const std::size_t size = big_endian(rest);
+    const std::size_t size = big_endian(rest.first(4));
     if (size < shortest_package || size > longest_primary_package) {
       return false;
     }

@@ -2,6 +2,7 @@
 
 #include <mutex>
 
+#include "motion/arrival_detector.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 
 namespace ur_ros_rtde {
@@ -10,6 +11,7 @@ namespace ur_ros_rtde {
 class MotionTracker {
  public:
   struct View {
+    /// By StandstillDetector or ArrivalDetector.
     bool at_rest = false;
     AsyncStatus async;
     bool program_running = false;
@@ -28,13 +30,19 @@ class MotionTracker {
     bool operating() const { return program_running && !async_is_stale && async.running(); }
   };
 
+  /// Ignores a sample that was added before, so that a thread that has just received the newest sample can
+  /// add it without waiting for the receiving thread to do so.
   void add(const Sample & sample)
   {
     const std::lock_guard lock(mutex_);
-    standstill_.add(sample);
+    if (sample.sequence <= view_.sequence) {
+      return;
+    }
     const bool ended = (view_.program_running && !sample.program_running()) || sample.link != view_.link;
     const bool same_word = sample.async == view_.async;
-    view_ = {standstill_.at_rest(),
+    standstill_.add(sample);
+    arrival_.add(sample, !ended && operation_ends(sample));
+    view_ = {standstill_.at_rest() || arrival_.arrived(),
              sample.async,
              sample.program_running(),
              view_.program + (ended ? 1U : 0U),
@@ -50,8 +58,17 @@ class MotionTracker {
   }
 
  private:
+  /// The operation may have begun and ended since the previous sample. The first status of a program is no
+  /// end of an operation.
+  bool operation_ends(const Sample & sample) const
+  {
+    return !view_.async_is_stale && !sample.async.running() &&
+           (view_.async.running() || sample.async.operation() != view_.async.operation());
+  }
+
   mutable std::mutex mutex_;
   StandstillDetector standstill_;
+  ArrivalDetector arrival_;
   View view_;
 };
 

@@ -156,10 +156,7 @@ ControlProgramManager::Outcome ControlProgramManager::stop_program_on_robot()
     return RobotStatus{RobotState::stopped, ended.error().code, ended.error().message};
   }
   // In local control, its watchdog has to end it. A link that is lost meanwhile says nothing about the stop.
-  const bool connected = receiver_.link().connected;
-  const auto latest = receiver_.latest();
-  const std::lock_guard lock(mutex_);
-  if (connected && latest && latest->link == link_) {
+  if (follows_newest_link()) {
     return std::nullopt;
   }
   return RobotStatus{RobotState::connecting, ErrorCode::not_ready,
@@ -186,13 +183,21 @@ Status ControlProgramManager::end_program()
   return {};
 }
 
+bool ControlProgramManager::follows_newest_link() const
+{
+  const bool connected = receiver_.link().connected;
+  const auto latest = receiver_.latest();
+  const std::lock_guard lock(mutex_);
+  return connected && latest && latest->link == link_;
+}
+
 bool ControlProgramManager::wait_for_program(ProgramActivity program, milliseconds limit) const
 {
   constexpr milliseconds link_check_interval(50);
   const auto stop = stop_.get_token();
   const auto deadline = Clock::now() + limit;
   const auto reached = [&] { return observation_.program == program; };
-  while (Clock::now() < deadline && !stop.stop_requested() && receiver_.link().connected) {
+  while (Clock::now() < deadline && !stop.stop_requested() && follows_newest_link()) {
     std::unique_lock lock(mutex_);
     if (changed_.wait_for(lock, stop, link_check_interval, reached)) {
       return true;
@@ -225,11 +230,13 @@ ControlProgramManager::Outcome ControlProgramManager::adopt_program()
     return program_stopped(fmt::format(
         "a program runs on the robot, but not the control program: {}",
         server_.fetched() == 0
-            ? fmt::format("nobody has fetched it from port {}. Is the host in the URCap's installation this "
-                          "one, and has the program an External Control node?",
-                          options_.urcap_port)
-            : std::string(
-                  "it has not come to its External Control node, or is past it; or it is another one")));
+            ? fmt::format(
+                  "the External Control URCap has not fetched it from port {}. Check that the program "
+                  "has an External Control node, and that Host IP in the URCap's installation is the "
+                  "address of this host",
+                  options_.urcap_port)
+            : std::string("the program has not reached its External Control node, has already passed it, or "
+                          "is a different program")));
   }
   if (const auto adopted = interfaces_.adopt_control(); !adopted) {
     return RobotStatus{RobotState::connecting, adopted.error().code, adopted.error().message};

@@ -70,7 +70,15 @@ ControlProgramManager::ControlProgramManager(const RobotOptions & options, State
 
 void ControlProgramManager::start()
 {
-  thread_ = std::jthread([this] { run(); });
+  if (!thread_.joinable()) {
+    thread_ = std::jthread([this] { run(); });
+  }
+}
+
+void ControlProgramManager::claim()
+{
+  claimed_ = true;
+  wake();
 }
 
 void ControlProgramManager::stop()
@@ -199,15 +207,23 @@ void ControlProgramManager::run()
 {
   const auto stop = stop_.get_token();
   while (!stop.stop_requested()) {
-    const auto requests = begin_cycle();
-    const auto now = examine_guarded();
-    if (stop.stop_requested()) {
-      return;
-    }
-    set_status(now);
-    finish_cycle(requests);
+    cycle();
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, options_.retry_interval, [this] { return wake_; });
+  }
+}
+
+void ControlProgramManager::cycle()
+{
+  const auto requests = begin_cycle();
+  if (!claimed_) {
+    detect_model();
+    return;
+  }
+  const auto now = examine_guarded();
+  if (!stop_.stop_requested()) {
+    set_status(now);
+    finish_cycle(requests);
   }
 }
 
@@ -280,9 +296,18 @@ tl::expected<Sample, RobotStatus> ControlProgramManager::follow_link()
     process(ProgramEvent::sample);
     lock.unlock();
     execute_actions();
-    model_.detect(receiver_.version().value_or(ControllerVersion{}), options_.connect_timeout);
+    detect_model();
   }
   return *sample;
+}
+
+void ControlProgramManager::detect_model()
+{
+  const auto sample = receiver_.latest();
+  if (receiver_.link().connected && sample && sample->link != model_link_) {
+    model_.detect(receiver_.version().value_or(ControllerVersion{}), options_.connect_timeout);
+    model_link_ = sample->link;
+  }
 }
 
 ControlProgramManager::Outcome ControlProgramManager::follow_program(bool robot_can_move)

@@ -37,7 +37,10 @@ class ControlProgramManager {
 
   /// Called on the manager's thread at each change of status. Set before start().
   std::function<void(const RobotStatus &)> status_function;
+  /// Starts the thread, which only detects the model of the arm until claim().
   void start();
+  /// Claims the robot: its inputs and its program.
+  void claim();
   /// Ends the thread, and yield() and resume() in other threads.
   void stop();
 
@@ -70,6 +73,7 @@ class ControlProgramManager {
   using Outcome = std::optional<RobotStatus>;  ///< the status that a failure leads to
 
   void run();
+  void cycle();
   RobotStatus examine_guarded();
   /// Feeds the state machine with what is true now, and executes its actions.
   RobotStatus examine();
@@ -77,6 +81,8 @@ class ControlProgramManager {
   Outcome examine_once();
   /// The newest sample of the current connection.
   tl::expected<Sample, RobotStatus> follow_link();
+  /// Once per connection.
+  void detect_model();
   /// The connection to the control program alone, and a program that must not continue.
   Outcome follow_program(bool robot_can_move);
   /// What prevents the control program from running, except the program on the robot; or that it runs.
@@ -99,6 +105,8 @@ class ControlProgramManager {
   void suspend_program();
   RobotStatus interface_failed(const Error & error);
   Status end_program();
+  /// False if the connection was lost, even if there is a new one.
+  bool follows_newest_link() const;
   bool wait_for_program(ProgramActivity program, std::chrono::milliseconds limit) const;
 
   Status resume_by(ProgramEvent event, std::chrono::milliseconds limit);
@@ -137,6 +145,9 @@ class ControlProgramManager {
   std::chrono::steady_clock::time_point
       next_start_{};  ///< earliest time after a failed start; zero after success
 
+  std::uint32_t model_link_ = 0;  ///< Sample::link of the connection for which the model was detected
+
+  std::atomic<bool> claimed_ = false;
   std::stop_source stop_;
   std::jthread thread_;
 };

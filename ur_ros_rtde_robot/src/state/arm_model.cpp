@@ -90,7 +90,8 @@ void ArmModel::report_undetected(const std::string & why)
 void ArmModel::detect(const ControllerVersion & version, std::chrono::milliseconds limit)
 {
   auto primary = PrimaryConnection::connect(address_, limit);
-  const auto type = primary.and_then([&](PrimaryConnection & link) { return link.robot_type(limit); });
+  const auto type =
+      primary.and_then([&](PrimaryConnection & connection) { return connection.robot_type(limit); });
   if (!type) {
     return report_undetected(type.error().message);
   }

@@ -13,10 +13,18 @@ namespace ur_ros_rtde::trajectory {
 /// q' r'' to the jerks. It uses the remaining margin of the limits, and 2 /s if the margin is smaller.
 class TimeScaling {
  public:
-  /// Starts at `time` of the plan. `cycle`: cycle time of the controller, s. `servo_lag`: time that the
-  /// controller takes to follow a setpoint, s.
-  TimeScaling(double cycle, double servo_lag, double rate, double time = 0.0)
-      : cycle_(cycle), servo_lag_(servo_lag), time_(time), rate_(rate)
+  /// What the controller does with setpoints.
+  struct Servo {
+    double cycle;  ///< s, cycle time of the controller
+    double lag;    ///< s, in which the arm slows down while its setpoint stands still
+    /// Cycles between two setpoints that the controller bridges. The arm slows down in longer gaps.
+    double bridged_cycles = 2.0;
+    /// s, by which the setpoints are ahead of the plan. In longer gaps the arm moves on towards its setpoint.
+    double lead = 0.0;
+  };
+
+  /// Starts at `time` of the plan.
+  TimeScaling(const Servo & servo, double rate, double time = 0.0) : servo_(servo), time_(time), rate_(rate)
   {
   }
 
@@ -27,12 +35,14 @@ class TimeScaling {
   /// Time of the plan in s.
   double time() const { return time_; }
   double rate() const { return rate_; }
+  /// Change of the rate, 1/s.
+  double rate_dot() const { return rate_dot_; }
 
  private:
   void slow_for_delay(double delay);
   void update_rate(double duration, double target_rate, double max_rate_dot, double max_rate_ddot);
 
-  double cycle_, servo_lag_;
+  Servo servo_;
   double time_;
   double rate_;
   double rate_dot_ = 0.0;  // 1/s

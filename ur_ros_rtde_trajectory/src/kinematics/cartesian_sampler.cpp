@@ -79,8 +79,8 @@ Expected<SampledSegment> CartesianSampler::sample_segment(double from, double to
 {
   Sample sample{from, start};
   SampledSegment segment{{from}, {start}, {}};
-  if (Status fine = check_sample(sample); !fine) {
-    return tl::unexpected(fine.error());
+  if (Status valid = check_sample(sample); !valid) {
+    return tl::unexpected(valid.error());
   }
   double step = std::min(max_step, (to - from) / min_intervals);
   while (sample.u < to) {
@@ -145,12 +145,12 @@ std::string CartesianSampler::describe_position(double u) const
 {
   // The first pose is the start of the arm; the poses of the caller follow.
   const auto & waypoints = path_.waypoints();
-  const auto next_sample = std::lower_bound(waypoints.begin(), waypoints.end(), u - 1e-9) - waypoints.begin();
+  const auto next = std::lower_bound(waypoints.begin(), waypoints.end(), u - 1e-9) - waypoints.begin();
   const Pose pose = path_.at(u);
   return fmt::format(
       "{} poses[{}], at ({:.3f}, {:.3f}, {:.3f}) m",
-      next_sample > 0 && u > waypoints[static_cast<std::size_t>(next_sample)] - 1e-6 ? "at" : "on the way to",
-      std::max<std::ptrdiff_t>(next_sample - 1, 0), pose.translation().x(), pose.translation().y(),
+      next > 0 && u > waypoints[static_cast<std::size_t>(next)] - 1e-6 ? "at" : "on the way to",
+      std::max<std::ptrdiff_t>(next - 1, 0), pose.translation().x(), pose.translation().y(),
       pose.translation().z());
 }
 

@@ -7,10 +7,10 @@
 #include <limits>
 #include <numeric>
 
-#include "timing/initial_timing.hpp"
+#include "solver/initial_timing.hpp"
+#include "solver/topp_ra.hpp"
 #include "timing/limit_refinement.hpp"
 #include "timing/resampling.hpp"
-#include "timing/topp_ra.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {

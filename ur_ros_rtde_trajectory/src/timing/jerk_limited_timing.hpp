@@ -1,7 +1,7 @@
 #pragma once
 
-#include "timing/jerk_solver.hpp"
-#include "trajectory/motion.hpp"
+#include "motion/motion.hpp"
+#include "solver/jerk_solver.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

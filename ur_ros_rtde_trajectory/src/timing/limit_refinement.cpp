@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trajectory/verify.hpp"
+#include "motion/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "timing/jerk_solver.hpp"
+#include "solver/jerk_solver.hpp"
 #include "timing/resampling.hpp"
 
 namespace ur_ros_rtde::trajectory {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "trajectory/motion.hpp"
+#include "motion/motion.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

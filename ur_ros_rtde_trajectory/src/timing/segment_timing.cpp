@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "motion/verify.hpp"
+#include "solver/topp_ra.hpp"
 #include "timing/jerk_limited_timing.hpp"
 #include "timing/s_curve_profile.hpp"
-#include "timing/topp_ra.hpp"
-#include "trajectory/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "motion/verify.hpp"
 #include "timing/segment_timing.hpp"
-#include "trajectory/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <stop_token>
 
-#include "trajectory/motion.hpp"
+#include "motion/motion.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "motion/motion.hpp"
+#include "motion/verify.hpp"
 #include "trajectory/braking_time_scaling.hpp"
-#include "trajectory/motion.hpp"
-#include "trajectory/verify.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {

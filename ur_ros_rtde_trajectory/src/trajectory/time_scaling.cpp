@@ -11,8 +11,6 @@ constexpr double lowest_rate_dot_limit = 2.0;
 constexpr double highest_rate_dot_limit = 20.0;
 constexpr double lowest_rate_ddot_limit = 100.0;  // 1/s^2, of the rate
 constexpr double highest_rate_ddot_limit = 1000.0;
-/// Gaps of one or two cycles are network jitter. During longer gaps the arm slows down.
-constexpr double jitter_cycles = 2.0;
 
 // Margin between `used` and `limit`, relative to the joint velocities.
 double available(const Joints & limit, const Joints & used, const Joints & velocity, double least,
@@ -25,7 +23,7 @@ double available(const Joints & limit, const Joints & used, const Joints & veloc
 
 void TimeScaling::advance(double elapsed, double target_rate, const Point & point, const Limits & limits)
 {
-  const double duration = std::clamp(elapsed, 0.0, jitter_cycles * cycle_);
+  const double duration = std::clamp(elapsed, 0.0, servo_.bridged_cycles * servo_.cycle);
   slow_for_delay(elapsed - duration);
   const double before = rate_;
   const Joints velocity = point.velocity.abs();
@@ -38,12 +36,15 @@ void TimeScaling::advance(double elapsed, double target_rate, const Point & poin
   time_ += 0.5 * (before + rate_) * duration;
 }
 
-// While the setpoint was constant, the controller has slowed the arm down with its servo lag.
+// While the setpoint was constant, the controller has slowed the arm down with its servo lag. The setpoint,
+// which is at time + lead * rate of the plan, does not jump.
 void TimeScaling::slow_for_delay(double delay)
 {
   if (delay > 0.0) {
-    rate_ *= std::max(0.0, 1.0 - delay / servo_lag_);
+    const double before = rate_;
+    rate_ *= std::max(0.0, 1.0 - delay / servo_.lag);
     rate_dot_ = std::max(rate_dot_, 0.0);
+    time_ += servo_.lead * (before - rate_);
   }
 }
 

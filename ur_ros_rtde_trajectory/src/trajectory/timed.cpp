@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/motion.hpp"
 #include "path/quintic_hermite.hpp"
 #include "path/spline.hpp"
 #include "trajectory/check_positions.hpp"
-#include "trajectory/motion.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "motion/motion.hpp"
 #include "random_paths.hpp"
-#include "trajectory/motion.hpp"
 
 using namespace ur_ros_rtde::trajectory;
 

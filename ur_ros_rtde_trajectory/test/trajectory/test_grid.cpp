@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "path/path_builder.hpp"
-#include "timing/constraint_block.hpp"
-#include "timing/initial_timing.hpp"
+#include "solver/constraint_block.hpp"
+#include "solver/initial_timing.hpp"
 #include "timing/resampling.hpp"
 #include "timing/s_curve_profile.hpp"
 

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "checks.hpp"
+#include "motion/motion.hpp"
 #include "random_paths.hpp"
-#include "trajectory/motion.hpp"
 #include "ur_ros_rtde_trajectory/plan.hpp"
 
 namespace ur_ros_rtde::trajectory::test {

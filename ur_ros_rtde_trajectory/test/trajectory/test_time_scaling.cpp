@@ -11,7 +11,7 @@ namespace ur_ros_rtde::trajectory::test {
 namespace {
 
 constexpr double cycle = 0.002;
-constexpr double servo_lag = 0.1;
+constexpr TimeScaling::Servo servo{.cycle = cycle, .lag = 0.1};
 
 Limits test_limits()
 {
@@ -30,7 +30,7 @@ Trajectory line()
 TEST(TimeScalingTest, FollowsTheControllerClock)
 {
   const Trajectory plan = line();
-  TimeScaling scaling(cycle, servo_lag, 1.0);
+  TimeScaling scaling(servo, 1.0);
   for (int k = 0; k < 1000; ++k) {
     scaling.advance(cycle, 1.0, plan.sample(scaling.time()), test_limits());
   }
@@ -40,7 +40,7 @@ TEST(TimeScalingTest, FollowsTheControllerClock)
 TEST(TimeScalingTest, KeepsFullRateWhenPackagesArriveInPairs)
 {
   const Trajectory plan = line();
-  TimeScaling scaling(cycle, servo_lag, 1.0);
+  TimeScaling scaling(servo, 1.0);
   for (int k = 0; k < 500; ++k) {
     scaling.advance(2.0 * cycle, 1.0, plan.sample(scaling.time()), test_limits());
   }
@@ -50,7 +50,7 @@ TEST(TimeScalingTest, KeepsFullRateWhenPackagesArriveInPairs)
 TEST(TimeScalingTest, ContinuesSlowerWithoutSkippingAfterDelay)
 {
   const Trajectory plan = line();
-  TimeScaling scaling(cycle, servo_lag, 1.0, 1.0);
+  TimeScaling scaling(servo, 1.0, 1.0);
   scaling.advance(0.054, 1.0, plan.sample(scaling.time()), test_limits());
   EXPECT_LE(scaling.time() - 1.0, 2.0 * cycle + 1e-12);
   EXPECT_NEAR(scaling.rate(), 0.5, 0.03);
@@ -63,11 +63,36 @@ TEST(TimeScalingTest, ContinuesSlowerWithoutSkippingAfterDelay)
   EXPECT_EQ(scaling.rate(), 1.0);
 }
 
+TEST(TimeScalingTest, KeepsFullRateInGapsThatTheControllerBridges)
+{
+  const Trajectory plan = line();
+  TimeScaling scaling({.cycle = cycle, .lag = 0.1, .bridged_cycles = 5.0}, 1.0);
+  for (int k = 0; k < 200; ++k) {
+    scaling.advance(5.0 * cycle, 1.0, plan.sample(scaling.time()), test_limits());
+  }
+  EXPECT_NEAR(scaling.time(), 2.0, 1e-9);
+  scaling.advance(0.06, 1.0, plan.sample(scaling.time()), test_limits());
+  EXPECT_LE(scaling.time() - 2.0, 5.0 * cycle + 1e-12);
+  EXPECT_LT(scaling.rate(), 0.6);
+}
+
+TEST(TimeScalingTest, ContinuesWhereTheSetpointStoodAfterDelay)
+{
+  constexpr double lead = 0.03;
+  const Trajectory plan = line();
+  TimeScaling scaling({.cycle = cycle, .lag = 0.1, .lead = lead}, 1.0, 2.0);
+  scaling.advance(0.054, 1.0, plan.sample(scaling.time()), test_limits());
+  EXPECT_LT(scaling.rate(), 0.55);
+  const double setpoint = scaling.time() + lead * scaling.rate();
+  EXPECT_GE(setpoint, 2.0 + lead);
+  EXPECT_LE(setpoint, 2.0 + lead + 2.0 * cycle * 1.01);
+}
+
 // Simulates a loaded host: every 40 ms, no setpoint for 20 ms.
 TEST(TimeScalingTest, MakesProgressDespiteRepeatedDelays)
 {
   const Trajectory plan = line();
-  TimeScaling scaling(cycle, servo_lag, 1.0);
+  TimeScaling scaling(servo, 1.0);
   double elapsed = 0.0;
   while (scaling.time() < plan.duration() && elapsed < 10.0 * plan.duration()) {
     for (int k = 0; k < 10; ++k, elapsed += cycle) {
@@ -82,7 +107,7 @@ TEST(TimeScalingTest, MakesProgressDespiteRepeatedDelays)
 TEST(TimeScalingTest, RestartsFromStandstillAfterLongDelay)
 {
   const Trajectory plan = line();
-  TimeScaling scaling(cycle, servo_lag, 1.0, 1.0);
+  TimeScaling scaling(servo, 1.0, 1.0);
   scaling.advance(3.0, 1.0, plan.sample(scaling.time()), test_limits());
   EXPECT_LE(scaling.time() - 1.0, 2.0 * cycle);
   EXPECT_LT(scaling.rate(), 0.05);
@@ -93,7 +118,7 @@ TEST(TimeScalingTest, NeverRunsBackwardOrFasterThanThePlan)
   std::mt19937 random(7);
   std::uniform_real_distribution<double> between(-0.02, 0.2);
   const Trajectory plan = line();
-  TimeScaling scaling(cycle, servo_lag, 1.0);
+  TimeScaling scaling(servo, 1.0);
   for (int k = 0; k < 20000; ++k) {
     const double before = scaling.time();
     const double elapsed = k % 3 == 0 ? between(random) : cycle;
@@ -108,7 +133,7 @@ TEST(TimeScalingTest, NeverRunsBackwardOrFasterThanThePlan)
 // Largest accelerations of the setpoints, by finite differences at the rate of the controller.
 Joints largest_acceleration(const Trajectory & plan, const Limits & bounds, double later_target_rate)
 {
-  TimeScaling scaling(cycle, servo_lag, 1.0);
+  TimeScaling scaling(servo, 1.0);
   Joints q[3];
   q[0] = q[1] = plan.sample(0.0).position;
   Joints largest = Joints::Zero();
@@ -141,7 +166,7 @@ TEST(TimeScalingTest, ChangesTheRateSmoothly)
 TEST(TimeScalingTest, StandsStillAtZeroRate)
 {
   const Trajectory plan = line();
-  TimeScaling scaling(cycle, servo_lag, 1.0, 1.0);
+  TimeScaling scaling(servo, 1.0, 1.0);
   for (int k = 0; k < 1000; ++k) {
     scaling.advance(cycle, 0.0, plan.sample(scaling.time()), test_limits());
   }

@@ -8,17 +8,14 @@ class ForceMode : public Command<ur_ros_rtde_msgs::action::ForceMode> {
   Outcome run(const Goal & goal, Run & run) override
   {
     start_force_mode(goal, run);
-    const auto stop_reason = wait_for_duration_or_cancel(run, goal.duration, [&](const Sample & now) {
+    const auto set_feedback = [&](const Sample & now) {
       const Vector6 & measured = now.actual_tcp_force;
       auto & wrench = run.feedback().wrench;
       wrench.force.x = measured[0], wrench.force.y = measured[1], wrench.force.z = measured[2];
       wrench.torque.x = measured[3], wrench.torque.y = measured[4], wrench.torque.z = measured[5];
-    });
-    if (stop_reason) {
-      return *stop_reason;
-    }
-    check_result(run.control()->forceModeStop(), "end force mode");
-    return Outcome::success();
+    };
+    return end_mode_after(run, goal.duration, &ur_rtde::RTDEControlInterface::forceModeStop, "force mode",
+                          set_feedback);
   }
 };
 

@@ -8,11 +8,7 @@ class Freedrive : public Command<ur_ros_rtde_msgs::action::Freedrive> {
   Outcome run(const Goal & goal, Run & run) override
   {
     start_freedrive(goal, run);
-    if (auto stop_reason = wait_for_duration_or_cancel(run, goal.duration)) {
-      return *stop_reason;
-    }
-    check_result(run.control()->endFreedriveMode(), "end freedrive");
-    return Outcome::success();
+    return end_mode_after(run, goal.duration, &ur_rtde::RTDEControlInterface::endFreedriveMode, "freedrive");
   }
 };
 

@@ -10,11 +10,7 @@ class TeachMode : public Command<ur_ros_rtde_msgs::action::TeachMode> {
   Outcome run(const Goal & goal, Run & run) override
   {
     start_teach_mode(run);
-    if (auto stop_reason = wait_for_duration_or_cancel(run, goal.duration)) {
-      return *stop_reason;
-    }
-    check_result(run.control()->endTeachMode(), "end teach mode");
-    return Outcome::success();
+    return end_mode_after(run, goal.duration, &ur_rtde::RTDEControlInterface::endTeachMode, "teach mode");
   }
 };
 

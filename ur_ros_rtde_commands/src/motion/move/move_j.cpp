@@ -4,9 +4,9 @@
 
 namespace ur_ros_rtde {
 
-class MoveJ : public MoveToJoints<ur_ros_rtde_msgs::action::MoveJ> {
+class MoveJ : public MoveToTarget<ur_ros_rtde_msgs::action::MoveJ> {
  public:
-  MoveJ() : MoveToJoints(&ur_rtde::RTDEControlInterface::moveJ, joint_speed_limits) {}
+  MoveJ() : MoveToTarget(&ur_rtde::RTDEControlInterface::moveJ, joint_speed_limits) {}
 };
 
 UR_ROS_RTDE_EXPORT(MoveJ, "move_j")

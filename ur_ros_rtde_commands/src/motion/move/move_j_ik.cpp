@@ -4,9 +4,9 @@
 
 namespace ur_ros_rtde {
 
-class MoveJIK : public MoveToPose<ur_ros_rtde_msgs::action::MoveJIK> {
+class MoveJIK : public MoveToTarget<ur_ros_rtde_msgs::action::MoveJIK> {
  public:
-  MoveJIK() : MoveToPose(&ur_rtde::RTDEControlInterface::moveJ_IK, joint_speed_limits) {}
+  MoveJIK() : MoveToTarget(&ur_rtde::RTDEControlInterface::moveJ_IK, joint_speed_limits) {}
 };
 
 UR_ROS_RTDE_EXPORT(MoveJIK, "move_j_ik")

@@ -4,9 +4,9 @@
 
 namespace ur_ros_rtde {
 
-class MoveL : public MoveToPose<ur_ros_rtde_msgs::action::MoveL> {
+class MoveL : public MoveToTarget<ur_ros_rtde_msgs::action::MoveL> {
  public:
-  MoveL() : MoveToPose(&ur_rtde::RTDEControlInterface::moveL, linear_speed_limits) {}
+  MoveL() : MoveToTarget(&ur_rtde::RTDEControlInterface::moveL, linear_speed_limits) {}
 };
 
 UR_ROS_RTDE_EXPORT(MoveL, "move_l")

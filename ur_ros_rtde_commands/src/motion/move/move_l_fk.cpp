@@ -4,9 +4,9 @@
 
 namespace ur_ros_rtde {
 
-class MoveLFK : public MoveToJoints<ur_ros_rtde_msgs::action::MoveLFK> {
+class MoveLFK : public MoveToTarget<ur_ros_rtde_msgs::action::MoveLFK> {
  public:
-  MoveLFK() : MoveToJoints(&ur_rtde::RTDEControlInterface::moveL_FK, linear_speed_limits) {}
+  MoveLFK() : MoveToTarget(&ur_rtde::RTDEControlInterface::moveL_FK, linear_speed_limits) {}
 };
 
 UR_ROS_RTDE_EXPORT(MoveLFK, "move_l_fk")

@@ -12,53 +12,44 @@ namespace ur_ros_rtde {
 using MoveFunction = bool (ur_rtde::RTDEControlInterface::*)(const std::vector<double> &, double, double,
                                                              bool);
 
-/// Moves to the field `joint_positions` of the goal.
+/// Moves to the field `pose` of the goal or, if it has none, to the field `joint_positions`.
 template <typename A>
-class MoveToJoints : public Command<A> {
+class MoveToTarget : public Command<A> {
  public:
   using typename Command<A>::Goal;
   using typename Command<A>::Run;
 
-  MoveToJoints(MoveFunction move, const SpeedLimits & limits) : move_(move), limits_(limits) {}
+  MoveToTarget(MoveFunction move, const SpeedLimits & limits) : move_(move), limits_(limits) {}
 
   void check(const Goal & goal, Check & check) const override
   {
-    check_speed(check.joints("joint_positions", goal.joint_positions), goal, limits_);
+    if constexpr (has_pose) {
+      check_tcp_target(check_speed(check.pose("pose", goal.pose), goal, limits_), goal);
+    } else {
+      check_speed(check.joints("joint_positions", goal.joint_positions), goal, limits_);
+    }
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    ((*run.control().hold()).*move_)(goal.joint_positions, goal.speed, goal.acceleration, true);
-    return run.until_joints_reached(goal.joint_positions);
+    if constexpr (has_pose) {
+      const auto target = tcp_target(goal, run.state());
+      start(target, goal, run);
+      return run.until_pose_reached(target);
+    } else {
+      start(goal.joint_positions, goal, run);
+      return run.until_joints_reached(goal.joint_positions);
+    }
   }
 
  private:
-  const MoveFunction move_;
-  const SpeedLimits limits_;
-};
+  static constexpr bool has_pose = requires(const Goal & goal) { goal.pose; };
 
-/// Moves to the field `pose` of the goal.
-template <typename A>
-class MoveToPose : public Command<A> {
- public:
-  using typename Command<A>::Goal;
-  using typename Command<A>::Run;
-
-  MoveToPose(MoveFunction move, const SpeedLimits & limits) : move_(move), limits_(limits) {}
-
-  void check(const Goal & goal, Check & check) const override
+  void start(const std::vector<double> & target, const Goal & goal, Run & run) const
   {
-    check_tcp_target(check_speed(check.pose("pose", goal.pose), goal, limits_), goal);
-  }
-
-  Outcome run(const Goal & goal, Run & run) override
-  {
-    const auto target = tcp_target(goal, run.state());
     ((*run.control().hold()).*move_)(target, goal.speed, goal.acceleration, true);
-    return run.until_pose_reached(target);
   }
 
- private:
   const MoveFunction move_;
   const SpeedLimits limits_;
 };

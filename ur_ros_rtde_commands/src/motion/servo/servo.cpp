@@ -56,20 +56,25 @@ double default_tcp_duration(const Vector6 & from, const std::vector<double> & to
                   default_duration(angle, default_angular_speed, default_angular_acceleration));
 }
 
-Outcome servo(Run & run, double duration, const std::function<void(double fraction, double cycle)> & send,
+Outcome servo(Run & run, double duration, const std::function<void(const ServoStep &)> & send,
               const std::function<Outcome()> & wait_for_arrival, double deceleration)
 {
   const auto version = run.robot().version();
   const double cycle = 1.0 / (version ? version->frequency() : 500.0);
   Sample sample = run.state();
-  for (double time = 0.0; time < duration;) {
+  double setpoint_time = sample.controller_time / cycle;
+  bool at_end = false;
+  for (double time = 0.0; !at_end;) {
+    at_end = time >= duration;
     const double before = sample.controller_time;
     if (auto stop_reason = run.next(sample)) {
       return *stop_reason;
     }
-    time += std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
+    const double elapsed = std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
+    time += elapsed;
+    setpoint_time += elapsed / cycle;
     run.progress(smooth_step(std::min(time / duration, 1.0)));
-    send(run.progress(), cycle);
+    send({run.progress(), cycle, setpoint_time});
   }
   return finish_servo(run, wait_for_arrival(), deceleration);
 }

@@ -45,11 +45,17 @@ constexpr double smooth_step_peak = 15.0 / 8.0;
 double default_joint_duration(const Vector6 & from, const std::vector<double> & to);
 double default_tcp_duration(const Vector6 & from, const std::vector<double> & to);
 
-/// Executes a servo motion of `duration` s: calls `send` for each package of the controller with the traveled
-/// fraction (smooth_step) and the cycle time (s), then calls `wait_for_arrival`, and ends servo control. If
-/// the host is late, the motion continues where it was: the arm becomes slower, never faster.
-[[nodiscard]] Outcome servo(Run & run, double duration,
-                            const std::function<void(double fraction, double cycle)> & send,
+/// A setpoint of a servo motion.
+struct ServoStep {
+  double fraction;  ///< traveled (smooth_step), 0 to 1
+  double cycle;     ///< s, cycle time of the controller
+  double time;      ///< cycles of the controller; lets the control program bridge late setpoints of servoJ
+};
+
+/// Executes a servo motion of `duration` s: calls `send` for each package of the controller, at the end twice
+/// with the same fraction, then calls `wait_for_arrival`, and ends servo control. If the host is late, the
+/// motion continues where it was: the arm becomes slower, never faster.
+[[nodiscard]] Outcome servo(Run & run, double duration, const std::function<void(const ServoStep &)> & send,
                             const std::function<Outcome()> & wait_for_arrival, double deceleration);
 
 /// Ends servo control after a successful arrival. After a failure, the base class stops the arm.

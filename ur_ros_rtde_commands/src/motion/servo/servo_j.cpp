@@ -20,9 +20,9 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
   {
     const Vector6 start = run.state().actual_q;
     const double time = goal.time > 0.0 ? goal.time : default_joint_duration(start, goal.joint_positions);
-    const auto send = [&](double fraction, double cycle) {
-      const auto target = interpolate_joints(start, goal.joint_positions, fraction);
-      run.control()->servoJ(target, 0.0, 0.0, cycle, goal.lookahead_time, goal.gain);
+    const auto send = [&](const ServoStep & step) {
+      const auto target = interpolate_joints(start, goal.joint_positions, step.fraction);
+      run.control()->servoJ(target, 0.0, 0.0, step.cycle, goal.lookahead_time, goal.gain, step.time);
     };
     const auto wait_for_arrival = [&] { return run.until_at_joints(goal.joint_positions); };
     return servo(run, time, send, wait_for_arrival, goal.deceleration);

@@ -24,9 +24,9 @@ class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
     const Vector6 & start = sample.actual_tcp_pose;
     const auto end = tcp_target(goal, sample);
     const double time = goal.time > 0.0 ? goal.time : default_tcp_duration(start, end);
-    const auto send = [&](double fraction, double cycle) {
-      const auto target = interpolate_pose(start, end, fraction);
-      run.control()->servoL(target, 0.0, 0.0, cycle, goal.lookahead_time, goal.gain);
+    const auto send = [&](const ServoStep & step) {
+      const auto target = interpolate_pose(start, end, step.fraction);
+      run.control()->servoL(target, 0.0, 0.0, step.cycle, goal.lookahead_time, goal.gain);
     };
     return servo(run, time, send, [&] { return run.until_at_pose(end); }, goal.deceleration);
   }

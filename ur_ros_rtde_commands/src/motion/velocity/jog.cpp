@@ -1,12 +1,10 @@
 #include <ur_ros_rtde_msgs/action/jog.hpp>
 
-#include "motion/velocity/velocity.hpp"
+#include "motion/speed_limits.hpp"
 #include "ur_ros_rtde/command.hpp"
+#include "wait_for_duration.hpp"
 
 namespace ur_ros_rtde {
-namespace {
-constexpr double unlimited_time = 365.0 * 24.0 * 3600.0;  // s
-}
 
 class Jog : public Command<ur_ros_rtde_msgs::action::Jog> {
   void check(const Goal & goal, Check & check) const override
@@ -14,14 +12,15 @@ class Jog : public Command<ur_ros_rtde_msgs::action::Jog> {
     check.twist("twist", goal.twist)
         .in_range("frame", goal.frame, Goal::BASE, Goal::CUSTOM)
         .frame("custom_frame", goal.custom_frame)
-        .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2")
+        .above_zero("acceleration", goal.acceleration, linear_speed_limits.acceleration,
+                    linear_speed_limits.acceleration_unit)
         .in_range("time", goal.time, 0.0, 3600.0, "s");
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
     run.control()->jogStart(to_ur(goal.twist), goal.frame, goal.acceleration, to_ur(goal.custom_frame));
-    const auto stop_reason = wait_with_progress(run, goal.time == 0.0 ? unlimited_time : goal.time);
+    const auto stop_reason = wait_for_duration(run, goal.time);
     if (stop_reason && stop_reason->code != ErrorCode::canceled) {  // a cancel is the regular end of jogging
       return *stop_reason;
     }

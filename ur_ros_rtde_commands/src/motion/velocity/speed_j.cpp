@@ -8,10 +8,8 @@ namespace ur_ros_rtde {
 class SpeedJ : public Command<ur_ros_rtde_msgs::action::SpeedJ> {
   void check(const Goal & goal, Check & check) const override
   {
-    check.joint_velocities("joint_velocities", goal.joint_velocities)
-        .above_zero("acceleration", goal.acceleration, 40.0, "rad/s^2")
-        .in_range("time", goal.time, 0.01, 3600.0, "s")
-        .in_range("deceleration", goal.deceleration, 0.1, 40.0, "rad/s^2");
+    check_velocity_motion(check.joint_velocities("joint_velocities", goal.joint_velocities), goal,
+                          joint_speed_limits);
   }
 
   StopOptions stop_options(const Goal & goal) const override

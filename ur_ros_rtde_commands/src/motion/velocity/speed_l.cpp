@@ -8,10 +8,7 @@ namespace ur_ros_rtde {
 class SpeedL : public Command<ur_ros_rtde_msgs::action::SpeedL> {
   void check(const Goal & goal, Check & check) const override
   {
-    check.twist("twist", goal.twist)
-        .above_zero("acceleration", goal.acceleration, 150.0, "m/s^2")
-        .in_range("time", goal.time, 0.01, 3600.0, "s")
-        .in_range("deceleration", goal.deceleration, 0.1, 150.0, "m/s^2");
+    check_velocity_motion(check.twist("twist", goal.twist), goal, linear_speed_limits);
   }
 
   StopOptions stop_options(const Goal & goal) const override

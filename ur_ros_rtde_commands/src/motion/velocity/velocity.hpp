@@ -1,12 +1,19 @@
 #pragma once
 
+#include "motion/speed_limits.hpp"
 #include "ur_ros_rtde/run.hpp"
 
 namespace ur_ros_rtde {
 
-/// Waits for `time` (s of the controller's clock) while the arm moves at a velocity, and updates the
-/// progress.
-[[nodiscard]] std::optional<StopReason> wait_with_progress(Run & run, double time);
+/// Checks the fields `acceleration`, `time` and `deceleration` of a goal of speed_j or speed_l.
+template <typename Goal>
+Check & check_velocity_motion(Check & check, const Goal & goal, const SpeedLimits & limits)
+{
+  return check.above_zero("acceleration", goal.acceleration, limits.acceleration, limits.acceleration_unit)
+      .in_range("time", goal.time, 0.01, 3600.0, "s")
+      .in_range("deceleration", goal.deceleration, min_deceleration, limits.acceleration,
+                limits.acceleration_unit);
+}
 
 /// After speedJ or speedL: waits for `time` (s), then decelerates to standstill (rad/s^2 or m/s^2).
 [[nodiscard]] Outcome finish_velocity_motion(Run & run, double time, double deceleration);

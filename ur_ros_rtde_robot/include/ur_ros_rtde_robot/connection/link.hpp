@@ -6,6 +6,10 @@
 
 namespace ur_ros_rtde {
 
+/// Message of an operation that was interrupted by a lost connection when the connection exists again.
+inline constexpr const char * connection_replaced =
+    "the connection to the controller was lost; it has been re-established";
+
 /// Status of a connection to the controller that is kept up in the background.
 struct LinkStatus {
   bool connected = false;

@@ -19,7 +19,7 @@ struct MotionMark {
 struct MotionProgress {
   bool started = false;        ///< an asynchronous operation has begun since the mark; it may have ended
   bool running = false;        ///< the asynchronous operation is running
-  bool at_rest = false;        ///< all joints have been at rest for several cycles
+  bool at_rest = false;        ///< proven: for several cycles, or at the end of an asynchronous operation
   bool program_ended = false;  ///< the robot program has ended since the mark, which ends the motion
   unsigned progress = 0;       ///< index of the current waypoint of a path
   bool finished() const { return started && !running && at_rest && !program_ended; }

@@ -26,7 +26,8 @@ struct StateReceiverOptions {
   double frequency = 0.0;
   /// Timeout of each step of connecting. A controller answers within milliseconds.
   std::chrono::milliseconds connect_timeout{500};
-  /// Delay between connection attempts.
+  /// Longest delay between connection attempts. A lost connection is replaced at once. While the controller
+  /// refuses connections, the delay is 1 % of the outage so far, at least 10 ms.
   std::chrono::milliseconds retry_interval{250};
   /// Time without a package after which the connection counts as lost although the socket is open; at rates
   /// below 50 Hz, five periods instead.

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "connection/big_endian.hpp"
 #include "connection/ports.hpp"
 #include "connection/rtde/rtde_header.hpp"
-#include "connection/tcp_socket.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -18,15 +20,6 @@ constexpr char get_urcontrol_version = 'v';
 constexpr char text_message = 'M';
 /// Longest accepted package. The answers to the two requests are shorter.
 constexpr std::size_t longest_package = 2048;
-
-std::uint32_t big_endian(const std::vector<std::byte> & data, std::size_t offset)
-{
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value = value << 8U | std::to_integer<std::uint32_t>(data[offset + i]);
-  }
-  return value;
-}
 
 Error not_rtde(const std::string & address, const std::string & why)
 {
@@ -44,7 +37,7 @@ Expected<std::vector<std::byte>> reply(TcpSocket & socket, const std::string & a
     if (const auto status = socket.read(header, deadline); !status) {
       return tl::unexpected(not_rtde(address, status.error().message));
     }
-    const auto size = std::to_integer<std::size_t>(header[0]) << 8U | std::to_integer<std::size_t>(header[1]);
+    const std::size_t size = big_endian(std::span(header).first(2));
     const auto found = static_cast<char>(header[2]);
     if (size < rtde_header_size || size > longest_package || (found != type && found != text_message)) {
       return tl::unexpected(not_rtde(address, "its answer is not an RTDE package"));
@@ -68,13 +61,19 @@ Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono:
   if (!socket) {
     return tl::unexpected(socket.error());
   }
+  return probe_rtde(std::move(*socket), address, limit);
+}
+
+Expected<ControllerVersion> probe_rtde(TcpSocket socket, const std::string & address,
+                                       std::chrono::milliseconds limit)
+{
   const auto deadline = TcpSocket::Clock::now() + limit;
   constexpr std::array version_2{std::byte{0}, std::byte{5}, std::byte{request_protocol_version},
                                  std::byte{0}, std::byte{2}};
-  if (const auto status = socket->write(version_2, deadline); !status) {
+  if (const auto status = socket.write(version_2, deadline); !status) {
     return tl::unexpected(status.error());
   }
-  const auto accepted = reply(*socket, address, request_protocol_version, deadline);
+  const auto accepted = reply(socket, address, request_protocol_version, deadline);
   if (!accepted) {
     return tl::unexpected(accepted.error());
   }
@@ -83,18 +82,20 @@ Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono:
         not_rtde(address, "it refuses protocol version 2, which PolyScope has had since 3.3"));
   }
   constexpr std::array version{std::byte{0}, std::byte{3}, std::byte{get_urcontrol_version}};
-  if (const auto status = socket->write(version, deadline); !status) {
+  if (const auto status = socket.write(version, deadline); !status) {
     return tl::unexpected(status.error());
   }
-  const auto numbers = reply(*socket, address, get_urcontrol_version, deadline);
+  const auto numbers = reply(socket, address, get_urcontrol_version, deadline);
   if (!numbers) {
     return tl::unexpected(numbers.error());
   }
   if (numbers->size() < 16) {
     return tl::unexpected(not_rtde(address, "its answer does not contain a version"));
   }
-  return ControllerVersion{big_endian(*numbers, 0), big_endian(*numbers, 4), big_endian(*numbers, 8),
-                           big_endian(*numbers, 12)};
+  const auto number = [&](std::size_t i) {
+    return static_cast<unsigned>(big_endian(std::span(*numbers).subspan(4 * i, 4)));
+  };
+  return ControllerVersion{number(0), number(1), number(2), number(3)};
 }
 
 Status probe_dashboard(const std::string & address, std::chrono::milliseconds limit)

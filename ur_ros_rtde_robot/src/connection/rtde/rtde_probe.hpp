@@ -3,6 +3,7 @@
 #include <chrono>
 #include <string>
 
+#include "connection/tcp_socket.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
@@ -12,6 +13,9 @@ namespace ur_ros_rtde {
 /// connecting and for the queries. Use this before ur_rtde's constructors, which wait without a limit and do
 /// not validate the answers.
 Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono::milliseconds limit);
+/// The same over a new connection to `address`.
+Expected<ControllerVersion> probe_rtde(TcpSocket socket, const std::string & address,
+                                       std::chrono::milliseconds limit);
 
 /// Checks that a UR dashboard server answers at `address`.
 Status probe_dashboard(const std::string & address, std::chrono::milliseconds limit);

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "connection/big_endian.hpp"
 #include "connection/ports.hpp"
 #include "connection/rtde/rtde_header.hpp"
 #include "connection/rtde/rtde_probe.hpp"
@@ -58,15 +59,6 @@ std::size_t bytes_of(Kind kind)
     default:
       return 8;
   }
-}
-
-std::uint64_t big_endian(Bytes bytes)
-{
-  std::uint64_t value = 0;
-  for (const std::byte byte : bytes) {
-    value = value << 8U | std::to_integer<std::uint64_t>(byte);
-  }
-  return value;
 }
 
 double number(Kind kind, Bytes bytes)

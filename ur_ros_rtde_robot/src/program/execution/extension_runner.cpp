@@ -30,7 +30,9 @@ struct ExtensionRunner::Run {
   std::string name;
   int id;
   PrimaryConnection primary;
-  std::uint32_t program;  ///< MotionTracker::View::program at the begin
+  // Of MotionTracker::View at the begin.
+  std::uint32_t program;
+  std::uint32_t link;
   Clock::time_point begin = Clock::now();
 };
 
@@ -133,6 +135,9 @@ std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions 
     return Status(tl::unexpected(*blocker));
   }
   const auto view = tracker_.view();
+  if (view.link != run.link) {
+    return failure(ErrorCode::link_lost, connection_replaced);
+  }
   if (view.program != run.program || !view.program_running) {
     return failure_of(run);
   }
@@ -195,7 +200,8 @@ Status ExtensionRunner::run(const std::string & name, const ExtensionOptions & o
   if (!primary) {
     return tl::unexpected(primary.error());
   }
-  Run run{name, *id, std::move(*primary), tracker_.view().program};
+  const auto view = tracker_.view();
+  Run run{name, *id, std::move(*primary), view.program, view.link};
   Status result;
   try {
     result = wait_for_result(run, options);

@@ -99,6 +99,7 @@ bool ScriptMonitor::complete(ScriptEnd end, ErrorCode code, std::string message)
 void ScriptMonitor::run(const script::Program & program)
 {
   program_ = &program;
+  link_ = state_.latest().value_or(Sample{}).link;
   sent_ = Clock::now();
   if (const auto sent = primary_.send(program.text.text(), send_limit); !sent) {
     complete(ScriptEnd::link_lost, sent.error().code,
@@ -230,6 +231,9 @@ bool ScriptMonitor::must_stop()
   const auto sample = state_.latest();
   if (!link.connected || !sample) {
     return complete(ScriptEnd::link_lost, ErrorCode::link_lost, link.error.message);
+  }
+  if (sample->link != link_) {
+    return complete(ScriptEnd::link_lost, ErrorCode::link_lost, connection_replaced);
   }
   if (!replaced_by_.empty()) {
     return complete(ScriptEnd::stopped, ErrorCode::program_stopped,

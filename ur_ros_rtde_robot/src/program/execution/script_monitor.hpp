@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -53,6 +54,7 @@ class ScriptMonitor {
   const Markers markers_;
   const ScriptOptions & options_;
   const script::Program * program_ = nullptr;
+  std::uint32_t link_ = 0;  ///< Sample::link when the program was sent
   bool may_be_running_ = false;
   bool has_played_ = false;     ///< a sample has shown the program running
   bool messages_left_ = false;  ///< read_messages() has not reached the newest message

@@ -1,4 +1,4 @@
-#include "trajectory/motion.hpp"
+#include "motion/motion.hpp"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
-#include "timing/initial_timing.hpp"
+#include "solver/initial_timing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 
-#include "timing/speed_spline.hpp"
-#include "timing/topp_ra.hpp"
+#include "solver/speed_spline.hpp"
+#include "solver/topp_ra.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {

@@ -1,4 +1,4 @@
-#include "trajectory/verify.hpp"
+#include "motion/verify.hpp"
 
 #include <fmt/format.h>
 

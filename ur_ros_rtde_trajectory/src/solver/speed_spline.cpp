@@ -1,4 +1,4 @@
-#include "timing/speed_spline.hpp"
+#include "solver/speed_spline.hpp"
 
 #include <algorithm>
 #include <cmath>

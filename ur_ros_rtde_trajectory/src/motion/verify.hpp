@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "trajectory/motion.hpp"
+#include "motion/motion.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

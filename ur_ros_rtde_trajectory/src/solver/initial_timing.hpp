@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "timing/jerk_solver.hpp"
+#include "solver/jerk_solver.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

@@ -1,4 +1,4 @@
-#include "timing/grid.hpp"
+#include "motion/grid.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "timing/topp_ra.hpp"
+#include "solver/topp_ra.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "timing/grid.hpp"
+#include "motion/grid.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

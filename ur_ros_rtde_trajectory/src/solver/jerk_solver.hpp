@@ -7,10 +7,10 @@
 #include <tuple>
 #include <vector>
 
-#include "timing/constraint_block.hpp"
-#include "timing/grid.hpp"
-#include "timing/pentadiagonal.hpp"
-#include "timing/speed_spline.hpp"
+#include "motion/grid.hpp"
+#include "solver/constraint_block.hpp"
+#include "solver/pentadiagonal.hpp"
+#include "solver/speed_spline.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "motion/grid.hpp"
 #include "path/path.hpp"
-#include "timing/grid.hpp"
 #include "ur_ros_rtde_trajectory/trajectory.hpp"
 
 namespace ur_ros_rtde::trajectory {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "timing/jerk_solver.hpp"
+#include "solver/jerk_solver.hpp"
 
 // One iteration of the solver: the linear system of the perturbed KKT conditions and the step lengths.
 

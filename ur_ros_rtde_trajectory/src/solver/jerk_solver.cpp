@@ -1,9 +1,9 @@
-#include "timing/jerk_solver.hpp"
+#include "solver/jerk_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "timing/topp_ra.hpp"
+#include "solver/topp_ra.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "timing/grid.hpp"
+#include "motion/grid.hpp"
 
 namespace ur_ros_rtde::trajectory {
 

@@ -1,0 +1,42 @@
+"""The arm follows a trajectory without delay, overshoot or a higher speed, with the default lookahead time and gain."""
+
+import pytest
+from arm_state import home_plus
+from sensor_msgs.msg import JointState
+from support import HOME, wait_for
+from trajectories import TargetSpeedRecorder, waypoints
+
+from ur_ros_rtde_msgs.action import ExecuteTrajectory
+
+DISTANCE = 1.2  # rad
+SPEED = 1.0  # rad/s
+ACCELERATION = 4.0  # rad/s^2
+JERK = 100.0  # rad/s^3
+MAX_DELAY_ERROR = 0.03  # rad
+
+
+def planned_position(duration, time):
+    """Returns the planned position of the base joint. The plan is symmetric, so the middle is passed at half of its duration."""
+    return HOME[0] + 0.5 * DISTANCE + SPEED * (time - 0.5 * duration)
+
+
+@pytest.mark.parametrize("parameters", [{}, {"lookahead_time": 0.03, "gain": 2000.0}, {"lookahead_time": 0.2, "gain": 200.0}],
+                         ids=["default", "close", "smooth"])
+def test_follows_the_plan(robot, simulator, parameters):
+    states = robot.subscribe(JointState, "joint_states")
+    recorder = TargetSpeedRecorder(simulator)
+    goal = robot.send(ExecuteTrajectory, "execute_trajectory", waypoints=waypoints(HOME, home_plus(DISTANCE)),
+                      max_velocity=[SPEED] * 6, max_acceleration=[ACCELERATION] * 6, max_jerk=[JERK] * 6, **parameters)
+    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
+    result = goal.succeeded()
+    errors = {}
+    for feedback in goal.feedback:
+        time = result.duration - feedback.time_left
+        position = feedback.motion.state.joint_positions[0]
+        at_speed = SPEED / ACCELERATION + ACCELERATION / JERK
+        if at_speed < time < result.duration - at_speed:
+            errors[time] = planned_position(result.duration, time) - position
+    assert len(errors) > 5
+    assert max(map(abs, errors.values())) < MAX_DELAY_ERROR, errors
+    assert max(state.position[0] for state in robot.messages_until_now(states)) < HOME[0] + DISTANCE + 0.002
+    assert max(recorder.update()) < 1.03 * SPEED
