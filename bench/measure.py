@@ -2,16 +2,16 @@
 
 import argparse
 import json
-import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import rclpy
 from goal_latency import GoalLatency
+from joint_state_subscriber import receive_in_python
+from latency import latencies, percentile
+from process_load import LoadTrace, cpu_percent, resident_megabytes
 from servo_stream import servo_stream
-from state_latency import latencies, percentile, receive_in_python
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
 from control_port import ControlPort  # noqa: E402
@@ -28,41 +28,39 @@ def receive_in_cpp(program, seconds):
     return [tuple(map(int, line.split())) for line in output.splitlines()]
 
 
-def cpu_seconds(pid):
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+def points(received, values):
+    """Returns [(time of reception in s, value), ...] for the report. Times begin at 0. The first messages may have no value."""
+    return [(round((when - received[0][1]) * 1e-9, 6), round(value, 4)) for (_, when), value in zip(received[-len(values):], values)]
 
 
-def resident_megabytes(pid):
-    status = Path(f"/proc/{pid}/status").read_text()
-    return next(int(line.split()[1]) for line in status.splitlines() if line.startswith("VmRSS:")) / 1024.0
-
-
-def cpu_percent(pids, seconds):
-    """Returns the load of each process in % of one core while the robot is idle."""
-    before, begin = {name: cpu_seconds(pid) for name, pid in pids.items()}, time.monotonic()
-    time.sleep(seconds)
-    elapsed = time.monotonic() - begin
-    return {name: 100.0 * (cpu_seconds(pid) - before[name]) / elapsed for name, pid in pids.items()}
-
-
-def state_figures(options, control):
-    figures = {}
+def state_figures(options, control, pids):
+    figures, samples = {}, {}
     for name, receive in (("C++", lambda s: receive_in_cpp(options.subscriber, s)), ("rclpy", receive_in_python)):
         received = receive(TRACE_SECONDS)
-        figures[f"package to {name} subscriber"] = summary(latencies(received, control.request("trace")))
-    pids = {name: int(pid) for name, pid in (pair.split("=") for pair in options.pid)}
+        values = latencies(received, control.request("trace"))
+        figures[f"package to {name} subscriber"] = summary(values)
+        samples[f"package to {name} subscriber"] = points(received, values)
     figures["cpu"] = cpu_percent(pids, 5.0)
     figures["memory"] = {name: resident_megabytes(pid) for name, pid in pids.items()}
-    return figures
+    return figures, samples
 
 
 def goal_figures(options, control):
     latency = GoalLatency(control)
-    figures = {"goal to first RTDE command": summary(latency.goal_to_command(options.repeat)),
-               "cancel to deceleration": summary(latency.cancel_to_deceleration(options.repeat // 2))}
+    measured = {"goal to first RTDE command": latency.goal_to_command(options.repeat),
+                "cancel to deceleration": latency.cancel_to_deceleration(options.repeat // 2)}
     latency.close()
-    return figures
+    samples = {name: list(enumerate(values)) for name, values in measured.items()}
+    return {name: summary(values) for name, values in measured.items()}, samples
+
+
+def all_figures(options, control):
+    """Returns the figures, and the samples that the report draws."""
+    pids = {name: int(pid) for name, pid in (pair.split("=") for pair in options.pid)}
+    with LoadTrace(pids) as trace:
+        figures, samples = state_figures(options, control, pids)
+        goals, goal_samples = goal_figures(options, control)
+    return {**figures, **goals}, {**samples, **goal_samples, "processes": trace.points}
 
 
 def main():
@@ -79,11 +77,12 @@ def main():
     rclpy.init()
     with ControlPort(options.address) as control:
         if options.stream:
-            figures = {"servo stream": servo_stream(control, options.seconds, options.real_time_factor)}
+            stream, answers = servo_stream(control, options.seconds, options.real_time_factor)
+            figures, samples = {"servo stream": stream}, {"servo stream": answers}
         else:
-            figures = {**state_figures(options, control), **goal_figures(options, control)}
+            figures, samples = all_figures(options, control)
     rclpy.try_shutdown()
-    options.output.write_text(json.dumps(figures))
+    options.output.write_text(json.dumps({"figures": figures, "samples": samples}))
 
 
 if __name__ == "__main__":

@@ -8,9 +8,9 @@ import time
 from collections import Counter
 
 import rclpy
+from latency import percentile
 from rclpy.action import ActionClient
 from rclpy.node import Node
-from state_latency import percentile
 from ur_ros_rtde_msgs.action import ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import JointWaypoint
 
@@ -65,6 +65,13 @@ def _cycles_without_single_target(arrivals):
     return 100.0 * sum(count[cycle] != 1 for cycle in cycles) / len(cycles)
 
 
+def _answers(arrivals, cycles):
+    """Returns [(time of arrival in s, ms since the package), ...] of the targets. Times begin at 0."""
+    begin = arrivals[0][1]
+    return [(round((when - begin) * 1e-9, 6), round((when - cycles[number]) * 1e-6, 4))
+            for number, when in arrivals if number in cycles]
+
+
 def figures(arrivals, cycles, factor):
     """Returns the figures of a stream, in % and ms, from [(cycle, ns of arrival)] and {cycle: ns of its package}."""
     answers = [(when - cycles[number]) * 1e-6 for number, when in arrivals if number in cycles]
@@ -77,7 +84,7 @@ def figures(arrivals, cycles, factor):
 
 
 def servo_stream(control, seconds, factor):
-    """Executes a trajectory and returns its figures; None if it fails."""
+    """Executes a trajectory. Returns its figures, None if it fails, and [(s, ms from the package to its target), ...]."""
     node = Node("bench_stream")
     client = ActionClient(node, ExecuteTrajectory, "execute_trajectory")
     if not client.wait_for_server(timeout_sec=15.0):
@@ -95,5 +102,5 @@ def servo_stream(control, seconds, factor):
     node.destroy_node()
     if not result.success or len(arrivals) < 10:
         print(f"bench: the trajectory failed: {result.message}", file=sys.stderr)
-        return None
-    return {**figures(arrivals, cycles, factor), "tracking error": result.max_tracking_error}
+        return None, []
+    return {**figures(arrivals, cycles, factor), "tracking error": result.max_tracking_error}, _answers(arrivals, cycles)

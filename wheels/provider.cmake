@@ -46,6 +46,9 @@ endif()
 macro(_ros_wheels_find_package _ros_wheels_method _ros_wheels_package)
   find_package(${_ros_wheels_package} ${ARGN} BYPASS_PROVIDER)
   _ros_wheels_repair_targets()
+  # The only middleware among the wheels is Fast DDS. rcl_cxx passes it its own type supports, so it does not ask for the
+  # introspection type supports for C++, which take a sixth of the time to build interfaces.
+  list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "rosidl_typesupport_introspection_cpp")
 endmacro()
 
 cmake_policy(POP)

@@ -17,8 +17,8 @@ ANY = packages.DEPENDENCIES
 
 # Where a CMake package, target or Python module and the rosdep key have different names.
 KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "gtest", "GTest::gmock": "libgmock-dev",
-        "Git": "git", "nlohmann_json": "nlohmann-json-dev", "tl-expected": "libexpected-dev", "numpy": "python3-numpy",
-        "pytest": "python3-pytest", "yaml": "python3-yaml"}
+        "Git": "git", "Python3": "python3", "nlohmann_json": "nlohmann-json-dev", "tl-expected": "libexpected-dev",
+        "numpy": "python3-numpy", "pytest": "python3-pytest", "yaml": "python3-yaml"}
 NOT_DECLARED = {"Threads",  # part of CMake
                 "copp_py", "toppra"}  # solvers that oracle.py compares with
 

@@ -1,49 +1,54 @@
 """./ur bench: measures latency, load and start-up of the driver on the simulated controller, and compares them with targets.
 
-A ratio below 1 is better than the target. Measure on an idle machine.
+A ratio below 1 is better than the target. Measure on an idle machine (docs/performance.md).
 """
 
 import argparse
-import json
+import pathlib
+import statistics
 import sys
 import time
-from typing import Dict, List, Optional, Tuple
+from typing import List
 
-from . import bench_discovery, bench_trajectory, boilerplate, console, ports, realtime, simulation
-from .environment import program, run_environment
-from .layout import PROGRAM, ROOT, Layout
-from .processes import Programs
+from . import (bench_compare, bench_discovery, bench_machine, bench_report, bench_results, bench_rows, bench_scale, bench_session,
+               bench_stress, bench_trajectory, boilerplate, console, ports, simulation)
+from .bench_results import Results
+from .layout import PROGRAM, Layout
 
-# Figures of the servo stream: part, target, unit.
-STREAM: Tuple[Tuple[str, float, str], ...] = (
-    ("answer p50", 0.3, "ms from a package to its target"),
-    ("answer p99.9", 0.5, "ms from a package to its target"),
-    ("off package", 0.1, "% of the intervals differ by more than 0.2 ms from those of the packages that they answer"),
-    ("off 2 ms", 0.1, "% of the intervals differ by more than 0.2 ms from 2 ms"),
-    ("cycles off 2 ms", 0.1, "% of the simulated controller's cycles differ by more than 0.2 ms from 2 ms"),
-    ("not once a cycle", 0.1, "% of the cycles received no target, or several"),
-    ("tracking error", 0.02, "rad"),
-)
-# Figure, part, target, unit.
-TARGETS: Tuple[Tuple[str, Optional[str], float, str], ...] = (
-    ("package to C++ subscriber", "p50", 0.3, "ms"),
-    ("package to C++ subscriber", "p99", 1.0, "ms"),
-    ("package to rclpy subscriber", "p50", 0.3, "ms"),
-    ("package to rclpy subscriber", "p99", 1.0, "ms"),
-    ("goal to first RTDE command", "p50", 1.0, "ms"),
-    ("cancel to deceleration", "p50", 5.0, "ms"),
-    *((stream, *figure) for stream in ("servo stream", "servo stream, real-time") for figure in STREAM),
-    ("cpu", "simulator", 10.0, "% of a core"),
-    ("cpu", "robot_state_receiver", 10.0, "% of a core"),
-    ("cpu", "command_server", 10.0, "% of a core"),
-    ("cpu", "dashboard_server", 10.0, "% of a core"),
-    ("memory", "command_server", 100.0, "MB"),
-    ("start to ready", None, 2.0, "s"),
-    ("new client finds all actions", "p50", 0.5, "s, after clients were killed"),
-    ("new client finds all actions", "max", 1.0, "s, after clients were killed"),
-)
 # Clients that are killed, and clients that then search for the actions.
 KILLED_CLIENTS, NEW_CLIENTS = 20, 100
+# Options that change what is measured, or how.
+SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots", "stress")
+MODES = ("stream", "trajectory", "scale", "stress")
+
+
+def _add_result_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("results")
+    group.add_argument("--runs", type=int, default=1, metavar="N",
+                       help="measure N times; medians are printed (default: 1; a comparison needs 3)")
+    group.add_argument("--output", type=pathlib.Path, metavar="FILE", help="write all runs, with a description of the machine, as JSON")
+    group.add_argument("--append", action="store_true",
+                       help="with --output: add the runs to those in FILE, so that two versions can be measured in turns")
+    group.add_argument("--input", type=pathlib.Path, metavar="FILE", help="use the runs in FILE, measure nothing")
+    group.add_argument("--compare", type=pathlib.Path, metavar="FILE",
+                       help="compare with the runs in FILE: medians, ranges, ratios, and which changes are beyond the noise")
+    group.add_argument("--report", type=pathlib.Path, metavar="PATH",
+                       help=f"draw the results as one HTML page: a file that ends in .html, or a folder for {bench_report.FILE}")
+
+
+def _add_stream_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("servo stream")
+    group.add_argument("--stream", action="store_true", help="measure only the servo stream")
+    group.add_argument("--real-time-factor", type=float, default=1.0, metavar="F",
+                       help="with --stream: let the robot's time pass F times as fast. The figures of the stream are in the robot's time; "
+                            "F below 1 reduces the influence of the host's latency (default: 1)")
+    group.add_argument("--seconds", type=float, default=10.0, metavar="S", help="duration of the servo stream (default: 10)")
+    group.add_argument("--let-sleep", action="store_true",
+                       help="let the cores sleep while the servo stream is measured with real-time priority; use this on a virtual "
+                            "machine with steal time, where busy loops cost more than they gain")
+    group.add_argument("--realtime-priority", type=int, default=40, metavar="P",
+                       help="measure the servo stream a second time with the node's parameter realtime_priority set to P and the "
+                            "simulator under SCHED_FIFO, if the host permits it (default: 40)")
 
 
 def parse(arguments: List[str]) -> argparse.Namespace:
@@ -52,117 +57,114 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
     parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")
     parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals and cancels to measure (default: 40)")
-    parser.add_argument("--stream", action="store_true", help="measure only the servo stream")
-    parser.add_argument("--real-time-factor", type=float, default=1.0, metavar="F",
-                        help="with --stream: let the robot's time pass F times as fast. The figures of the stream are in the robot's time; "
-                             "F below 1 reduces the influence of the host's latency (default: 1)")
-    parser.add_argument("--seconds", type=float, default=10.0, metavar="S", help="duration of the servo stream (default: 10)")
-    parser.add_argument("--let-sleep", action="store_true",
-                        help="let the cores sleep while the servo stream is measured with real-time priority; use this on a virtual "
-                             "machine with steal time, where busy loops cost more than they gain")
-    parser.add_argument("--realtime-priority", type=int, default=40, metavar="P",
-                        help="measure the servo stream a second time with the node's parameter realtime_priority set to P and the "
-                             "simulator under SCHED_FIFO, if the host permits it (default: 40)")
-    bench_trajectory.add_options(parser)
+    _add_result_options(parser)
+    for add_options in (_add_stream_options, bench_scale.add_options, bench_stress.add_options, bench_trajectory.add_options):
+        add_options(parser)
     options = parser.parse_args(arguments)
-    if options.real_time_factor != 1.0 and not options.stream:
-        parser.error("--real-time-factor needs --stream: all other figures are in the host's time")
+    _check_combination(parser, options)
     return options
 
 
+def _check_combination(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
+    modes = [f"--{mode}" for mode in MODES if getattr(options, mode)]
+    if len(modes) > 1:
+        parser.error(f"{' and '.join(modes)} exclude each other")
+    if options.real_time_factor != 1.0 and not options.stream:
+        parser.error("--real-time-factor needs --stream: all other figures are in the host's time")
+    if options.runs < 1:
+        parser.error("--runs must be at least 1")
+    if options.append and not options.output:
+        parser.error("--append needs --output")
+    if options.input and (options.output or options.runs > 1 or modes):
+        parser.error("--input measures nothing: it excludes --output, --runs and what to measure")
+    if options.trajectory and (options.output or options.compare or options.report):
+        parser.error("--trajectory has no rows to save or to compare")
+
+
 def check(options: argparse.Namespace) -> None:
-    """Raises Failure if the address is in use."""
-    ports.check(options.address)
+    """Raises Failure if a file cannot be used or an address is in use."""
+    for option in ("input", "compare"):
+        if getattr(options, option):
+            bench_results.load(getattr(options, option), f"--{option}")
+    if options.output:
+        bench_results.check_writable(options.output, "--output")
+        if options.output.exists() and options.append:
+            bench_results.load(options.output, "--output")
+    if options.report:
+        bench_report.check(options.report)
+    if options.scale:
+        bench_scale.check(options)
+    elif not options.input:
+        ports.check(options.address)
 
 
-def _nodes(options: argparse.Namespace, priority: int) -> Dict[str, Tuple[str, ...]]:
-    """Returns the nodes to start, with their parameters."""
-    # A delay of 100 ms must appear in the figures instead of ending the stream. A slowed robot sends packages less often.
-    silence = min(10.0, max(1.0, 0.1 / options.real_time_factor))
-    link = (f"realtime_priority:={priority}", f"silence_limit:={silence}")
-    parameters: Dict[str, Tuple[str, ...]] = {"robot_state_receiver": link, "dashboard_server": (),
-                                              "command_server": (*link, "watchdog_frequency:=2.0")}
-    names = ("command_server",) if options.stream else simulation.NODES
-    return {name: parameters[name] for name in names}
+def _measure_default(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]":
+    console.step("Measuring state and goals, for about 45 s")
+    figures, samples = bench_session.measure(layout, options)
+    console.step("Measuring discovery, for about a minute")
+    figures["new client finds all actions"] = bench_discovery.measure(layout, options.address, KILLED_CLIENTS, NEW_CLIENTS)
+    streams, answers = bench_session.measure_streams(layout, options, bench_rows.STREAMS)
+    return {**figures, **streams}, {**samples, **answers}
 
 
-def _start(programs: Programs, layout: Layout, options: argparse.Namespace, env: Dict[str, str],
-           priority: int) -> "tuple[Dict[str, int], float]":
-    """Returns the process ids by name, and the time in s until the command server was ready."""
-    simulator = simulation.start_simulator(programs, layout, env, options.address, options.model, "--real-time-factor",
-                                     str(options.real_time_factor))
-    if priority:  # the controller must not compete with the driver, as on a real robot
-        realtime.make_realtime(simulator.process.pid, max(1, priority - 1))
-    pids = {"simulator": simulator.process.pid}
-    ready = 0.0
-    for node, parameters in _nodes(options, priority).items():
-        begin = time.monotonic()
-        started = simulation.start_node(programs, layout, env, node, options.address, *parameters)
-        pids[node] = started.process.pid
-        if node == "command_server":
-            programs.wait_until(lambda: "the robot is ready" in started.output and "commands: " in started.output, 20.0,
-                                "the robot to be ready")
-            ready = time.monotonic() - begin
-    return pids, ready
-
-
-def _measure(programs: Programs, layout: Layout, options: argparse.Namespace, pids: Dict[str, int],
-             env: Dict[str, str]) -> dict:
-    output = layout.log / "bench" / "figures.json"
-    output.unlink(missing_ok=True)
-    command = [str(layout.python), str(ROOT / "bench" / "measure.py"), "--address", options.address, "--subscriber",
-               str(program(layout, "ur_ros_rtde", "joint_state_latency")), "--repeat", str(options.repeat), "--output", str(output)]
+def _measure(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]":
     if options.stream:
-        command += ["--stream", "--real-time-factor", str(options.real_time_factor), "--seconds", str(options.seconds)]
-    for name, pid in pids.items():
-        command += ["--pid", f"{name}={pid}"]
-    if programs.run(command, env, 300.0 + 2.0 * options.seconds / options.real_time_factor) != 0:
-        raise console.Failure("the measurement failed, see above")
-    return json.loads(output.read_text())
+        return bench_session.measure_streams(layout, options, bench_rows.STREAMS)
+    if options.scale:
+        return bench_scale.measure(layout, options)
+    return bench_stress.measure(layout, options) if options.stress else _measure_default(layout, options)
 
 
-def _session(layout: Layout, options: argparse.Namespace, priority: int = 0) -> dict:
-    """Starts the programs, and measures either the stream or everything else."""
-    env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
-    with Programs(layout.log / "bench") as programs:
-        if priority and not options.let_sleep:
-            realtime.keep_awake(programs)
-        pids, ready = _start(programs, layout, options, env, priority)
-        figures = _measure(programs, layout, options, pids, env)
-        programs.check()
-    return {**figures, "start to ready": ready}
+def _run_once(layout: Layout, options: argparse.Namespace) -> dict:
+    begin, load = time.time(), bench_machine.LoadMeter()
+    figures, samples = _measure(layout, options)
+    return {"begin": begin, "load": load.result(), "figures": figures, "samples": samples}
 
 
-def _print(figures: dict) -> None:
-    console.line(f"{'':30} {'':16} {'measured':>10} {'target':>8}  ratio")
-    for name, part, target, unit in TARGETS:
-        value = figures.get(name)
-        if part is not None and value is not None:
-            value = value.get(part)
-        if value is not None:
-            console.line(f"{name:30} {part or '':16} {value:10.3f} {target:8g}  {value / target:5.2f}  {unit}")
-        elif name in figures:
-            console.line(f"{name:30} {part or '':16} nothing measured")
+def _measured(layout: Layout, options: argparse.Namespace) -> Results:
+    """Measures, and writes the results after each run. Returns them with the earlier runs in the file, if appended."""
+    results = Results(bench_machine.describe(layout), bench_machine.commit(),
+                      {name: getattr(options, name) for name in SETTINGS}, [])
+    results.settings["robots"] = list(options.robots)  # as JSON has it
+    if options.append and options.output.exists():
+        earlier = bench_results.load(options.output, "--output")
+        bench_results.check_same(earlier, results, options.output)
+        results.runs = earlier.runs
+    for number in range(options.runs):
+        if options.runs > 1:
+            console.step(f"Run {number + 1} of {options.runs}")
+        results.runs.append(_run_once(layout, options))
+        if options.output:
+            bench_results.save(options.output, results)
+    return results
+
+
+def _print(results: Results) -> None:
+    console.line(f"{'':34} {'':16} {'measured':>10} {'target':>8}  ratio")
+    for row in bench_rows.ROWS:
+        found = bench_rows.values(results.runs, row)
+        head = f"{row.name:34} {row.part or '':16}"
+        if found:
+            value = statistics.median(found)
+            target, ratio = ("", "") if row.target is None else (f"{row.target:g}", f"{value / row.target:.2f}")
+            console.line(f"{head} {value:10.3f} {target:>8}  {ratio:>5}  {row.unit}")
+        elif bench_rows.failed(results.runs, row):
+            console.line(f"{head} nothing measured")
+    load = results.runs[-1].get("load", {})
+    console.line(f"Beside the measurement: {', '.join(f'{name} {value:.2f}' for name, value in load.items())}")
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:
     if options.trajectory:
         return bench_trajectory.run(options, layout)
-    figures: dict = {}
-    if not options.stream:
-        console.step("Measuring state and goals, for about 45 s")
-        figures = _session(layout, options)
-        console.step("Measuring discovery, for about a minute")
-        figures["new client finds all actions"] = bench_discovery.measure(layout, options.address, KILLED_CLIENTS, NEW_CLIENTS)
-    stream = argparse.Namespace(**{**vars(options), "stream": True})
-    console.step(f"Measuring the servo stream, for about {2 * (12.0 + options.seconds / options.real_time_factor):.0f} s")
-    figures["servo stream"] = _session(layout, stream)["servo stream"]
-    if realtime.realtime_allowed(options.realtime_priority):
-        figures["servo stream, real-time"] = _session(layout, stream, options.realtime_priority)["servo stream"]
-    else:
-        console.line(f"Not measured with real-time priority {options.realtime_priority}: this user may not have it")
-    _print(figures)
-    if not options.stream:
+    results = bench_results.load(options.input, "--input") if options.input else _measured(layout, options)
+    old = bench_results.load(options.compare, "--compare") if options.compare else None
+    _print(results)
+    if old:
+        bench_compare.show(old, results)
+    if options.report:
+        bench_report.write(options.report, layout, results, old)
+    if not any((options.stream, options.scale, options.stress, options.input)):
         console.line("\n" + boilerplate.table())
     return 0
 

@@ -4,7 +4,7 @@ import json
 import subprocess
 from typing import Dict
 
-from . import console, simulation
+from . import bench_session, console, simulation
 from .environment import FASTDDS_PROFILES, run_environment
 from .layout import ROOT, Layout
 from .processes import Program, Programs
@@ -24,7 +24,7 @@ def measure(layout: Layout, address: str, killed: int, clients: int) -> Dict[str
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
     for variable in FASTDDS_PROFILES:
         env.pop(variable, None)
-    with Programs(layout.log / "bench") as programs:
+    with Programs(bench_session.log_folder(layout, address)) as programs:
         driver = simulation.start_node(programs, layout, env, "driver", address)
         programs.wait_until(lambda: all(text in driver.output for text in LISTS), 20.0, "the driver's actions")
         command = [str(layout.python), str(CLIENTS), actions(driver), "--killed", str(killed), "--clients", str(clients)]

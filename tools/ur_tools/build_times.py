@@ -19,6 +19,7 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_ros_rtde": (45.0, 72.0),
     "ur_ros_rtde_commands": (75.0, 82.0),
     "ur_ros_rtde_cli": (1.0, 1.0),
+    "ur_ros_rtde_description": (1.0, 12.0),
     "ur_ros_rtde_gripper_commands": (20.0, 25.0),
     "ur_ros_rtde_tutorials": (18.0, 18.0),
 }

@@ -1,4 +1,4 @@
-"""./ur chaos: sends random goals from several clients while random faults happen to a simulated robot, its links and its operators.
+"""./ur chaos: sends random goals from several clients while random faults happen to a simulated robot, its connections and its operators.
 
 These invariants are checked: every accepted goal has exactly one result; the arm moves only while a goal is executed; the driver
 does not exit; its descriptors, threads and memory do not grow after the first quarter of the run; after each fault it accepts

@@ -20,7 +20,7 @@ from .processes import Programs
 DROP = {"ur3": 0.15, "ur3e": 0.15}
 DEFAULT_DROP = 0.3
 # On a busy machine the simulator may be silent for longer than a robot ever is, and Python cannot receive three topics at 500 Hz:
-# 125 Hz suffice for the figure.
+# 125 Hz is sufficient for the figure.
 PARAMETERS = {"robot_state_receiver": ("rtde_frequency:=125.0", "silence_limit:=1.0"),
               "command_server": ("silence_limit:=1.0", "watchdog_frequency:=2.0")}
 

@@ -28,7 +28,8 @@ only what changed. All files are written to .ur/; `./ur clean` removes them.
 # Commands that the program `ur` of ur_ros_rtde_cli runs.
 CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0]}\"",
        "state": "show the state of the robot", "plugins": "list the installed plugins",
-       "record": "record fields of the robot's state into a CSV file"}
+        "record": "record RTDE outputs of the robot to a CSV file",
+        "urdf": "print the URDF of an arm: ur urdf --model ur10e"}
 FORWARDED = ("demo", "bench", "chaos", "plan", "sim", *CLI)  # to a program, with all options that are not ours
 
 
@@ -122,7 +123,8 @@ def command_cli(options: argparse.Namespace) -> int:
     arguments = [options.command, *_forwarded(options)]
     if any(argument in ("-h", "--help") for argument in arguments):
         source = ROOT / "ur_ros_rtde_cli"
-        env = {**os.environ, "PYTHONPATH": str(source), "PYTHONDONTWRITEBYTECODE": "1"}
+        modules = os.pathsep.join(map(str, (source, ROOT / "ur_ros_rtde_description")))
+        env = {**os.environ, "PYTHONPATH": modules, "PYTHONDONTWRITEBYTECODE": "1"}
         os.execve(sys.executable, [sys.executable, str(source / "scripts" / "ur"), *arguments], env)
     layout = _layout(options)
     try:

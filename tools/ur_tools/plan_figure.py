@@ -9,7 +9,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
 
 JOINTS = ("shoulder pan", "shoulder lift", "elbow", "wrist 1", "wrist 2", "wrist 3")
-COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
+COLORS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
 QUANTITIES = (("position", "rad"), ("velocity", "rad/s"), ("acceleration", "rad/s²"), ("jerk", "rad/s³"))
 MOST_MARKS = 60  # more waypoints are not marked
 
@@ -24,8 +24,8 @@ def _limits(limits, quantity, joint):
 def _draw(axes, plan, quantity, unit):
     """Draws one quantity. Limits are drawn, dashed, only near the curves: distant ones would flatten the plot."""
     time, values = plan["samples"]["time"], plan["samples"][quantity]
-    for joint, (name, colour) in enumerate(zip(JOINTS, COLOURS)):
-        axes.plot(time, [row[joint] for row in values], color=colour, linewidth=1.1, label=name)
+    for joint, (name, color) in enumerate(zip(JOINTS, COLORS)):
+        axes.plot(time, [row[joint] for row in values], color=color, linewidth=1.1, label=name)
     largest = max(max(map(abs, row)) for row in values) or 1.0
     for limit in {limit for joint in range(6) for limit in _limits(plan["limits"], quantity, joint)}:
         if limit is not None and abs(limit) < 1.5 * largest:

@@ -1,4 +1,4 @@
-"""What long pytest files take on two cores: duration in s and load in cores. Used until a checkout has its own measurements."""
+"""Duration (s) and load (cores) of long pytest files on two cores. Used until a checkout has its own measurements."""
 
 from typing import Dict, Tuple
 

@@ -33,9 +33,9 @@ class Test:
     limit: float  # s
     env: Dict[str, str] = field(default_factory=dict)
     exclusive: bool = False  # runs while no other test does
-    background: bool = False  # runs with low priority, in addition to the other tests
-    least_load: float = 0.0  # cores that it is given, even if it uses less
-    load: Optional[float] = None  # cores that it is given instead of its measured load
+    background: bool = False  # runs with low priority beside the other tests: its result does not depend on its speed
+    measures_time: bool = False  # is given a core, even if it uses less
+    load: Optional[float] = None  # cores that it is given; None: its measured load
 
     @property
     def package(self) -> str:
@@ -82,7 +82,7 @@ def read_cases(report: pathlib.Path, succeeded: bool) -> Tuple[int, List[str]]:
 
 
 def _report_of(test: Test, base: pathlib.Path) -> pathlib.Path:
-    """Returns where the test writes its report: where its own command says, else where we ask for it."""
+    """Returns the path of the report: the one in the test's own command, otherwise `base` with the suffix .xml."""
     for part in test.command:
         if part.startswith("--gtest_output=xml:"):
             return pathlib.Path(part.split(":", 1)[1])

@@ -1,4 +1,4 @@
-"""Which tests run at the same time: as many as their measured load allows, the longest first."""
+"""Decides which tests run at the same time: as many as their measured load allows, the longest first."""
 
 import json
 import pathlib

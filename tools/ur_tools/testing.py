@@ -1,5 +1,6 @@
 """./ur test: runs every test of every package (GoogleTest cases, pytest files) and the checks of the sources."""
 
+import ast
 import json
 import os
 import pathlib
@@ -21,11 +22,9 @@ from .schedule import Job, Schedule, Times
 
 DEFAULT_LIMIT = 120.0
 PYTEST_LIMIT = 600.0
-MEASURES_TIME = "MEASURES_TIME = True"  # a line of a pytest file that needs a core for itself
-# A line of a pytest file that uses more cores than these only for processes with a low priority.
-DECLARED_LOAD = re.compile(r"^LOAD = (\d+\.\d+)", re.M)
-BACKGROUND = "BACKGROUND = True"  # a line of a pytest file whose result does not depend on how fast it runs
-BACKGROUND_LABEL = "background"  # the same for a CTest test
+# Lines of a pytest file that set the field of the same name of its Test.
+MARKERS = re.compile(r"^(MEASURES_TIME|BACKGROUND|LOAD) = (True|\d+\.\d+)", re.M)
+BACKGROUND_LABEL = "background"  # of a CTest test: the same as BACKGROUND
 SHOWN_LINES = 60  # of a failed test's output
 FAILS_ALONE, PASSES_ALONE = "fails alone too", "passes alone: depends on load or on other tests"
 
@@ -73,11 +72,9 @@ def _pytest(layout: Layout, name: str, folder: pathlib.Path) -> List[Test]:
     command = [str(layout.python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "--color=no", "-ra", "--disable-warnings"]
     tests = []
     for file in sorted(folder.rglob("test_*.py")):
-        text = file.read_text()
-        lines, load = text.splitlines(), DECLARED_LOAD.search(text)
+        markers = {marker.lower(): ast.literal_eval(value) for marker, value in MARKERS.findall(file.read_text())}
         tests.append(Test(f"{name}: {file.relative_to(folder).with_suffix('')}", [*command, str(file)], ROOT, PYTEST_LIMIT,
-                          background=BACKGROUND in lines, least_load=float(MEASURES_TIME in lines),
-                          load=float(load.group(1)) if load else None))
+                          **markers))
     return tests
 
 
@@ -104,7 +101,7 @@ def _select(options: Options) -> selection.Selection:
 
 def _job(test: Test, times: Times) -> Job:
     cost = times.cost(test.name, test.is_pytest)
-    load = max(cost.load, test.least_load) if test.load is None else test.load
+    load = max(cost.load, float(test.measures_time)) if test.load is None else test.load
     return Job(test, replace(cost, load=load), test.exclusive, test.background)
 
 

@@ -1,34 +1,11 @@
-"""Latency from a package of the controller to a subscriber, from received messages and the simulator's trace.
+"""Receives joint_states in Python."""
 
-The stamp of a message is the time at which the driver received the package: the package is the last one sent before it.
-"""
-
-import bisect
 import time
 
 import rclpy
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
-
-# The stamp is derived from a monotonic clock; the two clocks are read one after the other.
-CLOCK_TOLERANCE = 20_000  # ns
-
-
-def percentile(values, fraction):
-    ordered = sorted(values)
-    return ordered[min(len(ordered) - 1, int(fraction * len(ordered)))]
-
-
-def latencies(received, trace):
-    """Returns the latencies in ms of messages [(stamp, time of reception)] in ns."""
-    sent = [published for _, published, _ in trace["cycles"]]
-    result = []
-    for stamp, when in received:
-        index = bisect.bisect_right(sent, stamp + CLOCK_TOLERANCE) - 1
-        if index >= 0:
-            result.append((when - sent[index]) * 1e-6)
-    return result
 
 
 def receive_in_python(seconds):

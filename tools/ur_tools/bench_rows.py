@@ -1,0 +1,107 @@
+"""The rows of ./ur bench. To add one, add it here, and return its value from the measurement.
+
+A value is at figures[name][part], or at figures[name] if there is no part. Smaller values are better in all rows.
+"""
+
+from typing import List, NamedTuple, Optional, Tuple
+
+
+class Row(NamedTuple):
+    name: str
+    part: Optional[str]
+    target: Optional[float]
+    unit: str
+
+    @property
+    def title(self) -> str:
+        return f"{self.name} {self.part}" if self.part else self.name
+
+
+# Conditions of --stress, and what runs beside the driver in each.
+CONDITIONS = {
+    "alone": "nothing else",
+    "cpu load": "a busy loop on each core",
+    "Python subscriber": "an rclpy node that subscribes to all topics",
+    "20 subscribers": "20 more subscribers to joint_states, each a process",
+}
+QOS = ("best effort", "reliable")
+# Numbers of robots of --scale, and the processes of each robot.
+ROBOTS = (1, 4, 8)
+HOSTING = {"driver": ("driver",), "three processes": ("robot_state_receiver", "command_server", "dashboard_server")}
+
+
+def scale_name(robots: int, hosting: str) -> str:
+    return f"{robots} robot{'s' * (robots > 1)}, {hosting}"
+
+
+def stress_name(condition: str, qos: str) -> str:
+    return f"{condition}, {qos}"
+
+
+# Parts of the servo stream: part, target, unit.
+STREAM: Tuple[Tuple[str, float, str], ...] = (
+    ("answer p50", 0.3, "ms from a package to its target"),
+    ("answer p99.9", 0.5, "ms from a package to its target"),
+    ("off package", 0.1, "% of the intervals differ by more than 0.2 ms from those of the packages that they answer"),
+    ("off 2 ms", 0.1, "% of the intervals differ by more than 0.2 ms from 2 ms"),
+    ("cycles off 2 ms", 0.1, "% of the simulated controller's cycles differ by more than 0.2 ms from 2 ms"),
+    ("not once a cycle", 0.1, "% of the cycles received no target, or several"),
+    ("tracking error", 0.02, "rad"),
+)
+STREAMS = ("servo stream", "servo stream, real-time")
+STRESSED_STREAMS = ("servo stream, cpu load", "servo stream, cpu load, real-time")
+# Parts of --scale and of --stress.
+SCALE: Tuple[Tuple[str, float, str], ...] = (
+    ("package p50", 0.5, "ms to a C++ subscriber of one robot"),
+    ("package p99", 2.0, "ms to a C++ subscriber of one robot"),
+    ("cpu", 10.0, "% of a core per robot"),
+    ("memory", 120.0, "MB per robot, resident"),
+    ("ready", 10.0, "s from the start of the first driver until all robots are ready"),
+    ("own memory", 100.0, "MB per robot, shared pages divided among the processes"),
+)
+STRESS: Tuple[Tuple[str, float, str], ...] = (
+    ("p50", 0.3, "ms from a package to a C++ subscriber"),
+    ("p99", 1.0, "ms from a package to a C++ subscriber"),
+    ("p99.9", 2.0, "ms from a package to a C++ subscriber"),
+    ("missing", 0.1, "% of the packages did not reach the subscriber"),
+)
+
+ROWS: Tuple[Row, ...] = (
+    Row("package to C++ subscriber", "p50", 0.3, "ms"),
+    Row("package to C++ subscriber", "p99", 1.0, "ms"),
+    Row("package to rclpy subscriber", "p50", 0.3, "ms"),
+    Row("package to rclpy subscriber", "p99", 1.0, "ms"),
+    Row("goal to first RTDE command", "p50", 1.0, "ms"),
+    Row("cancel to deceleration", "p50", 5.0, "ms"),
+    *(Row(stream, *part) for stream in STREAMS for part in STREAM),
+    Row("cpu", "simulator", 10.0, "% of a core"),
+    Row("cpu", "robot_state_receiver", 10.0, "% of a core"),
+    Row("cpu", "command_server", 10.0, "% of a core"),
+    Row("cpu", "dashboard_server", 10.0, "% of a core"),
+    Row("memory", "command_server", 100.0, "MB"),
+    Row("start to ready", None, 2.0, "s"),
+    Row("new client finds all actions", "p50", 0.5, "s, after clients were killed"),
+    Row("new client finds all actions", "max", 1.0, "s, after clients were killed"),
+    *(Row(scale_name(robots, hosting), *part) for hosting in HOSTING for robots in ROBOTS for part in SCALE),
+    Row("many goals", "growth", 1.0, "MB of the driver's memory over the second half of the goals"),
+    Row("many goals", "duration", None, "ms per goal, from sending it to its result"),
+    *(Row(stress_name(condition, qos), *part) for condition in CONDITIONS for qos in QOS for part in STRESS),
+    *(Row(stream, *part) for stream in STRESSED_STREAMS for part in STREAM),
+)
+
+
+def value(figures: dict, row: Row) -> Optional[float]:
+    """Returns None if the row was not measured, or without a result."""
+    found = figures.get(row.name)
+    return found.get(row.part) if row.part is not None and found is not None else found
+
+
+def values(runs: List[dict], row: Row) -> List[float]:
+    """Returns the values of a row in all runs that have one."""
+    found = (value(run["figures"], row) for run in runs)
+    return [one for one in found if one is not None]
+
+
+def failed(runs: List[dict], row: Row) -> bool:
+    """Returns whether the row was measured, but without a result in any run."""
+    return any(row.name in run["figures"] for run in runs) and not values(runs, row)
