@@ -20,7 +20,7 @@ def _package(sent, stamp):
 
 
 def _sent(trace):
-    return [published for _, published, _ in trace["cycles"]]
+    return [published for _, published, *_ in trace["cycles"]]
 
 
 def latencies(received, trace):

@@ -17,7 +17,7 @@ from ur_ros_rtde_msgs.msg import JointWaypoint
 SERVO_J = 11  # command number of ur_rtde
 INTERVAL = 2.0  # ms, in the robot's time
 TOLERANCE = 0.2  # ms, in the robot's time
-POLL = 0.5  # s; the trace keeps the last 1024 repeated commands, 2 s in the robot's time
+POLL = 0.5  # s
 
 
 def _path(start, seconds):
@@ -29,16 +29,16 @@ def _path(start, seconds):
 
 def _trace(control, node, outcome):
     """Waits for the result. Returns (cycle, host time in ns) of the arrival of each target, and the host time in ns of each cycle."""
-    arrivals, cycles, last = [], {}, 0
+    arrivals, cycles, last = [], {}, control.request("state")["state"]["cycle"]
     while not outcome.done():
         end = time.monotonic() + POLL
         while time.monotonic() < end and not outcome.done():
             rclpy.spin_once(node, timeout_sec=0.02)
-        trace = control.request("trace", after=max(0, control.request("state")["state"]["cycle"] - 900))
+        trace = control.request("trace", after=last)
         cycles.update((number, published) for number, published, *_ in trace["cycles"])
-        new = [(cycle, when) for cycle, when, code in trace["repeats"] if code == SERVO_J and when > last]
-        arrivals += new
-        last = new[-1][1] if new else last
+        last = max(cycles, default=last)
+        # The newest cycle is requested again: more targets may arrive in it.
+        arrivals += [(cycle, when) for cycle, when, code in trace["repeats"] if code == SERVO_J and cycle < last]
     return arrivals, cycles
 
 

@@ -7,7 +7,7 @@ from action_msgs.msg import GoalStatus
 from arm_state import get_tcp_pose, translated
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
 from support import wait_for
-from trajectories import TargetSpeedRecorder
+from trajectories import TargetRecorder
 
 from ur_ros_rtde_msgs.action import ExecuteCartesianPath
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -50,11 +50,17 @@ def test_keeps_its_speed_and_blends_corners(robot):
 
 
 def test_default_limits_make_the_joints_slow(robot, simulator):
-    recorder = TargetSpeedRecorder(simulator)
-    goal = send(robot, translated(get_tcp_pose(robot), y=0.6, z=-0.2), speed=3.0, rotation_speed=6.0)
-    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
-    goal.succeeded()
-    assert 0.9 < max(recorder.update()) < 1.05 * 1.03
+    start = get_tcp_pose(robot)
+    end = translated(start, y=0.6, z=-0.2)
+    fast = {"speed": 3.0, "rotation_speed": 6.0}
+    recorder = TargetRecorder(simulator)
+    goal = send(robot, end, **fast)
+    recorder.record_until_finished(goal)
+    assert recorder.max_joint_speed() < 1.05 * 1.03
+    duration = goal.succeeded().duration
+    send(robot, start, **fast, max_velocity=[1.8] * 6, max_acceleration=[5.0] * 6).succeeded()
+    given = send(robot, end, **fast, max_velocity=[1.05] * 6, max_acceleration=[1.4] * 6).succeeded()
+    assert given.duration == pytest.approx(duration, rel=0.01)
 
 
 def test_an_unreachable_point_on_the_path_aborts_the_goal_before_the_arm_moves(robot, simulator):

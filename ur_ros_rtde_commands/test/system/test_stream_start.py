@@ -6,7 +6,7 @@ from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 from support import start_node, wait_for
 from test_streams import Publisher, joint_message
-from trajectories import TargetSpeedRecorder
+from trajectories import TargetRecorder
 
 
 @pytest.fixture(scope="module")
@@ -20,10 +20,12 @@ def driver(simulator):
 
 
 def test_the_approach_to_joint_positions_is_slow(robot, simulator):
-    recorder = TargetSpeedRecorder(simulator)
+    recorder = TargetRecorder(simulator)
     with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(home_plus(0.4))):
         wait_for(lambda: recorder.update() and get_joint_state(robot).position[0] > 0.39, 20.0, "the arm to reach the target")
-    assert 0.5 < max(recorder.update()) < 1.05 * 1.05
+    recorder.update()
+    assert recorder.max_joint_speed() < 1.05 * 1.05
+    assert recorder.moving_cycles_with_setpoint(joint_speed=0.1) < 1.5 * 500.0 * 0.4 / 1.05, "slower than the default speed"
 
 
 def test_the_approach_to_a_pose_is_slow(robot, simulator):
@@ -32,13 +34,10 @@ def test_the_approach_to_a_pose_is_slow(robot, simulator):
     message.header.frame_id = "base"
     message.pose = get_tcp_pose(robot)
     message.pose.position.z -= 0.2
+    recorder = TargetRecorder(simulator)
     with Publisher(robot, PoseStamped, "servo_pose", lambda t: message):
-        speeds = []
-
-        def is_at_target():
-            state = simulator.state()
-            speeds.append(abs(state["target_tcp_speed"][2]))
-            return state["actual_tcp_pose"][2] < start.position.z - 0.195
-
-        wait_for(is_at_target, 20.0, "the TCP to reach the target")
-    assert 0.1 < max(speeds) < 0.25 * 1.1
+        wait_for(lambda: recorder.update() and get_tcp_pose(robot).position.z < start.position.z - 0.195, 20.0,
+                 "the TCP to reach the target")
+    recorder.update()
+    assert recorder.max_tcp_speed() < 0.25 * 1.1
+    assert recorder.moving_cycles_with_setpoint(joint_speed=0.03) < 1.5 * 500.0 * 0.2 / 0.25, "slower than the default speed"

@@ -7,8 +7,8 @@ from action_msgs.msg import GoalStatus
 from arm_state import home_plus
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
-from support import HOME, JOINTS, robot_seconds, wait_for
-from trajectories import TargetSpeedRecorder, cycles_without_target, distance_to_line, point, timed, wave, waypoints
+from support import HOME, JOINTS, wait_for
+from trajectories import TargetRecorder, distance_to_line, point, timed, wave, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -69,10 +69,10 @@ def test_speed_fraction_increases_the_duration(robot):
 
 def max_target_speed(simulator, goal):
     """Returns the maximum target speed of any joint until the goal has succeeded, in rad/s."""
-    recorder = TargetSpeedRecorder(simulator)
-    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
+    recorder = TargetRecorder(simulator)
+    recorder.record_until_finished(goal)
     goal.succeeded()
-    return max(recorder.update())
+    return recorder.max_joint_speed()
 
 
 def test_default_limits_are_slow(robot, simulator):
@@ -94,11 +94,11 @@ def test_the_approach_uses_the_default_limits(robot, simulator, speed_fraction):
 
 
 def test_joint_limits_are_respected(robot, simulator):
-    recorder = TargetSpeedRecorder(simulator)
+    recorder = TargetRecorder(simulator)
     goal = send(robot, [HOME, home_plus(0.5)], max_velocity=[0.2] * 6, max_acceleration=[1.0] * 6, max_jerk=[10.0] * 6)
-    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
+    recorder.record_until_finished(goal)
     assert goal.succeeded().duration == pytest.approx(0.5 / 0.2 + 0.2 / 1.0 + 1.0 / 10.0, abs=0.01)
-    assert max(recorder.update()) < 0.2 * 1.03
+    assert recorder.max_joint_speed() < 0.2 * 1.03
 
 
 def test_blends_corners_within_the_tolerance(robot):
@@ -163,7 +163,7 @@ def test_the_speed_slider_scales_the_duration(robot, simulator):
 
 
 def test_a_delayed_host_skips_no_part_of_the_trajectory(robot, simulator, driver):
-    recorder = TargetSpeedRecorder(simulator)
+    recorder = TargetRecorder(simulator)
     goal = send(robot, [HOME, home_plus(0.8), HOME], max_velocity=[0.5] * 6, lookahead_time=MIN_LOOKAHEAD)
     for progress in (0.1, 0.3, 0.6):
         wait_for_progress(goal, progress)
@@ -172,9 +172,9 @@ def test_a_delayed_host_skips_no_part_of_the_trajectory(robot, simulator, driver
         wait_for(lambda: simulator.state()["cycle"] > cycle + 30, 10.0, "30 cycles without the host")
         driver.resume()
         recorder.update()
-    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
+    recorder.record_until_finished(goal)
     goal.succeeded()
-    assert max(recorder.update()) < 0.5 * 1.05
+    assert recorder.max_joint_speed() < 0.5 * 1.05
 
 
 def test_aborts_and_stops_if_the_tracking_error_is_too_large(robot, simulator):
@@ -237,23 +237,15 @@ def test_keeps_the_given_times(robot, simulator):
     times = [0.0, 0.4, 0.5, 1.3, 2.0]
     points = arc(times)
     points[-1].velocities = [0.0] * 6
-    for _ in range(3):
-        make_ready(robot)
-        states = robot.subscribe(JointState, "joint_states")
-        before = simulator.state()["cycle"]
-        goal = send_timed(robot, timed(*points), lookahead_time=MIN_LOOKAHEAD, gain=2000.0, max_jerk=[1e5] * 6)
-        assert goal.succeeded().duration == pytest.approx(2.0)
-        moving = [s for s in robot.messages_until_now(states) if abs(s.position[0] - HOME[0]) > 0.002]
-        robot.destroy_subscriptions()
-        if cycles_without_target(simulator, before) < 5:  # a delayed host prolongs the trajectory
-            break
-    # Differences between the controller's stamps at which the arm passes these positions.
-    crossed = {}
-    for part, planned in ((0.25, 2.0 / 3.0), (0.5, 1.0), (0.75, 4.0 / 3.0)):
-        crossing = next(s for s in moving if s.position[0] - HOME[0] >= 0.3 * part)
-        crossed[planned] = robot_seconds(crossing.header.stamp)
-    assert crossed[1.0] - crossed[2.0 / 3.0] == pytest.approx(1.0 / 3.0, abs=0.05)
-    assert crossed[4.0 / 3.0] - crossed[1.0] == pytest.approx(1.0 / 3.0, abs=0.05)
+    recorder = TargetRecorder(simulator)
+    goal = send_timed(robot, timed(*points), lookahead_time=MIN_LOOKAHEAD, gain=2000.0, max_jerk=[1e5] * 6)
+    recorder.record_until_finished(goal)
+    assert goal.succeeded().duration == pytest.approx(2.0)
+    # The planned times are 2/3, 1 and 4/3 s. A delayed host prolongs the motion, but not by more setpoints.
+    quarter, half, three_quarters = (recorder.cycle_at_travel(0.3 * part) for part in (0.25, 0.5, 0.75))
+    for begin, end in ((quarter, half), (half, three_quarters)):
+        assert end - begin > 500.0 * (1.0 / 3.0 - 0.03)
+        assert recorder.cycles_with_setpoint(begin, end) < 500.0 * (1.0 / 3.0 + 0.03)
 
 
 def test_accepts_positions_without_velocities_and_names_in_any_order(robot):

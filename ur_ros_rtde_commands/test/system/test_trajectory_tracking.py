@@ -3,8 +3,8 @@
 import pytest
 from arm_state import home_plus
 from sensor_msgs.msg import JointState
-from support import HOME, wait_for
-from trajectories import TargetSpeedRecorder, waypoints
+from support import HOME
+from trajectories import TargetRecorder, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteTrajectory
 
@@ -24,10 +24,10 @@ def planned_position(duration, time):
                          ids=["default", "close", "smooth"])
 def test_follows_the_plan(robot, simulator, parameters):
     states = robot.subscribe(JointState, "joint_states")
-    recorder = TargetSpeedRecorder(simulator)
+    recorder = TargetRecorder(simulator)
     goal = robot.send(ExecuteTrajectory, "execute_trajectory", waypoints=waypoints(HOME, home_plus(DISTANCE)),
                       max_velocity=[SPEED] * 6, max_acceleration=[ACCELERATION] * 6, max_jerk=[JERK] * 6, **parameters)
-    wait_for(lambda: recorder.update() and goal.is_finished(), 60.0, "the end")
+    recorder.record_until_finished(goal)
     result = goal.succeeded()
     errors = {}
     for feedback in goal.feedback:
@@ -39,4 +39,4 @@ def test_follows_the_plan(robot, simulator, parameters):
     assert len(errors) > 5
     assert max(map(abs, errors.values())) < MAX_DELAY_ERROR, errors
     assert max(state.position[0] for state in robot.messages_until_now(states)) < HOME[0] + DISTANCE + 0.002
-    assert max(recorder.update()) < 1.03 * SPEED
+    assert recorder.max_joint_speed() < 1.03 * SPEED

@@ -3,7 +3,7 @@
 import math
 
 from arm_state import home_plus
-from support import JOINTS
+from support import JOINTS, wait_for
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from ur_ros_rtde_msgs.msg import JointWaypoint
@@ -37,33 +37,60 @@ def distance_to_line(position, start, end):
     return max(abs(p - a - part * d) for p, a, d in zip(position, start, along))
 
 
-def cycles_without_target(simulator, after):
-    """Returns the number of controller cycles without a new target, between the first and the last target after cycle `after`.
+class TargetRecorder:
+    """Records the targets of the simulated arm, and the cycles in which setpoints arrive, from construction on.
 
-    The simulator's trace covers the last 2 s."""
-    targets = {cycle for cycle, _, _ in simulator.control("trace", after=after)["repeats"]}
-    return max(targets) - min(targets) + 1 - len(targets)
-
-
-class TargetSpeedRecorder:
-    """Records the target speeds of the simulator, from construction on.
-
-    Call update() at least every 2 s, for example in wait_for(): the simulator's trace covers the last 2 s.
+    Call update() until the end, for example in wait_for(). It fails if the simulator's trace has lost a cycle since the last
+    call (32 s), so the record is complete.
     """
 
     def __init__(self, simulator):
         self._simulator = simulator
-        self._last_cycle = 0
-        self._new_speeds()  # discards the past
-        self._speeds = []
+        self._first_cycle = self._last_cycle = simulator.state()["cycle"]
+        self._setpoint_cycles = set()
+        self.joint_speeds = {}  # of the fastest target joint in rad/s, by cycle
+        self.tcp_speeds = {}  # m/s, by cycle
 
     def update(self):
-        """Returns the speed of the fastest target joint in rad/s, of each cycle so far."""
-        self._speeds += self._new_speeds()
-        return self._speeds
+        """Returns itself, so that a condition can continue with the record."""
+        trace = self._simulator.control("trace", after=self._last_cycle)
+        cycles = [cycle for cycle, *_ in trace["cycles"]]
+        assert cycles == list(range(self._last_cycle + 1, self._last_cycle + 1 + len(cycles))), "the trace has gaps"
+        self.joint_speeds.update((cycle, speed) for cycle, _, speed, _ in trace["cycles"])
+        self.tcp_speeds.update((cycle, speed) for cycle, _, _, speed in trace["cycles"])
+        self._setpoint_cycles.update(cycle for cycle, *_ in trace["repeats"] if cycle > self._first_cycle)
+        self._last_cycle += len(cycles)
+        return self
 
-    def _new_speeds(self):
-        cycles = self._simulator.control("trace", after=self._last_cycle)["cycles"]
-        if cycles:
-            self._last_cycle = cycles[-1][0]
-        return [speed for _, _, speed in cycles]
+    def record_until_finished(self, goal, limit=60.0):
+        """Records until the goal has its result."""
+        wait_for(lambda: self.update() and goal.is_finished(), limit, "the end")
+        self.update()
+
+    def max_joint_speed(self):
+        return max(self.joint_speeds.values())
+
+    def max_tcp_speed(self):
+        return max(self.tcp_speeds.values())
+
+    def cycles_with_setpoint(self, first=0, last=math.inf):
+        """Returns the number of cycles in which a setpoint arrived, except the first of a goal. The target cannot need more of
+        them on a slow host, because each advances it by at least one cycle."""
+        return sum(first <= cycle <= last for cycle in self._setpoint_cycles)
+
+    def cycle_at_travel(self, distance):
+        """Returns the cycle in which the target of the fastest joint has traveled this distance in rad."""
+        traveled = 0.0
+        for cycle, speed in self.joint_speeds.items():
+            traveled += speed / 500.0
+            if traveled >= distance:
+                return cycle
+        raise AssertionError(f"the target traveled {traveled:.4f} rad, less than {distance} rad")
+
+    def cycles_from_first_to_last_setpoint(self):
+        """The target cannot need fewer of them on a slow host, which only prolongs the motion."""
+        return max(self._setpoint_cycles) - min(self._setpoint_cycles) + 1
+
+    def moving_cycles_with_setpoint(self, joint_speed):
+        """Returns the number of cycles in which a setpoint arrived and the target of a joint was faster (rad/s)."""
+        return sum(self.joint_speeds[cycle] > joint_speed for cycle in self._setpoint_cycles if cycle in self.joint_speeds)

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 
 #include "control_port/commands.hpp"
@@ -42,28 +44,42 @@ json log(ControlPortContext & context, RequestFields & fields)
   return {{"entries", std::move(entries)}};
 }
 
+template <typename Entries, typename ToJson>
+json entries_from(const Entries & entries, std::uint64_t first_cycle, ToJson && to_json)
+{
+  json list = json::array();
+  entries.for_each([&](const auto & entry) {
+    if (entry.cycle >= first_cycle) {
+      list.push_back(to_json(entry));
+    }
+  });
+  return list;
+}
+
+json cycle_to_json(const CycleTrace::Cycle & cycle)
+{
+  return {cycle.cycle, cycle.published, cycle.joint_speed, cycle.tcp_speed};
+}
+
+json command_to_json(const CycleTrace::Command & command)
+{
+  return {command.cycle, command.arrived, command.code};
+}
+
 json trace(ControlPortContext & context, RequestFields & fields)
 {
   const auto after = static_cast<std::uint64_t>(fields.integer("after", 0, INT64_MAX, 0));
   fields.reject_unknown();
-  json cycles = json::array();
-  context.trace.for_each_cycle([&](const CycleTrace::Cycle & cycle) {
-    if (cycle.number > after) {
-      cycles.push_back({cycle.number, cycle.published, cycle.speed});
-    }
-  });
-  json commands = json::array();
-  json repeats = json::array();
-  const auto append_to = [after](json & list) {
-    return [&list, after](const CycleTrace::Command & command) {
-      if (command.cycle >= after) {
-        list.push_back({command.cycle, command.arrived, command.code});
-      }
-    };
-  };
-  context.trace.for_each_command(append_to(commands));
-  context.trace.for_each_repeat(append_to(repeats));
-  return {{"cycles", std::move(cycles)}, {"commands", std::move(commands)}, {"repeats", std::move(repeats)}};
+  const CycleTrace & trace = context.trace;
+  if (after > 0 && after <= trace.last_incomplete_cycle()) {
+    throw RequestError(
+        fmt::format("field 'after' is {}: the trace is complete only after cycle {}; request it "
+                    "more often, or without 'after' for what is left",
+                    after, trace.last_incomplete_cycle()));
+  }
+  return {{"cycles", entries_from(trace.cycles(), after + 1, cycle_to_json)},
+          {"commands", entries_from(trace.commands(), after, command_to_json)},
+          {"repeats", entries_from(trace.repeats(), after, command_to_json)}};
 }
 
 constexpr std::array query_command_table{
@@ -71,12 +87,14 @@ constexpr std::array query_command_table{
     Command{"registers", "", "Returns the general purpose registers.", registers},
     Command{"log", "after (0)", "Returns those of the last 1000 log entries whose number is above 'after'.",
             log},
-    Command{"trace", "after (0)",
-            "Returns times of the host's clock, ns: the last 4096 cycles after 'after' as [cycle, start of "
-            "sending, largest target joint speed rad/s], the last 256 commands in input integer register 0 "
-            "as [cycle, arrival, code], and separately the last 1024 commands with the same code as the "
-            "previous one.",
-            trace},
+    Command{
+        "trace", "after (0)",
+        "Returns times of the host's clock, ns: the cycles after 'after' (at most 16384) as [cycle, start "
+        "of sending, largest target joint speed rad/s, target TCP speed m/s], the commands in input integer "
+        "register 0 from "
+        "cycle 'after' on (at most 256) as [cycle, arrival, code], and separately those with the same "
+        "code as the previous one (at most 16384). Fails if data after 'after' has been overwritten.",
+        trace},
 };
 
 }  // namespace

@@ -340,6 +340,7 @@ void Controller::reboot(double duration)
   switch_off();
   const Vector6 joint_positions = state_.actual.position;
   state_ = ControllerState();
+  trace_.clear();
   script_requests_ = {};
   // Replaced in place: references to these objects stay valid.
   arm_.emplace(model_, version_.cycle_time(), joint_positions);

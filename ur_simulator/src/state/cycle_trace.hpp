@@ -1,23 +1,67 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "state/controller_state.hpp"
 
 namespace ur_simulator {
 
+/// The newest entries of a trace. Entry has the member `cycle`.
+template <typename Entry>
+class TraceBuffer {
+ public:
+  explicit TraceBuffer(std::size_t capacity) : entries_(capacity) {}
+
+  void add(const Entry & entry)
+  {
+    Entry & oldest = entries_[count_++ % entries_.size()];
+    if (count_ > entries_.size()) {
+      last_overwritten_cycle_ = oldest.cycle;
+    }
+    oldest = entry;
+  }
+  /// Oldest first.
+  template <typename Visit>
+  void for_each(Visit && visit) const
+  {
+    const std::uint64_t first = count_ > entries_.size() ? count_ - entries_.size() : 0;
+    for (std::uint64_t i = first; i < count_; ++i) {
+      visit(entries_[i % entries_.size()]);
+    }
+  }
+  /// Entries up to this cycle are incomplete; 0 if none was overwritten.
+  std::uint64_t last_overwritten_cycle() const { return last_overwritten_cycle_; }
+  void clear()
+  {
+    count_ = 0;
+    last_overwritten_cycle_ = 0;
+  }
+
+ private:
+  std::vector<Entry> entries_;
+  std::uint64_t count_ = 0;
+  std::uint64_t last_overwritten_cycle_ = 0;
+};
+
 /// Records the last cycles and the last commands with times of the host's clock. Clients on the same host
-/// measure their latency with it. Does not allocate memory.
+/// measure their latency with it. Allocates memory only on construction.
 class CycleTrace {
  public:
   using Clock = std::chrono::system_clock;
 
+  static constexpr std::size_t cycle_capacity = 16384;  ///< 32 s at 500 Hz
+  static constexpr std::size_t command_capacity = 256;
+  static constexpr std::size_t repeat_capacity = 16384;
+
   struct Cycle {
-    std::uint64_t number = 0;
+    std::uint64_t cycle = 0;
     std::int64_t published = 0;  ///< time before the cycle's RTDE packages were sent, ns since the epoch
-    double speed = 0.0;          ///< largest target joint speed, rad/s
+    double joint_speed = 0.0;    ///< largest target joint speed, rad/s
+    double tcp_speed = 0.0;      ///< target speed of the TCP, m/s
   };
   struct Command {
     std::uint64_t cycle = 0;
@@ -29,8 +73,8 @@ class CycleTrace {
   /// package is sent.
   void record_cycle(const ControllerState & state)
   {
-    cycles_[cycle_count_++ % cycles_.size()] = {state.cycle, now(),
-                                                state.target.velocity.cwiseAbs().maxCoeff()};
+    cycles_.add({state.cycle, now(), state.target.velocity.cwiseAbs().maxCoeff(),
+                 state.target_tcp_speed.head<3>().norm()});
   }
   /// Call after a data package has written input integer register 0. Code 0 (no command) is not recorded. A
   /// code equal to the previous one is recorded as a repeat: ur_rtde's servo and speed commands send the same
@@ -39,28 +83,31 @@ class CycleTrace {
   {
     const std::int32_t code = state.inputs.integers[0];
     if (code != 0 && code == last_code_ && with_arguments) {
-      repeats_[repeat_count_++ % repeats_.size()] = {state.cycle, now(), code};
+      repeats_.add({state.cycle, now(), code});
     }
     if (code != 0 && code != last_code_) {
-      commands_[command_count_++ % commands_.size()] = {state.cycle, now(), code};
+      commands_.add({state.cycle, now(), code});
     }
     last_code_ = code;
   }
 
-  template <typename Visit>
-  void for_each_cycle(Visit && visit) const
+  /// Call when the count of cycles restarts.
+  void clear()
   {
-    for_each(cycles_, cycle_count_, visit);
+    cycles_.clear();
+    commands_.clear();
+    repeats_.clear();
+    last_code_ = 0;
   }
-  template <typename Visit>
-  void for_each_command(Visit && visit) const
+
+  const TraceBuffer<Cycle> & cycles() const { return cycles_; }
+  const TraceBuffer<Command> & commands() const { return commands_; }
+  const TraceBuffer<Command> & repeats() const { return repeats_; }
+  /// The data of all later cycles is complete.
+  std::uint64_t last_incomplete_cycle() const
   {
-    for_each(commands_, command_count_, visit);
-  }
-  template <typename Visit>
-  void for_each_repeat(Visit && visit) const
-  {
-    for_each(repeats_, repeat_count_, visit);
+    return std::max({cycles_.last_overwritten_cycle(), commands_.last_overwritten_cycle(),
+                     repeats_.last_overwritten_cycle()});
   }
 
  private:
@@ -68,22 +115,10 @@ class CycleTrace {
   {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
   }
-  /// Oldest first.
-  template <typename Ring, typename Visit>
-  static void for_each(const Ring & ring, std::uint64_t count, Visit && visit)
-  {
-    const std::uint64_t first = count > ring.size() ? count - ring.size() : 0;
-    for (std::uint64_t i = first; i < count; ++i) {
-      visit(ring[i % ring.size()]);
-    }
-  }
 
-  std::array<Cycle, 4096> cycles_;
-  std::array<Command, 256> commands_;
-  std::array<Command, 1024> repeats_;
-  std::uint64_t cycle_count_ = 0;
-  std::uint64_t command_count_ = 0;
-  std::uint64_t repeat_count_ = 0;
+  TraceBuffer<Cycle> cycles_{cycle_capacity};
+  TraceBuffer<Command> commands_{command_capacity};
+  TraceBuffer<Command> repeats_{repeat_capacity};
   std::int32_t last_code_ = 0;
 };
 

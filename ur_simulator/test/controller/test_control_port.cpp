@@ -1,3 +1,4 @@
+#include "state/cycle_trace.hpp"
 #include "support/rtde_client.hpp"
 #include "support/simulator_test.hpp"
 #include "support/tcp_client.hpp"
@@ -144,6 +145,38 @@ TEST_F(ControlPortTest, TracesCommandsAndRepeatsButNotWatchdogKicks)
   ASSERT_EQ(trace["repeats"].size(), 2U) << trace["repeats"];
   EXPECT_EQ(trace["repeats"][0][2], 11);
   EXPECT_LE(trace["repeats"][0][1], trace["repeats"][1][1]);
+}
+
+TEST_F(ControlPortTest, TraceFailsIfRequestedCyclesWereOverwritten)
+{
+  constexpr std::size_t capacity = CycleTrace::command_capacity;
+  RtdeClient rtde_client(controller.address());
+  ASSERT_TRUE(rtde_client.negotiate(2));
+  rtde_client.setup_inputs("input_int_register_0");
+  const auto after_1 = R"({"command": "trace", "after": 1})";
+  EXPECT_TRUE(request(after_1)["ok"]);
+  for (std::size_t i = 0; i <= capacity; ++i) {
+    rtde_client.send('U', data_package_header(1) + encode_int32(static_cast<std::int32_t>(1 + i % 2)));
+  }
+  std::string error = "no error";
+  while (error == "no error" && wait_for_next_cycle(controller)) {
+    error = request_error(after_1);
+  }
+  EXPECT_NE(error.find("'after' is 1: the trace is complete only after cycle "), std::string::npos) << error;
+  EXPECT_EQ(request(R"({"command": "trace"})")["commands"].size(), capacity);
+}
+
+TEST_F(ControlPortTest, RebootClearsTrace)
+{
+  ASSERT_TRUE(wait_simulated_time(controller, 0.4, seconds(5)));
+  ASSERT_TRUE(request(R"({"command": "reboot", "duration": 0.01})")["ok"]);
+  json cycles;
+  while (cycles.empty() && wait_for_next_cycle(controller)) {
+    cycles = request(R"({"command": "trace"})")["cycles"];
+  }
+  ASSERT_FALSE(cycles.empty());
+  EXPECT_LE(cycles.front()[0].get<int>(), 10);
+  EXPECT_EQ(static_cast<int>(cycles.size()), cycles.back()[0].get<int>() - cycles.front()[0].get<int>() + 1);
 }
 
 TEST_F(ControlPortTest, SetsJointPositions)

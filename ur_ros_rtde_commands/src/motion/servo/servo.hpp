@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "motion/servo/servo_profile.hpp"
 #include "motion/speed_limits.hpp"
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/run.hpp"
@@ -34,17 +35,6 @@ StopOptions servo_stop_options(const Goal & goal)
   return {.joint_deceleration = goal.deceleration, .linear_deceleration = goal.deceleration};
 }
 
-/// The minimum-jerk polynomial (Flash and Hogan 1985): the traveled fraction of the path at the fraction `u`
-/// of the duration, both 0 to 1. It starts and ends at rest with continuous acceleration.
-double smooth_step(double u);
-/// The peak speed of smooth_step as a multiple of its mean speed.
-constexpr double smooth_step_peak = 15.0 / 8.0;
-
-/// The duration (s) of a goal without a time: what the joints, or the TCP, need with the default speeds and
-/// accelerations (default_speeds.hpp).
-double default_joint_duration(const Vector6 & from, const std::vector<double> & to);
-double default_tcp_duration(const Vector6 & from, const std::vector<double> & to);
-
 /// A setpoint of a servo motion.
 struct ServoStep {
   double fraction;  ///< traveled (smooth_step), 0 to 1
@@ -60,11 +50,6 @@ struct ServoStep {
 
 /// Ends servo control after a successful arrival. After a failure, the base class stops the arm.
 [[nodiscard]] Outcome finish_servo(Run & run, const Outcome & arrival, double deceleration);
-
-/// Linear interpolation at the fraction `s`: of joint positions, and of UR poses, on a straight line with a
-/// rotation about a fixed axis.
-std::vector<double> interpolate_joints(const Vector6 & from, const std::vector<double> & to, double s);
-std::vector<double> interpolate_pose(const Vector6 & from, const std::vector<double> & to, double s);
 
 /// Checks that the TCP does not exceed 3 m/s and 3.14 rad/s if it follows smooth_step from one UR pose to
 /// another in `time` s.
