@@ -289,6 +289,12 @@ def setup(layout: Layout) -> None:
         _setup(layout, pending)
 
 
+def setup_viewer(layout: Layout) -> None:
+    """Installs the Python packages of the viewer if they are missing. The build needs none of them."""
+    with Lock("build"):
+        venv.ensure_viewer(layout)
+
+
 def _chosen(options: Options) -> Dict[str, Package]:
     packages = discover()
     if options.packages is not None:

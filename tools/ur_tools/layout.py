@@ -68,6 +68,11 @@ class Layout:
         return (ROOT / "wheels" / f"{self.ros}.txt", ROOT / "wheels" / "tools.txt")
 
     @property
+    def viewer_requirements(self) -> Tuple[pathlib.Path, ...]:
+        """Installed on the first use of the viewer."""
+        return (ROOT / "wheels" / "viewer.txt",)
+
+    @property
     def provider(self) -> pathlib.Path:
         return ROOT / "wheels" / "provider.cmake"
 

@@ -30,7 +30,7 @@ CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57,
        "state": "show the state of the robot", "plugins": "list the installed plugins",
         "record": "record RTDE outputs of the robot to a CSV file",
         "urdf": "print the URDF of an arm: ur urdf --model ur10e"}
-FORWARDED = ("demo", "bench", "chaos", "plan", "sim", *CLI)  # to a program, with all options that are not ours
+FORWARDED = ("demo", "bench", "chaos", "plan", "sim", "view", *CLI)  # to a program, with all options that are not ours
 
 
 def _add_build_options(parser: argparse.ArgumentParser) -> None:
@@ -134,6 +134,28 @@ def command_cli(options: argparse.Namespace) -> int:
     os.execve(command, [str(command), *arguments], workspace_environment(layout))
 
 
+def command_view(options: argparse.Namespace) -> int:
+    """Runs the viewer. Builds only if it is missing: the driver may be running."""
+    arguments, layout = _forwarded(options), _layout(options)
+    if any(argument in ("-h", "--help") for argument in arguments):
+        source = ROOT / "ur_ros_rtde_viewer"
+        env = {**os.environ, "PYTHONPATH": str(source), "PYTHONDONTWRITEBYTECODE": "1"}
+        os.execve(sys.executable, [sys.executable, str(source / "scripts" / "view"), *arguments], env)
+    viewer = ready_viewer(layout, options.jobs)
+    os.execve(viewer, [str(viewer), *arguments], run_environment(layout))
+
+
+def ready_viewer(layout: Layout, jobs: int = 0) -> pathlib.Path:
+    """Returns the program of the viewer, after building and installing what it misses."""
+    try:
+        viewer = program(layout, "ur_ros_rtde_viewer", "view")
+    except FileNotFoundError:
+        building.build(building.Options(layout, ["ur_ros_rtde_viewer"], False, jobs))
+        viewer = program(layout, "ur_ros_rtde_viewer", "view")
+    building.setup_viewer(layout)
+    return viewer
+
+
 def command_new(options: argparse.Namespace) -> int:
     return new.run(options.kind, options.name, options.package, options.directory, options.description)
 
@@ -217,6 +239,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     add_forwarding("sim", command_sim, "run the simulated controller; options go to ur_simulator (`sim -- --help`)")
     add_forwarding("bench", command_bench, "measure latency and load")
     add_forwarding("plan", command_plan, "plan a trajectory without a robot and draw it against its limits")
+    add_forwarding("view", command_view, "show robots in the browser: 3D scene, plots, state, recordings")
     add_forwarding("chaos", command_chaos, "send random goals during random faults; with --faults 0 a soak test")
     add_forwarding("shell", command_shell, "open a shell, or run one command, with the environment of the build")
 

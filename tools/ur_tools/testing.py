@@ -203,6 +203,8 @@ def run(options: Options) -> int:
         packages: Dict[str, Package] = {}
     else:
         packages = building.build(building.Options(options.layout, chosen.packages, True, options.jobs))
+    if "ur_ros_rtde_viewer" in packages:
+        building.setup_viewer(options.layout)
     return _run_selected(options, chosen, packages)
 
 

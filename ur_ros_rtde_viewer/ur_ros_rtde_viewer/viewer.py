@@ -1,0 +1,68 @@
+"""The viewer: all robots of one page, and the loop that updates them."""
+
+import argparse
+import logging
+import queue
+import time
+from typing import Any, Callable, List
+
+from .arguments import robots
+from .page.layout import Layout
+from .panels import add_panels
+from .robot_view import RobotView
+from .ros.nodes import Nodes
+
+logger = logging.getLogger(__name__)
+
+
+class Viewer:
+    """One thread, that of run(), uses ROS, the scene and the panels. Callbacks of the page reach it through post()."""
+
+    def __init__(self, server: Any, nodes: Nodes, options: argparse.Namespace):
+        self.server, self.nodes, self.options = server, nodes, options
+        self._posted: "queue.SimpleQueue[Callable[[], None]]" = queue.SimpleQueue()
+        with server.atomic():
+            server.scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.1, section_size=0.5)
+            found = robots(options)
+            self.layout = Layout(server, found)
+            self.robots: List[RobotView] = [RobotView(server, nodes, robot, self.layout.tabs(robot)) for robot in found]
+            for robot in self.robots:
+                add_panels(self, robot)
+
+    def post(self, function: Callable[[], None]) -> None:
+        """Calls a function in the thread of the loop, without waiting for the next update. Can be called in any thread."""
+        self._posted.put(function)
+        self.nodes.wake()
+
+    def run(self, ended: Callable[[], bool]) -> None:
+        """Updates the page until `ended()`, which is asked once per update."""
+        period = 1.0 / self.options.rate
+        due = time.monotonic()
+        while not ended():
+            due = max(due + period, time.monotonic())
+            self.update()
+            self._spin_until(due)
+
+    def _spin_until(self, due: float) -> None:
+        """Runs callbacks of ROS and posted functions."""
+        self.run_posted()
+        while (remaining := due - time.monotonic()) > 0.0:
+            self.nodes.spin_once(remaining)
+            self.run_posted()
+
+    def run_posted(self) -> None:
+        while not self._posted.empty():
+            function = self._posted.get()
+            try:
+                function()
+            except Exception:  # noqa: BLE001: a failing callback must not end the viewer
+                logger.exception("a callback of the page failed")
+
+    def update(self) -> None:
+        with self.server.atomic():
+            for robot in self.robots:
+                robot.update()
+
+    def close(self) -> None:
+        for robot in self.robots:
+            robot.close()
