@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, List
 
 from . import build as building
-from . import boilerplate, console, isolation, lint, selection
+from . import boilerplate, browser, console, isolation, lint, selection
 from .layout import ROOT, Layout
 from .lock import Lock
 from .packages import Package, discover
@@ -23,7 +23,7 @@ from .schedule import Job, Schedule, Times
 DEFAULT_LIMIT = 120.0
 PYTEST_LIMIT = 600.0
 # Lines of a pytest file that set the field of the same name of its Test.
-MARKERS = re.compile(r"^(MEASURES_TIME|BACKGROUND|LOAD) = (True|\d+\.\d+)", re.M)
+MARKERS = re.compile(r"^(MEASURES_TIME|BACKGROUND|BROWSER|LOAD) = (True|\d+\.\d+)", re.M)
 BACKGROUND_LABEL = "background"  # of a CTest test: the same as BACKGROUND
 SHOWN_LINES = 60  # of a failed test's output
 FAILS_ALONE, PASSES_ALONE = "fails alone too", "passes alone: depends on load or on other tests"
@@ -215,6 +215,9 @@ def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[
         if options.names and not tests:
             raise console.Failure(f"no test has {' or '.join(options.names)} in its name")
         runner = Runner(options.layout, isolation.fresh_folder(options.layout.base / "test"), options.timeout)
+        if any(test.browser for test in tests):
+            provided = browser.environment(options.layout)
+            tests = [replace(test, env={**test.env, **provided}) if test.browser else test for test in tests]
         checks = [] if options.names else lint.checks(options.layout)
         for check in checks:
             if not check.ok:

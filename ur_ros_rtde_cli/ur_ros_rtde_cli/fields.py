@@ -83,6 +83,14 @@ def read_file(file: pathlib.Path, message: Any) -> Any:
     return Document.of_file(file).fill(message)
 
 
+def parse_value(text: str, path: Path) -> Any:
+    """Returns the value of one field in YAML, for `fill`."""
+    try:
+        return _load(text, "")[1]
+    except CliError as error:
+        raise FieldError(path, str(error).replace("the goal", field_name(path), 1)) from None
+
+
 def _load(text: str, source: str) -> Tuple[Any, Any]:
     """Returns the YAML node, which has line numbers, and the value of the only document."""
     try:
@@ -120,14 +128,14 @@ def _line(node: Any, path: Path) -> int:
     return line + 1
 
 
-def _field_name(path: Path) -> str:
+def field_name(path: Path) -> str:
     """Returns "waypoints[0].speed" for ("waypoints", 0, "speed")."""
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
     return text.lstrip(".") or "the goal"
 
 
 def _not_a_mapping(path: Path, values: Any) -> str:
-    return f"{_field_name(path)} is {_abbreviated(values)}: expected a mapping of fields"
+    return f"{field_name(path)} is {_abbreviated(values)}: expected a mapping of fields"
 
 
 def fill(message: Any, values: Any, path: Path = ()) -> None:
@@ -140,11 +148,11 @@ def fill(message: Any, values: Any, path: Path = ()) -> None:
         if name not in types:
             close = difflib.get_close_matches(str(name), types, 1)
             hint = f"; did you mean {close[0]}?" if close else "."
-            raise FieldError(own, f"there is no field {_field_name(own)}{hint} The fields are: {_joined(types)}")
+            raise FieldError(own, f"there is no field {field_name(own)}{hint} The fields are: {_joined(types)}")
         try:
             setattr(message, name, _convert(types[name], getattr(message, name), value, own))
         except (AssertionError, TypeError, ValueError, OverflowError) as error:
-            raise FieldError(own, f"{_field_name(own)} is {_abbreviated(value)}: expected {_expected(types[name])} "
+            raise FieldError(own, f"{field_name(own)} is {_abbreviated(value)}: expected {_expected(types[name])} "
                              f"({' '.join(str(error).split())})") from None
 
 
@@ -212,7 +220,7 @@ def _convert(kind: Any, old: Any, value: Any, path: Path) -> Any:
         if isinstance(value, str) and (limit is None or len(value) <= limit):
             return value
         if isinstance(value, (bool, int, float)):
-            raise FieldError(path, f"{_field_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}; put it in quotes")
+            raise FieldError(path, f"{field_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}; put it in quotes")
     elif kind.typename == idl.BOOLEAN_TYPE:
         if isinstance(value, bool):
             return value
@@ -222,7 +230,7 @@ def _convert(kind: Any, old: Any, value: Any, path: Path) -> Any:
             return value  # checked by the message on assignment
         if isinstance(value, int) and not isinstance(value, bool) and bounds[0] <= value <= bounds[1]:
             return bytes([value]) if kind.typename == idl.OCTET_TYPE else value
-    raise FieldError(path, f"{_field_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}")
+    raise FieldError(path, f"{field_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}")
 
 
 def _to_float(value: Any) -> Any:
@@ -240,7 +248,7 @@ def _convert_sequence(kind: Any, value: Any, path: Path) -> Any:
         wrong = len(value) > kind.maximum_size
     if wrong:
         found = f"has {len(value)} values" if isinstance(value, list) else f"is {_abbreviated(value)}"
-        raise FieldError(path, f"{_field_name(path)} {found}: expected {_expected(kind)}")
+        raise FieldError(path, f"{field_name(path)} {found}: expected {_expected(kind)}")
     inner = kind.value_type
     if isinstance(inner, idl.NamespacedType):
         return [_convert_message(inner, item, (*path, index)) for index, item in enumerate(value)]

@@ -1,15 +1,15 @@
-"""Reads the comments of .action and .msg files, which state the size, unit and range of each field.
+"""Reads sizes and ranges from the comments of .action and .msg files.
 
-A comment precedes its field or follows it on the same line. It is read as plain text with these fixed forms:
+A comment is plain text with these fixed forms:
 "Size: exactly 6", "Size: exactly 6, or empty", "Size: 1 to 1000", "0.03 to 0.2", "above 0, at most 3.14", "within +-2 pi".
 """
 
 import math
-import os
 import pathlib
 import re
-from dataclasses import dataclass
 from typing import Optional
+
+from ur_ros_rtde_cli import interface_files
 
 NUMERIC = re.compile(r"(float|u?int)\d+")
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?(?: pi)?"
@@ -19,12 +19,7 @@ def _number(text):
     return float(text[:-3]) * math.pi if text.endswith(" pi") else float(text)
 
 
-@dataclass
-class Field:
-    type: str
-    name: str
-    comment: str
-
+class Field(interface_files.Field):
     @property
     def numeric(self):
         return NUMERIC.match(self.type) is not None
@@ -70,54 +65,21 @@ class Field:
             yield -_number(limit), _number(limit)
 
 
-def _file(name):
-    package, folder, message = name.split("/")
-    for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep):
-        file = pathlib.Path(prefix, "share", package, folder, f"{message}.{folder}")
-        if file.is_file():
-            return file
-    raise FileNotFoundError(f"{name} is in no prefix of AMENT_PREFIX_PATH")
-
-
 def paths(packages):
     """Returns the .action files of these packages."""
-    return sorted(file for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep) for package in packages
+    return sorted(file for prefix in interface_files.prefixes() for package in packages
                   for file in pathlib.Path(prefix, "share", package, "action").glob("*.action"))
 
 
 def parse(file):
     """Returns the sections of an interface file, each as a list of Fields."""
-    parts = [[]]
-    above = []  # the comment lines directly above a field
-    for line in file.read_text().splitlines():
-        found = re.match(r"([\w/]+(?:\[[^\]]*\])?)\s+(\w+)\b(?!\s*=)[^#]*(?:#\s*(.*))?$", line)
-        if line.startswith("#"):
-            above.append(line.strip("# "))
-            continue
-        if line.strip() == "---":
-            parts.append([])
-        elif found:
-            comment = " ".join(filter(None, [*above, (found.group(3) or "").strip()]))
-            parts[-1].append(Field(found.group(1), found.group(2), comment))
-        above = []
-    return parts
-
-
-def fields(name, part=0):
-    """Returns {name: Field} of a type such as "ur_ros_rtde_msgs/action/MoveJ". Empty if the interface file is not installed."""
-    kind = name if name.count("/") == 2 else name.replace("/", "/msg/")
-    try:
-        return {field.name: field for field in parse(_file(kind))[part]}
-    except FileNotFoundError:
-        return {}
+    return [[_with_limits(field) for field in part] for part in interface_files.parse(file)]
 
 
 def field(name, kind) -> Optional[Field]:
-    return fields(kind).get(name)
+    found = interface_files.field(name, kind)
+    return None if found is None else _with_limits(found)
 
 
-def description(kind):
-    """Returns the comment at the beginning of the file."""
-    lines = _file(kind).read_text().splitlines()
-    end = next(index for index, line in enumerate(lines) if not line.startswith("#"))
-    return " ".join(line.strip("# ") for line in lines[:end])
+def _with_limits(field):
+    return Field(field.type, field.name, field.comment)

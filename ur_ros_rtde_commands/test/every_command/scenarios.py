@@ -4,10 +4,10 @@ import time
 from dataclasses import dataclass
 from typing import Callable, Optional, Tuple
 
-import action_files
 import messages
 from action_msgs.msg import GoalStatus
 from cell import describe_result
+from ur_ros_rtde_cli import interface_files
 
 from ur_ros_rtde_msgs.msg import ErrorCode
 
@@ -46,8 +46,8 @@ def has_feedback(example):
 
 
 def cancel_counts_as_success(example):
-    text = " ".join(field.comment for field in action_files.fields(example.type).values())
-    return "counts as success" in text + " " + action_files.description(example.type)
+    text = " ".join(field.comment for field in interface_files.fields(example.type).values())
+    return "counts as success" in text + " " + interface_files.description(example.type)
 
 
 def start_goal(cell, example):

@@ -1,0 +1,92 @@
+"""Chromium and Playwright for the browser tests. `./ur test` provides them when such a test is selected.
+
+A Chromium on PATH is used. Otherwise, Debian's package of a headless Chromium and the libraries that this machine lacks are
+unpacked into .ur/browser, without root: a download of 100 MB, 290 MB on disk. Playwright adds a download of 54 MB.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import time
+from typing import Dict, List, Optional
+
+from . import console
+from .environment import FOREIGN
+from .layout import ROOT, STATE, Layout
+
+NAMES = ("chromium", "chromium-headless-shell", "chromium-browser", "google-chrome")
+PACKAGE = "chromium-headless-shell"
+PROGRAM = pathlib.Path("usr/lib/chromium/chromium-headless-shell")  # in the package
+REQUIREMENTS = ROOT / "wheels" / "browser.txt"
+FOLDER = STATE / "browser"
+TOOLS = ("apt-get", "dpkg-deb")
+
+# Read by the tests: the program, the folders of its libraries, or why there is none.
+VARIABLE, LIBRARIES, MISSING = "UR_BROWSER", "UR_BROWSER_LIBRARIES", "UR_BROWSER_MISSING"
+
+
+def _run(command: List[str], folder: pathlib.Path = ROOT) -> str:
+    env = {name: value for name, value in os.environ.items() if name not in FOREIGN}
+    result = subprocess.run(command, cwd=folder, env={**env, "LC_ALL": "C"}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, universal_newlines=True)
+    if result.returncode != 0:
+        raise console.Failure(f"`{' '.join(command[:3])} …`: {console.tail(result.stdout, 3)}")
+    return result.stdout
+
+
+def _unpack(folder: pathlib.Path) -> None:
+    """Downloads the package and the missing libraries, and unpacks them. An interrupted run leaves no incomplete `folder`."""
+    absent = [tool for tool in TOOLS if shutil.which(tool) is None]
+    if absent:
+        raise console.Failure(f"this machine has no {' and no '.join(absent)}, the tools of Debian")
+    console.step("Downloading a headless Chromium for the browser tests (100 MB)")
+    start = time.monotonic()
+    listing = _run(["apt-get", "install", "--print-uris", "--yes", "--no-install-recommends", "-o", "Debug::NoLocking=1", PACKAGE])
+    packages = [name.split("_")[0] for name in re.findall(r"^'\S+' (\S+\.deb) ", listing, re.M)]
+    incomplete = folder.with_name(folder.name + ".incomplete")
+    shutil.rmtree(incomplete, ignore_errors=True)
+    archives = incomplete / "archives"
+    archives.mkdir(parents=True)
+    _run(["apt-get", "download", *packages], archives)
+    for archive in sorted(archives.glob("*.deb")):
+        _run(["dpkg-deb", "-x", str(archive), str(incomplete)])
+    if not (incomplete / PROGRAM).is_file():
+        raise console.Failure(f"Debian's package {PACKAGE} does not contain {PROGRAM}")
+    shutil.rmtree(archives)
+    shutil.rmtree(folder, ignore_errors=True)
+    incomplete.rename(folder)
+    console.line(f"    done in {time.monotonic() - start:.0f} s")
+
+
+def _install_playwright(layout: Layout) -> None:
+    site = layout.site_packages(layout.venv)
+    pinned = re.findall(r"^([\w-]+)==(\S+)$", REQUIREMENTS.read_text(), re.M)
+    if all((site / f"{name}-{version}.dist-info").is_dir() for name, version in pinned):
+        return
+    console.step("Installing Playwright for the browser tests (54 MB)")
+    _run([str(layout.python), "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--no-deps", "--no-compile",
+          "--requirement", str(REQUIREMENTS)])
+
+
+def _chromium(folder: pathlib.Path) -> Dict[str, str]:
+    installed: Optional[str] = next(filter(None, map(shutil.which, NAMES)), None)
+    if installed:
+        return {VARIABLE: installed}
+    if not (folder / PROGRAM).is_file():
+        _unpack(folder)
+    libraries = sorted({str(file.parent) for file in folder.rglob("lib*.so*")})
+    return {VARIABLE: str(folder / PROGRAM), LIBRARIES: os.pathsep.join(libraries)}
+
+
+def environment(layout: Layout, folder: pathlib.Path = FOLDER) -> Dict[str, str]:
+    """Returns the variables for browser tests. Without a browser, they are skipped, and the reason and the remedy are printed."""
+    try:
+        found = _chromium(folder)
+        _install_playwright(layout)
+        return found
+    except console.Failure as failure:
+        reason = f"{failure} Install chromium, or put it on PATH."
+        console.line(f"    the browser tests are skipped: {reason}")
+        return {MISSING: reason}

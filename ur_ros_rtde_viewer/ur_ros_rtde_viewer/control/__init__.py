@@ -1,0 +1,1 @@
+"""Commands from the page. Nothing outside this package moves an arm, and it is imported only with --control."""

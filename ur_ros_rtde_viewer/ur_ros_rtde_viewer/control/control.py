@@ -1,0 +1,83 @@
+"""The control side of the page: STOP for all robots, and for each browser tab forms, jog buttons and a target pose."""
+
+import threading
+from typing import Any, Dict, List
+
+from .control_node import ControlNode
+from .form_panel import FormPanel
+from .jog_panel import JogPanel
+from .robot_control import RobotControl
+from .stop import Outcome
+from .target_panel import TargetPanel
+
+STOP_REPEAT = 2.0  # Hz, while the button is held
+STOP_WIDTH = 260  # pixels
+
+
+class Control:
+    """Each browser tab has elements of its own: two tabs do not edit the same form, and a button that was held when the
+    connection broke does not exist any more when it is back."""
+
+    def __init__(self, viewer: Any):
+        self._server = viewer.server
+        self._node = ControlNode(viewer.nodes.context)
+        self._robots = [RobotControl(self._node, view, self._show_actions) for view in viewer.robots]
+        self._containers = [[view.tabs.add_tab(name) for name in ("Commands", "Jog", "Target")] for view in viewer.robots]
+        self._tabs: Dict[int, List[Any]] = {}
+        self._lock = threading.Lock()
+        for robot in self._robots:
+            robot.view.panels.append(robot)
+        self._add_stop(viewer.server.gui)
+        viewer.server.on_client_connect(self._connect)
+        viewer.server.on_client_disconnect(self._disconnect)
+
+    def _add_stop(self, gui: Any) -> None:
+        """Adds STOP in a window of its own, which stays in view when tabs change or scroll."""
+        panel = gui.add_panel()
+        with panel.add_tab("STOP"):
+            button = gui.add_button("STOP", color="red", hint="Decelerates all robots of this page. No substitute for an emergency stop")
+            self._stop_text = gui.add_markdown("")
+        panel.float(x=-15, y=15, width=STOP_WIDTH)
+
+        async def stop(_event: Any) -> None:
+            self.stop()
+
+        button.on_hold(stop, callback_hz=STOP_REPEAT)  # the first call comes when the button is pressed, not when it is released
+        button.on_click(stop)  # with the keyboard
+
+    def stop(self) -> None:
+        """Stops all robots."""
+        for robot in self._robots:
+            name = f"{robot.view.options.name}: " if len(self._robots) > 1 else ""
+            robot.stop(lambda outcome, text, name=name: self._show_outcome(name, outcome, text))
+
+    def _show_outcome(self, name: str, outcome: Outcome, text: str) -> None:
+        mark = "❌ " if outcome == Outcome.FAILED else ""
+        self._stop_text.content = f"{mark}{name}{outcome.value} {text}"
+
+    def _connect(self, client: Any) -> None:
+        panels: List[Any] = []
+        for robot, (commands, jog, target) in zip(self._robots, self._containers):
+            panels += [FormPanel(client.gui, commands, robot), JogPanel(client.gui, jog, robot, client.client_id),
+                       TargetPanel(client, target, robot)]
+        with self._lock:
+            self._tabs[client.client_id] = panels
+        if client.client_id not in self._server.get_clients():  # closed meanwhile
+            self._disconnect(client)
+        self._show_actions()
+
+    def _disconnect(self, client: Any) -> None:
+        with self._lock:
+            panels = self._tabs.pop(client.client_id, [])
+        for panel in panels:
+            panel.close()
+
+    def _show_actions(self) -> None:
+        with self._lock:
+            forms = [panel for panels in self._tabs.values() for panel in panels if isinstance(panel, FormPanel)]
+        for form in forms:
+            form.update_actions()
+
+    def close(self) -> None:
+        """Called after the robots were closed."""
+        self._node.close()

@@ -1,0 +1,115 @@
+"""The form of an action in the page of one browser tab, and the goals that were sent with it."""
+
+from typing import Any, Dict, List, Optional
+
+from ur_ros_rtde_cli import actions
+from ur_ros_rtde_cli.errors import CliError
+from ur_ros_rtde_cli.fields import FieldError, Path
+
+from . import action_forms
+from .action_forms import Form, FormField, Kind, Source
+from .goal_view import GoalView, escaped
+from .robot_control import RobotControl
+
+NO_ACTION = "(no action server found)"
+FIRST_ACTION = "move_j"
+
+
+class FormPanel:
+    """`container` is the tab of the page in which the form is shown."""
+
+    def __init__(self, gui: Any, container: Any, robot: RobotControl):
+        self._gui, self._container, self._robot = gui, container, robot
+        self._form: Optional[Form] = None
+        self._folder: Any = None
+        self._inputs: Dict[Path, Any] = {}
+        self._goals: List[GoalView] = []
+        with container:
+            self._action = gui.add_dropdown("Action", (NO_ACTION,), hint="Type a part of the name to search")
+            self._send_button = gui.add_button("Send", disabled=True)
+            self._position_button = gui.add_button("Use the current position", color="gray", visible=False)
+            self._error = gui.add_markdown("")
+            self._goals_folder = gui.add_folder("Goals", visible=False)
+        self._action.on_update(lambda _event: self._show())
+        self._send_button.on_click(lambda _event: self._send())
+        self._position_button.on_click(lambda _event: self._use_current_position())
+        self.update_actions()
+
+    def update_actions(self) -> None:
+        """Offers the actions that the driver serves. A form that is open stays open as long as its action is served."""
+        names = tuple(sorted(self._robot.action_types)) or (NO_ACTION,)
+        if names == self._action.options:
+            return
+        selected = self._action.value
+        self._action.options = names
+        if selected not in names:
+            selected = FIRST_ACTION if FIRST_ACTION in names else names[0]
+        self._action.value = selected
+        self._show()
+
+    def close(self) -> None:
+        for goal in self._goals:
+            goal.close()
+
+    def _show(self) -> None:
+        """Builds the form of the selected action."""
+        name = self._action.value
+        if self._form is not None and self._form.name == name:
+            return
+        self._remove()
+        if name not in self._robot.action_types:
+            return
+        try:
+            action = actions.load(name, self._robot.action_types[name])
+        except CliError as error:
+            self._show_error(str(error))
+            return
+        self._form = action_forms.describe(name, action)
+        with self._container:
+            self._folder = self._gui.add_folder(name)
+        with self._folder:
+            self._gui.add_markdown(escaped(self._form.description))
+            self._inputs = {field.path: self._add_input(field) for field in self._form.fields}
+        self._send_button.disabled = False
+        self._position_button.visible = any(field.source != Source.NONE for field in self._form.fields)
+        self._use_current_position()
+
+    def _remove(self) -> None:
+        if self._folder is not None:
+            self._folder.remove()
+        self._form, self._folder, self._inputs = None, None, {}
+        self._send_button.disabled, self._position_button.visible = True, False
+        self._show_error("")
+
+    def _add_input(self, field: FormField) -> Any:
+        hint = field.comment or None
+        if field.kind == Kind.FLAG:
+            return self._gui.add_checkbox(field.label, bool(field.default), hint=hint)
+        if field.kind == Kind.CHOICE:
+            return self._gui.add_dropdown(field.label, field.choices, initial_value=str(field.default), hint=hint)
+        return self._gui.add_text(field.label, str(field.default), multiline=field.multiline, hint=hint)
+
+    def _use_current_position(self) -> None:
+        for field in self._form.fields if self._form else ():
+            text = self._robot.current(field.source)
+            if text is not None:
+                self._inputs[field.path].value = text
+
+    def _show_error(self, text: str) -> None:
+        self._error.content = f"❌ {escaped(text)}" if text else ""
+
+    def _send(self) -> None:
+        form, inputs = self._form, self._inputs
+        if form is None:
+            return
+        try:
+            goal = form.read({path: handle.value for path, handle in inputs.items()})
+        except FieldError as error:
+            self._show_error(str(error))
+            return
+        self._show_error("")
+        for ended in [view for view in self._goals if view.has_ended]:
+            self._goals.remove(ended)
+            ended.remove()
+        self._goals_folder.visible = True
+        self._goals.append(GoalView(self._gui, self._goals_folder, self._robot.goals, form.name, form.action, goal))

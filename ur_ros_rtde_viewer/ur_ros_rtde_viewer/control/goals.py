@@ -1,0 +1,186 @@
+"""Sends goals of any action, and reports feedback, refusals and results."""
+
+import threading
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, Callable, Dict, List, Optional
+
+from action_msgs.msg import GoalStatus
+from rclpy.action import ActionClient
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from ur_ros_rtde_cli import actions, fields
+from ur_ros_rtde_msgs.msg import GoalRefused
+
+from .control_node import ControlNode
+
+DISCOVERY_LIMIT = 3.0  # s, for the server of an action
+END_LIMIT = 5.0  # s, for the results of canceled goals
+REASON_LIMIT = 2.0  # s, for the reason of a refusal
+POLL_PERIOD = 0.02  # s, of the conditions above: changes of the ROS graph do not wake the executor
+
+
+class Phase(Enum):
+    SENT = "sent"
+    RUNNING = "running"
+    CANCELING = "canceling"
+    SUCCEEDED = "succeeded"
+    CANCELED = "canceled"
+    FAILED = "failed"
+    REFUSED = "refused"
+
+
+ENDED = (Phase.SUCCEEDED, Phase.CANCELED, Phase.FAILED, Phase.REFUSED)
+_PHASES = {GoalStatus.STATUS_SUCCEEDED: Phase.SUCCEEDED, GoalStatus.STATUS_CANCELED: Phase.CANCELED}
+
+
+@dataclass(eq=False)
+class SentGoal:
+    """State of one goal. Written in the thread of the node, which calls `on_change` after each change."""
+
+    action: str  # full name, "/move_j"
+    on_change: Callable[["SentGoal"], None]
+    phase: Phase = Phase.SENT
+    message: str = ""  # of the result or the refusal
+    feedback: Any = None
+    result: Any = None
+    handle: Any = None
+    ended: threading.Event = field(default_factory=threading.Event)
+
+    @property
+    def progress(self) -> Optional[float]:
+        """Fraction of the motion that is complete. None if the action does not report it."""
+        motion = getattr(self.feedback, "motion", None)
+        return None if motion is None else float(motion.progress)
+
+    @property
+    def has_ended(self) -> bool:
+        return self.phase in ENDED
+
+    def change(self, phase: Phase, message: str = "") -> None:
+        self.phase, self.message = phase, message or self.message
+        if self.has_ended:
+            self.ended.set()
+        self.on_change(self)
+
+
+class Goals:
+    """The action clients of one robot. An action client is kept: destroying it would end its goals with CLIENT_LOST."""
+
+    def __init__(self, control: ControlNode, namespace: str):
+        self._control = control
+        self._namespace = namespace
+        self._clients: Dict[str, ActionClient] = {}
+        self._reasons: Dict[bytes, str] = {}
+        self._unsent: List[SentGoal] = []  # they wait for their server
+        self._open: List[SentGoal] = []  # without a result
+        control.node.create_subscription(GoalRefused, self.full_name("goal_refusals"), self._on_refusal,
+                                         QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+
+    def full_name(self, name: str) -> str:
+        return f"/{self._namespace}/{name}" if self._namespace else f"/{name}"
+
+    def served(self) -> Dict[str, str]:
+        """Returns the types of the robot's actions by their name in its namespace: {"move_j": "ur_ros_rtde_msgs/action/MoveJ"}."""
+        prefix = self.full_name("")
+        return {name[len(prefix):]: kind for name, kind in actions.served(self._control.node).items() if name.startswith(prefix)}
+
+    def client(self, name: str, action: Any) -> ActionClient:
+        """Must be called in the thread of the node."""
+        if name not in self._clients:
+            self._clients[name] = ActionClient(self._control.node, action, self.full_name(name))
+        return self._clients[name]
+
+    def send(self, name: str, action: Any, goal: Any, on_change: Callable[[SentGoal], None]) -> SentGoal:
+        """Sends a goal. `on_change` is called in the thread of the node."""
+        sent = SentGoal(self.full_name(name), on_change)
+        self._open = [goal for goal in self._open if not goal.has_ended] + [sent]
+        self._control.post(lambda: self._send_when_ready(name, action, goal, sent))
+        return sent
+
+    def cancel(self, sent: SentGoal) -> None:
+        self._control.post(lambda: self._cancel(sent))
+
+    def end(self) -> None:
+        """Cancels all goals and waits for their results, so that the arm is at rest when the program exits."""
+        for sent in self._open:
+            self.cancel(sent)
+        for sent in self._open:
+            sent.ended.wait(END_LIMIT)
+
+    def cancel_unsent(self) -> None:
+        """Cancels the goals that still wait for their server: after STOP, none of them may start."""
+        self._control.post(lambda: [self._cancel(sent) for sent in self._unsent])
+
+    def _send_when_ready(self, name: str, action: Any, goal: Any, sent: SentGoal) -> None:
+        self._unsent.append(sent)
+        client = self.client(name, action)
+        self._when(client.server_is_ready, DISCOVERY_LIMIT,
+                   lambda: self._send(client, goal, sent),
+                   lambda: self._give_up(sent))
+
+    def _give_up(self, sent: SentGoal) -> None:
+        self._unsent.remove(sent)
+        sent.change(Phase.REFUSED, f"no server of {sent.action} within {DISCOVERY_LIMIT:g} s. Does the driver run with this "
+                                   "ROS_DOMAIN_ID?")
+
+    def _send(self, client: ActionClient, goal: Any, sent: SentGoal) -> None:
+        self._unsent.remove(sent)
+        if sent.phase != Phase.SENT:  # canceled before it was sent
+            sent.change(Phase.CANCELED, "canceled before the goal was sent")
+            return
+
+        def on_feedback(message: Any) -> None:
+            sent.feedback = message.feedback
+            sent.on_change(sent)
+
+        client.send_goal_async(goal, feedback_callback=on_feedback).add_done_callback(
+            lambda future: self._on_response(future.result(), sent))
+
+    def _on_response(self, handle: Any, sent: SentGoal) -> None:
+        if not handle.accepted:
+            identifier = bytes(handle.goal_id.uuid)
+            self._when(lambda: identifier in self._reasons, REASON_LIMIT,
+                       lambda: sent.change(Phase.REFUSED, self._reasons.pop(identifier)),
+                       lambda: sent.change(Phase.REFUSED, "no reason was received on goal_refusals"))
+            return
+        sent.handle = handle
+        handle.get_result_async().add_done_callback(lambda future: self._on_result(future.result(), sent))
+        if sent.phase == Phase.CANCELING:
+            handle.cancel_goal_async()
+        else:
+            sent.change(Phase.RUNNING)
+
+    @staticmethod
+    def _on_result(response: Any, sent: SentGoal) -> None:
+        sent.result = response.result
+        message = getattr(response.result, "message", "") or fields.to_yaml_line(response.result)
+        sent.change(_PHASES.get(response.status, Phase.FAILED), message)
+
+    @staticmethod
+    def _cancel(sent: SentGoal) -> None:
+        if sent.has_ended or sent.phase == Phase.CANCELING:
+            return
+        sent.change(Phase.CANCELING)
+        if sent.handle is not None:
+            sent.handle.cancel_goal_async()
+
+    def _on_refusal(self, message: GoalRefused) -> None:
+        self._reasons[bytes(message.goal_id.uuid)] = message.message
+        while len(self._reasons) > 100:  # refusals of other clients
+            del self._reasons[next(iter(self._reasons))]
+
+    def _when(self, condition: Callable[[], bool], limit: float, then: Callable[[], None], otherwise: Callable[[], None]) -> None:
+        """Calls `then` as soon as `condition` holds, or `otherwise` after `limit` s."""
+        if condition():
+            then()
+            return
+        clock = self._control.node.get_clock()
+        end = clock.now().nanoseconds + limit * 1e9
+
+        def check() -> None:
+            holds = condition()
+            if holds or clock.now().nanoseconds >= end:
+                self._control.node.destroy_timer(timer)
+                (then if holds else otherwise)()
+
+        timer = self._control.node.create_timer(POLL_PERIOD, check)

@@ -1,0 +1,63 @@
+"""What the controls of all browser tabs share for one robot."""
+
+import time
+from typing import Any, Callable, Dict, Optional
+
+import numpy as np
+
+from ..state.robot_state import RobotState
+from . import action_forms
+from .action_forms import Source
+from .control_node import ControlNode
+from .goals import Goals
+from .jog import Jog
+from .stop import Report, Stopper
+
+ACTIONS_PERIOD = 1.0  # s, between looks at the ROS graph
+
+
+class RobotControl:
+    """`view` is the RobotView, whose newest state is read. `on_actions` is called when the driver serves other actions than before."""
+
+    def __init__(self, control: ControlNode, view: Any, on_actions: Callable[[], None]):
+        self.view = view
+        self.goals = Goals(control, view.options.namespace)
+        self.jog = Jog(control, self.goals)
+        self.action_types: Dict[str, str] = {}
+        self._on_actions, self._looked_at = on_actions, -float("inf")
+        self._stopper = Stopper(control, self.goals)
+
+    def update(self, _state: RobotState) -> None:
+        now = time.monotonic()
+        if now - self._looked_at < ACTIONS_PERIOD:
+            return
+        self._looked_at = now
+        found = self.goals.served()
+        if found != self.action_types:
+            self.action_types = found
+            self._on_actions()
+
+    def close(self) -> None:
+        self.goals.end()
+
+    def stop(self, report: Report) -> None:
+        self.jog.stop()
+        self.goals.cancel_unsent()
+        self._stopper.press(report)
+
+    @property
+    def joint_positions(self) -> Optional[np.ndarray]:
+        """Positions of the real arm, rad, also while fake joint states are shown. None if there is no state."""
+        joints = self.view.state.actual_joints or self.view.state.joints
+        return None if joints is None else joints.positions
+
+    def current(self, source: Source) -> Optional[str]:
+        """Returns the text of an input that begins with the state of the arm."""
+        joints, pose = self.joint_positions, self.view.state.tcp_pose
+        if source == Source.JOINT_POSITIONS and joints is not None:
+            return action_forms.numbers_text(joints)
+        if source == Source.TCP_POSITION and pose is not None:
+            return action_forms.numbers_text(pose.position)
+        if source == Source.TCP_ORIENTATION and pose is not None:
+            return action_forms.numbers_text(np.roll(pose.wxyz, -1))
+        return None

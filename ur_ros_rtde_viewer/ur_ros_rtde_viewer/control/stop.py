@@ -1,0 +1,99 @@
+"""STOP: decelerates the arm, by the fastest way that the driver offers.
+
+The action `stop` is never refused because the arm is busy, ends the goal that moves the arm, and stops the robot program if the
+controller does not carry it out. If command_server does not accept the goal in time, dashboard_server stops the program.
+"""
+
+from enum import Enum
+from typing import Any, Callable, Optional
+
+from rclpy.action import ActionClient
+from ur_ros_rtde_msgs.action import DashboardCommand, Stop
+
+from .control_node import ControlNode
+from .goals import Goals
+
+ACCEPTANCE_LIMIT = 0.3  # s; the driver needs 2 ms
+
+
+class Outcome(Enum):
+    STOPPING = "The arm decelerates."
+    STOPPED = "Stopped."
+    PROGRAM = "command_server did not accept the stop: the robot program is being stopped through dashboard_server."
+    FAILED = "STOP failed"
+
+
+Report = Callable[[Outcome, str], None]
+
+
+class Stopper:
+    def __init__(self, control: ControlNode, goals: Goals):
+        self._control = control
+        self._stop = goals.client("stop", Stop)
+        self._dashboard = goals.client("dashboard/stop", DashboardCommand)
+
+    def press(self, report: Report) -> None:
+        """Stops the arm. `report` is called in the thread of the node, at most once for each Outcome."""
+        self._control.post(lambda: _Press(self._control, self._stop, self._dashboard, report).start())
+
+
+class _Press:
+    """One press of the button. All methods run in the thread of the node."""
+
+    def __init__(self, control: ControlNode, stop: ActionClient, dashboard: ActionClient, report: Report):
+        self._node = control.node
+        self._stop, self._dashboard, self._report = stop, dashboard, report
+        self._timer: Any = None
+        self._fell_back = False
+
+    def start(self) -> None:
+        if not self._stop.server_is_ready():
+            self._stop_program("")
+            return
+        self._timer = self._node.create_timer(ACCEPTANCE_LIMIT, lambda: self._stop_program(""))
+        self._stop.send_goal_async(Stop.Goal()).add_done_callback(lambda future: self._on_response(future.result()))
+
+    def _on_response(self, handle: Any) -> None:
+        if not handle.accepted:
+            self._stop_program("")
+            return
+        self._cancel_timer()
+        self._report(Outcome.STOPPING, "")
+        handle.get_result_async().add_done_callback(lambda future: self._on_result(future.result().result))
+
+    def _on_result(self, result: Any) -> None:
+        if result.success:
+            self._report(Outcome.STOPPED, f"at rest after {result.time_to_standstill:.2f} s")
+        else:
+            self._stop_program(result.message)
+
+    def _cancel_timer(self) -> None:
+        if self._timer is not None:
+            self._node.destroy_timer(self._timer)
+            self._timer = None
+
+    def _stop_program(self, reason: str) -> None:
+        self._cancel_timer()
+        if self._fell_back:
+            return
+        self._fell_back = True
+        if not self._dashboard.server_is_ready():
+            self._report(Outcome.FAILED, "neither command_server nor dashboard_server answers. Use the emergency stop button, then check "
+                                         "that the driver runs with this ROS_DOMAIN_ID")
+            return
+        self._report(Outcome.PROGRAM, reason)
+        self._dashboard.send_goal_async(DashboardCommand.Goal()).add_done_callback(
+            lambda future: self._on_dashboard_response(future.result()))
+
+    def _on_dashboard_response(self, handle: Any) -> None:
+        if handle.accepted:
+            handle.get_result_async().add_done_callback(lambda future: self._on_dashboard_result(future.result().result))
+        else:
+            self._on_dashboard_result(None)
+
+    def _on_dashboard_result(self, result: Optional[Any]) -> None:
+        if result is not None and result.success:
+            self._report(Outcome.STOPPED, "the robot program was stopped")
+        else:
+            reason = "refused" if result is None else result.message
+            self._report(Outcome.FAILED, f"dashboard/stop: {reason}. Use the emergency stop button")

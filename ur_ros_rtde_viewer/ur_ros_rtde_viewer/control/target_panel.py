@@ -1,0 +1,172 @@
+"""A target pose that is dragged in the scene: inverse kinematics, preview of the path, and execution. For one browser tab."""
+
+import xml.etree.ElementTree as xml
+from typing import Any, List, Optional
+
+import numpy as np
+from ur_ros_rtde_description.models import JOINTS
+from ur_ros_rtde_description.options import read_options
+from ur_ros_rtde_description.tree import link_poses
+from ur_ros_rtde_description.urdf import make_urdf
+
+from ..scene.arm import Arm
+from ..scene.urdf import read_description
+from .goal_view import GoalView, escaped
+from .goals import SentGoal
+from .robot_control import RobotControl
+from .target_pose import Motion, Plan, Planner, PoseTarget
+
+GHOST_COLOR, GHOST_OPACITY = (60, 180, 90), 0.35
+PATH_COLOR = (60, 180, 90)
+GIZMO_SCALE = 0.25  # m
+
+
+class TargetPanel:
+    def __init__(self, client: Any, container: Any, robot: RobotControl):
+        self._client, self._robot = client, robot
+        self._gizmo: Any = None
+        self._arm: Optional[Arm] = None
+        self._path: Any = None
+        self._plan: Optional[Plan] = None
+        self._planner: Optional[Planner] = None
+        self._goal: Optional[GoalView] = None
+        self._closed = False
+        gui = client.gui
+        with container:
+            gui.add_markdown("Drag the target in the scene. The green arm shows where the motion ends.")
+            self._shown = gui.add_checkbox("Show the target", False)
+            self._motion = gui.add_dropdown("Motion", tuple(motion.value for motion in Motion))
+            self._speed = gui.add_slider("Speed [% of the default]", 10, 200, 10, 100)
+            self._preview = gui.add_slider("Preview [%]", 0, 100, 1, 100, disabled=True)
+            self._execute = gui.add_button("Execute", color="green", disabled=True)
+            self._text = gui.add_markdown("")
+            self._goals_folder = gui.add_folder("Goal", visible=False)
+        self._shown.on_update(lambda _event: self._show() if self._shown.value else self._hide())
+        self._motion.on_update(lambda _event: self._solve())
+        self._preview.on_update(lambda _event: self._show_preview())
+        self._execute.on_click(lambda _event: self._send())
+
+    def close(self) -> None:
+        """The tab is gone, and with it all elements."""
+        self._closed = True
+        if self._planner is not None:
+            self._planner.abandon()
+        if self._goal is not None:
+            self._goal.close()
+
+    # --- Target ----------------------------------------------------------------------------------------------------
+
+    def _tcp(self) -> Optional[PoseTarget]:
+        pose = self._robot.view.state.tcp_pose
+        return None if pose is None else PoseTarget(pose.position, pose.wxyz)
+
+    def _show(self) -> None:
+        """Places the target at the TCP."""
+        self._hide()
+        scene, tcp = self._robot.view.scene, self._tcp()
+        if scene.arm is None or tcp is None or self._robot.joint_positions is None:
+            self._say("❌ there is no state of the robot yet")
+            return
+        model = read_options(scene.model)
+        text = make_urdf(model)
+        self._urdf = xml.fromstring(text)
+        self._base = scene.arm.link_path("base")
+        self._arm = Arm(self._client.scene, f"{scene.root}/preview", read_description(text), GHOST_OPACITY, GHOST_COLOR)
+        self._arm.set_visible(False)
+        self._gizmo = self._client.scene.add_transform_controls(f"{self._base}/target", scale=GIZMO_SCALE, position=tcp.position,
+                                                                wxyz=tcp.wxyz, depth_test=False)
+        self._gizmo.on_update(lambda event: self._solve() if event.phase == "end" else None)
+        self._say("")
+
+    def _hide(self) -> None:
+        self._forget_plan()
+        for part in (self._arm, self._gizmo):
+            if part is not None:
+                part.remove()
+        self._arm = self._gizmo = None
+
+    def _say(self, text: str) -> None:
+        if not self._closed:
+            self._text.content = text
+
+    # --- Plan ------------------------------------------------------------------------------------------------------
+
+    def _forget_plan(self) -> None:
+        if self._planner is not None:
+            self._planner.abandon()
+        self._plan = self._planner = None
+        self._execute.disabled = self._preview.disabled = True
+        if self._path is not None:
+            self._path.remove()
+            self._path = None
+        if self._arm is not None:
+            self._arm.set_visible(False)
+
+    def _solve(self) -> None:
+        """Plans the motion to the target."""
+        self._forget_plan()
+        joints, tcp = self._robot.joint_positions, self._tcp()
+        if self._gizmo is None or joints is None or tcp is None:
+            return
+        self._say("Planning")
+        target = PoseTarget(np.array(self._gizmo.position), np.array(self._gizmo.wxyz))
+        self._planner = Planner(self._robot.goals, Motion(self._motion.value), joints, tcp, target,
+                                lambda plan, reason: self._on_plan(plan, reason, joints, tcp))
+        self._planner.start()
+
+    def _on_plan(self, plan: Optional[Plan], reason: str, joints: np.ndarray, tcp: PoseTarget) -> None:
+        if self._closed:
+            return
+        if plan is None:
+            self._say(f"❌ {escaped(reason)}")
+            return
+        self._plan = plan
+        self._draw_path(plan, joints, tcp)
+        self._execute.disabled = self._preview.disabled = False
+        turns = np.abs(plan.joint_path[-1] - plan.joint_path[0])
+        largest = int(turns.argmax())
+        self._say(f"Reachable. Largest rotation: {escaped(JOINTS[largest])}, {turns[largest]:.2f} rad")
+        self._preview.value = 100
+        self._show_preview()
+
+    def _draw_path(self, plan: Plan, joints: np.ndarray, tcp: PoseTarget) -> None:
+        """Draws the path of the TCP. The TCP in the flange is that of the current pose."""
+        offset = np.linalg.inv(self._flange(joints)) @ np.append(tcp.position, 1.0)
+        points = np.array([(self._flange(positions) @ offset)[:3] for positions in plan.joint_path], np.float32)
+        self._path = self._client.scene.add_line_segments(f"{self._base}/target_path", np.stack([points[:-1], points[1:]], axis=1),
+                                                          PATH_COLOR, line_width=4.0)
+
+    def _flange(self, positions: np.ndarray) -> np.ndarray:
+        """Returns the pose of tool0 in base as a 4x4 matrix."""
+        poses = link_poses(self._urdf, dict(zip(JOINTS, positions)))
+        return np.linalg.inv(poses["base"]) @ poses["tool0"]
+
+    def _show_preview(self) -> None:
+        if self._plan is None or self._arm is None:
+            return
+        path: List[np.ndarray] = list(self._plan.joint_path)
+        place = 0.01 * self._preview.value * (len(path) - 1)
+        index = min(int(place), len(path) - 2)
+        self._arm.set_positions(path[index] + (place - index) * (path[index + 1] - path[index]))
+        self._arm.set_visible(True)
+
+    # --- Execution -------------------------------------------------------------------------------------------------
+
+    def _send(self) -> None:
+        plan, joints = self._plan, self._robot.joint_positions
+        if plan is None or joints is None:
+            return
+        if not plan.starts_at(joints):
+            self._solve()
+            self._say("❌ The arm has moved since the preview. Look at the new preview, then execute it.")
+            return
+        if self._goal is not None:
+            self._goal.remove()
+        self._execute.disabled = True
+        self._goals_folder.visible = True
+        self._goal = GoalView(self._client.gui, self._goals_folder, self._robot.goals, plan.name, plan.action,
+                              plan.goal(0.01 * self._speed.value), self._on_end)
+
+    def _on_end(self, _goal: SentGoal) -> None:
+        if not self._closed:
+            self._forget_plan()
