@@ -30,7 +30,7 @@ CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57,
        "state": "show the state of the robot", "plugins": "list the installed plugins",
         "record": "record RTDE outputs of the robot to a CSV file",
         "urdf": "print the URDF of an arm: ur urdf --model ur10e"}
-FORWARDED = ("demo", "bench", "chaos", "plan", "sim", "view", *CLI)  # to a program, with all options that are not ours
+FORWARDED = ("demo", "bench", "chaos", "plan", "sim", "view", "doctor", *CLI)  # to a program, with all options that are not ours
 
 
 def _add_build_options(parser: argparse.ArgumentParser) -> None:
@@ -118,14 +118,18 @@ def command_chaos(options: argparse.Namespace) -> int:
     return _python_command("chaos", options)
 
 
+def _run_cli_from_sources(python: str, arguments: List[str]) -> None:
+    source = ROOT / "ur_ros_rtde_cli"
+    modules = os.pathsep.join(map(str, (source, ROOT / "ur_ros_rtde_description")))
+    env = {**os.environ, "PYTHONPATH": modules, "PYTHONDONTWRITEBYTECODE": "1"}
+    os.execve(python, [python, str(source / "scripts" / "ur"), *arguments], env)
+
+
 def command_cli(options: argparse.Namespace) -> int:
     """Runs `ur call …` of ur_ros_rtde_cli for `./ur call …`. Builds only if it is missing: the driver may be running."""
     arguments = [options.command, *_forwarded(options)]
     if any(argument in ("-h", "--help") for argument in arguments):
-        source = ROOT / "ur_ros_rtde_cli"
-        modules = os.pathsep.join(map(str, (source, ROOT / "ur_ros_rtde_description")))
-        env = {**os.environ, "PYTHONPATH": modules, "PYTHONDONTWRITEBYTECODE": "1"}
-        os.execve(sys.executable, [sys.executable, str(source / "scripts" / "ur"), *arguments], env)
+        _run_cli_from_sources(sys.executable, arguments)
     layout = _layout(options)
     try:
         command = program(layout, "ur_ros_rtde_cli", "ur")
@@ -175,7 +179,13 @@ def _prepared(options: argparse.Namespace) -> Layout:
 
 
 def command_doctor(options: argparse.Namespace) -> int:
-    return doctor.run(Layout(options.ros))
+    """Checks this machine, or a robot with `--robot`, which needs no build."""
+    layout = _layout(options)
+    arguments = _forwarded(options)
+    if arguments:
+        installed = layout.python  # has the modules that read calibrations
+        _run_cli_from_sources(str(installed) if installed.exists() else sys.executable, ["doctor", *arguments])
+    return doctor.run(layout)
 
 
 def command_clean(options: argparse.Namespace) -> int:
@@ -260,9 +270,8 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
         if name == "lint":
             sub.add_argument("--tidy", action="store_true", help="also run clang-tidy (minutes)")
 
-    sub = add("doctor", command_doctor,
-              "check this machine (compiler, Python, disk, memory, ports, timing) and give advice; status 1 if it cannot work")
-    sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
+    add_forwarding("doctor", command_doctor, "check this machine, or with --robot ADDRESS a robot, and give advice; status 1 if it "
+                   "cannot work")
 
     clean = add("clean", command_clean, "remove the build")
     clean.add_argument("--all", action="store_true", help="also remove the virtual environments and downloads")

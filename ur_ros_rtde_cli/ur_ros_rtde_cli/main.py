@@ -16,8 +16,9 @@ COMMANDS = {"call": "send a goal, show its feedback and print its result",
             "state": "show the state of the robot, once or continuously",
             "plugins": "list the installed plugins with package and description",
             "record": "record RTDE outputs of the robot to a CSV file",
-            "urdf": "print the URDF of an arm"}
-WITHOUT_NODES = ("plugins", "urdf")  # commands that communicate with no node
+            "urdf": "print the URDF of an arm",
+            "doctor": "check a robot over the network: ur doctor --robot ADDRESS"}
+WITHOUT_NODES = ("plugins", "urdf", "doctor")  # commands that communicate with no node
 
 # Commands of the script `ur` in a checkout. They are not installed.
 CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "shell", "new", "format", "lint", "doctor", "clean")
@@ -26,8 +27,8 @@ CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "
 CHECKOUT_VARIABLE = "UR_CHECKOUT"
 
 DESCRIPTION = """\
-Calls actions of ur_ros_rtde, shows and records the state of the robot, lists the plugins and prints
-URDFs.
+Calls actions of ur_ros_rtde, shows and records the state of the robot, lists the plugins, prints URDFs
+and checks robots.
 
 Exit code: 0 success, 1 failure, 2 goal refused or wrong arguments, 128 plus the signal number after a signal.
 """
@@ -68,6 +69,11 @@ def _unknown_command(command: str) -> CliError:
                     + f" The commands are: {', '.join(COMMANDS)}")
 
 
+def _belongs_to_checkout(arguments: List[str]) -> bool:
+    """Returns whether `./ur` runs this command. Without arguments, doctor checks the machine, with some a robot."""
+    return arguments == ["doctor"] or not arguments or arguments[0] not in COMMANDS
+
+
 def _checkout_script() -> Optional[pathlib.Path]:
     """Returns the script `ur` of the checkout if this is its shell."""
     folder = os.environ.get(CHECKOUT_VARIABLE)
@@ -77,7 +83,7 @@ def _checkout_script() -> Optional[pathlib.Path]:
 def main(arguments: Optional[List[str]] = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     command = arguments[0] if arguments else ""
-    if command not in COMMANDS and _checkout_script() is not None:
+    if _belongs_to_checkout(arguments) and _checkout_script() is not None:
         os.execv(str(_checkout_script()), [str(_checkout_script()), *arguments])
     try:
         if not arguments:

@@ -29,7 +29,7 @@ def read_calibration(file: pathlib.Path, model: Model) -> Tuple[Origin, ...]:
         raise DescriptionError(f"{file}: kinematics has the unknown field {unknown[0]}; {nearest(unknown[0], JOINT_KEYS)}The fields are: "
                                f"{', '.join(JOINT_KEYS)}, hash")
     origins = tuple(_origin(file, key, kinematics) for key in JOINT_KEYS)
-    _check_model(file, origins, model)
+    check_model(str(file), origins, model)
     return origins
 
 
@@ -73,29 +73,31 @@ def _number(file: pathlib.Path, field: str, value: Any) -> float:
     return number
 
 
-def _deviation(origins: Sequence[Origin], model: Model) -> Tuple[float, float]:
-    """Returns the largest distance in m and angle in rad between the flanges of the calibrated and the nominal arm."""
+def largest_deviation(origins: Sequence[Origin], others: Sequence[Origin]) -> Tuple[float, float]:
+    """Returns the largest distance in m and angle in rad between the flanges of two arms at the compared positions."""
     distance = angle = 0.0
-    nominal = nominal_origins(model)
     for joints in COMPARED_POSITIONS:
-        calibrated, expected = flange_pose(origins, joints), flange_pose(nominal, joints)
-        distance = max(distance, float(np.linalg.norm(calibrated[:3, 3] - expected[:3, 3])))
-        cosine = (np.trace(expected[:3, :3].T @ calibrated[:3, :3]) - 1.0) / 2.0
-        angle = max(angle, math.acos(min(1.0, max(-1.0, cosine))))
+        pose, other = flange_pose(origins, joints), flange_pose(others, joints)
+        distance = max(distance, float(np.linalg.norm(pose[:3, 3] - other[:3, 3])))
+        turned = other[:3, :3].T @ pose[:3, :3]
+        # The arc cosine of the trace would have an error of 1e-8 for small angles.
+        sine = 0.5 * np.linalg.norm([turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]])
+        angle = max(angle, math.atan2(float(sine), (float(np.trace(turned)) - 1.0) / 2.0))
     return distance, angle
 
 
 def _fits(origins: Sequence[Origin], model: Model) -> bool:
-    distance, angle = _deviation(origins, model)
+    distance, angle = largest_deviation(origins, nominal_origins(model))
     return distance <= MAX_DISTANCE and angle <= MAX_ANGLE
 
 
-def _check_model(file: pathlib.Path, origins: Sequence[Origin], model: Model) -> None:
+def check_model(source: str, origins: Sequence[Origin], model: Model) -> None:
+    """Raises DescriptionError if the calibration belongs to another model."""
     if _fits(origins, model):
         return
-    distance, angle = _deviation(origins, model)
+    distance, angle = largest_deviation(origins, nominal_origins(model))
     fitting = [other.name for other in models().values() if _fits(origins, other)]
     remedy = f"It fits {' and '.join(fitting)}" if fitting else "It fits no model: extract the calibration of this robot again"
-    raise DescriptionError(f"{file}: the calibration does not belong to the model {model.name}: the flange deviates by up to "
+    raise DescriptionError(f"{source}: the calibration does not belong to the model {model.name}: the flange deviates by up to "
                            f"{1e3 * distance:.1f} mm and {angle:.3f} rad, at most {1e3 * MAX_DISTANCE:.0f} mm and {MAX_ANGLE} rad are "
                            f"possible. {remedy}")
