@@ -21,6 +21,7 @@ from ur_ros_rtde_msgs.srv import GetJointState
 TRANSIENT_LOCAL = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 TIMEOUT_FACTOR = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # scales all timeouts; programs with a sanitizer are slower
 REAL_TIME_FACTOR = float(os.environ.get("UR_TEST_REAL_TIME_FACTOR", "1"))  # slows down the simulated robot along with the driver
+LONGEST_PAUSE = 0.02  # s, between two checks of a condition: a wait for a long motion takes little processor time
 RECOVERY_TIME_FACTOR = 0.2  # scales the simulator's durations of power on, brake release, protective stop delay and safety restart
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
@@ -28,13 +29,14 @@ JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_j
 
 def wait_for(condition, limit, what):
     """Returns the first true value of `condition()`. Fails if there is none within `limit` s."""
-    end = time.monotonic() + TIMEOUT_FACTOR * limit
+    end, pause = time.monotonic() + TIMEOUT_FACTOR * limit, 0.001
     while True:
         value = condition()
         if value:
             return value
         assert time.monotonic() < end, f"timeout after {limit} s waiting for {what}"
-        time.sleep(0.005)
+        time.sleep(pause)
+        pause = min(1.5 * pause, LONGEST_PAUSE)
 
 
 def find_program(package, name):
@@ -247,7 +249,9 @@ class Client:
     def __init__(self, namespace="", domain=None, name="test_client"):
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=domain)
-        self.node = rclpy.create_node(name, namespace=namespace or None, context=self.context)
+        # The executor checks every entity on each wake-up: services that no test uses cost processor time.
+        self.node = rclpy.create_node(name, namespace=namespace or None, context=self.context, start_parameter_services=False,
+                                      enable_rosout=False)
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
         self._actions, self._services, self._subscriptions = {}, {}, []
