@@ -115,3 +115,9 @@ def test_an_existing_package_is_not_overwritten(tmp_path):
                                 timeout=60)
         assert result.returncode == expected, result.stderr
     assert "exists already" in result.stderr
+
+
+def test_a_folder_that_cannot_be_written_is_reported(tmp_path):
+    result = subprocess.run([str(ROOT / "ur"), "new", "command", "wag", "--directory", "/proc"], cwd=tmp_path, capture_output=True,
+                            text=True, timeout=60)
+    assert result.returncode == 1 and "/proc/wag_command cannot be written" in result.stderr and "--directory" in result.stderr

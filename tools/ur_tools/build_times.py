@@ -10,18 +10,18 @@ REFERENCE_CORES = 2
 # Seconds of a first build without and with tests, on REFERENCE_CORES, without a compiler cache and with no other package built at the
 # same time. Source: "first" in .ur/<distribution>/build_times.json after a first `./ur build` and `./ur build --tests`.
 REFERENCE: Dict[str, Tuple[float, float]] = {
-    "ur_rtde_vendor": (13.0, 13.0),
-    "rcl_cxx": (16.0, 57.0),
-    "ur_ros_rtde_msgs": (112.0, 112.0),
-    "ur_simulator": (84.0, 142.0),
-    "ur_ros_rtde_trajectory": (18.0, 32.0),
-    "ur_ros_rtde_robot": (35.0, 84.0),
-    "ur_ros_rtde": (45.0, 72.0),
-    "ur_ros_rtde_commands": (75.0, 82.0),
+    "ur_rtde_vendor": (14.0, 14.0),
+    "rcl_cxx": (10.0, 50.0),
+    "ur_ros_rtde_msgs": (58.0, 58.0),
+    "ur_simulator": (54.0, 105.0),
+    "ur_ros_rtde_trajectory": (26.0, 38.0),
+    "ur_ros_rtde_robot": (16.0, 62.0),
+    "ur_ros_rtde": (26.0, 70.0),
+    "ur_ros_rtde_commands": (38.0, 38.0),
     "ur_ros_rtde_cli": (1.0, 1.0),
-    "ur_ros_rtde_description": (1.0, 12.0),
-    "ur_ros_rtde_gripper_commands": (20.0, 25.0),
-    "ur_ros_rtde_tutorials": (18.0, 18.0),
+    "ur_ros_rtde_description": (1.0, 9.0),
+    "ur_ros_rtde_gripper_commands": (14.0, 17.0),
+    "ur_ros_rtde_tutorials": (15.0, 15.0),
 }
 UNKNOWN_PACKAGE = (30.0, 30.0)
 STEPS_PER_SECOND = 1.0  # until ninja reports the number of steps of a package

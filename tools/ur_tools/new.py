@@ -50,11 +50,14 @@ def create(kind: str, name: str, package: str, folder: pathlib.Path, description
         raise console.Failure(f"there is no folder {folder}; create it, or choose another with --directory")
     if target.exists():
         raise console.Failure(f"{target} exists already; remove it, or choose another name with --package")
-    for templates in (TEMPLATES / part for part in KINDS[kind]):
-        for source in sorted(path for path in templates.rglob("*") if path.is_file()):
-            file = target / _filled(str(source.relative_to(templates)), words)
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(_filled(source.read_text(), escaped if source.suffix == ".xml" else words))
+    try:
+        for templates in (TEMPLATES / part for part in KINDS[kind]):
+            for source in sorted(path for path in templates.rglob("*") if path.is_file()):
+                file = target / _filled(str(source.relative_to(templates)), words)
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text(_filled(source.read_text(), escaped if source.suffix == ".xml" else words))
+    except OSError as error:
+        raise console.Failure(f"{error.filename} cannot be written: {error.strerror}; choose another folder with --directory") from None
     return target
 
 

@@ -3,11 +3,12 @@
 import hashlib
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import time
-from typing import Iterable, List, Optional
+from typing import Dict, Iterable, List, Optional, Sequence
 
 from . import console
 from .layout import ROOT, Layout
@@ -15,8 +16,9 @@ from .layout import ROOT, Layout
 SUPPORTED = ((3, 10), (3, 12))
 STAMP = "ur_stamp.txt"
 VIEWER_STAMP = "ur_viewer_stamp.txt"
-MEGABYTES = 300  # to download
-SECONDS = 50.0
+MEGABYTES = 130  # to download
+SECONDS = 25.0
+RETRY_DELAY = 3.0  # s
 _PROBE = ("import sys, os, sysconfig, ensurepip, venv; "
           "header = os.path.join(sysconfig.get_paths()['include'], 'Python.h'); "
           "print('%d.%d' % sys.version_info[:2], int(os.path.exists(header)))")
@@ -65,7 +67,7 @@ def find_python() -> str:
                           "\nInstall one with its venv module and headers, or select it: UR_PYTHON=/path/to/python3.11 ./ur ...")
 
 
-def _stamp(layout: Layout, requirements: Iterable[pathlib.Path]) -> str:
+def _stamp(layout: Layout, requirements: Sequence[pathlib.Path]) -> str:
     # A virtual environment contains its own path: it must be created again after a move.
     digest = hashlib.sha256(str(layout.venv).encode())
     for file in requirements:
@@ -82,44 +84,72 @@ def _is_usable(layout: Layout) -> bool:
     return subprocess.run([str(layout.python), "-c", "import pip"], stderr=subprocess.DEVNULL).returncode == 0
 
 
-def _pip_install(layout: Layout, requirements: Iterable[pathlib.Path]) -> None:
-    command = [str(layout.python), "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--no-deps",
-               "--no-compile"]  # compiling the modules that are never imported takes a third of the time
-    for file in requirements:
-        command += ["--requirement", str(file)]
-    log = layout.base / "pip.log"
+def _pip_install(layout: Layout, requirements: Sequence[pathlib.Path]) -> None:
     # PYTHONPATH and PYTHONHOME belong to another environment; PIP_USER would prevent an installation into this one.
     env = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONHOME", "PIP_USER")}
     env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     for attempt in range(1, 4):
-        if _run_pip(command, env, log) == 0:
+        with Installation(layout, requirements, env) as installation:
+            logs = installation.wait()
+        if not logs:
             return
         if attempt < 3:
-            console.line(f"    the installation failed ({log}); trying again")
-            time.sleep(3.0 * attempt)
-    text = log.read_text(errors="replace")
-    raise console.Failure(f"The Python packages could not be installed in three attempts. The end of {log}:\n"
-                          f"{console.tail(text, 12)}\n"
+            console.line(f"    the installation failed ({', '.join(map(str, logs))}); trying again")
+            time.sleep(RETRY_DELAY * attempt)
+    ends = "\n".join(f"The end of {log}:\n{console.tail(log.read_text(errors='replace'), 12)}" for log in logs)
+    raise console.Failure(f"The Python packages could not be installed in three attempts. {ends}\n"
                           "Check the network connection. pip's settings (`pip config list`) select a proxy or a mirror. Then run ./ur "
                           "again: downloaded packages are kept.")
 
 
-def _run_pip(command: List[str], env: dict, log: pathlib.Path) -> int:
-    status, start = console.Status(), time.monotonic()
-    with log.open("w") as output:
-        process = subprocess.Popen(command, env=env, stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
-        try:
-            while process.poll() is None:
-                lines = log.read_text(errors="replace").strip().splitlines()
-                now = lines[-1].strip() if lines else ""
-                status.show(f"{time.monotonic() - start:4.0f} s  {now}")
-                time.sleep(0.2)
-        finally:
+class Installation:
+    """Installs the packages of all requirement files, each with a pip of its own: most of the time, pip waits for the registry."""
+
+    def __init__(self, layout: Layout, requirements: Sequence[pathlib.Path], env: Dict[str, str]):
+        self._total = sum(_count(file) for file in requirements)
+        self._running: "Dict[pathlib.Path, subprocess.Popen[bytes]]" = {}  # by log
+        for file in requirements:
+            # Compiling the modules that are never imported would take a third of the time.
+            command = [str(layout.python), "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--no-deps",
+                       "--no-compile", "--requirement", str(file)]
+            log = layout.base / f"pip_{file.stem}.log"
+            with log.open("w") as output:
+                self._running[log] = subprocess.Popen(command, env=env, stdout=output, stderr=subprocess.STDOUT,
+                                                      stdin=subprocess.DEVNULL)
+
+    def __enter__(self) -> "Installation":
+        return self
+
+    def __exit__(self, *_unused: object) -> None:
+        for process in self._running.values():
             if process.poll() is None:
                 process.terminate()
-                process.wait()
+        for process in self._running.values():
+            process.wait()
+
+    def wait(self) -> List[pathlib.Path]:
+        """Waits for the end and shows the progress. Returns the logs of the processes that failed."""
+        status, start = console.Status(), time.monotonic()
+        try:
+            while any(process.poll() is None for process in self._running.values()):
+                status.show(f"{time.monotonic() - start:4.0f} s  {self._progress()}")
+                time.sleep(0.2)
+        finally:
             status.clear()
-    return process.returncode
+        return [log for log, process in self._running.items() if process.returncode != 0]
+
+    def _progress(self) -> str:
+        texts = [log.read_text(errors="replace") for log in self._running]
+        names = [name for text in texts for name in re.findall(r"^(?:Collecting|Requirement already satisfied:) ([^\s=]+)", text, re.M)]
+        installing = sum(text.count("Installing collected packages") for text in texts)
+        if installing == len(texts):
+            return f"installing {self._total} packages"
+        return f"{len(names)} of about {self._total} packages" + (f": {', '.join(names[-1:])}" if names else "")
+
+
+def _count(requirements: pathlib.Path) -> int:
+    """Returns the number of packages: those with several versions, for several versions of Python, count once."""
+    return len(set(re.findall(r"^([\w.-]+)==", requirements.read_text(), re.M)))
 
 
 def is_current(layout: Layout) -> bool:
