@@ -1,5 +1,7 @@
 """./ur plan: a plan without a robot, its figure, and the errors of a wrong file."""
 
+import contextlib
+import io
 import json
 import os
 import pathlib
@@ -8,6 +10,8 @@ import subprocess
 import sys
 
 import pytest
+from ur_tools import console, plan_goal
+from ur_tools import plan as plan_module
 from ur_tools.environment import program
 from ur_tools.layout import Layout
 
@@ -37,6 +41,29 @@ def plan(tmp_path, text, *options):
     env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT / "tools"), os.environ.get("PYTHONPATH", "")])}
     return subprocess.run([sys.executable, "-m", "ur_tools.plan", str(file), *map(str, options)], env=env, cwd=tmp_path,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+
+
+@pytest.fixture
+def refusal(tmp_path, monkeypatch):
+    """Returns a function that plans in this process, which saves the start of two Pythons, and returns the printed error."""
+
+    def convert(_layout, options, _env):
+        output, error = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(error):
+            code = plan_goal.main(str(options.file), options.model)
+        if code != 0:
+            raise console.Failure(error.getvalue().strip())
+        return output.getvalue()
+
+    def run(text):
+        (tmp_path / "plan.yaml").write_text(text)
+        monkeypatch.chdir(tmp_path)
+        monkeypatch.setattr(plan_module, "_goal_as_json", convert)
+        with pytest.raises(console.Failure) as failure:
+            plan_module.run(plan_module.parse(["plan.yaml"]), Layout.of_environment())
+        return str(failure.value)
+
+    return run
 
 
 def test_plans_and_draws_a_path(tmp_path):
@@ -94,10 +121,16 @@ def test_default_limits_are_slow_and_given_limits_and_times_may_be_faster(tmp_pa
     ("waypoints: []\nwaypoints: []", "plan.yaml:2: not YAML: the field waypoints is given twice"),
     ("7", "plan.yaml:1: the goal is 7: expected a mapping"),
 ])
-def test_an_invalid_goal_is_rejected_with_the_reason(tmp_path, text, what):
-    result = plan(tmp_path, text)
-    assert result.returncode == 1 and what in result.stdout, result.stdout
-    assert "Traceback" not in result.stdout and "json" not in result.stdout.lower() and result.stdout.count("plan.yaml") == 1
+def test_an_invalid_goal_is_rejected_with_the_reason(refusal, text, what):
+    found = refusal(text)
+    assert what in found and "Traceback" not in found and "json" not in found.lower() and found.count("plan.yaml") == 1
+
+
+def test_the_program_prints_the_reason_of_a_rejection(tmp_path):
+    for text, what in (("waypoints: [", "not YAML"), (PATH + "max_velocity: [1, 1, 0, 1, 1, 1]", "velocity limit of elbow_joint is 0")):
+        result = plan(tmp_path, text)
+        assert result.returncode == 1 and what in result.stdout, result.stdout
+        assert "Traceback" not in result.stdout and "json" not in result.stdout.lower() and result.stdout.count("plan.yaml") == 1
 
 
 def test_a_missing_file_is_reported(tmp_path):

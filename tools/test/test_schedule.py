@@ -75,6 +75,11 @@ def test_background_tests_run_beside_the_others_as_many_as_there_are_cores():
     assert simulation.begins == {0: 0.0, 1: 0.0, 2: 0.0, 3: 3.0}
 
 
+def test_the_background_test_that_takes_longest_starts_first_even_if_it_mostly_waits():
+    simulation = Simulation(jobs((10.0, 1.8), (4.0, 1.0), (9.0, 0.1), (3.0, 1.0), background=[1, 2, 3]))
+    assert (simulation.begins[2], simulation.begins[1], simulation.begins[3]) == (0.0, 0.0, 4.0)
+
+
 def test_no_background_test_runs_beside_an_exclusive_one():
     simulation = Simulation(jobs((5.0, 0.1), (6.0, 0.1), (3.0, 0.5), (4.0, 0.5), exclusive=[0], background=[2, 3]))
     begin = simulation.begins[0]

@@ -70,6 +70,23 @@ def test_a_background_test_has_a_low_priority(tmp_path, monkeypatch):
     assert f"niceness {min(19, os.nice(0) + runner.BACKGROUND_NICENESS)}" in output
 
 
+def test_the_durations_of_an_interrupted_run_are_kept(tmp_path, monkeypatch):
+    class InterruptedRunner:
+        def run(self, test):
+            if test.name == "a: second":
+                raise KeyboardInterrupt
+            return runner.Result(test, 1, [], 7.0, 1.4, "")
+
+        def cancel(self):
+            pass
+
+    monkeypatch.setattr(Layout, "durations", tmp_path / "durations.json")
+    tests = [runner.Test(name, ["a/program"], tmp_path, 1.0) for name in ("a: first", "a: second")]
+    with pytest.raises(KeyboardInterrupt):
+        testing._run_all(testing.Options(Layout(), jobs=1), InterruptedRunner(), tests)
+    assert schedule.Times(tmp_path / "durations.json").cost("a: first", False) == schedule.Cost(7.0, 0.2)
+
+
 def result(command, failures):
     return runner.Result(runner.Test("a: test", command, pathlib.Path(), 1.0), 3, failures, 1.0, 0.1, "")
 

@@ -4,10 +4,11 @@ from typing import Dict, Tuple
 
 REFERENCE: Dict[str, Tuple[float, float]] = {
     "tools: test_bench": (38.0, 0.15),
+    "tools: test_bench_programs": (60.0, 0.3),
     "tools: test_chaos": (53.0, 0.33),
     "tools: test_demo": (40.0, 0.45),
-    "tools: test_generators": (18.0, 1.0),
-    "tools: test_writing_a_plugin": (40.0, 1.2),
+    "tools: test_plan": (10.0, 0.8),
+    "tools: test_writing_a_plugin": (100.0, 1.0),
     "ur_ros_rtde_commands: system/test_client_lost": (31.0, 0.45),
     "ur_ros_rtde_commands: system/test_commands": (28.0, 0.3),
     "ur_ros_rtde_commands: system/test_dashboard": (27.0, 0.35),
@@ -16,6 +17,7 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_ros_rtde_commands: system/test_follow_joint_trajectory": (22.0, 0.3),
     "ur_ros_rtde_commands: system/test_force_commands": (17.0, 0.35),
     "ur_ros_rtde_commands: system/test_lifecycle": (30.0, 0.55),
+    "ur_ros_rtde_commands: system/test_many_goals": (75.0, 0.3),
     "ur_ros_rtde_commands: system/test_motion_commands": (42.0, 0.35),
     "ur_ros_rtde_commands: system/test_operation_commands": (40.0, 0.2),
     "ur_ros_rtde_commands: system/test_orientation": (44.0, 0.25),

@@ -77,8 +77,7 @@ class Schedule:
         self._clock = clock
         jobs = list(jobs)
         self._waiting = sorted((job for job in jobs if not job.background), key=lambda job: -job.cost.seconds)
-        # The duration of a background test depends on the tests beside it.
-        self._background = sorted((job for job in jobs if job.background), key=lambda job: -job.cost.seconds * job.cost.load)
+        self._background = sorted((job for job in jobs if job.background), key=lambda job: -job.cost.seconds)
         self._running: List[Job] = []
         self._running_background: List[Job] = []
 

@@ -130,7 +130,7 @@ def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result
             raise
         finally:
             status.clear()
-    times.write()
+            times.write()
     return results
 
 
