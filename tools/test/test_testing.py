@@ -97,6 +97,24 @@ def test_only_the_failed_cases_of_a_file_are_repeated():
     assert part.command == ["python", "-m", "pytest", "-q", "a/test_x.py::test_y[a.b]", "a/test_x.py::test_z"]
 
 
+def test_the_files_of_a_group_run_in_one_process(tmp_path):
+    for name, text in (("x", 'GROUP = "stops"\n'), ("y", ""), ("z", 'GROUP = "stops"\n')):
+        (tmp_path / "typed").mkdir(exist_ok=True)
+        (tmp_path / "typed" / f"test_{name}.py").write_text(text)
+    group, alone = testing._in_groups(testing._pytest(Layout.of_environment(), "driver", tmp_path))
+    assert (group.name, alone.name) == ("driver: typed/stops", "driver: typed/test_y")
+    assert [file.name for file in group.files] == ["test_x.py", "test_z.py"] and group.limit == 2.0 * testing.PYTEST_LIMIT
+    failed = testing._only_failed_cases(runner.Result(group, 0, ["test_z.test_a[b.c]", "test_x.test_d"], 1.0, 0.1, ""))
+    folder = tmp_path / "typed"
+    assert failed.command == [*alone.command[:-1], f"{folder}/test_z.py::test_a[b.c]", f"{folder}/test_x.py::test_d"]
+
+
+def test_a_single_selected_file_of_a_group_keeps_its_name(tmp_path):
+    (tmp_path / "test_x.py").write_text('GROUP = "stops"\n')
+    test, = testing._in_groups(testing._pytest(Layout.of_environment(), "driver", tmp_path))
+    assert test.name == "driver: test_x"
+
+
 @pytest.mark.parametrize("command, failures", [
     (["python", "-m", "pytest", "a/test_x.py"], ["failed after its last case"]),
     (["a/program"], ["Suite.bad"]),

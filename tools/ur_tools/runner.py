@@ -25,7 +25,7 @@ SANITIZED_REAL_TIME_FACTOR = 0.5  # lets the simulated robot's time pass at half
 
 @dataclass
 class Test:
-    """A pytest file, a GoogleTest case or a program."""
+    """One or more pytest files, a GoogleTest case or a program."""
 
     name: str
     command: List[str]
@@ -37,6 +37,7 @@ class Test:
     measures_time: bool = False  # is given a core, even if it uses less
     browser: bool = False  # needs a browser: see browser.py
     load: Optional[float] = None  # cores that it is given; None: its measured load
+    group: str = ""  # of pytest files that run in one process
 
     @property
     def package(self) -> str:
@@ -50,6 +51,11 @@ class Test:
     def path(self) -> pathlib.Path:
         """The pytest file or the program."""
         return pathlib.Path(self.command[-1] if self.is_pytest else self.command[0])
+
+    @property
+    def files(self) -> List[pathlib.Path]:
+        """The pytest files."""
+        return [pathlib.Path(part) for part in self.command if self.is_pytest and part.endswith(".py")]
 
 
 @dataclass

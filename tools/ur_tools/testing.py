@@ -23,7 +23,7 @@ from .schedule import Job, Schedule, Times
 DEFAULT_LIMIT = 120.0
 PYTEST_LIMIT = 600.0
 # Lines of a pytest file that set the field of the same name of its Test.
-MARKERS = re.compile(r"^(MEASURES_TIME|BACKGROUND|BROWSER|LOAD) = (True|\d+\.\d+)", re.M)
+MARKERS = re.compile(r"^(MEASURES_TIME|BACKGROUND|BROWSER|LOAD|GROUP) = (True|\d+\.\d+|\"\w+\")", re.M)
 BACKGROUND_LABEL = "background"  # of a CTest test: the same as BACKGROUND
 SHOWN_LINES = 60  # of a failed test's output
 FAILS_ALONE, PASSES_ALONE = "fails alone too", "passes alone: depends on load or on other tests"
@@ -85,8 +85,24 @@ def _collect(options: Options, packages: Dict[str, Package], chosen: selection.S
             tests += _pytest(options.layout, name, folder)
     for package in packages.values():
         tests += _ctest(options.layout, package)
-    tests = [test for test in tests if chosen.chooses(test.package, test.name, test.path)]
+    tests = _in_groups([test for test in tests if chosen.chooses(test.package, test.name, test.path)])
     return [test for test in tests for _unused in range(options.repeat)]
+
+
+def _in_groups(tests: List[Test]) -> List[Test]:
+    """Combines the pytest files of each group into one test, whose files share the fixtures with the scope of a session."""
+    groups: Dict[str, List[Test]] = {}
+    for test in tests:
+        name = f"{test.name.rpartition('/')[0]}/{test.group}" if test.group else test.name
+        groups.setdefault(name, []).append(test)
+    return [_combined(name, members) for name, members in groups.items()]
+
+
+def _combined(name: str, tests: List[Test]) -> Test:
+    if len(tests) == 1:
+        return tests[0]
+    command = [*tests[0].command[:-1], *(str(test.path) for test in tests)]
+    return replace(tests[0], name=name, command=command, limit=sum(test.limit for test in tests))
 
 
 def _select(options: Options) -> selection.Selection:
@@ -145,12 +161,13 @@ def _report(status: console.Status, result: Result, done: int, total: int) -> No
 
 
 def _only_failed_cases(result: Result) -> Test:
-    """Returns the test reduced to the failed cases if it is a pytest file, otherwise the whole test."""
+    """Returns the test reduced to the failed cases if it consists of pytest files, otherwise the whole test."""
     test = result.test
-    prefix = f"{test.path.stem}."
-    if not test.is_pytest or not all(case.startswith(prefix) for case in result.failures):
+    files = {file.stem: file for file in test.files}
+    cases = [case.partition(".") for case in result.failures]
+    if not all(file in files and name for file, _, name in cases):
         return test
-    return replace(test, command=[*test.command[:-1], *(f"{test.path}::{case[len(prefix):]}" for case in result.failures)])
+    return replace(test, command=[*test.command[:-len(files)], *(f"{files[file]}::{name}" for file, _, name in cases)])
 
 
 def _diagnose(runner: Runner, results: List[Result]) -> Dict[str, str]:

@@ -6,6 +6,8 @@ import bad_goals
 
 from ur_ros_rtde_msgs.msg import ErrorCode
 
+GROUP = "goals"
+
 CODES = (ErrorCode.INVALID_GOAL, ErrorCode.UNREACHABLE, ErrorCode.SAFETY_VIOLATION)
 MAX_SHOWN = 20
 BATCH = 8  # goals at a time, because ROS services queue at most 10 requests and 10 responses

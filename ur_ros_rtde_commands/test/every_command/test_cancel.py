@@ -9,6 +9,8 @@ from scenarios import moves_arm, start_goal
 
 from ur_ros_rtde_msgs.msg import ErrorCode
 
+GROUP = "stops"
+
 
 def scenario(cell, example):
     goal = start_goal(cell, example)

@@ -5,6 +5,8 @@ from disturbances import CONTROLLER_DEATH
 from scenarios import disturb
 from scenarios import has_feedback as applies_to  # noqa: F401
 
+GROUP = "losses"
+
 
 def scenario(cell, example):
     return disturb(cell, example, CONTROLLER_DEATH)

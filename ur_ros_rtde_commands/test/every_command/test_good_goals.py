@@ -3,6 +3,8 @@
 from cell import CODES, EXAMPLE_LIMIT, describe_result
 from action_msgs.msg import GoalStatus
 
+GROUP = "goals"
+
 # The effects of these commands are not part of Cell.settings(). The simulator is restarted after them.
 PERSISTENT = ("set_", "enable_", "force_mode_start", "force_mode_set", "dashboard/shutdown")
 

@@ -5,6 +5,8 @@ from disturbances import LINK_LOSS
 from scenarios import disturb
 from scenarios import has_feedback as applies_to  # noqa: F401
 
+GROUP = "losses"
+
 
 def scenario(cell, example):
     return disturb(cell, example, LINK_LOSS)

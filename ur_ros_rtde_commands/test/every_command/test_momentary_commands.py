@@ -9,6 +9,8 @@ from support import wait_for
 
 from ur_ros_rtde_msgs.msg import ErrorCode
 
+GROUP = "goals"
+
 RESPONSE_LIMIT = 10.0  # s
 
 

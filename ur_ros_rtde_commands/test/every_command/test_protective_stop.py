@@ -5,6 +5,8 @@ from disturbances import PROTECTIVE_STOP
 from scenarios import disturb
 from scenarios import has_feedback as applies_to  # noqa: F401
 
+GROUP = "stops"
+
 
 def scenario(cell, example):
     return disturb(cell, example, PROTECTIVE_STOP)
