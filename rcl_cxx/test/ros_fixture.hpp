@@ -35,6 +35,16 @@ inline std::shared_ptr<rcl_cxx::Context> make_context(std::vector<std::string> a
   return std::make_shared<rcl_cxx::Context>(arguments, options);
 }
 
+/// An executor that spins in the test's thread.
+class InThread : public ::testing::Test {
+ protected:
+  InThread() { executor.add_node(node); }
+
+  std::shared_ptr<rcl_cxx::Context> context = make_context();
+  rcl_cxx::Node node{context, "node"};
+  rcl_cxx::Executor executor{context};
+};
+
 /// A node whose executor spins in a thread.
 class Spinning : public ::testing::Test {
  protected:

@@ -7,7 +7,6 @@
 
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "ros_fixture.hpp"
-#include "services/response_sender.hpp"
 
 using std_msgs::msg::String;
 using testing::ElementsAre;
@@ -16,15 +15,6 @@ using testing::HasSubstr;
 namespace {
 constexpr std::chrono::milliseconds kPeriod{5};
 
-/// An executor that spins in the test's thread.
-class InThread : public ::testing::Test {
- protected:
-  InThread() { executor.add_node(node); }
-
-  std::shared_ptr<rcl_cxx::Context> context = make_context();
-  rcl_cxx::Node node{context, "node"};
-  rcl_cxx::Executor executor{context};
-};
 using ExecutorTaskTest = InThread;
 using ExecutorCancelTest = InThread;
 using ExecutorNodeTest = InThread;
@@ -212,59 +202,6 @@ TEST_F(TimerTest, MayDestroyItselfInItsCallback)
 }
 
 using SpinningExecutorTest = Spinning;
-
-class ResponseSenderTest : public InThread {
- protected:
-  std::shared_ptr<rcl_cxx::detail::ResponseSender> sender =
-      std::make_shared<rcl_cxx::detail::ResponseSender>(node.impl());
-  int attempts = 0;
-  std::vector<rcl_ret_t> done;
-};
-
-TEST_F(ResponseSenderTest, SendsAtOnceWhenClientIsDiscovered)
-{
-  sender->send({[&] { return ++attempts, RCL_RET_OK; }, {}, [&](rcl_ret_t code) { done.push_back(code); }});
-  EXPECT_EQ(attempts, 1);
-  EXPECT_THAT(done, ElementsAre(RCL_RET_OK));
-}
-
-TEST_F(ResponseSenderTest, TriesAgainUntilClientIsDiscovered)
-{
-  sender->send({[&] { return ++attempts < 3 ? RCL_RET_TIMEOUT : RCL_RET_OK; },
-                {},
-                [&](rcl_ret_t code) { done.push_back(code); }});
-  EXPECT_TRUE(done.empty());
-  sender->send({[] { return RCL_RET_TIMEOUT; }, {}, [](rcl_ret_t) {}});
-  EXPECT_TRUE(executor.spin_until([&] { return !done.empty(); }, kLimit));
-  EXPECT_EQ(attempts, 3);
-  EXPECT_THAT(done, ElementsAre(RCL_RET_OK));
-}
-
-TEST_F(ResponseSenderTest, GivesUpAfterItsLimit)
-{
-  sender->send(
-      {[&] { return ++attempts, RCL_RET_TIMEOUT; }, {}, [&](rcl_ret_t code) { done.push_back(code); }});
-  EXPECT_TRUE(executor.spin_until([&] { return !done.empty(); }, 2 * kLimit));
-  EXPECT_GT(attempts, 5);
-  EXPECT_THAT(done, ElementsAre(RCL_RET_TIMEOUT));
-}
-
-TEST_F(ResponseSenderTest, SendsReplacementOfResponseThatCannotBeSerialized)
-{
-  sender->send({[]() -> rcl_ret_t { throw 42; }, [&] { return ++attempts, RCL_RET_OK; },
-                [&](rcl_ret_t code) { done.push_back(code); }});
-  EXPECT_EQ(attempts, 1);
-  EXPECT_THAT(done, ElementsAre(RCL_RET_OK));
-}
-
-TEST_F(ResponseSenderTest, SendsNothingAfterStop)
-{
-  sender->send(
-      {[&] { return ++attempts, RCL_RET_TIMEOUT; }, {}, [&](rcl_ret_t code) { done.push_back(code); }});
-  sender->stop();
-  EXPECT_FALSE(executor.spin_until([&] { return attempts > 1; }, std::chrono::milliseconds(200)));
-  EXPECT_TRUE(done.empty());
-}
 
 TEST_F(SpinningExecutorTest, NeverRunsTwoCallbacksAtOnce)
 {

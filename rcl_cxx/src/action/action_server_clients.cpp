@@ -28,7 +28,7 @@ void ActionServerImpl::check_clients()
     client_timer_->cancel();
     return;
   }
-  const auto known = find_clients(*node(), name_ + "/_action/send_goal");
+  const auto known = find_clients(*node(), service_name(kSendGoalName));
   if (!known) {
     if (node()->get_context().ok()) {
       RCL_CXX_WARN_ONCE(node()->get_logger(),

@@ -35,7 +35,7 @@ ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const ActionT
                                    const ActionServerOptions & options)
     : Waitable(std::move(node), fmt::format("action server {}", name)),
       type_(type),
-      type_support_(middleware_type_support(*type.type_support())),
+      type_support_(*type.type_support()),
       callbacks_(std::move(callbacks)),
       sender_(std::make_shared<ResponseSender>(this->node()))
 {
@@ -56,7 +56,7 @@ ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const ActionT
             label(), "cannot create a timer");
   const rcl_ret_t code =
       compat::action_server_init(&server_, owner.handle(), &rcl_timer_, owner.get_clock().handle(),
-                                 &type_support_, name.c_str(), &rcl_options);
+                                 type_support_.get(), name.c_str(), &rcl_options);
   if (code != RCL_RET_OK) {
     const std::string reason = take_rcl_error();
     ignore_rcl(rcl_timer_fini(&rcl_timer_));

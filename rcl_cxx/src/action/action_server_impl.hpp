@@ -15,10 +15,13 @@
 #include "action/server_goal_impl.hpp"
 #include "executor/waitable.hpp"
 #include "rcl_cxx/action_server.hpp"
+#include "rcl_support/type_support.hpp"
 #include "services/response_sender.hpp"
 
 namespace rcl_cxx::detail {
 class TimerImpl;
+
+constexpr const char * kSendGoalName = "send_goal";
 
 /// An action server. A mutex guards the goals and the state of rcl_action. No callback of the user runs under
 /// it.
@@ -34,6 +37,12 @@ class ActionServerImpl : public Waitable {
 
   void set_on_ready_callbacks() override;
 
+  /// One of the three services of an action: the function that sends its responses, and its name.
+  struct ServiceOfAction {
+    rcl_ret_t (*send)(const rcl_action_server_t *, rmw_request_id_t *, void *);
+    const char * name;
+  };
+
   // For goal handles, from any thread.
 
   /// Returns false and logs if the goal cannot enter this state.
@@ -47,7 +56,6 @@ class ActionServerImpl : public Waitable {
 
  private:
   enum Source : std::size_t { kGoal, kCancel, kResult, kDeferredResponse };
-  using ResponseFunction = rcl_ret_t (*)(const rcl_action_server_t *, rmw_request_id_t *, void *);
   using Goals = std::vector<std::shared_ptr<ServerGoalImpl>>;
 
   struct GoalRequest {
@@ -85,8 +93,9 @@ class ActionServerImpl : public Waitable {
   bool take_result();
   /// `replacement` is made if the response cannot be serialized. `done` receives whether the response was
   /// delivered; that may be seconds later.
-  void respond(ResponseFunction send, const rmw_request_id_t & request, std::shared_ptr<void> response,
-               std::function<std::shared_ptr<void>()> replacement = {}, std::function<void(bool)> done = {});
+  void respond(const ServiceOfAction & service, const rmw_request_id_t & request,
+               std::shared_ptr<void> response, std::function<std::shared_ptr<void>()> replacement = {},
+               std::function<void(bool)> done = {});
 
   // Goal requests with a deferred response.
   void defer(const GoalUUID & id, GoalRequest request, const DeferredGoalResponse & response);
@@ -111,11 +120,12 @@ class ActionServerImpl : public Waitable {
   void schedule_expiry_locked();
 
   // Clients, in the executor's thread.
+  std::string service_name(const char * service) const { return name_ + "/_action/" + service; }
   void watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request);
   void check_clients();
 
   const ActionType & type_;
-  const rosidl_action_type_support_t type_support_;  ///< of the middleware
+  const ActionTypeSupport type_support_;
   const ActionServerCallbacks callbacks_;
   const std::shared_ptr<ResponseSender> sender_;
   std::string name_;

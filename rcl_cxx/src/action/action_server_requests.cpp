@@ -9,6 +9,10 @@
 /// The requests of clients: goals, cancel requests, results. In the executor's thread.
 namespace rcl_cxx::detail {
 namespace {
+constexpr ActionServerImpl::ServiceOfAction kGoalService{&rcl_action_send_goal_response, kSendGoalName};
+constexpr ActionServerImpl::ServiceOfAction kCancelService{&rcl_action_send_cancel_response, "cancel_goal"};
+constexpr ActionServerImpl::ServiceOfAction kResultService{&rcl_action_send_result_response, "get_result"};
+
 bool nothing_to_take(rcl_ret_t code)
 {
   if (code == RCL_RET_ACTION_SERVER_TAKE_FAILED) {
@@ -33,13 +37,13 @@ void ActionServerImpl::call(const char * name, const GoalUUID & id,
   }
 }
 
-void ActionServerImpl::respond(ResponseFunction send, const rmw_request_id_t & request,
+void ActionServerImpl::respond(const ServiceOfAction & service, const rmw_request_id_t & request,
                                std::shared_ptr<void> response,
                                std::function<std::shared_ptr<void>()> replacement,
                                std::function<void(bool)> done)
 {
   const auto self = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
-  const auto send_to = [self, send, request](void * message) {
+  const auto send_to = [self, send = service.send, request](void * message) {
     rmw_request_id_t id = request;
     return send(&self->server_, &id, message);
   };
@@ -51,6 +55,9 @@ void ActionServerImpl::respond(ResponseFunction send, const rmw_request_id_t & r
   }
   sender_->send({[send_to, response = std::move(response)] { return send_to(response.get()); },
                  std::move(send_replacement),
+                 [self, request, name = service.name] {
+                   return discovery_of(request, *self->node(), self->service_name(name));
+                 },
                  [self, done = std::move(done)](rcl_ret_t code) {
                    if (code != RCL_RET_OK) {
                      RCL_CXX_WARN(self->node()->get_logger(), "{}: a response was not delivered: {}",
@@ -94,7 +101,7 @@ void ActionServerImpl::reject(const GoalUUID & id, const rmw_request_id_t & requ
                               const std::string & reason)
 {
   RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
-  respond(&rcl_action_send_goal_response, request_id, make_message(type_.goal_response));
+  respond(kGoalService, request_id, make_message(type_.goal_response));
 }
 
 void ActionServerImpl::send_decision(const GoalUUID & id, const GoalRequest & request,
@@ -123,23 +130,22 @@ void ActionServerImpl::send_acceptance(const rmw_request_id_t & request,
 {
   auto response = make_message(type_.goal_response);
   type_.set_goal_response(response.get(), true, handle->get_goal_stamp());
-  respond(&rcl_action_send_goal_response, request, std::move(response), {},
-          [this, request, handle](bool delivered) {
-            const auto goal = find(handle->get_goal_id());
-            if (!delivered || !goal || !handle->is_active()) {
-              // The client does not know of the goal; releasing the handle aborts it. Or the goal was aborted
-              // while the response was being delivered.
-              discard(handle->get_goal_id());
-              return;
-            }
-            watch_client(*goal, request);
-            {
-              const std::lock_guard lock(mutex_);
-              publish_status_locked();
-            }
-            run_accepted(handle);
-            check_clients();  // a client has to be discovered before its end can be noticed
-          });
+  respond(kGoalService, request, std::move(response), {}, [this, request, handle](bool delivered) {
+    const auto goal = find(handle->get_goal_id());
+    if (!delivered || !goal || !handle->is_active()) {
+      // The client does not know of the goal; releasing the handle aborts it. Or the goal was aborted
+      // while the response was being delivered.
+      discard(handle->get_goal_id());
+      return;
+    }
+    watch_client(*goal, request);
+    run_accepted(handle);  // first: publishing the status must not delay the goal
+    {
+      const std::lock_guard lock(mutex_);
+      publish_status_locked();
+    }
+    check_clients();  // a client has to be discovered before its end can be noticed
+  });
 }
 
 GoalDecision ActionServerImpl::handle_goal(const GoalUUID & id, const void * request) noexcept
@@ -200,7 +206,7 @@ void ActionServerImpl::take_cancel()
   check_rcl(code, name_, "cannot take a cancel request");
   const auto response = std::make_shared<action_msgs::srv::CancelGoal::Response>();
   process_cancel(request, *response);
-  respond(&rcl_action_send_cancel_response, request_id, response);
+  respond(kCancelService, request_id, response);
 }
 
 void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Request & request,
@@ -287,7 +293,7 @@ bool ActionServerImpl::take_result()
   const GoalUUID id = type_.get_goal_id_of_result_request(request.get());
   const auto goal = find(id);
   if (!goal) {
-    respond(&rcl_action_send_result_response, request_id, make_missing_result(id, GoalStatus::unknown));
+    respond(kResultService, request_id, make_missing_result(id, GoalStatus::unknown));
     return true;
   }
   {
@@ -305,7 +311,7 @@ void ActionServerImpl::send_result(const rmw_request_id_t & request, ServerGoalI
 {
   const GoalUUID id = goal.id();
   const GoalStatus status = goal.get_status();
-  respond(&rcl_action_send_result_response, request, goal.result_response,
+  respond(kResultService, request, goal.result_response,
           [this, id, status] { return make_missing_result(id, status); });
   goal.result_sent = true;
 }

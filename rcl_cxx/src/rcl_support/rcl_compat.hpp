@@ -76,4 +76,26 @@ inline rcl_ret_t rosout_stop(rcl_node_t * node)
   return rcl_logging_rosout_fini_publisher_for_node(node);
 }
 
+/// Replaces the description of a type, of a message, a service or an action, by an empty one. Before Iron,
+/// there are no descriptions.
+template <typename TypeSupport>
+void remove_type_description([[maybe_unused]] TypeSupport & type)
+{
+#if RCL_VERSION_MAJOR >= 6
+  using Description = rosidl_runtime_c__type_description__TypeDescription;
+  using Sources = rosidl_runtime_c__type_description__TypeSource__Sequence;
+  type.get_type_description_func = [](const TypeSupport *) -> const Description * {
+    static char no_name[] = "";
+    static const Description empty{
+        .type_description = {.type_name = {.data = no_name, .size = 0, .capacity = 1}, .fields = {}},
+        .referenced_type_descriptions = {}};
+    return &empty;
+  };
+  type.get_type_description_sources_func = [](const TypeSupport *) -> const Sources * {
+    static const Sources empty{};
+    return &empty;
+  };
+#endif
+}
+
 }  // namespace rcl_cxx::detail::compat

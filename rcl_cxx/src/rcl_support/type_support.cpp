@@ -5,17 +5,29 @@
 
 #include <string_view>
 
+#include "rcl_support/rcl_compat.hpp"
+
 namespace rcl_cxx::detail {
 namespace {
-/// `find` is rosidl's function for messages or for services.
-template <typename TypeSupport>
-const TypeSupport * find_type_support(const TypeSupport * type,
-                                      const TypeSupport * (*find)(const TypeSupport *, const char *))
+const rosidl_message_type_support_t * find(const rosidl_message_type_support_t * type,
+                                           const char * identifier)
 {
-  if (type == nullptr || std::string_view(rmw_get_implementation_identifier()) != "rmw_fastrtps_cpp") {
+  return get_message_typesupport_handle(type, identifier);
+}
+
+const rosidl_service_type_support_t * find(const rosidl_service_type_support_t * type,
+                                           const char * identifier)
+{
+  return get_service_typesupport_handle(type, identifier);
+}
+
+template <typename T>
+const T * find_type_support(const T * type)
+{
+  if (std::string_view(rmw_get_implementation_identifier()) != "rmw_fastrtps_cpp") {
     return type;
   }
-  const TypeSupport * const found = find(type, "rosidl_typesupport_fastrtps_cpp");
+  const T * const found = find(type, "rosidl_typesupport_fastrtps_cpp");
   if (found == nullptr) {
     rcl_reset_error();  // the middleware will report that there is none
     return type;
@@ -24,25 +36,32 @@ const TypeSupport * find_type_support(const TypeSupport * type,
 }
 }  // namespace
 
-const rosidl_message_type_support_t * middleware_type_support(const rosidl_message_type_support_t * type)
+template <typename T>
+TypeSupport<T>::TypeSupport(const T * generated)
 {
-  return find_type_support(type, &get_message_typesupport_handle);
+  if (generated != nullptr) {
+    copy_ = *find_type_support(generated);
+    compat::remove_type_description(*copy_);
+  }
 }
 
-const rosidl_service_type_support_t * middleware_type_support(const rosidl_service_type_support_t * type)
-{
-  return find_type_support(type, &get_service_typesupport_handle);
-}
+template class TypeSupport<rosidl_message_type_support_t>;
+template class TypeSupport<rosidl_service_type_support_t>;
 
-rosidl_action_type_support_t middleware_type_support(const rosidl_action_type_support_t & type)
+ActionTypeSupport::ActionTypeSupport(const rosidl_action_type_support_t & generated)
+    : goal_(generated.goal_service_type_support),
+      result_(generated.result_service_type_support),
+      cancel_(generated.cancel_service_type_support),
+      feedback_(generated.feedback_message_type_support),
+      status_(generated.status_message_type_support),
+      copy_(generated)
 {
-  rosidl_action_type_support_t result = type;
-  result.goal_service_type_support = middleware_type_support(type.goal_service_type_support);
-  result.result_service_type_support = middleware_type_support(type.result_service_type_support);
-  result.cancel_service_type_support = middleware_type_support(type.cancel_service_type_support);
-  result.feedback_message_type_support = middleware_type_support(type.feedback_message_type_support);
-  result.status_message_type_support = middleware_type_support(type.status_message_type_support);
-  return result;
+  copy_.goal_service_type_support = goal_.get();
+  copy_.result_service_type_support = result_.get();
+  copy_.cancel_service_type_support = cancel_.get();
+  copy_.feedback_message_type_support = feedback_.get();
+  copy_.status_message_type_support = status_.get();
+  compat::remove_type_description(copy_);
 }
 
 void reset_type_support_error()

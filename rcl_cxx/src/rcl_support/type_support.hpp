@@ -4,15 +4,48 @@
 #include <rosidl_runtime_c/message_type_support_struct.h>
 #include <rosidl_runtime_c/service_type_support_struct.h>
 
+#include <optional>
+
 namespace rcl_cxx::detail {
-/// Returns the type support of the middleware if this is rmw_fastrtps_cpp, otherwise the argument, from which
-/// the middleware selects its own. If rmw_fastrtps_cpp selects it, it also loads the introspection type
-/// support, and keeps a description of each type in memory for type propagation: 9 MB with 130 actions
-/// (docs/discovery.md).
-const rosidl_message_type_support_t * middleware_type_support(const rosidl_message_type_support_t * type);
-const rosidl_service_type_support_t * middleware_type_support(const rosidl_service_type_support_t * type);
-/// The result must not be destroyed before the server.
-rosidl_action_type_support_t middleware_type_support(const rosidl_action_type_support_t & type);
+/// The type support that rcl receives, a copy of the generated one with two differences. With
+/// rmw_fastrtps_cpp it is that of the middleware: if rmw_fastrtps_cpp selects it, it also loads the
+/// introspection type support, and keeps a description of each type in memory for type propagation. And rcl
+/// finds no description of the type, of which it would keep a copy for the service ~/get_type_description,
+/// which this library does not provide. With 130 actions, this saves 9 MB and 7 MB (docs/discovery.md).
+///
+/// Must live as long as the entity that is created with it. `T` is a type support of messages or of services.
+template <typename T>
+class TypeSupport {
+ public:
+  /// nullptr is passed on to rcl, which reports it.
+  explicit TypeSupport(const T * generated);
+
+  const T * get() const noexcept { return copy_ ? &*copy_ : nullptr; }
+
+ private:
+  std::optional<T> copy_;
+};
+
+using MessageTypeSupport = TypeSupport<rosidl_message_type_support_t>;
+using ServiceTypeSupport = TypeSupport<rosidl_service_type_support_t>;
+
+/// The same for actions.
+class ActionTypeSupport {
+ public:
+  explicit ActionTypeSupport(const rosidl_action_type_support_t & generated);
+  ActionTypeSupport(const ActionTypeSupport &) = delete;
+  ActionTypeSupport & operator=(const ActionTypeSupport &) = delete;
+
+  const rosidl_action_type_support_t * get() const noexcept { return &copy_; }
+
+ private:
+  const ServiceTypeSupport goal_;
+  const ServiceTypeSupport result_;
+  const ServiceTypeSupport cancel_;
+  const MessageTypeSupport feedback_;
+  const MessageTypeSupport status_;
+  rosidl_action_type_support_t copy_;
+};
 
 /// Resets the error state that rmw_fastrtps_cpp leaves when it finds no introspection type support, although
 /// the function that creates the publisher, subscription, service or action server succeeds.

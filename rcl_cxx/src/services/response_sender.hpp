@@ -3,10 +3,12 @@
 #include <rcl/types.h>
 
 #include <chrono>
-#include <deque>
 #include <functional>
+#include <list>
 #include <memory>
 #include <mutex>
+
+#include "services/service_clients.hpp"
 
 namespace rcl_cxx::detail {
 class NodeImpl;
@@ -14,18 +16,22 @@ class TimerImpl;
 
 /// Sends the responses of a service. A request may arrive before the server has discovered the reader of the
 /// response. The middleware then waits for 0.1 s and returns RCL_RET_TIMEOUT, and the client would never
-/// receive its response. This class tries again for 5 s, one response at a time, so that the executor can
-/// execute other callbacks in between.
+/// receive its response. This class sends the response when the reader has been discovered, and gives up only
+/// when the client is gone: a busy host may need any time for the discovery. Meanwhile the executor executes
+/// other callbacks.
 class ResponseSender : public std::enable_shared_from_this<ResponseSender> {
  public:
+  using Clock = std::chrono::steady_clock;
   using Send = std::function<rcl_ret_t()>;
   struct Response {
     Send send;
     /// Replaces `send` if the response cannot be serialized. Optional.
     Send send_replacement;
-    /// Called with the last return code. rcl's error state is set unless the code is RCL_RET_OK.
+    /// Called before the response is sent again.
+    std::function<ClientDiscovery()> client;
+    /// Called with the last return code: RCL_RET_TIMEOUT if the client is gone. rcl's error state is set
+    /// unless the code is RCL_RET_OK.
     std::function<void(rcl_ret_t)> done;
-    std::chrono::steady_clock::time_point deadline{};
   };
 
   explicit ResponseSender(std::shared_ptr<NodeImpl> node) : node_(std::move(node)) {}
@@ -40,12 +46,20 @@ class ResponseSender : public std::enable_shared_from_this<ResponseSender> {
   void stop() noexcept;
 
  private:
-  void try_to_send(Response response);
-  void send_next();
+  struct Pending {
+    Response response;
+    Clock::duration pause;   ///< after the next attempt, which may block the executor for 0.1 s
+    Clock::time_point next;  ///< no attempt before
+  };
+
+  void try_to_send(Pending pending);
+  void keep(Pending pending);
+  void check_clients();
+  bool is_stopped();
 
   const std::shared_ptr<NodeImpl> node_;
   std::mutex mutex_;
-  std::deque<Response> responses_;
+  std::list<Pending> pending_;
   std::shared_ptr<TimerImpl> timer_;
   bool stopped_ = false;
 };

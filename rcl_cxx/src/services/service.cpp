@@ -8,6 +8,7 @@
 #include "rcl_support/rcl_error.hpp"
 #include "rcl_support/type_support.hpp"
 #include "services/response_sender.hpp"
+#include "services/service_clients.hpp"
 
 namespace rcl_cxx {
 namespace detail {
@@ -33,6 +34,7 @@ class ServiceImpl : public Waitable {
   rcl_ret_t send(rmw_request_id_t id, void * response) { return rcl_send_response(&service_, &id, response); }
 
   const ErasedService erased_;
+  const ServiceTypeSupport type_support_;
   const std::shared_ptr<ResponseSender> sender_;
   rcl_service_t service_ = rcl_get_zero_initialized_service();
   std::string name_;
@@ -42,13 +44,13 @@ ServiceImpl::ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, c
                          const QoS & qos)
     : Waitable(std::move(node), fmt::format("service {}", name)),
       erased_(std::move(erased)),
+      type_support_(erased_.type_support),
       sender_(std::make_shared<ResponseSender>(this->node()))
 {
   rcl_service_options_t options = rcl_service_get_default_options();
   options.qos = qos.get_rmw_qos_profile();
   const auto lock = this->node()->lock_to_create(label());
-  check_rcl(rcl_service_init(&service_, this->node()->handle(), middleware_type_support(erased_.type_support),
-                             name.c_str(), &options),
+  check_rcl(rcl_service_init(&service_, this->node()->handle(), type_support_.get(), name.c_str(), &options),
             label(), "cannot be created");
   reset_type_support_error();
   name_ = rcl_service_get_service_name(&service_);
@@ -85,6 +87,7 @@ void ServiceImpl::respond(const rmw_request_id_t & id, const std::shared_ptr<voi
   const auto self = std::static_pointer_cast<ServiceImpl>(shared_from_this());
   sender_->send({[self, id, response] { return self->send(id, response.get()); },
                  [self, id] { return self->send(id, self->erased_.make_response().get()); },
+                 [self, id] { return discovery_of(id, *self->node(), self->name_); },
                  [self](rcl_ret_t code) {
                    if (code != RCL_RET_OK) {
                      RCL_CXX_WARN(self->node()->get_logger(), "{}: a response was not delivered: {}",

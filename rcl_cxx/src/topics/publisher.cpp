@@ -39,6 +39,7 @@ class PublisherImpl : public Waitable {
   void clear_on_ready_callbacks() noexcept override { incompatible_qos_.stop(); }
 
  private:
+  const MessageTypeSupport type_support_;
   rcl_publisher_t publisher_ = rcl_get_zero_initialized_publisher();
   std::string topic_;
   IncompatibleQosEvent incompatible_qos_;
@@ -48,14 +49,14 @@ class PublisherImpl : public Waitable {
 PublisherImpl::PublisherImpl(std::shared_ptr<NodeImpl> node,
                              const rosidl_message_type_support_t * type_support, const std::string & topic,
                              const QoS & qos)
-    : Waitable(std::move(node), fmt::format("publisher {}", topic))
+    : Waitable(std::move(node), fmt::format("publisher {}", topic)), type_support_(type_support)
 {
   rcl_publisher_options_t options = rcl_publisher_get_default_options();
   options.qos = qos.get_rmw_qos_profile();
   const auto lock = this->node()->lock_to_create(label());
-  check_rcl(rcl_publisher_init(&publisher_, this->node()->handle(), middleware_type_support(type_support),
-                               topic.c_str(), &options),
-            label(), "cannot be created");
+  check_rcl(
+      rcl_publisher_init(&publisher_, this->node()->handle(), type_support_.get(), topic.c_str(), &options),
+      label(), "cannot be created");
   reset_type_support_error();
   topic_ = rcl_publisher_get_topic_name(&publisher_);
 }

@@ -32,6 +32,7 @@ class SubscriptionImpl : public Waitable {
   enum Source : std::size_t { kMessage, kQosEvent };
 
   const ErasedSubscription erased_;
+  const MessageTypeSupport type_support_;
   rcl_subscription_t subscription_ = rcl_get_zero_initialized_subscription();
   std::string topic_;
   IncompatibleQosEvent incompatible_qos_;
@@ -40,14 +41,15 @@ class SubscriptionImpl : public Waitable {
 
 SubscriptionImpl::SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscription erased,
                                    const std::string & topic, const QoS & qos)
-    : Waitable(std::move(node), fmt::format("subscription {}", topic)), erased_(std::move(erased))
+    : Waitable(std::move(node), fmt::format("subscription {}", topic)),
+      erased_(std::move(erased)),
+      type_support_(erased_.type_support)
 {
   rcl_subscription_options_t options = rcl_subscription_get_default_options();
   options.qos = qos.get_rmw_qos_profile();
   const auto lock = this->node()->lock_to_create(label());
-  const rcl_ret_t code =
-      rcl_subscription_init(&subscription_, this->node()->handle(),
-                            middleware_type_support(erased_.type_support), topic.c_str(), &options);
+  const rcl_ret_t code = rcl_subscription_init(&subscription_, this->node()->handle(), type_support_.get(),
+                                               topic.c_str(), &options);
   ignore_rcl(rcl_subscription_options_fini(&options));
   check_rcl(code, label(), "cannot be created");
   reset_type_support_error();
