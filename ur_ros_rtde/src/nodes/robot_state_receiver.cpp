@@ -14,14 +14,6 @@ namespace srv = ur_ros_rtde_msgs::srv;
 /// Without a package for this many periods, and at least for this time, the state is outdated.
 constexpr double outdated_periods = 5.0;
 constexpr double min_outdated_age = 0.5;  // s
-
-template <typename M>
-void publish_if_subscribed(rcl_cxx::Publisher<M> & publisher, const M & message)
-{
-  if (publisher.get_subscription_count() > 0) {
-    publisher.publish(message);
-  }
-}
 }  // namespace
 
 RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, Source source)
@@ -38,6 +30,7 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
       diagnostics_(node, options_.address, [this] { return diagnose(); })
 {
   const rcl_cxx::QoS qos = rcl_cxx::QoS::from_name(options_.qos);
+  keeps_messages_ = qos.get_rmw_qos_profile().durability != RMW_QOS_POLICY_DURABILITY_VOLATILE;
   joint_states_ = node_.create_publisher<sensor_msgs::msg::JointState>("joint_states", qos);
   actual_joint_states_ = node_.create_publisher<sensor_msgs::msg::JointState>("actual_joint_states", qos);
   tcp_pose_ = node_.create_publisher<geometry_msgs::msg::PoseStamped>("tcp_pose", qos);
@@ -115,6 +108,15 @@ bool RobotStateReceiver::is_due(const Sample & sample)
   return true;
 }
 
+/// The middleware would serialize and store a message that no subscriber receives.
+template <typename M>
+void RobotStateReceiver::publish_if_subscribed(rcl_cxx::Publisher<M> & publisher, const M & message) const
+{
+  if (keeps_messages_ || publisher.get_subscription_count() > 0) {
+    publisher.publish(message);
+  }
+}
+
 void RobotStateReceiver::publish(const Sample & sample)
 {
   const bool due = is_due(sample);
@@ -130,14 +132,11 @@ void RobotStateReceiver::publish(const Sample & sample)
   }
   // Only this thread writes newest_, so it may be read here without the lock.
   published_joint_state_.header.stamp = newest_.joint_state.header.stamp;
-  if (fake_.apply(published_joint_state_)) {
-    joint_states_->publish(published_joint_state_);
-  } else {
-    joint_states_->publish(newest_.joint_state);
-  }
-  tcp_pose_->publish(newest_.tcp_pose);
-  wrench_->publish(newest_.wrench);
-  io_state_->publish(newest_.io_state);
+  const bool fake = fake_.apply(published_joint_state_);
+  publish_if_subscribed(*joint_states_, fake ? published_joint_state_ : newest_.joint_state);
+  publish_if_subscribed(*tcp_pose_, newest_.tcp_pose);
+  publish_if_subscribed(*wrench_, newest_.wrench);
+  publish_if_subscribed(*io_state_, newest_.io_state);
   publish_if_subscribed(*tcp_speed_, newest_.tcp_speed);
   publish_if_subscribed(*target_joint_states_, newest_.target_joint_state);
   publish_if_subscribed(*actual_joint_states_, newest_.joint_state);

@@ -54,6 +54,8 @@ class RobotStateReceiver {
                                                 M S::Response::* destination);
   Status freshness() const;
   bool is_due(const Sample & sample);
+  template <typename M>
+  void publish_if_subscribed(rcl_cxx::Publisher<M> & publisher, const M & message) const;
   void enable_fake_joints(const std_srvs::srv::SetBool::Request & request,
                           std_srvs::srv::SetBool::Response & response);
   void set_fake_joints(const sensor_msgs::msg::JointState & message);
@@ -72,6 +74,7 @@ class RobotStateReceiver {
   StatusTopics status_topics_;
   PackageStatistics packages_;
   double agreed_frequency_ = 0.0;  ///< of link_
+  bool keeps_messages_ = false;    ///< The quality of service keeps messages for later subscribers.
 
   rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr joint_states_;
   rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr actual_joint_states_;

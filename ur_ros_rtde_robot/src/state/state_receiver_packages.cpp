@@ -8,7 +8,8 @@
 
 namespace ur_ros_rtde {
 namespace {
-constexpr std::chrono::milliseconds longest_wait(10);
+/// The end of the silence limit, reserved for reading packages that wait in the socket.
+constexpr std::chrono::milliseconds reading_time(10);
 }  // namespace
 
 void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader)
@@ -35,11 +36,9 @@ void StateReceiver::Impl::on_package(Sample & sample, const SampleReader & reade
   try {
     publish(sample, reader);
   } catch (const std::exception & error) {
-    const std::lock_guard lock(mutex_);
-    failure_ = error.what();
+    set_failure(error.what());
   } catch (...) {
-    const std::lock_guard lock(mutex_);
-    failure_ = "unknown exception";
+    set_failure("unknown exception");
   }
   processed_ = Clock::now();
   processing_ = false;
@@ -60,10 +59,10 @@ Error StateReceiver::Impl::monitor(const std::stop_token & stop, ur_rtde::RTDERe
                std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
   // If this host was busy, packages may be waiting in the socket: the last part of the limit is reserved for
   // ur_rtde's thread to read them.
-  const auto last_wait = std::min(longest_wait, silence_limit / 2);
+  const auto last_wait = std::min(reading_time, silence_limit / 2);
   const auto left = [&] { return last_activity(*state) + silence_limit - last_wait - Clock::now(); };
   while (!stop.stop_requested()) {
-    pause(stop, std::clamp<Clock::duration>(left(), std::chrono::milliseconds(1), longest_wait));
+    pause(stop, std::max<Clock::duration>(left(), std::chrono::milliseconds(1)));
     if (const auto failed = take_failure()) {
       return {ErrorCode::exception, fmt::format("a callback could not process a package: {}", *failed)};
     }
@@ -85,7 +84,16 @@ Error StateReceiver::Impl::monitor(const std::stop_token & stop, ur_rtde::RTDERe
 void StateReceiver::Impl::pause(const std::stop_token & stop, Clock::duration limit)
 {
   std::unique_lock lock(mutex_);
-  pause_.wait_for(lock, stop, limit, [this] { return ended_; });
+  pause_.wait_for(lock, stop, limit, [this] { return ended_ || failure_; });
+}
+
+void StateReceiver::Impl::set_failure(const char * what)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    failure_ = what;
+  }
+  pause_.notify_all();
 }
 
 void StateReceiver::Impl::set_ended(bool ended)
@@ -116,6 +124,7 @@ Error StateReceiver::Impl::receive_packages(const std::stop_token & stop)
   const Error end = monitor(stop, *interface);
   state->setPackageCallback({});
   set_ended(false);
+  take_failure();  // of a package that arrived meanwhile
   return end;
 }
 
