@@ -3,8 +3,10 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
+import time
 
 import pytest
 from support import TIMEOUT_FACTOR, start_node, wait_for
@@ -63,6 +65,23 @@ def test_nodes_load_no_introspection_type_supports(addresses, processes):
     libraries = pathlib.Path(f"/proc/{driver.pid}/maps").read_text()
     assert "libur_ros_rtde_msgs__rosidl_typesupport_fastrtps_cpp.so" in libraries
     assert "libur_ros_rtde_msgs__rosidl_typesupport_introspection_cpp.so" not in libraries
+
+
+def wake_ups(process):
+    """Returns how often the flow controllers' threads have woken up so far."""
+    threads = pathlib.Path(f"/proc/{process.pid}/task").iterdir()
+    status = [(thread / "status").read_text() for thread in threads if (thread / "comm").read_text().startswith("dds.asyn")]
+    return sum(int(re.search(r"^voluntary_ctxt_switches:\s+(\d+)", text, re.M)[1]) for text in status)
+
+
+@pytest.mark.skipif(not FAST_DDS_3, reason="the profile for Fast DDS 2 has no flow controller")
+def test_the_flow_controller_costs_an_idle_node_little(addresses, processes):
+    """Its thread wakes up once per period. 200 wake-ups/s took 0.5 % of a core in each node."""
+    driver = processes(start_node("driver", addresses[3]))
+    driver.wait_for_output("]: commands: ")
+    before, begin = wake_ups(driver), time.monotonic()
+    time.sleep(1.0)
+    assert 0.0 < (wake_ups(driver) - before) / (time.monotonic() - begin) < 100.0
 
 
 def write_profile(tmp_path, text):
