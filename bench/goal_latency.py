@@ -39,8 +39,8 @@ class GoalLatency:
     def _cycle(self):
         return self.control.request("state")["state"]["cycle"]
 
-    def goal_to_command(self, count):
-        """Returns the times in ms from sending a goal to the arrival of its command at the controller."""
+    def goals_and_commands(self, count):
+        """Returns [(time of sending a goal, time of the arrival of its command at the controller)] in ns."""
         result = []
         for index in range(count):
             before = self._cycle()
@@ -50,8 +50,12 @@ class GoalLatency:
             commands = self.control.request("trace", after=before)["commands"]
             arrived = [when for _, when, _ in commands if when > sent]
             if arrived:
-                result.append((arrived[0] - sent) * 1e-6)
+                result.append((sent, arrived[0]))
         return result
+
+    def goal_to_command(self, count):
+        """Returns the times in ms from sending a goal to the arrival of its command at the controller."""
+        return [(arrived - sent) * 1e-6 for sent, arrived in self.goals_and_commands(count)]
 
     def cancel_to_deceleration(self, count):
         """Returns the times in ms from sending a cancel request to the first cycle with a lower target speed."""

@@ -8,8 +8,8 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 
-def receive_in_python(seconds):
-    """Returns [(stamp, time of reception)] in ns of joint_states."""
+def receive_in_python(seconds, topic="joint_states"):
+    """Returns [(stamp, time of reception)] in ns of joint states."""
     received = []
 
     def on_joint_state(message):
@@ -18,7 +18,7 @@ def receive_in_python(seconds):
 
     node = Node("bench_subscriber")
     qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
-    node.create_subscription(JointState, "joint_states", on_joint_state, qos)
+    node.create_subscription(JointState, topic, on_joint_state, qos)
     executor = rclpy.executors.SingleThreadedExecutor()
     executor.add_node(node)
     limit = time.monotonic() + 15.0

@@ -11,7 +11,7 @@ import time
 from typing import List
 
 from . import (bench_compare, bench_discovery, bench_machine, bench_report, bench_results, bench_rows, bench_scale, bench_session,
-               bench_stress, bench_trajectory, boilerplate, console, ports, simulation)
+               bench_stress, bench_trace, bench_trajectory, boilerplate, console, ports, simulation)
 from .bench_results import Results
 from .layout import PROGRAM, Layout
 
@@ -19,7 +19,7 @@ from .layout import PROGRAM, Layout
 KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 # Options that change what is measured, or how.
 SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots", "stress")
-MODES = ("stream", "trajectory", "scale", "stress")
+MODES = ("stream", "trajectory", "scale", "stress", "trace")
 
 
 def _add_result_options(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +58,8 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")
     parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals and cancels to measure (default: 40)")
     _add_result_options(parser)
-    for add_options in (_add_stream_options, bench_scale.add_options, bench_stress.add_options, bench_trajectory.add_options):
+    for add_options in (_add_stream_options, bench_scale.add_options, bench_stress.add_options, bench_trace.add_options,
+                        bench_trajectory.add_options):
         add_options(parser)
     options = parser.parse_args(arguments)
     _check_combination(parser, options)
@@ -77,8 +78,9 @@ def _check_combination(parser: argparse.ArgumentParser, options: argparse.Namesp
         parser.error("--append needs --output")
     if options.input and (options.output or options.runs > 1 or modes):
         parser.error("--input measures nothing: it excludes --output, --runs and what to measure")
-    if options.trajectory and (options.output or options.compare or options.report):
-        parser.error("--trajectory has no rows to save or to compare")
+    for mode in ("trajectory", "trace"):
+        if getattr(options, mode) and (options.output or options.compare or options.report):
+            parser.error(f"--{mode} has no rows to save or to compare")
 
 
 def check(options: argparse.Namespace) -> None:
@@ -157,6 +159,8 @@ def _print(results: Results) -> None:
 def run(options: argparse.Namespace, layout: Layout) -> int:
     if options.trajectory:
         return bench_trajectory.run(options, layout)
+    if options.trace:
+        return bench_trace.run(options, layout)
     results = bench_results.load(options.input, "--input") if options.input else _measured(layout, options)
     old = bench_results.load(options.compare, "--compare") if options.compare else None
     _print(results)
