@@ -1,7 +1,8 @@
 """Chromium and Playwright for the browser tests. `./ur test` provides them when such a test is selected.
 
 A Chromium on PATH is used. Otherwise, Debian's package of a headless Chromium and the libraries that this machine lacks are
-unpacked into .ur/browser, without root: a download of 100 MB, 290 MB on disk. Playwright adds a download of 54 MB.
+unpacked into .ur/browser, without root: a download of 100 MB, 290 MB on disk. Playwright adds a download of 54 MB. If apt has no
+package lists, as in a new container, they are downloaded into .ur/apt. All addresses are those of the machine's own configuration.
 """
 
 import os
@@ -21,6 +22,7 @@ PACKAGE = "chromium-headless-shell"
 PROGRAM = pathlib.Path("usr/lib/chromium/chromium-headless-shell")  # in the package
 REQUIREMENTS = ROOT / "wheels" / "browser.txt"
 FOLDER = STATE / "browser"
+LISTS = STATE / "apt"
 TOOLS = ("apt-get", "dpkg-deb")
 
 # Read by the tests: the program, the folders of its libraries, or why there is none.
@@ -36,28 +38,56 @@ def _run(command: List[str], folder: pathlib.Path = ROOT) -> str:
     return result.stdout
 
 
+def _needed(options: List[str]) -> List[str]:
+    """Returns the names of the package and of the libraries that are not installed. Raises Failure if apt does not know it."""
+    listing = _run(["apt-get", *options, "install", "--print-uris", "--yes", "--no-install-recommends", "-o", "Debug::NoLocking=1",
+                    PACKAGE])
+    return [name.split("_")[0] for name in re.findall(r"^'\S+' (\S+\.deb) ", listing, re.M)]
+
+
+def _update_lists(folder: pathlib.Path) -> List[str]:
+    """Downloads package lists into `folder`. Returns the options with which apt uses them."""
+    console.step("Downloading the package lists of apt, because this machine has none")
+    start = time.monotonic()
+    for part in ("lists/partial", "cache/archives/partial"):
+        (folder / part).mkdir(parents=True, exist_ok=True)
+    options = ["-o", f"Dir::State::lists={folder / 'lists'}", "-o", f"Dir::Cache={folder / 'cache'}", "-o", "APT::Sandbox::User=root"]
+    _run(["apt-get", *options, "update"])
+    console.line(f"    done in {time.monotonic() - start:.0f} s")
+    return options
+
+
+def _download(folder: pathlib.Path) -> None:
+    """Downloads the archives of the package and of the missing libraries."""
+    options: List[str] = []
+    try:
+        packages = _needed(options)
+    except console.Failure:
+        options = _update_lists(LISTS)
+        packages = _needed(options)
+    console.step("Downloading a headless Chromium for the browser tests (100 MB)")
+    start = time.monotonic()
+    _run(["apt-get", *options, "download", *packages], folder)
+    console.line(f"    done in {time.monotonic() - start:.0f} s")
+
+
 def _unpack(folder: pathlib.Path) -> None:
-    """Downloads the package and the missing libraries, and unpacks them. An interrupted run leaves no incomplete `folder`."""
+    """Downloads and unpacks Chromium. An interrupted run leaves no incomplete `folder`."""
     absent = [tool for tool in TOOLS if shutil.which(tool) is None]
     if absent:
         raise console.Failure(f"this machine has no {' and no '.join(absent)}, the tools of Debian")
-    console.step("Downloading a headless Chromium for the browser tests (100 MB)")
-    start = time.monotonic()
-    listing = _run(["apt-get", "install", "--print-uris", "--yes", "--no-install-recommends", "-o", "Debug::NoLocking=1", PACKAGE])
-    packages = [name.split("_")[0] for name in re.findall(r"^'\S+' (\S+\.deb) ", listing, re.M)]
     incomplete = folder.with_name(folder.name + ".incomplete")
     shutil.rmtree(incomplete, ignore_errors=True)
     archives = incomplete / "archives"
     archives.mkdir(parents=True)
-    _run(["apt-get", "download", *packages], archives)
+    _download(archives)
     for archive in sorted(archives.glob("*.deb")):
         _run(["dpkg-deb", "-x", str(archive), str(incomplete)])
     if not (incomplete / PROGRAM).is_file():
-        raise console.Failure(f"Debian's package {PACKAGE} does not contain {PROGRAM}")
+        raise console.Failure(f"the package {PACKAGE} does not contain {PROGRAM}")
     shutil.rmtree(archives)
     shutil.rmtree(folder, ignore_errors=True)
     incomplete.rename(folder)
-    console.line(f"    done in {time.monotonic() - start:.0f} s")
 
 
 def _install_playwright(layout: Layout) -> None:

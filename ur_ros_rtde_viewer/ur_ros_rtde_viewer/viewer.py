@@ -28,6 +28,10 @@ class Viewer:
             self.robots: List[RobotView] = [RobotView(server, nodes, robot, self.layout.tabs(robot)) for robot in found]
             for robot in self.robots:
                 add_panels(self, robot)
+            self.control: Any = None
+            if options.control:
+                from .control.control import Control  # without --control, nothing that can move an arm is loaded
+                self.control = Control(self)
 
     def post(self, function: Callable[[], None]) -> None:
         """Calls a function in the thread of the loop, without waiting for the next update. Can be called in any thread."""
@@ -66,3 +70,5 @@ class Viewer:
     def close(self) -> None:
         for robot in self.robots:
             robot.close()
+        if self.control is not None:
+            self.control.close()

@@ -161,6 +161,9 @@ class TargetPanel:
             self._say("❌ The arm has moved since the preview. Look at the new preview, then execute it.")
             return
         if self._goal is not None:
+            if not self._goal.has_ended:
+                self._say("❌ The last motion still runs: cancel it, or wait for its end")
+                return
             self._goal.remove()
         self._execute.disabled = True
         self._goals_folder.visible = True
