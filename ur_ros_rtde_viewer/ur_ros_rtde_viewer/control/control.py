@@ -27,6 +27,7 @@ class Control:
         self._lock = threading.Lock()
         for robot in self._robots:
             robot.view.panels.append(robot)
+        self._node.start()
         self._add_stop(viewer.server.gui)
         viewer.server.on_client_connect(self._connect)
         viewer.server.on_client_disconnect(self._disconnect)

@@ -3,28 +3,42 @@
 The thread does nothing else, so that STOP does not wait for the scene or the plots.
 """
 
+import logging
 import threading
 from typing import Any, Callable
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException, ShutdownException, SingleThreadedExecutor
 
+logger = logging.getLogger(__name__)
+
+WAIT_LIMIT = 1.0  # s
 JOIN_LIMIT = 5.0  # s
 
 
 class ControlNode:
+    """Before start(), entities are created in any thread; afterwards in the thread of the node alone, because the executor would
+    use an entity that is only half created."""
+
     def __init__(self, context: rclpy.Context):
         self.node: Any = rclpy.create_node("ur_viewer_control", context=context, enable_rosout=False, start_parameter_services=False)
+        self._context = context
         self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(self.node)
+        self._ended = threading.Event()
         self._thread = threading.Thread(target=self._spin, name="control", daemon=True)
+
+    def start(self) -> None:
         self._thread.start()
 
     def _spin(self) -> None:
-        try:
-            self._executor.spin()
-        except ExternalShutdownException:
-            pass
+        while self._context.ok() and not self._ended.is_set():
+            try:
+                self._executor.spin_once(timeout_sec=WAIT_LIMIT)
+            except (ExternalShutdownException, ShutdownException):
+                return
+            except Exception:  # noqa: BLE001: STOP has to work after a failed callback
+                logger.exception("a callback of a command failed")
 
     def post(self, function: Callable[[], Any]) -> None:
         """Calls `function` in the thread of the node. rclpy loses a response that arrives while another thread still sends
@@ -32,6 +46,8 @@ class ControlNode:
         self._executor.create_task(function)
 
     def close(self) -> None:
-        self._executor.shutdown()
+        self._ended.set()
+        self._executor.wake()
         self._thread.join(JOIN_LIMIT)
+        self._executor.shutdown()
         self.node.destroy_node()

@@ -1,0 +1,136 @@
+"""A viewer in a thread of the test, and a browser that shows its page."""
+
+import argparse
+import contextlib
+import os
+import threading
+
+import numpy as np
+import pytest
+from support import wait_for
+
+LIMIT = 60.0  # s, of an operation in the browser on a busy machine
+ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+WINDOW = {"width": 900, "height": 1100}
+COARSE = "?fixedDpr=0.1"  # scene pixels per screen pixel: software rendering is slow
+
+
+class RunningViewer:
+    def __init__(self, *arguments, port=0):
+        from ur_ros_rtde_viewer.arguments import add_arguments
+        from ur_ros_rtde_viewer.page.server import start_server
+        from ur_ros_rtde_viewer.ros.nodes import Nodes
+        from ur_ros_rtde_viewer.viewer import Viewer
+
+        parser = argparse.ArgumentParser()
+        add_arguments(parser)
+        options = parser.parse_args(["--model", "ur10e", "--rate", "10", "--port", str(port), *arguments])
+        self.server = start_server("127.0.0.1", port)
+        self.port = self.server.get_port()
+        self.nodes = Nodes()
+        self.viewer = Viewer(self.server, self.nodes, options)
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self.viewer.run, args=(self._ended.is_set,))
+        self._thread.start()
+
+    @property
+    def url(self):
+        return f"http://127.0.0.1:{self.port}/{COARSE}"
+
+    def close(self):
+        self._ended.set()
+        self._thread.join(LIMIT)
+        self.viewer.close()
+        self.nodes.close()
+        self.server.stop()
+
+
+@contextlib.contextmanager
+def chromium():
+    """A headless Chromium. Skips the tests if `./ur test` found none."""
+    if "UR_BROWSER" not in os.environ:
+        pytest.skip(os.environ.get("UR_BROWSER_MISSING", "UR_BROWSER is not set: run the tests with ./ur test"))
+    from playwright.sync_api import sync_playwright
+
+    env = {name: value for name, value in os.environ.items() if name != "LD_LIBRARY_PATH"}
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=os.environ["UR_BROWSER"], args=ARGUMENTS, timeout=1e3 * LIMIT,
+                                             env={**env, "LD_LIBRARY_PATH": os.environ.get("UR_BROWSER_LIBRARIES", "")})
+        yield browser
+        browser.close()
+
+
+class Tab:
+    """A tab of the browser with the page of a viewer."""
+
+    def __init__(self, browser, url):
+        self.page = browser.new_page(viewport=WINDOW)
+        self.page.set_default_timeout(1e3 * LIMIT)
+        self.page.goto(url)
+        self.button("STOP").wait_for()
+
+    def button(self, name):
+        return self.page.get_by_role("button", name=name, exact=True).locator("visible=true")
+
+    def open(self, name):
+        """Selects a tab of the robot."""
+        self.page.get_by_role("tab", name=name, exact=True).click()
+
+    def field(self, label):
+        """Returns the input with this label."""
+        return self.page.get_by_label(label, exact=True).locator("visible=true")
+
+    def select_action(self, name):
+        self.open("Commands")
+        action = self.page.get_by_role("textbox", name="Action", exact=True)
+        action.click()
+        action.fill(name)
+        self.page.get_by_role("option", name=name, exact=True).click()
+        self.page.get_by_text(name, exact=True).locator("visible=true").first.wait_for()
+
+    def wait_for_text(self, text):
+        self.page.get_by_text(text).locator("visible=true").first.wait_for()
+
+    @contextlib.contextmanager
+    def held(self, name):
+        """Holds a button."""
+        button = self.button(name)
+        button.scroll_into_view_if_needed()
+        box = button.bounding_box()
+        self.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        self.page.mouse.down()
+        try:
+            yield
+        finally:
+            if not self.page.is_closed():
+                self.page.mouse.up()
+
+    def pose(self, path):
+        """Returns the pose of a scene node, as the browser has it, as a 4x4 matrix. None if there is no such node."""
+        nodes = self.page.evaluate("() => Object.fromEntries(Object.entries(window.__viserSceneTree.getState()).map("
+                                   "([name, node]) => [name, [node?.position ?? [0, 0, 0], node?.wxyz ?? [1, 0, 0, 0]]]))")
+        names = path.split("/")
+        parents = ["/".join(names[:count]) for count in range(2, len(names) + 1)]
+        if any(name not in nodes for name in parents):
+            return None
+        pose = np.eye(4)
+        for name in parents:
+            pose = pose @ matrix(*nodes[name])
+        return pose
+
+    def close(self):
+        self.page.close()
+
+
+def matrix(position, wxyz):
+    w, x, y, z = wxyz
+    pose = np.eye(4)
+    pose[:3, 3] = position
+    pose[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+    return pose
+
+
+def until(condition, what, limit=LIMIT):
+    return wait_for(condition, limit, what)

@@ -1,0 +1,117 @@
+"""The control side without a browser: forms of all actions, held buttons, and no way to a motion without --control."""
+
+import importlib
+
+import pytest
+from rclpy.action import get_action_client_names_and_types_by_node
+from running_viewer import RunningViewer, until
+from support import Client
+from ur_ros_rtde_cli import interface_files
+from ur_ros_rtde_cli.fields import FieldError
+from ur_ros_rtde_viewer.control import action_forms
+from ur_ros_rtde_viewer.control.action_forms import Kind, Source
+from ur_ros_rtde_viewer.control.jog import HOLD_RATE, Hold
+
+from ur_ros_rtde_msgs.action import ExecuteTrajectory, ForceMode, MoveJ, MoveL, MoveLRelative
+
+BACKGROUND = True
+MOTION_TOPICS = {"/twist", "/servo_joint", "/servo_pose"}
+
+
+def installed_actions():
+    for prefix in interface_files.prefixes():
+        for file in sorted(interface_files.pathlib.Path(prefix, "share").glob("ur_ros_rtde*/action/*.action")):
+            yield pytest.param(file.parents[1].name, file.stem, id=file.stem)
+
+
+def form(action):
+    return action_forms.describe("move", action)
+
+
+def read(action, path, text):
+    described = form(action)
+    return described.read({**described.defaults(), path: text})
+
+
+@pytest.mark.parametrize("package, name", installed_actions())
+def test_each_installed_action_has_a_form(package, name):
+    action = getattr(importlib.import_module(f"{package}.action"), name)
+    described = form(action)
+    assert described.description
+    outermost = {field.path[0] for field in described.fields}
+    assert outermost == set(action.Goal.get_fields_and_field_types()) - {"structure_needs_at_least_one_member"}
+    assert described.read(described.defaults()) is not None
+
+
+def test_units_ranges_and_defaults_are_those_of_the_action_file():
+    speed = next(field for field in form(MoveJ).fields if field.path == ("speed",))
+    assert (speed.label, speed.default, speed.limits) == ("speed [rad/s]", "0.5", "Unit: rad/s. Range: above 0, at most 3.14.")
+
+
+def test_constants_are_choices():
+    frame = next(field for field in form(MoveLRelative).fields if field.path == ("frame",))
+    assert (frame.kind, frame.choices, frame.default) == (Kind.CHOICE, ("BASE", "TOOL"), "BASE")
+    assert read(MoveLRelative, ("frame",), "TOOL").frame == MoveLRelative.Goal.TOOL
+
+
+def test_targets_begin_with_the_state_of_the_arm():
+    assert [field.source for field in form(MoveJ).fields] == [Source.JOINT_POSITIONS, Source.NONE, Source.NONE]
+    assert [field.source for field in form(MoveL).fields][:2] == [Source.TCP_POSITION, Source.TCP_ORIENTATION]
+
+
+@pytest.mark.parametrize("action, path, text, expected", [
+    (MoveJ, ("speed",), "fast", "speed is 'fast': expected a number. Unit: rad/s. Range: above 0, at most 3.14."),
+    (MoveJ, ("speed",), "", "speed is empty: expected a number such as 0.5. Unit: rad/s."),
+    (MoveJ, ("speed",), "{", "speed is not YAML"),
+    (MoveJ, ("joint_positions",), "0, 1, x", "joint_positions[2] is 'x': expected a number. Order: shoulder_pan"),
+    (MoveL, ("pose", "position"), "1, 2", "pose.position has 2 values: expected 3 numbers, x, y, z. Unit: m."),
+    (MoveL, ("pose", "position"), "1, 2, up", "pose.position.z is 'up': expected a number"),
+    (ForceMode, ("compliant",), "true", "compliant has 1 values: expected a list of 6 boolean values"),
+    (ExecuteTrajectory, ("waypoints",), "- positions: [0, x]", "waypoints[0].positions[1] is 'x': expected a number"),
+    (ExecuteTrajectory, ("waypoints",), "- position: []", "there is no field waypoints[0].position; did you mean positions?"),
+])
+def test_an_error_names_field_value_limit_and_remedy(action, path, text, expected):
+    with pytest.raises(FieldError) as error:
+        read(action, path, text)
+    assert expected in str(error.value)
+
+
+def test_brackets_are_optional():
+    for text in ("0, 1, 2, 3, 4, 5", "[0, 1, 2, 3, 4, 5]"):
+        assert list(read(MoveJ, ("joint_positions",), text).joint_positions) == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    assert list(read(MoveJ, ("joint_positions",), "").joint_positions) == []
+
+
+def moves(times):
+    """Returns for each message of a held button, at these times in s, whether it moves the arm."""
+    now = iter(times)
+    hold = Hold(lambda: next(now))
+    return [hold.take() for _ in times]
+
+
+def test_a_held_button_moves_the_arm_from_its_second_message_on():
+    assert moves([number / HOLD_RATE for number in range(4)]) == [False, True, True, True]
+    assert moves([0.0, 0.05, 0.1]) == [False, True, True]  # a slow browser
+
+
+def test_delayed_messages_that_arrive_together_move_nothing():
+    assert not any(moves([0.0, *(1.0 + 0.0005 * number for number in range(60))]))
+
+
+def test_without_control_nothing_on_the_page_can_move_an_arm():
+    with_control = {True: RunningViewer("--control"), False: RunningViewer()}
+    observer = Client(name="observer")
+    try:
+        until(lambda: {"ur_viewer", "ur_viewer_control"} <= set(observer.node.get_node_names()), "the nodes of the viewers")
+        node = with_control[False].nodes.node
+        names = {name for name, _ in node.get_publisher_names_and_types_by_node("ur_viewer", "/")}
+        assert not names & MOTION_TOPICS
+        for name in ("ur_viewer", "ur_viewer_topics"):
+            assert get_action_client_names_and_types_by_node(observer.node, name, "/") == []
+        assert with_control[False].viewer.control is None
+        published = {name for name, _ in observer.node.get_publisher_names_and_types_by_node("ur_viewer_control", "/")}
+        assert "/twist" in published  # the same query finds what the viewer with --control has
+    finally:
+        observer.close()
+        for viewer in with_control.values():
+            viewer.close()

@@ -1,0 +1,178 @@
+"""The page with --control in a headless Chromium: scene, forms, STOP, jog, target, several tabs, restart of the viewer."""
+
+import csv
+import xml.etree.ElementTree as xml
+
+import numpy as np
+import pytest
+from arm_state import AT_REST, home_plus
+from robot_fixtures import addresses, client, destroy_subscriptions_after_test, driver, robot, simulator  # noqa: F401
+from running_viewer import RunningViewer, Tab, chromium, until
+from support import HOME, start_node
+from ur_ros_rtde_description.models import JOINTS
+from ur_ros_rtde_description.options import read_options
+from ur_ros_rtde_description.tree import link_poses
+from ur_ros_rtde_description.urdf import make_urdf
+
+from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
+
+BROWSER = True
+MEASURES_TIME = True
+STREAM_TIMEOUT = 0.5  # s; allows for the slow rendering of a browser without a GPU
+
+
+@pytest.fixture(scope="module")
+def driver(simulator):  # noqa: F811
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", f"stream_timeout:={STREAM_TIMEOUT}")
+    yield driver
+    driver.stop()
+    print(driver.output())
+
+
+@pytest.fixture(scope="module")
+def viewer(driver):
+    viewers = [RunningViewer("--control")]
+    yield viewers
+    viewers[-1].close()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def shared_tab(browser, viewer):
+    return Tab(browser, viewer[-1].url)
+
+
+@pytest.fixture
+def tab(shared_tab, robot):
+    return shared_tab
+
+
+def is_moving(simulator):
+    return max(map(abs, simulator.state()["actual"]["velocity"])) > AT_REST
+
+
+def tool_path(viewer):
+    return viewer[-1].viewer.robots[0].scene.arm.link_path("tool0")
+
+
+def expected_tool(positions):
+    poses = link_poses(xml.fromstring(make_urdf(read_options("ur10e"))), dict(zip(JOINTS, positions)))
+    return poses["tool0"]
+
+
+def test_the_arm_in_the_scene_follows_the_robot(tab, viewer, robot, simulator):
+    path = tool_path(viewer)
+    until(lambda: tab.pose(path) is not None and np.allclose(tab.pose(path), expected_tool(HOME), atol=1e-3), "the arm in the scene")
+    robot.send(MoveJ, "move_j", joint_positions=home_plus(0.5, 0.2), speed=1.0, acceleration=2.0).succeeded()
+    expected = expected_tool(simulator.state()["actual"]["position"])
+    until(lambda: np.allclose(tab.pose(path), expected, atol=1e-3), "the arm in the scene to follow")
+
+
+def test_a_form_sends_a_goal_and_shows_its_result(tab, simulator):
+    tab.select_action("move_j")
+    tab.field("joint positions [rad]").fill(", ".join(map(str, home_plus(0.3))))
+    tab.field("speed [rad/s]").fill("1.0")
+    tab.button("Send").click()
+    tab.wait_for_text("/move_j: succeeded")
+    assert simulator.state()["actual"]["position"] == pytest.approx(home_plus(0.3), abs=1e-3)
+
+
+def test_text_where_a_number_belongs_is_reported_and_nothing_is_sent(tab, simulator):
+    tab.select_action("move_j")
+    tab.field("speed [rad/s]").fill("fast")
+    tab.button("Send").click()
+    tab.wait_for_text("speed is 'fast': expected a number. Unit: rad/s. Range: above 0, at most 3.14.")
+    assert not is_moving(simulator)
+
+
+def test_a_refusal_of_the_driver_is_shown(tab):
+    tab.select_action("move_j")
+    tab.field("speed [rad/s]").fill("99")
+    tab.button("Send").click()
+    tab.wait_for_text("/move_j: refused")
+    tab.wait_for_text("speed is 99")
+
+
+def test_a_goal_with_nested_arrays(tab, simulator):
+    tab.select_action("execute_trajectory")
+    tab.field("waypoints").fill(f"- positions: {HOME}\n- positions: {home_plus(0.2)}\n- positions: [0, x]")
+    tab.button("Send").click()
+    tab.wait_for_text("waypoints[2].positions[1] is 'x': expected a number")
+    tab.field("waypoints").fill(f"- positions: {HOME}\n- positions: {home_plus(0.2)}")
+    tab.button("Send").click()
+    tab.wait_for_text("/execute_trajectory: succeeded")
+    assert simulator.state()["actual"]["position"] == pytest.approx(home_plus(0.2), abs=2e-3)
+
+
+def test_stop_decelerates_the_arm_within_100_ms(tab, viewer, robot, simulator, tmp_path):
+    control, presses = viewer[-1].viewer.control, []
+    stop = control.stop
+
+    def stop_and_note_the_time():
+        presses.append(simulator.state()["timestamp"])
+        stop()
+
+    control.stop = stop_and_note_the_time
+    file = tmp_path / "stop.csv"
+    assert robot.call(StartRecording, "start_recording", filename=str(file), fields=["timestamp", "target_qd"]).success
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=0.3, acceleration=10.0)
+    until(lambda: simulator.state()["actual"]["velocity"][0] > 0.29, "the arm to move at its speed")
+    tab.button("STOP").click()
+    goal.wait_for_result()
+    control.stop = stop
+    assert robot.call(StopRecording, "stop_recording").success
+    with file.open(newline="") as text:
+        rows = [(float(row["timestamp"]), float(row["target_qd_0"])) for row in csv.DictReader(text)]
+    slower = next(time for time, speed in rows if time > presses[0] and speed < 0.299)
+    print(f"from the press to the deceleration: {1e3 * (slower - presses[0]):.0f} ms")
+    assert slower - presses[0] < 0.1
+    assert rows[-1][1] == 0.0
+
+
+def test_jog_moves_while_a_button_is_held(tab, simulator):
+    tab.open("Jog")
+    with tab.held("Z +"):
+        until(lambda: is_moving(simulator), "the arm to move")
+    until(lambda: not is_moving(simulator), "the arm to stop")
+
+
+def test_jog_stops_when_the_tab_is_closed(browser, viewer, robot, simulator):
+    second = Tab(browser, viewer[-1].url)
+    second.open("Jog")
+    with second.held("Z +"):
+        until(lambda: is_moving(simulator), "the arm to move")
+        second.close()
+        until(lambda: not is_moving(simulator), "the arm to stop")
+
+
+def test_two_tabs_have_forms_of_their_own_and_only_one_jogs(browser, tab, viewer, simulator):
+    second = Tab(browser, viewer[-1].url)
+    tab.select_action("move_j")
+    second.select_action("move_j")
+    tab.field("speed [rad/s]").fill("0.123")
+    assert second.field("speed [rad/s]").input_value() == "0.5"
+    tab.open("Jog")
+    second.open("Jog")
+    with tab.held("Z +"):
+        until(lambda: is_moving(simulator), "the arm to move")
+        with second.held("Z −"):
+            second.wait_for_text("the arm is being moved from another tab")
+    second.close()
+    until(lambda: not is_moving(simulator), "the arm to stop")
+
+
+def test_the_page_returns_after_a_restart_of_the_viewer(tab, viewer, simulator):
+    port = viewer[-1].port
+    viewer[-1].close()
+    viewer.append(RunningViewer("--control", port=port))
+    tab.select_action("move_j")
+    tab.field("joint positions [rad]").fill(", ".join(map(str, home_plus(0.1))))
+    tab.button("Send").click()
+    tab.wait_for_text("/move_j: succeeded")
+    assert simulator.state()["actual"]["position"] == pytest.approx(home_plus(0.1), abs=1e-3)
