@@ -25,6 +25,9 @@ struct CallContext {
   std::int32_t line;      ///< of the call, 1-based
   bool secondary;         ///< called from a secondary program (`sec`), which may not take physical time
   std::uint64_t program;  ///< identifies the execution of the program
+  /// Set by a builtin that returned data from outside without taking physical time. A thread that receives
+  /// data is not an infinite loop.
+  bool received_data = false;
 };
 
 /// A call of a builtin that takes physical time. It is polled once per control cycle, first in the cycle
@@ -66,8 +69,34 @@ struct Parameter {
   {
   }
 
+  /// The same parameter with the name that an earlier version of the script manual uses.
+  Parameter formerly(std::string earlier) const
+  {
+    Parameter parameter = *this;
+    parameter.former_name = std::move(earlier);
+    return parameter;
+  }
+  bool is_called(std::string_view argument) const
+  {
+    return argument == name || (!former_name.empty() && argument == former_name);
+  }
+
   std::string name;
   Value default_value;
+  std::string former_name;
+};
+
+/// A name that early programs index like a list: `digital_out[2] = True`.
+struct IndexedName {
+  std::uint32_t getter;                 ///< builtin that takes the index
+  std::optional<std::uint32_t> setter;  ///< builtin that takes the index and the value
+};
+
+/// How a builtin compares with the robot's.
+enum class Support : std::uint8_t {
+  modelled,
+  simplified,  ///< accepts the same calls; Builtin::note says what differs
+  refused,     ///< calls fail; Builtin::note says why
 };
 
 struct Builtin {
@@ -77,25 +106,47 @@ struct Builtin {
   BuiltinFunction function;
   bool variadic = false;    ///< accepts further positional arguments
   std::uint32_t cost = 15;  ///< of a call, in instructions of about 20 ns
+  Support support = Support::modelled;
+  std::string note = {};   ///< what is simplified, or why calls fail
+  std::string group = {};  ///< of the reference
 };
 
 /// Builtin functions and constants by name. Immutable once it is shared.
 class Library {
  public:
-  /// Replaces a builtin of the same name.
+  /// Replaces a builtin of the same name. The builtin belongs to the last begun group unless it names one.
   void add(Builtin builtin);
+  /// Adds a builtin whose calls fail with this reason.
+  void add_refused(std::string name, std::vector<Parameter> parameters, std::size_t required,
+                   std::string reason);
+  /// Documents what the present builtin of this name simplifies. Throws std::out_of_range if there is none.
+  void simplify(std::string_view name, std::string note);
+  /// Starts a group of the reference for the builtins that are added next.
+  void begin_group(std::string title) { group_ = std::move(title); }
   /// Adds a constant that programs can read, such as MATH_PI.
   void add_constant(std::string name, Value value);
+
+  /// Adds a name that is indexed. Throws std::out_of_range if there are no builtins of these names.
+  void add_indexed_name(std::string name, std::string_view getter, std::string_view setter = "");
+  /// Adds a function that is called after a program has ended in any way, with CallContext::program.
+  void add_end_handler(std::function<void(std::uint64_t program)> handler);
 
   std::optional<std::uint32_t> find(std::string_view name) const;
   const Builtin & operator[](std::uint32_t index) const { return builtins_[index]; }
   std::size_t size() const { return builtins_.size(); }
   const Value * constant(const std::string & name) const;
+  const IndexedName * indexed_name(const std::string & name) const;
+  void handle_end(std::uint64_t program) const;
 
  private:
+  std::uint32_t index_of(std::string_view name) const;
+
   std::vector<Builtin> builtins_;
+  std::string group_;
   std::unordered_map<std::string, std::uint32_t> index_;
   std::unordered_map<std::string, Value> constants_;
+  std::unordered_map<std::string, IndexedName> indexed_names_;
+  std::vector<std::function<void(std::uint64_t program)>> end_handlers_;
 };
 
 /// Adds the builtins that need no robot: math, lists, matrices, strings, poses, sleep, sync, halt, textmsg,

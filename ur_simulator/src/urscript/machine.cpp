@@ -15,6 +15,10 @@ namespace {
 // Also granted to threads that run last in a cycle.
 constexpr std::uint32_t min_instructions_per_turn = 200;
 
+// The memory of a program is measured after this many instructions. In between it grows by at most 30 MB: an
+// instruction costs in proportion to the elements that it creates.
+constexpr std::uint32_t instructions_between_measurements = 250000;
+
 std::uint64_t next_program()
 {
   static std::atomic<std::uint64_t> count{0};
@@ -37,15 +41,22 @@ struct Machine::Impl {
   void cycle()
   {
     instructions = 0;
+    // A thread that has not finished the computation of a critical section continues before the others.
+    const std::int32_t first = interpreter.critical_owner();
+    if (Thread * thread = interpreter.find_thread(first)) {
+      run_turn(*thread, interpreter.threads().size());
+      check_end();
+    }
     // By index: a thread may start others, which run in the same cycle.
     for (std::size_t i = 0; i < interpreter.threads().size() && status == MachineStatus::running; ++i) {
       Thread & thread = *interpreter.threads()[i];
-      if (try_resume(thread)) {
+      if (thread.handle != first && try_resume(thread)) {
         run_turn(thread, interpreter.threads().size() - i);
       }
       check_end();
     }
     interpreter.remove_ended();
+    limit_memory();
     ++cycles;
     context.time = static_cast<double>(cycles) * options.cycle_time;
   }
@@ -53,7 +64,6 @@ struct Machine::Impl {
   // Ends the wait of the thread if possible; true if the thread may run.
   bool try_resume(Thread & thread)
   {
-    const std::int32_t owner = interpreter.critical_owner();
     if (thread.state == ThreadState::operation) {
       poll(thread);
     } else if (thread.state == ThreadState::next_cycle) {
@@ -63,8 +73,7 @@ struct Machine::Impl {
       thread.state = ThreadState::ready;
       thread.cycles_without_wait = 0;
     }
-    return thread.state == ThreadState::ready && (owner == 0 || owner == thread.handle) &&
-           !interpreter.error();
+    return thread.state == ThreadState::ready && interpreter.critical_owner() == 0 && !interpreter.error();
   }
 
   void poll(Thread & thread)
@@ -93,7 +102,11 @@ struct Machine::Impl {
         options.instructions_per_cycle - std::min(instructions, options.instructions_per_cycle);
     const std::uint32_t share =
         std::max(left / static_cast<std::uint32_t>(threads_left), min_instructions_per_turn);
+    context.received_data = false;
     instructions += interpreter.run(thread, share, context);
+    if (context.received_data) {
+      thread.cycles_without_wait = 0;
+    }
     if (thread.state != ThreadState::ready) {
       return;
     }
@@ -103,6 +116,22 @@ struct Machine::Impl {
           interpreter.line_of(thread),
           fmt::format("infinite loop: '{}' has computed for {} s without taking time; use sync() or sleep()",
                       interpreter.name_of(thread), options.infinite_loop_after));
+    }
+  }
+
+  void limit_memory()
+  {
+    instructions_since_measurement += instructions;
+    if (status != MachineStatus::running ||
+        instructions_since_measurement < instructions_between_measurements) {
+      return;
+    }
+    instructions_since_measurement = 0;
+    if (interpreter.memory() > options.memory) {
+      interpreter.fail(interpreter.line_of(*interpreter.threads().front()),
+                       fmt::format("out of memory: the values of the program need more than {} MiB",
+                                   options.memory >> 20U));
+      check_end();
     }
   }
 
@@ -124,6 +153,7 @@ struct Machine::Impl {
     for (const auto & thread : interpreter.threads()) {
       interpreter.end_thread(*thread);
     }
+    library->handle_end(context.program);
   }
 
   Program program;
@@ -134,6 +164,7 @@ struct Machine::Impl {
   MachineStatus status = MachineStatus::running;
   std::uint64_t cycles = 0;
   std::uint32_t instructions = 0;
+  std::uint32_t instructions_since_measurement = 0;
 };
 
 Machine::Machine(Program program, std::shared_ptr<const Library> library, Host & host,

@@ -28,6 +28,7 @@ struct MachineOptions {
   double infinite_loop_after = 2.0;
   std::size_t threads = 64;
   std::size_t call_depth = 256;
+  std::size_t memory = 32U << 20U;  ///< bytes of all values of the program
 };
 
 /// Runs one program, one control cycle at a time, on the caller's thread. In each cycle every thread of the

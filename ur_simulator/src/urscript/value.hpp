@@ -85,6 +85,8 @@ class Value {
 
   /// An int, float or bool (0 or 1, as in URScript's mixed comparisons) as double; nothing for other types.
   std::optional<double> number() const;
+  /// Identifies the storage that copies share; null for scalars.
+  const void * storage() const { return shared_.get(); }
   /// A list of six numbers or a pose.
   std::optional<Vector6> vector6() const;
   std::optional<Vector3> vector3() const;

@@ -122,6 +122,13 @@ TEST(PoseBuiltinsTest, TransformAWrenchToAnotherFrame)
               vector(10, 0, 0, 0, 0, 0));
 }
 
+TEST(ListBuiltinsTest, NormalizeGivesTheDirection)
+{
+  EXPECT_EQ(evaluate("normalize([3, 0, 4])"), "[0.6, 0, 0.8]");
+  EXPECT_EQ(evaluate("normalize([0, 0])"),
+            "error: normalize: the list has no direction: its norm must be positive and finite");
+}
+
 TEST(TextMessageTest, JoinBothArguments)
 {
   ScriptRunner runner(

@@ -130,5 +130,10 @@ TEST(ControlFlowTest, ProgramLabelsOfPolyscopeAreSkipped)
   EXPECT_EQ(runner.global("x"), "1");
 }
 
+TEST(ControlFlowTest, AStringIsTrueUnlessItIsEmpty)
+{
+  EXPECT_EQ(evaluate("\"text\" and not \"\""), "True");
+}
+
 }  // namespace
 }  // namespace ur_simulator::urscript

@@ -145,38 +145,105 @@ TEST(ThreadTest, EndWithTheMainThread)
   EXPECT_EQ(motion.abandoned, 1);
 }
 
-TEST(ThreadTest, WaitWhileAnotherIsInACriticalSection)
+TEST(ThreadTest, KillingAThreadKillsTheThreadsItHasStarted)
 {
-  Motion motion;
   ScriptRunner runner(R"(def test():
     global count = 0
-    thread counter():
+    thread grandchild():
       while True:
         count = count + 1
         sync()
       end
     end
-    run counter()
-    sync()
-    enter_critical
-    move()
-    exit_critical
+    thread child():
+      run grandchild()
+      sleep(10)
+    end
+    handle = run child()
+    sleep(0.01)
+    kill handle
+    at_kill = count
     sleep(10)
-  end)",
+  end)");
+  for (int i = 0; i < 20; ++i) {
+    runner.machine->cycle();
+  }
+  EXPECT_EQ(runner.machine->thread_count(), 1U);
+  EXPECT_NE(runner.global("count"), "0");
+  EXPECT_EQ(runner.global("count"), runner.global("at_kill"));
+}
+
+/// Counts the cycles in which another thread than the main thread runs.
+std::string with_counter(const std::string & main)
+{
+  return "def test():\n global count = 0\n thread counter():\n while True:\n count = count + 1\n sync()\n"
+         " end\n end\n counting = run counter()\n sync()\n" +
+         main + "\nend";
+}
+
+TEST(CriticalSectionTest, ALongComputationInItDelaysOtherThreads)
+{
+  ScriptRunner runner(
+      with_counter("enter_critical\n i = 0\n while i < 20000:\n i = i + 1\n end\n seen = count\n"
+                   " exit_critical\n sleep(10)"));
+  while (runner.global("seen").empty()) {
+    ASSERT_EQ(runner.machine->cycle(), MachineStatus::running);
+    ++runner.cycles;
+  }
+  EXPECT_GT(runner.cycles, 5);
+  EXPECT_EQ(runner.global("seen"), "1");
+  runner.machine->cycle();
+  EXPECT_EQ(runner.global("count"), "3");  // also in the cycle in which the section ended
+}
+
+TEST(CriticalSectionTest, OtherThreadsRunWhileAMotionInItIsInProgress)
+{
+  Motion motion;
+  ScriptRunner runner(with_counter("enter_critical\n move()\n exit_critical\n sleep(10)"),
                       library_with(motion));
   for (int i = 0; i < 20; ++i) {
     runner.machine->cycle();
   }
-  const std::string before = runner.global("count");
-  motion.done = true;
-  for (int i = 0; i < 5; ++i) {
-    runner.machine->cycle();
-  }
-  EXPECT_EQ(before, "1");
-  EXPECT_EQ(runner.global("count"), "6");
+  EXPECT_EQ(runner.global("count"), "20");
 }
 
-TEST(ThreadTest, LeaveTheCriticalSectionWhenTheyAreKilledOrEnd)
+TEST(CriticalSectionTest, ExcludesOtherThreadsAgainAfterAWait)
+{
+  ScriptRunner runner(
+      with_counter("enter_critical\n sync()\n before = count\n i = 0\n"
+                   " while i < 20000:\n i = i + 1\n end\n after = count\n exit_critical"));
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_GT(runner.cycles, 5);
+  EXPECT_EQ(runner.global("after"), runner.global("before"));
+}
+
+TEST(CriticalSectionTest, AThreadCanJoinAnotherThatEntersItsOwnSection)
+{
+  ScriptRunner runner(R"(def test():
+    thread child():
+      enter_critical
+      sleep(0.01)
+      x = 1
+      exit_critical
+    end
+    global x = 0
+    enter_critical
+    handle = run child()
+    join handle
+    exit_critical
+  end)");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.global("x"), "1");
+}
+
+TEST(CriticalSectionTest, AnInfiniteLoopInItFailsTheProgram)
+{
+  ScriptRunner runner(with_counter("enter_critical\n while True:\n end\n exit_critical"));
+  EXPECT_EQ(runner.finish(2000), MachineStatus::failed);
+  EXPECT_NE(runner.machine->error().message.find("infinite loop"), std::string::npos);
+}
+
+TEST(CriticalSectionTest, EndsWithItsThread)
 {
   ScriptRunner runner(R"(def test():
     thread selfish():
@@ -273,21 +340,6 @@ TEST(SecondaryProgramTest, MayNotTakePhysicalTime)
   EXPECT_EQ(moves.finish(), MachineStatus::failed);
   EXPECT_NE(moves.machine->error().message.find("physical time"), std::string::npos);
   EXPECT_EQ(motion.abandoned, 1);
-}
-
-TEST(BlockingPopupTest, BlocksTheThreadUntilTheOperatorClosesIt)
-{
-  ScriptRunner runner("def test():\n popup(\"Ready?\", title=\"Check\", blocking=True)\n x = 1\nend");
-  for (int i = 0; i < 10; ++i) {
-    runner.machine->cycle();
-  }
-  ASSERT_EQ(runner.host.popups.size(), 1U);
-  EXPECT_EQ(runner.host.popups[0].message, "Ready?");
-  EXPECT_EQ(runner.host.popups[0].title, "Check");
-  EXPECT_EQ(runner.machine->status(), MachineStatus::running);
-  runner.host.open = false;
-  EXPECT_EQ(runner.finish(), MachineStatus::finished);
-  EXPECT_EQ(runner.global("x"), "1");
 }
 
 }  // namespace

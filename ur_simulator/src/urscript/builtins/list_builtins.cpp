@@ -1,4 +1,5 @@
 #include <Eigen/LU>
+#include <cmath>
 
 #include "urscript/argument_reader.hpp"
 #include "urscript/builtins/builtins.hpp"
@@ -102,6 +103,30 @@ Outcome integer_to_binary_list(CallContext &, Arguments arguments)
   return reader ? Outcome(Value(std::move(list))) : reader.failure();
 }
 
+Outcome normalize(CallContext &, Arguments arguments)
+{
+  if (!arguments[0].is(Type::list)) {
+    return Failure{
+        fmt::format("the argument 'v' must be a list of numbers, not {}", name_of(arguments[0].type()))};
+  }
+  double square = 0.0;
+  for (const Value & element : arguments[0].list()) {
+    const auto number = element.is_number() ? element.number() : std::nullopt;
+    if (!number) {
+      return Failure{"the argument 'v' must be a list of numbers"};
+    }
+    square += *number * *number;
+  }
+  if (!(square > 0.0) || !std::isfinite(square)) {
+    return Failure{"the list has no direction: its norm must be positive and finite"};
+  }
+  List result;
+  for (const Value & element : arguments[0].list()) {
+    result.emplace_back(*element.number() / std::sqrt(square));
+  }
+  return Value(std::move(result));
+}
+
 Outcome make_list_builtin(CallContext &, Arguments arguments)
 {
   ArgumentReader reader(arguments);
@@ -117,6 +142,7 @@ Outcome make_list_builtin(CallContext &, Arguments arguments)
 
 void add_list_builtins(Library & library)
 {
+  library.add({"normalize", {"v"}, 1, normalize});
   library.add({"get_list_length", {"v"}, 1, list_length});
   library.add({"length", {"v"}, 1, list_length});
   library.add({"size", {"v"}, 1, size});

@@ -17,6 +17,7 @@ struct Unary {
   double (*function)(double);
   double min = -HUGE_VAL;  ///< of the arguments allowed
   double max = HUGE_VAL;
+  const char * parameter = "f";
 };
 
 constexpr Unary unary_functions[] = {
@@ -24,8 +25,8 @@ constexpr Unary unary_functions[] = {
     {"asin", [](double f) { return std::asin(f); }, -1.0, 1.0},
     {"atan", [](double f) { return std::atan(f); }},
     {"cos", [](double f) { return std::cos(f); }},
-    {"d2r", [](double f) { return f * pi / 180.0; }},
-    {"r2d", [](double f) { return f * 180.0 / pi; }},
+    {"d2r", [](double d) { return d * pi / 180.0; }, -HUGE_VAL, HUGE_VAL, "d"},
+    {"r2d", [](double r) { return r * 180.0 / pi; }, -HUGE_VAL, HUGE_VAL, "r"},
     {"sin", [](double f) { return std::sin(f); }},
     {"sqrt", [](double f) { return std::sqrt(f); }, 0.0},
     {"tan", [](double f) { return std::tan(f); }},
@@ -33,11 +34,12 @@ constexpr Unary unary_functions[] = {
 
 void add_unary(Library & library, const Unary & unary)
 {
-  library.add({unary.name, {"f"}, 1, [unary](CallContext &, Arguments arguments) -> Outcome {
+  library.add({unary.name, {unary.parameter}, 1, [unary](CallContext &, Arguments arguments) -> Outcome {
                  ArgumentReader reader(arguments);
-                 const double f = reader.number(0, "f");
-                 reader.require(f >= unary.min && f <= unary.max,
-                                fmt::format("f must be in [{}, {}], is {}", unary.min, unary.max, f));
+                 const double f = reader.number(0, unary.parameter);
+                 reader.require(
+                     f >= unary.min && f <= unary.max,
+                     fmt::format("{} must be in [{}, {}], is {}", unary.parameter, unary.min, unary.max, f));
                  return reader ? Outcome(Value(unary.function(f))) : reader.failure();
                }});
 }
@@ -130,6 +132,7 @@ void add_math_builtins(Library & library)
   library.add({"random", {}, 0, [generator](CallContext &, Arguments) -> Outcome {
                  return Value(std::uniform_real_distribution<double>(0.0, 1.0)(*generator));
                }});
+  library.simplify("random", "the same sequence after each start");
 }
 
 }  // namespace ur_simulator::urscript

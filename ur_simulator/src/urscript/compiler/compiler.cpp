@@ -146,6 +146,10 @@ class Compiler : private ExpressionCompiler {
   void compile_assignment(const Statement & statement)
   {
     const Expression & target = *statement.target;
+    if (const IndexedName * indexed = indexed_name(target)) {
+      compile_indexed_assignment(statement, *indexed);
+      return;
+    }
     if (target.kind != ExpressionKind::variable) {
       const std::uint32_t index = make_lvalue(target);
       compile_expression(*statement.value);
@@ -163,6 +167,20 @@ class Compiler : private ExpressionCompiler {
     } else {
       emit_store(variable(target));
     }
+  }
+
+  // `digital_out[2] = True` calls set_digital_out(2, True).
+  void compile_indexed_assignment(const Statement & statement, const IndexedName & indexed)
+  {
+    const Expression & target = *statement.target;
+    if (!indexed.setter) {
+      fail(target, "'" + target.operands.front()->name + "' can only be read");
+    }
+    compile_expression(*target.operands[1]);
+    compile_expression(*statement.value);
+    emitter().set_line(statement.line);
+    emitter().emit(Opcode::call_builtin, *indexed.setter, 2);
+    emitter().emit(Opcode::pop);
   }
 
   void compile_if(const Statement & statement)

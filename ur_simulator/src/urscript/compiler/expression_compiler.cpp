@@ -1,48 +1,8 @@
 #include "urscript/compiler/expression_compiler.hpp"
 
-#include <functional>
+#include "urscript/compiler/argument_matching.hpp"
 
 namespace ur_simulator::urscript {
-
-namespace {
-
-constexpr std::uint32_t missing = 0xFFFFFFFF;
-
-/// For each parameter, the index of the operand that the call passes for it.
-std::vector<std::uint32_t> match_arguments(const Expression & call, std::size_t parameters,
-                                           const std::function<std::string(std::size_t)> & parameter_name,
-                                           const std::function<void(std::string)> & fail)
-{
-  std::vector<std::uint32_t> given(parameters, missing);
-  bool named = false;
-  for (std::uint32_t i = 0; i < call.operands.size(); ++i) {
-    const std::string & name = call.argument_names[i];
-    std::size_t position = i;
-    if (!name.empty()) {
-      named = true;
-      position = 0;
-      while (position < parameters && parameter_name(position) != name) {
-        ++position;
-      }
-      if (position == parameters) {
-        fail("The function '" + call.name + "' has no parameter '" + name + "'");
-      }
-    } else if (named) {
-      fail("In the call of '" + call.name + "' a positional argument follows a named one");
-    } else if (position >= parameters) {
-      fail("The function '" + call.name + "' takes " + std::to_string(parameters) + " arguments, " +
-           std::to_string(call.operands.size()) + " are given");
-    }
-    if (given[position] != missing) {
-      fail("In the call of '" + call.name + "' the argument '" + parameter_name(position) +
-           "' is given twice");
-    }
-    given[position] = i;
-  }
-  return given;
-}
-
-}  // namespace
 
 void ExpressionCompiler::fail(const Expression & where, std::string message)
 {
@@ -80,8 +40,23 @@ void ExpressionCompiler::compile_expression(const Expression & expression)
   }
 }
 
+const IndexedName * ExpressionCompiler::indexed_name(const Expression & expression) const
+{
+  if (expression.kind != ExpressionKind::index || expression.operands.size() != 2 ||
+      expression.operands.front()->kind != ExpressionKind::variable) {
+    return nullptr;
+  }
+  const std::string & name = expression.operands.front()->name;
+  return symbols_.find(*scope_, name) ? nullptr : library_.indexed_name(name);
+}
+
 void ExpressionCompiler::compile_operation(const Expression & expression)
 {
+  if (const IndexedName * indexed = indexed_name(expression)) {
+    compile_expression(*expression.operands[1]);
+    emitter_.emit(Opcode::call_builtin, indexed->getter, 1);
+    return;
+  }
   for (const ExpressionPtr & operand : expression.operands) {
     compile_expression(*operand);
   }
@@ -227,9 +202,10 @@ void ExpressionCompiler::compile_function_call(const Expression & expression, co
   const auto & parameters = definition.parameters;
   const auto given = match_arguments(
       expression, parameters.size(), [&](std::size_t i) { return parameters[i].name; },
+      [&](std::size_t i, const std::string & argument) { return parameters[i].name == argument; },
       [&](std::string message) { fail(expression, std::move(message)); });
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (given[i] != missing) {
+    if (given[i] != no_argument) {
       compile_expression(*expression.operands[given[i]]);
     } else if (parameters[i].default_value) {
       emitter_.emit(Opcode::push_none);
@@ -252,10 +228,13 @@ void ExpressionCompiler::compile_builtin_call(const Expression & expression, std
   const auto name = [&](std::size_t i) {
     return i < builtin.parameters.size() ? builtin.parameters[i].name : std::to_string(i + 1);
   };
-  const auto given = match_arguments(expression, count, name,
+  const auto is_called = [&](std::size_t i, const std::string & argument) {
+    return i < builtin.parameters.size() ? builtin.parameters[i].is_called(argument) : name(i) == argument;
+  };
+  const auto given = match_arguments(expression, count, name, is_called,
                                      [&](std::string message) { fail(expression, std::move(message)); });
   for (std::size_t i = 0; i < count; ++i) {
-    if (given[i] != missing) {
+    if (given[i] != no_argument) {
       compile_expression(*expression.operands[given[i]]);
     } else if (i < builtin.required) {
       fail(expression, "The function '" + expression.name + "' needs the argument '" + name(i) + "'");

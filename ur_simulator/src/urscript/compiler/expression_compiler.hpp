@@ -21,6 +21,8 @@ class ExpressionCompiler {
   /// Emits the indices of an lvalue such as `a[i].b` and returns its index in Code::lvalues.
   std::uint32_t make_lvalue(const Expression & target);
   Variable variable(const Expression & expression);
+  /// The indexed name of the library that an expression such as `digital_out[2]` refers to, or nullptr.
+  const IndexedName * indexed_name(const Expression & expression) const;
   void emit_store(const Variable & variable);
 
   Emitter & emitter() { return emitter_; }

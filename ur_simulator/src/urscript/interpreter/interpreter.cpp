@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "urscript/interpreter/containers.hpp"
+#include "urscript/interpreter/memory_meter.hpp"
 
 namespace ur_simulator::urscript {
 
@@ -52,6 +53,16 @@ void Interpreter::end_thread(Thread & thread)
   }
 }
 
+void Interpreter::kill_thread(Thread & thread)
+{
+  end_thread(thread);
+  for (const auto & other : threads_) {
+    if (other->parent == thread.handle && other->state != ThreadState::ended) {
+      kill_thread(*other);
+    }
+  }
+}
+
 void Interpreter::remove_ended()
 {
   std::erase_if(threads_, [](const auto & thread) { return thread->state == ThreadState::ended; });
@@ -84,17 +95,31 @@ const Value * Interpreter::global(const std::string & name) const
   return nullptr;
 }
 
+std::size_t Interpreter::memory() const
+{
+  MemoryMeter meter;
+  meter.add(globals_);
+  for (const auto & thread : threads_) {
+    meter.add(thread->stack);
+  }
+  return meter.bytes();
+}
+
 std::uint32_t Interpreter::run(Thread & thread, std::uint32_t share, CallContext & context)
 {
   thread_ = &thread;
   context_ = &context;
   cost_ = 0;
+  critical_owner_ = 0;
   const Instruction * instructions = code_.instructions.data();
   while (cost_ < share) {
     ++cost_;
     if (execute(instructions[thread.next++]) == Next::yield) {
       break;
     }
+  }
+  if (thread.state == ThreadState::ready && thread.critical > 0) {
+    critical_owner_ = thread.handle;
   }
   return cost_;
 }
@@ -281,7 +306,6 @@ Interpreter::Next Interpreter::execute_thread_instruction(const Instruction & in
       return kill_or_join(true);
     case Opcode::enter_critical:
       ++thread_->critical;
-      critical_owner_ = thread_->handle;
       return Next::proceed;
     case Opcode::exit_critical:
       return exit_critical_section();

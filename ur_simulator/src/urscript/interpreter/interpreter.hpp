@@ -27,10 +27,13 @@ class Interpreter {
   Thread & start_thread(std::uint32_t function, std::span<Value> arguments);
   Thread * find_thread(std::int32_t handle);
   void end_thread(Thread & thread);
+  /// Ends a thread and the threads that it and its children have started.
+  void kill_thread(Thread & thread);
   void remove_ended();
 
   std::vector<std::unique_ptr<Thread>> & threads() { return threads_; }
-  /// Handle of the thread in a critical section, 0: none.
+  /// Handle of the thread that was interrupted by the end of its share in a critical section, 0: none. No
+  /// other thread runs before it has left the section or waits.
   std::int32_t critical_owner() const { return critical_owner_; }
   bool halted() const { return halted_; }
   const std::optional<RunTimeError> & error() const { return error_; }
@@ -38,6 +41,8 @@ class Interpreter {
   std::int32_t line_of(const Thread & thread) const;
   const std::string & name_of(const Thread & thread) const;
   const Value * global(const std::string & name) const;
+  /// Memory of the values of all variables and stacks, bytes.
+  std::size_t memory() const;
 
  private:
   enum class Next : std::uint8_t { proceed, yield };

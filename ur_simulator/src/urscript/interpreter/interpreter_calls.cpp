@@ -76,6 +76,7 @@ Interpreter::Next Interpreter::handle_outcome(Outcome outcome, std::size_t argum
   }
   drop(arguments);
   if (auto * value = std::get_if<Value>(&outcome)) {
+    add_cost(*value);
     thread_->stack.push_back(std::move(*value));
     return Next::proceed;
   }
@@ -148,9 +149,10 @@ Interpreter::Next Interpreter::run_thread(const Instruction & instruction)
     return fail_at_current_line(fmt::format("the number of threads exceeds {}", options_.threads));
   }
   // The new thread first runs after this one waits, hence after the handle is assigned.
-  const std::int32_t handle = start_thread(instruction.a, top(instruction.b)).handle;
+  Thread & child = start_thread(instruction.a, top(instruction.b));
+  child.parent = thread_->handle;
   drop(instruction.b);
-  thread_->stack.emplace_back(handle);
+  thread_->stack.emplace_back(child.handle);
   return Next::proceed;
 }
 
@@ -170,14 +172,14 @@ Interpreter::Next Interpreter::kill_or_join(bool join)
     thread_->joined_thread = other->handle;
     return Next::yield;
   }
-  end_thread(*other);
-  return other == thread_ ? Next::yield : Next::proceed;
+  kill_thread(*other);
+  return thread_->state == ThreadState::ended ? Next::yield : Next::proceed;
 }
 
 Interpreter::Next Interpreter::exit_critical_section()
 {
-  if (thread_->critical > 0 && --thread_->critical == 0) {
-    critical_owner_ = 0;
+  if (thread_->critical > 0) {
+    --thread_->critical;
   }
   return Next::proceed;
 }

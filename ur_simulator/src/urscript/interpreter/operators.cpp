@@ -310,6 +310,9 @@ tl::expected<bool, std::string> to_condition(const Value & value)
   if (const auto number = value.number()) {
     return *number != 0.0;
   }
+  if (value.is(Type::string)) {
+    return !value.string().empty();
+  }
   return tl::unexpected(fmt::format("Type error: a condition must be a bool, not {}", name_of(value.type())));
 }
 

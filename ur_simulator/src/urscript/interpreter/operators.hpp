@@ -19,7 +19,7 @@ Result binary(Operator op, const Value & left, const Value & right);
 /// otherwise; then use binary().
 bool apply_to_scalars(Operator op, Value & left, const Value & right);
 Result negate(const Value & value);
-/// The value of a condition: a bool, or whether a number is not zero.
+/// The value of a condition: a bool, whether a number is not zero, or whether a string is not empty.
 tl::expected<bool, std::string> to_condition(const Value & value);
 std::string_view symbol_of(Operator op);
 

@@ -27,6 +27,7 @@ enum class ThreadState : std::uint8_t {
 /// State of a thread of a program, which can be interrupted at any instruction and continue in a later cycle.
 struct Thread {
   std::int32_t handle = 0;
+  std::int32_t parent = 0;  ///< handle of the thread that started it
   ThreadState state = ThreadState::ready;
   std::uint32_t next = 0;  ///< instruction
   std::vector<Value> stack;
