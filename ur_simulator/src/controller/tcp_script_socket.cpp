@@ -38,9 +38,7 @@ void TcpScriptSocket::start()
   connection_->start(
       [this](std::string_view bytes) {
         received_.append(bytes);
-        if (received_.size() > unread_limit) {
-          connection_->close();
-        }
+        connection_->set_reading_paused(received_.size() > unread_limit);
       },
       [this] { failed_ = true; });
 }
@@ -58,6 +56,14 @@ TcpScriptSocket::~TcpScriptSocket()
 bool TcpScriptSocket::connected() const
 {
   return connection_ != nullptr && connection_->is_open();
+}
+
+std::string & TcpScriptSocket::received()
+{
+  if (connection_ && received_.size() <= unread_limit) {
+    connection_->set_reading_paused(false);
+  }
+  return received_;
 }
 
 void TcpScriptSocket::send(std::string_view bytes)

@@ -11,8 +11,8 @@
 
 namespace ur_simulator {
 
-/// The TCP connection of a program's socket. Closed if more than 256 KiB are unsent or more than 1 MiB are
-/// unread.
+/// The TCP connection of a program's socket. Closed if more than 256 KiB are unsent. A peer that sends faster
+/// than the program reads is slowed down by TCP.
 class TcpScriptSocket final : public ScriptSocket {
  public:
   static std::shared_ptr<TcpScriptSocket> open(boost::asio::io_context & io, const std::string & host,
@@ -24,13 +24,13 @@ class TcpScriptSocket final : public ScriptSocket {
   bool connected() const override;
   bool failed() const override { return failed_; }
   void send(std::string_view bytes) override;
-  std::string & received() override { return received_; }
+  std::string & received() override;
 
  private:
   explicit TcpScriptSocket(boost::asio::io_context & io) : resolver_(io), socket_(io) {}
   void start();
 
-  static constexpr std::size_t unread_limit = 1024 * 1024;
+  static constexpr std::size_t unread_limit = 64 * 1024;  ///< reading pauses above it
 
   boost::asio::ip::tcp::resolver resolver_;
   boost::asio::ip::tcp::socket socket_;

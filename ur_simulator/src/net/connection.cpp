@@ -35,7 +35,7 @@ void Connection::start(DataHandler on_data, CloseHandler on_close)
 
 void Connection::read()
 {
-  if (reading_ || stalled_) {
+  if (reading_ || stalled_ || reading_paused_) {
     return;
   }
   reading_ = true;
@@ -78,6 +78,14 @@ void Connection::deliver(std::string_view bytes)
     on_data_(bytes);
   } catch (const std::exception &) {
     close();
+  }
+}
+
+void Connection::set_reading_paused(bool paused)
+{
+  reading_paused_ = paused;
+  if (!paused && open_) {
+    read();
   }
 }
 

@@ -39,6 +39,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void reset();
   /// A stalled connection neither reads nor writes but stays open, as if the cable were unplugged.
   void set_stalled(bool stalled);
+  /// Pauses or resumes reading. While it is paused, TCP slows the peer down.
+  void set_reading_paused(bool paused);
   /// Delays all data in both directions from now on. 0 ends the delay.
   void set_delay(std::chrono::milliseconds delay) { delay_ = delay; }
   /// Discards the data of the next `count` reads.
@@ -85,6 +87,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool waiting_to_write_ = false;
   bool close_after_sending_ = false;
   bool stalled_ = false;
+  bool reading_paused_ = false;
   std::chrono::milliseconds delay_{0};
   boost::asio::steady_timer delay_timer_;
   std::deque<DelayedData> delayed_;

@@ -19,7 +19,8 @@ class ScriptSocket {
   /// True if connecting failed or the peer closed the connection. Received bytes may remain.
   virtual bool failed() const = 0;
   virtual void send(std::string_view bytes) = 0;
-  /// Received bytes; the reader removes what it has consumed.
+  /// Received bytes; the reader removes what it has consumed. Called at each attempt to read: further data
+  /// is received once there is room for it.
   virtual std::string & received() = 0;
 };
 

@@ -63,6 +63,50 @@ TEST_F(ScriptSocketTest, ReadsStringBetweenPrefixAndSuffix)
   EXPECT_TRUE(log_contains(controller, "cut: core"));
 }
 
+TEST_F(ScriptSocketTest, IsClosedWhenTheProgramEnds)
+{
+  run_script(" socket_send_line(\"go\", \"host\")");
+  EXPECT_EQ(host.receive_request(), "go\n");
+  EXPECT_TRUE(host.wait_for_close());
+}
+
+TEST_F(ScriptSocketTest, IsClosedWhenTheProgramIsStopped)
+{
+  run_script(" socket_send_line(\"go\", \"host\")\n sleep(1000)");
+  EXPECT_EQ(host.receive_request(), "go\n");
+  ASSERT_TRUE(controller.control({{"command", "stop_program"}})["ok"]);
+  EXPECT_TRUE(host.wait_for_close());
+}
+
+TEST_F(ScriptSocketTest, IsNotClosedByASecondaryProgram)
+{
+  run_script(" socket_send_line(\"go\", \"host\")\n textmsg(\"heard: \", socket_read_line(\"host\", 0))");
+  EXPECT_EQ(host.receive_request(), "go\n");
+  ASSERT_TRUE(
+      controller.control({{"command", "run_script"},
+                          {"script", "sec s():\n socket_close(\"host\")\n textmsg(\"done\")\nend\n"}})["ok"]);
+  ASSERT_TRUE(wait_for_log(controller, "done"));
+  ASSERT_TRUE(host.send_reply("fine\n"));
+  ASSERT_TRUE(wait_for_program_end());
+  EXPECT_TRUE(log_contains(controller, "heard: fine"));
+}
+
+TEST_F(ScriptSocketTest, SlowsDownAHostThatSendsFasterThanTheProgramReads)
+{
+  run_script(
+      " socket_send_line(\"go\", \"host\")\n sleep(0.5)\n n = 0\n"
+      " while n < 3072 and str_len(socket_read_line(\"host\", 5)) == 1023:\n n = n + 1\n end\n"
+      " textmsg(\"lines: \", n)");
+  EXPECT_EQ(host.receive_request(), "go\n");
+  std::string lines;
+  for (int i = 0; i < 3072; ++i) {
+    lines += std::string(1023, 'x') + '\n';
+  }
+  ASSERT_TRUE(host.send_reply(lines));
+  ASSERT_TRUE(wait_for_program_end());
+  EXPECT_TRUE(log_contains(controller, "lines: 3072"));
+}
+
 TEST(ScriptSocketConnectTest, OpenReturnsFalseIfConnectionIsRefused)
 {
   SimulatedController controller(with_unique_address());

@@ -59,6 +59,17 @@ class SingleReplyServer {
     }
     return text;
   }
+  /// Whether the client closes the connection. Received data is discarded.
+  bool wait_for_close() const
+  {
+    char bytes[256];
+    while (wait_readable(client_)) {
+      if (recv(client_, bytes, sizeof(bytes), 0) <= 0) {
+        return true;
+      }
+    }
+    return false;
+  }
   /// Leaves the connection open, as ur_rtde does.
   bool send_reply(std::string_view text) const
   {
