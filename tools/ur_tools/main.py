@@ -13,7 +13,7 @@ import sys
 from typing import List, Optional, Tuple
 
 from . import build as building
-from . import console, disk, doctor, lint, new, testing
+from . import console, disk, doctor, fuzz, lint, new, testing
 from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
@@ -172,6 +172,10 @@ def command_lint(options: argparse.Namespace) -> int:
     return lint.run(_prepared(options), options.tidy)
 
 
+def command_fuzz(options: argparse.Namespace) -> int:
+    return fuzz.run(_prepared(options), options.names, options.seconds, options.jobs)
+
+
 def _prepared(options: argparse.Namespace) -> Layout:
     layout = Layout(options.ros)
     building.setup(layout)
@@ -269,6 +273,12 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
         sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
         if name == "lint":
             sub.add_argument("--tidy", action="store_true", help="also run clang-tidy (minutes)")
+
+    sub = add("fuzz", command_fuzz, "feed random input to the parsers of the simulator; needs clang")
+    sub.add_argument("names", nargs="*", metavar="TARGET", help=f"fuzz targets (default: all: {', '.join(fuzz.targets())})")
+    sub.add_argument("--seconds", type=int, default=60, metavar="S", help="duration for each target (default: %(default)s)")
+    sub.add_argument("-j", "--jobs", type=int, default=2, metavar="N", help="jobs of the build (default: %(default)s)")
+    sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
 
     add_forwarding("doctor", command_doctor, "check this machine, or with --robot ADDRESS a robot, and give advice; status 1 if it "
                    "cannot work")
