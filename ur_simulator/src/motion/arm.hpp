@@ -83,6 +83,8 @@ class Arm {
   /// Scaling 0..2 and damping 0..1; they apply until the program ends.
   void set_force_mode_scaling(double scaling);
   void set_force_mode_damping(double damping);
+  double force_mode_scaling() const;
+  double force_mode_damping() const;
   /// freedrive_mode(): the arm is guided by hand along and about the free axes of the feature (a pose in the
   /// base frame) until end_freedrive(), the end of the program or a stop. Motions of the program are rejected
   /// meanwhile.

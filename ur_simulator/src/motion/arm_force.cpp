@@ -71,6 +71,16 @@ void Arm::set_force_mode_damping(double damping)
   impl_->force_damping = damping;
 }
 
+double Arm::force_mode_scaling() const
+{
+  return impl_->force_scaling;
+}
+
+double Arm::force_mode_damping() const
+{
+  return impl_->force_damping;
+}
+
 void Arm::Impl::reset_deviation()
 {
   setpoint = commanded;

@@ -58,6 +58,10 @@ void add_analog_io_builtins(Library & library, const RobotContextPtr & robot);
 void add_controller_builtins(Library & library, const RobotContextPtr & robot);
 /// Functions of the gripper's URCap, if a gripper is mounted.
 void add_gripper_builtins(Library & library, const RobotContextPtr & robot);
-void add_unmodelled_builtins(Library & library);
+void add_encoder_builtins(Library & library, const RobotContextPtr & robot);
+void add_world_model_builtins(Library & library, const RobotContextPtr & robot);
+void add_setting_builtins(Library & library);
+void add_stored_setting_builtins(Library & library);
+void add_refused_builtins(Library & library);
 
 }  // namespace ur_simulator::script_api

@@ -18,26 +18,46 @@ void add_robot_builtin(Library & library, const RobotContextPtr & robot, const c
 
 }  // namespace script_api
 
+namespace {
+
+struct BuiltinGroup {
+  const char * title;
+  void (*add)(urscript::Library & library, const script_api::RobotContextPtr & robot);
+};
+
+constexpr BuiltinGroup builtin_groups[] = {
+    {"motion", script_api::add_move_builtins},
+    {"motion", script_api::add_servo_speed_builtins},
+    {"force mode, freedrive, contact", script_api::add_force_builtins},
+    {"force mode, freedrive, contact", script_api::add_freedrive_builtins},
+    {"state", script_api::add_state_builtins},
+    {"kinematics, dynamics", script_api::add_kinematics_builtins},
+    {"kinematics, dynamics", script_api::add_dynamics_builtins},
+    {"payload, TCP, sensor", script_api::add_installation_builtins},
+    {"registers", script_api::add_register_builtins},
+    {"digital IO", script_api::add_digital_io_builtins},
+    {"analog IO", script_api::add_analog_io_builtins},
+    {"controller", script_api::add_controller_builtins},
+    {"encoders", script_api::add_encoder_builtins},
+    {"world model", script_api::add_world_model_builtins},
+    {"OnRobot gripper URCap", script_api::add_gripper_builtins},
+};
+
+}  // namespace
+
 std::shared_ptr<const urscript::Library> make_robot_library(const RobotAccess & access)
 {
   auto library = std::make_shared<urscript::Library>();
   const auto robot = std::make_shared<script_api::RobotContext>(access);
-  // First, so that modelled builtins of the same name replace them.
-  script_api::add_unmodelled_builtins(*library);
   urscript::add_standard_builtins(*library);
-  script_api::add_move_builtins(*library, robot);
-  script_api::add_servo_speed_builtins(*library, robot);
-  script_api::add_force_builtins(*library, robot);
-  script_api::add_freedrive_builtins(*library, robot);
-  script_api::add_state_builtins(*library, robot);
-  script_api::add_kinematics_builtins(*library, robot);
-  script_api::add_dynamics_builtins(*library, robot);
-  script_api::add_installation_builtins(*library, robot);
-  script_api::add_register_builtins(*library, robot);
-  script_api::add_digital_io_builtins(*library, robot);
-  script_api::add_analog_io_builtins(*library, robot);
-  script_api::add_controller_builtins(*library, robot);
-  script_api::add_gripper_builtins(*library, robot);
+  for (const auto & [title, add] : builtin_groups) {
+    library->begin_group(title);
+    add(*library, robot);
+  }
+  library->begin_group("settings");
+  script_api::add_setting_builtins(*library);
+  script_api::add_stored_setting_builtins(*library);
+  script_api::add_refused_builtins(*library);
   return library;
 }
 

@@ -174,10 +174,11 @@ TEST(WaypointTest, IsTheTargetOfTheActiveMove)
   EXPECT_EQ(pose_text(pose), fixture.global("there"));
 }
 
-TEST(UnsupportedBuiltinTest, FailsWithAMessage)
+TEST(RefusedBuiltinTest, FailsWithItsReason)
 {
   ScriptFixture fixture;
-  EXPECT_EQ(fixture.error_of("set_pos([0,0,0,0,0,0])"), "set_pos: not modelled by the simulator yet");
+  EXPECT_EQ(fixture.error_of("set_pos([0,0,0,0,0,0])"),
+            "set_pos: only PolyScope's simulation mode places the arm");
 }
 
 }  // namespace

@@ -107,6 +107,8 @@ void add_analog_io_builtins(Library & library, const RobotContextPtr & robot)
                     set_domain<&Io::analog_io_types, input_type_bit>);
   add_robot_builtin(library, robot, "set_tool_analog_input_domain", {"port", "domain"}, 2,
                     set_domain<&Io::tool_analog_input_types, 0>);
+  library.add_indexed_name("analog_in", "get_analog_in");
+  library.add_indexed_name("analog_out", "get_analog_out", "set_analog_out");
   add_robot_builtin(library, robot, "set_tool_voltage", {"voltage"}, 1, set_tool_voltage);
 }
 

@@ -92,6 +92,8 @@ void add_digital_io_builtins(Library & library, const RobotContextPtr & robot)
                       [group](ArgumentReader & reader) { return bit_number(reader, group); });
   }
   add_digital_group(library, robot, "digital", legacy_bit);
+  library.add_indexed_name("digital_in", "get_digital_in");
+  library.add_indexed_name("digital_out", "get_digital_out", "set_digital_out");
   add_flags(library);
 }
 

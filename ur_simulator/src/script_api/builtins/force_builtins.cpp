@@ -128,15 +128,22 @@ void add_force_builtins(Library & library, const RobotContextPtr & robot)
   }
   add_robot_builtin(library, robot, "force_mode_set_damping", {"damping"}, 1, set_damping);
   add_robot_builtin(library, robot, "force_mode_set_gain_scaling", {"scaling"}, 1, set_gain_scaling);
+  library.add({"force_mode_get_damping", {}, 0, [robot](CallContext &, Arguments) -> Outcome {
+                 return Value(robot->access.arm.force_mode_damping());
+               }});
+  library.add({"force_mode_get_gain_scaling", {}, 0, [robot](CallContext &, Arguments) -> Outcome {
+                 return Value(robot->access.arm.force_mode_scaling());
+               }});
   add_robot_builtin(library, robot, "tool_contact",
                     {{"direction", Value::list(Vector6(Vector6::Zero()))}, {"force_threshold", Value(0.0)}},
                     0, tool_contact, 60);
-  library.add({"direct_torque",
-               {"torque", "viscous_scale", "coulomb_scale", "friction_comp"},
-               1,
-               [robot](CallContext &, Arguments arguments) { return direct_torque(robot, arguments); },
-               false,
-               300});
+  library.add(
+      {"direct_torque",
+       {urscript::Parameter("torque").formerly("torques"), "viscous_scale", "coulomb_scale", "friction_comp"},
+       1,
+       [robot](CallContext &, Arguments arguments) { return direct_torque(robot, arguments); },
+       false,
+       300});
 }
 
 }  // namespace ur_simulator::script_api

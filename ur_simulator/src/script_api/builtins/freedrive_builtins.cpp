@@ -72,9 +72,10 @@ void add_freedrive_builtins(Library & library, const RobotContextPtr & robot)
       {"freedrive_mode", {"freeAxes", "feature"}, 0, [robot](CallContext & context, Arguments arguments) {
          return freedrive_mode(*robot, context, arguments);
        }});
-  library.add({"teach_mode", {}, 0, [robot](CallContext & context, Arguments) {
-                 return teach_mode(*robot, context);
-               }});
+  for (const char * name : {"teach_mode", "freedrive_mode_no_incorrect_payload_check"}) {
+    library.add(
+        {name, {}, 0, [robot](CallContext & context, Arguments) { return teach_mode(*robot, context); }});
+  }
   for (const char * name : {"end_freedrive_mode", "end_teach_mode"}) {
     library.add({name, {}, 0, [robot](CallContext &, Arguments) -> Outcome {
                    robot->access.arm.end_freedrive();

@@ -67,7 +67,7 @@ Outcome set_payload_mass(RobotContext & robot, Arguments arguments)
 Outcome set_payload_cog(RobotContext & robot, Arguments arguments)
 {
   ArgumentReader reader(arguments);
-  const Vector3 cog = reader.vector3(0, "CoG");
+  const Vector3 cog = reader.vector3(0, "cog");
   if (!reader) {
     return reader.failure();
   }
@@ -130,11 +130,12 @@ Outcome external_sensor(RobotContext & robot, Arguments arguments)
 
 void add_installation_builtins(Library & library, const RobotContextPtr & robot)
 {
-  add_robot_builtin(library, robot, "set_payload", {"m", "cog"}, 1, set_payload);
-  add_robot_builtin(library, robot, "set_target_payload", {"m", "cog", "inertia", "transition_time"}, 2,
+  const urscript::Parameter cog = urscript::Parameter("cog").formerly("CoG");
+  add_robot_builtin(library, robot, "set_payload", {"m", cog}, 1, set_payload);
+  add_robot_builtin(library, robot, "set_target_payload", {"m", cog, "inertia", "transition_time"}, 2,
                     set_target_payload);
   add_robot_builtin(library, robot, "set_payload_mass", {"m"}, 1, set_payload_mass);
-  add_robot_builtin(library, robot, "set_payload_cog", {"CoG", "transition_time"}, 1, set_payload_cog);
+  add_robot_builtin(library, robot, "set_payload_cog", {cog, "transition_time"}, 1, set_payload_cog);
   add_robot_builtin(library, robot, "set_tcp", {"pose", "tcp_name"}, 1, set_tcp);
   add_robot_builtin(library, robot, "set_gravity", {"d"}, 1, set_gravity);
   library.add({"zero_ftsensor", {}, 0, [robot](CallContext &, Arguments) -> Outcome {

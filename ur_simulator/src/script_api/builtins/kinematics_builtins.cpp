@@ -97,10 +97,14 @@ void add_kinematics_builtins(Library & library, const RobotContextPtr & robot)
   const std::vector<urscript::Parameter> parameters{"x", "qnear", "maxPositionError", "maxOrientationError",
                                                     "tcp"};
   add_robot_builtin(library, robot, "get_inverse_kin", parameters, 1, inverse, inverse_cost);
-  add_robot_builtin(library, robot, "get_inverse_kin_has_solution", parameters, 1, has_inverse, inverse_cost);
+  std::vector<urscript::Parameter> query_parameters = parameters;
+  query_parameters.front() = urscript::Parameter("pose").formerly("x");
+  add_robot_builtin(library, robot, "get_inverse_kin_has_solution", query_parameters, 1, has_inverse,
+                    inverse_cost);
   add_robot_builtin(library, robot, "get_forward_kin", {"q", "tcp"}, 0, forward, 40);
   add_robot_builtin(library, robot, "is_within_safety_limits", {"pose"}, 1, within_safety_limits,
                     inverse_cost);
+  library.simplify("is_within_safety_limits", "checks joint limits and reach; there are no safety planes");
 }
 
 }  // namespace ur_simulator::script_api

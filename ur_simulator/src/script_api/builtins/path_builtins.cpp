@@ -125,6 +125,9 @@ void add_path_builtins(Library & library, const RobotContextPtr & robot)
          return move_to_pose(robot, context, arguments, "goal", options_after_target,
                              &Arm::move_linear_optimally);
        }});
+  for (const char * name : {"optimovej", "optimovel"}) {
+    library.simplify(name, "targets in the base frame only");
+  }
 }
 
 }  // namespace ur_simulator::script_api

@@ -62,10 +62,11 @@ void add_servo_speed_builtins(Library & library, const RobotContextPtr & robot)
                 {"gain", Value(300)}},
                1,
                [robot](CallContext &, Arguments arguments) { return servoj(robot, arguments); }});
-  library.add({"speedj", {"qd", "a", "t"}, 2, [robot](CallContext &, Arguments arguments) {
+  const urscript::Parameter time = urscript::Parameter("t").formerly("t_min");
+  library.add({"speedj", {"qd", "a", time}, 2, [robot](CallContext &, Arguments arguments) {
                  return move_at_speed(robot, arguments, "qd", &Arm::speed_joint);
                }});
-  library.add({"speedl", {"xd", "a", "t", "aRot"}, 2, [robot](CallContext &, Arguments arguments) {
+  library.add({"speedl", {"xd", "a", time, "aRot"}, 2, [robot](CallContext &, Arguments arguments) {
                  return move_at_speed(robot, arguments, "xd", &Arm::speed_linear);
                }});
   library.add({"stopj", {"a"}, 1, [robot](CallContext &, Arguments arguments) {

@@ -13,6 +13,10 @@ struct StateGetter {
 
 constexpr StateGetter state_getters[] = {
     {"get_actual_joint_positions", [](const ControllerState & s) { return Value::list(s.actual.position); }},
+    // A former name, which UR's External Control program uses.
+    {"get_joint_positions", [](const ControllerState & s) { return Value::list(s.actual.position); }},
+    {"get_actual_joint_accelerations",
+     [](const ControllerState & s) { return Value::list(s.actual.acceleration); }},
     {"get_actual_joint_speeds", [](const ControllerState & s) { return Value::list(s.actual.velocity); }},
     {"get_actual_tcp_pose", [](const ControllerState & s) { return Value::pose(s.actual_tcp_pose); }},
     {"get_actual_tcp_speed", [](const ControllerState & s) { return Value::list(s.actual_tcp_speed); }},
@@ -22,11 +26,18 @@ constexpr StateGetter state_getters[] = {
      [](const ControllerState & s) { return Value::list(s.target.acceleration); }},
     {"get_target_tcp_pose", [](const ControllerState & s) { return Value::pose(s.target_tcp_pose); }},
     {"get_target_tcp_speed", [](const ControllerState & s) { return Value::list(s.target_tcp_speed); }},
+    // Without path offsets and conveyor tracking the arm is on the path.
+    {"get_target_tcp_pose_along_path",
+     [](const ControllerState & s) { return Value::pose(s.target_tcp_pose); }},
+    {"get_target_tcp_speed_along_path",
+     [](const ControllerState & s) { return Value::list(s.target_tcp_speed); }},
     {"get_tcp_force", [](const ControllerState & s) { return Value::list(s.actual_tcp_force); }},
     {"get_tcp_offset", [](const ControllerState & s) { return Value::pose(s.tcp_offset); }},
     {"get_tool_accelerometer_reading",
      [](const ControllerState & s) { return Value::list(s.tool_acceleration); }},
     {"get_tool_current", [](const ControllerState & s) { return Value(s.io.tool_output_current); }},
+    {"get_tool_temp", [](const ControllerState & s) { return Value(s.io.tool_temperature); }},
+    {"get_gravity", [](const ControllerState & s) { return Value::list(s.gravity); }},
     {"force", [](const ControllerState & s) { return Value(s.actual_tcp_force.head<3>().norm()); }},
     {"is_steady", [](const ControllerState & s) { return Value(s.steady); }},
     {"get_target_payload", [](const ControllerState & s) { return Value(s.payload.mass); }},
@@ -99,6 +110,10 @@ void add_state_builtins(Library & library, const RobotContextPtr & robot)
   library.add({"get_steptime", {}, 0, [robot](CallContext &, Arguments) -> Outcome {
                  return Value(robot->access.cycle_time);
                }});
+  library.simplify("get_controller_temp", "always 25 °C");
+  library.simplify("get_joint_temp", "constant: joints do not warm up");
+  library.simplify("get_tool_temp", "constant: the tool does not warm up");
+  library.simplify("get_joint_torques", "torques caused by the force at the TCP");
 }
 
 }  // namespace ur_simulator::script_api

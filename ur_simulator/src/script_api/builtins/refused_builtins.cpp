@@ -1,0 +1,165 @@
+#include "script_api/robot_context.hpp"
+
+// Functions of the script manual that need hardware or features that the simulated robot does not have.
+
+namespace ur_simulator::script_api {
+
+namespace {
+
+struct RefusedBuiltin {
+  const char * name;
+  std::vector<urscript::Parameter> parameters;
+  std::size_t required;
+};
+
+struct RefusedGroup {
+  const char * reason;
+  std::vector<RefusedBuiltin> builtins;
+};
+
+RefusedGroup path_offsets()
+{
+  return {"path offsets are not modelled",
+          {
+              {"path_offset_enable", {}, 0},
+              {"path_offset_disable", {"a"}, 0},
+              {"path_offset_get", {"type"}, 1},
+              {"path_offset_set", {"offset", "type"}, 2},
+              {"path_offset_set_alpha_filter", {"alpha"}, 1},
+              {"path_offset_set_max_offset", {"transLimit", "rotLimit"}, 2},
+          }};
+}
+
+RefusedGroup conveyor_tracking()
+{
+  return {
+      "conveyor tracking is not modelled",
+      {
+          {"track_conveyor_circular", {"center", "ticks_per_revolution", "rotate_tool", "encoder_index"}, 2},
+          {"track_conveyor_linear", {"direction", "ticks_per_meter", "encoder_index"}, 2},
+      }};
+}
+
+RefusedGroup modbus_signals()
+{
+  return {"no MODBUS device is connected",
+          {
+              {"modbus_add_signal",
+               {"IP", "slave_number", "signal_address", "signal_type", "signal_name", "sequential_mode",
+                "register_count"},
+               5},
+              {"modbus_add_rw_signal",
+               {"IP", "slave_number", "read_address", "read_register_count", "write_address",
+                "write_register_count", "signal_name", "sequential_mode"},
+               7},
+              {"modbus_delete_signal", {"signal_name"}, 1},
+              {"modbus_get_error", {"signal_name", "error_source"}, 1},
+              {"modbus_get_signal_status", {"signal_name", "is_secondary_program"}, 1},
+              {"modbus_get_time_since_signal_invalid", {"signal_name"}, 1},
+              {"modbus_request_update_now", {"signal_name"}, 1},
+              {"modbus_reset_connection", {"connection_id", "is_blocking"}, 1},
+              {"modbus_send_custom_command", {"IP", "slave_number", "function_code", "data"}, 4},
+              {"modbus_set_digital_input_action", {"signal_name", "action"}, 2},
+              {"modbus_set_output_register", {"signal_name", "register_value", "is_secondary_program"}, 2},
+              {"modbus_set_output_signal", {"signal_name", "digital_value", "is_secondary_program"}, 2},
+              {"modbus_set_runstate_dependent_choice", {"signal_name", "runstate_choice"}, 2},
+              {"modbus_set_signal_update_frequency", {"signal_name", "update_frequency"}, 2},
+              {"modbus_set_signal_watchdog", {"signal_name", "new_timeout_in_sec"}, 2},
+          }};
+}
+
+RefusedGroup modbus_server()
+{
+  return {"the robot's MODBUS server is not modelled",
+          {
+              {"read_port_bit", {"address"}, 1},
+              {"read_port_register", {"address"}, 1},
+              {"write_port_bit", {"address", "value"}, 2},
+              {"write_port_register", {"address", "value"}, 2},
+          }};
+}
+
+RefusedGroup euromap()
+{
+  return {"no Euromap67 interface is installed",
+          {
+              {"get_euromap_input", {"port_number"}, 1},
+              {"get_euromap_output", {"port_number"}, 1},
+              {"set_euromap_output", {"port_number", "signal_value"}, 2},
+              {"set_euromap_runstate_dependent_choice", {"port_number", "runstate_choice"}, 2},
+          }};
+}
+
+RefusedGroup sockets()
+{
+  return {"the library has no sockets",
+          {
+              {"socket_open", {"address", "port", "socket_name"}, 2},
+              {"socket_close", {"socket_name"}, 0},
+              {"socket_get_var", {"name", "socket_name"}, 1},
+              {"socket_set_var", {"name", "value", "socket_name"}, 2},
+              {"socket_read_ascii_float", {"number", "socket_name", "timeout"}, 1},
+              {"socket_read_binary_integer", {"number", "socket_name", "timeout"}, 1},
+              {"socket_read_byte_list", {"number", "socket_name", "timeout"}, 1},
+              {"socket_read_line", {"socket_name", "timeout"}, 0},
+              {"socket_read_string", {"socket_name", "prefix", "suffix", "interpret_escape", "timeout"}, 0},
+              {"socket_send_byte", {"value", "socket_name"}, 1},
+              {"socket_send_int", {"value", "socket_name"}, 1},
+              {"socket_send_line", {"str", "socket_name"}, 1},
+              {"socket_send_string", {"str", "socket_name"}, 1},
+          }};
+}
+
+RefusedGroup operator_input()
+{
+  return {"no operator answers on the pendant",
+          {
+              {"request_boolean_from_primary_client", {"Text"}, 1},
+              {"request_float_from_primary_client", {"Text"}, 1},
+              {"request_integer_from_primary_client", {"Text"}, 1},
+              {"request_string_from_primary_client", {"Text"}, 1},
+          }};
+}
+
+RefusedGroup interpreter()
+{
+  return {"interpreter mode is not modelled",
+          {
+              {"interpreter_mode", {"clearQueueOnEnter", "clearOnEnd"}, 0},
+              {"clear_interpreter", {}, 0},
+              {"end_interpreter", {}, 0},
+          }};
+}
+
+RefusedGroup frame_tracking()
+{
+  return {"frames have no mass and are not tracked",
+          {
+              {"frame_tracking_disable", {}, 0},
+              {"frame_tracking_enable", {"frame_name"}, 1},
+              {"set_mass_properties", {"frame", "m", "cog", "inertia"}, 4},
+              {"set_payload_from_attached_frames", {}, 0},
+          }};
+}
+
+}  // namespace
+
+void add_refused_builtins(Library & library)
+{
+  for (const RefusedGroup & group :
+       {path_offsets(), conveyor_tracking(), modbus_signals(), modbus_server(), euromap(), sockets(),
+        operator_input(), interpreter(), frame_tracking()}) {
+    for (const RefusedBuiltin & builtin : group.builtins) {
+      library.add_refused(builtin.name, builtin.parameters, builtin.required, group.reason);
+    }
+  }
+  for (const char * name : {"eip_reader_factory", "eip_writer_factory"}) {
+    library.add_refused(name, {"connection", "size"}, 2, "no EtherNet/IP scanner is connected");
+  }
+  library.add_refused("rpc_factory", {"type", "url"}, 2, "XML-RPC is not modelled");
+  library.add_refused("get_rtde_value", {"key"}, 1, "programs cannot read RTDE outputs yet");
+  library.add_refused("set_pos", {"q"}, 1, "only PolyScope's simulation mode places the arm");
+  library.add_refused("estimate_payload", {"poses", "wrenches"}, 2, "the estimation is not modelled");
+}
+
+}  // namespace ur_simulator::script_api

@@ -1,0 +1,63 @@
+#include "script_api/function_reference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace ur_simulator {
+
+namespace {
+
+/// Names under a heading, in the order of their first appearance.
+using NameTable = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
+void add_name(NameTable & table, const std::string & heading, const std::string & name)
+{
+  const auto found =
+      std::find_if(table.begin(), table.end(), [&](const auto & row) { return row.first == heading; });
+  if (found == table.end()) {
+    table.push_back({heading, {name}});
+  } else {
+    found->second.push_back(name);
+  }
+}
+
+std::string code_list(const std::vector<std::string> & names)
+{
+  return fmt::format("`{}`", fmt::join(names, " "));
+}
+
+}  // namespace
+
+std::string function_reference(const urscript::Library & library)
+{
+  NameTable groups;
+  NameTable simplifications;
+  NameTable refusals;
+  for (std::uint32_t i = 0; i < library.size(); ++i) {
+    const urscript::Builtin & builtin = library[i];
+    if (builtin.support == urscript::Support::modelled) {
+      add_name(groups, builtin.group, builtin.name);
+    } else {
+      add_name(builtin.support == urscript::Support::simplified ? simplifications : refusals, builtin.note,
+               builtin.name);
+    }
+  }
+  std::string text = "| group | modelled functions |\n|---|---|\n";
+  for (const auto & [group, names] : groups) {
+    text += fmt::format("| {} | {} |\n", group, code_list(names));
+  }
+  text += "\n| simplified functions | simplification |\n|---|---|\n";
+  for (const auto & [note, names] : simplifications) {
+    text += fmt::format("| {} | {} |\n", code_list(names), note);
+  }
+  text += "\n| refused functions | reason |\n|---|---|\n";
+  for (const auto & [reason, names] : refusals) {
+    text += fmt::format("| {} | {} |\n", code_list(names), reason);
+  }
+  return text;
+}
+
+}  // namespace ur_simulator
