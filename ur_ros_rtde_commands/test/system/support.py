@@ -118,8 +118,9 @@ class Process:
 
 class Simulator:
     def __init__(self, address, *arguments, model="ur10e", urcap="onrobot_soft_gripper",
-                 recovery_time_factor=RECOVERY_TIME_FACTOR):
+                 recovery_time_factor=RECOVERY_TIME_FACTOR, real_time_factor=REAL_TIME_FACTOR):
         self.address = address
+        self._real_time_factor = real_time_factor
         self._arguments = ["--model", model, "--recovery-time-factor", str(recovery_time_factor),
                            *(["--urcap", urcap] if urcap else []), *arguments]
         self.process = None
@@ -127,7 +128,7 @@ class Simulator:
 
     def start(self):
         self.process = Process([find_program("ur_simulator", "ur_simulator"), "--address", self.address,
-                                "--joints", ",".join(map(str, HOME)), "--real-time-factor", str(REAL_TIME_FACTOR),
+                                "--joints", ",".join(map(str, HOME)), "--real-time-factor", str(self._real_time_factor),
                                 *self._arguments])
         wait_for(self._connect, 20.0, "the simulator's control port")
         return self
