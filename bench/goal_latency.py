@@ -71,7 +71,7 @@ class GoalLatency:
             self._finish(handle.cancel_goal_async())
             self._finish(outcome)
             cycles = self.control.request("trace", after=before)["cycles"]
-            slower = [when for _, when, speed in cycles if when > sent and speed < 0.398]
+            slower = [when for _, when, speed, *_ in cycles if when > sent and speed < 0.398]
             if slower:
                 result.append((slower[0] - sent) * 1e-6)
         return result
