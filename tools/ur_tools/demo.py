@@ -11,7 +11,7 @@ import tempfile
 import time
 from typing import List
 
-from . import console, ports, simulation
+from . import console, ports, simulation, viewer
 from .environment import run_environment
 from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
@@ -41,7 +41,10 @@ def parse(arguments: List[str]) -> argparse.Namespace:
                         help="folder for the CSV file and the figure (default: demo)")
     parser.add_argument("--keep-running", action="store_true",
                         help="keep the simulator and the nodes running until Ctrl-C")
+    parser.add_argument("--view", action="store_true",
+                        help="show the robot in the browser; implies --keep-running, so that the page remains")
     options = parser.parse_args(arguments)
+    options.keep_running |= options.view
     for name, low, high in (("threshold", 5.0, 100.0), ("speed", 0.01, 0.25)):
         value = getattr(options, name)
         if not low <= value <= high:
@@ -56,7 +59,8 @@ def parse(arguments: List[str]) -> argparse.Namespace:
 def packages(options: argparse.Namespace) -> List[str]:
     """Returns the packages to build, with their dependencies. The experiment uses one command of the tutorials; the standard
     commands take a quarter of the build time, so they are built only when the nodes are to be used afterwards."""
-    return ["ur_ros_rtde_tutorials", "ur_simulator"] + ["ur_ros_rtde_commands"] * options.keep_running
+    return (["ur_ros_rtde_tutorials", "ur_simulator"] + ["ur_ros_rtde_commands"] * options.keep_running
+            + [viewer.PACKAGE] * options.view)
 
 
 def check(options: argparse.Namespace) -> None:
@@ -77,6 +81,9 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> N
     console.step("Starting the nodes " + ", ".join(simulation.NODES))
     for node in simulation.NODES:
         simulation.start_node(programs, layout, env, node, options.address, *PARAMETERS.get(node, ()))
+    if options.view:
+        console.step("Starting the viewer")
+        viewer.start(programs, layout, env, "--control", "--recordings", str(options.output))
 
 
 def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace) -> int:

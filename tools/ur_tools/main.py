@@ -13,7 +13,7 @@ import sys
 from typing import List, Optional, Tuple
 
 from . import build as building
-from . import console, disk, doctor, fuzz, lint, new, testing
+from . import console, disk, doctor, fuzz, lint, new, testing, viewer
 from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
@@ -97,6 +97,8 @@ def _python_command(name: str, options: argparse.Namespace) -> int:
     if hasattr(module, "check"):
         module.check(parsed)
     _build(options, packages=module.packages(parsed) if hasattr(module, "packages") else None)
+    if getattr(parsed, "view", False):
+        viewer.prepare(layout, options.jobs)
     env = {**os.environ, "UR_LAYOUT": f"{layout.ros}:{layout.variant}", "PYTHONPATH": str(ROOT / "tools"),
            "PYTHONDONTWRITEBYTECODE": "1"}
     os.execve(sys.executable, [sys.executable, "-m", f"ur_tools.{name}", *arguments], env)
@@ -145,19 +147,8 @@ def command_view(options: argparse.Namespace) -> int:
         source = ROOT / "ur_ros_rtde_viewer"
         env = {**os.environ, "PYTHONPATH": str(source), "PYTHONDONTWRITEBYTECODE": "1"}
         os.execve(sys.executable, [sys.executable, str(source / "scripts" / "view"), *arguments], env)
-    viewer = ready_viewer(layout, options.jobs)
-    os.execve(viewer, [str(viewer), *arguments], run_environment(layout))
-
-
-def ready_viewer(layout: Layout, jobs: int = 0) -> pathlib.Path:
-    """Returns the program of the viewer, after building and installing what it misses."""
-    try:
-        viewer = program(layout, "ur_ros_rtde_viewer", "view")
-    except FileNotFoundError:
-        building.build(building.Options(layout, ["ur_ros_rtde_viewer"], False, jobs))
-        viewer = program(layout, "ur_ros_rtde_viewer", "view")
-    building.setup_viewer(layout)
-    return viewer
+    viewer.execute(layout, arguments, options.jobs)
+    return 0  # not reached
 
 
 def command_new(options: argparse.Namespace) -> int:

@@ -19,11 +19,14 @@ import json
 import pathlib
 import subprocess
 import sys
+import tempfile
+import time
 from typing import List, Mapping
 
-from . import console, simulation
+from . import console, simulation, viewer
 from .environment import program, run_environment
 from .layout import PROGRAM, ROOT, Layout
+from .processes import Programs
 
 
 def parse(arguments: List[str]) -> argparse.Namespace:
@@ -34,8 +37,12 @@ def parse(arguments: List[str]) -> argparse.Namespace:
                         help="model of the arm: ur3e, ur5e, ur10e, ... (default: the widest limits of all models)")
     parser.add_argument("--plot", type=pathlib.Path, metavar="PNG",
                         help="draw positions, velocities, accelerations and jerks against their limits")
+    parser.add_argument("--view", action="store_true", help="animate the plan in the browser until Ctrl-C; needs --model")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write the plan's samples")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.view and not options.model:
+        parser.error("--view shows an arm: state its model with --model, for example --model ur10e")
+    return options
 
 
 def _run(command: List[str], text: str, env: Mapping[str, str]) -> str:
@@ -70,7 +77,20 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
     if options.plot:
         _run([str(layout.python), str(ROOT / "tools" / "ur_tools" / "plan_figure.py"), str(options.plot)], answer, env)
         console.line(f"figure: {options.plot}")
+    if options.view:
+        return _view(layout, options, answer, env)
     return 0
+
+
+def _view(layout: Layout, options: argparse.Namespace, plan: str, env: Mapping[str, str]) -> int:
+    """Runs the viewer until Ctrl-C."""
+    with tempfile.TemporaryDirectory() as folder, Programs(layout.log / "plan") as programs:
+        file = pathlib.Path(folder, options.file.stem + ".json")
+        file.write_text(plan)
+        shown = viewer.start(programs, layout, env, "--plan", str(file), "--model", options.model, "--port", "0")
+        while shown.running:
+            time.sleep(0.2)
+        raise shown.failure()
 
 
 if __name__ == "__main__":

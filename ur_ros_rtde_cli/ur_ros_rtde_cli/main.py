@@ -17,11 +17,13 @@ COMMANDS = {"call": "send a goal, show its feedback and print its result",
             "plugins": "list the installed plugins with package and description",
             "record": "record RTDE outputs of the robot to a CSV file",
             "urdf": "print the URDF of an arm",
-            "doctor": "check a robot over the network: ur doctor --robot ADDRESS"}
+            "doctor": "check a robot over the network: ur doctor --robot ADDRESS",
+            "view": "show robots in the browser"}
+VIEW = "view"  # a program of another package, with options of its own
 WITHOUT_NODES = ("plugins", "urdf", "doctor")  # commands that communicate with no node
 
 # Commands of the script `ur` in a checkout. They are not installed.
-CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "shell", "new", "format", "lint", "doctor", "clean")
+CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "fuzz", "shell", "new", "format", "lint", "doctor", "clean")
 
 # Environment variable with the folder of the checkout, set in its shell.
 CHECKOUT_VARIABLE = "UR_CHECKOUT"
@@ -70,8 +72,8 @@ def _unknown_command(command: str) -> CliError:
 
 
 def _belongs_to_checkout(arguments: List[str]) -> bool:
-    """Returns whether `./ur` runs this command. Without arguments, doctor checks the machine, with some a robot."""
-    return arguments == ["doctor"] or not arguments or arguments[0] not in COMMANDS
+    """Returns whether `./ur` runs this command. It installs what view needs; doctor without arguments checks the machine."""
+    return not arguments or arguments[0] not in COMMANDS or arguments[0] == VIEW or arguments == ["doctor"]
 
 
 def _checkout_script() -> Optional[pathlib.Path]:
@@ -93,6 +95,9 @@ def main(arguments: Optional[List[str]] = None) -> int:
             _make_parser().parse_args(arguments)
         if command not in COMMANDS:
             raise _unknown_command(command)
+        if command == VIEW:
+            from . import view  # imported here because the other commands do not need it
+            view.execute(arguments[1:])
         options = _parse_arguments(command, arguments[1:])
         if command not in WITHOUT_NODES:
             from . import fastdds_profile, lazy_imports  # imported here because --help does not need ROS

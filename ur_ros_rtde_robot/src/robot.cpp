@@ -66,6 +66,11 @@ std::optional<ControllerVersion> Robot::version() const
   return impl_->state.version();
 }
 
+std::string Robot::model() const
+{
+  return impl_->model.name();
+}
+
 ArmLimits Robot::limits() const
 {
   return impl_->model.limits();

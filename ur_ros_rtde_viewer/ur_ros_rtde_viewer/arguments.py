@@ -83,6 +83,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rate", type=_rate, default=DEFAULT_RATE, metavar="HZ", help="updates per second, 1 to 60 (default: 30)")
     parser.add_argument("--simulator", default="", metavar="IP",
                         help="address of a simulator, whose surfaces are shown (default: the address that the driver reports)")
+    parser.add_argument("--recordings", default=".", metavar="FOLDER",
+                        help="folder for recordings, on the machine of the driver (default: the current folder)")
     parser.add_argument("--control", action="store_true", help="allow commands from the page")
     parser.add_argument("--plan", default="", metavar="FILE", help="show a plan of `./ur plan FILE --json` instead of a robot")
 

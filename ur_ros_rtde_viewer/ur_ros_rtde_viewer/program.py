@@ -1,6 +1,7 @@
 """The program: checks the options, starts server and nodes, and runs the viewer until a signal."""
 
 import argparse
+import contextlib
 import logging
 import sys
 from typing import List, Optional
@@ -18,11 +19,14 @@ def _check(options: argparse.Namespace) -> None:
     from ur_ros_rtde_description.models import find_model
 
     try:
-        for robot in robots(options):
+        found = robots(options)
+        for robot in found:
             if robot.model:
                 find_model(robot.model)
     except (DescriptionError, ValueError) as error:
         raise ViewerError(str(error)) from None
+    if options.plan and not found[0].model:
+        raise ViewerError("--plan needs the model of the arm: add --model, for example --model ur10e")
 
 
 def _serve(options: argparse.Namespace) -> None:
@@ -36,16 +40,15 @@ def _serve(options: argparse.Namespace) -> None:
     from .ros.nodes import Nodes
     from .viewer import Viewer
     interruption = PendingInterruption()
-    nodes = Nodes()
-    viewer = Viewer(server, nodes, options)
-    print(f"The viewer runs at {url(server)} until Ctrl-C.", flush=True)
-    try:
+    with contextlib.ExitStack() as ending:
+        ending.callback(interruption.restore_handlers)
+        ending.callback(stop_server, server)
+        nodes = Nodes()
+        ending.callback(nodes.close)
+        viewer = Viewer(server, nodes, options)
+        ending.callback(viewer.close)
+        print(f"The viewer runs at {url(server)} until Ctrl-C.", flush=True)
         viewer.run(lambda: interruption.take() is not None)
-    finally:
-        viewer.close()
-        nodes.close()
-        stop_server(server)
-        interruption.restore_handlers()
 
 
 def run(options: argparse.Namespace) -> int:
@@ -60,7 +63,11 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def main(arguments: Optional[List[str]] = None) -> int:
-    parser = argparse.ArgumentParser(prog="view", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
+def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="ur view", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
     add_arguments(parser)
-    return run(parser.parse_args(arguments))
+    return parser.parse_args(arguments)
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    return run(parse(arguments))

@@ -8,11 +8,13 @@ from typing import Any, Callable, List
 
 from .arguments import robots
 from .page.layout import Layout
-from .panels import add_panels
+from .panels import add_panels, add_plan_panel
 from .robot_view import RobotView
+from .ros.diagnostics import Diagnostics
 from .ros.nodes import Nodes
 
 logger = logging.getLogger(__name__)
+CLOSE_LIMIT = 2.0  # s
 
 
 class Viewer:
@@ -25,9 +27,13 @@ class Viewer:
             server.scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.1, section_size=0.5)
             found = robots(options)
             self.layout = Layout(server, found)
-            self.robots: List[RobotView] = [RobotView(server, nodes, robot, self.layout.tabs(robot)) for robot in found]
+            diagnostics = Diagnostics(nodes)
+            self.robots: List[RobotView] = [RobotView(server, nodes, diagnostics, robot, self.layout.tabs(robot), options.simulator)
+                                            for robot in found]
             for robot in self.robots:
                 add_panels(self, robot)
+            if options.plan:
+                add_plan_panel(self, self.robots[0])
             self.control: Any = None
             if options.control:
                 from .control.control import Control  # without --control, nothing that can move an arm is loaded
@@ -40,12 +46,14 @@ class Viewer:
 
     def run(self, ended: Callable[[], bool]) -> None:
         """Updates the page until `ended()`, which is asked once per update."""
-        period = 1.0 / self.options.rate
-        due = time.monotonic()
         while not ended():
-            due = max(due + period, time.monotonic())
-            self.update()
-            self._spin_until(due)
+            self.step()
+
+    def step(self) -> None:
+        """Updates the page, then runs callbacks until the next update is due."""
+        due = time.monotonic() + 1.0 / self.options.rate
+        self.update()
+        self._spin_until(due)
 
     def _spin_until(self, due: float) -> None:
         """Runs callbacks of ROS and posted functions."""
@@ -68,7 +76,13 @@ class Viewer:
                 robot.update()
 
     def close(self) -> None:
+        """Ends what the page has started: recordings and the digital twin. Waits for the driver, but not long."""
         for robot in self.robots:
             robot.close()
+        end = time.monotonic() + CLOSE_LIMIT
+        while time.monotonic() < end and not all(robot.services.is_idle for robot in self.robots):
+            for robot in self.robots:
+                robot.services.update()
+            self.nodes.spin_once(0.01)
         if self.control is not None:
             self.control.close()

@@ -81,6 +81,7 @@ std::vector<Diagnosis> diagnose_driver(Robot & robot)
   diagnosis.add(level(status), status.message.empty() ? "ready for commands" : status.message)
       .value("state", name(status.state))
       .value("cause", to_string(status.cause))
+      .value("model", robot.model().empty() ? "unknown" : robot.model())
       .value("motion goal", holder(robot.arbiter(), Resource::motion))
       .value("io goal", holder(robot.arbiter(), Resource::io))
       .value("script goal", holder(robot.arbiter(), Resource::script));

@@ -120,7 +120,7 @@ def test_an_unreachable_controller_is_stale_and_a_lost_one_an_error(addresses, p
 def test_reports_the_driver_state_and_the_active_motion_goal(simulator, client, robot, arrays):
     name = "/command_server: driver"
     reported = values(entry(arrays, name, lambda s: s.level == DiagnosticStatus.OK, "the driver to be ready"))
-    assert (reported["state"], reported["cause"], reported["motion goal"]) == ("READY", "none", "none")
+    assert (reported["state"], reported["cause"], reported["model"], reported["motion goal"]) == ("READY", "none", "ur10e", "none")
     goal = client.send(MoveJ, "move_j", joint_positions=[HOME[0] + 1.0, *HOME[1:]], speed=0.1, acceleration=1.0)
     assert goal.accepted
     busy = entry(arrays, name, lambda s: values(s)["motion goal"] != "none", "the goal")

@@ -60,6 +60,9 @@ class Robot {
   std::optional<ControllerVersion> version() const;
   /// Limits of the arm's model. While the model is unknown: the limits that all models have in common.
   ArmLimits limits() const;
+  /// Name of the arm's model, for example "ur10e": RobotOptions::model, or the detected one. Empty if both
+  /// are unknown.
+  std::string model() const;
   int realtime_priority() const;
 
   /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) if the interface is

@@ -113,6 +113,12 @@ ArmLimits ArmModel::limits() const
   return limits_;
 }
 
+std::string ArmModel::name() const
+{
+  const std::lock_guard lock(mutex_);
+  return stated_.empty() ? detected_.value_or("") : stated_;
+}
+
 std::optional<Error> ArmModel::mismatch() const
 {
   const std::lock_guard lock(mutex_);

@@ -29,6 +29,8 @@ class ArmModel {
   /// Limits of the stated or else the detected model. If both are unknown: the limits that all models have in
   /// common.
   ArmLimits limits() const;
+  /// Name of the stated or else the detected model. Empty if both are unknown.
+  std::string name() const;
   /// Error if the detected model differs from the stated one.
   std::optional<Error> mismatch() const;
 

@@ -1,10 +1,12 @@
-"""The layout of the page: a header that is always in view, and the tabs of the robots below it."""
+"""The layout of the page: a header that is always in view, the tabs of the robots, and a second panel with the plots."""
 
 from typing import Any, Dict, Sequence
 
 import viser
 
 from ..arguments import RobotOptions
+
+PLOTS_WIDTH = 380  # pixels
 
 
 class Layout:
@@ -16,7 +18,10 @@ class Layout:
     def __init__(self, server: viser.ViserServer, robots: Sequence[RobotOptions]):
         gui = server.gui
         gui.main_panel.dock_right()
-        self.header: Any = gui.add_folder("", expand_by_default=True)
+        self.header: Any = gui.add_folder("Robots" if len(robots) > 1 else "Robot")
+        self._plots = gui.add_panel()
+        self._plots.dock_left()
+        self._plots.set_width(PLOTS_WIDTH)
         self._tabs: Dict[str, Any] = {}
         if len(robots) == 1:
             self._tabs[robots[0].namespace] = gui.add_tab_group()
@@ -27,5 +32,9 @@ class Layout:
                 self._tabs[robot.namespace] = gui.add_tab_group()
 
     def tabs(self, robot: RobotOptions) -> Any:
-        """Returns the tab group of a robot: `with layout.tabs(robot).add_tab("Plots"):`."""
+        """Returns the tab group of a robot: `with layout.tabs(robot).add_tab("State"):`."""
         return self._tabs[robot.namespace]
+
+    def add_plots_tab(self, robot: RobotOptions) -> Any:
+        """Returns a new tab of the panel with the plots."""
+        return self._plots.add_tab(f"Plots of {robot.name}" if robot.namespace else "Plots")

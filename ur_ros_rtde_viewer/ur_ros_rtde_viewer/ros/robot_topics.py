@@ -15,8 +15,6 @@ from ..state.robot_state import DriverStatus, Joints, Pose, Refusal, RobotState
 from .latest_topic import LatestTopic
 from .nodes import Nodes
 
-TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
 
 def seconds(stamp: Any) -> float:
     return float(stamp.sec + 1e-9 * stamp.nanosec)
@@ -45,6 +43,7 @@ class RobotTopics:
         self._nodes = nodes
         self.namespace = namespace
         self.state = RobotState()
+        self.joint_names = JOINTS  # with the prefix of the driver, once a message was received
         self._last_received = -float("inf")
         self._joints = self._latest(JointState, "joint_states")
         self._target = self._latest(JointState, "target_joint_states")
@@ -101,10 +100,16 @@ class RobotTopics:
             state.wrench = np.array((f.x, f.y, f.z, t.x, t.y, t.z))
         state.age = time.monotonic() - self._last_received
 
+    def _learn_names(self, message: JointState) -> None:
+        first = next((name for name in message.name if name.endswith(JOINTS[0])), None)
+        if first is not None:
+            self.joint_names = tuple(first[:-len(JOINTS[0])] + joint for joint in JOINTS)
+
     def _read_joints(self, topic: LatestTopic, previous: Optional[Joints]) -> Optional[Joints]:
         message = topic.take()
         if message is None:
             return previous
         if topic is self._joints:
             self._last_received = time.monotonic()
+            self._learn_names(message)
         return read_joints(message) or previous

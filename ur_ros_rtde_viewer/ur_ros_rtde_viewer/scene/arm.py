@@ -33,7 +33,7 @@ class Arm:
         self._colors: List[Color] = []
         self._turning: List[Any] = []  # (joint, handle) in the order of JOINTS
         self._positions = np.full(len(JOINTS), np.nan)
-        self._handles: List[Any] = [scene.add_frame(root, show_axes=False)]
+        self._root = scene.add_frame(root, show_axes=False)
         self._add(description)
 
     def _add(self, description: Description) -> None:
@@ -75,7 +75,7 @@ class Arm:
                 self._positions[index] = position
 
     def set_visible(self, visible: bool) -> None:
-        self._handles[0].visible = visible
+        self._root.visible = visible
 
     def set_color(self, color: Optional[Color]) -> None:
         """Colors the whole arm; None restores the colors of the description."""
@@ -83,4 +83,4 @@ class Arm:
             handle.color = color or original
 
     def remove(self) -> None:
-        self._handles[0].remove()
+        self._root.remove()

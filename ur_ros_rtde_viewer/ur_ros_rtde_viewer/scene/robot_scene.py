@@ -1,6 +1,6 @@
 """One robot in the scene: the arm, its target as a ghost, the TCP, its trail and the force on it."""
 
-from typing import Optional
+from typing import Optional, Sequence
 
 import viser
 from ur_ros_rtde_description.options import read_options
@@ -9,6 +9,7 @@ from ur_ros_rtde_description.urdf import make_urdf
 from ..arguments import RobotOptions
 from ..state.robot_state import RobotState
 from .arm import Arm
+from .surfaces import Surface, Surfaces
 from .tool_center_point import ToolCenterPoint
 from .urdf import read_description
 
@@ -30,6 +31,7 @@ class RobotScene:
         self.arm: Optional[Arm] = None
         self.ghost: Optional[Arm] = None
         self.tcp: Optional[ToolCenterPoint] = None
+        self._surfaces: Optional[Surfaces] = None
         self._stopped = False
         if options.model:
             self.set_model(options.model)
@@ -40,9 +42,11 @@ class RobotScene:
         description = read_description(make_urdf(options))
         self.remove()
         self.arm = Arm(self._scene, f"{self.root}/arm", description)
+        self.arm.set_visible(False)  # until its positions are known
         self.ghost = Arm(self._scene, f"{self.root}/ghost", description, GHOST_OPACITY, GHOST_COLOR)
         self.ghost.set_visible(False)
-        self.tcp = ToolCenterPoint(self._scene, self.arm.link_path("base"))
+        base = self.arm.link_path("base")
+        self.tcp, self._surfaces = ToolCenterPoint(self._scene, base), Surfaces(self._scene, base)
         self.model, self._stopped = options.model.name, False
 
     def update(self, state: RobotState) -> None:
@@ -50,6 +54,7 @@ class RobotScene:
             return
         if state.joints is not None:
             self.arm.set_positions(state.joints.positions)
+            self.arm.set_visible(True)
         self._update_ghost(state)
         self.tcp.update(state)
         if state.is_stopped != self._stopped:
@@ -64,8 +69,13 @@ class RobotScene:
             self.ghost.set_positions(other.positions)
         self.ghost.set_visible(differs)
 
+    def show_surfaces(self, surfaces: Sequence[Surface]) -> None:
+        """Shows the surfaces of a simulated world, in the base frame of the controller."""
+        if self._surfaces is not None:
+            self._surfaces.show(surfaces)
+
     def remove(self) -> None:
-        for part in (self.tcp, self.ghost, self.arm):
+        for part in (self._surfaces, self.tcp, self.ghost, self.arm):
             if part is not None:
                 part.remove()
-        self.arm = self.ghost = self.tcp = None
+        self.arm = self.ghost = self.tcp = self._surfaces = None

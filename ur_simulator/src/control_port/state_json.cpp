@@ -70,6 +70,17 @@ json gripper_to_json(const SoftGripper * gripper)
   return {{"width", gripper->width()}, {"target", gripper->target()}, {"busy", gripper->busy()}};
 }
 
+json surfaces_to_json(const World & world)
+{
+  json result = json::array();
+  for (const PlacedSurface & placed : world.surfaces()) {
+    result.push_back({{"id", placed.id},
+                      {"point", to_json_array(placed.surface.point)},
+                      {"normal", to_json_array(placed.surface.normal)}});
+  }
+  return result;
+}
+
 void add_robot(json & result, const ControlPortContext & context)
 {
   const ControllerState & s = context.state;
@@ -89,6 +100,7 @@ void add_robot(json & result, const ControlPortContext & context)
                  {"program", program_to_json(context)},
                  {"popup", popup ? json(popup->message) : json(nullptr)},
                  {"safety_popup", safety_popup ? json(*safety_popup) : json(nullptr)},
+                 {"surfaces", surfaces_to_json(context.world)},
                  {"gripper", gripper_to_json(context.world.gripper())},
                  {"io", io_to_json(s.io)},
                  {"clients", clients_to_json(context)},

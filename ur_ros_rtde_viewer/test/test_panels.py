@@ -1,0 +1,128 @@
+"""The panels, without ROS: texts, banners, plots."""
+
+import numpy as np
+import pytest
+
+from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banner_text
+from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
+from ur_ros_rtde_viewer.panels.state_panel import StatePanel, state_rows
+from ur_ros_rtde_viewer.state.history import History
+from ur_ros_rtde_viewer.state.robot_state import MAX_REFUSALS, ActiveGoal, DriverStatus, Joints, Refusal, RobotState
+
+
+def moving(stamp=0.0, position=0.0):
+    return RobotState(joints=Joints(stamp, np.full(6, position), np.full(6, 0.1), np.zeros(6)), age=0.0)
+
+
+def banner(state, has_model=True):
+    return banner_text(state, "left", "/left/joint_states", has_model)
+
+
+def test_a_ready_robot_has_no_banner():
+    state = moving()
+    state.safety_mode, state.driver = "NORMAL", DriverStatus("READY", 0, "")
+    assert banner(state) is None
+
+
+@pytest.mark.parametrize("mode", ["PROTECTIVE_STOP", "ROBOT_EMERGENCY_STOP", "VIOLATION", "FAULT"])
+def test_a_safety_stop_has_a_red_banner_with_cause_and_remedy(mode):
+    state = moving()
+    state.safety_mode, state.driver = mode, DriverStatus("STOPPED", 7, "call make_ready")
+    color, text = banner(state)
+    assert color == RED and mode.replace("_", " ") in text and "call make_ready" in text
+
+
+def test_a_missing_driver_a_silent_one_and_an_unknown_model_are_explained():
+    color, text = banner(RobotState())
+    assert color == AMBER and "/left/joint_states" in text and "ROS_DOMAIN_ID" in text
+    silent = moving()
+    silent.age = 4.0
+    assert "for 4 s" in banner(silent)[1]
+    unknown = moving()
+    assert "reports no model" in banner(unknown, has_model=False)[1] and "--model" in banner(unknown, has_model=False)[1]
+    unknown.model = "ur99"
+    assert "ur99" in banner(unknown, has_model=False)[1]
+
+
+def test_a_stopped_driver_shows_its_message():
+    state = moving()
+    state.driver = DriverStatus("STOPPED", 10, "press play on the pendant")
+    assert banner(state) == (AMBER, "left: press play on the pendant")
+
+
+def test_the_state_names_modes_driver_and_goal():
+    state = moving()
+    state.robot_mode, state.safety_mode, state.program_running, state.speed_scaling = "RUNNING", "NORMAL", True, 0.5
+    state.driver, state.goal = DriverStatus("STOPPED", 10, "press play"), ActiveGoal("move_j", 0.25, 1.5)
+    assert dict(state_rows(state)) == {"Robot mode": "RUNNING", "Safety mode": "NORMAL", "Program": "running", "Speed scaling": "50 %",
+                                       "Driver": "STOPPED", "Cause and remedy": "press play", "Goal": "move_j, 1.5 s"}
+    assert dict(state_rows(RobotState()))["Robot mode"] == "unknown"
+
+
+def test_the_state_panel_shows_progress_and_refusals_without_interpreting_them(server):
+    panel = StatePanel(server.gui.add_folder("state"), server.gui)
+    state = moving()
+    state.goal = ActiveGoal("move_j", 0.25, 1.5)
+    state.refusals.append(Refusal(0.0, "/move_l", "speed is <b>9</b>"))
+    panel.update(state)
+    assert panel._progress.visible and panel._progress.value == 25
+    assert "&lt;b&gt;9" in panel._refusals.content and "<b>" not in panel._refusals.content
+    state.goal = None
+    panel.update(state)
+    assert not panel._progress.visible
+
+
+def test_refusals_are_bounded():
+    state = RobotState()
+    for index in range(3 * MAX_REFUSALS):
+        state.refusals.append(Refusal(index, "/move_l", ""))
+    assert len(state.refusals) == MAX_REFUSALS
+
+
+def test_the_history_keeps_the_newest_rows_in_order():
+    history = History(2, 4)
+    for index in range(10):
+        history.add(np.array((index, 10.0 * index)))
+    assert len(history) == 4 and history.rows(100.0)[:, 0].tolist() == [6, 7, 8, 9]
+    assert history.rows(1.5)[:, 1].tolist() == [80, 90]
+    history.clear()
+    assert len(history.rows(1.0)) == 0
+
+
+@pytest.fixture
+def plots(server):
+    return PlotsPanel(server.gui.add_folder("plots"), server)
+
+
+def feed(panel, begin, end, period=0.004):
+    for stamp in np.arange(begin, end, period):
+        panel.update(moving(float(stamp), float(stamp)))
+
+
+def test_plots_keep_the_last_30_s_of_a_day(plots):
+    feed(plots, 86400.0 - 2.0 * DURATION, 86400.0, 0.03)
+    time, *values = plots.data
+    assert len(values) == 15 and len(time) <= DURATION / SAMPLE_PERIOD + 1
+    assert time[-1] == 0.0 and -DURATION <= time[0] <= -DURATION + 1.0 and values[0][-1] == pytest.approx(86400.0, abs=0.1)
+
+
+def test_plots_begin_again_when_the_clock_does(plots):
+    feed(plots, 100.0, 101.0)
+    feed(plots, 5.0, 5.5)
+    assert plots.data[1].max() < 6.0
+
+
+def test_a_paused_plot_keeps_its_curves_and_collects_on(plots, monkeypatch):
+    monkeypatch.setattr(plots._server, "get_clients", lambda: {0: None})
+    feed(plots, 0.0, 1.0)
+    plots._drawn = -np.inf
+    plots.update(moving(1.0, 1.0))
+    shown = plots._plots[0].data[1].copy()
+    plots._pause.value = True
+    feed(plots, 1.1, 2.0)
+    plots._drawn = -np.inf
+    plots.update(moving(2.1, 2.1))
+    assert plots.paused and np.array_equal(plots._plots[0].data[1], shown) and plots.data[1][-1] > 2.0
+    plots._pause.value = False
+    plots.update(moving(2.2, 2.2))
+    assert plots._plots[0].data[1][-1] == pytest.approx(2.2) and len(plots._plots) == len(PLOTS)

@@ -1,0 +1,176 @@
+"""The viewer with a simulator and the driver, and with messages of a test; without a browser."""
+
+import os
+import pathlib
+import time
+
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+from support import HOME, JOINTS, TIMEOUT_FACTOR, Client, Simulator, start_node
+
+from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_viewer.panels.banner import AMBER, RED, Banner
+from ur_ros_rtde_viewer.panels.recording_panel import RecordingPanel
+from ur_ros_rtde_viewer.panels.twin_panel import TwinPanel
+from ur_ros_rtde_viewer.program import parse
+from ur_ros_rtde_viewer.ros.nodes import Nodes
+from ur_ros_rtde_viewer.viewer import Viewer
+
+RIGHT = "right"  # a namespace without a driver: the test publishes its topics
+
+
+@pytest.fixture(scope="module")
+def simulator():
+    started = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"), "--surface", "z=-0.3")
+    yield started
+    started.stop()
+
+
+@pytest.fixture(scope="module")
+def driver(simulator):
+    started = start_node("driver", simulator.address)
+    yield started
+    started.stop()
+
+
+@pytest.fixture(scope="module")
+def client():
+    created = Client()
+    yield created
+    created.close()
+
+
+@pytest.fixture(scope="module")
+def viewer(server, driver, tmp_path_factory):
+    options = parse(["--robot", "", "--robot", f"{RIGHT},model=ur5e,y=-1", "--recordings", str(tmp_path_factory.mktemp("recordings"))])
+    nodes = Nodes()
+    created = Viewer(server, nodes, options)
+    yield created
+    created.close()
+    nodes.close()
+
+
+@pytest.fixture
+def robot(viewer):
+    return viewer.robots[0]
+
+
+def panel(robot, kind):
+    return next(panel for panel in robot.panels if isinstance(panel, kind))
+
+
+def update_until(viewer, condition, what, limit=40.0):
+    """Runs the loop of the viewer until the condition holds."""
+    end = time.monotonic() + TIMEOUT_FACTOR * limit
+    while not condition():
+        assert time.monotonic() < end, f"timeout after {limit} s waiting for {what}"
+        viewer.step()
+
+
+def near(shown, expected):
+    return shown is not None and np.allclose(shown.positions, expected, atol=0.005)
+
+
+def test_shows_the_reported_model_at_the_position_of_the_robot(viewer, robot):
+    update_until(viewer, lambda: robot.scene.model == "ur10e", "the model that the driver reports")
+    update_until(viewer, lambda: near(robot.scene.arm, HOME), "the arm to show the position")
+    update_until(viewer, lambda: len(robot.scene._surfaces) == 1, "the surface of the simulated world")
+
+
+def test_follows_a_motion_with_its_goal_and_the_trail(viewer, robot, client):
+    update_until(viewer, lambda: robot.state.driver is not None and robot.state.driver.name == "READY", "the driver to be ready")
+    before = len(robot.scene.tcp.trail.points)
+    goal = client.send(MoveJ, "move_j", joint_positions=[HOME[0] + 1.0, *HOME[1:]], speed=0.3)
+    assert goal.accepted
+    update_until(viewer, lambda: robot.state.goal is not None and 0.0 < robot.state.goal.progress < 1.0, "the progress of the goal")
+    assert robot.state.goal.action == "move_j"
+    update_until(viewer, goal.is_finished, "the end of the motion")
+    update_until(viewer, lambda: near(robot.scene.arm, [HOME[0] + 1.0, *HOME[1:]]), "the arm at the target")
+    assert len(robot.scene.tcp.trail.points) > before + 10
+    update_until(viewer, lambda: robot.state.goal is None, "the end of the goal")
+
+
+def test_shows_a_refusal(viewer, robot, client):
+    assert not client.send(MoveJ, "move_j", joint_positions=[0.0, 1.0]).accepted
+    update_until(viewer, lambda: robot.state.refusals, "the refusal")
+    assert "joint_positions has 2 values" in robot.state.refusals[-1].message
+
+
+def test_a_protective_stop_has_a_red_banner_and_ends(viewer, robot, simulator):
+    simulator.control("protective_stop", reason="a test")
+    banner = panel(robot, Banner)
+    update_until(viewer, lambda: banner.shown is not None and banner.shown[0] == RED, "the banner")
+    assert "PROTECTIVE STOP" in banner.shown[1] and banner._element.visible
+    update_until(viewer, simulator.unlock_protective_stop, "the end of the unlock delay")
+    simulator.control("power", to="running")
+    update_until(viewer, lambda: robot.state.safety_mode == "NORMAL" and (banner.shown is None or banner.shown[0] == AMBER), "the banner's end")
+
+
+def test_the_digital_twin_moves_while_the_robot_stays(viewer, robot, simulator):
+    twin = panel(robot, TwinPanel)
+    real = simulator.state()["actual"]["position"]
+    twin.switch(True)
+    update_until(viewer, lambda: twin.is_on, "the digital twin")
+    assert [slider.value for slider in twin._sliders] == pytest.approx(real, abs=0.01)
+    twin._sliders[0].value = real[0] - 0.7
+    twin.publish()
+    update_until(viewer, lambda: near(robot.scene.arm, [real[0] - 0.7, *real[1:]]), "the fake position")
+    update_until(viewer, lambda: near(robot.scene.ghost, real), "the real position as the ghost")
+    assert simulator.state()["actual"]["position"] == pytest.approx(real, abs=1e-3)
+    twin.switch(False)
+    update_until(viewer, lambda: not twin.is_on and near(robot.scene.arm, real), "the end of the digital twin")
+
+
+def test_records_and_replays(viewer, robot):
+    recording = panel(robot, RecordingPanel)
+    recording.toggle()
+    update_until(viewer, lambda: recording.is_recording, "the start of the recording")
+    file = pathlib.Path(recording._file)
+    update_until(viewer, lambda: file.is_file() and file.stat().st_size > 10000, "rows in the file")
+    recording.toggle()
+    update_until(viewer, lambda: not recording.is_recording, "the end of the recording")
+    assert recording._download.visible and recording.player.playing
+    assert recording.player.arm.positions == pytest.approx(robot.scene.arm.positions, abs=0.01)
+    recording.replay("wrong.csv", b"a,b\n")
+    assert "wrong.csv has no columns actual_q_0" in recording._message.content
+    recording.player.remove()
+
+
+def test_a_second_robot_is_independent_and_has_a_prefix(viewer, client):
+    right = viewer.robots[1]
+    assert panel(right, Banner).shown[0] == AMBER and right.scene.arm.positions != pytest.approx(np.zeros(6))
+    publisher = client.node.create_publisher(JointState, f"/{RIGHT}/joint_states", 10)
+    positions = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+    message = JointState(name=[f"right_{joint}" for joint in reversed(JOINTS)], position=positions[::-1])
+
+    def shown():
+        publisher.publish(message)
+        return near(right.scene.arm, positions)
+
+    update_until(viewer, shown, "the joints in another order and with a prefix")
+    assert right.topics.joint_names[2] == "right_elbow_joint"
+    shown_before = right.scene.arm.positions
+    publisher.publish(JointState(name=["a"], position=[1.0]))
+    publisher.publish(JointState(name=JOINTS, position=[]))
+    viewer.step()
+    assert right.scene.arm.positions == pytest.approx(shown_before)
+
+
+def test_posted_functions_run_in_the_loop_and_a_failing_one_is_logged(viewer, caplog):
+    called = []
+    viewer.post(lambda: 1 / 0)
+    viewer.post(lambda: called.append(True))
+    viewer.step()
+    assert called and "ZeroDivisionError" in caplog.text
+
+
+def test_a_restart_of_the_driver_is_shown_and_survived(viewer, robot, simulator, driver):
+    driver.stop()
+    banner = panel(robot, Banner)
+    update_until(viewer, lambda: banner.shown is not None and "no messages on /joint_states for" in banner.shown[1], "the banner")
+    restarted = start_node("driver", simulator.address)
+    try:
+        update_until(viewer, lambda: robot.state.age < 0.5 and banner.shown is None, "the state of the restarted driver")
+    finally:
+        restarted.stop()

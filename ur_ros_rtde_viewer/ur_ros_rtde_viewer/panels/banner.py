@@ -1,0 +1,50 @@
+"""A banner in the header: what stops the robot, or why nothing is shown."""
+
+import html
+from typing import Any, Optional, Tuple
+
+from ..state.robot_state import RobotState
+
+SILENT = 1.0  # s without joint states
+RED, AMBER = "#c62828", "#b26a00"
+
+
+def banner_text(state: RobotState, name: str, topic: str, has_model: bool) -> Optional[Tuple[str, str]]:
+    """Returns color and text, None if there is nothing to report."""
+    if state.is_stopped:
+        title = state.safety_mode.replace("_", " ")
+        return RED, f"{name}: {title}. {state.driver.message if state.driver is not None else ''}"
+    if state.joints is None:
+        return AMBER, (f"{name}: no messages on {topic}. Start the driver (`ros2 launch ur_ros_rtde driver.launch.py` or `./ur demo "
+                       "--keep-running`) with the same ROS_DOMAIN_ID and namespace.")
+    if state.age > SILENT:
+        return AMBER, f"{name}: no messages on {topic} for {state.age:.0f} s. The driver has ended or has lost the robot."
+    if not has_model:
+        return AMBER, (f"{name}: the driver reports " + (f"the model {state.model}, which has no description"
+                                                         if state.model else "no model") + ". State the model: --model ur10e")
+    if state.driver is not None and state.driver.name == "STOPPED":
+        return AMBER, f"{name}: {state.driver.message}"
+    return None
+
+
+class Banner:
+    """`scene` is the RobotScene, which knows whether the model was found."""
+
+    def __init__(self, header: Any, gui: Any, name: str, topic: str, scene: Any):
+        self._name, self._topic, self._scene = name, topic, scene
+        with header:
+            self._element = gui.add_html("", visible=False)
+        self.shown: Optional[Tuple[str, str]] = None
+
+    def update(self, state: RobotState) -> None:
+        shown = banner_text(state, self._name, self._topic, self._scene.arm is not None)
+        if shown != self.shown:
+            self.shown = shown
+            if shown is not None:
+                color, text = shown
+                self._element.content = (f"<div style='background:{color};color:white;font-weight:600;padding:10px 14px;"
+                                         f"border-radius:6px;margin:6px'>{html.escape(text)}</div>")
+            self._element.visible = shown is not None
+
+    def close(self) -> None:
+        pass

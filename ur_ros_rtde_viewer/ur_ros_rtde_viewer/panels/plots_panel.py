@@ -1,0 +1,81 @@
+"""Plots of the last 30 s: joint positions, joint velocities and the force at the TCP."""
+
+import time
+from typing import Any, List, Tuple
+
+import numpy as np
+from viser import uplot
+
+from ..state.history import History
+from ..state.robot_state import RobotState
+
+DURATION = 30.0  # s
+SAMPLE_PERIOD = 1.0 / 15.0  # s
+DRAW_PERIOD = 0.25  # s; each drawing sends all samples
+JOINTS = ("pan", "lift", "elbow", "wrist 1", "wrist 2", "wrist 3")
+COLORS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
+PLOTS = (("Joint positions, rad", JOINTS, 0), ("Joint velocities, rad/s", JOINTS, 6), ("Force at the TCP, N", ("x", "y", "z"), 12))
+COLUMNS = 1 + 6 + 6 + 3
+
+
+def sample(state: RobotState) -> np.ndarray:
+    """Returns time, positions, velocities and force; values that were not received are NaN."""
+    row = np.full(COLUMNS, np.nan)
+    if state.joints is not None:
+        row[0], row[1:7], row[7:13] = state.joints.stamp, state.joints.positions, state.joints.velocities
+    if state.wrench is not None:
+        row[13:] = state.wrench[:3]
+    return row
+
+
+class PlotsPanel:
+    def __init__(self, tab: Any, server: Any):
+        self._server = server
+        self._history = History(COLUMNS, round(DURATION / SAMPLE_PERIOD) + 1)
+        self._last_stamp, self._drawn = -np.inf, -np.inf
+        with tab:
+            self._pause = server.gui.add_checkbox("Pause", False)
+            self._plots = [self._add(title, names) for title, names, _ in PLOTS]
+
+    def _add(self, title: str, names: Tuple[str, ...]) -> Any:
+        series = (uplot.Series(label="s"), *(uplot.Series(label=name, stroke=color, width=1.5, points={"show": False})
+                                             for name, color in zip(names, COLORS)))
+        return self._server.gui.add_uplot(tuple(np.zeros(1) for _ in range(len(names) + 1)), series, title=title, height=190,
+                                          scales={"x": uplot.Scale(time=False), "y": uplot.Scale(auto=True)},
+                                          legend=uplot.Legend(show=True, live=False))
+
+    @property
+    def paused(self) -> bool:
+        return bool(self._pause.value)
+
+    @property
+    def data(self) -> List[np.ndarray]:
+        """The newest samples: relative times in s, then the values of all plots."""
+        rows = self._history.rows(DURATION)
+        rows[:, 0] -= rows[-1, 0] if len(rows) else 0.0
+        return list(rows.T)
+
+    def update(self, state: RobotState) -> None:
+        if state.joints is not None:
+            self._collect(state)
+        now = time.monotonic()
+        if not self.paused and len(self._history) and now - self._drawn >= DRAW_PERIOD and self._server.get_clients():
+            self._drawn = now
+            self._draw()
+
+    def _collect(self, state: RobotState) -> None:
+        stamp = state.joints.stamp if state.joints is not None else 0.0
+        if stamp < self._last_stamp:  # another clock: the driver or a simulator restarted
+            self._history.clear()
+            self._last_stamp = -np.inf
+        if stamp - self._last_stamp >= SAMPLE_PERIOD:
+            self._history.add(sample(state))
+            self._last_stamp = stamp
+
+    def _draw(self) -> None:
+        data = self.data
+        for plot, (_, names, first) in zip(self._plots, PLOTS):
+            plot.data = (data[0], *data[1 + first:1 + first + len(names)])
+
+    def close(self) -> None:
+        pass

@@ -1,0 +1,95 @@
+"""Records RTDE outputs of the robot to a CSV file, offers it for download, and replays CSV files in the scene."""
+
+import pathlib
+import time
+from typing import Any, Callable, Optional
+
+from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
+
+from ..errors import ViewerError
+from ..playback.motion import read_csv
+from ..playback.player import Player
+from ..ros.service_call import ServiceCaller
+from ..state.robot_state import RobotState
+
+DEFAULT_FIELDS = "timestamp actual_q actual_qd actual_TCP_pose actual_TCP_force"
+
+
+class RecordingPanel:
+    """`folder`: where the driver writes its files. A file is offered for download if it is on this machine."""
+
+    def __init__(self, tab: Any, server: Any, services: ServiceCaller, player: Player, folder: pathlib.Path,
+                 post: Callable[..., None]):
+        self._server, self._services, self._folder, self._post = server, services, folder, post
+        self._file: Optional[pathlib.Path] = None
+        gui = server.gui
+        with tab:
+            self._fields = gui.add_text("RTDE outputs", DEFAULT_FIELDS)
+            self._button = gui.add_button("Record")
+            self._message = gui.add_markdown("")
+            self._download = gui.add_button("Download", visible=False)
+            self._upload = gui.add_upload_button("Replay a CSV file", mime_type=".csv,text/csv")
+        self.player = player
+        self._button.on_click(lambda _event: post(self.toggle))
+        self._download.on_click(lambda event: self._send(event.client))
+        self._upload.on_upload(lambda _event: post(self._replay_upload))
+        self.is_recording = False
+
+    def toggle(self) -> None:
+        self._button.disabled = True
+        if self.is_recording:
+            self._services.call(StopRecording, "stop_recording", self._stopped)
+            return
+        self._file = self._folder / time.strftime("recording_%Y%m%d_%H%M%S.csv")
+        self._services.call(StartRecording, "start_recording", self._started, filename=str(self._file), fields=self._fields.value.split())
+
+    def _started(self, response: Optional[Any], reason: str) -> None:
+        self._show_state(response is not None and response.success)
+        self._message.content = f"Recording to `{self._file}`" if self.is_recording else reason or response.message
+
+    def _stopped(self, response: Optional[Any], reason: str) -> None:
+        self._show_state(False)
+        if response is None or not response.success:
+            self._message.content = reason or response.message
+            return
+        lost = f", {response.lost} lost" if response.lost else ""
+        self._message.content = f"`{response.filename}`: {response.rows} rows{lost}"
+        self._file = pathlib.Path(response.filename)
+        self._download.visible = self._file.is_file()
+        if self._download.visible:
+            self.replay(self._file.name, self._file.read_bytes())
+
+    def _show_state(self, recording: bool) -> None:
+        self.is_recording = recording
+        self._button.label, self._button.disabled = "Stop" if recording else "Record", False
+        self._fields.disabled = recording
+
+    def _send(self, client: Any) -> None:
+        """Runs in a thread of the server, because the file may be large."""
+        try:
+            content = self._file.read_bytes() if self._file is not None else b""
+        except OSError as error:
+            text = f"{self._file}: {error.strerror}"
+            self._post(lambda: setattr(self._message, "content", text))
+            return
+        client.send_file_download(self._file.name, content)
+
+    def _replay_upload(self) -> None:
+        self.replay(self._upload.value.name, self._upload.value.content)
+
+    def replay(self, name: str, content: bytes) -> None:
+        """Shows a recording in the scene, or why this is not possible."""
+        try:
+            motion = read_csv(name, content)
+            self.player.load(motion)
+        except ViewerError as error:
+            self._message.content = str(error)
+            return
+        self._message.content = f"`{name}`: {motion.duration:.1f} s, {len(motion.times)} rows"
+
+    def update(self, state: RobotState) -> None:
+        self.player.update(state)
+
+    def close(self) -> None:
+        if self.is_recording:
+            self._services.call(StopRecording, "stop_recording", lambda _response, _reason: None)

@@ -1,0 +1,62 @@
+"""Follows the goal that moves the arm: which action, its progress and its duration."""
+
+import importlib
+import time
+from typing import Any, Optional
+
+from rclpy.qos import QoSProfile
+
+from ..state.robot_state import ActiveGoal
+from .nodes import Nodes
+
+FEEDBACK = "/_action/feedback"
+SILENCE = 0.5  # s without feedback, after which a goal with feedback has ended; it is published at 20 Hz
+
+
+class ActiveGoalTopic:
+    """The name of the goal comes once a second from /diagnostics; progress comes from the feedback of its action."""
+
+    def __init__(self, nodes: Nodes, prefix: str):
+        self._node, self._prefix = nodes.node, prefix
+        self._action = ""
+        self._subscription: Any = None
+        self._heard: Optional[float] = None
+        self.goal: Optional[ActiveGoal] = None
+
+    def on_holder(self, holder: str) -> None:
+        """`holder` is the entry of /diagnostics: "/left/move_j, goal 51b26db5", or empty."""
+        action = holder.partition(",")[0].removeprefix(self._prefix)
+        if action == self._action:
+            return
+        self._end()
+        if action:
+            self._action, self.goal = action, ActiveGoal(action, 0.0, 0.0)
+            self._subscribe(f"{self._prefix}{action}{FEEDBACK}")
+
+    def update(self) -> None:
+        """Ends a goal whose feedback has ended, up to a second before /diagnostics reports it."""
+        if self._heard is not None and time.monotonic() - self._heard > SILENCE:
+            self.goal = None
+
+    def _subscribe(self, topic: str) -> None:
+        types = dict(self._node.get_topic_names_and_types()).get(topic)
+        if types:
+            self._subscription = self._node.create_subscription(_feedback_type(types[0]), topic, self._on_feedback, QoSProfile(depth=1))
+
+    def _on_feedback(self, message: Any) -> None:
+        motion = getattr(message.feedback, "motion", None)
+        if motion is None:
+            return
+        self._heard = time.monotonic()
+        self.goal = ActiveGoal(self._action, motion.progress, motion.elapsed.sec + 1e-9 * motion.elapsed.nanosec)
+
+    def _end(self) -> None:
+        if self._subscription is not None:
+            self._node.destroy_subscription(self._subscription)
+        self._action, self._subscription, self._heard, self.goal = "", None, None, None
+
+
+def _feedback_type(name: str) -> Any:
+    """Returns the message class of "ur_ros_rtde_msgs/action/MoveJ_FeedbackMessage"."""
+    package, _, kind = name.split("/")
+    return getattr(importlib.import_module(f"{package}.action"), kind.removesuffix("_FeedbackMessage")).Impl.FeedbackMessage

@@ -1,0 +1,56 @@
+"""Calls of services that never block the loop."""
+
+import time
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, List, Optional
+
+from .nodes import Nodes
+
+LIMIT = 10.0  # s
+OnEnd = Callable[[Any, str], None]  # (response, "") or (None, reason)
+
+
+@dataclass
+class _Call:
+    name: str
+    client: Any
+    request: Any
+    on_end: OnEnd
+    deadline: float
+    future: Optional[Any] = None
+
+    @property
+    def reason(self) -> str:
+        """Why there is no response."""
+        if self.future is None:
+            return f"there is no service {self.name}. Does robot_state_receiver run with this ROS_DOMAIN_ID?"
+        return f"the service {self.name} did not answer within {LIMIT:g} s"
+
+
+class ServiceCaller:
+    """Calls services of one robot. Each call ends exactly once. All methods and `on_end` run in the thread of the loop."""
+
+    def __init__(self, nodes: Nodes, name_of: Callable[[str], str]):
+        self._node, self._name_of = nodes.node, name_of
+        self._clients: Dict[str, Any] = {}
+        self._calls: List[_Call] = []
+
+    def call(self, kind: Any, name: str, on_end: OnEnd, **request: Any) -> None:
+        """Waits up to LIMIT for the service and its response."""
+        if name not in self._clients:
+            self._clients[name] = self._node.create_client(kind, self._name_of(name))
+        self._calls.append(_Call(self._name_of(name), self._clients[name], kind.Request(**request), on_end, time.monotonic() + LIMIT))
+
+    def update(self) -> None:
+        """Sends requests whose service has appeared, and ends calls. Called once per update."""
+        for call in list(self._calls):
+            if call.future is None and call.client.service_is_ready():
+                call.future = call.client.call_async(call.request)
+            done = call.future is not None and call.future.done()
+            if done or time.monotonic() > call.deadline:
+                self._calls.remove(call)
+                call.on_end(call.future.result() if done else None, "" if done else call.reason)
+
+    @property
+    def is_idle(self) -> bool:
+        return not self._calls
