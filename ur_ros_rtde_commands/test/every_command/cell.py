@@ -24,6 +24,9 @@ AT_REST = 0.01  # rad/s
 RETRY_INTERVAL = 0.05  # s
 RESTART_DISABLED = "restart_program is off: start the driver again"
 PREPARE_LIMIT = 3.0  # s, to return home after an example
+# The plugins that a cell itself uses.
+OWN_PLUGINS = {"move_j", "stop", "ft_rtde_input_enable", *(f"dashboard/{name}" for name in
+               ("robot_mode", "unlock_protective_stop", "power_on", "brake_release"))}
 CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper() and isinstance(value, int)}
 
 
@@ -94,7 +97,7 @@ class Cell:
         self._env = {"ROS_DOMAIN_ID": str(self._domain.number)}
         self.simulator = Simulator(address(number), model=setup.controller)
         self.client = StatusTrackingClient(self._domain.number, f"test_client_{number}")
-        self.driver = None
+        self.driver, self._plugins = None, None
         self.start_driver()
 
     def close(self):
@@ -104,8 +107,18 @@ class Cell:
         self._domain.close()
 
     def start_driver(self):
-        self.driver = start_node("driver", self.simulator.address, f"ur_type:={self.setup.controller}", *self.setup.parameters,
+        chosen = [f"plugins:=[{', '.join(sorted(self._plugins))}]"] if self._plugins else []
+        self.driver = start_node("driver", self.simulator.address, f"ur_type:={self.setup.controller}", *chosen, *self.setup.parameters,
                                  env=self._env)
+
+    def load_plugins(self, *names):
+        """Starts the driver again with these plugins and those of the cell, or without names with all. A driver with few plugins
+        starts four times as fast, and its clients discover it faster."""
+        plugins = {*names, *OWN_PLUGINS} if names else None
+        if plugins != self._plugins:
+            self._plugins = plugins
+            self.driver.stop()
+            self.start_driver()
 
     def restart_simulator(self):
         if self.simulator.process.running():
@@ -134,6 +147,8 @@ class Cell:
     def prepare(self, example=None):
         """Moves the arm home, removes obstacles, and sets up the example's scene."""
         assert self.driver.running(), self.driver.output()
+        if example and self._plugins and example.action not in self._plugins:
+            self.load_plugins()
         try:
             self.restore(PREPARE_LIMIT)
         except (AssertionError, OSError):

@@ -9,6 +9,7 @@ GROUP = "losses"
 
 
 def scenario(cell, example):
+    cell.load_plugins(example.action)  # because the driver starts again for each example
     return disturb(cell, example, SHUTDOWN)
 
 
