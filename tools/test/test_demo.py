@@ -97,6 +97,12 @@ def test_the_packages_that_the_demo_imports_are_built():
     assert "ur_ros_rtde_commands" in packages_of_demo(parse(["--keep-running"]))
 
 
+def test_only_a_demo_with_the_page_builds_the_viewer_and_it_keeps_running():
+    assert "ur_ros_rtde_viewer" not in packages_of_demo(parse(["--keep-running"]))
+    options = parse(["--view"])
+    assert options.keep_running and {"ur_ros_rtde_viewer", "ur_ros_rtde_commands"} <= set(packages_of_demo(options))
+
+
 def test_options_out_of_range_are_rejected_with_their_limits():
     result = demo("--threshold", "1000")
     assert result.returncode == 2

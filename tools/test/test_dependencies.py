@@ -20,7 +20,8 @@ KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "
         "Git": "git", "Python3": "python3", "nlohmann_json": "nlohmann-json-dev", "tl-expected": "libexpected-dev",
         "numpy": "python3-numpy", "pytest": "python3-pytest", "yaml": "python3-yaml"}
 NOT_DECLARED = {"Threads",  # part of CMake
-                "copp_py", "toppra"}  # solvers that oracle.py compares with
+                "copp_py", "toppra",  # solvers that oracle.py compares with
+              "viser"}  # no rosdep key; without it, the viewer says how to install it
 
 
 def declared(name, kinds):

@@ -6,8 +6,10 @@ import json
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
+import urllib.request
 
 import pytest
 from ur_tools import console, plan_goal
@@ -34,13 +36,18 @@ trajectory:
 FAST = "time_from_start: {sec: 1, nanosec: 200000000}"
 
 
-def plan(tmp_path, text, *options):
-    """Runs the program directly, because ./ur would build first."""
+def command(tmp_path, text, *options):
+    """Returns the command and its environment. The program runs directly, because ./ur would build first."""
     file = tmp_path / "plan.yaml"
     file.write_text(text)
     env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT / "tools"), os.environ.get("PYTHONPATH", "")])}
-    return subprocess.run([sys.executable, "-m", "ur_tools.plan", str(file), *map(str, options)], env=env, cwd=tmp_path,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+    return [sys.executable, "-u", "-m", "ur_tools.plan", str(file), *map(str, options)], env
+
+
+def plan(tmp_path, text, *options):
+    program_and_arguments, env = command(tmp_path, text, *options)
+    return subprocess.run(program_and_arguments, env=env, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          timeout=300)
 
 
 @pytest.fixture
@@ -167,3 +174,21 @@ def test_the_file_has_the_format_of_an_action_goal(tmp_path, action, text):
 def test_the_help_requires_no_build():
     result = subprocess.run([sys.executable, str(ROOT / "ur"), "plan", "--help"], stdout=subprocess.PIPE, text=True, timeout=300)
     assert result.returncode == 0 and "--plot" in result.stdout and "blend_tolerance" in result.stdout
+
+
+def test_shows_the_plan_in_the_browser_until_ctrl_c(tmp_path):
+    program_and_arguments, env = command(tmp_path, PATH, "--model", "ur10e", "--view")
+    with subprocess.Popen(program_and_arguments, env=env, cwd=tmp_path, stdout=subprocess.PIPE, text=True) as running:
+        address = next((match for line in running.stdout if (match := re.search(r"viewer runs at (\S+) until", line))), None)
+        try:
+            assert address is not None
+            with urllib.request.urlopen(address.group(1), timeout=60) as page:
+                assert b"<html" in page.read()
+        finally:
+            running.send_signal(signal.SIGINT)
+        assert running.wait(60) == 130
+
+
+def test_a_page_needs_the_model_of_the_arm(tmp_path):
+    result = plan(tmp_path, PATH, "--view")
+    assert result.returncode == 2 and "--model" in result.stdout

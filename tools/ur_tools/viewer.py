@@ -2,6 +2,9 @@
 
 import os
 import pathlib
+import re
+import time
+import webbrowser
 from typing import Mapping, Sequence
 
 from . import build as building
@@ -12,6 +15,8 @@ from .processes import Program, Programs
 
 PACKAGE = "ur_ros_rtde_viewer"
 START_LIMIT = 60.0  # s
+READY = re.compile(r"The viewer runs at (\S+) until Ctrl-C\.")
+CONNECTED = "A browser shows the page."
 
 
 def prepare(layout: Layout, jobs: int = 0) -> pathlib.Path:
@@ -34,6 +39,17 @@ def execute(layout: Layout, arguments: Sequence[str], jobs: int = 0) -> None:
 def start(programs: Programs, layout: Layout, env: Mapping[str, str], *arguments: str) -> Program:
     """Returns when the page is served, and prints its address."""
     viewer = programs.start("viewer", [str(program(layout, PACKAGE, "view")), *arguments], env)
-    programs.wait_until(lambda: "viewer runs at " in viewer.output, START_LIMIT, "the viewer")
-    console.line(next(line for line in viewer.output.splitlines() if "viewer runs at " in line))
+    programs.wait_until(lambda: READY.search(viewer.output) is not None, START_LIMIT, "the viewer")
+    console.line(READY.search(viewer.output).group())
     return viewer
+
+
+def show_page(programs: Programs, viewer: Program, limit: float) -> None:
+    """Opens the page if this machine has a display, and waits up to `limit` s until a browser shows it."""
+    if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        webbrowser.open(READY.search(viewer.output).group(1))
+    console.line(f"Open the page in a browser. The demo continues when it is open, or in {limit:g} s.")
+    end = time.monotonic() + limit
+    while CONNECTED not in viewer.output and time.monotonic() < end:
+        programs.check()
+        time.sleep(0.1)

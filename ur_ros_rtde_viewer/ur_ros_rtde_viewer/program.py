@@ -47,6 +47,7 @@ def _serve(options: argparse.Namespace) -> None:
         ending.callback(nodes.close)
         viewer = Viewer(server, nodes, options)
         ending.callback(viewer.close)
+        server.on_client_connect(lambda _client: print("A browser shows the page.", flush=True))
         print(f"The viewer runs at {url(server)} until Ctrl-C.", flush=True)
         viewer.run(lambda: interruption.take() is not None)
 

@@ -79,10 +79,10 @@ class Viewer:
         """Ends what the page has started: recordings and the digital twin. Waits for the driver, but not long."""
         for robot in self.robots:
             robot.close()
+        if self.control is not None:
+            self.control.close()
         end = time.monotonic() + CLOSE_LIMIT
         while time.monotonic() < end and not all(robot.services.is_idle for robot in self.robots):
             for robot in self.robots:
                 robot.services.update()
             self.nodes.spin_once(0.01)
-        if self.control is not None:
-            self.control.close()
