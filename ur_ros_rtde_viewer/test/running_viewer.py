@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support import wait_for
 
-LIMIT = 60.0  # s, of an operation in the browser on a busy machine
+LIMIT = 30.0  # s, of an operation in the browser on a busy machine
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 WINDOW = {"width": 900, "height": 1100}
 COARSE = "?fixedDpr=0.1"  # scene pixels per screen pixel: software rendering is slow
@@ -24,7 +24,7 @@ class RunningViewer:
 
         parser = argparse.ArgumentParser()
         add_arguments(parser)
-        options = parser.parse_args(["--model", "ur10e", "--rate", "10", "--port", str(port), *arguments])
+        options = parser.parse_args(["--model", "ur10e", "--rate", "5", "--port", str(port), *arguments])
         self.server = start_server("127.0.0.1", port)
         self.port = self.server.get_port()
         self.nodes = Nodes()
@@ -77,16 +77,17 @@ class Tab:
         self.page.get_by_role("tab", name=name, exact=True).click()
 
     def field(self, label):
-        """Returns the input with this label."""
-        return self.page.get_by_label(label, exact=True).locator("visible=true")
+        """Returns the input in the row of this label."""
+        row = self.page.locator(".mantine-Flex-root", has=self.page.get_by_text(label, exact=True))
+        return row.locator("input:visible, textarea:visible")
 
     def select_action(self, name):
         self.open("Commands")
-        action = self.page.get_by_role("textbox", name="Action", exact=True)
+        action = self.field("Action")
         action.click()
         action.fill(name)
         self.page.get_by_role("option", name=name, exact=True).click()
-        self.page.get_by_text(name, exact=True).locator("visible=true").first.wait_for()
+        self.page.locator("label, legend, div, span").get_by_text(name, exact=True).locator("visible=true").first.wait_for()
 
     def wait_for_text(self, text):
         self.page.get_by_text(text).locator("visible=true").first.wait_for()

@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""Draws the viewer during the demo: docs/images/viewer.png, and the animation docs/images/viewer_demo.png (APNG).
+
+    ./ur build
+    .ur/kilted/venv/bin/python tools/draw_viewer.py
+
+The simulated time passes slowly, because the scene is rendered without a GPU.
+"""
+
+import argparse
+import io
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ur_tools import browser, console, simulation  # noqa: E402
+from ur_tools.environment import program, run_environment  # noqa: E402
+from ur_tools.layout import ROOT, Layout  # noqa: E402
+from ur_tools.processes import Programs  # noqa: E402
+
+ADDRESS, PORT = "127.0.0.1", 8180
+LIMIT = 300.0  # s, of an operation in the browser
+ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+SLOW = ("silence_limit:=10.0", "rtde_frequency:=125.0"), ("silence_limit:=10.0", "watchdog_frequency:=1.0"), ()
+COLORS = 128  # of the animation
+LARGEST = 3_000_000  # bytes
+
+
+def start(programs, layout, options):
+    env = run_environment(layout)
+    simulation.start_simulator(programs, layout, env, ADDRESS, "ur10e", "--real-time-factor", str(options.real_time_factor))
+    for node, parameters in zip(simulation.NODES, SLOW):
+        simulation.start_node(programs, layout, env, node, ADDRESS, *parameters)
+    viewer = programs.start("viewer", [program(layout, "ur_ros_rtde_viewer", "view"), "--control", "--model", "ur10e", "--simulator",
+                                       ADDRESS, "--port", str(PORT), "--rate", "4"], env)
+    programs.wait_until(lambda: "runs at" in viewer.output, LIMIT, "the viewer")
+    return env
+
+
+def open_page(playwright, width, height, scale):
+    env = {**os.environ, "LD_LIBRARY_PATH": os.environ.get(browser.LIBRARIES, "")}
+    chromium = playwright.chromium.launch(executable_path=os.environ[browser.VARIABLE], args=ARGUMENTS, env=env)
+    page = chromium.new_page(viewport={"width": width, "height": height}, device_scale_factor=scale)
+    page.set_default_timeout(1e3 * LIMIT)
+    page.goto(f"http://127.0.0.1:{PORT}/?fixedDpr={scale}")
+    page.get_by_role("button", name="STOP", exact=True).wait_for()
+    close = page.locator(".mantine-Notification-closeButton")  # the warning about software rendering
+    if close.count():
+        close.first.click()
+    return page
+
+
+def picture(page):
+    from PIL import Image
+
+    return Image.open(io.BytesIO(page.screenshot(animations="disabled"))).convert("RGB")
+
+
+def film(page, experiment, folder, options):
+    """Returns pictures at equal intervals until the experiment has ended."""
+    frames = []
+    while experiment.poll() is None and len(frames) < options.frames:
+        due = time.monotonic() + options.interval / options.real_time_factor
+        frames.append(picture(page))
+        time.sleep(max(0.0, due - time.monotonic()))
+    experiment.wait(LIMIT)
+    frames.append(picture(page))
+    return frames
+
+
+def write(frames, options):
+    from PIL import Image
+
+    frames[-1].save(options.folder / "viewer.png", optimize=True)
+    small = [frame.resize((options.width, options.height * options.width // options.page_width), Image.LANCZOS).quantize(COLORS)
+             for frame in frames]
+    file = options.folder / "viewer_demo.png"
+    small[0].save(file, save_all=True, append_images=small[1:], duration=int(1e3 * options.interval), loop=0, optimize=True)
+    if file.stat().st_size > LARGEST:
+        raise console.Failure(f"{file} has {file.stat().st_size / 1e6:.1f} MB, more than 3 MB: use a larger --interval or a smaller --width")
+
+
+def run(options):
+    layout = Layout.of_environment()
+    os.environ.update(browser.environment(layout))
+    if browser.VARIABLE not in os.environ:
+        return 1
+    from playwright.sync_api import sync_playwright
+
+    with Programs(layout.log / "draw_viewer") as programs, sync_playwright() as playwright:
+        env = start(programs, layout, options)
+        page = open_page(playwright, options.page_width, options.height, 1)
+        experiment = subprocess.Popen([str(layout.python), str(ROOT / "demo" / "force_experiment.py"), "--address", ADDRESS, "--model",
+                                       "UR10e", "--drop", "0.3", "--output", str(layout.log)], env=env)
+        write(film(page, experiment, options.folder, options), options)
+    return 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "docs" / "images")
+    parser.add_argument("--page-width", type=int, default=1280, help="width of the page, pixels")
+    parser.add_argument("--height", type=int, default=720, help="height of the page, pixels")
+    parser.add_argument("--width", type=int, default=800, help="width of the animation, pixels")
+    parser.add_argument("--interval", type=float, default=0.25, help="between pictures, s of the robot's time")
+    parser.add_argument("--frames", type=int, default=60, help="largest number of pictures")
+    parser.add_argument("--real-time-factor", type=float, default=0.1, help="of the simulator")
+    options = parser.parse_args()
+    try:
+        return run(options)
+    except console.Failure as failure:
+        console.line(str(failure))
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
