@@ -1,6 +1,5 @@
 """A viewer in a thread of the test, and a browser that shows its page."""
 
-import argparse
 import contextlib
 import os
 import threading
@@ -9,22 +8,21 @@ import numpy as np
 import pytest
 from support import wait_for
 
-LIMIT = 30.0  # s, of an operation in the browser on a busy machine
-ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
-WINDOW = {"width": 900, "height": 1100}
+LIMIT = 90.0  # s, of an operation in the browser on a busy machine
+ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
+             "--disable-gpu-compositing"]
+WINDOW = {"width": 1300, "height": 1000}
 COARSE = "?fixedDpr=0.1"  # scene pixels per screen pixel: software rendering is slow
 
 
 class RunningViewer:
     def __init__(self, *arguments, port=0):
-        from ur_ros_rtde_viewer.arguments import add_arguments
         from ur_ros_rtde_viewer.page.server import start_server
+        from ur_ros_rtde_viewer.program import parse
         from ur_ros_rtde_viewer.ros.nodes import Nodes
         from ur_ros_rtde_viewer.viewer import Viewer
 
-        parser = argparse.ArgumentParser()
-        add_arguments(parser)
-        options = parser.parse_args(["--model", "ur10e", "--rate", "5", "--port", str(port), *arguments])
+        options = parse(["--model", "ur10e", "--rate", "5", "--port", str(port), *arguments])
         self.server = start_server("127.0.0.1", port)
         self.port = self.server.get_port()
         self.nodes = Nodes()
