@@ -21,7 +21,8 @@ KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "
         "numpy": "python3-numpy", "pytest": "python3-pytest", "yaml": "python3-yaml"}
 NOT_DECLARED = {"Threads",  # part of CMake
                 "copp_py", "toppra",  # solvers that oracle.py compares with
-              "viser"}  # no rosdep key; without it, the viewer says how to install it
+                "viser",  # no rosdep key; without it, the viewer says how to install it
+                "playwright"}  # installed by `./ur test` for the browser tests
 
 
 def declared(name, kinds):
@@ -71,7 +72,7 @@ def test_cmake_packages_are_declared(name):
 @pytest.mark.parametrize("name", PACKAGES)
 def test_imported_python_modules_are_declared(name):
     local = {path.stem for path in files(name, "*.py")} | {path.parent.name for path in files(name, "__init__.py")}
-    local |= {"support", "robot_fixtures"}  # modules of the tests of ur_ros_rtde
+    local |= {"support", "robot_fixtures", "arm_state"}  # modules of the tests of ur_ros_rtde
     for path in files(name, "*.py"):
         known = declared(name, ANY if is_test(path) else RUN)
         assert not undeclared(set(imported(path)) - local - set(sys.stdlib_module_names), known), path
