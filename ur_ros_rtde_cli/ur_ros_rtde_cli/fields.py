@@ -271,17 +271,22 @@ def to_plain(value: Any) -> Any:
     return value.item() if isinstance(value, numpy.generic) else value
 
 
-def _rounded(value: Any) -> Any:
+def _rounded(value: Any, decimals: int = 6) -> Any:
     if isinstance(value, dict):
-        return {name: _rounded(item) for name, item in value.items()}
+        return {name: _rounded(item, decimals) for name, item in value.items()}
     if isinstance(value, list):
-        return [_rounded(item) for item in value]
-    return round(value, 6) + 0.0 if isinstance(value, float) else value
+        return [_rounded(item, decimals) for item in value]
+    return round(value, decimals) + 0.0 if isinstance(value, float) else value
+
+
+def plain_to_yaml(values: Any, width: int, decimals: int) -> str:
+    """Returns what to_plain() returns as YAML."""
+    return yaml.safe_dump(_rounded(values, decimals), sort_keys=False, default_flow_style=None, width=width).rstrip("\n")
 
 
 def to_yaml(message: Any, width: int = 120) -> str:
     """Returns a message as YAML with six decimals."""
-    return yaml.safe_dump(_rounded(to_plain(message)), sort_keys=False, default_flow_style=None, width=width).rstrip("\n")
+    return plain_to_yaml(to_plain(message), width, 6)
 
 
 def to_yaml_line(message: Any) -> str:

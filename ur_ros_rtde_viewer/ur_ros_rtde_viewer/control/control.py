@@ -53,8 +53,7 @@ class Control:
             robot.stop(lambda outcome, text, name=name: self._show_outcome(name, outcome, text))
 
     def _show_outcome(self, name: str, outcome: Outcome, text: str) -> None:
-        mark = "❌ " if outcome == Outcome.FAILED else ""
-        self._stop_text.content = f"{mark}{name}{outcome.value} {text}"
+        self._stop_text.content = f"{name}{outcome.value} {text}"
 
     def _connect(self, client: Any) -> None:
         panels: List[Any] = []

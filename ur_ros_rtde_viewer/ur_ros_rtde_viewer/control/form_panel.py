@@ -96,7 +96,7 @@ class FormPanel:
                 self._inputs[field.path].value = text
 
     def _show_error(self, text: str) -> None:
-        self._error.content = f"❌ {escaped(text)}" if text else ""
+        self._error.content = escaped(text)
 
     def _send(self) -> None:
         form, inputs = self._form, self._inputs

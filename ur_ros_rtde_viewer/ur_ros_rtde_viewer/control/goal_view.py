@@ -8,7 +8,9 @@ from ur_ros_rtde_cli import fields
 from .goals import Goals, Phase, SentGoal
 
 REFRESH_PERIOD = 0.1  # s
-MARKS = {Phase.SUCCEEDED: "✅", Phase.FAILED: "❌", Phase.REFUSED: "❌", Phase.CANCELED: "⏹"}
+OUTCOME = ("success", "error_code", "message")  # fields of a result that the phase and the message state already
+DIGITS = 4  # of shown numbers
+WIDTH = 40  # characters
 
 
 class GoalView:
@@ -61,10 +63,11 @@ def escaped(text: str) -> str:
 
 
 def _text(goal: SentGoal) -> str:
-    parts = [f"{MARKS.get(goal.phase, '▶')} **{escaped(goal.action)}: {goal.phase.value}**"]
+    parts = [f"**{escaped(goal.action)}: {goal.phase.value}**"]
     if goal.message:
         parts.append(escaped(goal.message))
     details = goal.result if goal.phase == Phase.SUCCEEDED else None if goal.has_ended else goal.feedback
-    if details is not None and details.get_fields_and_field_types():
-        parts.append(f"```yaml\n{fields.to_yaml(details, width=50)}\n```")
+    shown = {} if details is None else {name: value for name, value in fields.to_plain(details).items() if name not in OUTCOME}
+    if shown:
+        parts.append(f"```yaml\n{fields.plain_to_yaml(shown, WIDTH, DIGITS)}\n```")
     return "\n\n".join(parts)

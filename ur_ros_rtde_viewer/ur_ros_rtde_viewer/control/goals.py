@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, List, Optional
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from ur_ros_rtde_cli import actions, fields
+from ur_ros_rtde_cli import actions
 from ur_ros_rtde_msgs.msg import GoalRefused
 
 from .control_node import ControlNode
@@ -153,8 +153,7 @@ class Goals:
     @staticmethod
     def _on_result(response: Any, sent: SentGoal) -> None:
         sent.result = response.result
-        message = getattr(response.result, "message", "") or fields.to_yaml_line(response.result)
-        sent.change(_PHASES.get(response.status, Phase.FAILED), message)
+        sent.change(_PHASES.get(response.status, Phase.FAILED), getattr(response.result, "message", ""))
 
     @staticmethod
     def _cancel(sent: SentGoal) -> None:

@@ -28,7 +28,7 @@ class JogPanel:
         async def hold(_event: Any) -> None:  # coroutines are called in the order of the messages
             reason = self._jog.hold(self._tab, axis, sign, FRAMES[self._frame.value],
                                     JogSpeed(self._linear.value, self._angular.value))
-            text = f"❌ {reason}" if reason else ""
+            text = reason or ""
             if self._text.content != text:
                 self._text.content = text
 

@@ -65,7 +65,7 @@ class TargetPanel:
         self._hide()
         scene, tcp = self._robot.view.scene, self._tcp()
         if scene.arm is None or tcp is None or self._robot.joint_positions is None:
-            self._say("❌ there is no state of the robot yet")
+            self._say("there is no state of the robot yet")
             return
         model = read_options(scene.model)
         text = make_urdf(model)
@@ -118,7 +118,7 @@ class TargetPanel:
         if self._closed:
             return
         if plan is None:
-            self._say(f"❌ {escaped(reason)}")
+            self._say(f"{escaped(reason)}")
             return
         self._plan = plan
         self._draw_path(plan, joints, tcp)
@@ -158,11 +158,11 @@ class TargetPanel:
             return
         if not plan.starts_at(joints):
             self._solve()
-            self._say("❌ The arm has moved since the preview. Look at the new preview, then execute it.")
+            self._say("The arm has moved since the preview. Look at the new preview, then execute it.")
             return
         if self._goal is not None:
             if not self._goal.has_ended:
-                self._say("❌ The last motion still runs: cancel it, or wait for its end")
+                self._say("The last motion still runs: cancel it, or wait for its end")
                 return
             self._goal.remove()
         self._execute.disabled = True
