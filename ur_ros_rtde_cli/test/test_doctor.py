@@ -12,7 +12,7 @@ import pytest
 from support import Process, Simulator, find_program, wait_for
 
 from ur_ros_rtde_cli.main import main
-from ur_ros_rtde_cli.robot_check import identity, inputs, link, stream
+from ur_ros_rtde_cli.robot_check import host, identity, inputs, link, stream
 from ur_ros_rtde_cli.robot_check.checks import Options, RobotCheck
 from ur_ros_rtde_cli.robot_check.finding import State
 from ur_ros_rtde_cli.robot_check.rtde import Rtde
@@ -146,7 +146,7 @@ def test_versions_of_polyscope(version, model, state, mentions):
 
 def another_address():
     first, second, third, last = ADDRESS.split(".")
-    return ".".join([first, str((int(second) + 100) % 256), third, last])
+    return ".".join([first, str(int(second) + 1), third, last])
 
 
 def test_polyscope_x_is_not_supported():
@@ -305,6 +305,24 @@ def test_the_network_card(tmp_path, speed, duplex, wireless, state):
         (card / "wireless").mkdir()
     assert link.judge_interface("eth0", tmp_path).state is state
     assert link.interface_of("127.0.0.1") == "lo"
+
+
+def test_the_settings_of_the_host(tmp_path):
+    assert host.judge_kernel("#1 SMP PREEMPT_RT Debian", tmp_path).state is State.OK
+    assert host.judge_kernel("#1 SMP PREEMPT_DYNAMIC", tmp_path).state is State.WARNING
+    assert host.judge_priority(0, False).state is State.WARNING
+    assert host.judge_priority(98, False).state is host.judge_priority(0, True).state is State.OK
+    assert host.judge_governor(tmp_path).state is State.OK
+    cpu = tmp_path / "sys" / "devices" / "system" / "cpu"
+    for number, governor in enumerate(("performance", "powersave")):
+        (cpu / f"cpu{number}" / "cpufreq").mkdir(parents=True)
+        (cpu / f"cpu{number}" / "cpufreq" / "scaling_governor").write_text(governor + "\n")
+    assert host.judge_governor(tmp_path).text.startswith("performance, powersave: ")
+    (cpu / "cpu1" / "cpufreq" / "scaling_governor").write_text("performance\n")
+    assert host.judge_governor(tmp_path).state is State.OK
+    (cpu / "isolated").write_text("2-3\n")
+    assert host.judge_cores(tmp_path).text == "2-3 are isolated"
+    assert [finding.subject for finding in host.judge()] == ["host kernel", "host priority", "host governor", "host cores"]
 
 
 def can_emulate_a_link():

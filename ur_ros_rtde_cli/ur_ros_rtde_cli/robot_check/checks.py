@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Dict, Iterator, Optional, Tuple
 
-from . import calibration, identity, inputs, link, ports, readiness, stream
+from . import calibration, host, identity, inputs, link, ports, readiness, stream
 from .connection import ConnectionFailure
 from .dashboard import Dashboard
 from .finding import Finding, fault
@@ -96,3 +96,4 @@ class RobotCheck:
             yield from stream.judge(measured)
             yield link.judge_packets(link.packets(rtde.connection.socket))
             yield link.judge_interface(link.interface_of(rtde.connection.socket.getsockname()[0]))
+        yield from host.judge()
