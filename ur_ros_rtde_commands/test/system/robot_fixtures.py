@@ -46,8 +46,10 @@ def destroy_subscriptions_after_test(request):
 
 
 @pytest.fixture(scope="module")
-def driver(simulator):
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e")
+def driver(simulator, request):
+    """A driver with the plugins that the test module sets: PLUGINS = FEW_PLUGINS."""
+    chosen = [request.module.PLUGINS] if hasattr(request.module, "PLUGINS") else []
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", *chosen)
     yield driver
     driver.stop()
     print(driver.output())

@@ -22,6 +22,9 @@ TRANSIENT_LOCAL = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LO
 TIMEOUT_FACTOR = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # scales all timeouts; programs with a sanitizer are slower
 REAL_TIME_FACTOR = float(os.environ.get("UR_TEST_REAL_TIME_FACTOR", "1"))  # slows down the simulated robot along with the driver
 LONGEST_PAUSE = 0.02  # s, between two checks of a condition: a wait for a long motion takes little processor time
+# Parameter of a driver that is started for a single test. With all plugins, the driver and the clients that discover its actions take
+# five times as much processor time (2 s).
+FEW_PLUGINS = "plugins:=[move_j,stop]"
 RECOVERY_TIME_FACTOR = 0.2  # scales the simulator's durations of power on, brake release, protective stop delay and safety restart
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]

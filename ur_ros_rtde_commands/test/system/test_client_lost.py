@@ -8,12 +8,13 @@ import sys
 import pytest
 from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
-from support import HOME, REAL_TIME_FACTOR, Client, Process, Simulator, start_node, wait_for
+from support import FEW_PLUGINS, HOME, REAL_TIME_FACTOR, Client, Process, Simulator, start_node, wait_for
 from unique_identifier_msgs.msg import UUID
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 
+PLUGINS = FEW_PLUGINS
 TARGET = HOME[0] + 2.0  # rad, a motion of 10 s at the speed of move_j_client.py
 
 
@@ -102,7 +103,8 @@ rclpy.spin(node)
 
 def test_continues_the_goal_of_a_lost_client_if_on_client_lost_is_continue(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    processes(start_node("driver", addresses[1], "ur_type:=ur10e", "on_client_lost:=continue", namespace="continuing"))
+    processes(start_node("driver", addresses[1], FEW_PLUGINS, "ur_type:=ur10e", "on_client_lost:=continue",
+                         namespace="continuing"))
     robot = Client("continuing", name="other_client")
     try:
         make_ready(robot)

@@ -8,7 +8,7 @@ import time
 import pytest
 from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
-from support import HOME, Client, Simulator, start_node, wait_for
+from support import FEW_PLUGINS, HOME, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -81,7 +81,7 @@ def test_ctrl_c_stops_the_node_during_startup(delay, simulator):
 
 @pytest.mark.parametrize("name", ["driver", "command_server"])
 def test_a_missing_controller_is_reported_and_goals_are_rejected(name, addresses, processes):
-    server = processes(start_node(name, addresses[3], namespace="nobody"))
+    server = processes(start_node(name, addresses[3], FEW_PLUGINS, namespace="nobody"))
     client = Client("nobody")
     try:
         goal = client.send(MoveJ, "move_j", joint_positions=HOME)
@@ -122,7 +122,7 @@ class HttpServer:
 def test_another_server_at_the_address_does_not_crash_the_driver(addresses, processes):
     other = HttpServer(addresses[2])
     try:
-        server = processes(start_node("driver", addresses[2], namespace="other"))
+        server = processes(start_node("driver", addresses[2], FEW_PLUGINS, namespace="other"))
         client = Client("other")
         try:
             server.wait_for_output(addresses[2])
@@ -138,7 +138,7 @@ def test_another_server_at_the_address_does_not_crash_the_driver(addresses, proc
 
 
 def test_ctrl_c_during_a_motion_decelerates_and_sends_the_result(simulator, client, processes):
-    driver = processes(start_node("driver", simulator.address, "ur_type:=ur10e"))
+    driver = processes(start_node("driver", simulator.address, FEW_PLUGINS, "ur_type:=ur10e"))
     make_ready(client)
     goal = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.8, acceleration=2.0)
     wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.5, 10.0, "the arm to move")
@@ -155,7 +155,7 @@ def test_ctrl_c_during_a_motion_decelerates_and_sends_the_result(simulator, clie
 
 
 def test_the_controller_stops_the_arm_when_the_driver_is_killed(simulator, processes):
-    driver = processes(start_node("driver", simulator.address, "ur_type:=ur10e", namespace="killed"))
+    driver = processes(start_node("driver", simulator.address, FEW_PLUGINS, "ur_type:=ur10e", namespace="killed"))
     client = Client("killed")
     try:
         make_ready(client)
@@ -170,7 +170,7 @@ def test_the_controller_stops_the_arm_when_the_driver_is_killed(simulator, proce
 
 def test_loss_of_the_controller_aborts_the_motion_and_the_driver_reconnects(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    driver = processes(start_node("driver", addresses[1], namespace="restarted"))
+    driver = processes(start_node("driver", addresses[1], FEW_PLUGINS, namespace="restarted"))
     client = Client("restarted")
     try:
         make_ready(client)
@@ -195,7 +195,7 @@ def test_the_driver_serves_dashboard_and_commands_in_one_process(simulator, clie
 
 
 def test_with_on_busy_preempt_a_new_goal_preempts_the_running_motion(simulator, client, processes):
-    processes(start_node("driver", simulator.address, "on_busy:=preempt"))
+    processes(start_node("driver", simulator.address, FEW_PLUGINS, "on_busy:=preempt"))
     make_ready(client)
     first = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.6)
     wait_for(lambda: first.feedback and first.feedback[-1].motion.progress > 0.05, 10.0, "the motion")
@@ -208,7 +208,7 @@ def test_with_on_busy_preempt_a_new_goal_preempts_the_running_motion(simulator, 
 
 def test_a_silent_controller_aborts_the_motion_within_silence_limit(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    processes(start_node("driver", addresses[1], "silence_limit:=0.3", namespace="silent"))
+    processes(start_node("driver", addresses[1], FEW_PLUGINS, "silence_limit:=0.3", namespace="silent"))
     client = Client("silent")
     try:
         make_ready(client)

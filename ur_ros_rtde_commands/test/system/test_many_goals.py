@@ -9,6 +9,7 @@ from support import wait_for
 from ur_ros_rtde_msgs.action import SetPayload
 
 BACKGROUND = True
+PLUGINS = "plugins:=[move_j,set_payload]"
 
 # The driver keeps a result for 10 s. Goals are sent in bursts that are shorter, and a burst begins when the driver keeps no
 # results: all bursts need the same memory.

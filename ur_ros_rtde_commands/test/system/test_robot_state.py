@@ -4,7 +4,7 @@ import pytest
 from geometry_msgs.msg import TwistStamped
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
-from support import HOME, JOINTS, Client, Simulator, start_node, wait_for
+from support import FEW_PLUGINS, HOME, JOINTS, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode, RobotMode, RobotState, SafetyMode, ToolData
 
@@ -155,7 +155,7 @@ def test_robot_mode_is_no_controller_while_disconnected(addresses, processes):
 
 
 def test_driver_state_reports_the_cause(addresses, processes):
-    processes(start_node("driver", addresses[3], namespace="whole"))
+    processes(start_node("driver", addresses[3], FEW_PLUGINS, namespace="whole"))
     client = Client("whole")
     try:
         states = client.subscribe(DriverState, "driver_state", transient_local=True)

@@ -2,7 +2,7 @@
 
 import pytest
 from robot_fixtures import make_ready
-from support import HOME, Client, start_node, wait_for
+from support import FEW_PLUGINS, HOME, Client, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, SpeedJ
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode
@@ -33,7 +33,7 @@ def other_client():
 
 @pytest.fixture
 def first(simulator, processes, first_client):
-    driver = processes(start_node("driver", simulator.address, namespace="first"))
+    driver = processes(start_node("driver", simulator.address, FEW_PLUGINS, namespace="first"))
     make_ready(first_client)
     return driver
 
@@ -46,13 +46,14 @@ def states(other_client):
 @pytest.fixture
 def start_other(simulator, processes):
     """Returns a function that starts a driver in the namespace "other"."""
-    return lambda *parameters: processes(start_node("driver", simulator.address, *parameters, namespace="other"))
+    return lambda *parameters: processes(start_node("driver", simulator.address, "plugins:=[move_j,speed_j]", *parameters,
+                                                    namespace="other"))
 
 
 def test_a_second_driver_with_the_same_names_does_not_start_and_the_first_continues(first, first_client, simulator):
     goal = first_client.send(MoveJ, "move_j", joint_positions=TARGET, speed=0.3)
     assert goal.accepted
-    second = start_node("driver", simulator.address, namespace="first")
+    second = start_node("driver", simulator.address, FEW_PLUGINS, namespace="first")
     assert second.wait(30.0) == 2
     refusal = [line for line in second.lines if "is already running" in line]
     assert len(refusal) == 1, second.output()
@@ -69,7 +70,7 @@ def test_a_node_does_not_start_if_its_name_is_taken(name, first, simulator):
 
 def test_a_killed_driver_can_be_restarted_at_once(first, simulator, processes):
     first.kill()
-    second = processes(start_node("driver", simulator.address, namespace="first"))
+    second = processes(start_node("driver", simulator.address, FEW_PLUGINS, namespace="first"))
     second.wait_for_output("the robot is ready")
     assert second.running() and "is already running" not in second.output()
 

@@ -5,21 +5,22 @@ import re
 import pytest
 from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
-from support import HOME, Client, Simulator, start_node, wait_for
+from support import FEW_PLUGINS, HOME, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
 LOG_LINE = re.compile(r"\[(?P<level>[A-Z]+)\] \[\d+\.\d+\] \[[\w.]+\]: ")
-ONE_PROCESS = ("driver",)
-THREE_PROCESSES = ("robot_state_receiver", "command_server", "dashboard_server")
+ONE_PROCESS = {"driver": [FEW_PLUGINS]}
+THREE_PROCESSES = {"robot_state_receiver": [], "command_server": [FEW_PLUGINS], "dashboard_server": []}
 
 
 class Cell:
     """A simulator, its nodes and a client in a separate namespace."""
 
-    def __init__(self, address, names):
+    def __init__(self, address, parameters):
+        """`parameters`: those of each node."""
         self.simulator = Simulator(address)
-        self.nodes = [start_node(name, address, namespace="quiet") for name in names]
+        self.nodes = [start_node(name, address, *values, namespace="quiet") for name, values in parameters.items()]
         self.client = Client("quiet")
 
     def interrupt(self, with_simulator):

@@ -6,7 +6,7 @@ import pytest
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
-from support import HOME, JOINTS, Client, Simulator, robot_seconds, seconds, start_node, wait_for
+from support import FEW_PLUGINS, HOME, JOINTS, Client, Simulator, robot_seconds, seconds, start_node, wait_for
 
 from ur_ros_rtde_msgs.msg import ErrorCode, IOState
 from ur_ros_rtde_msgs.srv import GetIOState, GetJointState, GetTcpPose, GetWrench
@@ -105,7 +105,7 @@ def test_publishes_at_the_configured_rate(simulator, client, processes, frequenc
 
 
 def test_the_driver_publishes_at_the_configured_rate(simulator, client, processes):
-    processes(start_node("driver", simulator.address, "rtde_frequency:=40.0", namespace="in_one"))
+    processes(start_node("driver", simulator.address, FEW_PLUGINS, "rtde_frequency:=40.0", namespace="in_one"))
     assert is_about(rate(client, "/in_one/joint_states", 80), 40.0)
 
 

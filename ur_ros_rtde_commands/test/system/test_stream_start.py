@@ -4,7 +4,7 @@ import pytest
 from arm_state import get_joint_state, get_tcp_pose, home_plus
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
-from support import start_node, wait_for
+from support import FEW_PLUGINS, start_node, wait_for
 from test_streams import Publisher, joint_message
 from trajectories import TargetRecorder
 
@@ -12,8 +12,8 @@ from trajectories import TargetRecorder
 @pytest.fixture(scope="module")
 def driver(simulator):
     # The jump limits and the short timeout allow first messages that would require a high speed.
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", "stream_timeout:=0.2", "stream_max_joint_jump:=0.5",
-                        "stream_max_linear_jump:=0.5")
+    driver = start_node("driver", simulator.address, FEW_PLUGINS, "ur_type:=ur10e", "stream_timeout:=0.2",
+                        "stream_max_joint_jump:=0.5", "stream_max_linear_jump:=0.5")
     yield driver
     driver.stop()
     print(driver.output())

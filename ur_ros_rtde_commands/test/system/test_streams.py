@@ -11,7 +11,7 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.qos import QoSProfile
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
-from support import HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, seconds, start_node, wait_for
+from support import FEW_PLUGINS, HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, seconds, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -23,7 +23,7 @@ TIMEOUT = 0.5  # s; allows for delays of the publisher by other tests
 
 @pytest.fixture(scope="module")
 def driver(simulator):
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", f"stream_timeout:={TIMEOUT}")
+    driver = start_node("driver", simulator.address, FEW_PLUGINS, "ur_type:=ur10e", f"stream_timeout:={TIMEOUT}")
     yield driver
     driver.stop()
     print(driver.output())
@@ -213,8 +213,8 @@ def test_messages_are_ignored_while_another_topic_controls_the_arm(robot, driver
 
 def test_with_on_busy_preempt_a_goal_preempts_a_topic(addresses, processes):
     simulator = processes(Simulator(addresses[1]))
-    processes(start_node("driver", simulator.address, "ur_type:=ur10e", "on_busy:=preempt", f"stream_timeout:={TIMEOUT}",
-                         namespace="other"))
+    processes(start_node("driver", simulator.address, FEW_PLUGINS, "ur_type:=ur10e", "on_busy:=preempt",
+                         f"stream_timeout:={TIMEOUT}", namespace="other"))
     client = Client("other")
     try:
         make_ready(client)

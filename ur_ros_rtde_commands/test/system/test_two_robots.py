@@ -5,7 +5,7 @@ import time
 import pytest
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
-from support import HOME, JOINTS, Client, Simulator, seconds, start_node, wait_for
+from support import FEW_PLUGINS, HOME, JOINTS, Client, Simulator, seconds, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -18,7 +18,7 @@ def test_two_robots_move_independently_at_the_same_time(addresses, processes):
     try:
         for side, address in zip(("left", "right"), addresses):
             processes(Simulator(address))
-            processes(start_node("driver", address, f"tf_prefix:={side}_", namespace=side))
+            processes(start_node("driver", address, FEW_PLUGINS, f"tf_prefix:={side}_", namespace=side))
             clients[side] = Client(side)
         states = {side: client.subscribe(JointState, "joint_states") for side, client in clients.items()}
         for client in clients.values():
