@@ -112,8 +112,8 @@ class Cell:
                                  env=self._env)
 
     def load_plugins(self, *names):
-        """Starts the driver again with these plugins and those of the cell, or without names with all. A driver with few plugins
-        starts four times as fast, and its clients discover it faster."""
+        """Starts the driver again with these plugins and those of the cell, or without names with all. The start of a driver with few
+        plugins, and its discovery, take a fifth of the processor time."""
         plugins = {*names, *OWN_PLUGINS} if names else None
         if plugins != self._plugins:
             self._plugins = plugins

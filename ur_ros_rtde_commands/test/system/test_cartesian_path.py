@@ -12,6 +12,7 @@ from trajectories import TargetRecorder
 from ur_ros_rtde_msgs.action import ExecuteCartesianPath
 from ur_ros_rtde_msgs.msg import ErrorCode
 
+PLUGINS = "plugins:=[move_j,stop,execute_cartesian_path]"
 NAN = math.nan
 MIN_LOOKAHEAD = 0.03  # s
 

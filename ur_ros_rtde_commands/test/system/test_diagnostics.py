@@ -2,10 +2,11 @@
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from support import HOME, Simulator, seconds, start_node, wait_for
+from support import FEW_PLUGINS, HOME, Simulator, seconds, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
+PLUGINS = FEW_PLUGINS
 NAMES = ["link", "packages", "robot"]
 
 

@@ -13,6 +13,7 @@ from trajectories import TargetRecorder, distance_to_line, point, timed, wave, w
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import ErrorCode
 
+PLUGINS = "plugins:=[move_j,stop,execute_trajectory,execute_parametrized_trajectory]"
 NAN = math.nan
 FAST = {"max_velocity": [1.8] * 6, "max_acceleration": [5.0] * 6}
 MIN_LOOKAHEAD = 0.03  # s, the smallest lookahead_time

@@ -8,6 +8,7 @@ from trajectories import TargetRecorder, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteTrajectory
 
+PLUGINS = "plugins:=[move_j,stop,execute_trajectory]"
 DISTANCE = 1.2  # rad
 SPEED = 1.0  # rad/s
 ACCELERATION = 4.0  # rad/s^2

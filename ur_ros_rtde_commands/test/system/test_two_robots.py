@@ -9,6 +9,7 @@ from support import FEW_PLUGINS, HOME, JOINTS, Client, Simulator, seconds, start
 
 from ur_ros_rtde_msgs.action import MoveJ
 
+PLUGINS = FEW_PLUGINS
 RECEIVERS = 10
 LIMIT = 60.0  # s, allows for a busy machine
 
