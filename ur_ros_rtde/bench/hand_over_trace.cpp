@@ -1,7 +1,7 @@
 // A library for LD_PRELOAD: records when a process hands packages, messages and requests over from one part
 // to the next, without a change of its code. Writes one line per event to the file that HAND_OVER_TRACE
 // names, in the destructor: kind, thread, time in ns since the epoch, stamp of the message in ns or 0.
-// `./ur bench --trace` uses it; bench/hand_overs.py evaluates the file.
+// `./ur bench --trace` uses it; tools/ur_tools/bench_hand_overs.py evaluates the file.
 #include <dlfcn.h>
 #include <poll.h>
 #include <rmw/rmw.h>
