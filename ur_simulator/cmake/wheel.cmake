@@ -1,0 +1,13 @@
+# The Python wheel (pyproject.toml) contains the program alone. It needs no library of the build machine except the
+# C library: fmt is compiled in, the C++ library is linked statically.
+set(BUILD_TESTING OFF)
+set(wheel_program_folder ${SKBUILD_PLATLIB_DIR}/ur_simulator/bin)
+set(UR_SIMULATOR_PROGRAM "" CACHE FILEPATH "Program to package instead of building one: for tests of the wheel")
+if(UR_SIMULATOR_PROGRAM)
+  add_custom_target(ur_simulator_app)
+  install(PROGRAMS ${UR_SIMULATOR_PROGRAM} DESTINATION ${wheel_program_folder} COMPONENT wheel)
+  return()
+endif()
+
+set(fmt_library fmt::fmt-header-only)
+add_link_options(-static-libstdc++ -static-libgcc LINKER:--strip-all)
