@@ -11,15 +11,16 @@ import time
 from typing import List
 
 from . import (bench_compare, bench_discovery, bench_machine, bench_report, bench_results, bench_rows, bench_scale, bench_session,
-               bench_stress, bench_trace, bench_trajectory, boilerplate, console, ports, simulation)
+               bench_simulator, bench_stress, bench_trace, bench_trajectory, boilerplate, console, ports, simulation)
 from .bench_results import Results
 from .layout import PROGRAM, Layout
 
 # Clients that are killed, and clients that then search for the actions.
 KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 # Options that change what is measured, or how.
-SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots", "stress")
-MODES = ("stream", "trajectory", "scale", "stress", "trace")
+SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots", "stress",
+            "simulator", "count")
+MODES = ("stream", "trajectory", "scale", "stress", "trace", "simulator")
 
 
 def _add_result_options(parser: argparse.ArgumentParser) -> None:
@@ -59,7 +60,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals and cancels to measure (default: 40)")
     _add_result_options(parser)
     for add_options in (_add_stream_options, bench_scale.add_options, bench_stress.add_options, bench_trace.add_options,
-                        bench_trajectory.add_options):
+                        bench_trajectory.add_options, bench_simulator.add_options):
         add_options(parser)
     options = parser.parse_args(arguments)
     _check_combination(parser, options)
@@ -96,6 +97,8 @@ def check(options: argparse.Namespace) -> None:
         bench_report.check(options.report)
     if options.scale:
         bench_scale.check(options)
+    elif options.simulator:
+        bench_simulator.check(options)
     elif not options.input:
         ports.check(options.address)
 
@@ -114,6 +117,8 @@ def _measure(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]"
         return bench_session.measure_streams(layout, options, bench_rows.STREAMS)
     if options.scale:
         return bench_scale.measure(layout, options)
+    if options.simulator:
+        return bench_simulator.measure(layout, options)
     return bench_stress.measure(layout, options) if options.stress else _measure_default(layout, options)
 
 
@@ -168,7 +173,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         bench_compare.show(old, results)
     if options.report:
         bench_report.write(options.report, layout, results, old)
-    if not any((options.stream, options.scale, options.stress, options.input)):
+    if not any((options.stream, options.scale, options.stress, options.simulator, options.input)):
         console.line("\n" + boilerplate.table())
     return 0
 

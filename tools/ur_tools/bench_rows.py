@@ -65,6 +65,16 @@ STRESS: Tuple[Tuple[str, float, str], ...] = (
     ("p99.9", 2.0, "ms from a package to a C++ subscriber"),
     ("missing", 0.1, "% of the packages did not reach the subscriber"),
 )
+# Parts of --simulator.
+SIMULATOR: Tuple[Tuple[str, Optional[float], str], ...] = (
+    ("start-up", 0.15, "s until all ports are open"),
+    ("cpu idle", 5.0, "% of a core"),
+    ("cpu moving", 5.0, "% of a core"),
+    ("cycle p99", None, "ms deviation of a control cycle from 2 ms"),
+    ("cycle p99.9", None, "ms deviation of a control cycle from 2 ms"),
+    ("host p99", None, "ms deviation of a loop that only sleeps"),
+    ("host p99.9", None, "ms deviation of a loop that only sleeps"),
+)
 
 ROWS: Tuple[Row, ...] = (
     Row("package to C++ subscriber", "p50", 0.3, "ms"),
@@ -87,6 +97,11 @@ ROWS: Tuple[Row, ...] = (
     Row("many goals", "duration", None, "ms per goal, from sending it to its result"),
     *(Row(stress_name(condition, qos), *part) for condition in CONDITIONS for qos in QOS for part in STRESS),
     *(Row(stream, *part) for stream in STRESSED_STREAMS for part in STREAM),
+    *(Row("simulator", *part) for part in SIMULATOR),
+    Row("simulator, compiling", "ur_rtde", None, "ms for ur_rtde's control program"),
+    Row("simulator, compiling", "2000 lines", None, "ms"),
+    Row("simulator, robots", "lost time", 1.0, "% of the time of the slowest of --count moving robots in one process"),
+    Row("simulator, robots", "cpu", None, "% of a core for all of them"),
 )
 
 

@@ -1,0 +1,166 @@
+"""./ur bench --simulator: start-up, load, jitter, scripts and the number of robots of the simulated controller alone."""
+
+import argparse
+import json
+import pathlib
+import socket
+import statistics
+import subprocess
+import sys
+import time
+from typing import Dict, List
+
+from . import bench_scale, bench_session, console, ports
+from .environment import program
+from .layout import ROOT, Layout
+
+STARTS = 10
+WINDOW = 5.0  # s of the host for each measurement of load and time
+SCRIPT_LINES = 2000
+CYCLE = 0.002  # s
+MOVING = ("def back_and_forth():\n  q = get_actual_joint_positions()\n  while True:\n"
+          "    movej([q[0] + 0.3, q[1], q[2], q[3], q[4], q[5]], a=3, v=2)\n    movej(q, a=3, v=2)\n  end\nend\n")
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("simulator")
+    group.add_argument("--simulator", action="store_true",
+                       help="only measure the simulator: start-up, load, jitter, scripts, robots in one process (about a minute)")
+    group.add_argument("--count", type=int, default=10, metavar="N",
+                       help="with --simulator: robots in one process (default: 10)")
+
+
+def check(options: argparse.Namespace) -> None:
+    """Raises Failure if an address is in use."""
+    for address in bench_scale.addresses(options, options.count):
+        ports.check(address)
+
+
+class _Simulator:
+    """The program with some options, ended at the end of the block."""
+
+    def __init__(self, layout: Layout, options: argparse.Namespace, *arguments: str, lines: int = 1) -> None:
+        command = [str(program(layout, "ur_simulator", "ur_simulator")), "--address", options.address, "--model", options.model]
+        begin = time.monotonic()
+        self.process = subprocess.Popen([*command, *arguments], env=bench_session.environment(layout), stdout=subprocess.PIPE, text=True)
+        for _ in range(lines):
+            if not self.process.stdout.readline().startswith("ready: "):
+                self.process.kill()
+                raise console.Failure("the simulator did not start")
+        self.start_up = time.monotonic() - begin
+
+    def __enter__(self) -> "_Simulator":
+        return self
+
+    def __exit__(self, *_unused: object) -> None:
+        self.process.terminate()
+        self.process.wait()
+        self.process.stdout.close()
+
+
+def _control(address: str, **request: object) -> dict:
+    with socket.create_connection((address, 30099), timeout=10.0) as connection, connection.makefile("rw") as lines:
+        lines.write(json.dumps(request) + "\n")
+        lines.flush()
+        return json.loads(lines.readline())
+
+
+def _robot_time(address: str) -> float:
+    return _control(address, command="state")["state"]["timestamp"]
+
+
+def _control_seconds(address: str, **request: object) -> float:
+    begin = time.monotonic()
+    reply = _control(address, **request)
+    if not reply["ok"]:
+        raise console.Failure(reply["error"])
+    return time.monotonic() - begin
+
+
+def _cpu_percent(pid: int, seconds: float) -> float:
+    sys.path.insert(0, str(ROOT / "bench"))
+    from process_load import cpu_percent
+    return cpu_percent({"simulator": pid}, seconds)["simulator"]
+
+
+def _percentile(values: List[float], percent: float) -> float:
+    return sorted(values)[min(len(values) - 1, int(percent / 100.0 * len(values)))]
+
+
+def _deviations(times: List[float]) -> List[float]:
+    """Deviations of the intervals from a control cycle, ms."""
+    return [1e3 * abs(later - earlier - CYCLE) for earlier, later in zip(times, times[1:])]
+
+
+def _host_deviations(seconds: float) -> List[float]:
+    """Of a loop of this process that only sleeps until the next multiple of 2 ms."""
+    times, due = [], time.monotonic()
+    end = due + seconds
+    while due < end:
+        due += CYCLE
+        time.sleep(max(0.0, due - time.monotonic()))
+        times.append(time.monotonic())
+    return _deviations(times)
+
+
+def _cycle_deviations(address: str) -> List[float]:
+    cycles = _control(address, command="trace")["cycles"]
+    return _deviations([1e-9 * cycle[1] for cycle in cycles])
+
+
+def _script_seconds(address: str, script: str) -> float:
+    """Time to compile a script: median of storing and loading it, less that of storing it."""
+    def median(load: bool) -> float:
+        return statistics.median(_control_seconds(address, command="store_program", name="bench.script", script=script, load=load)
+                                 for _ in range(5))
+    return max(0.0, median(True) - median(False))
+
+
+def _long_script() -> str:
+    body = "".join(f"  x{line} = {line} * 2 + {'0' if line == 0 else f'x{line - 1}'}\n" for line in range(SCRIPT_LINES))
+    return f"def long():\n{body}end\n"
+
+
+def _control_script(layout: Layout) -> pathlib.Path:
+    (found,) = (layout.build / "ur_rtde_vendor" / "source").rglob("rtde_control.script")
+    return found
+
+
+def _lost_time(layout: Layout, options: argparse.Namespace) -> Dict[str, float]:
+    """Of all robots in one process, while they move."""
+    addresses = bench_scale.addresses(options, options.count)
+    with _Simulator(layout, options, "--count", str(options.count), lines=options.count) as simulator:
+        for address in addresses:
+            _control(address, command="run_script", script=MOVING)
+        begin = {address: (time.monotonic(), _robot_time(address)) for address in addresses}
+        cpu = _cpu_percent(simulator.process.pid, WINDOW)
+        lost = []
+        for address, (host, robot) in begin.items():
+            elapsed = time.monotonic() - host
+            lost.append(100.0 * (1.0 - (_robot_time(address) - robot) / elapsed))
+    return {"lost time": max(lost), "cpu": cpu}
+
+
+def measure(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]":
+    """Returns figures and samples."""
+    console.step("Measuring the simulator, for about a minute")
+    starts = []
+    for _ in range(STARTS):
+        with _Simulator(layout, options) as simulator:
+            starts.append(simulator.start_up)
+    with _Simulator(layout, options) as simulator:
+        idle = _cpu_percent(simulator.process.pid, WINDOW)
+        deviations = _cycle_deviations(options.address)
+        scripts = {"ur_rtde": _script_seconds(options.address, _control_script(layout).read_text()),
+                   f"{SCRIPT_LINES} lines": _script_seconds(options.address, _long_script())}
+        _control(options.address, command="run_script", script=MOVING)
+        moving = _cpu_percent(simulator.process.pid, WINDOW)
+    host = _host_deviations(WINDOW)
+    figures = {
+        "simulator": {"start-up": statistics.median(starts), "cpu idle": idle, "cpu moving": moving,
+                      "cycle p99": _percentile(deviations, 99.0), "cycle p99.9": _percentile(deviations, 99.9),
+                      "host p99": _percentile(host, 99.0), "host p99.9": _percentile(host, 99.9)},
+        "simulator, compiling": {name: 1e3 * seconds for name, seconds in scripts.items()},
+        "simulator, robots": _lost_time(layout, options),
+    }
+    return figures, {"simulator cycle": deviations, "simulator host": host}
