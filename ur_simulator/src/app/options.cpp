@@ -44,16 +44,23 @@ double parse_surface_height(const std::string & text)
 void parse_port(Ports & ports, const std::string & text)
 {
   const std::map<std::string, std::uint16_t Ports::*> names{
-      {"primary", &Ports::primary}, {"secondary", &Ports::secondary}, {"realtime", &Ports::realtime},
-      {"rtde", &Ports::rtde},       {"dashboard", &Ports::dashboard}, {"control", &Ports::control}};
+      {"primary", &Ports::primary},
+      {"secondary", &Ports::secondary},
+      {"realtime", &Ports::realtime},
+      {"primary_read_only", &Ports::primary_read_only},
+      {"secondary_read_only", &Ports::secondary_read_only},
+      {"realtime_read_only", &Ports::realtime_read_only},
+      {"rtde", &Ports::rtde},
+      {"dashboard", &Ports::dashboard},
+      {"control", &Ports::control}};
   const auto [name, value] = split_assignment(text, "--ports", "rtde=30004");
   const auto port = names.find(name);
   std::uint16_t number = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
   if (port == names.end() || error != std::errc() || end != value.data() + value.size()) {
     throw std::runtime_error(
-        fmt::format("--ports '{}' is invalid: give primary, secondary, realtime, rtde, dashboard or "
-                    "control = 0..65535",
+        fmt::format("--ports '{}' is invalid: give primary, secondary, realtime, one of these with "
+                    "_read_only, rtde, dashboard or control = 0..65535",
                     text));
   }
   ports.*(port->second) = number;
@@ -68,13 +75,17 @@ void add_options(CLI::App & app, AppOptions & options)
       "Simulates a Universal Robots controller with RTDE, dashboard server, client interfaces and a JSON "
       "control port.");
   app.add_option("--address", simulator.address, "IP address to listen on")->capture_default_str();
+  app.add_option("--count", options.count, "robots in this process, on consecutive addresses from --address")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
   app.add_option("--model", simulator.model, "robot model, for example ur5e, ur10e, ur20 or ur10 (CB3)")
       ->capture_default_str();
   app.add_option("--polyscope", simulator.polyscope_version,
                  "PolyScope version (default: 5.25.1; 3.15.8 for CB3 models)");
-  app.add_option("--ports", options.port_texts,
-                 "port numbers as name=number with the names primary, secondary, realtime, rtde, dashboard "
-                 "and control; 0 selects a free port")
+  app.add_option(
+         "--ports", options.port_texts,
+         "port numbers as name=number with the names primary, secondary, realtime, primary_read_only, "
+         "secondary_read_only, realtime_read_only, rtde, dashboard and control; 0 selects a free port")
       ->delimiter(',');
   app.add_option("--joints", options.joints, "initial joint positions, rad")->expected(6)->delimiter(',');
   app.add_option("--surface", options.surface_texts, "horizontal elastic surface as z=height, m; repeatable");

@@ -15,6 +15,7 @@ namespace ur_simulator {
 struct AppOptions {
   SimulatorOptions simulator;
   std::vector<double> surface_heights;  ///< horizontal surfaces, m
+  unsigned count = 1;                   ///< robots, on consecutive addresses
   bool quiet = false;
   bool print_log = false;
 

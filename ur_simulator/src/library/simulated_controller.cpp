@@ -1,8 +1,5 @@
 #include "ur_simulator/simulated_controller.hpp"
 
-#include <pthread.h>
-#include <sched.h>
-
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <future>
@@ -12,26 +9,10 @@
 #include "controller/controller.hpp"
 
 namespace ur_simulator {
-namespace {
-
-void try_realtime_priority()
-{
-  sched_param parameters{};
-  parameters.sched_priority = 80;
-  pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
-}
-
-}  // namespace
-
 struct SimulatedController::Impl {
   explicit Impl(const SimulatorOptions & options_) : options(options_), controller(options_)
   {
-    thread = std::thread([this] {
-      if (options.realtime_priority) {
-        try_realtime_priority();
-      }
-      controller.run();
-    });
+    thread = std::thread([this] { controller.run(); });
   }
   ~Impl()
   {

@@ -1,0 +1,116 @@
+#include "app/robots.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/asio/ip/address_v4.hpp>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace ur_simulator {
+namespace {
+
+void place_surfaces(Controller & controller, const std::vector<double> & heights)
+{
+  for (const double z : heights) {
+    const nlohmann::json reply = controller.control({{"command", "place_surface"}, {"z", z}});
+    if (!reply.at("ok").get<bool>()) {
+      throw std::runtime_error("--surface: " + reply.at("error").get<std::string>());
+    }
+  }
+}
+
+/// Prints one line. Lines of different threads do not mix: stdio locks the stream.
+void print_line(const std::string & line)
+{
+  std::fputs((line + "\n").c_str(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+std::vector<std::string> consecutive_addresses(const std::string & first, unsigned count)
+{
+  if (count == 1) {
+    return {first};
+  }
+  boost::system::error_code error;
+  const auto address = boost::asio::ip::make_address_v4(first, error);
+  if (error) {
+    throw std::runtime_error(fmt::format("--count needs an IPv4 address: --address '{}' is none", first));
+  }
+  const auto start = address.to_uint();
+  if (start > std::numeric_limits<std::uint32_t>::max() - (count - 1)) {
+    throw std::runtime_error(
+        fmt::format("there are not {} addresses from {} on (--address, --count)", count, first));
+  }
+  std::vector<std::string> addresses;
+  for (unsigned i = 0; i < count; ++i) {
+    addresses.push_back(boost::asio::ip::address_v4(start + i).to_string());
+  }
+  return addresses;
+}
+
+Robots::Robots(const AppOptions & options)
+{
+  SimulatorOptions simulator = options.simulator;
+  for (const std::string & address : consecutive_addresses(options.simulator.address, options.count)) {
+    simulator.address = address;
+    add(options, simulator);
+    ++simulator.seed;  // each robot has its own sensor noise
+  }
+  print_ready(options);
+}
+
+Robots::~Robots()
+{
+  stop();
+}
+
+void Robots::add(const AppOptions & options, const SimulatorOptions & simulator)
+{
+  auto controller = std::make_unique<Controller>(simulator);
+  place_surfaces(*controller, options.surface_heights);
+  if (options.print_log) {
+    const std::string prefix = options.count > 1 ? simulator.address + " " : "";
+    controller->log().add_listener(
+        [prefix](const LogEntry & entry) { print_line(prefix + to_string(entry)); });
+  }
+  robots_.push_back({simulator.address, std::move(controller), {}});
+}
+
+void Robots::print_ready(const AppOptions & options) const
+{
+  if (options.quiet) {
+    return;
+  }
+  for (const Robot & robot : robots_) {
+    const Ports ports = robot.controller->ports();
+    print_line(fmt::format(
+        "ready: {} on {}, dashboard {}, primary {}, secondary {}, real-time {}, RTDE {}, control {}",
+        options.simulator.model, robot.address, ports.dashboard, ports.primary, ports.secondary,
+        ports.realtime, ports.rtde, ports.control));
+  }
+}
+
+void Robots::start()
+{
+  for (Robot & robot : robots_) {
+    robot.thread = std::thread([controller = robot.controller.get()] { controller->run(); });
+  }
+}
+
+void Robots::stop()
+{
+  for (Robot & robot : robots_) {
+    robot.controller->stop();
+  }
+  for (Robot & robot : robots_) {
+    if (robot.thread.joinable()) {
+      robot.thread.join();
+    }
+  }
+}
+
+}  // namespace ur_simulator

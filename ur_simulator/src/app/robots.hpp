@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/options.hpp"
+#include "controller/controller.hpp"
+
+namespace ur_simulator {
+
+/// The addresses of `count` robots: consecutive IPv4 addresses from `first`. Throws std::runtime_error if
+/// there are not as many.
+std::vector<std::string> consecutive_addresses(const std::string & first, unsigned count);
+
+/// The robots of this process. Each runs in a thread of its own from start() to stop().
+class Robots {
+ public:
+  /// Opens the ports of all robots. Throws std::runtime_error for invalid options and ports that cannot be
+  /// bound.
+  explicit Robots(const AppOptions & options);
+  ~Robots();
+  Robots(const Robots &) = delete;
+  Robots & operator=(const Robots &) = delete;
+
+  void start();
+  void stop();
+
+ private:
+  struct Robot {
+    std::string address;
+    std::unique_ptr<Controller> controller;
+    std::thread thread;
+  };
+
+  void add(const AppOptions & options, const SimulatorOptions & simulator);
+  void print_ready(const AppOptions & options) const;
+
+  std::vector<Robot> robots_;
+};
+
+}  // namespace ur_simulator
