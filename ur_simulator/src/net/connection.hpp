@@ -80,7 +80,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::string remote_endpoint_;
   DataHandler on_data_;
   CloseHandler on_close_;
-  std::array<char, 16384> read_buffer_;
+  /// Small, so that a client that floods the controller does not delay the control cycle: the data of one
+  /// read is processed between two cycles.
+  std::array<char, 2048> read_buffer_;
   std::string send_buffer_;
   bool open_ = true;
   bool reading_ = false;

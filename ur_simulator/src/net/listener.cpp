@@ -84,9 +84,13 @@ void Listener::accept()
       retry_accept();
       return;
     }
+    std::erase_if(connections_, [](const auto & entry) { return entry.second.expired(); });
+    if (connection_count() >= max_connections) {
+      accept();
+      return;  // closes the socket
+    }
     const std::uint64_t id = next_id_++;
     auto connection = std::make_shared<Connection>(std::move(socket), id);
-    std::erase_if(connections_, [](const auto & entry) { return entry.second.expired(); });
     connections_.emplace(id, connection);
     on_accept_(connection);
     accept();

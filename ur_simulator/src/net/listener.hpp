@@ -13,9 +13,13 @@
 
 namespace ur_simulator {
 
-/// A listening TCP port and the connections accepted on it.
+/// A listening TCP port and the connections accepted on it. Connections beyond `max_connections` are closed
+/// at once, so that a client that opens connections in a loop does not use up the file descriptors of the
+/// process.
 class Listener {
  public:
+  static constexpr std::size_t max_connections = 50;
+
   /// Receives each new connection and calls Connection::start().
   using AcceptHandler = std::function<void(const std::shared_ptr<Connection> &)>;
 

@@ -11,6 +11,7 @@ namespace {
 constexpr std::uint8_t output_recipe_id = 1;
 constexpr std::size_t max_input_recipes = 255;    // the recipe id is one byte; 0 reports an invalid recipe
 constexpr std::size_t max_package_size = 0xffff;  // the size field has two bytes
+constexpr unsigned max_warnings = 100;
 constexpr double protocol_version_1_frequency = 125.0;  // Hz
 
 /// Frequency of the control loop, which is the highest output frequency, Hz.
@@ -333,6 +334,12 @@ void Session::reply(PackageType type, std::string_view payload)
 
 void Session::send_warning(std::string_view text)
 {
+  if (++warnings_ > max_warnings) {
+    context_.log.error("rtde", fmt::format("client {} sent {} invalid packages: disconnected",
+                                           connection_->id(), warnings_));
+    connection_->close();
+    return;
+  }
   context_.log.warning("rtde", fmt::format("client {}: {}", connection_->id(), text));
   constexpr std::string_view source = "RTDE";
   constexpr std::uint8_t warning = 2;  // 0 exception, 1 error, 2 warning, 3 info

@@ -64,6 +64,7 @@ class Session {
   double publish_phase_ = 1.0;  ///< output periods since the last package; a package is due at 1
   std::string data_package_;    ///< buffer of the outgoing data package
   bool started_ = false;
+  unsigned warnings_ = 0;  ///< sent to the client
   std::uint64_t dropped_packages_ = 0;
 };
 

@@ -62,6 +62,9 @@ class TcpClient {
     close(std::exchange(file_, -1));
   }
 
+  /// Half-closes the connection. A blocked send() in another thread fails.
+  void shut_down_sending() { shutdown(file_, SHUT_WR); }
+
   /// Returns exactly `count` bytes. Throws std::runtime_error after the timeout or if the connection is
   /// closed.
   std::string receive(std::size_t count, std::chrono::milliseconds timeout = std::chrono::seconds(5))
