@@ -112,6 +112,51 @@ TEST(MoveLTest, TakesTheGivenTime)
   EXPECT_NEAR(fixture.until_finished(*motion), 2.0, 2.0 * fixture.dt);
 }
 
+/// Moves the tool past the base axis, where the base joint would have to turn faster than its limit.
+struct FastPassFixture : ArmFixture {
+  FastPassFixture()
+  {
+    Vector6 from = tcp();
+    from.head<2>() << 0.45, -0.5;
+    to = from;
+    to[1] = 0.5;
+    const auto joints = get_inverse_kin(model, from, state.target.position, Vector6::Zero());
+    arm.teleport(joints.value(), state);
+    step();
+  }
+  Vector6 to;
+};
+
+TEST(MoveLTest, SlowsDownWhereAJointWouldBeTooFast)
+{
+  FastPassFixture fixture;
+  const Vector6 from = fixture.tcp();
+  const auto motion = fixture.arm.move_linear(fixture.to, {8.0, 2.0});
+  ASSERT_TRUE(motion) << motion.error();
+  bool limited = false;
+  while (!fixture.arm.call_complete(*motion)) {
+    fixture.step();
+    ASSERT_LT(off_line(from, fixture.to, fixture.tcp()), 1e-8);
+    limited = limited || fixture.state.time_scale_source == TimeScaleSource::joint_speed_limit;
+  }
+  EXPECT_FALSE(fixture.arm.take_fault());
+  EXPECT_LT(pose_distance(fixture.tcp(), fixture.to), 1e-6);
+  EXPECT_TRUE(limited);
+  EXPECT_GT(fixture.max_velocity[0], 0.8 * fixture.model.velocity_max[0]);
+  EXPECT_LE(fixture.max_velocity[0], fixture.model.velocity_max[0]);
+  EXPECT_EQ(fixture.state.time_scale_source, TimeScaleSource::none);
+}
+
+TEST(MoveLTest, IsNotSlowedDownWithinTheJointSpeedLimits)
+{
+  FastPassFixture fixture;
+  const auto motion = fixture.arm.move_linear(fixture.to, {1.2, 0.25});
+  ASSERT_TRUE(motion) << motion.error();
+  // 1 m at 0.25 m/s with ramps of 1.2 m/s^2
+  EXPECT_NEAR(fixture.until_finished(*motion), 1.0 / 0.25 + 0.25 / 1.2, 3.0 * fixture.dt);
+  EXPECT_FALSE(fixture.arm.take_fault());
+}
+
 TEST(MoveLTest, ThroughAWristSingularityFaultsAndStops)
 {
   ArmFixture fixture;

@@ -69,9 +69,12 @@ bool PathMotion::in_blend() const
 
 std::optional<MotionFault> PathMotion::advance(const TimeStep & time_step, Setpoint & setpoint)
 {
+  if (!advanced_) {
+    find_rate_limit(setpoint.position);
+  }
   advanced_ = true;
   residual_.advance(time_step.duration);
-  clock_.advance(time_step.duration, time_step.speed_scaling);
+  clock_.advance(time_step.duration, time_step.speed_scaling * rate_limit_.at(clock_.time()));
   const bool joints_only = is_joint(segment_) && (previous_finished() || is_joint(previous_));
   const auto fault = joints_only ? advance_joints(time_step, setpoint) : advance_tcp(time_step, setpoint);
   if (fault) {
@@ -86,6 +89,13 @@ std::optional<MotionFault> PathMotion::advance(const TimeStep & time_step, Setpo
     finished_ = true;
   }
   return std::nullopt;
+}
+
+void PathMotion::find_rate_limit(const Vector6 & near_start)
+{
+  if (const auto * path = std::get_if<TcpSegment>(&segment_.geometry)) {
+    rate_limit_ = RateLimit(*model_, kinematics_, *path, segment_.profile, near_start);
+  }
 }
 
 std::optional<MotionFault> PathMotion::advance_joints(const TimeStep & time_step, Setpoint & setpoint)

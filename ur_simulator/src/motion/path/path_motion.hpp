@@ -6,6 +6,7 @@
 #include "motion/motion.hpp"
 #include "motion/path/joint_segment.hpp"
 #include "motion/path/path_clock.hpp"
+#include "motion/path/rate_limit.hpp"
 #include "motion/path/residual_motion.hpp"
 #include "motion/path/speed_profile.hpp"
 #include "motion/path/tcp_segment.hpp"
@@ -44,6 +45,8 @@ class PathMotion final : public Motion {
 
   /// True if the next path may be blended in.
   bool in_blend() const;
+  /// True if the path is slowed down because a joint would be too fast.
+  bool limited_by_joint_speed() const { return !finished_ && rate_limit_.at(clock_.time()) < 1.0; }
   const PathSegment & segment() const { return segment_; }
   const TcpKinematics & kinematics() const { return kinematics_; }
   /// Time since the path began, s of the path.
@@ -53,6 +56,7 @@ class PathMotion final : public Motion {
   Transform target() const;
 
  private:
+  void find_rate_limit(const Vector6 & near_start);
   std::optional<MotionFault> advance_joints(const TimeStep & time_step, Setpoint & setpoint);
   std::optional<MotionFault> advance_tcp(const TimeStep & time_step, Setpoint & setpoint);
   double previous_time() const { return previous_start_time_ + clock_.time(); }
@@ -69,6 +73,7 @@ class PathMotion final : public Motion {
   PathSegment previous_;
   double previous_start_time_ = 0.0;  ///< time of previous_ when this path began
   PathClock clock_;
+  RateLimit rate_limit_;
   bool advanced_ = false;  ///< by one cycle at least
   bool finished_ = false;
 };
