@@ -10,7 +10,8 @@ from typing import Dict, List, Optional, Tuple
 
 from . import console
 
-PORTS = {"dashboard": 29999, "primary": 30001, "secondary": 30002, "real-time": 30003, "RTDE": 30004, "control": 30099}
+PORTS = {"dashboard": 29999, "primary": 30001, "secondary": 30002, "real-time": 30003, "RTDE": 30004,
+         "read-only primary": 30011, "read-only secondary": 30012, "read-only real-time": 30013, "control": 30099}
 _LISTEN = "0A"
 
 

@@ -18,6 +18,9 @@ struct Ports {
   std::uint16_t secondary = 30002;
   std::uint16_t realtime = 30003;
   std::uint16_t rtde = 30004;
+  std::uint16_t primary_read_only = 30011;
+  std::uint16_t secondary_read_only = 30012;
+  std::uint16_t realtime_read_only = 30013;
   std::uint16_t dashboard = 29999;
   std::uint16_t control = 30099;  ///< control port of the simulator: JSON lines, see docs/simulator.md
 };

@@ -20,8 +20,9 @@ std::vector<Listener *> select_listeners(ControlPortContext & context, const std
 {
   std::vector<Listener *> listeners;
   for (const auto & [name, listener] : context.listeners) {
-    const bool script = name == "primary" || name == "secondary" || name == "realtime";
-    if (which == "all" || which == name || (which == "script" && script)) {
+    const bool script = name != "rtde" && name != "dashboard";
+    // "primary" also selects "primary_read_only".
+    if (which == "all" || name.starts_with(which) || (which == "script" && script)) {
       listeners.push_back(listener);
     }
   }

@@ -26,7 +26,7 @@ struct ControlPortContext {
   Pendant & pendant;
   EventLog & log;
   rtde::Server & rtde;
-  /// By name: "rtde", "dashboard", "primary", "secondary", "realtime".
+  /// By name: "rtde", "dashboard", "primary", "secondary", "realtime", and the last three with "_read_only".
   std::map<std::string, Listener *> listeners;
   /// Number of control cycles that were skipped because the host was too slow.
   const std::uint64_t & missed_cycles;

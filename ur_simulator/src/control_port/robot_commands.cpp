@@ -16,6 +16,12 @@ json require_success(const Pendant::Result & result)
   return json::object();
 }
 
+json unlock_protective_stop(ControlPortContext & context, RequestFields & fields)
+{
+  fields.reject_unknown();
+  return require_success(context.pendant.unlock_protective_stop());
+}
+
 /// Executes a function of the pendant that has no arguments.
 template <Pendant::Result (Pendant::*function)()>
 json call_pendant(ControlPortContext & context, RequestFields & fields)
@@ -179,7 +185,7 @@ constexpr std::array robot_command_table{
     Command{"protective_stop", "reason", "Triggers a protective stop.", protective_stop},
     Command{"unlock_protective_stop", "",
             "Unlocks a protective stop like the button on the pendant, 5 s after the stop at the earliest.",
-            call_pendant<&Pendant::unlock_protective_stop>},
+            unlock_protective_stop},
     Command{"emergency_stop", "pressed true|false (true); system true|false (false)",
             "Presses or releases the emergency stop button.", emergency_stop},
     Command{"safeguard", "open true|false (true)", "Opens the safeguard, or closes and resets it.",

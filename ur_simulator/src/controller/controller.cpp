@@ -1,9 +1,10 @@
 #include "controller/controller.hpp"
 
 #include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
 
 #include <boost/asio/post.hpp>
-#include <cmath>
 #include <exception>
 #include <limits>
 #include <utility>
@@ -12,7 +13,6 @@
 #include "controller/tcp_script_socket.hpp"
 #include "net/text_request.hpp"
 #include "primary/messages.hpp"
-#include "primary/robot_state.hpp"
 #include "script_api/script_socket.hpp"
 
 namespace ur_simulator {
@@ -24,19 +24,12 @@ using Clock = std::chrono::steady_clock;
 // If the host is late, up to this many cycles are executed without serving the connections. Further cycles
 // are skipped: the simulated time falls behind.
 constexpr int max_consecutive_cycles = 10;
-constexpr double robot_state_period = 0.1;  // s
 
-LogLevel log_level(SafetyEvent::Level level)
+void try_realtime_priority()
 {
-  switch (level) {
-    case SafetyEvent::Level::information:
-      return LogLevel::info;
-    case SafetyEvent::Level::warning:
-      return LogLevel::warning;
-    case SafetyEvent::Level::error:
-      return LogLevel::error;
-  }
-  return LogLevel::error;
+  sched_param parameters{};
+  parameters.sched_priority = 80;
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
 }
 
 }  // namespace
@@ -54,10 +47,17 @@ Controller::Controller(const SimulatorOptions & options)
       safety_(std::in_place, model_, version_.cycle_time(), SafetyLimits{}, safety_times(options)),
       runner_(std::in_place, program_context()),
       pendant_(std::in_place, model_, pendant_options(options, version_), state_, *safety_, *runner_, log_),
-      primary_(io_, options.address, options.ports.primary, *pendant_, primary::version_message(version_)),
-      secondary_(io_, options.address, options.ports.secondary, *pendant_,
-                 primary::version_message(version_)),
-      realtime_(io_, options.address, options.ports.realtime, *pendant_, ""),
+      primary_(io_, options.address, options.ports.primary, *pendant_, primary::version_message(version_),
+               primary::ScriptAccess::full),
+      secondary_(io_, options.address, options.ports.secondary, *pendant_, primary::version_message(version_),
+                 primary::ScriptAccess::full),
+      realtime_(io_, options.address, options.ports.realtime, *pendant_, "", primary::ScriptAccess::full),
+      primary_read_only_(io_, options.address, options.ports.primary_read_only, *pendant_,
+                         primary::version_message(version_), primary::ScriptAccess::read_only),
+      secondary_read_only_(io_, options.address, options.ports.secondary_read_only, *pendant_,
+                           primary::version_message(version_), primary::ScriptAccess::read_only),
+      realtime_read_only_(io_, options.address, options.ports.realtime_read_only, *pendant_, "",
+                          primary::ScriptAccess::read_only),
       realtime_packet_(version_),
       rtde_(io_, options.address, options.ports.rtde, state_, version_, log_),
       dashboard_(io_, options.address, options.ports.dashboard, *pendant_),
@@ -70,8 +70,9 @@ Controller::Controller(const SimulatorOptions & options)
   pendant_->set_program_request([this](const ProgramHost & host, auto done) {
     async_request_text(io_, host.address, host.port, "request_program\n", std::move(done));
   });
-  log_.add_listener(
-      [this](const LogEntry & entry) { primary_.broadcast(primary::robot_message_for(entry)); });
+  log_.add_listener([this](const LogEntry & entry) {
+    broadcast(primary_, primary_read_only_, primary::robot_message_for(entry));
+  });
   arm_->teleport(initial_joints_, state_);
   if (options_.start_running) {
     safety_->start_running(state_);
@@ -83,6 +84,9 @@ RobotAccess Controller::robot_access()
   ScriptRequests requests;
   requests.power_down = [this] { script_requests_.power_down = true; };
   requests.protective_stop = [this] { script_requests_.protective_stop = true; };
+  requests.stop_with_invalid_setpoint = [this](std::string reason) {
+    script_requests_.invalid_setpoint = std::move(reason);
+  };
   return {state_,         *arm_, *world_, model_, watchdog_, std::move(requests), version_.cycle_time(),
           &joint_history_};
 }
@@ -112,6 +116,9 @@ control_port::ControlPortContext Controller::control_port_context()
           {{"primary", &primary_.listener()},
            {"secondary", &secondary_.listener()},
            {"realtime", &realtime_.listener()},
+           {"primary_read_only", &primary_read_only_.listener()},
+           {"secondary_read_only", &secondary_read_only_.listener()},
+           {"realtime_read_only", &realtime_read_only_.listener()},
            {"rtde", &rtde_.listener()},
            {"dashboard", &dashboard_.listener()}},
           missed_cycles_,
@@ -125,6 +132,9 @@ Ports Controller::ports() const
   ports.primary = primary_.listener().port();
   ports.secondary = secondary_.listener().port();
   ports.realtime = realtime_.listener().port();
+  ports.primary_read_only = primary_read_only_.listener().port();
+  ports.secondary_read_only = secondary_read_only_.listener().port();
+  ports.realtime_read_only = realtime_read_only_.listener().port();
   ports.rtde = rtde_.listener().port();
   ports.dashboard = dashboard_.listener().port();
   ports.control = control_port_.listener().port();
@@ -140,6 +150,9 @@ nlohmann::json Controller::control(const nlohmann::json & request)
 
 void Controller::run()
 {
+  if (options_.realtime_priority) {
+    try_realtime_priority();
+  }
   next_cycle_ = Clock::now() + period_;
   schedule_next_cycle();
   while (!stopping_) {
@@ -187,126 +200,6 @@ void Controller::run_due_cycles()
     const auto missed = (now - next_cycle_) / period_ + 1;
     missed_cycles_ += static_cast<std::uint64_t>(missed);
     next_cycle_ += missed * period_;
-  }
-}
-
-// ---- control cycle
-
-void Controller::run_cycle()
-{
-  const Clock::time_point begin = Clock::now();
-  ++state_.cycle;
-  state_.timestamp = static_cast<double>(state_.cycle) * version_.cycle_time();
-  log_.set_time(state_.timestamp);
-  if (!switch_on_time_) {
-    run_robot_cycle();
-    publish_state();
-  } else if (state_.timestamp >= *switch_on_time_) {
-    switch_on();
-  }
-  dashboard_.cycle();
-  observers_.remove_if([](const Observer & observer) { return observer(); });
-  state_.actual_execution_time = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
-
-void Controller::run_robot_cycle()
-{
-  check_watchdog();
-  runner_->cycle();
-  handle_script_requests();
-  arm_->step(state_);
-  joint_history_.record(state_.actual.position);
-  if (const auto fault = arm_->take_fault()) {
-    safety_->trigger_protective_stop(*fault);
-  }
-  world_->step(state_);
-  apply_safety_actions(safety_->step(state_));
-  log_safety_events();
-  if (pendant_->take_shutdown_request()) {
-    switch_off();
-  }
-}
-
-void Controller::check_watchdog()
-{
-  const auto action = watchdog_.expired(state_.timestamp);
-  if (!action) {
-    return;
-  }
-  log_.error("program", "RTDE watchdog: no data package with the watched variable was received in time");
-  if (*action == Watchdog::Action::stop) {
-    runner_->stop("RTDE watchdog");
-  } else if (*action == Watchdog::Action::pause) {
-    runner_->pause();
-  }
-}
-
-void Controller::handle_script_requests()
-{
-  const ScriptRequestFlags requests = std::exchange(script_requests_, {});
-  if (requests.protective_stop) {
-    safety_->trigger_protective_stop("the program called protective_stop()");
-  }
-  if (requests.power_down) {
-    pendant_->power_off();
-  }
-}
-
-void Controller::apply_safety_actions(const SafetyActions & actions)
-{
-  if (actions.stop_program) {
-    runner_->stop("stopped by the safety system");
-  }
-  if (actions.pause_program) {
-    runner_->pause();
-  }
-  if (actions.stop_arm) {
-    arm_->stop_all(*actions.stop_arm);
-  }
-  if (actions.resume_program) {
-    runner_->resume();
-  }
-}
-
-void Controller::log_safety_events()
-{
-  while (const auto event = safety_->take_event()) {
-    LogEntry entry;
-    entry.level = log_level(event->level);
-    entry.source = "safety";
-    entry.text = event->message;
-    entry.kind = entry.level == LogLevel::info ? LogKind::text : LogKind::safety;
-    log_.add(std::move(entry));
-    if (event->level == SafetyEvent::Level::error) {
-      pendant_->show_safety_popup(event->message);
-    }
-  }
-}
-
-void Controller::publish_state()
-{
-  trace_.record_cycle(state_);
-  rtde_.publish();
-  const auto cycles = static_cast<std::uint64_t>(std::lround(robot_state_period / version_.cycle_time()));
-  const bool robot_state_due =
-      state_.cycle % cycles == 0 && (primary_.has_clients() || secondary_.has_clients());
-  if (robot_state_due) {
-    const std::string message = primary::robot_state_message(model_, state_);
-    primary_.broadcast(message);
-    secondary_.broadcast(message);
-  }
-  if (realtime_.has_clients()) {
-    realtime_.broadcast(realtime_packet_.encode(state_));
-  }
-}
-
-void Controller::handle_data_package(std::span<const rtde::InputField * const> fields)
-{
-  for (const rtde::InputField * field : fields) {
-    watchdog_.feed(field->name, state_.timestamp);
-    if (field->name == "input_int_register_0") {
-      trace_.record_command(state_, fields.size() > 1);
-    }
   }
 }
 

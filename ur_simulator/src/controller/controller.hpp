@@ -65,6 +65,7 @@ class Controller {
   struct ScriptRequestFlags {
     bool power_down = false;
     bool protective_stop = false;
+    std::optional<std::string> invalid_setpoint;
   };
 
   RobotAccess robot_access();
@@ -81,6 +82,10 @@ class Controller {
   void apply_safety_actions(const SafetyActions & actions);
   void log_safety_events();
   void publish_state();
+  void publish_robot_state();
+  /// Sends a message to the clients of an interface and of its read-only variant.
+  static void broadcast(primary::ClientInterfaceServer & server, primary::ClientInterfaceServer & read_only,
+                        std::string_view message);
   void handle_data_package(std::span<const rtde::InputField * const> fields);
 
   void switch_on();
@@ -115,6 +120,9 @@ class Controller {
   primary::ClientInterfaceServer primary_;
   primary::ClientInterfaceServer secondary_;
   primary::ClientInterfaceServer realtime_;
+  primary::ClientInterfaceServer primary_read_only_;
+  primary::ClientInterfaceServer secondary_read_only_;
+  primary::ClientInterfaceServer realtime_read_only_;
   primary::RealtimePacket realtime_packet_;
   rtde::Server rtde_;
   dashboard::Server dashboard_;

@@ -24,9 +24,11 @@ std::string reply_to(const Pendant::Result & result, std::string_view done, std:
   return result ? std::string(done) : failed_reply(command);
 }
 
-std::string program_name(const Pendant & pendant)
+/// The file name of the loaded program, without its folder.
+std::string program_file_name(const Pendant & pendant)
 {
-  return pendant.loaded_program().empty() ? "<unnamed>" : pendant.loaded_program();
+  const std::string & path = pendant.loaded_program();
+  return path.empty() ? "<unnamed>" : path.substr(path.rfind('/') + 1);
 }
 
 // ---- programs
@@ -65,7 +67,8 @@ std::string get_loaded_program(Pendant & pendant, std::string_view)
 
 std::string is_program_saved(Pendant & pendant, std::string_view)
 {
-  return "True " + program_name(pendant);
+  // Loaded programs are never edited. The unnamed program has no file.
+  return fmt::format("{} {}", !pendant.loaded_program().empty(), program_file_name(pendant));
 }
 
 std::string program_state(Pendant & pendant, std::string_view)
@@ -73,7 +76,7 @@ std::string program_state(Pendant & pendant, std::string_view)
   const std::string_view state = !pendant.runner().running() ? "STOPPED"
                                  : pendant.runner().paused() ? "PAUSED"
                                                              : "PLAYING";
-  return fmt::format("{} {}", state, program_name(pendant));
+  return fmt::format("{} {}", state, program_file_name(pendant));
 }
 
 std::string load_installation(Pendant & pendant, std::string_view file)
@@ -85,17 +88,28 @@ std::string load_installation(Pendant & pendant, std::string_view file)
 
 // ---- power and safety
 
+// These replies confirm the receipt of the command: the manual has no reply for a refusal. The log contains
+// it.
+
 std::string power_on(Pendant & pendant, std::string_view)
 {
-  return reply_to(pendant.power_on(), "Powering on", "power on");
+  pendant.power_on();
+  return "Powering on";
 }
 std::string power_off(Pendant & pendant, std::string_view)
 {
-  return reply_to(pendant.power_off(), "Powering off", "power off");
+  pendant.power_off();
+  return "Powering off";
 }
 std::string brake_release(Pendant & pendant, std::string_view)
 {
-  return reply_to(pendant.release_brakes(), "Brake releasing", "brake release");
+  pendant.release_brakes();
+  return "Brake releasing";
+}
+std::string restart_safety(Pendant & pendant, std::string_view)
+{
+  pendant.restart_safety();
+  return "Restarting safety";
 }
 
 std::string unlock_protective_stop(Pendant & pendant, std::string_view)
@@ -116,10 +130,6 @@ std::string close_safety_popup(Pendant & pendant, std::string_view)
   return "closing safety popup";
 }
 
-std::string restart_safety(Pendant & pendant, std::string_view)
-{
-  return reply_to(pendant.restart_safety(), "Restarting safety", "restart safety");
-}
 std::string robotmode(Pendant & pendant, std::string_view)
 {
   return fmt::format("Robotmode: {}", to_string(pendant.state().robot_mode));

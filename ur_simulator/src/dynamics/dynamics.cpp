@@ -53,9 +53,10 @@ Vector6 Dynamics::inverse_dynamics(const Vector6 & q, const Vector6 & qd, const 
   return newton_euler(link_frames(model_, q), qd, qdd, gravity_);
 }
 
-Vector6 Dynamics::inverse_dynamics(const Frames & frames, const Vector6 & qd, const Vector6 & qdd) const
+Vector6 Dynamics::inverse_dynamics(const Frames & frames, const Vector6 & qd, const Vector6 & qdd,
+                                   Vector6 * base_wrench) const
 {
-  return newton_euler(frames, qd, qdd, gravity_);
+  return newton_euler(frames, qd, qdd, gravity_, base_wrench);
 }
 
 Vector6 Dynamics::gravity_torques(const Vector6 & q) const
@@ -99,7 +100,7 @@ Vector6 Dynamics::currents(const Vector6 & torques) const
 }
 
 Vector6 Dynamics::newton_euler(const Frames & frames, const Vector6 & qd, const Vector6 & qdd,
-                               const Vector3 & gravity) const
+                               const Vector3 & gravity, Vector6 * base_wrench) const
 {
   // All quantities in the base frame. Outward recursion: motion of each link, and the force and the moment
   // about its center of mass that accelerate it.
@@ -134,6 +135,9 @@ Vector6 Dynamics::newton_euler(const Frames & frames, const Vector6 & qd, const 
     total_force += force[i];
     point = origin[i];
     torques[static_cast<Eigen::Index>(i)] = axis[i].dot(total_moment);
+  }
+  if (base_wrench != nullptr) {
+    *base_wrench << total_force, total_moment;
   }
   return torques;
 }

@@ -20,9 +20,10 @@ class Dynamics {
 
   /// tau = M(q) qdd + C(q, qd) qd + g(q)
   Vector6 inverse_dynamics(const Vector6 & q, const Vector6 & qd, const Vector6 & qdd) const;
-  /// The same from the frames of link_frames().
-  Vector6 inverse_dynamics(const std::array<Transform, 6> & frames, const Vector6 & qd,
-                           const Vector6 & qdd) const;
+  /// The same from the frames of link_frames(). If `base_wrench` is not null, it is set to the wrench that
+  /// the base exerts on the arm: force, and moment about the origin of the base frame.
+  Vector6 inverse_dynamics(const std::array<Transform, 6> & frames, const Vector6 & qd, const Vector6 & qdd,
+                           Vector6 * base_wrench = nullptr) const;
   Vector6 gravity_torques(const Vector6 & q) const;
   Matrix6 mass_matrix(const Vector6 & q) const;
   /// C(q, qd) qd, as URScript's get_coriolis_and_centrifugal_torques().
@@ -35,7 +36,7 @@ class Dynamics {
 
  private:
   Vector6 newton_euler(const std::array<Transform, 6> & frames, const Vector6 & qd, const Vector6 & qdd,
-                       const Vector3 & gravity) const;
+                       const Vector3 & gravity, Vector6 * base_wrench = nullptr) const;
 
   const RobotModel & model_;
   std::array<Link, 6> links_;  ///< the last one includes the payload

@@ -37,6 +37,17 @@ void EventLog::add(LogLevel level, std::string_view source, std::string text, st
   add(std::move(entry));
 }
 
+void EventLog::error(std::string_view source, const ErrorCode & code, std::string text)
+{
+  LogEntry entry;
+  entry.level = LogLevel::error;
+  entry.source = source;
+  entry.text = std::move(text);
+  entry.kind = LogKind::error_code;
+  entry.code = code;
+  add(std::move(entry));
+}
+
 void EventLog::add(LogEntry entry)
 {
   entry.number = ++count_;

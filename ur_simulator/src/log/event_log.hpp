@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/error_code.hpp"
+
 namespace ur_simulator {
 
 enum class LogLevel { info, warning, error };
@@ -15,7 +17,7 @@ enum class LogLevel { info, warning, error };
 std::string_view to_string(LogLevel level);
 
 /// Selects the message type in which the primary interface reports an entry.
-enum class LogKind { text, program_started, program_ended, popup, safety };
+enum class LogKind { text, program_started, program_ended, popup, error_code, safety_mode };
 
 struct LogEntry {
   std::uint64_t number = 0;  ///< consecutive, starts at 1
@@ -26,8 +28,11 @@ struct LogEntry {
   std::int32_t line = -1;    ///< line of the program, 1-based; -1: none
   std::int32_t column = -1;  ///< column of the program, 1-based; -1: none
   LogKind kind = LogKind::text;
-  std::string title;      ///< title of the popup, or name of the program
-  bool blocking = false;  ///< popups only: the program waits until the popup is closed
+  std::string title;             ///< title of the popup, or name of the program
+  bool blocking = false;         ///< popups only: the program waits until the popup is closed
+  ErrorCode code;                ///< error codes only
+  std::uint8_t safety_mode = 0;  ///< safety modes only: as in the RTDE output
+  std::string exception;         ///< text of the runtime exception message; empty: `text`
 };
 
 /// One line: timestamp, level, source and text, in columns.
@@ -50,6 +55,8 @@ class EventLog {
   void info(std::string_view source, std::string text) { add(LogLevel::info, source, std::move(text)); }
   void warning(std::string_view source, std::string text) { add(LogLevel::warning, source, std::move(text)); }
   void error(std::string_view source, std::string text) { add(LogLevel::error, source, std::move(text)); }
+  /// Adds an error with an error code of the controller.
+  void error(std::string_view source, const ErrorCode & code, std::string text);
   const std::deque<LogEntry> & entries() const { return entries_; }
 
  private:

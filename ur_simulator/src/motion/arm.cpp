@@ -10,6 +10,7 @@ namespace {
 
 constexpr double scaling_rate =
     2.0;  // 1/s: the scaling follows a step of the slider from 0 to 1 within 0.5 s
+constexpr double max_servo_error = 0.2;  // rad: a larger error triggers a protective stop
 
 }  // namespace
 
@@ -204,8 +205,14 @@ void Arm::step(ControllerState & state)
     arm.advance(time_step);
     arm.command_joints(time_step);
   }
+  const auto * path = std::get_if<PathMotion>(&arm.active_motion);
+  state.time_scale_source = path != nullptr && path->limited_by_joint_speed()
+                                ? TimeScaleSource::joint_speed_limit
+                                : TimeScaleSource::none;
   state.freedrive = arm.in_freedrive();
   state.in_force_mode = arm.force.has_value();
+  state.joint_deviation_ratio =
+      (arm.commanded.position - arm.servo_loop.position()).cwiseAbs().maxCoeff() / max_servo_error;
   arm.writer.write(arm.setpoint, arm.servo_loop, state);
 }
 

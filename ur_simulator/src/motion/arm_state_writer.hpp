@@ -22,6 +22,13 @@ class ArmStateWriter {
   void write_joints(const Vector6 & position, const Vector6 & velocity, JointState & joints) const;
   void write_target(ControllerState & state) const;
   void write_actual(ControllerState & state);
+  void add_energy(ControllerState & state) const;
+  /// The time derivative of a velocity of which `previous` was the value in the previous cycle.
+  template <typename Derived>
+  Derived derivative(const Derived & velocity, const Derived & previous) const
+  {
+    return first_cycle_ ? Derived(Derived::Zero()) : Derived((velocity - previous) / cycle_time_);
+  }
 
   const RobotModel & model_;
   double cycle_time_;

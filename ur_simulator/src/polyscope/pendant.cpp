@@ -4,10 +4,13 @@
 
 #include <utility>
 
+#include "polyscope/controller_commands.hpp"
+
 namespace ur_simulator {
 namespace {
 
 constexpr std::string_view pendant_source = "pendant";
+constexpr std::string_view script_source = "program";
 constexpr std::string_view programs_folder_prefix = "/programs/";
 
 /// The name within the programs folder. Clients give it with or without the folder.
@@ -128,25 +131,44 @@ Pendant::Result Pendant::start(urscript::Program program, std::string_view scrip
 
 Pendant::Result Pendant::run_script(std::string_view text)
 {
-  Result result;
   if (!remote_control_ && options_.version.is_e_series()) {
-    result = refusal("the robot is in local control: switch it to remote control");
-  } else if (in_manual_mode()) {
-    result = refusal("the operational mode is MANUAL: set it to automatic");
-  } else {
-    auto program = runner_.compile(text);
-    if (!program) {
-      const urscript::CompileError & error = program.error();
-      log_.add(LogLevel::error, "program", "script was not started: " + error.text(), error.line,
-               error.column);
-      return refusal(error.text());
-    }
-    result = start(std::move(*program), text);
+    log_.error(script_source, error_codes::read_only_interface,
+               "script was not started: the robot is in local control: switch it to remote control");
+    return refusal("the robot is in local control");
   }
-  if (!result) {
-    log_.error("program", "script was not started: " + result.error());
+  if (const auto result = execute_controller_command(*this, text)) {
+    return *result;
   }
-  return result;
+  if (in_manual_mode()) {
+    return reject_script(refusal("the operational mode is MANUAL: set it to automatic"));
+  }
+  auto program = runner_.compile(text);
+  if (!program) {
+    log_compile_error(program.error());
+    return refusal(program.error().text());
+  }
+  Result started = start(std::move(*program), text);
+  return started ? started : reject_script(std::move(started));
+}
+
+void Pendant::log_compile_error(const urscript::CompileError & error)
+{
+  LogEntry entry;
+  entry.level = LogLevel::error;
+  entry.source = script_source;
+  entry.text = "script was not started: " + error.text();
+  entry.line = error.line;
+  entry.column = error.column;
+  if (!error.undefined_name.empty()) {
+    entry.exception = fmt::format("compile_error_name_not_found:{}:", error.undefined_name);
+  }
+  log_.add(std::move(entry));
+}
+
+Pendant::Result Pendant::reject_script(Result reason)
+{
+  log_.error(script_source, "script was not started: " + reason.error());
+  return reason;
 }
 
 void Pendant::play(const std::function<void(const Result &)> & done)
@@ -195,6 +217,11 @@ Pendant::Result Pendant::pause()
   return runner_.pause() ? Result() : refusal("no program is running");
 }
 
+Pendant::Result Pendant::resume()
+{
+  return runner_.resume() ? Result() : refusal("no program is paused");
+}
+
 void Pendant::stop()
 {
   runner_.stop("stopped by the operator");
@@ -225,11 +252,12 @@ Pendant::Result Pendant::release_brakes()
   return log_refusal("brake release", safety_.brake_release());
 }
 
-Pendant::Result Pendant::unlock_protective_stop()
+Pendant::Result Pendant::unlock_protective_stop(UnlockDelay delay)
 {
-  Result result = log_refusal("unlock protective stop", safety_.unlock_protective_stop());
+  Result result = log_refusal("unlock protective stop", safety_.unlock_protective_stop(delay));
   if (result) {
     safety_popup_.reset();
+    safety_.write(state_);  // a program may follow before the next control cycle
   }
   return result;
 }

@@ -52,13 +52,15 @@ class Pendant {
   tl::expected<void, LoadError> load_program(const std::string & name);
   /// Returns false if there is no such installation.
   bool load_installation(const std::string & name);
-  /// Runs a script received on a client interface. It replaces the running program.
+  /// Runs a script received on a client interface, which replaces the running program, or executes a
+  /// controller command such as `power on`.
   Result run_script(std::string_view text);
   /// Resumes a paused program. Otherwise starts the loaded program or, without one, the last received script.
   /// `done` receives the result: before the function returns, or later if the program is requested from a
   /// host.
   void play(const std::function<void(const Result &)> & done);
   Result pause();
+  Result resume();
   void stop();
 
   using ProgramText = tl::expected<std::string, std::string>;
@@ -75,7 +77,7 @@ class Pendant {
   Result power_on();
   Result power_off();
   Result release_brakes();
-  Result unlock_protective_stop();
+  Result unlock_protective_stop(UnlockDelay delay = UnlockDelay::required);
   Result restart_safety();
   void close_safety_popup() { safety_popup_.reset(); }
   void show_safety_popup(std::string text) { safety_popup_ = std::move(text); }
@@ -88,6 +90,8 @@ class Pendant {
 
   // ---- modes
 
+  /// Sets the speed slider, 0..1.
+  void set_speed_slider(double fraction) { state_.speed_slider = fraction; }
   bool remote_control() const { return remote_control_; }
   void set_remote_control(bool remote);
   /// The dashboard server has set the operational mode to manual: programs cannot be started remotely.
@@ -111,6 +115,9 @@ class Pendant {
   Result start(urscript::Program program, std::string_view script);
   Result resume_or_start_program();
   Result start_external_program(const ProgramHost & host, const ProgramText & text);
+  void log_compile_error(const urscript::CompileError & error);
+  /// Logs why a script was not started.
+  Result reject_script(Result reason);
   /// Logs the reason if the action was refused.
   Result log_refusal(std::string_view action, Result result);
 

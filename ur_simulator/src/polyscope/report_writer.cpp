@@ -33,6 +33,10 @@ ReportWriter::ReportWriter(const ControllerState & state, const EventLog & log, 
 
 PendingReply ReportWriter::start_flight_report(std::string_view type)
 {
+  constexpr std::string_view default_type = "system";
+  if (type.empty()) {
+    type = default_type;
+  }
   constexpr std::array<std::string_view, 3> types{"controller", "software", "system"};
   if (std::ranges::find(types, type) == types.end()) {
     return immediate_reply(fmt::format("Error: Flight Report type '{}' is not one of {}", type,

@@ -26,7 +26,8 @@ class ReportWriter {
   ReportWriter(const ControllerState & state, const EventLog & log, std::string serial_number,
                std::string folder);
 
-  /// `type` is "controller", "software" or "system".
+  /// `type` is "controller", "software", "system" or empty: "system", the dashboard server's default (UR,
+  /// ur_dashboard_msgs, GenerateFlightReport.srv).
   PendingReply start_flight_report(std::string_view type);
   /// `folder` is a folder on the robot's disk: /programs, or relative to it.
   PendingReply start_support_file(std::string_view folder);

@@ -7,9 +7,11 @@
 namespace ur_simulator::primary {
 
 ClientInterfaceServer::ClientInterfaceServer(boost::asio::io_context & io, const std::string & address,
-                                             std::uint16_t port, Pendant & pendant, std::string first_message)
+                                             std::uint16_t port, Pendant & pendant, std::string first_message,
+                                             ScriptAccess access)
     : pendant_(pendant),
       first_message_(std::move(first_message)),
+      access_(access),
       listener_(io, address, port,
                 [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
 {
@@ -42,7 +44,12 @@ void ClientInterfaceServer::receive(Client & client, std::string_view bytes)
   log_dropped_scripts(client);
   while (const auto script = client.reader.next()) {
     // Errors are logged and reported to the clients of the primary interface.
-    pendant_.run_script(*script);
+    if (access_ == ScriptAccess::read_only) {
+      pendant_.log().error("program", error_codes::read_only_interface,
+                           "script was not started: it was sent to a read-only interface");
+    } else {
+      pendant_.run_script(*script);
+    }
   }
 }
 

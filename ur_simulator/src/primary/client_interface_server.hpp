@@ -12,14 +12,17 @@
 
 namespace ur_simulator::primary {
 
-/// One of the client interfaces: 30001 primary, 30002 secondary, 30003 real-time (UR, "Client Interface").
-/// Runs the scripts that clients send and sends them messages. Messages are dropped for clients that do not
-/// read; their connections stay open.
+/// Whether a client interface runs scripts.
+enum class ScriptAccess : std::uint8_t { full, read_only };
+
+/// One of the client interfaces: 30001 primary, 30002 secondary, 30003 real-time, or the read-only variant of
+/// one: 30011, 30012, 30013 (UR, "Client Interface"). Runs the scripts that clients send and sends them
+/// messages. Messages are dropped for clients that do not read; their connections stay open.
 class ClientInterfaceServer {
  public:
   /// `first_message` is sent to each new client; it may be empty.
   ClientInterfaceServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
-                        Pendant & pendant, std::string first_message);
+                        Pendant & pendant, std::string first_message, ScriptAccess access);
   ~ClientInterfaceServer();
 
   /// Sends a complete message to each client without unsent data.
@@ -40,6 +43,7 @@ class ClientInterfaceServer {
 
   Pendant & pendant_;
   std::string first_message_;
+  ScriptAccess access_;
   std::map<std::uint64_t, std::shared_ptr<Client>> clients_;
   Listener listener_;
 };

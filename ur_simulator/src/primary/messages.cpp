@@ -8,11 +8,13 @@ namespace ur_simulator::primary {
 namespace {
 
 constexpr std::uint8_t robot_message = 20;
+constexpr std::uint32_t no_data = 0;  // type of the data of error code and safety mode messages
 
 enum class MessageType : std::uint8_t {
   text = 0,
   popup = 2,
   version = 3,
+  safety_mode = 5,
   error_code = 6,
   key = 7,
   runtime_exception = 10
@@ -80,18 +82,26 @@ std::string key_message(double timestamp, std::string_view title, std::string_vi
   return finish_message(std::move(message));
 }
 
-std::string error_code_message(double timestamp, LogLevel level, std::string_view text)
+std::string error_code_message(double timestamp, const ErrorCode & code, std::string_view text)
 {
-  constexpr std::uint32_t no_data = 0;
-  // Report levels: 1 information, 2 warning, 3 violation.
-  const std::uint32_t report_level = level == LogLevel::error ? 3 : level == LogLevel::warning ? 2 : 1;
   std::string message = begin_message(MessageType::error_code, timestamp);
-  put_u32(message, 0);  // code: UR's error codes are not simulated
-  put_u32(message, 0);  // argument
-  put_u32(message, report_level);
+  put_u32(message, static_cast<std::uint32_t>(code.code));
+  put_u32(message, static_cast<std::uint32_t>(code.argument));
+  put_u32(message, static_cast<std::uint32_t>(code.level));
   put_u32(message, no_data);
   put_u32(message, 0);
   message += text;
+  return finish_message(std::move(message));
+}
+
+std::string safety_mode_message(double timestamp, std::uint8_t safety_mode)
+{
+  std::string message = begin_message(MessageType::safety_mode, timestamp);
+  put_u32(message, 0);  // code
+  put_u32(message, 0);  // argument
+  put_u8(message, safety_mode);
+  put_u32(message, no_data);
+  put_u32(message, 0);
   return finish_message(std::move(message));
 }
 
@@ -120,8 +130,10 @@ std::string robot_message_for(const LogEntry & entry)
       return key_message(entry.timestamp, "PROGRAM_XXX_STOPPED", entry.title);
     case LogKind::popup:
       return popup_message(entry);
-    case LogKind::safety:
-      return error_code_message(entry.timestamp, entry.level, entry.text);
+    case LogKind::error_code:
+      return error_code_message(entry.timestamp, entry.code, entry.text);
+    case LogKind::safety_mode:
+      return safety_mode_message(entry.timestamp, entry.safety_mode);
     case LogKind::text:
       break;
   }
@@ -129,7 +141,8 @@ std::string robot_message_for(const LogEntry & entry)
     return text_message(entry.timestamp, entry.text);
   }
   if (entry.source == "program" && entry.level == LogLevel::error) {
-    return runtime_exception_message(entry.timestamp, entry.line, entry.column, entry.text);
+    return runtime_exception_message(entry.timestamp, entry.line, entry.column,
+                                     entry.exception.empty() ? entry.text : entry.exception);
   }
   return {};
 }

@@ -23,8 +23,9 @@ std::string runtime_exception_message(double timestamp, std::int32_t line, std::
 /// Start or end of a program: title "PROGRAM_XXX_STARTED" or "PROGRAM_XXX_STOPPED", text: name of the
 /// program.
 std::string key_message(double timestamp, std::string_view title, std::string_view text);
-/// Messages of the safety system.
-std::string error_code_message(double timestamp, LogLevel level, std::string_view text);
+std::string error_code_message(double timestamp, const ErrorCode & code, std::string_view text);
+/// `safety_mode` as in the RTDE output safety_mode.
+std::string safety_mode_message(double timestamp, std::uint8_t safety_mode);
 /// A popup on the pendant's screen.
 std::string popup_message(const LogEntry & entry);
 

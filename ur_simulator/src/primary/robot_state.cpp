@@ -21,6 +21,8 @@ enum class Package : std::uint8_t {
   configuration = 6,
   force_mode = 7,
   additional = 8,
+  tool_communication = 11,
+  tool_mode = 12,
 };
 
 // Constant values of an operational robot.
@@ -54,7 +56,13 @@ void append_package(std::string & message, Package type, const std::string & con
   message += content;
 }
 
-std::string robot_mode_data(const ControllerState & s)
+/// First version of each controller generation with certain fields.
+constexpr MinVersion cb3_since(std::uint32_t minor)
+{
+  return {MinVersion::always, {3, minor, 0, 0}};
+}
+
+std::string robot_mode_data(const PolyscopeVersion & version, const ControllerState & s)
 {
   constexpr std::uint8_t position_control = 0;
   constexpr std::uint8_t teach_control = 1;
@@ -75,8 +83,12 @@ std::string robot_mode_data(const ControllerState & s)
   put_u8(data, s.freedrive ? teach_control : s.in_force_mode ? force_control : position_control);
   put_f64(data, s.target_speed_fraction);
   put_f64(data, s.speed_scaling);
-  put_f64(data, 1.0);  // limit of the target speed fraction
-  put_u8(data, 0);
+  if (cb3_since(2).is_met_by(version)) {
+    put_f64(data, 1.0);  // limit of the target speed fraction
+  }
+  if (cb3_since(5).is_met_by(version)) {
+    put_u8(data, 0);  // internal
+  }
   return data;
 }
 
@@ -111,7 +123,7 @@ std::string tool_data(const ControllerState & s)
   return data;
 }
 
-std::string masterboard_data(const ControllerState & s)
+std::string masterboard_data(const PolyscopeVersion & version, const ControllerState & s)
 {
   std::string data;
   put_u32(data, static_cast<std::uint32_t>(s.io.digital_inputs));
@@ -132,9 +144,13 @@ std::string masterboard_data(const ControllerState & s)
   put_u8(data, s.safety_mode == SafetyMode::reduced ? 1 : 0);
   put_u8(data, 0);   // no Euromap interface
   put_u32(data, 0);  // internal
-  put_u8(data, 0);   // operational mode selector: not wired
-  put_u8(data, 0);   // three-position switch: not wired
-  put_u8(data, 0);   // internal
+  if (cb3_since(2).is_met_by(version)) {
+    put_u8(data, 0);  // operational mode selector: not wired
+    put_u8(data, 0);  // three-position switch: not wired
+  }
+  if (cb3_since(10).is_met_by(version)) {
+    put_u8(data, 0);  // internal
+  }
   return data;
 }
 
@@ -197,6 +213,30 @@ std::string force_mode_data(const RobotModel & model, const ControllerState & s)
   return data;
 }
 
+/// The serial line in the tool connector, as set_tool_communication() configures it: disabled.
+std::string tool_communication_data()
+{
+  std::string data;
+  put_u8(data, 0);        // disabled
+  put_u32(data, 115200);  // baud rate
+  put_u32(data, 0);       // no parity
+  put_u32(data, 1);       // stop bits
+  put_f32(data, 1.5F);    // characters of silence that end a message
+  put_f32(data, 3.5F);    // characters of silence before a message
+  return data;
+}
+
+std::string tool_mode_data()
+{
+  constexpr std::uint8_t digital_outputs = 0;
+  constexpr std::uint8_t sinking = 1;
+  std::string data;
+  put_u8(data, digital_outputs);
+  put_u8(data, sinking);
+  put_u8(data, sinking);
+  return data;
+}
+
 std::string additional_data(const ControllerState & s)
 {
   std::string data;
@@ -209,18 +249,23 @@ std::string additional_data(const ControllerState & s)
 
 }  // namespace
 
-std::string robot_state_message(const RobotModel & model, const ControllerState & state)
+std::string robot_state_message(const RobotModel & model, const PolyscopeVersion & version,
+                                const ControllerState & state)
 {
   std::string packages;
-  append_package(packages, Package::robot_mode, robot_mode_data(state));
+  append_package(packages, Package::robot_mode, robot_mode_data(version, state));
   append_package(packages, Package::joints, joint_data(state));
   append_package(packages, Package::tool, tool_data(state));
-  append_package(packages, Package::masterboard, masterboard_data(state));
+  append_package(packages, Package::masterboard, masterboard_data(version, state));
   append_package(packages, Package::cartesian, cartesian_data(state));
   append_package(packages, Package::kinematics, kinematics_data(model));
   append_package(packages, Package::configuration, configuration_data(model));
   append_package(packages, Package::force_mode, force_mode_data(model, state));
   append_package(packages, Package::additional, additional_data(state));
+  if (version.is_e_series()) {
+    append_package(packages, Package::tool_communication, tool_communication_data());
+    append_package(packages, Package::tool_mode, tool_mode_data());
+  }
   std::string message;
   put_u32(message, static_cast<std::uint32_t>(packages.size() + 5));
   put_u8(message, robot_state);

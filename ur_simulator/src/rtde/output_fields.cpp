@@ -18,6 +18,22 @@ constexpr PolyscopeVersion v(std::uint32_t major, std::uint32_t minor, std::uint
   return {major, minor, bugfix, 0};
 }
 
+constexpr double current_window = 5.0;         // A: allowed deviation from the target current
+constexpr double target_execution_time = 1.0;  // ms
+
+std::int32_t time_scale_source(const State & s)
+{
+  constexpr std::int32_t program_not_running = 0;
+  const bool running = s.runtime_state == RuntimeState::playing || s.runtime_state == RuntimeState::resuming;
+  return running ? static_cast<std::int32_t>(s.time_scale_source) : program_not_running;
+}
+
+/// The configurable ones of the digital inputs or outputs, as bits 0 to 7.
+constexpr std::uint64_t configurable_bits(std::uint64_t digital_bits)
+{
+  return (digital_bits >> 8) & 0xff;
+}
+
 template <typename Bits>
 std::uint32_t word(const Bits & bits, unsigned first)
 {
@@ -81,12 +97,15 @@ void add_motion_outputs(std::vector<OutputField> & fields)
       {"actual_q", vector6d, {}, 0, UR_OUTPUT(s.actual.position)},
       {"actual_qd", vector6d, {}, 0, UR_OUTPUT(s.actual.velocity)},
       {"actual_current", vector6d, {}, 0, UR_OUTPUT(s.actual.current)},
+      {"actual_current_window", vector6d, {}, 0, UR_OUTPUT(Vector6(Vector6::Constant(current_window)))},
       {"actual_current_as_torque", vector6d, {v(5, 23), never}, 0, UR_OUTPUT(s.actual.torque)},
       {"joint_control_output", vector6d, {}, 0, UR_OUTPUT(s.target.current)},
       {"joint_temperatures", vector6d, {}, 0, UR_OUTPUT(s.joint_temperatures)},
+      {"joint_position_deviation_ratio", double_, {v(5, 14), never}, 0, UR_OUTPUT(s.joint_deviation_ratio)},
       {"collision_detection_ratio", double_, {v(5, 15), never}, 0, UR_OUTPUT(s.collision_force_ratio)},
       {"speed_scaling", double_, {}, 0, UR_OUTPUT(s.speed_scaling)},
       {"target_speed_fraction", double_, {}, 0, UR_OUTPUT(s.target_speed_fraction)},
+      {"time_scale_source", int32, {v(5, 17), never}, 0, UR_OUTPUT(time_scale_source(s))},
   };
   fields.insert(fields.end(), rows.begin(), rows.end());
 }
@@ -100,9 +119,18 @@ void add_tcp_and_payload_outputs(std::vector<OutputField> & fields)
       {"actual_TCP_force", vector6d, {}, 0, UR_OUTPUT(s.actual_tcp_force)},
       {"target_TCP_pose", vector6d, {}, 0, UR_OUTPUT(s.target_tcp_pose)},
       {"target_TCP_speed", vector6d, {}, 0, UR_OUTPUT(s.target_tcp_speed)},
-      {"tcp_offset", vector6d, {v(5, 0), never}, 0, UR_OUTPUT(s.tcp_offset)},
+      {"actual_TCP_acceleration", vector6d, {v(5, 23), never}, 0, UR_OUTPUT(s.actual_tcp_acceleration)},
+      {"target_TCP_acceleration", vector6d, {v(5, 23), never}, 0, UR_OUTPUT(s.target_tcp_acceleration)},
+      {"elbow_position", vector3d, {v(5, 0), v(3, 5)}, 0, UR_OUTPUT(s.elbow_position)},
+      {"elbow_velocity", vector3d, {v(5, 0), v(3, 5)}, 0, UR_OUTPUT(s.elbow_velocity)},
+      {"tcp_offset", vector6d, {v(5, 5, 1), v(3, 12)}, 0, UR_OUTPUT(s.tcp_offset)},
       {"tcp_force_scalar", double_, {}, 0, UR_OUTPUT(s.actual_tcp_force.head<3>().norm())},
       {"ft_raw_wrench", vector6d, {v(5, 9), never}, 0, UR_OUTPUT(s.ft_raw_wrench)},
+      // The disturbance of the motion control is what the joint currents reveal.
+      {"wrench_calc_from_currents", vector6d, {v(5, 23), never}, 0, UR_OUTPUT(s.tool_wrench)},
+      {"target_gravity", vector3d, {v(5, 26), never}, 0, UR_OUTPUT(s.gravity)},
+      {"target_base_acceleration", vector6d, {v(5, 26), never}, 0, UR_OUTPUT(Vector6(Vector6::Zero()))},
+      {"target_base_wrench", vector6d, {v(5, 26), never}, 0, UR_OUTPUT(s.target_base_wrench)},
       {"payload", double_, {v(5, 5, 1), v(3, 11)}, 0, UR_OUTPUT(s.payload.mass)},
       {"payload_cog", vector3d, {v(5, 5, 1), v(3, 11)}, 0, UR_OUTPUT(s.payload.center_of_gravity)},
       {"payload_inertia", vector6d, {v(5, 11), v(3, 15)}, 0, UR_OUTPUT(s.payload.inertia)},
@@ -131,6 +159,8 @@ void add_mode_outputs(std::vector<OutputField> & fields)
       {"robot_status_bits", uint32, {}, 0, UR_OUTPUT(s.robot_status_bits)},
       {"safety_status_bits", uint32, {}, 0, UR_OUTPUT(s.safety_status_bits)},
       {"actual_execution_time", double_, {}, 0, UR_OUTPUT(s.actual_execution_time)},
+      {"target_execution_time", double_, {v(5, 23), never}, 0, UR_OUTPUT(target_execution_time)},
+      {"control_step", uint64, {v(5, 26), never}, 0, UR_OUTPUT(s.cycle)},
       {"script_control_line", uint32, {v(5, 9), v(3, 14)}, 0, UR_OUTPUT(std::uint32_t{0})},
   };
   fields.insert(fields.end(), rows.begin(), rows.end());
@@ -142,6 +172,16 @@ void add_io_outputs(std::vector<OutputField> & fields)
   const std::vector<OutputField> rows{
       {"actual_digital_input_bits", uint64, {}, 0, UR_OUTPUT(s.io.digital_inputs)},
       {"actual_digital_output_bits", uint64, {}, 0, UR_OUTPUT(s.io.digital_outputs)},
+      {"actual_configurable_digital_input_bits",
+       uint64,
+       {v(5, 23), never},
+       0,
+       UR_OUTPUT(configurable_bits(s.io.digital_inputs))},
+      {"actual_configurable_digital_output_bits",
+       uint64,
+       {v(5, 23), never},
+       0,
+       UR_OUTPUT(configurable_bits(s.io.digital_outputs))},
       {"analog_io_types", uint32, {}, 0, UR_OUTPUT(s.io.analog_io_types)},
       {"standard_analog_input0", double_, {}, 0, UR_OUTPUT(s.io.analog_inputs[0])},
       {"standard_analog_input1", double_, {}, 0, UR_OUTPUT(s.io.analog_inputs[1])},
@@ -162,9 +202,17 @@ void add_io_outputs(std::vector<OutputField> & fields)
       {"euromap67_output_bits", uint32, {}, 0, UR_OUTPUT(std::uint32_t{0})},
       {"euromap67_24V_voltage", double_, {}, 0, UR_OUTPUT(0.0)},
       {"euromap67_24V_current", double_, {}, 0, UR_OUTPUT(0.0)},
+      {"encoder0_raw", int32, {v(5, 23), never}, 0, UR_OUTPUT(std::int32_t{0})},  // no encoders
+      {"encoder1_raw", int32, {v(5, 23), never}, 0, UR_OUTPUT(std::int32_t{0})},
       {"actual_main_voltage", double_, {}, 0, UR_OUTPUT(main_voltage)},
       {"actual_robot_voltage", double_, {}, 0, UR_OUTPUT(s.is_powered() ? main_voltage : 0.0)},
       {"actual_robot_current", double_, {}, 0, UR_OUTPUT(s.is_powered() ? idle_robot_current : 0.0)},
+      {"actual_robot_energy_consumed", double_, {v(5, 23), never}, 0, UR_OUTPUT(s.energy.consumed)},
+      {"actual_robot_braking_energy_dissipated",
+       double_,
+       {v(5, 23), never},
+       0,
+       UR_OUTPUT(s.energy.braking_dissipated)},
       {"actual_joint_voltage",
        vector6d,
        {},

@@ -12,34 +12,45 @@ constexpr double position_tolerance = 0.02;  // rad: the lag of the servo loops 
 
 }  // namespace
 
-std::optional<std::string> LimitMonitor::check(const SafetyLimits & limits, const ControllerState & state)
+std::optional<ExceededLimit> LimitMonitor::check(const SafetyLimits & limits, const ControllerState & state)
 {
   auto force = check_force(limits, state);
   if (auto joint = check_joints(limits, state.actual)) {
     return joint;
   }
+  if (state.joint_deviation_ratio >= 1.0) {
+    return ExceededLimit{error_codes::position_deviates(0),
+                         fmt::format("the joints deviate from their path: {:.2f} times the allowed deviation",
+                                     state.joint_deviation_ratio)};
+  }
   const double speed = state.actual_tcp_speed.head<3>().norm();
   if (speed > limits.tool_speed) {
-    return fmt::format("tool speed {:.2f} m/s is over the safety limit of {:.2f} m/s; move slower", speed,
-                       limits.tool_speed);
+    return ExceededLimit{
+        error_codes::unnumbered_protective_stop,
+        fmt::format("tool speed {:.2f} m/s is over the safety limit of {:.2f} m/s; move slower", speed,
+                    limits.tool_speed)};
   }
   return force;
 }
 
-std::optional<std::string> LimitMonitor::check_joints(const SafetyLimits & limits,
-                                                      const JointState & joints) const
+std::optional<ExceededLimit> LimitMonitor::check_joints(const SafetyLimits & limits,
+                                                        const JointState & joints) const
 {
   for (Eigen::Index i = 0; i < 6; ++i) {
     const double position = joints.position[i];
     if (position < model_.position_min[i] - position_tolerance ||
         position > model_.position_max[i] + position_tolerance) {
-      return fmt::format("joint {} at {:.4f} rad is beyond its position limits [{:.4f}, {:.4f}]", i, position,
-                         model_.position_min[i], model_.position_max[i]);
+      return ExceededLimit{
+          error_codes::close_to_joint_limits,
+          fmt::format("joint {} at {:.4f} rad is beyond its position limits [{:.4f}, {:.4f}]", i, position,
+                      model_.position_min[i], model_.position_max[i])};
     }
     const double speed_limit = model_.velocity_max[i] * (1.0 + limits.joint_speed_margin);
     if (std::abs(joints.velocity[i]) > speed_limit) {
-      return fmt::format("joint {} turns at {:.3f} rad/s, over its safety limit of {:.3f} rad/s", i,
-                         joints.velocity[i], speed_limit);
+      return ExceededLimit{
+          error_codes::unnumbered_protective_stop,
+          fmt::format("joint {} turns at {:.3f} rad/s, over its safety limit of {:.3f} rad/s", i,
+                      joints.velocity[i], speed_limit)};
     }
   }
   return std::nullopt;
@@ -50,8 +61,8 @@ void LimitMonitor::tolerate_present_force()
   tolerate_next_force_ = true;
 }
 
-std::optional<std::string> LimitMonitor::check_force(const SafetyLimits & limits,
-                                                     const ControllerState & state)
+std::optional<ExceededLimit> LimitMonitor::check_force(const SafetyLimits & limits,
+                                                       const ControllerState & state)
 {
   constexpr double max_increase = 50.0;  // N above the tolerated force
   const double force = state.contact_wrench.head<3>().norm();
@@ -66,14 +77,19 @@ std::optional<std::string> LimitMonitor::check_force(const SafetyLimits & limits
   const bool tolerated = tolerated_force_ > limits.tool_force;
   const double sustained_limit = tolerated ? tolerated_force_ + max_increase : limits.tool_force;
   const double peak_limit = std::max(sustained_limit, limits.tool_force_peak);
+  force_ratio_ = std::max(filtered_force_ / sustained_limit, force / peak_limit);
   if (filtered_force_ > sustained_limit) {
-    return fmt::format(
-        "tool force {:.0f} N, sustained, is over the safety limit of {:.0f} N; release the tool, or press "
-        "less",
-        filtered_force_, sustained_limit);
+    return ExceededLimit{
+        error_codes::collision_detected,
+        fmt::format(
+            "tool force {:.0f} N, sustained, is over the safety limit of {:.0f} N; release the tool, or "
+            "press less",
+            filtered_force_, sustained_limit)};
   }
   if (force > peak_limit) {
-    return fmt::format("tool force {:.0f} N is over the peak of {:.0f} N: collision", force, peak_limit);
+    return ExceededLimit{
+        error_codes::collision_detected,
+        fmt::format("tool force {:.0f} N is over the peak of {:.0f} N: collision", force, peak_limit)};
   }
   return std::nullopt;
 }

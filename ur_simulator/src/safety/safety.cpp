@@ -62,12 +62,13 @@ Safety::Safety(const RobotModel & model, double cycle_time, const SafetyLimits &
 
 SafetyResult Safety::check_power_on() const
 {
-  if (is_emergency(safety_mode_) || is_failure(safety_mode_)) {
-    return reject(fmt::format("cannot power on: safety mode is {}; {}", to_string(safety_mode_),
-                              is_emergency(safety_mode_) ? "release the emergency stop" : "restart safety"));
+  const bool restarting = restart_ends_at_ >= 0.0;
+  if (is_emergency(safety_mode_)) {
+    return reject(fmt::format("cannot power on: safety mode is {}; release the emergency stop",
+                              to_string(safety_mode_)));
   }
-  if (restart_ends_at_ >= 0.0) {
-    return reject("cannot power on: the safety system is restarting");
+  if (is_failure(safety_mode_) && !restarting) {
+    return reject(fmt::format("cannot power on: safety mode is {}; restart safety", to_string(safety_mode_)));
   }
   return {};
 }
@@ -112,28 +113,28 @@ void Safety::start_running(ControllerState & state)
   write(state);
 }
 
-void Safety::trigger_protective_stop(std::string_view reason)
+void Safety::trigger_protective_stop(std::string_view reason, const ErrorCode & code)
 {
   if (robot_mode_ != RobotMode::running || stopped()) {
     log(Level::warning, fmt::format("protective stop requested in robot mode {}, safety mode {}: {}",
                                     to_string(robot_mode_), to_string(safety_mode_), reason));
     return;
   }
-  stop(SafetyMode::protective_stop, Level::error, fmt::format("protective stop: {}", reason));
+  stop(SafetyMode::protective_stop, Level::error, fmt::format("protective stop: {}", reason), code);
 }
 
 void Safety::trigger_protective_stop(const MotionFault & fault)
 {
-  trigger_protective_stop(describe(fault));
+  trigger_protective_stop(describe(fault), error_code(fault));
 }
 
-SafetyResult Safety::unlock_protective_stop()
+SafetyResult Safety::unlock_protective_stop(UnlockDelay delay)
 {
   if (safety_mode_ != SafetyMode::protective_stop) {
     return reject(fmt::format("no protective stop to unlock: safety mode is {}", to_string(safety_mode_)));
   }
   const double left = times_.unlock_delay - (now_ - safety_mode_since_);
-  if (left > 1e-9) {
+  if (delay == UnlockDelay::required && left > 1e-9) {
     return reject(fmt::format(
         "cannot unlock protective stop until {:g} s after it occurred, {:.1f} s are left; inspect the cause",
         times_.unlock_delay, left));
@@ -149,7 +150,7 @@ void Safety::press_emergency_stop(bool system)
   const SafetyMode mode = system ? SafetyMode::system_emergency_stop : SafetyMode::robot_emergency_stop;
   pressed_button_ = mode;
   if (safety_mode_ != mode && !is_failure(safety_mode_)) {
-    stop_and_cut_power(mode, "emergency stop");
+    stop_and_cut_power(mode, "emergency stop", std::nullopt);
   }
 }
 
@@ -169,7 +170,7 @@ SafetyResult Safety::release_emergency_stop()
 void Safety::open_safeguard()
 {
   if (allows_motion(safety_mode_)) {
-    stop(SafetyMode::safeguard_stop, Level::warning, "safeguard stop");
+    stop(SafetyMode::safeguard_stop, Level::warning, "safeguard stop", std::nullopt);
   }
 }
 
@@ -195,12 +196,13 @@ SafetyResult Safety::set_reduced(bool reduced)
 
 void Safety::trigger_violation(std::string_view reason)
 {
-  stop_and_cut_power(SafetyMode::violation, fmt::format("safety violation: {}", reason));
+  stop_and_cut_power(SafetyMode::violation, fmt::format("safety violation: {}", reason),
+                     error_codes::safety_violation);
 }
 
 void Safety::trigger_fault(std::string_view reason)
 {
-  stop_and_cut_power(SafetyMode::fault, fmt::format("safety fault: {}", reason));
+  stop_and_cut_power(SafetyMode::fault, fmt::format("safety fault: {}", reason), error_codes::safety_fault);
 }
 
 SafetyResult Safety::restart_safety()
@@ -240,13 +242,18 @@ std::optional<SafetyEvent> Safety::take_event()
   return event;
 }
 
-void Safety::log(SafetyEvent::Level level, std::string message)
+void Safety::log(SafetyEvent::Level level, std::string message, const std::optional<ErrorCode> & code)
+{
+  add({cycle_, now_, level, robot_mode_, safety_mode_, std::move(message), code});
+}
+
+void Safety::add(SafetyEvent event)
 {
   if (events_.size() >= max_events) {
     events_.pop_front();
     ++dropped_events_;
   }
-  events_.push_back({cycle_, now_, level, robot_mode_, safety_mode_, std::move(message)});
+  events_.push_back(std::move(event));
 }
 
 void Safety::enter(RobotMode mode)
@@ -266,21 +273,25 @@ void Safety::enter(SafetyMode mode)
   }
   safety_mode_ = mode;
   safety_mode_since_ = now_;
-  log(Level::information, fmt::format("safety mode {}", to_string(mode)));
+  SafetyEvent event{cycle_,       now_,         Level::information,
+                    robot_mode_,  safety_mode_, fmt::format("safety mode {}", to_string(mode)),
+                    std::nullopt, true};
+  add(std::move(event));
 }
 
-void Safety::stop(SafetyMode mode, SafetyEvent::Level level, std::string message)
+void Safety::stop(SafetyMode mode, SafetyEvent::Level level, std::string message,
+                  const std::optional<ErrorCode> & code)
 {
   enter(mode);
-  log(level, std::move(message));
+  log(level, std::move(message), code);
   actions_.stop_arm = stop_deceleration;
   actions_.pause_program = true;
   actions_.resume_program = false;
 }
 
-void Safety::stop_and_cut_power(SafetyMode mode, std::string message)
+void Safety::stop_and_cut_power(SafetyMode mode, std::string message, const std::optional<ErrorCode> & code)
 {
-  stop(mode, Level::error, std::move(message));
+  stop(mode, Level::error, std::move(message), code);
   actions_.pause_program = false;
   actions_.stop_program = true;
   requested_power_ = Power::off;
@@ -308,6 +319,9 @@ void Safety::update_power()
       return;
     }
     restart_ends_at_ = -1.0;
+    if (pressed_button_) {
+      requested_power_ = Power::off;
+    }
     enter(pressed_button_.value_or(reduced_ ? SafetyMode::reduced : SafetyMode::normal));
   }
   if (power_cut_pending_) {
@@ -338,7 +352,7 @@ void Safety::check_limits(const ControllerState & state)
     return;
   }
   if (const auto exceeded = limit_monitor_.check(limits_, state)) {
-    trigger_protective_stop(*exceeded);
+    trigger_protective_stop(exceeded->description, exceeded->code);
   }
 }
 
@@ -356,6 +370,7 @@ void Safety::write(ControllerState & state) const
   state.steady = standstill_time_ >= steady_delay - 0.5 * cycle_time_;
   state.robot_status_bits = robot_status_bits(robot_mode_, state.runtime_state, state.freedrive);
   state.safety_status_bits = safety_status_bits(safety_mode_);
+  state.collision_force_ratio = limit_monitor_.force_ratio();
 }
 
 }  // namespace ur_simulator

@@ -27,6 +27,9 @@ struct SafetyActions {
 /// The error says why the request is rejected, worded as for the robot's log.
 using SafetyResult = tl::expected<void, std::string>;
 
+/// Whether a protective stop can be unlocked only after SafetyTimes::unlock_delay.
+enum class UnlockDelay { required, waived };
+
 /// The safety system: robot mode, safety mode, and the limits whose violation triggers a protective stop.
 /// Call step() once per cycle after Arm and World. It owns robot_mode, safety_mode, joint_modes, steady and
 /// the status bits of the state.
@@ -36,7 +39,7 @@ class Safety {
          const SafetyTimes & times = {});
 
   /// Dashboard commands power on, brake release (powers on first if necessary) and power off. A request that
-  /// is already fulfilled succeeds.
+  /// is already fulfilled succeeds. While the safety system restarts, requests wait until it has restarted.
   SafetyResult power_on();
   SafetyResult brake_release();
   SafetyResult power_off();
@@ -44,10 +47,11 @@ class Safety {
   void start_running(ControllerState & state);
 
   /// Triggers a protective stop; while stopped, the request is only logged.
-  void trigger_protective_stop(std::string_view reason);
+  void trigger_protective_stop(std::string_view reason,
+                               const ErrorCode & code = error_codes::unnumbered_protective_stop);
   void trigger_protective_stop(const MotionFault & fault);
-  /// Rejected before SafetyTimes::unlock_delay has passed, or if there is no protective stop.
-  SafetyResult unlock_protective_stop();
+  /// Rejected before the required delay has passed, or if there is no protective stop.
+  SafetyResult unlock_protective_stop(UnlockDelay delay = UnlockDelay::required);
 
   /// Emergency stop button of the robot (or of the system). It latches, and the arm is powered off after the
   /// stop. After the release the robot stays in POWER_OFF with safety mode NORMAL.
@@ -71,6 +75,9 @@ class Safety {
   /// actions that the controller has to take.
   SafetyActions step(ControllerState & state);
 
+  /// Writes the modes and status bits of the state, as step() does in each cycle.
+  void write(ControllerState & state) const;
+
   /// Returns the oldest event. At most 256 are kept; older ones are dropped and counted.
   std::optional<SafetyEvent> take_event();
   std::uint64_t dropped_events() const { return dropped_events_; }
@@ -78,17 +85,18 @@ class Safety {
  private:
   enum class Power { off, idle, running };
 
-  void log(SafetyEvent::Level level, std::string message);
+  void log(SafetyEvent::Level level, std::string message, const std::optional<ErrorCode> & code = {});
+  void add(SafetyEvent event);
   void enter(RobotMode mode);
   void enter(SafetyMode mode);
-  void stop(SafetyMode mode, SafetyEvent::Level level, std::string message);
-  void stop_and_cut_power(SafetyMode mode, std::string message);
+  void stop(SafetyMode mode, SafetyEvent::Level level, std::string message,
+            const std::optional<ErrorCode> & code);
+  void stop_and_cut_power(SafetyMode mode, std::string message, const std::optional<ErrorCode> & code);
   SafetyResult check_power_on() const;
   void update_power();
   void update_power_cut();
   void check_limits(const ControllerState & state);
   void update_standstill(const ControllerState & state);
-  void write(ControllerState & state) const;
   bool stopped() const { return !allows_motion(safety_mode_); }
 
   double cycle_time_;

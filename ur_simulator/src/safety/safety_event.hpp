@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "common/error_code.hpp"
 #include "state/modes.hpp"
 
 namespace ur_simulator {
@@ -16,6 +18,8 @@ struct SafetyEvent {
   RobotMode robot_mode;    ///< after the event
   SafetyMode safety_mode;  ///< after the event
   std::string message;
+  std::optional<ErrorCode> code;     ///< of a stop
+  bool entered_safety_mode = false;  ///< safety_mode has changed
 };
 
 }  // namespace ur_simulator

@@ -63,6 +63,11 @@ Outcome move_to_pose(const RobotContextPtr & robot, CallContext & context, Argum
     return reader.failure();
   }
   const Vector6 target = tcp_target(*robot, arguments[0], target_values);
+  const auto & stop = robot->access.requests.stop_with_invalid_setpoint;
+  if (const auto joints = joint_target(*robot, Value::pose(target), target); !joints && stop) {
+    stop(joints.error());
+    return NextCycle{};  // the program does not continue
+  }
   return start_path_move(robot, context, [=](Arm & arm) { return (arm.*move)(target, options); });
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "script_api/joint_history.hpp"
 #include "script_api/watchdog.hpp"
@@ -19,6 +20,8 @@ struct RobotModel;
 struct ScriptRequests {
   std::function<void()> power_down;       ///< powerdown()
   std::function<void()> protective_stop;  ///< protective_stop()
+  /// A motion has an unreachable target: the program must be stopped with an error code.
+  std::function<void(std::string reason)> stop_with_invalid_setpoint;
 };
 
 /// Objects that the robot builtins act on. They must outlive the library.

@@ -40,6 +40,12 @@ struct Payload {
   Vector6 inertia = Vector6::Zero();            ///< Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m^2
 };
 
+/// Energy since the controller was switched on, J.
+struct Energy {
+  double consumed = 0.0;            ///< electrical power of the controller and motors that drive
+  double braking_dissipated = 0.0;  ///< mechanical power of motors that brake
+};
+
 /// Settings of ft_rtde_input_enable(): readings received over RTDE replace those of the sensor in the flange.
 struct ExternalSensor {
   bool enabled = false;
@@ -72,6 +78,8 @@ struct ControllerState {
   Vector6 target_tcp_speed = Vector6::Zero();
   Vector6 actual_tcp_pose = Vector6::Zero();
   Vector6 actual_tcp_speed = Vector6::Zero();
+  Vector6 target_tcp_acceleration = Vector6::Zero();
+  Vector6 actual_tcp_acceleration = Vector6::Zero();
   Vector6 actual_tcp_force = Vector6::Zero();  ///< get_tcp_force(): filtered, without the payload's weight,
                                                ///< relative to the last zeroing
   /// Wrench at the flange in flange axes, with the weight of the load, not zeroed.
@@ -83,6 +91,11 @@ struct ControllerState {
   Vector6 tool_wrench = Vector6::Zero();
   /// Reading of the accelerometer at the flange, in flange axes, m/s^2.
   Vector3 tool_acceleration = Vector3(0.0, 0.0, -9.81);
+
+  Vector3 elbow_position = Vector3::Zero();  ///< intersection of upper arm and forearm, base frame, m
+  Vector3 elbow_velocity = Vector3::Zero();  ///< m/s
+  /// Wrench that the base exerts on the arm for the target motion: force, and moment about the base origin.
+  Vector6 target_base_wrench = Vector6::Zero();
 
   /// Displacement of the TCP per force due to the elasticity of the joints, base axes, m/N. Written by Arm,
   /// read by World.
@@ -104,7 +117,10 @@ struct ControllerState {
   bool freedrive = false;
   bool in_force_mode = false;
   bool steady = true;
-  double collision_force_ratio = 0.0;
+  double collision_force_ratio = 0.0;  ///< tool force as a fraction of the force that triggers a stop
+  double joint_deviation_ratio = 0.0;  ///< largest servo error as a fraction of the one that triggers a stop
+  TimeScaleSource time_scale_source = TimeScaleSource::none;
+  Energy energy;
 
   ExternalSensor external_sensor;
   Io io;

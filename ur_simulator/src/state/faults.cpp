@@ -38,4 +38,21 @@ std::string describe(const MotionFault & fault)
   return "unknown motion fault";
 }
 
+ErrorCode error_code(const MotionFault & fault)
+{
+  switch (fault.kind) {
+    case MotionFault::Kind::singularity:
+      return error_codes::singularity;
+    case MotionFault::Kind::joint_position_limit:
+      return error_codes::close_to_joint_limits;
+    case MotionFault::Kind::joint_speed_limit:
+      return error_codes::sudden_change_of_target;
+    case MotionFault::Kind::unreachable:
+      return error_codes::invalid_setpoint;
+    case MotionFault::Kind::force_mode_deviation:
+      return error_codes::unnumbered_protective_stop;
+  }
+  return error_codes::unnumbered_protective_stop;
+}
+
 }  // namespace ur_simulator

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "common/error_code.hpp"
+
 namespace ur_simulator {
 
 /// The reason why a motion cannot continue. The controller reacts with a protective stop.
@@ -15,5 +17,6 @@ struct MotionFault {
 
 /// The log text: joint, value, limit and remedy.
 std::string describe(const MotionFault & fault);
+ErrorCode error_code(const MotionFault & fault);
 
 }  // namespace ur_simulator

@@ -44,6 +44,9 @@ enum class RuntimeState : std::uint32_t {
   resuming = 5
 };
 
+/// What slows the motion down: RTDE output time_scale_source, while a program runs.
+enum class TimeScaleSource : std::int32_t { none = 1, joint_speed_limit = 10 };
+
 /// The spelling of the dashboard server: POWER_OFF, RUNNING, …, NORMAL, PROTECTIVE_STOP, …
 std::string_view to_string(RobotMode mode);
 std::string_view to_string(SafetyMode mode);

@@ -16,6 +16,7 @@ struct CompileError {
   std::int32_t line = 0;
   std::int32_t column = 0;
   std::string message;
+  std::string undefined_name = {};  ///< if the error is that a function, thread or variable is not defined
 
   /// "Compile error on line 3, column 5: …"
   std::string text() const;

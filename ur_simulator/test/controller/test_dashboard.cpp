@@ -46,6 +46,8 @@ TEST_F(DashboardTest, AnswersQueriesAsInManual)
   EXPECT_EQ(client.request("safetymode"), "Safetymode: NORMAL");
   EXPECT_EQ(client.request("safetystatus"), "Safetystatus: NORMAL");
   EXPECT_EQ(client.request("running"), "Program running: false");
+  EXPECT_EQ(client.request("programState"), "STOPPED <unnamed>");
+  EXPECT_EQ(client.request("isProgramSaved"), "false <unnamed>");
   EXPECT_EQ(client.request("get loaded program"), "No program loaded");
   EXPECT_EQ(client.request("is in remote control"), "true");
   EXPECT_EQ(client.request("get robot model"), "UR10");
@@ -92,6 +94,15 @@ TEST_F(DashboardTest, LoadsPlaysPausesAndStopsProgram)
   EXPECT_TRUE(wait_for_program_state(controller, "STOPPED"));
 }
 
+TEST_F(DashboardTest, NamesProgramWithoutFolder)
+{
+  store_program("cell/pick.urp", endless_program);
+  EXPECT_EQ(client.request("load cell/pick.urp"), "Loading program: cell/pick.urp");
+  EXPECT_EQ(client.request("get loaded program"), "Loaded program: /programs/cell/pick.urp");
+  EXPECT_EQ(client.request("programState"), "STOPPED pick.urp");
+  EXPECT_EQ(client.request("isProgramSaved"), "true pick.urp");
+}
+
 TEST_F(DashboardTest, RejectsMissingAndInvalidPrograms)
 {
   store_program("broken.urp", "def broken(:\n");
@@ -112,6 +123,28 @@ TEST_F(DashboardTest, PowersOffAndOnAndReleasesBrakes)
   EXPECT_TRUE(wait_for_robot_mode(controller, "IDLE", seconds(20)));
   EXPECT_EQ(client.request("brake release"), "Brake releasing");
   EXPECT_TRUE(wait_for_robot_mode(controller, "RUNNING", seconds(20)));
+}
+
+TEST_F(DashboardTest, PowersOnAfterRestartOfSafety)
+{
+  controller.control({{"command", "violation"}});
+  ASSERT_TRUE(wait_for_robot_mode(controller, "POWER_OFF", seconds(20)));
+  EXPECT_EQ(client.request("restart safety"), "Restarting safety");
+  EXPECT_EQ(client.request("power on"), "Powering on");
+  EXPECT_TRUE(wait_for_robot_mode(controller, "IDLE", seconds(30)));
+  EXPECT_EQ(client.request("safetymode"), "Safetymode: NORMAL");
+}
+
+TEST_F(DashboardTest, ConfirmsPowerCommandsThatHaveNoEffect)
+{
+  controller.control({{"command", "emergency_stop"}});
+  ASSERT_TRUE(wait_for_robot_mode(controller, "POWER_OFF", seconds(20)));
+  EXPECT_EQ(client.request("power on"), "Powering on");
+  EXPECT_EQ(client.request("brake release"), "Brake releasing");
+  EXPECT_EQ(client.request("restart safety"), "Restarting safety");
+  EXPECT_EQ(client.request("robotmode"), "Robotmode: POWER_OFF");
+  EXPECT_TRUE(log_contains(controller, "power on was refused: cannot power on"));
+  EXPECT_TRUE(log_contains(controller, "restart safety was refused"));
 }
 
 TEST_F(DashboardTest, UnlocksProtectiveStopAfterFiveSecondsOnly)

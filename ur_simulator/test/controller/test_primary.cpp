@@ -1,5 +1,5 @@
-#include <map>
-
+#include "kinematics/robot_model.hpp"
+#include "primary/robot_state.hpp"
 #include "support/primary_client.hpp"
 #include "support/simulator_test.hpp"
 
@@ -22,8 +22,8 @@ TEST_F(PrimaryInterfaceTest, EncodesPackagesAsInClientInterfaceManual)
 {
   PrimaryClient client(controller.address(), 30001);
   const auto packages = client.receive_robot_state();
-  const std::map<int, std::size_t> sizes{{0, 42},  {1, 246}, {2, 32}, {3, 70}, {4, 96},
-                                         {5, 220}, {6, 440}, {7, 56}, {8, 4}};
+  const std::map<int, std::size_t> sizes{{0, 42},  {1, 246}, {2, 32}, {3, 70},  {4, 96}, {5, 220},
+                                         {6, 440}, {7, 56},  {8, 4},  {11, 21}, {12, 3}};
   for (const auto & [type, size] : sizes) {
     ASSERT_TRUE(packages.contains(type)) << type;
     EXPECT_EQ(packages.at(type).size(), size) << type;
@@ -77,14 +77,149 @@ TEST_F(PrimaryInterfaceTest, ReportsPopups)
   EXPECT_NE(message.find("Attentionmind the gap"), std::string::npos);
 }
 
-TEST_F(PrimaryInterfaceTest, ReportsProtectiveStop)
+/// Code, argument, report level and text of an error code message.
+struct ReceivedErrorCode {
+  std::uint64_t code, argument, level;
+  std::string text;
+};
+
+ReceivedErrorCode receive_error_code(PrimaryClient & client)
+{
+  const std::string message = client.receive_robot_message(6);
+  return {decode_uint(message.substr(11, 4)), decode_uint(message.substr(15, 4)),
+          decode_uint(message.substr(19, 4)), message.substr(31)};
+}
+
+std::uint8_t receive_safety_mode(PrimaryClient & client)
+{
+  return static_cast<std::uint8_t>(client.receive_robot_message(5)[19]);
+}
+
+TEST_F(PrimaryInterfaceTest, ReportsProtectiveStopAsWarning)
 {
   PrimaryClient client(controller.address(), 30001);
   client.receive_message(16);
   controller.control({{"command", "protective_stop"}, {"reason", "for a test"}});
-  const std::string message = client.receive_robot_message(6);
-  EXPECT_EQ(decode_uint(message.substr(19, 4)), 3u);
-  EXPECT_NE(message.find("for a test"), std::string::npos);
+  EXPECT_EQ(receive_safety_mode(client), 3);
+  const ReceivedErrorCode error = receive_error_code(client);
+  EXPECT_EQ(error.level, 2u);
+  EXPECT_EQ(error.text, "protective stop: for a test");
+}
+
+TEST_F(PrimaryInterfaceTest, ReportsCollisionWithItsCode)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.receive_message(16);
+  controller.control({{"command", "push"}, {"force", {0, 900, 0}}, {"duration", 0.5}});
+  const ReceivedErrorCode error = receive_error_code(client);
+  EXPECT_EQ(error.code, 158u);
+  EXPECT_EQ(error.level, 2u);
+}
+
+TEST_F(PrimaryInterfaceTest, ReportsSafetyModesAndLevelsOfFailures)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.receive_message(16);
+  controller.control({{"command", "emergency_stop"}});
+  EXPECT_EQ(receive_safety_mode(client), 7);
+  controller.control({{"command", "emergency_stop"}, {"pressed", false}});
+  EXPECT_EQ(receive_safety_mode(client), 1);
+  controller.control({{"command", "violation"}});
+  EXPECT_EQ(receive_safety_mode(client), 8);
+  EXPECT_EQ(receive_error_code(client).level, 3u);
+  controller.control({{"command", "fault"}});
+  EXPECT_EQ(receive_safety_mode(client), 9);
+  EXPECT_EQ(receive_error_code(client).level, 4u);
+}
+
+TEST_F(PrimaryInterfaceTest, UnreachableTargetIsAnErrorCodeAndStopsTheProgram)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send(
+      "def far():\n  movel(p[10, 0, 0, 0, 0, 0])\n  set_standard_digital_out(0, True)\nend\n");
+  const ReceivedErrorCode error = receive_error_code(client);
+  EXPECT_EQ(error.code, 204u);
+  EXPECT_EQ(error.argument, 5u);
+  EXPECT_GE(error.level, 2u);
+  EXPECT_NE(client.receive_robot_message(7).find("PROGRAM_XXX_STOPPEDfar"), std::string::npos);
+  EXPECT_TRUE(wait_for_program_state(controller, "STOPPED"));
+  EXPECT_EQ(controller.state()["safety_mode"], "NORMAL");
+  EXPECT_EQ(controller.state()["io"]["digital_outputs"], 0);
+}
+
+TEST_F(PrimaryInterfaceTest, NamesUndefinedFunctionAsRobotDoes)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send("def bad():\n  no_such_function()\nend\n");
+  const std::string message = client.receive_robot_message(10);
+  EXPECT_EQ(decode_uint(message.substr(11, 4)), 2u);
+  EXPECT_EQ(decode_uint(message.substr(15, 4)), 3u);
+  EXPECT_EQ(message.substr(19), "compile_error_name_not_found:no_such_function:");
+}
+
+TEST_F(PrimaryInterfaceTest, SecondaryProgramTriggersProtectiveStop)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send("sec stop_it():\n  protective_stop()\nend\n");
+  EXPECT_EQ(receive_safety_mode(client), 3);
+  EXPECT_NE(receive_error_code(client).text.find("protective_stop()"), std::string::npos);
+}
+
+TEST_F(PrimaryInterfaceTest, LocalControlMakesItReadOnly)
+{
+  controller.control({{"command", "remote_control"}, {"on", false}});
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send("def mine():\n  sync()\nend\n");
+  EXPECT_EQ(receive_error_code(client).code, 210u);
+}
+
+TEST_F(PrimaryInterfaceTest, ReadOnlyPortsSendTheSameDataAndRefuseScripts)
+{
+  PrimaryClient primary(controller.address(), 30011);
+  EXPECT_EQ(primary.receive_robot_state().size(), 11u);
+  PrimaryClient secondary(controller.address(), 30012);
+  EXPECT_EQ(secondary.receive_robot_state().size(), 11u);
+  TcpClient realtime(controller.address(), 30013);
+  EXPECT_EQ(decode_uint(realtime.receive(4)), 1220u);
+  for (TcpClient * client : {&primary.socket(), &secondary.socket(), &realtime}) {
+    client->send("def mine():\n  set_standard_digital_out(0, True)\nend\n");
+    EXPECT_EQ(receive_error_code(primary).code, 210u);
+  }
+  EXPECT_EQ(controller.state()["io"]["digital_outputs"], 0);
+}
+
+/// Sizes of the sub-packages of a robot state message by type, without size and type.
+std::map<int, std::size_t> package_sizes(const char * model_name, const char * version)
+{
+  const RobotModel & model = find_robot_model(model_name)->get();
+  const std::string message =
+      primary::robot_state_message(model, *PolyscopeVersion::parse(version), ControllerState());
+  std::map<int, std::size_t> sizes;
+  for (std::size_t begin = 5; begin < message.size();) {
+    const std::size_t size = decode_uint(message.substr(begin, 4));
+    sizes[message[begin + 4]] = size - 5;
+    begin += size;
+  }
+  return sizes;
+}
+
+TEST(RobotStateVersionTest, LengthsAreThoseOfTheVersion)
+{
+  // Lengths of the parsers of ur_modern_driver.
+  const auto expect_lengths = [](const char * version, std::size_t robot_mode, std::size_t masterboard) {
+    const auto sizes = package_sizes("ur10", version);
+    EXPECT_EQ(sizes.at(0), robot_mode) << version;
+    EXPECT_EQ(sizes.at(3), masterboard) << version;
+    EXPECT_FALSE(sizes.contains(11));
+  };
+  expect_lengths("3.1", 33, 67);
+  expect_lengths("3.4", 41, 69);
+  expect_lengths("3.5", 42, 69);
+  expect_lengths("3.15", 42, 70);
+  const auto e_series = package_sizes("ur10e", "5.25");
+  EXPECT_EQ(e_series.at(0), 42u);
+  EXPECT_EQ(e_series.at(11), 21u);
+  EXPECT_EQ(e_series.at(12), 3u);
 }
 
 }  // namespace

@@ -36,6 +36,82 @@ TEST(TcpSpeedTest, IsTheDerivativeOfTheTcpPose)
   EXPECT_LT((moved - 0.5 * (fixture.state.actual_tcp_speed + speed_before).head<3>()).norm(), 1e-5);
 }
 
+TEST(TcpAccelerationTest, IsTheDerivativeOfTheTcpSpeed)
+{
+  ArmFixture fixture;
+  Vector6 to = fixture.tcp();
+  to[2] -= 0.2;
+  fixture.step();
+  ASSERT_TRUE(fixture.arm.move_linear(to, {2.0, 0.5}));
+  fixture.run(0.1);  // while the arm accelerates downwards
+  EXPECT_NEAR(fixture.state.target_tcp_acceleration[2], -2.0, 0.02);
+  EXPECT_NEAR(fixture.state.actual_tcp_acceleration[2], -2.0, 0.02);
+  fixture.until_rest();
+  fixture.step();
+  EXPECT_LT(fixture.state.actual_tcp_acceleration.norm(), 1e-6);
+}
+
+TEST(ElbowTest, IsAtTheEndOfTheUpperArm)
+{
+  ArmFixture fixture;
+  fixture.arm.teleport(six(0.0, -1.5707963267948966, 0.0, 0.0, 0.0, 0.0), fixture.state);
+  fixture.step();
+  const Vector3 upright(0.0, 0.0, fixture.model.d[0] - fixture.model.a[1]);
+  EXPECT_LT((fixture.state.elbow_position - upright).norm(), 1e-9);
+}
+
+TEST(ElbowTest, VelocityIsTheDerivativeOfThePosition)
+{
+  ArmFixture fixture;
+  ASSERT_TRUE(fixture.arm.speed_joint(six(0.3, -0.2, 0.2, 0.1, 0.4, 0.5), 5.0, 0.0));
+  fixture.run(0.5);
+  const Vector3 position = fixture.state.elbow_position;
+  const Vector3 velocity = fixture.state.elbow_velocity;
+  fixture.step();
+  const Vector3 moved = (fixture.state.elbow_position - position) / fixture.dt;
+  EXPECT_LT((moved - 0.5 * (fixture.state.elbow_velocity + velocity)).norm(), 1e-5);
+  EXPECT_GT(velocity.norm(), 0.05);
+}
+
+TEST(BaseWrenchTest, CarriesTheWeightOfArmAndPayloadAtRest)
+{
+  ArmFixture fixture;
+  fixture.state.payload.mass = 5.0;
+  fixture.step();
+  double mass = 5.0;
+  for (const Link & link : fixture.model.links) {
+    mass += link.mass;
+  }
+  EXPECT_LT((fixture.state.target_base_wrench.head<3>() - Vector3(0.0, 0.0, 9.82 * mass)).norm(), 1e-6);
+}
+
+TEST(EnergyTest, LiftingConsumesAndLoweringDissipatesThePotentialEnergy)
+{
+  ArmFixture fixture;
+  Vector6 lower = fixture.tcp(), upper = lower;
+  lower[2] -= 0.2;
+  fixture.state.payload.mass = 10.0;
+  fixture.step();
+  const Dynamics dynamics = [&] {
+    Dynamics result(fixture.model);
+    result.set_payload(fixture.state.payload);
+    return result;
+  }();
+  const double high = dynamics.potential_energy(fixture.state.actual.position);
+  ASSERT_TRUE(fixture.arm.move_linear(lower, {0.5, 0.1}));
+  fixture.until_rest();
+  const double low = dynamics.potential_energy(fixture.state.actual.position);
+  const Energy lowered = fixture.state.energy;
+  // Joints that drive while others brake add the same energy to both sums.
+  EXPECT_NEAR(lowered.braking_dissipated - lowered.consumed, high - low, 0.5);
+  EXPECT_GT(lowered.braking_dissipated, 15.0);
+  ASSERT_TRUE(fixture.arm.move_linear(upper, {0.5, 0.1}));
+  fixture.until_rest();
+  const double consumed = fixture.state.energy.consumed - lowered.consumed;
+  const double dissipated = fixture.state.energy.braking_dissipated - lowered.braking_dissipated;
+  EXPECT_NEAR(consumed - dissipated, high - low, 0.5);
+}
+
 TEST(AccelerometerTest, ReadsGravityInTheFlangeFrameAtRest)
 {
   ArmFixture fixture;

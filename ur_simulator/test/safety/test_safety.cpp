@@ -235,9 +235,20 @@ TEST(RestartSafetyTest, DuringAMotionStopsBeforeItCutsThePower)
   fixture.step();
   EXPECT_EQ(fixture.state.robot_mode, RobotMode::running);
   fixture.until([&] { return fixture.state.robot_mode == RobotMode::power_off; }, 0.3);
-  EXPECT_FALSE(fixture.safety.power_on());
-  fixture.run(2.5);
+}
+
+TEST(RestartSafetyTest, PowersOnAfterRestartIfRequestedMeanwhile)
+{
+  RobotFixture fixture;
+  fixture.step();
+  fixture.safety.trigger_violation("joint speed");
+  fixture.run(1.0);
+  ASSERT_TRUE(fixture.safety.restart_safety());
   EXPECT_TRUE(fixture.safety.power_on());
+  fixture.run(2.4);
+  EXPECT_EQ(fixture.state.robot_mode, RobotMode::power_off);
+  fixture.until([&] { return fixture.state.robot_mode == RobotMode::idle; }, 2.0);
+  EXPECT_EQ(fixture.state.safety_mode, SafetyMode::normal);
 }
 
 TEST(RestartSafetyTest, EndsInEmergencyStopIfTheButtonIsPressedMeanwhile)
@@ -247,9 +258,11 @@ TEST(RestartSafetyTest, EndsInEmergencyStopIfTheButtonIsPressedMeanwhile)
   fixture.safety.trigger_violation("joint speed");
   fixture.run(1.0);
   ASSERT_TRUE(fixture.safety.restart_safety());
+  ASSERT_TRUE(fixture.safety.power_on());
   fixture.safety.press_emergency_stop(false);
   fixture.run(2.6);
   EXPECT_EQ(fixture.state.safety_mode, SafetyMode::robot_emergency_stop);
+  EXPECT_EQ(fixture.state.robot_mode, RobotMode::power_off);
   ASSERT_TRUE(fixture.safety.release_emergency_stop());
   fixture.step();
   EXPECT_EQ(fixture.state.safety_mode, SafetyMode::normal);

@@ -9,6 +9,16 @@ namespace {
 using testing::RobotFixture;
 using testing::six;
 
+TEST(JointDeviationTest, TriggersProtectiveStopAtTheLimit)
+{
+  RobotFixture fixture;
+  fixture.step();
+  EXPECT_EQ(fixture.state.joint_deviation_ratio, 0.0);
+  fixture.state.joint_deviation_ratio = 1.0;
+  fixture.safety.step(fixture.state);
+  EXPECT_EQ(fixture.state.safety_mode, SafetyMode::protective_stop);
+}
+
 TEST(ForceLimitTest, TripsWhenTheToolIsDrivenIntoATable)
 {
   RobotFixture fixture;
@@ -80,11 +90,11 @@ TEST(JointLimitTest, OfPositionAndSpeedTrip)
   EXPECT_FALSE(watch.check({}, state));
   state.actual.position[2] = model.position_max[2] + 0.1;
   ASSERT_TRUE(watch.check({}, state));
-  EXPECT_NE(watch.check({}, state)->find("joint 2"), std::string::npos);
+  EXPECT_NE(watch.check({}, state)->description.find("joint 2"), std::string::npos);
   state.actual.position[2] = 0.0;
   state.actual.velocity[1] = -1.2 * model.velocity_max[1];
   ASSERT_TRUE(watch.check({}, state));
-  EXPECT_NE(watch.check({}, state)->find("joint 1"), std::string::npos);
+  EXPECT_NE(watch.check({}, state)->description.find("joint 1"), std::string::npos);
 }
 
 TEST(JointLimitTest, AreNotExceededByAMoveJAtFullSpeed)

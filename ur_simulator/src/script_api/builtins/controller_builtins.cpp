@@ -35,13 +35,14 @@ Outcome set_watchdog(RobotContext & robot, Arguments arguments)
   return Value();
 }
 
-// The request takes effect after this cycle; the call returns in the next one.
-Outcome request(const std::function<void()> & what)
+/// The request takes effect after this cycle; the call returns in the next one. A secondary program may not
+/// wait.
+Outcome request(const CallContext & context, const std::function<void()> & what)
 {
   if (what) {
     what();
   }
-  return NextCycle{};
+  return context.secondary ? Outcome(Value()) : Outcome(NextCycle{});
 }
 
 }  // namespace
@@ -52,11 +53,11 @@ void add_controller_builtins(Library & library, const RobotContextPtr & robot)
                {"variable_name", "min_frequency", {"action", Value("pause")}},
                2,
                [robot](CallContext &, Arguments arguments) { return set_watchdog(*robot, arguments); }});
-  library.add({"powerdown", {}, 0, [robot](CallContext &, Arguments) {
-                 return request(robot->access.requests.power_down);
+  library.add({"powerdown", {}, 0, [robot](CallContext & context, Arguments) {
+                 return request(context, robot->access.requests.power_down);
                }});
-  library.add({"protective_stop", {}, 0, [robot](CallContext &, Arguments) {
-                 return request(robot->access.requests.protective_stop);
+  library.add({"protective_stop", {}, 0, [robot](CallContext & context, Arguments) {
+                 return request(context, robot->access.requests.protective_stop);
                }});
 }
 

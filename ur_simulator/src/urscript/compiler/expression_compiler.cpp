@@ -1,5 +1,7 @@
 #include "urscript/compiler/expression_compiler.hpp"
 
+#include <fmt/format.h>
+
 #include "urscript/compiler/argument_matching.hpp"
 
 namespace ur_simulator::urscript {
@@ -7,6 +9,12 @@ namespace ur_simulator::urscript {
 void ExpressionCompiler::fail(const Expression & where, std::string message)
 {
   throw CompileError{where.line, where.column, std::move(message)};
+}
+
+void ExpressionCompiler::fail_undefined(const Expression & where, std::string_view kind)
+{
+  throw CompileError{where.line, where.column, fmt::format("The {} '{}' is not defined", kind, where.name),
+                     where.name};
 }
 
 void ExpressionCompiler::compile_expression(const Expression & expression)
@@ -33,7 +41,7 @@ void ExpressionCompiler::compile_expression(const Expression & expression)
         compile_function_call(expression, **thread, Opcode::run);
         return;
       }
-      fail(expression, "The thread '" + expression.name + "' is not defined");
+      fail_undefined(expression, "thread");
     default:
       compile_operation(expression);
       return;
@@ -89,7 +97,7 @@ Variable ExpressionCompiler::variable(const Expression & expression)
   if (const auto found = symbols_.find(*scope_, expression.name)) {
     return *found;
   }
-  fail(expression, "The variable '" + expression.name + "' is not defined");
+  fail_undefined(expression, "variable");
 }
 
 void ExpressionCompiler::emit_load(const Expression & expression)
@@ -192,7 +200,7 @@ void ExpressionCompiler::compile_call(const Expression & expression)
   } else if (const auto builtin = library_.find(expression.name)) {
     compile_builtin_call(expression, *builtin);
   } else {
-    fail(expression, "The function '" + expression.name + "' is not defined");
+    fail_undefined(expression, "function");
   }
 }
 

@@ -31,6 +31,8 @@ class ExpressionCompiler {
   Scope & scope() { return *scope_; }
   void enter_scope(Scope & scope) { scope_ = &scope; }
   [[noreturn]] static void fail(const Expression & where, std::string message);
+  /// Fails because there is no function, thread or variable (`kind`) with the name of the expression.
+  [[noreturn]] static void fail_undefined(const Expression & where, std::string_view kind);
 
  private:
   /// An expression whose operands are all evaluated first.
