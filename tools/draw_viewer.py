@@ -23,7 +23,8 @@ from ur_tools.processes import Programs  # noqa: E402
 
 ADDRESS, PORT = "127.0.0.1", 8180
 LIMIT = 300.0  # s, of an operation in the browser
-ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
+             "--disable-gpu-compositing"]
 SLOW = ("silence_limit:=10.0", "rtde_frequency:=125.0"), ("silence_limit:=10.0", "watchdog_frequency:=1.0"), ()
 COLORS = 128  # of the animation
 LARGEST = 3_000_000  # bytes

@@ -104,31 +104,17 @@ class Tab:
             if not self.page.is_closed():
                 self.page.mouse.up()
 
-    def pose(self, path):
-        """Returns the pose of a scene node, as the browser has it, as a 4x4 matrix. None if there is no such node."""
-        nodes = self.page.evaluate("() => Object.fromEntries(Object.entries(window.__viserSceneTree.getState()).map("
-                                   "([name, node]) => [name, [node?.position ?? [0, 0, 0], node?.wxyz ?? [1, 0, 0, 0]]]))")
-        names = path.split("/")
-        parents = ["/".join(names[:count]) for count in range(2, len(names) + 1)]
-        if any(name not in nodes for name in parents):
+    def pose(self, path, root):
+        """Returns the pose of a scene node in another one as a 4x4 matrix, as it was drawn last. None if a node does not exist."""
+        drawn = self.page.evaluate("names => names.map(name => window.__viserMutable.nodeRefFromName[name]?.matrixWorld?.elements)",
+                                   [path, root])
+        if None in drawn:
             return None
-        pose = np.eye(4)
-        for name in parents:
-            pose = pose @ matrix(*nodes[name])
-        return pose
+        node, origin = (np.reshape(elements, (4, 4), order="F") for elements in drawn)
+        return np.linalg.inv(origin) @ node
 
     def close(self):
         self.page.close()
-
-
-def matrix(position, wxyz):
-    w, x, y, z = wxyz
-    pose = np.eye(4)
-    pose[:3, 3] = position
-    pose[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
-    return pose
 
 
 def until(condition, what, limit=LIMIT):

@@ -15,6 +15,7 @@ from .ros.nodes import Nodes
 
 logger = logging.getLogger(__name__)
 CLOSE_LIMIT = 2.0  # s
+CAMERA = (-1.6, -1.9, 1.3), (-0.35, 0.0, 0.35)  # m, position and the point that it looks at
 
 
 class Viewer:
@@ -25,6 +26,7 @@ class Viewer:
         self._posted: "queue.SimpleQueue[Callable[[], None]]" = queue.SimpleQueue()
         with server.atomic():
             server.scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.1, section_size=0.5)
+            server.initial_camera.position, server.initial_camera.look_at = CAMERA
             found = robots(options)
             self.layout = Layout(server, found)
             diagnostics = Diagnostics(nodes)
