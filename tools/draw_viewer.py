@@ -11,11 +11,11 @@ import argparse
 import io
 import os
 import pathlib
-import subprocess
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parents[1] / "demo")]
+from control_port import ControlPort  # noqa: E402
 from ur_tools import browser, console, simulation  # noqa: E402
 from ur_tools.environment import program, run_environment  # noqa: E402
 from ur_tools.layout import ROOT, Layout  # noqa: E402
@@ -26,6 +26,9 @@ LIMIT = 300.0  # s, of an operation in the browser
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
              "--disable-gpu-compositing"]
 SLOW = ("silence_limit:=10.0", "rtde_frequency:=125.0"), ("silence_limit:=10.0", "watchdog_frequency:=1.0"), ()
+DROP = 0.3  # m, height of the tool above the table
+PUSHES = ((0.8, [30.0, 0.0, 0.0, 0.0, 0.0, 0.0]), (1.8, [0.0, 30.0, 0.0, 0.0, 0.0, 0.0]))  # s after the start, N and N m
+MOVING, AT_REST = 0.002, 1.0  # rad/s, s
 COLORS = 128  # of the animation
 LARGEST = 3_000_000  # bytes
 
@@ -60,15 +63,24 @@ def picture(page):
     return Image.open(io.BytesIO(page.screenshot(animations="disabled"))).convert("RGB")
 
 
-def film(page, experiment, folder, options):
-    """Returns pictures at equal intervals until the experiment has ended."""
-    frames = []
-    while experiment.poll() is None and len(frames) < options.frames:
-        due = time.monotonic() + options.interval / options.real_time_factor
-        frames.append(picture(page))
-        time.sleep(max(0.0, due - time.monotonic()))
-    experiment.wait(LIMIT)
-    frames.append(picture(page))
+def film(page, control, options):
+    """Returns pictures at about equal intervals of the robot's time, until the arm has been at rest on the table for a second."""
+    frames, pushes = [], list(PUSHES)
+    started = moved = drawn = None  # robot's time of the first and the last motion, and of the last picture
+    while len(frames) < options.frames:
+        state = control.request("state")["state"]
+        now = state["timestamp"]
+        if max(map(abs, state["actual"]["velocity"])) > MOVING:
+            started, moved = started or now, now
+        if started and now - moved > AT_REST:
+            break
+        if started and pushes and now - started > pushes[0][0]:
+            control.request("push", wrench=pushes.pop(0)[1], duration=0.4, frame="tool")
+        if started and (drawn is None or now - drawn >= options.interval):
+            drawn = now
+            frames.append(picture(page))
+        else:
+            time.sleep(0.02)
     return frames
 
 
@@ -94,9 +106,12 @@ def run(options):
     with Programs(layout.log / "draw_viewer") as programs, sync_playwright() as playwright:
         env = start(programs, layout, options)
         page = open_page(playwright, options.page_width, options.height, 1)
-        experiment = subprocess.Popen([str(layout.python), str(ROOT / "demo" / "force_experiment.py"), "--address", ADDRESS, "--model",
-                                       "UR10e", "--drop", "0.3", "--output", str(layout.log)], env=env)
-        write(film(page, experiment, options.folder, options), options)
+        with ControlPort(ADDRESS) as control:
+            table = control.request("state")["state"]["actual_tcp_pose"][2] - DROP
+            control.request("place_surface", point=[0.0, 0.0, table], normal=[0.0, 0.0, 1.0], stiffness=15000.0, damping=80.0)
+            programs.start("goal", [program(layout, "ur_ros_rtde_cli", "ur"), "call", "move_down_until_force", "{force: 20.0}",
+                                    "--wait", "60"], env)
+            write(film(page, control, options), options)
     return 0
 
 
@@ -104,11 +119,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "docs" / "images")
     parser.add_argument("--page-width", type=int, default=1280, help="width of the page, pixels")
-    parser.add_argument("--height", type=int, default=720, help="height of the page, pixels")
+    parser.add_argument("--height", type=int, default=880, help="height of the page, pixels")
     parser.add_argument("--width", type=int, default=800, help="width of the animation, pixels")
     parser.add_argument("--interval", type=float, default=0.25, help="between pictures, s of the robot's time")
     parser.add_argument("--frames", type=int, default=60, help="largest number of pictures")
-    parser.add_argument("--real-time-factor", type=float, default=0.1, help="of the simulator")
+    parser.add_argument("--real-time-factor", type=float, default=0.15, help="of the simulator")
     options = parser.parse_args()
     try:
         return run(options)
