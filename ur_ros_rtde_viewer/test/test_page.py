@@ -13,6 +13,8 @@ from ur_ros_rtde_description.models import JOINTS
 from ur_ros_rtde_description.options import read_options
 from ur_ros_rtde_description.tree import link_poses
 from ur_ros_rtde_description.urdf import make_urdf
+from ur_ros_rtde_viewer.control.target_panel import TargetPanel
+from ur_ros_rtde_viewer.control.target_pose import Motion
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
@@ -167,6 +169,29 @@ def test_two_tabs_have_forms_of_their_own_and_only_one_jogs(browser, tab, viewer
             second.wait_for_text("the arm is being moved from another tab")
     second.close()
     until(lambda: not is_moving(simulator), "the arm to stop")
+
+
+@pytest.mark.parametrize("motion, name", [(Motion.MOVE_J, "move_j"), (Motion.MOVE_L, "move_l")])
+def test_a_target_pose_is_previewed_and_executed(tab, viewer, simulator, motion, name):
+    tab.open("Target")
+    checkbox = tab.page.get_by_role("checkbox").locator("visible=true").last
+    checkbox.check()
+    panel, = [panel for panels in viewer[-1].viewer.control._tabs.values() for panel in panels if isinstance(panel, TargetPanel)]
+    until(lambda: panel._gizmo is not None, "the target in the scene")
+    panel._motion.value = motion.value
+    position = np.array(simulator.state()["actual_tcp_pose"][:3]) + (0.05, 0.0, -0.1)
+    panel._gizmo.position = position
+    panel._solve()  # as at the end of a drag
+    tab.wait_for_text("Reachable.")
+    assert np.allclose(simulator.state()["actual"]["position"], HOME, atol=1e-3)
+    tab.button("Execute").click()
+    tab.wait_for_text(f"/{name}: succeeded")
+    assert simulator.state()["actual_tcp_pose"][:3] == pytest.approx(position, abs=1e-3)
+    panel._gizmo.position = (5.0, 0.0, 0.0)
+    panel._solve()
+    until(lambda: panel._text.content not in ("", "Planning"), "the answer of the inverse kinematics")
+    assert panel._plan is None and panel._execute.disabled
+    checkbox.uncheck()
 
 
 def test_the_page_returns_after_a_restart_of_the_viewer(tab, viewer, simulator):
