@@ -6,9 +6,13 @@ import socket
 import urllib.request
 
 import pytest
+import viser
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
 
 from ur_ros_rtde_viewer.arguments import RobotOptions, add_arguments, robots
 from ur_ros_rtde_viewer.errors import ViewerError
+from ur_ros_rtde_viewer.page.origin import is_accepted
 from ur_ros_rtde_viewer.page.server import start_server, stop_server, url
 from ur_ros_rtde_viewer.program import main
 from ur_ros_rtde_viewer.simulator import may_be_simulator, read_surfaces
@@ -69,6 +73,31 @@ def test_the_page_is_served_and_never_shared_on_the_internet(server):
     with urllib.request.urlopen(url(server), timeout=30) as page:
         assert b"<html" in page.read()
     assert server.request_share_url() is None
+
+
+@pytest.mark.parametrize("host, origin, accepted", [
+    ("127.0.0.1:8080", "http://127.0.0.1:8080", True),
+    ("localhost:9000", "http://localhost:9000", True),  # a forwarded port
+    ("[::1]:8080", "http://[::1]:8080", True),
+    ("192.168.0.5:8080", None, True),  # no browser
+    ("127.0.0.1:8080", "http://example.com", False),
+    ("127.0.0.1:8080", "http://127.0.0.1:9999", False),
+    ("127.0.0.1:8080", "null", False),
+    ("example.com:8080", "http://example.com:8080", False),  # a name that resolves to this machine
+    (None, None, False),
+])
+def test_only_pages_of_the_server_are_accepted(host, origin, accepted):
+    assert is_accepted(host, origin) == accepted
+
+
+def test_another_web_site_cannot_connect(server):
+    address = url(server).replace("http", "ws")
+    own = {"subprotocols": [f"viser-v{viser.__version__}"], "open_timeout": 60, "max_size": None}
+    with connect(address, origin=url(server), **own) as connection:
+        assert connection.recv(timeout=60)
+    with pytest.raises(InvalidStatus) as refusal:
+        connect(address, origin="http://example.com", **own)
+    assert refusal.value.response.status_code == 403
 
 
 def test_a_stopped_server_releases_its_port():

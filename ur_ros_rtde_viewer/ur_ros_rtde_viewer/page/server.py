@@ -8,6 +8,7 @@ import socket
 import viser
 
 from ..errors import ViewerError
+from .origin import only_own_pages
 
 TITLE = "ur_ros_rtde"
 
@@ -33,7 +34,7 @@ def _check_address(address: str, port: int) -> None:
 def start_server(address: str, port: int) -> viser.ViserServer:
     """Returns a running server without content. Raises ViewerError if the address or the port cannot be used."""
     _check_address(address, port)
-    with contextlib.redirect_stdout(io.StringIO()):  # its banner; the viewer prints the address itself
+    with contextlib.redirect_stdout(io.StringIO()), only_own_pages():  # viser prints a banner; the viewer prints the address itself
         server = viser.ViserServer(host=address, port=port, label=TITLE, verbose=False)
     if port not in (0, server.get_port()):
         server.stop()
