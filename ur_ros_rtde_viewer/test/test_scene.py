@@ -80,6 +80,19 @@ def test_unchanged_positions_send_nothing(server, scene):
     assert buffer.message_counter == sent + 6
 
 
+def test_the_server_keeps_only_the_newest_values(server, scene):
+    buffer = server._websock_server._broadcast_buffer
+
+    def kept_after(steps):
+        for step in range(steps):
+            pose = Pose(np.array((0.001 * step, 0.2, 0.3)), np.array((1.0, 0.0, 0.0, 0.0)))
+            scene.update(RobotState(joints=joints(POSITIONS + 0.001 * step), target_joints=joints(POSITIONS), tcp_pose=pose,
+                                    wrench=np.full(6, 3.0 + step)))
+        return len(buffer.message_from_id)
+
+    assert kept_after(200) == kept_after(400)
+
+
 def test_the_ghost_shows_the_target_where_it_differs(server, scene):
     ghost = server.scene.get_handle_by_name("/left/ghost")
     scene.update(RobotState(joints=joints(POSITIONS), target_joints=joints(POSITIONS)))

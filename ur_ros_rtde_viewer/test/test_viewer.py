@@ -104,7 +104,8 @@ def test_a_protective_stop_has_a_red_banner_and_ends(viewer, robot, simulator):
     assert "PROTECTIVE STOP" in banner.shown[1] and banner._element.visible
     update_until(viewer, simulator.unlock_protective_stop, "the end of the unlock delay")
     simulator.control("power", to="running")
-    update_until(viewer, lambda: robot.state.safety_mode == "NORMAL" and (banner.shown is None or banner.shown[0] == AMBER), "the banner's end")
+    update_until(viewer, lambda: robot.state.safety_mode == "NORMAL" and (banner.shown is None or banner.shown[0] == AMBER),
+                 "the end of the red banner")
 
 
 def test_the_digital_twin_moves_while_the_robot_stays(viewer, robot, simulator):

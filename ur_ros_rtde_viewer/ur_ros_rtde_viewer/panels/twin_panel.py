@@ -61,7 +61,8 @@ class TwinPanel:
     def publish(self) -> None:
         """Sends the positions of the sliders."""
         if self._on:
-            self._publisher.publish(JointState(name=list(self._topics.joint_names), position=[float(slider.value) for slider in self._sliders]))
+            positions = [float(slider.value) for slider in self._sliders]
+            self._publisher.publish(JointState(name=list(self._topics.joint_names), position=positions))
 
     def update(self, state: RobotState) -> None:
         if self._on and state.age > SILENT:
