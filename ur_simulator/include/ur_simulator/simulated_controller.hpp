@@ -38,6 +38,9 @@ struct SimulatorOptions {
   std::string reports_folder;
   bool start_running = true;  ///< start powered on with released brakes; false: powered off, as after boot
   bool remote_control = true;
+  /// Selects a random calibration of the arm: its kinematics then deviate from the nominal ones by about a
+  /// millimeter. 0: nominal kinematics.
+  std::uint64_t calibration_seed = 0;
   std::uint64_t seed = 1;  ///< seed of the sensor noise
   /// Simulated seconds per second of the host, 0.01 to 10. Use values below 1 if the host is too slow for the
   /// control rate, for example with a sanitizer.

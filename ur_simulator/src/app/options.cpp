@@ -90,6 +90,9 @@ void add_options(CLI::App & app, AppOptions & options)
   app.add_option("--joints", options.joints, "initial joint positions, rad")->expected(6)->delimiter(',');
   app.add_option("--surface", options.surface_texts, "horizontal elastic surface as z=height, m; repeatable");
   app.add_option("--seed", simulator.seed, "seed of the sensor noise")->capture_default_str();
+  app.add_option("--calibration-seed", simulator.calibration_seed,
+                 "selects a random calibration of the arm; 0: nominal kinematics")
+      ->capture_default_str();
   app.add_option("--urcap", simulator.urcaps, "installed URCap: onrobot_soft_gripper");
   app.add_option("--reports-folder", simulator.reports_folder,
                  "also write the dashboard's flight reports, support files and logs to this folder");

@@ -92,7 +92,7 @@ class Controller {
   void switch_off();
   void reboot(double duration);
 
-  const RobotModel & model_;
+  const RobotModel model_;
   PolyscopeVersion version_;
   SimulatorOptions options_;
   std::chrono::steady_clock::duration period_;  ///< duration of a control cycle on the host's clock

@@ -23,13 +23,14 @@ double checked_factor(double factor, std::string_view what, std::string_view opt
 
 }  // namespace
 
-const RobotModel & select_model(const SimulatorOptions & options)
+RobotModel select_model(const SimulatorOptions & options)
 {
   const auto model = find_robot_model(options.model);
   if (!model) {
     throw std::runtime_error(model.error());
   }
-  return model->get();
+  return options.calibration_seed == 0 ? model->get()
+                                       : with_random_calibration(model->get(), options.calibration_seed);
 }
 
 PolyscopeVersion select_version(const SimulatorOptions & options, const RobotModel & model)

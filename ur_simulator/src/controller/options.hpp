@@ -14,7 +14,8 @@ namespace ur_simulator {
 // Evaluation of SimulatorOptions. All functions throw std::runtime_error for invalid options; the text states
 // option, value and valid values.
 
-const RobotModel & select_model(const SimulatorOptions & options);
+/// With the calibration that the options select.
+RobotModel select_model(const SimulatorOptions & options);
 PolyscopeVersion select_version(const SimulatorOptions & options, const RobotModel & model);
 Vector6 initial_joint_positions(const SimulatorOptions & options, const RobotModel & model);
 /// Duration of a control cycle on the host's clock.

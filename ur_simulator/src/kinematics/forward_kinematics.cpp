@@ -48,7 +48,7 @@ std::array<Transform, 6> link_frames(const RobotModel & model, const Vector6 & j
   Transform frame = Transform::Identity();
   for (std::size_t i = 0; i < 6; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    frame = frame * dh_transform(joints[row], model.d[row], model.a[row],
+    frame = frame * dh_transform(joints[row] + model.theta[row], model.d[row], model.a[row],
                                  round_near_zero(std::cos(model.alpha[row])),
                                  round_near_zero(std::sin(model.alpha[row])));
     frames[i] = frame;

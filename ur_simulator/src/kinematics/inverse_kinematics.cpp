@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -118,15 +120,104 @@ std::optional<Vector6> within_limits(const RobotModel & model, const Vector6 & j
   return result;
 }
 
+tl::expected<Vector6, InverseError> nearest_closed_form_solution(const RobotModel & model,
+                                                                 const Transform & flange,
+                                                                 const Vector6 & seed)
+{
+  const InverseSolutions solutions = all_inverse_solutions(model, flange, seed);
+  std::optional<Vector6> best;
+  double best_distance = std::numeric_limits<double>::infinity();
+  for (const Vector6 & joints : solutions) {
+    const auto candidate = within_limits(model, joints, seed);
+    const double distance = candidate ? (*candidate - seed).squaredNorm() : best_distance;
+    if (distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  if (best) {
+    return *best;
+  }
+  return tl::unexpected(solutions.count == 0 ? InverseError::unreachable : InverseError::beyond_limits);
+}
+
+/// Displacement of the flange from its pose at `joints` to `flange`: m and rad, in the base frame.
+Vector6 flange_displacement(const Transform & from, const Transform & to)
+{
+  const Eigen::AngleAxisd turned(to.linear() * from.linear().transpose());
+  Vector6 result;
+  result << to.translation() - from.translation(), turned.angle() * turned.axis();
+  return result;
+}
+
+/// Newton's method, with damping next to singularities. Nothing if it does not converge, or leads more than
+/// `max_change` rad away from `start`.
+std::optional<Vector6> newton(const RobotModel & model, const Transform & flange, const Vector6 & start,
+                              double max_change)
+{
+  constexpr int max_iterations = 30;
+  constexpr double tolerance = 1e-11;  // m and rad
+  Vector6 joints = start;
+  for (int i = 0; i < max_iterations; ++i) {
+    const auto frames = link_frames(model, joints);
+    const Vector6 error = flange_displacement(frames[5], flange);
+    if (error.cwiseAbs().maxCoeff() < tolerance) {
+      return joints;
+    }
+    const Matrix6 j = jacobian(frames, frames[5].translation());
+    const double damping = 1e-12 + 1e-3 * std::min(1e-3, error.squaredNorm());
+    joints += (j.transpose() * j + damping * Matrix6::Identity()).ldlt().solve(j.transpose() * error);
+    if (!((joints - start).cwiseAbs().maxCoeff() <= max_change)) {
+      return std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+Transform moved_towards_shoulder(const RobotModel & model, Transform flange, double distance)
+{
+  const Vector3 shoulder(0.0, 0.0, model.d[0]);
+  flange.translation() += distance * (shoulder - flange.translation()).normalized();
+  return flange;
+}
+
+tl::expected<Vector6, InverseError> nearest_calibrated_solution(const RobotModel & model,
+                                                                const Transform & flange,
+                                                                const Vector6 & seed)
+{
+  constexpr double small_change = 0.1;  // rad
+  constexpr double any_change = 1.0;    // rad; the calibration changes joints much less
+  if (const auto near_seed = newton(model, flange, seed, small_change)) {
+    if (const auto joints = within_limits(model, *near_seed, seed)) {
+      return *joints;
+    }
+  }
+  bool reachable = false;
+  // The method converges slowly from a stretched arm, and a calibrated arm may reach farther: bent a little.
+  for (const double inwards : {0.0, 0.01}) {  // m
+    std::optional<Vector6> best;
+    for (const Vector6 & guess :
+         all_inverse_solutions(model, moved_towards_shoulder(model, flange, inwards), seed)) {
+      const auto solution = newton(model, flange, guess, any_change);
+      reachable = reachable || solution;
+      const auto joints = solution ? within_limits(model, *solution, seed) : std::nullopt;
+      if (joints && (!best || (*joints - seed).squaredNorm() < (*best - seed).squaredNorm())) {
+        best = joints;
+      }
+    }
+    if (best) {
+      return *best;
+    }
+  }
+  return tl::unexpected(reachable ? InverseError::beyond_limits : InverseError::unreachable);
+}
+
 /// Solves for the flange moved towards the shoulder until it is reachable, by `tolerance` at most.
 tl::expected<Vector6, InverseError> nearest_reachable(const RobotModel & model, const Transform & flange,
                                                       const Vector6 & seed, double tolerance)
 {
-  const Vector3 inwards = (Vector3(0.0, 0.0, model.d[0]) - flange.translation()).normalized();
   const auto solve_at = [&](double distance) {
-    Transform shifted = flange;
-    shifted.translation() += distance * inwards;
-    return nearest_inverse_solution(model, shifted, seed);
+    return nearest_inverse_solution(model, moved_towards_shoulder(model, flange, distance), seed);
   };
   auto best = solve_at(tolerance);
   double out = 0.0, in = tolerance;
@@ -169,21 +260,10 @@ InverseSolutions all_inverse_solutions(const RobotModel & model, const Transform
 tl::expected<Vector6, InverseError> nearest_inverse_solution(const RobotModel & model,
                                                              const Transform & flange, const Vector6 & seed)
 {
-  const InverseSolutions solutions = all_inverse_solutions(model, flange, seed);
-  std::optional<Vector6> best;
-  double best_distance = std::numeric_limits<double>::infinity();
-  for (const Vector6 & joints : solutions) {
-    const auto candidate = within_limits(model, joints, seed);
-    const double distance = candidate ? (*candidate - seed).squaredNorm() : best_distance;
-    if (distance < best_distance) {
-      best = candidate;
-      best_distance = distance;
-    }
+  if (model.calibrated) {
+    return nearest_calibrated_solution(model, flange, seed);
   }
-  if (best) {
-    return *best;
-  }
-  return tl::unexpected(solutions.count == 0 ? InverseError::unreachable : InverseError::beyond_limits);
+  return nearest_closed_form_solution(model, flange, seed);
 }
 
 tl::expected<Vector6, std::string> get_inverse_kin(const RobotModel & model, const Vector6 & tcp_pose,

@@ -30,6 +30,8 @@ InverseSolutions all_inverse_solutions(const RobotModel & model, const Transform
                                        const Vector6 & seed);
 /// The solution nearest to `seed` (least sum of squared joint differences) with all joints within their
 /// limits. Multiples of 2 pi are added where they bring a joint nearer.
+/// Calibrated kinematics have no closed form: they are solved by Newton's method, from `seed` or else from
+/// the closed-form solution for the same lengths.
 tl::expected<Vector6, InverseError> nearest_inverse_solution(const RobotModel & model,
                                                              const Transform & flange, const Vector6 & seed);
 

@@ -106,6 +106,7 @@ RobotModel build(const ModelParameters & parameters)
   model.a << 0.0, parameters.a2, parameters.a3, 0.0, 0.0, 0.0;
   model.d << parameters.d1, 0.0, 0.0, parameters.d4, parameters.d5, parameters.d6;
   model.alpha << pi / 2.0, 0.0, 0.0, pi / 2.0, -pi / 2.0, 0.0;
+  model.theta.setZero();
   model.links = model_links(parameters.name);
   model.position_min.setConstant(-2.0 * pi);
   model.position_max.setConstant(2.0 * pi);

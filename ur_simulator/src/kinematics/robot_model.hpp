@@ -32,9 +32,11 @@ struct RobotModel {
   std::uint8_t
       type_number;  ///< robot type in the messages of the primary interface (UR5 1, UR10 2, UR3 3, UR16 4, …)
   Series series;
-  Vector6 a;      ///< m
-  Vector6 d;      ///< m
-  Vector6 alpha;  ///< rad
+  Vector6 a;                ///< m
+  Vector6 d;                ///< m
+  Vector6 alpha;            ///< rad
+  Vector6 theta;            ///< rad, added to the joint positions; 0 in the nominal kinematics
+  bool calibrated = false;  ///< a, d, alpha and theta deviate from the nominal kinematics
   std::array<Link, 6> links;
   Vector6 position_min;      ///< rad
   Vector6 position_max;      ///< rad; infinite for continuous joints (UR3, UR3e: wrist 3)
@@ -55,6 +57,10 @@ std::span<const RobotModel> robot_models();
 /// Finds a model by name; case, spaces, '-' and '_' are ignored ("UR10e", "ur8 long"). The error lists the
 /// known models.
 tl::expected<std::reference_wrapper<const RobotModel>, std::string> find_robot_model(std::string_view name);
+
+/// A model whose kinematics deviate from the nominal ones like those of an arm that was calibrated in the
+/// factory. `seed` selects the arm.
+RobotModel with_random_calibration(RobotModel model, std::uint64_t seed);
 
 /// Default joint position after power-on: the tool points down in front of the robot, away from
 /// singularities.

@@ -162,19 +162,37 @@ std::string cartesian_data(const ControllerState & s)
   return data;
 }
 
-std::string kinematics_data(const RobotModel & model)
+/// A robot identifies the calibration of each joint by a checksum. Its algorithm is not published: this is
+/// the FNV-1a hash of the parameters.
+std::uint32_t kinematics_checksum(const RobotModel & model, Eigen::Index joint)
 {
   constexpr std::uint32_t no_checksum = 0xffffffff;
-  constexpr std::uint32_t nominal = 0;  // calibration status: nominal parameters of the model
-  std::string data;
-  for (int i = 0; i < 6; ++i) {
-    put_u32(data, no_checksum);
+  if (!model.calibrated) {
+    return no_checksum;
   }
-  put(data, Vector6(Vector6::Zero()));
+  std::string row;
+  for (const Vector6 * values : {&model.theta, &model.a, &model.d, &model.alpha}) {
+    put_f64(row, (*values)[joint]);
+  }
+  std::uint32_t hash = 2166136261U;
+  for (const char byte : row) {
+    hash = (hash ^ static_cast<std::uint8_t>(byte)) * 16777619U;
+  }
+  return hash;
+}
+
+std::string kinematics_data(const RobotModel & model)
+{
+  constexpr std::uint32_t calibration_status = 0;  // UR does not document the values
+  std::string data;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    put_u32(data, kinematics_checksum(model, i));
+  }
+  put(data, model.theta);
   put(data, model.a);
   put(data, model.d);
   put(data, model.alpha);
-  put_u32(data, nominal);
+  put_u32(data, calibration_status);
   return data;
 }
 
@@ -197,7 +215,7 @@ std::string configuration_data(const RobotModel & model)
   put(data, model.a);
   put(data, model.d);
   put(data, model.alpha);
-  put(data, Vector6(Vector6::Zero()));
+  put(data, model.theta);
   put_u32(data, 1);  // masterboard version
   put_u32(data, 1);  // controller box
   put_u32(data, model.type_number);
