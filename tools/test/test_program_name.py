@@ -27,7 +27,7 @@ def run_inside(*arguments, cwd=ROOT):
 
 
 def commands_in(text):
-    return set(re.findall(r"^    (\w+)  ", text, re.M))
+    return set(re.findall(r"^    (\w+)(?:  |$)", text, re.M))
 
 
 def test_the_help_lists_the_same_commands():

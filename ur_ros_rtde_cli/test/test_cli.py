@@ -327,7 +327,7 @@ def test_the_help_lists_all_commands_and_those_of_the_checkout(monkeypatch):
     monkeypatch.delenv(CHECKOUT_VARIABLE, raising=False)
     for arguments, expected in (((), 2), (("--help",), 0)):
         code, output = ur(*arguments)
-        assert code == expected and all(f"    {command} " in output for command in COMMANDS), output
+        assert code == expected and all(re.search(rf"^    {command}(?: |$)", output, re.M) for command in COMMANDS), output
         assert ", ".join(CHECKOUT_COMMANDS)[:40] in output and "./ur" in output
 
 
