@@ -71,6 +71,11 @@ std::string Robot::model() const
   return impl_->model.name();
 }
 
+std::optional<kinematics::DhRows> Robot::calibration() const
+{
+  return impl_->model.calibration();
+}
+
 ArmLimits Robot::limits() const
 {
   return impl_->model.limits();

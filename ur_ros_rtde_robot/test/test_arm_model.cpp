@@ -66,6 +66,25 @@ INSTANTIATE_TEST_SUITE_P(
                     ModelCase{"ur30", "5.25.1", "ur30"}),
     [](const auto & one) { return std::string(one.param.simulated); });
 
+struct CalibratedArmTest : RobotFixture {};
+
+TEST_F(CalibratedArmTest, HasTheKinematicsOfItsController)
+{
+  auto simulator = Controller::options();
+  simulator.calibration_seed = 5;
+  controller.start(simulator);
+  make_robot();
+  ASSERT_TRUE(becomes_ready());
+  const auto calibration = robot->calibration();
+  ASSERT_TRUE(calibration);
+  const auto sample = *robot->latest();
+  const kinematics::Joints q = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(sample.target_q.data()).array();
+  const kinematics::Pose reported = kinematics::to_pose(sample.target_tcp_pose);
+  EXPECT_LT(kinematics::difference(kinematics::Arm(*calibration).forward(q), reported).norm(), 1e-9);
+  const kinematics::Arm nominal(kinematics::nominal_dh_parameters()[5]);
+  EXPECT_GT(kinematics::difference(nominal.forward(q), reported).norm(), 1e-4);
+}
+
 struct StatedModelTest : RobotFixture {
   void make_robot_with(const std::string & model)
   {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -92,12 +94,71 @@ TEST(PrimaryReaderTest, RefusesOtherStreams)
   }
 }
 
+std::string number(double value)
+{
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  return big_endian(static_cast<std::uint32_t>(bits >> 32U)) + big_endian(static_cast<std::uint32_t>(bits));
+}
+
+std::string state_package(char type, const std::string & content)
+{
+  return big_endian(static_cast<std::uint32_t>(content.size() + 5)) + type + content;
+}
+
+std::string robot_state(const std::string & packages)
+{
+  return big_endian(static_cast<std::uint32_t>(packages.size() + 5)) + "\x10" + packages;
+}
+
+/// Configuration data with a robot type.
+std::string configuration(std::uint32_t type)
+{
+  return state_package(6, std::string(8 * 53 + 8, '\0') + big_endian(type) + big_endian(2));
+}
+
+/// Kinematics data in which the n-th number is n, except for the number at `index`.
+std::string kinematics_data(std::size_t index, double value)
+{
+  std::string content(24, '\x7f');
+  for (std::size_t i = 0; i < 24; ++i) {
+    content += number(i == index ? value : static_cast<double>(i));
+  }
+  return state_package(5, content + big_endian(0));
+}
+
+TEST(PrimaryReaderTest, ReadsTypeAndCalibrationOfTheArm)
+{
+  PrimaryReader reader;
+  ASSERT_TRUE(feed(reader, robot_state(state_package(0, "mode"))));
+  EXPECT_FALSE(reader.arm_data());
+  ASSERT_TRUE(feed(reader, robot_state(kinematics_data(8, -0.5) + configuration(2))));
+  ASSERT_TRUE(reader.arm_data() && reader.arm_data()->dh_rows);
+  EXPECT_EQ(reader.arm_data()->type, 2);
+  const auto & row = (*reader.arm_data()->dh_rows)[2];
+  EXPECT_EQ(row.theta, 2.0);
+  EXPECT_EQ(row.a, -0.5);
+  EXPECT_EQ(row.d, 14.0);
+  EXPECT_EQ(row.alpha, 20.0);
+}
+
+TEST(PrimaryReaderTest, HasNoCalibrationIfItIsMissingOrInvalid)
+{
+  for (const std::string & kinematics : {std::string(), state_package(5, "short"),
+                                         kinematics_data(3, std::numeric_limits<double>::quiet_NaN())}) {
+    PrimaryReader reader;
+    ASSERT_TRUE(feed(reader, robot_state(kinematics + configuration(1))));
+    ASSERT_TRUE(reader.arm_data());
+    EXPECT_FALSE(reader.arm_data()->dh_rows);
+  }
+}
+
 TEST(PrimaryReaderTest, SurvivesArbitraryBytes)
 {
   std::mt19937 random(4);
   for (int round = 0; round < 2000; ++round) {
-    std::string bytes = exception(1, "text") + key("PROGRAM_XXX_STARTED", "f") + package(0, "a");
-    for (int i = 0; i < 6; ++i) {
+    std::string bytes = exception(1, "text") + key("PROGRAM_XXX_STARTED", "f") + package(0, "a") +
+                        robot_state(configuration(1) + kinematics_data(0, 1.0));
+    for (int i = 0; i < 20; ++i) {
       bytes[random() % bytes.size()] = static_cast<char>(random());
     }
     PrimaryReader reader;

@@ -72,7 +72,7 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
       const auto reference = [&run](const Pose & pose, const Joints & guess) {
         return query_inverse_kinematics(run.robot(), pose, guess);
       };
-      return kinematics::identify_arm(start, poses.front(), tool)
+      return kinematics::identify_arm(start, poses.front(), tool, run.robot().calibration())
           .and_then([&](const kinematics::Arm & known) {
             return kinematics::plan_cartesian(poses, known, start, limits,
                                               {goal.speed, goal.rotation_speed, goal.blend_radius}, reference,

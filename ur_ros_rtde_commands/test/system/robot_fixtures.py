@@ -24,8 +24,10 @@ def addresses():
 
 @pytest.fixture(scope="module")
 def simulator(addresses, request):
-    """Simulates recoveries at the speed that the test module sets: RECOVERY_TIME_FACTOR = 1.0 for real durations."""
-    simulator = Simulator(addresses[0],
+    """Simulates recoveries at the speed that the test module sets: RECOVERY_TIME_FACTOR = 1.0 for real durations.
+
+    The test module may set further SIMULATOR_ARGUMENTS."""
+    simulator = Simulator(addresses[0], *getattr(request.module, "SIMULATOR_ARGUMENTS", ()),
                           recovery_time_factor=getattr(request.module, "RECOVERY_TIME_FACTOR", RECOVERY_TIME_FACTOR))
     yield simulator
     simulator.stop()

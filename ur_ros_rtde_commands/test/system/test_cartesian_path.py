@@ -8,11 +8,14 @@ from arm_state import get_tcp_pose, translated
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
 from support import wait_for
 from trajectories import TargetRecorder
+from ur_ros_rtde_description.kinematics import flange_pose, nominal_origins
+from ur_ros_rtde_description.models import find_model
 
 from ur_ros_rtde_msgs.action import ExecuteCartesianPath
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 PLUGINS = "plugins:=[move_j,stop,execute_cartesian_path]"
+SIMULATOR_ARGUMENTS = ("--calibration-seed", "3")  # the paths are straight for a calibrated arm, too
 NAN = math.nan
 MIN_LOOKAHEAD = 0.03  # s
 
@@ -36,6 +39,14 @@ def test_the_tcp_moves_in_straight_lines_between_poses(robot):
     deviations = [min(math.dist((x, y), point(start)[:2]), math.dist((x, z), (point(down)[0], point(down)[2])))
                   for x, y, z in (point(message.pose) for message in robot.messages_until_now(seen))]
     assert len(deviations) > 100 and max(deviations) < 0.001
+
+
+def test_the_arm_is_calibrated(robot, simulator):
+    """Without the calibration, the TCP would be farther away than that."""
+    x, y, z, *_ = simulator.state()["target_tcp_pose"]
+    origins = nominal_origins(find_model("ur10e"))
+    nominal = flange_pose(origins, simulator.state()["target"]["position"])[:3, 3]
+    assert math.dist((x, y, z), nominal) > 3e-4
 
 
 def test_keeps_its_speed_and_blends_corners(robot):

@@ -19,6 +19,7 @@
 #include "ur_ros_rtde_robot/robot_status.hpp"
 #include "ur_ros_rtde_robot/script/script_extension.hpp"
 #include "ur_ros_rtde_robot/state/sample.hpp"
+#include "ur_ros_rtde_trajectory/arm.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
@@ -63,6 +64,8 @@ class Robot {
   /// Name of the arm's model, for example "ur10e": RobotOptions::model, or the detected one. Empty if both
   /// are unknown.
   std::string model() const;
+  /// Calibrated kinematics of the arm, as its controller reports them; none while they are unknown.
+  std::optional<kinematics::DhRows> calibration() const;
   int realtime_priority() const;
 
   /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) if the interface is

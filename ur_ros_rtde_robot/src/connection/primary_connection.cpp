@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <bit>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -101,27 +103,85 @@ std::optional<PrimaryMessage> message_of(std::span<const std::byte> package)
   return std::nullopt;
 }
 
-/// The robot state consists of packages with a total size and a type each.
-std::optional<std::int32_t> robot_type_of(std::span<const std::byte> package)
+/// A package of the robot state: total size, type, content.
+struct StatePackage {
+  std::uint8_t type;
+  std::span<const std::byte> content;
+};
+
+constexpr std::size_t state_package_header = 5;
+
+/// Removes the first package of a robot state from `rest`; none at its end, or if its size is invalid.
+std::optional<StatePackage> take_state_package(std::span<const std::byte> & rest)
 {
-  constexpr std::size_t header = 5;
-  constexpr std::uint8_t configuration = 6;
-  // Limits and motion limits of six joints, five defaults, DH parameters of six joints, two type numbers.
-  constexpr std::size_t type_begin = header + 8 * (12 + 12 + 5 + 24) + 4 * 2;
-  if (package.size() < header || std::to_integer<std::uint8_t>(package[4]) != robot_state) {
+  if (rest.size() < state_package_header) {
     return std::nullopt;
   }
-  for (auto rest = package.subspan(header); rest.size() >= header;) {
-    const std::size_t size = big_endian(rest.first(4));
-    if (size < header || size > rest.size()) {
-      break;
-    }
-    if (std::to_integer<std::uint8_t>(rest[4]) == configuration && size >= type_begin + 4) {
-      return static_cast<std::int32_t>(big_endian(rest.subspan(type_begin, 4)));
-    }
-    rest = rest.subspan(size);
+  const std::size_t size = big_endian(rest.first(4));
+  if (size < state_package_header || size > rest.size()) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  const StatePackage package{
+      std::to_integer<std::uint8_t>(rest[4]),
+      rest.subspan(state_package_header, size - state_package_header),
+  };
+  rest = rest.subspan(size);
+  return package;
+}
+
+std::optional<std::int32_t> robot_type_of(std::span<const std::byte> configuration)
+{
+  // Limits and motion limits of six joints, five defaults, DH parameters of six joints, two version numbers.
+  constexpr std::size_t type_begin = 8 * (12 + 12 + 5 + 24) + 4 * 2;
+  if (configuration.size() < type_begin + 4) {
+    return std::nullopt;
+  }
+  return static_cast<std::int32_t>(big_endian(configuration.subspan(type_begin, 4)));
+}
+
+double double_at(std::span<const std::byte> data, std::size_t index)
+{
+  return std::bit_cast<double>(big_endian(data.subspan(8 * index, 8)));
+}
+
+/// Six checksums, then theta, a, d and alpha of the six joints each.
+std::optional<kinematics::DhRows> dh_rows_of(std::span<const std::byte> kinematics_data)
+{
+  constexpr std::size_t checksums = 4 * 6;
+  constexpr std::size_t joints = 6;
+  if (kinematics_data.size() < checksums + 8 * 4 * joints) {
+    return std::nullopt;
+  }
+  const auto values = kinematics_data.subspan(checksums);
+  kinematics::DhRows rows{};
+  for (std::size_t i = 0; i < joints; ++i) {
+    rows[i] = {double_at(values, i), double_at(values, joints + i), double_at(values, 2 * joints + i),
+               double_at(values, 3 * joints + i)};
+    if (!std::isfinite(rows[i].theta + rows[i].a + rows[i].d + rows[i].alpha)) {
+      return std::nullopt;
+    }
+  }
+  return rows;
+}
+
+std::optional<ArmData> arm_data_of(std::span<const std::byte> package)
+{
+  constexpr std::uint8_t kinematics_info = 5;
+  constexpr std::uint8_t configuration = 6;
+  if (package.size() < shortest_package || std::to_integer<std::uint8_t>(package[4]) != robot_state) {
+    return std::nullopt;
+  }
+  std::optional<std::int32_t> type;
+  std::optional<kinematics::DhRows> rows;
+  auto rest = package.subspan(shortest_package);
+  while (const auto part = take_state_package(rest)) {
+    if (part->type == configuration) {
+      type = robot_type_of(part->content);
+    } else if (part->type == kinematics_info) {
+      rows = dh_rows_of(part->content);
+    }
+  }
+  return type ? std::optional<ArmData>({*type, rows}) : std::nullopt;
 }
 
 }  // namespace
@@ -141,8 +201,8 @@ bool PrimaryReader::feed(std::span<const std::byte> bytes)
     if (auto message = message_of(rest.first(size))) {
       messages_.push_back(std::move(*message));
     }
-    if (const auto type = robot_type_of(rest.first(size))) {
-      robot_type_ = type;
+    if (const auto data = arm_data_of(rest.first(size))) {
+      arm_data_ = data;
     }
     rest = rest.subspan(size);
   }
@@ -193,10 +253,10 @@ Expected<std::size_t> PrimaryConnection::read(std::chrono::milliseconds wait)
   return got;
 }
 
-Expected<std::int32_t> PrimaryConnection::robot_type(std::chrono::milliseconds limit)
+Expected<ArmData> PrimaryConnection::arm_data(std::chrono::milliseconds limit)
 {
   const auto deadline = TcpSocket::Clock::now() + limit;
-  while (!reader_.robot_type()) {
+  while (!reader_.arm_data()) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - TcpSocket::Clock::now());
     if (left <= std::chrono::milliseconds(0)) {
       return failure(ErrorCode::timeout,
@@ -206,7 +266,7 @@ Expected<std::int32_t> PrimaryConnection::robot_type(std::chrono::milliseconds l
       return tl::unexpected(got.error());
     }
   }
-  return *reader_.robot_type();
+  return *reader_.arm_data();
 }
 
 Expected<std::optional<PrimaryMessage>> PrimaryConnection::next(std::chrono::milliseconds wait)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "connection/tcp_socket.hpp"
+#include "ur_ros_rtde_trajectory/arm.hpp"
 
 namespace ur_ros_rtde {
 
@@ -28,6 +29,12 @@ struct PrimaryMessage {
   int line = 0;  ///< line of the script as sent, from 1; 0: unknown
 };
 
+/// What the robot state says about the arm.
+struct ArmData {
+  std::int32_t type = 0;                      ///< type number, from the configuration data
+  std::optional<kinematics::DhRows> dh_rows;  ///< calibration, from the kinematics data
+};
+
 /// Parses the byte stream of the primary interface (UR, "Client Interface"): packages with a big-endian int32
 /// total size and a type, of which 20 is a robot message.
 class PrimaryReader {
@@ -35,12 +42,12 @@ class PrimaryReader {
   /// False if the bytes are not a stream of packages.
   bool feed(std::span<const std::byte> bytes);
   std::optional<PrimaryMessage> next();
-  /// Type number of the arm, from the configuration data of the robot state; none before its arrival.
-  std::optional<std::int32_t> robot_type() const { return robot_type_; }
+  /// The newest robot state that contains the type of the arm; none before its arrival.
+  const std::optional<ArmData> & arm_data() const { return arm_data_; }
 
  private:
   std::vector<std::byte> buffer_;
-  std::optional<std::int32_t> robot_type_;
+  std::optional<ArmData> arm_data_;
   std::deque<PrimaryMessage> messages_;
 };
 
@@ -53,8 +60,8 @@ class PrimaryConnection {
   Status send(std::string_view script, std::chrono::milliseconds limit);
   /// The next message; none if none arrives within `wait`.
   Expected<std::optional<PrimaryMessage>> next(std::chrono::milliseconds wait);
-  /// Waits for PrimaryReader::robot_type().
-  Expected<std::int32_t> robot_type(std::chrono::milliseconds limit);
+  /// Waits for PrimaryReader::arm_data().
+  Expected<ArmData> arm_data(std::chrono::milliseconds limit);
 
  private:
   explicit PrimaryConnection(TcpSocket socket) : socket_(std::move(socket)) {}

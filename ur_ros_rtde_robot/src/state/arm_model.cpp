@@ -90,14 +90,19 @@ void ArmModel::report_undetected(const std::string & why)
 void ArmModel::detect(const ControllerVersion & version, std::chrono::milliseconds limit)
 {
   auto primary = PrimaryConnection::connect(address_, limit);
-  const auto type =
-      primary.and_then([&](PrimaryConnection & connection) { return connection.robot_type(limit); });
-  if (!type) {
-    return report_undetected(type.error().message);
+  const auto arm =
+      primary.and_then([&](PrimaryConnection & connection) { return connection.arm_data(limit); });
+  {
+    const std::lock_guard lock(mutex_);
+    calibration_ = arm ? arm->dh_rows : std::nullopt;
   }
-  const auto model = model_of_type(*type, version.cb3());
+  if (!arm) {
+    return report_undetected(arm.error().message);
+  }
+  const auto model = model_of_type(arm->type, version.cb3());
   if (!model) {
-    return report_undetected(fmt::format("type {} with PolyScope {} is unknown", *type, to_string(version)));
+    return report_undetected(
+        fmt::format("type {} with PolyScope {} is unknown", arm->type, to_string(version)));
   }
   {
     const std::lock_guard lock(mutex_);
@@ -117,6 +122,12 @@ std::string ArmModel::name() const
 {
   const std::lock_guard lock(mutex_);
   return stated_.empty() ? detected_.value_or("") : stated_;
+}
+
+std::optional<kinematics::DhRows> ArmModel::calibration() const
+{
+  const std::lock_guard lock(mutex_);
+  return calibration_;
 }
 
 std::optional<Error> ArmModel::mismatch() const

@@ -8,6 +8,7 @@
 
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
+#include "ur_ros_rtde_trajectory/arm.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
@@ -31,6 +32,8 @@ class ArmModel {
   ArmLimits limits() const;
   /// Name of the stated or else the detected model. Empty if both are unknown.
   std::string name() const;
+  /// Calibrated kinematics, as the controller reports them; none before detect() has received them.
+  std::optional<kinematics::DhRows> calibration() const;
   /// Error if the detected model differs from the stated one.
   std::optional<Error> mismatch() const;
 
@@ -43,6 +46,7 @@ class ArmModel {
   mutable std::mutex mutex_;
   std::optional<std::string> detected_;
   ArmLimits limits_;
+  std::optional<kinematics::DhRows> calibration_;
 };
 
 }  // namespace ur_ros_rtde

@@ -23,9 +23,8 @@ using IkFunction = std::function<Expected<Joints>(const Pose & pose, const Joint
 /// Plans the time-optimal motion of the TCP along straight lines from `poses[0]`, where the arm is at
 /// `start`, through all other poses, within the limits of the joints and of the TCP.
 ///
-/// `arm` has nominal kinematics; the real arm deviates slightly. `ik` is queried at the start and at up to
-/// 100 poses, including the last one. The deviation of the nominal kinematics at these poses is a correction
-/// that is interpolated along the path.
+/// `ik` is queried at up to 100 poses, including the last one. Where `arm` deviates from it, as nominal
+/// kinematics do from a calibrated arm, the deviation is a correction that is interpolated along the path.
 ///
 /// Returns ErrorCode::unreachable, with the pose and the reason, if a pose is out of reach, a joint limit is
 /// exceeded or the arm comes near a singularity (smallest singular value of the Jacobian below 0.01,

@@ -17,22 +17,12 @@ using Eigen::Vector3d;
 
 constexpr double pi = std::numbers::pi;
 
-struct Link {
-  double a, d, alpha;
-};
-
-std::array<Link, 6> links(const DhParameters & l)
-{
-  return {Link{0.0, l.d1, pi / 2.0}, Link{l.a2, 0.0, 0.0},       Link{l.a3, 0.0, 0.0},
-          Link{0.0, l.d4, pi / 2.0}, Link{0.0, l.d5, -pi / 2.0}, Link{0.0, l.d6, 0.0}};
-}
-
-Pose link_pose(const Link & link, double theta)
+Pose link_pose(const DhRow & row, double q)
 {
   Pose pose = Pose::Identity();
-  pose.rotate(AngleAxisd(theta, Vector3d::UnitZ()));
-  pose.translate(Vector3d(link.a, 0.0, link.d));
-  pose.rotate(AngleAxisd(link.alpha, Vector3d::UnitX()));
+  pose.rotate(AngleAxisd(q + row.theta, Vector3d::UnitZ()));
+  pose.translate(Vector3d(row.a, 0.0, row.d));
+  pose.rotate(AngleAxisd(row.alpha, Vector3d::UnitX()));
   return pose;
 }
 
@@ -44,12 +34,17 @@ Vector3d rotation_vector(const Eigen::Matrix3d & rotation)
 
 }  // namespace
 
+DhRows dh_rows(const DhParameters & l)
+{
+  return {DhRow{0.0, 0.0, l.d1, pi / 2.0}, DhRow{0.0, l.a2, 0.0, 0.0},       DhRow{0.0, l.a3, 0.0, 0.0},
+          DhRow{0.0, 0.0, l.d4, pi / 2.0}, DhRow{0.0, 0.0, l.d5, -pi / 2.0}, DhRow{0.0, 0.0, l.d6, 0.0}};
+}
+
 Pose Arm::forward(const Joints & q) const
 {
   Pose pose = Pose::Identity();
-  const auto chain = links(dh_);
   for (int j = 0; j < trajectory::joint_count; ++j) {
-    pose = pose * link_pose(chain[static_cast<std::size_t>(j)], q[j]);
+    pose = pose * link_pose(rows_[static_cast<std::size_t>(j)], q[j]);
   }
   return pose * tool_;
 }
@@ -57,14 +52,13 @@ Pose Arm::forward(const Joints & q) const
 Jacobian Arm::jacobian(const Joints & q) const
 {
   const Vector3d tcp = forward(q).translation();
-  const auto chain = links(dh_);
   Jacobian result;
   Pose pose = Pose::Identity();
   for (int j = 0; j < trajectory::joint_count; ++j) {
     const Vector3d axis = pose.linear().col(2);
     result.block<3, 1>(0, j) = axis.cross(tcp - pose.translation());
     result.block<3, 1>(3, j) = axis;
-    pose = pose * link_pose(chain[static_cast<std::size_t>(j)], q[j]);
+    pose = pose * link_pose(rows_[static_cast<std::size_t>(j)], q[j]);
   }
   return result;
 }
@@ -109,14 +103,22 @@ const std::vector<DhParameters> & nominal_dh_parameters()
   return table;
 }
 
-Expected<Arm> identify_arm(const Joints & q, const Pose & tcp, const Pose & tool)
+Expected<Arm> identify_arm(const Joints & q, const Pose & tcp, const Pose & tool,
+                           const std::optional<DhRows> & calibration)
 {
   constexpr double max_distance = 0.015;  // m
   constexpr double max_angle = 0.03;      // rad
   std::optional<Arm> best;
   Twist best_error = Twist::Constant(std::numeric_limits<double>::infinity());
+  std::vector<DhRows> candidates;
+  if (calibration) {
+    candidates.push_back(*calibration);
+  }
   for (const DhParameters & dh : nominal_dh_parameters()) {
-    const Arm arm(dh, tool);
+    candidates.push_back(dh_rows(dh));
+  }
+  for (const DhRows & rows : candidates) {
+    const Arm arm(rows, tool);
     const Twist error = difference(arm.forward(q), tcp);
     if (!best || displacement_norm(error) < displacement_norm(best_error)) {
       best = arm;

@@ -94,8 +94,29 @@ TEST(IdentifyArmTest, ToleratesCalibration)
   const DhParameters calibrated{0.1809, -0.6121, -0.5722, 0.1738, 0.1201, 0.1164};
   const auto identified = identify_arm(home(), Arm(calibrated, tool()).forward(home()), tool());
   ASSERT_TRUE(identified);
-  const Arm published({0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655}, tool());
+  const Arm published(DhParameters{0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655}, tool());
   EXPECT_LT(difference(identified->forward(home()), published.forward(home())).norm(), 1e-9);
+}
+
+TEST(IdentifyArmTest, PrefersTheCalibrationOfTheArm)
+{
+  DhRows calibration = dh_rows(nominal_dh_parameters()[5]);
+  calibration[1].theta = 0.0012;
+  calibration[2].alpha = -0.0007;
+  calibration[4].a = 0.0004;
+  const Arm calibrated(calibration, tool());
+  const auto identified = identify_arm(home(), calibrated.forward(home()), tool(), calibration);
+  ASSERT_TRUE(identified);
+  EXPECT_LT(difference(identified->forward(home() + 0.3), calibrated.forward(home() + 0.3)).norm(), 1e-12);
+}
+
+TEST(IdentifyArmTest, IgnoresTheCalibrationOfAnotherArm)
+{
+  const Arm ur5e(nominal_dh_parameters()[4], tool());
+  const auto identified =
+      identify_arm(home(), ur5e.forward(home()), tool(), dh_rows(nominal_dh_parameters()[5]));
+  ASSERT_TRUE(identified);
+  EXPECT_LT(difference(identified->forward(home() + 0.3), ur5e.forward(home() + 0.3)).norm(), 1e-12);
 }
 
 TEST(IdentifyArmTest, RejectsUnknownModel)

@@ -87,6 +87,30 @@ TEST(CartesianPlanTest, FollowsStraightLineAtItsSpeed)
   EXPECT_LT(turn, 0.02);
 }
 
+TEST(CartesianPlanTest, FollowsTheLineOfACalibratedArm)
+{
+  DhRows calibration = dh_rows(ur10e);
+  calibration[0].alpha += 0.0011;
+  calibration[1] = {-0.0009, ur10e.a2 + 0.0006, 0.0004, 0.0013};
+  calibration[2] = {0.0014, ur10e.a3 - 0.0007, -0.0003, -0.0008};
+  const Arm real(calibration);
+  const auto poses = poses_along(real, {step(0.0, 0.3, -0.5)});
+  const auto largest_deviation = [&](const Arm & known) {
+    const auto plan = plan_cartesian(poses, known, home(), limits(), {}, ik_of(real));
+    EXPECT_TRUE(plan) << plan.error().message;
+    double result = 0.0;
+    for (double t = 0.0; t <= plan->duration(); t += 0.005) {
+      const Pose pose = real.forward(plan->sample(t).position);
+      result = std::max(result, distance_to_line(pose, poses[0], poses[1]));
+    }
+    return result;
+  };
+  EXPECT_LT(largest_deviation(real), 5e-6);
+  const double nominal = largest_deviation(Arm(ur10e));
+  EXPECT_GT(nominal, 5e-5) << "the interpolated correction is not exact between the poses";
+  EXPECT_LT(nominal, 1e-3);
+}
+
 TEST(CartesianPlanTest, KeepsJointLimitsAtExcessiveTcpSpeed)
 {
   const Arm arm(ur10e);
@@ -144,7 +168,7 @@ TEST(CartesianPlanTest, RepeatedPosesYieldZeroDuration)
 // The controller knows the calibration of the arm, the planner knows the nominal parameters.
 TEST(CartesianPlanTest, ReachesThePosesOfCalibratedArm)
 {
-  const Arm real({0.1809, -0.6121, -0.5722, 0.1738, 0.1201, 0.1164});
+  const Arm real(DhParameters{0.1809, -0.6121, -0.5722, 0.1738, 0.1201, 0.1164});
   const Arm published(ur10e);
   const auto poses = poses_along(real, {step(0.0, 0.3, -0.2), step(-0.2, -0.2, -0.1, 0.5)});
   const auto plan = plan_cartesian(poses, published, home(), limits(), {}, ik_of(real));
