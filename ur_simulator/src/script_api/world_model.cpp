@@ -8,7 +8,7 @@ namespace ur_simulator::script_api {
 
 namespace {
 
-constexpr std::size_t frame_limit = 1000;
+constexpr std::size_t frame_limit = 100;
 constexpr const char * world = "world";
 
 struct FixedFrame {

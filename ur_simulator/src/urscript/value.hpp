@@ -87,6 +87,7 @@ class Value {
   std::optional<double> number() const;
   /// Identifies the storage that copies share; null for scalars.
   const void * storage() const { return shared_.get(); }
+  bool shares_storage() const { return shared_.use_count() > 1; }
   /// A list of six numbers or a pose.
   std::optional<Vector6> vector6() const;
   std::optional<Vector3> vector3() const;

@@ -94,7 +94,7 @@ TEST_F(ScriptSocketTest, IsNotClosedByASecondaryProgram)
 TEST_F(ScriptSocketTest, SlowsDownAHostThatSendsFasterThanTheProgramReads)
 {
   run_script(
-      " socket_send_line(\"go\", \"host\")\n sleep(0.5)\n n = 0\n"
+      " socket_send_line(\"go\", \"host\")\n sleep(0.1)\n n = 0\n"
       " while n < 3072 and str_len(socket_read_line(\"host\", 5)) == 1023:\n n = n + 1\n end\n"
       " textmsg(\"lines: \", n)");
   EXPECT_EQ(host.receive_request(), "go\n");

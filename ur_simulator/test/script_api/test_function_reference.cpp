@@ -9,8 +9,9 @@
 namespace ur_simulator {
 namespace {
 
-// The functions that the script manual of PolyScope 5.25 lists.
+// The functions that the script manual of PolyScope 5.25 lists, and those that only manuals of 3.x have.
 constexpr const char * manual_functions = R"(
+servoc set_runstate_outputs
 acos add_frame asin atan atan2 attach_frame binary_list_to_integer ceil convert_pose
 conveyor_pulse_decode cos d2r delete_all_frames delete_frame direct_torque enable_external_ft_sensor
 encoder_enable_pulse_decode encoder_enable_set_tick_count encoder_get_tick_count encoder_set_tick_count

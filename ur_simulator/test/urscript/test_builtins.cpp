@@ -81,6 +81,8 @@ TEST(StringTest, AreSearchedCutAndConverted)
   EXPECT_EQ(evaluate("str_at(\"Hello\", 5)"), "error: str_at: index must be in [0, 4], is 5");
   EXPECT_EQ(evaluate("str_find(\"Hello World\", \"o\", 5)"), "7");
   EXPECT_EQ(evaluate("str_find(\"Hello\", \"z\")"), "-1");
+  EXPECT_EQ(evaluate("str_find(\"Hello\", \"o\", 9)"), "-1");
+  EXPECT_EQ(evaluate("str_find(\"Hello\", \"o\", -1)"), "error: str_find: start_from must not be negative");
   EXPECT_EQ(evaluate("str_sub(\"0123456789\", 5, 2)"), "56");
   EXPECT_EQ(evaluate("str_sub(\"0123456789\", 8)"), "89");
   EXPECT_EQ(evaluate("str_len(\"Hello\")"), "5");

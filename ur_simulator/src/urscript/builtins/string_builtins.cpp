@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <cstring>
 
 #include "urscript/argument_reader.hpp"
 #include "urscript/builtins/builtins.hpp"
@@ -31,6 +32,17 @@ Outcome str_cat(CallContext &, Arguments arguments)
   return Value(std::move(result));
 }
 
+// The position of `target`, or -1. The time of memmem() is linear; that of std::string::find() is quadratic
+// in the worst case, longer than a control cycle.
+std::int32_t find_text(const std::string & source, const std::string & target, std::size_t start)
+{
+  if (start > source.size()) {
+    return -1;
+  }
+  const void * found = memmem(source.data() + start, source.size() - start, target.data(), target.size());
+  return found == nullptr ? -1 : static_cast<std::int32_t>(static_cast<const char *>(found) - source.data());
+}
+
 Outcome str_find(CallContext &, Arguments arguments)
 {
   ArgumentReader reader(arguments);
@@ -38,9 +50,10 @@ Outcome str_find(CallContext &, Arguments arguments)
   const std::string target = reader.string(1, "target");
   const std::int32_t start = reader.integer(2, "start_from");
   reader.require(start >= 0, "start_from must not be negative");
-  const std::size_t found = source.find(target, static_cast<std::size_t>(std::max(start, 0)));
-  return reader ? Outcome(Value(found == std::string::npos ? -1 : static_cast<std::int32_t>(found)))
-                : reader.failure();
+  if (!reader) {
+    return reader.failure();
+  }
+  return Value(find_text(source, target, static_cast<std::size_t>(start)));
 }
 
 Outcome str_sub(CallContext &, Arguments arguments)

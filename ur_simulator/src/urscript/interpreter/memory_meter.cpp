@@ -2,11 +2,19 @@
 
 namespace ur_simulator::urscript {
 
+namespace {
+
+constexpr std::size_t storage_overhead = 64;  // bytes: reference counts, the container, the allocator
+
+}  // namespace
+
 void MemoryMeter::add(std::span<const Value> values)
 {
   bytes_ += values.size_bytes();
   for (const Value & value : values) {
-    if (value.storage() != nullptr && counted_.insert(value.storage()).second) {
+    const bool counted = value.shares_storage() && !counted_.insert(value.storage()).second;
+    if (value.storage() != nullptr && !counted) {
+      bytes_ += storage_overhead;
       add_storage(value);
     }
   }
