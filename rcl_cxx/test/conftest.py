@@ -85,13 +85,12 @@ class NodeProcess:
             lines.append(line)
 
     def stop(self, sig=signal.SIGINT):
-        """Sends the signal and returns the exit code. Sets `self.seconds_to_stop`."""
-        start = time.monotonic()
+        """Sends the signal and returns the exit code."""
         if self.process.poll() is None:
             self.process.send_signal(sig)
-        return self.wait(start)
+        return self.wait()
 
-    def wait(self, start=None):
+    def wait(self):
         try:
             self.process.wait(LIMIT)
         except subprocess.TimeoutExpired:
@@ -103,7 +102,6 @@ class NodeProcess:
                 reader.join()
             self.process.stdout.close()
             self.process.stderr.close()
-        self.seconds_to_stop = time.monotonic() - start if start else None
         return self.process.returncode
 
 

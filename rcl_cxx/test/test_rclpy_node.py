@@ -146,7 +146,6 @@ def test_a_signal_stops_the_node_with_exit_code_0(sig, name, start_node):
     process = start_node()
     assert process.stop(sig) == 0
     assert f"stopped by {name}\n" in process.output
-    assert process.seconds_to_stop < LIMIT / 2
 
 
 def test_the_node_leaves_the_graph(ros, start_node):

@@ -19,7 +19,7 @@ BACKGROUND = True
 
 ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.203")
 MS = 1_000_000
-TRACE = {"cycles": [[number, 2 * MS * number, 0.0] for number in range(1000)]}
+TRACE = {"cycles": [[number, 2 * MS * number, 0.0, 0.0] for number in range(1000)]}
 
 
 def messages(numbers, delay=0.3):

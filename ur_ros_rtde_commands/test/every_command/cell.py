@@ -83,7 +83,7 @@ class StatusTrackingClient(Client):
 
     def get_terminal_states(self, goal):
         """Waits for a terminal state of the goal on the status topic. Returns all of its terminal states."""
-        return wait_for(lambda: self._terminal_states.get(goal.id), 5.0, "a terminal state on the status topic")
+        return wait_for(lambda: self._terminal_states.get(goal.id), 15.0, "a terminal state on the status topic")
 
     def forget(self, goal):
         """Removes the goal from the records, so that they do not grow in long runs."""

@@ -100,7 +100,7 @@ def test_cancel_decelerates_on_the_line(robot, simulator):
     assert status == GoalStatus.STATUS_CANCELED
     assert start.position.z - 0.29 < result.final_state.tcp_pose.position.z < start.position.z
     assert max(math.dist(point(message.pose)[:2], point(start)[:2]) for message in robot.messages_until_now(seen)) < 0.001
-    wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
+    wait_for(lambda: simulator.state()["at_rest"], 15.0, "standstill")
 
 
 GOOD = Pose(position=Point(x=-0.69, y=-0.17, z=0.6), orientation=Quaternion(x=0.7071, y=0.7071))

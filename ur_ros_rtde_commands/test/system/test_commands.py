@@ -197,7 +197,7 @@ def test_set_digital_output_switches_the_pin(robot, simulator, pin):
         robot.send(SetDigitalOutput, "set_digital_output", pin=pin, state=state).succeeded()
         assert bool(simulator.state()["io"]["digital_outputs"] >> pin & 1) == state
     messages = robot.subscribe(IOState, "io_state")
-    wait_for(lambda: messages, 5.0, "io_state")
+    wait_for(lambda: messages, 15.0, "io_state")
     assert not messages[-1].digital_outputs[pin]
 
 
@@ -273,7 +273,7 @@ def test_a_lost_connection_aborts_the_goal_and_stops_the_arm(robot, simulator, c
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED
     assert result.error_code in (ErrorCode.LINK_LOST, ErrorCode.PROGRAM_STOPPED), result.message
-    wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 5.0, "standstill")
+    wait_for(lambda: max(map(abs, simulator.state()["actual"]["velocity"])) < 0.01, 15.0, "standstill")
     assert simulator.state()["actual"]["position"][0] < 1.9
 
 

@@ -69,7 +69,7 @@ def test_powers_the_arm_off_and_on_and_releases_the_brakes(dashboard):
     goal = command(dashboard, "power_on")
     assert goal.succeeded().answer.startswith("Powering on")
     # ROS does not order feedback and result.
-    wait_for(lambda: goal.feedback and goal.feedback[-1].state == "IDLE", 5.0, "the feedback of the new robot mode")
+    wait_for(lambda: goal.feedback and goal.feedback[-1].state == "IDLE", 15.0, "the feedback of the new robot mode")
     assert query(dashboard, "robot_mode") == "IDLE"
     command(dashboard, "brake_release").succeeded()
     assert query(dashboard, "robot_mode") == "RUNNING"
@@ -93,7 +93,7 @@ def test_cancel_ends_the_wait_for_the_effect(dashboard):
 
 def test_unlocks_a_protective_stop_once_the_controller_allows_it(dashboard, simulator):
     simulator.control("protective_stop", reason="a test")
-    wait_for(lambda: query(dashboard, "safety_mode") == "PROTECTIVE_STOP", 5.0, "the protective stop")
+    wait_for(lambda: query(dashboard, "safety_mode") == "PROTECTIVE_STOP", 15.0, "the protective stop")
     early = command(dashboard, "unlock_protective_stop").result()
     assert early.error_code == ErrorCode.REJECTED_BY_ROBOT and early.answer in early.message
     wait_for(lambda: command(dashboard, "unlock_protective_stop").result().success, 10.0, "the protective stop to be unlocked")
@@ -134,7 +134,7 @@ def test_loads_an_installation(dashboard):
 
 def test_restarts_the_safety_system_after_a_fault(dashboard, simulator):
     simulator.control("fault", reason="a test")
-    wait_for(lambda: query(dashboard, "safety_mode") == "FAULT", 5.0, "the fault")
+    wait_for(lambda: query(dashboard, "safety_mode") == "FAULT", 15.0, "the fault")
     assert query(dashboard, "safety_status") == "FAULT"
     command(dashboard, "close_safety_popup").succeeded()
     command(dashboard, "restart_safety").succeeded()

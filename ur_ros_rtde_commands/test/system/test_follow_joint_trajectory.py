@@ -93,7 +93,7 @@ def test_a_new_goal_preempts_the_running_one(robot, simulator):
     assert status == GoalStatus.STATUS_ABORTED and "preempted by" in result.error_string
     status, result = second.wait_for_result(20.0)
     assert status == GoalStatus.STATUS_SUCCEEDED, result.error_string
-    wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
+    wait_for(lambda: simulator.state()["at_rest"], 15.0, "standstill")
 
 
 def test_an_empty_trajectory_stops_the_running_one(robot, simulator):
@@ -102,7 +102,7 @@ def test_an_empty_trajectory_stops_the_running_one(robot, simulator):
     status, result = send(robot, names=[]).wait_for_result(10.0)
     assert status == GoalStatus.STATUS_SUCCEEDED and result.error_code == Result.SUCCESSFUL
     assert first.wait_for_result(10.0)[0] == GoalStatus.STATUS_ABORTED
-    wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
+    wait_for(lambda: simulator.state()["at_rest"], 15.0, "standstill")
 
 
 def test_cancel_decelerates(robot, simulator):
@@ -110,7 +110,7 @@ def test_cancel_decelerates(robot, simulator):
     wait_for(lambda: len(goal.feedback) > 10, 10.0, "motion")
     goal.cancel()
     assert goal.wait_for_result(10.0)[0] == GoalStatus.STATUS_CANCELED
-    wait_for(lambda: simulator.state()["at_rest"], 5.0, "standstill")
+    wait_for(lambda: simulator.state()["at_rest"], 15.0, "standstill")
 
 
 def test_a_path_tolerance_violation_aborts_the_goal(robot):

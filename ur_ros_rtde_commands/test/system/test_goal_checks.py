@@ -34,7 +34,7 @@ def test_executes_another_goal_while_a_check_is_pending(robot, silent_controller
 def test_stop_preempts_a_goal_whose_check_is_pending(robot, silent_controller):
     waiting = robot.send(MoveL, "move_l", pose=silent_controller)
     stop = robot.send(Stop, "stop")
-    wait_for(stop.answered, 5.0, "the response to stop")
+    wait_for(stop.answered, 15.0, "the response to stop")
     assert not waiting.answered()
     assert stop.accepted
     assert not waiting.accepted

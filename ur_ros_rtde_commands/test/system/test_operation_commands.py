@@ -25,7 +25,7 @@ def fail_to_make_ready(robot, code, **fields):
 
 
 def wait_for_protective_stop(simulator):
-    wait_for(lambda: simulator.state()["safety_mode"] == "PROTECTIVE_STOP", 5.0, "the protective stop")
+    wait_for(lambda: simulator.state()["safety_mode"] == "PROTECTIVE_STOP", 15.0, "the protective stop")
 
 
 def test_make_ready_returns_at_once_if_the_robot_is_ready(robot):
@@ -44,7 +44,7 @@ def test_make_ready_powers_on_with_progress(robot, simulator):
 def test_make_ready_releases_the_brakes(robot, simulator):
     simulator.control("power", to="off")
     simulator.control("power", to="on")
-    wait_for(lambda: not robot.send(MoveJ, "move_j", joint_positions=HOME).accepted, 5.0, "the driver to detect the power off")
+    wait_for(lambda: not robot.send(MoveJ, "move_j", joint_positions=HOME).accepted, 15.0, "the driver to detect the power off")
     _, states = make_ready(robot)
     assert any("brakes" in state for state in states)
 
@@ -78,7 +78,7 @@ def test_make_ready_restarts_a_stopped_program(robot, simulator):
 
 def test_make_ready_recovers_from_a_violation_only_with_restart_safety(robot, simulator):
     simulator.control("violation", reason="a test")
-    wait_for(lambda: simulator.state()["safety_mode"] == "VIOLATION", 5.0, "the violation")
+    wait_for(lambda: simulator.state()["safety_mode"] == "VIOLATION", 15.0, "the violation")
     assert "restart_safety" in fail_to_make_ready(robot, ErrorCode.SAFETY_VIOLATION)
     make_ready(robot, restart_safety=True)
 

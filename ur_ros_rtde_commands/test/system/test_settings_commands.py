@@ -24,7 +24,7 @@ def test_set_tcp_changes_the_tcp_pose_and_get_tcp_offset_returns_it(robot, simul
         tcp = get_tcp_pose(robot).position
         return math.dist((tcp.x, tcp.y, tcp.z), (flange.x, flange.y, flange.z))
 
-    wait_for(lambda: distance() == pytest.approx(0.2, abs=1e-3), 2.0, "tcp_pose to follow")
+    wait_for(lambda: distance() == pytest.approx(0.2, abs=1e-3), 15.0, "tcp_pose to follow")
     robot.send(SetTcp, "set_tcp", pose=Pose()).succeeded()
 
 
@@ -83,7 +83,7 @@ def test_a_faster_watchdog_stops_the_program_only_if_the_driver_is_silent(robot,
     assert simulator.state()["program"]["state"] == "PLAYING"
     driver.pause()
     try:
-        wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 5.0, "the watchdog to stop the program")
+        wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 15.0, "the watchdog to stop the program")
     finally:
         driver.resume()
 

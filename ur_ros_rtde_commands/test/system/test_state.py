@@ -53,7 +53,7 @@ def test_tcp_pose_is_in_the_base_frame(receiver, client, simulator):
 
 def test_wrench_is_in_the_tool_frame(receiver, client, simulator):
     wrenches = client.subscribe(WrenchStamped, "wrench")
-    simulator.control("push", force=[0.0, 0.0, 30.0], duration=0.5, frame="tool")
+    simulator.control("push", force=[0.0, 0.0, 30.0], duration=2.0, frame="tool")
     wait_for(lambda: any(w.wrench.force.z > 25.0 for w in list(wrenches)), 10.0, "the push along the tool's axis")
     strongest = max(list(wrenches), key=lambda w: w.wrench.force.z)
     assert strongest.header.frame_id == "left_tool0_controller"
@@ -184,7 +184,7 @@ def test_starts_without_the_controller_and_reconnects(addresses, processes):
     try:
         answer = client.call(GetJointState, "get_joint_state")
         assert not answer.success and answer.error_code == ErrorCode.LINK_LOST
-        assert address in wait_for(lambda: client.call(GetJointState, "get_joint_state").message, 5.0, "the reason")
+        assert address in wait_for(lambda: client.call(GetJointState, "get_joint_state").message, 15.0, "the reason")
         receiver.wait_for_output(address)
 
         simulator = Simulator(address)

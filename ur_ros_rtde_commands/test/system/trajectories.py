@@ -50,14 +50,17 @@ class TargetRecorder:
         self._setpoint_cycles = set()
         self.joint_speeds = {}  # of the fastest target joint in rad/s, by cycle
         self.tcp_speeds = {}  # m/s, by cycle
+        self.published = {}  # time in ns since the epoch at which the simulator sent the state, by cycle
 
     def update(self):
         """Returns itself, so that a condition can continue with the record."""
         trace = self._simulator.control("trace", after=self._last_cycle)
         cycles = [cycle for cycle, *_ in trace["cycles"]]
         assert cycles == list(range(self._last_cycle + 1, self._last_cycle + 1 + len(cycles))), "the trace has gaps"
-        self.joint_speeds.update((cycle, speed) for cycle, _, speed, _ in trace["cycles"])
-        self.tcp_speeds.update((cycle, speed) for cycle, _, _, speed in trace["cycles"])
+        for cycle, published, joint_speed, tcp_speed in trace["cycles"]:
+            self.published[cycle] = published
+            self.joint_speeds[cycle] = joint_speed
+            self.tcp_speeds[cycle] = tcp_speed
         self._setpoint_cycles.update(cycle for cycle, *_ in trace["repeats"] if cycle > self._first_cycle)
         self._last_cycle += len(cycles)
         return self
@@ -77,6 +80,11 @@ class TargetRecorder:
         """Returns the number of cycles in which a setpoint arrived, except the first of a goal. The target cannot need more of
         them on a slow host, because each advances it by at least one cycle."""
         return sum(first <= cycle <= last for cycle in self._setpoint_cycles)
+
+    def gaps(self, longer_than, first=0, last=math.inf):
+        """Returns the lengths of the gaps between setpoints that are longer than this number of cycles."""
+        cycles = sorted(cycle for cycle in self._setpoint_cycles if first <= cycle <= last)
+        return [later - earlier for earlier, later in zip(cycles, cycles[1:]) if later - earlier > longer_than]
 
     def cycle_at_travel(self, distance):
         """Returns the cycle in which the target of the fastest joint has traveled this distance in rad."""
