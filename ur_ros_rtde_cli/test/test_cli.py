@@ -19,6 +19,8 @@ from rclpy.action import ActionServer
 from rclpy.task import Future
 from support import HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
 
+from ur_ros_rtde_cli import view
+from ur_ros_rtde_cli.errors import CliError
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, MoveJ
 
@@ -301,6 +303,14 @@ def test_record_reports_the_number_of_rows(running, tmp_path):
     assert f"{len(rows) - 1} rows" in output and len(rows) > 100 and len(rows[0]) == 7
     code, output = ur("record", str(file), "--time", "1")
     assert code == 2 and str(file) in output, output
+
+
+def test_starts_the_viewer(monkeypatch):
+    code, output = ur("view", "--help", domain=EMPTY_DOMAIN)
+    assert code == 0 and "usage: ur view" in output and "--robot" in output, output
+    monkeypatch.setattr(view, "find_viewer", lambda: None)
+    with pytest.raises(CliError, match="ur_ros_rtde_viewer is not installed"):
+        view.execute([])
 
 
 def test_prints_a_urdf_without_nodes():

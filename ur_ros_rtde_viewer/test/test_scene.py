@@ -115,11 +115,11 @@ def test_a_protective_stop_colors_the_arm_until_it_ends(server, scene):
     assert tuple(shape.color) == original
 
 
-def test_the_force_is_an_arrow_in_the_frame_of_the_tcp(server, scene):
+def test_the_force_is_an_arrow_that_pushes_the_tcp(server, scene):
     pose = Pose(np.array((0.1, 0.2, 0.3)), np.array((1.0, 0.0, 0.0, 0.0)))
     arrow = server.scene.get_handle_by_name(scene.arm.link_path("base") + "/tcp/force")
     scene.update(RobotState(joints=joints(POSITIONS), tcp_pose=pose, wrench=np.array((0.0, 0.0, 40.0, 0.0, 0.0, 0.0))))
-    assert arrow.visible and arrow.points[0, 1] == pytest.approx((0.0, 0.0, 0.2))
+    assert arrow.visible and arrow.points[0] == pytest.approx(np.array(((0.0, 0.0, -0.2), (0.0, 0.0, 0.0))))
     scene.update(RobotState(joints=joints(POSITIONS), tcp_pose=pose, wrench=np.zeros(6)))
     assert not arrow.visible
 

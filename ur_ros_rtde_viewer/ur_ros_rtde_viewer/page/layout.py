@@ -1,4 +1,4 @@
-"""The layout of the page: a header that is always in view, the tabs of the robots, and a second panel with the plots."""
+"""The layout of the page: the banners, the tabs of the robots below them, and a second panel with the plots."""
 
 from typing import Any, Dict, Sequence
 
@@ -10,15 +10,13 @@ PLOTS_WIDTH = 380  # pixels
 
 
 class Layout:
-    """`header` is above the tabs and stays in view when tabs change: banners and STOP belong here.
-
-    With one robot, its panels are tabs of the page. With several, each robot has a tab that contains the tabs of its panels.
+    """With one robot, its panels are tabs of the page. With several, each robot has a tab that contains the tabs of its panels.
     """
 
     def __init__(self, server: viser.ViserServer, robots: Sequence[RobotOptions]):
         gui = server.gui
         gui.main_panel.dock_right()
-        self.header: Any = gui.add_folder("Robots" if len(robots) > 1 else "Robot")
+        self._banners: Dict[str, Any] = {robot.namespace: gui.add_html("", visible=False) for robot in robots}
         self._plots = gui.add_panel()
         self._plots.dock_left()
         self._plots.set_width(PLOTS_WIDTH)
@@ -30,6 +28,10 @@ class Layout:
         for robot in robots:
             with outer.add_tab(robot.name):
                 self._tabs[robot.namespace] = gui.add_tab_group()
+
+    def banner(self, robot: RobotOptions) -> Any:
+        """Returns the element above all tabs, which stays in view when tabs change."""
+        return self._banners[robot.namespace]
 
     def tabs(self, robot: RobotOptions) -> Any:
         """Returns the tab group of a robot: `with layout.tabs(robot).add_tab("State"):`."""

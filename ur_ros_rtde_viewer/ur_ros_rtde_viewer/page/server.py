@@ -18,7 +18,8 @@ def _check_address(address: str, port: int) -> None:
     try:
         family = socket.AF_INET6 if ipaddress.ip_address(address).version == 6 else socket.AF_INET
     except ValueError:
-        raise ViewerError(f"--address {address}: expected an IP address, such as 127.0.0.1 (this machine) or 0.0.0.0 (all networks)") from None
+        raise ViewerError(f"--address {address}: expected an IP address, such as 127.0.0.1 (this machine) or 0.0.0.0 (all networks)"
+                          ) from None
     with socket.socket(family, socket.SOCK_STREAM) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

@@ -22,7 +22,7 @@ def add_panels(viewer: Any, robot: Any) -> None:
     recordings = pathlib.Path(viewer.options.recordings).absolute()
     state_tab, recording_tab, twin_tab = (tabs.add_tab(name) for name in ("State", "Recording", "Twin"))
     robot.panels += [
-        Banner(viewer.layout.header, server.gui, robot.options.name, robot.topics.name_of("joint_states"), robot.scene),
+        Banner(viewer.layout.banner(robot.options), robot.options.name, robot.topics.name_of("joint_states"), robot.scene),
         StatePanel(state_tab, server.gui),
         PlotsPanel(viewer.layout.add_plots_tab(robot.options), server),
         RecordingPanel(recording_tab, server, robot.services, _player(viewer, robot, recording_tab), recordings, post),

@@ -1,4 +1,4 @@
-"""A banner in the header: what stops the robot, or why nothing is shown."""
+"""A banner above the tabs: what stops the robot, or why nothing is shown."""
 
 import html
 from typing import Any, Optional, Tuple
@@ -30,10 +30,8 @@ def banner_text(state: RobotState, name: str, topic: str, has_model: bool) -> Op
 class Banner:
     """`scene` is the RobotScene, which knows whether the model was found."""
 
-    def __init__(self, header: Any, gui: Any, name: str, topic: str, scene: Any):
-        self._name, self._topic, self._scene = name, topic, scene
-        with header:
-            self._element = gui.add_html("", visible=False)
+    def __init__(self, element: Any, name: str, topic: str, scene: Any):
+        self._element, self._name, self._topic, self._scene = element, name, topic, scene
         self.shown: Optional[Tuple[str, str]] = None
 
     def update(self, state: RobotState) -> None:

@@ -38,7 +38,7 @@ class ToolCenterPoint:
         visible = bool(np.linalg.norm(force) > SMALLEST_FORCE)
         if visible and np.linalg.norm(force - self._drawn_force) > FORCE_STEP:
             self._drawn_force = force
-            self._force.points = np.array([[np.zeros(3), METERS_PER_NEWTON * force]], np.float32)
+            self._force.points = np.array([[-METERS_PER_NEWTON * force, np.zeros(3)]], np.float32)  # pushes the TCP
         self._force.visible = visible
 
     def remove(self) -> None:
