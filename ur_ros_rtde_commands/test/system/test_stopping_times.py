@@ -10,7 +10,7 @@ import threading
 
 import pytest
 from robot_fixtures import make_ready
-from support import HOME, Simulator, start_node, wait_for
+from support import HOME, Client, Simulator, start_node, wait_for
 from ur_ros_rtde_cli.robot_check.rtde import Rtde
 
 from ur_ros_rtde_msgs.action import MoveJ, Stop
@@ -68,14 +68,22 @@ def simulator(addresses):
 
 
 @pytest.fixture
-def moving(simulator, client):
+def fresh_client():
+    """A client that has never seen another driver: a killed one stays discovered for some seconds."""
+    created = Client()
+    yield created
+    created.close()
+
+
+@pytest.fixture
+def moving(simulator, fresh_client):
     """A driver whose robot turns joint 0, a recorder, and the goal."""
     # The robot measures the period of its watchdog, the driver the silence, each in its own time.
     driver = start_node("driver", simulator.address, "ur_type:=ur10e", "watchdog_frequency:=10.0", f"silence_limit:={0.1 * SLOWNESS}")
     recorder = Recorder(simulator.address)
     try:
-        make_ready(client, 60.0)
-        goal = client.send(MoveJ, "move_j", joint_positions=[3.0, *HOME[1:]], speed=SPEED, acceleration=2.0)
+        make_ready(fresh_client, 60.0)
+        goal = fresh_client.send(MoveJ, "move_j", joint_positions=[3.0, *HOME[1:]], speed=SPEED, acceleration=2.0)
         wait_for(lambda: recorder.speed() > 0.98 * SPEED, 60.0, f"motion; {driver.output()}")
         yield driver, recorder, goal
     finally:
@@ -116,10 +124,10 @@ def limits():
 
 
 @pytest.mark.parametrize("event", EVENTS)
-def test_the_arm_stands_within_the_documented_time(event, moving, client, simulator):
+def test_the_arm_stands_within_the_documented_time(event, moving, fresh_client, simulator):
     driver, recorder, goal = moving
     begin = recorder.time()
-    EVENTS[event](driver, client, simulator, goal)
+    EVENTS[event](driver, fresh_client, simulator, goal)
     duration = recorder.wait_for_standstill(begin)
     driver.resume()
     print(f"{event}: {duration:.3f} s")
