@@ -105,10 +105,10 @@ TEST(FunctionReferenceTest, TheDocumentationIsUpToDate)
   buffer << file.rdbuf();
   std::string text = buffer.str();
   const std::size_t first = text.find(begin);
-  const std::size_t last = text.find(end);
   ASSERT_NE(first, std::string::npos);
-  ASSERT_NE(last, std::string::npos);
   const std::size_t start = first + begin.size();
+  const std::size_t last = text.find(end, start);
+  ASSERT_NE(last, std::string::npos);
   const ScriptFixture fixture;
   const std::string reference = function_reference(*complete_library(fixture));
   if (std::getenv("UPDATE_DOCS") != nullptr) {

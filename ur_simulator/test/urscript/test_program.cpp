@@ -11,10 +11,12 @@ TEST(MemoryTest, IsLimited)
   const std::string recursion =
       "def test():\n def f(n):\n list = make_list(9000, n)\n f(n + 1)\n return list\n end\n f(0)\nend";
   for (const std::string & program : {many_strings, recursion}) {
-    ScriptRunner runner(program);
+    MachineOptions options;
+    options.memory = 4U << 20U;
+    ScriptRunner runner(program, standard_library(), options);
     EXPECT_EQ(runner.finish(10000), MachineStatus::failed);
     EXPECT_EQ(runner.machine->error().message,
-              "out of memory: the values of the program need more than 32 MiB");
+              "out of memory: the values of the program need more than 4 MiB");
   }
 }
 
