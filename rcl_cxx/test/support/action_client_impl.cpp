@@ -9,6 +9,7 @@
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_error.hpp"
 #include "rcl_support/to_time.hpp"
+#include "rcl_support/type_support.hpp"
 
 namespace rcl_cxx::detail {
 namespace {
@@ -28,14 +29,16 @@ bool taken(rcl_ret_t code, const std::string & name, const char * what)
 
 ActionClientImpl::ActionClientImpl(std::shared_ptr<NodeImpl> node, const ActionClientOps & ops,
                                    const std::string & name)
-    : Waitable(std::move(node), fmt::format("action client of {}", name)), ops_(ops)
+    : Waitable(std::move(node), fmt::format("action client of {}", name)),
+      ops_(ops),
+      type_support_(middleware_type_support(*ops.type.type_support()))
 {
   const rcl_action_client_options_t options = rcl_action_client_get_default_options();
   name_ = this->node()->resolve(name, false);
   const std::lock_guard lock(this->node()->mutex());
-  check_rcl(
-      rcl_action_client_init(&client_, this->node()->handle(), ops_.type_support(), name.c_str(), &options),
-      label(), "cannot be created");
+  check_rcl(rcl_action_client_init(&client_, this->node()->handle(), &type_support_, name.c_str(), &options),
+            label(), "cannot be created");
+  reset_type_support_error();
 }
 
 ActionClientImpl::~ActionClientImpl()
@@ -171,7 +174,7 @@ void ActionClientImpl::execute(std::size_t source)
 
 void ActionClientImpl::take_goal_response()
 {
-  const std::shared_ptr<void> response = ops_.make_goal_response();
+  const std::shared_ptr<void> response = make_message(ops_.type.goal_response);
   rmw_request_id_t id;
   if (!taken(rcl_action_take_goal_response(&client_, &id, response.get()), name_, "a goal response")) {
     return;
@@ -249,7 +252,7 @@ void ActionClientImpl::take_cancel_response()
 
 void ActionClientImpl::take_result_response()
 {
-  const std::shared_ptr<void> response = ops_.make_result_response();
+  const std::shared_ptr<void> response = make_message(ops_.type.result_response);
   rmw_request_id_t id;
   if (!taken(rcl_action_take_result_response(&client_, &id, response.get()), name_, "a result")) {
     return;
@@ -274,7 +277,7 @@ void ActionClientImpl::take_result_response()
 
 void ActionClientImpl::take_feedback()
 {
-  const std::shared_ptr<void> message = ops_.make_feedback();
+  const std::shared_ptr<void> message = make_message(ops_.type.feedback_message);
   if (!taken(rcl_action_take_feedback(&client_, message.get()), name_, "feedback")) {
     return;
   }

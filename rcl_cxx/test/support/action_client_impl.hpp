@@ -70,6 +70,7 @@ class ActionClientImpl : public Waitable {
   Goal find(const GoalUUID & id) const;
 
   const ActionClientOps & ops_;
+  const rosidl_action_type_support_t type_support_;
   std::string name_;
   rcl_action_client_t client_ = rcl_action_get_zero_initialized_client();
 

@@ -6,6 +6,7 @@
 #include "client_impl.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_error.hpp"
+#include "rcl_support/type_support.hpp"
 #include "wait.hpp"
 
 namespace rcl_cxx {
@@ -22,8 +23,10 @@ ClientImpl::ClientImpl(std::shared_ptr<NodeImpl> node, ErasedClient erased, cons
   rcl_client_options_t options = rcl_client_get_default_options();
   options.qos = qos.get_rmw_qos_profile();
   const std::lock_guard lock(this->node()->mutex());
-  check_rcl(rcl_client_init(&client_, this->node()->handle(), erased_.type_support, name.c_str(), &options),
+  check_rcl(rcl_client_init(&client_, this->node()->handle(), middleware_type_support(erased_.type_support),
+                            name.c_str(), &options),
             label(), "cannot be created");
+  reset_type_support_error();
   name_ = rcl_client_get_service_name(&client_);
 }
 

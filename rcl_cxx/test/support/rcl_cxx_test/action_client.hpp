@@ -6,11 +6,11 @@
 #include <functional>
 #include <future>
 #include <memory>
-#include <rosidl_typesupport_cpp/action_type_support.hpp>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "rcl_cxx/action_type.hpp"
 #include "rcl_cxx/goal_uuid.hpp"
 #include "rcl_cxx/node.hpp"
 
@@ -38,14 +38,11 @@ class ClientGoalImpl;
 
 /// What the client has to know about the types of an action.
 struct ActionClientOps {
-  const rosidl_action_type_support_t * (*type_support)();
+  const ActionType & type;
   std::shared_ptr<void> (*make_goal_request)(const GoalUUID &, const void * goal);
-  std::shared_ptr<void> (*make_goal_response)();
   bool (*accepted)(const void * goal_response);
   std::shared_ptr<void> (*make_result_request)(const GoalUUID &);
-  std::shared_ptr<void> (*make_result_response)();
   std::int8_t (*status)(const void * result_response);
-  std::shared_ptr<void> (*make_feedback)();
   GoalUUID (*goal_id_of_feedback)(const void * feedback_message);
 };
 
@@ -79,20 +76,21 @@ struct ActionClientOpsOf {
     return request;
   }
 
-  static constexpr ActionClientOps ops{
-      &rosidl_typesupport_cpp::get_action_type_support_handle<A>,
-      &goal_request,
-      []() -> std::shared_ptr<void> { return std::make_shared<GoalResponse>(); },
-      [](const void * response) { return bool{static_cast<const GoalResponse *>(response)->accepted}; },
-      &result_request,
-      []() -> std::shared_ptr<void> { return std::make_shared<ResultResponse>(); },
-      [](const void * response) {
-        return std::int8_t{static_cast<const ResultResponse *>(response)->status};
-      },
-      []() -> std::shared_ptr<void> { return std::make_shared<FeedbackMessage>(); },
-      [](const void * feedback) {
-        return GoalUUID{static_cast<const FeedbackMessage *>(feedback)->goal_id.uuid};
-      }};
+  static const ActionClientOps & ops()
+  {
+    static const ActionClientOps functions{
+        action_type<A>(),
+        &goal_request,
+        [](const void * response) { return bool{static_cast<const GoalResponse *>(response)->accepted}; },
+        &result_request,
+        [](const void * response) {
+          return std::int8_t{static_cast<const ResultResponse *>(response)->status};
+        },
+        [](const void * feedback) {
+          return GoalUUID{static_cast<const FeedbackMessage *>(feedback)->goal_id.uuid};
+        }};
+    return functions;
+  }
 };
 }  // namespace detail
 
@@ -195,7 +193,7 @@ class ActionClient : public ActionClientBase {
   using Handle = ClientGoalHandle<A>;
 
   ActionClient(std::shared_ptr<detail::NodeImpl> node, const std::string & action)
-      : ActionClientBase(std::move(node), detail::ActionClientOpsOf<A>::ops, action)
+      : ActionClientBase(std::move(node), detail::ActionClientOpsOf<A>::ops(), action)
   {
   }
 
