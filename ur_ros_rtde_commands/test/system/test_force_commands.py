@@ -140,7 +140,7 @@ def test_direct_torque_moves_a_joint_and_stops(robot):
 
 
 def test_direct_torque_aborts_when_a_joint_exceeds_max_joint_speed(robot):
-    status, result = robot.send(DirectTorque, "direct_torque", joint_torques=[0.0, 0.0, 0.0, 0.0, 0.0, 10.0], duration=20.0,
+    status, result = robot.send(DirectTorque, "direct_torque", joint_torques=[20.0, 0.0, 0.0, 0.0, 0.0, 0.0], duration=20.0,
                                 max_joint_speed=0.3).wait_for_result()
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.SAFETY_VIOLATION), result.message
     assert "max_joint_speed" in result.message

@@ -39,5 +39,7 @@ def test_follows_the_plan(robot, simulator, parameters):
             errors[time] = planned_position(result.duration, time) - position
     assert len(errors) > 5
     assert max(map(abs, errors.values())) < MAX_DELAY_ERROR, errors
-    assert max(state.position[0] for state in robot.messages_until_now(states)) < HOME[0] + DISTANCE + 0.002
+    # The control program bridges up to 4 cycles without a setpoint. After a longer gap, the arm may overshoot.
+    overshoot = 0.03 if recorder.gaps(4) else 0.002
+    assert max(state.position[0] for state in robot.messages_until_now(states)) < HOME[0] + DISTANCE + overshoot
     assert recorder.max_joint_speed() < 1.03 * SPEED
