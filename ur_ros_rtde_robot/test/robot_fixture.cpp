@@ -53,7 +53,7 @@ testing::AssertionResult RobotFixture::becomes_ready_again(std::size_t times)
     return std::count_if(statuses.begin(), statuses.end(),
                          [](const RobotStatus & status) { return status.state == RobotState::ready; });
   };
-  if (!eventually([&] { return static_cast<std::size_t>(count()) >= times; }, 10s)) {
+  if (!eventually([&] { return static_cast<std::size_t>(count()) >= times; }, 20s)) {
     return testing::AssertionFailure() << "it was ready " << count() << " times. It said:\n" << log.text();
   }
   return becomes_ready();

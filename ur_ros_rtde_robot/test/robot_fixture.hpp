@@ -27,8 +27,8 @@ struct RobotFixture : testing::Test {
   void make_both();
   /// Waits for the state; the failure message is the log.
   testing::AssertionResult comes_to(RobotState state, ErrorCode cause = ErrorCode::none,
-                                    std::chrono::milliseconds limit = 10s);
-  testing::AssertionResult becomes_ready(std::chrono::milliseconds limit = 10s)
+                                    std::chrono::milliseconds limit = 20s);
+  testing::AssertionResult becomes_ready(std::chrono::milliseconds limit = 20s)
   {
     return comes_to(RobotState::ready, {}, limit);
   }

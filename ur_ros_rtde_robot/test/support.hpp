@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 std::string own_address();
 
 /// Waits for a condition; false if it does not hold within `limit`.
-bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds limit = 5s);
+bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds limit = 15s);
 
 /// A simulated controller at the test's address; initially none.
 class Controller {

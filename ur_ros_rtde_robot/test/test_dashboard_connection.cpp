@@ -15,11 +15,11 @@ struct DashboardConnectionTest : testing::Test {
   std::atomic<int> lost = 0;
   std::unique_ptr<DashboardConnection> link;
 
-  void connect()
+  void connect(std::chrono::milliseconds retry_interval = 50ms)
   {
     DashboardConnectionOptions options;
     options.address = own_address();
-    options.retry_interval = 50ms;
+    options.retry_interval = retry_interval;
     options.heartbeat = 50ms;
     link = std::make_unique<DashboardConnection>(options, log.function());
     link->on_link([this](const LinkStatus & status) { lost += status.connected ? 0 : 1; });
@@ -39,6 +39,15 @@ TEST_F(DashboardConnectionTest, ConnectsToAControllerThatStartsLater)
   controller.start();
   ASSERT_TRUE(connected()) << log.text();
   EXPECT_NE(link->dashboard()->robotmode().find("RUNNING"), std::string::npos);
+}
+
+TEST_F(DashboardConnectionTest, ConnectsSoonAfterTheControllerHasStarted)
+{
+  connect(60s);  // the delay is 1 % of the outage
+  ASSERT_TRUE(eventually([&] { return link->link().error.message.find("no connection") == 0; }))
+      << link->link().error.message;
+  controller.start();
+  EXPECT_TRUE(connected()) << log.text();
 }
 
 TEST_F(DashboardConnectionTest, ReturnsTheRobotsRefusalAsAnError)

@@ -58,6 +58,16 @@ TEST_F(RetryDelayTest, IsTheLongestOneIfConnectionsBreakAgainAndAgain)
   EXPECT_EQ(delay.after_loss(begin + 60s, begin + 60s + 249ms), 250ms);
 }
 
+TEST_F(RetryDelayTest, ReportsAnOutageAfterTheLongestDelay)
+{
+  RetryDelay delay(250ms, begin);
+  EXPECT_FALSE(delay.worth_reporting(begin + 249ms));
+  EXPECT_TRUE(delay.worth_reporting(begin + 250ms));
+  EXPECT_EQ(delay.text(), "Trying again after at most 0.25 s");
+  delay.after_loss(begin + 1s, begin + 2s);
+  EXPECT_FALSE(delay.worth_reporting(begin + 2s));
+}
+
 TEST_F(RetryDelayTest, NeverExceedsAShortLimit)
 {
   const RetryDelay delay(1ms, begin);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "robot_fixture.hpp"
 
@@ -48,12 +49,19 @@ double base_speed(Controller & controller)
   return std::abs(controller.state().at("actual").at("velocity").at(0).get<double>());
 }
 
-/// Simulator time until the arm is at standstill, in s.
+/// Simulator time until the target of the arm is at rest, in s.
 double time_to_rest(Controller & controller)
 {
-  const double begin = controller.state().at("timestamp").get<double>();
+  const auto begin = controller.state().at("cycle").get<std::uint64_t>();
   EXPECT_TRUE(eventually([&] { return base_speed(controller) < 0.01; }));
-  return controller.state().at("timestamp").get<double>() - begin;
+  const auto trace = controller.control({{"command", "trace"}, {"after", begin}});
+  for (const auto & entry : trace.at("cycles")) {
+    if (entry.at(2).get<double>() < 0.01) {  // target speed of the fastest joint
+      return 0.002 * static_cast<double>(entry.at(0).get<std::uint64_t>() - begin);
+    }
+  }
+  ADD_FAILURE() << "the target is not at rest";
+  return 0.0;
 }
 
 bool program_stops(Controller & controller)

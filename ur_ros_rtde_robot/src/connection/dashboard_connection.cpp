@@ -13,6 +13,7 @@
 
 #include "connection/dashboard_request.hpp"
 #include "connection/ports.hpp"
+#include "connection/retry_delay.hpp"
 #include "connection/rtde/rtde_probe.hpp"
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
@@ -41,7 +42,7 @@ bool supports_remote_control(const std::optional<ControllerVersion> & version)
 class DashboardConnection::Impl {
  public:
   Impl(DashboardConnectionOptions options, LogFunction log)
-      : options_(std::move(options)), logger_(std::move(log))
+      : options_(std::move(options)), retry_(options_.retry_interval, Clock::now()), logger_(std::move(log))
   {
     if (options_.address.empty()) {
       throw std::invalid_argument("the robot's address is empty: give its IP address or host name");
@@ -63,15 +64,28 @@ class DashboardConnection::Impl {
   std::jthread thread_;
 
  private:
-  Status connect();
+  using Clock = RetryDelay::Clock;
+
+  /// Why there is no connection, and the delay before the next attempt.
+  struct Outage {
+    Error error;
+    Clock::duration delay;
+  };
+
+  Outage connect_and_monitor(const std::stop_token & stop);
+  Status connect(TcpSocket socket);
   Status heartbeat();
   /// Returns the reason when the connection is lost, or success if a stop is requested.
   Status monitor(const std::stop_token & stop);
   [[noreturn]] static void throw_protocol_error(const std::string & query, const std::string & answer);
   void set_link(LinkStatus status);
   void report_failure(const std::shared_ptr<DashboardClient> & client, const std::string & why);
-  void wait(const std::stop_token & stop, std::chrono::milliseconds duration);
+  /// Waits until the next heartbeat, a stop request or the loss of the connection.
+  void wait_for_heartbeat(const std::stop_token & stop);
+  void wait_for_retry(const std::stop_token & stop, Clock::duration delay);
 
+  RetryDelay retry_;
+  std::optional<Error> loss_;  ///< of the last connection, until it is logged
   ChangeLogger logger_;
   std::shared_ptr<InterfaceLock> lock_ = std::make_shared<InterfaceLock>();
   std::shared_ptr<DashboardClient> client_;
@@ -80,9 +94,9 @@ class DashboardConnection::Impl {
   std::condition_variable_any wake_;
 };
 
-Status DashboardConnection::Impl::connect()
+Status DashboardConnection::Impl::connect(TcpSocket socket)
 {
-  if (auto status = probe_dashboard(options_.address, options_.connect_timeout); !status) {
+  if (auto status = probe_dashboard(std::move(socket), options_.address, options_.connect_timeout); !status) {
     return status;
   }
   std::shared_ptr<DashboardClient> previous;  // closed without the lock
@@ -211,17 +225,24 @@ void DashboardConnection::Impl::set_link(LinkStatus status)
   }
 }
 
-void DashboardConnection::Impl::wait(const std::stop_token & stop, std::chrono::milliseconds duration)
+void DashboardConnection::Impl::wait_for_heartbeat(const std::stop_token & stop)
 {
   std::unique_lock lock(mutex_);
-  wake_.wait_for(lock, stop, duration, [this] { return broken_; });
+  wake_.wait_for(lock, stop, options_.heartbeat, [this] { return broken_; });
+}
+
+void DashboardConnection::Impl::wait_for_retry(const std::stop_token & stop, Clock::duration delay)
+{
+  std::unique_lock lock(mutex_);
+  broken_ = false;
+  wake_.wait_for(lock, stop, delay, [this] { return broken_; });
 }
 
 Status DashboardConnection::Impl::monitor(const std::stop_token & stop)
 {
   Status alive;
   while (alive && !stop.stop_requested()) {
-    wait(stop, options_.heartbeat);
+    wait_for_heartbeat(stop);
     if (!stop.stop_requested()) {
       alive = heartbeat();
     }
@@ -231,31 +252,37 @@ Status DashboardConnection::Impl::monitor(const std::stop_token & stop)
 
 void DashboardConnection::Impl::run(const std::stop_token & stop)
 {
-  Status lost;
   while (!stop.stop_requested()) {
-    const auto connected = connect();
-    if (connected) {
-      if (!lost) {
-        logger_.log(LogLevel::warn, fmt::format("{}; connected again", lost.error().message));
-      }
-      logger_.reset();
-      set_link({true, {}});
-      lost = monitor(stop);
-      continue;
+    const Outage outage = connect_and_monitor(stop);
+    if (outage.delay > Clock::duration::zero() && !stop.stop_requested()) {
+      set_link({false, outage.error});
+      wait_for_retry(stop, outage.delay);
     }
-    lost = {};
-    set_link({false, connected.error()});
-    {
-      const std::lock_guard lock(mutex_);
-      broken_ = false;
-    }
-    wait(stop, options_.retry_interval);
-    if (!stop.stop_requested()) {  // no error message if driver and controller are shut down together
-      logger_.log_on_change(LogLevel::error,
-                            fmt::format("{}. Trying again every {} s", connected.error().message,
-                                        std::chrono::duration<double>(options_.retry_interval).count()));
+    if (!stop.stop_requested() && retry_.worth_reporting(Clock::now())) {
+      logger_.log_on_change(LogLevel::error, fmt::format("{}. {}", outage.error.message, retry_.text()));
+      loss_.reset();
     }
   }
+}
+
+DashboardConnection::Impl::Outage DashboardConnection::Impl::connect_and_monitor(const std::stop_token & stop)
+{
+  auto socket = TcpSocket::connect(options_.address, dashboard_port, options_.connect_timeout);
+  if (!socket) {
+    return {socket.error(), retry_.after_refusal(Clock::now())};
+  }
+  if (const auto connected = connect(std::move(*socket)); !connected) {
+    return {connected.error(), retry_.after_failure()};
+  }
+  if (loss_) {
+    logger_.log(LogLevel::warn, fmt::format("{}; connected again", loss_->message));
+  }
+  logger_.reset();
+  set_link({true, {}});
+  const auto begin = Clock::now();
+  const Status end = monitor(stop);
+  loss_ = end ? std::nullopt : std::optional(end.error());
+  return {end ? Error{} : end.error(), retry_.after_loss(begin, Clock::now())};
 }
 
 DashboardConnection::DashboardConnection(DashboardConnectionOptions options, LogFunction log)

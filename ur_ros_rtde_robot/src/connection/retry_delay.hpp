@@ -1,7 +1,10 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <string>
 
 namespace ur_ros_rtde {
 
@@ -34,6 +37,14 @@ class RetryDelay {
   }
 
   Clock::duration outage(Clock::time_point now) const { return now - begin_; }
+  /// False during the first `longest` of an outage: driver and controller may be shut down together, and a
+  /// connection that is replaced soon needs no error message.
+  bool worth_reporting(Clock::time_point now) const { return outage(now) >= longest_; }
+  /// For the log message about an outage.
+  std::string text() const
+  {
+    return fmt::format("Trying again after at most {} s", std::chrono::duration<double>(longest_).count());
+  }
 
  private:
   std::chrono::milliseconds longest_;

@@ -86,16 +86,13 @@ void StateReceiver::Impl::report_connection()
                                           to_string(*version_), frequency_));
 }
 
-/// Logs nothing during the first retry interval: driver and controller may be shut down together.
 void StateReceiver::Impl::report_outage(const Error & why)
 {
-  if (retry_.outage(Clock::now()) < options_.retry_interval) {
+  if (!retry_.worth_reporting(Clock::now())) {
     return;
   }
   const Error & cause = loss_ ? *loss_ : why;
-  logger_.log_on_change(LogLevel::error,
-                        fmt::format("{}. Trying again every {} s", cause.message,
-                                    std::chrono::duration<double>(options_.retry_interval).count()));
+  logger_.log_on_change(LogLevel::error, fmt::format("{}. {}", cause.message, retry_.text()));
   loss_.reset();
 }
 

@@ -98,13 +98,9 @@ Expected<ControllerVersion> probe_rtde(TcpSocket socket, const std::string & add
   return ControllerVersion{number(0), number(1), number(2), number(3)};
 }
 
-Status probe_dashboard(const std::string & address, std::chrono::milliseconds limit)
+Status probe_dashboard(TcpSocket socket, const std::string & address, std::chrono::milliseconds limit)
 {
-  auto socket = TcpSocket::connect(address, dashboard_port, limit);
-  if (!socket) {
-    return tl::unexpected(socket.error());
-  }
-  const auto greeting = socket->read_line(TcpSocket::Clock::now() + limit);
+  const auto greeting = socket.read_line(TcpSocket::Clock::now() + limit);
   if (!greeting || greeting->find("Dashboard Server") == std::string::npos) {
     return failure(
         ErrorCode::link_lost,

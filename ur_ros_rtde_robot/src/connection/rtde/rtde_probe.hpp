@@ -17,7 +17,7 @@ Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono:
 Expected<ControllerVersion> probe_rtde(TcpSocket socket, const std::string & address,
                                        std::chrono::milliseconds limit);
 
-/// Checks that a UR dashboard server answers at `address`.
-Status probe_dashboard(const std::string & address, std::chrono::milliseconds limit);
+/// Checks that a UR dashboard server answers on the new connection to `address`.
+Status probe_dashboard(TcpSocket socket, const std::string & address, std::chrono::milliseconds limit);
 
 }  // namespace ur_ros_rtde
