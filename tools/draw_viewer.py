@@ -93,7 +93,8 @@ def write(frames, options):
     file = options.folder / "viewer_demo.png"
     small[0].save(file, save_all=True, append_images=small[1:], duration=int(1e3 * options.interval), loop=0, optimize=True)
     if file.stat().st_size > LARGEST:
-        raise console.Failure(f"{file} has {file.stat().st_size / 1e6:.1f} MB, more than 3 MB: use a larger --interval or a smaller --width")
+        raise console.Failure(f"{file} has {file.stat().st_size / 1e6:.1f} MB, more than 3 MB: use a larger --interval or a smaller "
+                              "--width")
 
 
 def run(options):
