@@ -8,12 +8,10 @@ from .errors import CliError
 
 
 def find_viewer() -> Optional[pathlib.Path]:
-    """Returns the program of ur_ros_rtde_viewer. The package depends on this one, so it need not be installed."""
-    from ament_index_python import PackageNotFoundError, get_package_prefix  # imported here because --help does not need ROS
-    try:
-        return pathlib.Path(get_package_prefix("ur_ros_rtde_viewer"), "lib", "ur_ros_rtde_viewer", "view")
-    except PackageNotFoundError:
-        return None
+    """Returns the program of ur_ros_rtde_viewer. That package depends on this one, so it need not be installed."""
+    prefixes = filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep))
+    candidates = (pathlib.Path(prefix, "lib", "ur_ros_rtde_viewer", "view") for prefix in prefixes)
+    return next((candidate for candidate in candidates if candidate.is_file()), None)
 
 
 def execute(arguments: List[str]) -> None:
