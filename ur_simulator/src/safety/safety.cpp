@@ -125,7 +125,7 @@ void Safety::trigger_protective_stop(std::string_view reason, const ErrorCode & 
 
 void Safety::trigger_protective_stop(const MotionFault & fault)
 {
-  trigger_protective_stop(describe(fault), error_code(fault));
+  trigger_protective_stop(describe(fault), error_code_of(fault));
 }
 
 SafetyResult Safety::unlock_protective_stop(UnlockDelay delay)

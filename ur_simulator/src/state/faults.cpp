@@ -38,7 +38,7 @@ std::string describe(const MotionFault & fault)
   return "unknown motion fault";
 }
 
-ErrorCode error_code(const MotionFault & fault)
+ErrorCode error_code_of(const MotionFault & fault)
 {
   switch (fault.kind) {
     case MotionFault::Kind::singularity:

@@ -17,6 +17,6 @@ struct MotionFault {
 
 /// The log text: joint, value, limit and remedy.
 std::string describe(const MotionFault & fault);
-ErrorCode error_code(const MotionFault & fault);
+ErrorCode error_code_of(const MotionFault & fault);
 
 }  // namespace ur_simulator
