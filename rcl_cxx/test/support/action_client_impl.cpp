@@ -31,13 +31,14 @@ ActionClientImpl::ActionClientImpl(std::shared_ptr<NodeImpl> node, const ActionC
                                    const std::string & name)
     : Waitable(std::move(node), fmt::format("action client of {}", name)),
       ops_(ops),
-      type_support_(middleware_type_support(*ops.type.type_support()))
+      type_support_(*ops.type.type_support())
 {
   const rcl_action_client_options_t options = rcl_action_client_get_default_options();
   name_ = this->node()->resolve(name, false);
   const std::lock_guard lock(this->node()->mutex());
-  check_rcl(rcl_action_client_init(&client_, this->node()->handle(), &type_support_, name.c_str(), &options),
-            label(), "cannot be created");
+  check_rcl(
+      rcl_action_client_init(&client_, this->node()->handle(), type_support_.get(), name.c_str(), &options),
+      label(), "cannot be created");
   reset_type_support_error();
 }
 

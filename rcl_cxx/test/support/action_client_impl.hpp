@@ -15,6 +15,7 @@
 
 #include "executor/waitable.hpp"
 #include "rcl_cxx_test/action_client.hpp"
+#include "rcl_support/type_support.hpp"
 
 namespace rcl_cxx::detail {
 /// A goal from its sending until its result has arrived. Shared with the user's handle.
@@ -70,7 +71,7 @@ class ActionClientImpl : public Waitable {
   Goal find(const GoalUUID & id) const;
 
   const ActionClientOps & ops_;
-  const rosidl_action_type_support_t type_support_;
+  const ActionTypeSupport type_support_;
   std::string name_;
   rcl_action_client_t client_ = rcl_action_get_zero_initialized_client();
 

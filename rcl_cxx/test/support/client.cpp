@@ -18,13 +18,14 @@ constexpr std::chrono::milliseconds kShutdownCheckPeriod{20};
 
 ClientImpl::ClientImpl(std::shared_ptr<NodeImpl> node, ErasedClient erased, const std::string & name,
                        const QoS & qos)
-    : Waitable(std::move(node), fmt::format("client of {}", name)), erased_(erased)
+    : Waitable(std::move(node), fmt::format("client of {}", name)),
+      erased_(erased),
+      type_support_(erased_.type_support)
 {
   rcl_client_options_t options = rcl_client_get_default_options();
   options.qos = qos.get_rmw_qos_profile();
   const std::lock_guard lock(this->node()->mutex());
-  check_rcl(rcl_client_init(&client_, this->node()->handle(), middleware_type_support(erased_.type_support),
-                            name.c_str(), &options),
+  check_rcl(rcl_client_init(&client_, this->node()->handle(), type_support_.get(), name.c_str(), &options),
             label(), "cannot be created");
   reset_type_support_error();
   name_ = rcl_client_get_service_name(&client_);

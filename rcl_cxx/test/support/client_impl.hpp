@@ -13,6 +13,7 @@
 
 #include "executor/waitable.hpp"
 #include "rcl_cxx_test/client.hpp"
+#include "rcl_support/type_support.hpp"
 
 namespace rcl_cxx::detail {
 class ClientImpl : public Waitable {
@@ -42,6 +43,7 @@ class ClientImpl : public Waitable {
   OnResponse take_pending(std::int64_t sequence);
 
   const ErasedClient erased_;
+  const ServiceTypeSupport type_support_;
   rcl_client_t client_ = rcl_get_zero_initialized_client();
   std::string name_;
   mutable std::mutex mutex_;
