@@ -5,11 +5,17 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// Stores `value` as published. Returns whether it differs from the value published before.
+/// The newest value if it differs from the published one, which it replaces.
 template <typename T>
-bool update(std::optional<T> & published, const T & value)
+std::optional<T> take_change(const std::optional<T> & newest, std::optional<T> & published)
 {
-  return std::exchange(published, value) != value;
+  return std::exchange(published, newest) != newest ? newest : std::nullopt;
+}
+
+/// Differences below a thousandth are not published.
+bool differs(double a, double b)
+{
+  return std::lround(1000.0 * a) != std::lround(1000.0 * b);
 }
 }  // namespace
 
@@ -28,47 +34,70 @@ StatusTopics::StatusTopics(rcl_cxx::Node & node)
 
 void StatusTopics::publish(const Sample & sample)
 {
-  const std::lock_guard lock(mutex_);
-  if (update(published_robot_mode_, sample.robot_mode)) {
-    publish(sample.robot_mode);
-  }
-  if (update(published_safety_mode_, sample.safety_mode)) {
-    publish(sample.safety_mode);
-  }
-  if (update(published_program_running_, sample.program_running())) {
-    std_msgs::msg::Bool message;
-    message.data = sample.program_running();
-    program_running_->publish(message);
-  }
-  if (update(published_speed_scaling_, std::lround(1000.0 * sample.speed_scaling))) {
-    std_msgs::msg::Float64 message;
-    message.data = sample.speed_scaling;
-    speed_scaling_->publish(message);
-  }
+  update([&sample](Values & newest) {
+    newest.robot_mode = sample.robot_mode;
+    newest.safety_mode = sample.safety_mode;
+    newest.program_running = sample.program_running();
+    if (!newest.speed_scaling || differs(*newest.speed_scaling, sample.speed_scaling)) {
+      newest.speed_scaling = sample.speed_scaling;
+    }
+  });
 }
 
 void StatusTopics::publish_no_controller()
 {
-  const std::lock_guard lock(mutex_);
-  if (update(published_robot_mode_, RobotMode::no_controller)) {
-    publish(RobotMode::no_controller);
+  update([](Values & newest) { newest.robot_mode = RobotMode::no_controller; });
+}
+
+void StatusTopics::update(const std::function<void(Values &)> & change)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    change(newest_);
+    if (std::exchange(publishing_, true)) {
+      return;
+    }
+  }
+  while (const auto changes = take_changes()) {
+    publish(*changes);
   }
 }
 
-void StatusTopics::publish(RobotMode mode)
+std::optional<StatusTopics::Values> StatusTopics::take_changes()
 {
-  ur_ros_rtde_msgs::msg::RobotMode message;
-  message.mode = static_cast<std::int8_t>(mode);
-  message.name = to_string(mode);
-  robot_mode_->publish(message);
+  const std::lock_guard lock(mutex_);
+  Values changes{take_change(newest_.robot_mode, published_.robot_mode),
+                 take_change(newest_.safety_mode, published_.safety_mode),
+                 take_change(newest_.program_running, published_.program_running),
+                 take_change(newest_.speed_scaling, published_.speed_scaling)};
+  publishing_ = changes.robot_mode || changes.safety_mode || changes.program_running || changes.speed_scaling;
+  return publishing_ ? std::optional(changes) : std::nullopt;
 }
 
-void StatusTopics::publish(SafetyMode mode)
+void StatusTopics::publish(const Values & values)
 {
-  ur_ros_rtde_msgs::msg::SafetyMode message;
-  message.mode = static_cast<std::uint8_t>(mode);
-  message.name = to_string(mode);
-  safety_mode_->publish(message);
+  if (values.robot_mode) {
+    ur_ros_rtde_msgs::msg::RobotMode message;
+    message.mode = static_cast<std::int8_t>(*values.robot_mode);
+    message.name = to_string(*values.robot_mode);
+    robot_mode_->publish(message);
+  }
+  if (values.safety_mode) {
+    ur_ros_rtde_msgs::msg::SafetyMode message;
+    message.mode = static_cast<std::uint8_t>(*values.safety_mode);
+    message.name = to_string(*values.safety_mode);
+    safety_mode_->publish(message);
+  }
+  if (values.program_running) {
+    std_msgs::msg::Bool message;
+    message.data = *values.program_running;
+    program_running_->publish(message);
+  }
+  if (values.speed_scaling) {
+    std_msgs::msg::Float64 message;
+    message.data = *values.speed_scaling;
+    speed_scaling_->publish(message);
+  }
 }
 
 }  // namespace ur_ros_rtde

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <rcl_cxx/node.hpp>
@@ -13,7 +14,8 @@
 namespace ur_ros_rtde {
 
 /// Publishes robot_mode, safety_mode, program_running and speed_scaling when they change. Transient local:
-/// late subscribers receive the last value. Thread-safe.
+/// late subscribers receive the last value. Thread-safe: if several threads publish at the same time, one of
+/// them publishes the newest values of all, so that the last message is the newest value.
 class StatusTopics {
  public:
   explicit StatusTopics(rcl_cxx::Node & node);
@@ -23,8 +25,17 @@ class StatusTopics {
   void publish_no_controller();
 
  private:
-  void publish(RobotMode mode);
-  void publish(SafetyMode mode);
+  struct Values {
+    std::optional<RobotMode> robot_mode;
+    std::optional<SafetyMode> safety_mode;
+    std::optional<bool> program_running;
+    std::optional<double> speed_scaling;
+  };
+
+  void update(const std::function<void(Values &)> & change);
+  /// The values that differ from the published ones; none if all are published.
+  std::optional<Values> take_changes();
+  void publish(const Values & values);
 
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::RobotMode>::SharedPtr robot_mode_;
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::SafetyMode>::SharedPtr safety_mode_;
@@ -32,10 +43,9 @@ class StatusTopics {
   rcl_cxx::Publisher<std_msgs::msg::Float64>::SharedPtr speed_scaling_;
 
   std::mutex mutex_;
-  std::optional<RobotMode> published_robot_mode_;
-  std::optional<SafetyMode> published_safety_mode_;
-  std::optional<bool> published_program_running_;
-  std::optional<long> published_speed_scaling_;  ///< thousandths; smaller changes are ignored
+  Values newest_;
+  Values published_;
+  bool publishing_ = false;  ///< by one of the threads
 };
 
 }  // namespace ur_ros_rtde
