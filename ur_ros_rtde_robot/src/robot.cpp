@@ -76,6 +76,11 @@ std::optional<kinematics::DhRows> Robot::calibration() const
   return impl_->model.calibration();
 }
 
+double Robot::cycle_time() const
+{
+  return 1.0 / version().value_or(ControllerVersion{.major = 5}).frequency();
+}
+
 ArmLimits Robot::limits() const
 {
   return impl_->model.limits();

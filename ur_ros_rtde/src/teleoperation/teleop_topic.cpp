@@ -156,8 +156,7 @@ Error TeleopTopic::follow(Run & run, std::uint64_t session, Latency & latency)
 {
   try {
     const RealtimePriority priority(run.robot().realtime_priority());
-    const auto version = run.robot().version();
-    const double cycle = 1.0 / (version ? version->frequency() : 500.0);
+    const double cycle = run.robot().cycle_time();
     Sample sample = run.state();
     follower_->begin(sample, cycle, host_.limits());
     for (std::uint64_t last_number = 0; true;) {

@@ -25,12 +25,6 @@ constexpr double stopped_rate = 0.01;  // the rate below which braking is not ne
 constexpr std::chrono::seconds package_timeout{1};
 constexpr double servo_stop_deceleration = 5.0;  // m/s^2; the arm is already at rest
 
-double cycle_of(const Robot & robot)
-{
-  const auto version = robot.version();
-  return 1.0 / (version ? version->frequency() : 500.0);
-}
-
 /// The smaller of both fractions, because only some controllers include the slider in speed_scaling.
 double requested_rate(const Sample & sample)
 {
@@ -51,7 +45,7 @@ ServoStream::ServoStream(Run & run, ServoSettings settings, SetpointCallback on_
     : run_(run),
       settings_(std::move(settings)),
       on_setpoint_(std::move(on_setpoint)),
-      cycle_(cycle_of(run.robot())),
+      cycle_(run.robot().cycle_time()),
       setpoint_time_(run.state().controller_time / cycle_),
       target_(trajectory::joint_count)
 {

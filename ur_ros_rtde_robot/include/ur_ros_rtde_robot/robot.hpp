@@ -59,6 +59,8 @@ class Robot {
   Status ready_to_move() const;
   Status wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop = {}) const;
   std::optional<ControllerVersion> version() const;
+  /// s, of the control cycle. 0.002 while the version is unknown.
+  double cycle_time() const;
   /// Limits of the arm's model. While the model is unknown: the limits that all models have in common.
   ArmLimits limits() const;
   /// Name of the arm's model, for example "ur10e": RobotOptions::model, or the detected one. Empty if both

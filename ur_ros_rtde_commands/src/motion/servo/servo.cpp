@@ -13,8 +13,7 @@ constexpr double max_angular_speed = 3.14;  // rad/s
 Outcome servo(Run & run, double duration, const std::function<void(const ServoStep &)> & send,
               const std::function<Outcome()> & wait_for_arrival, double deceleration)
 {
-  const auto version = run.robot().version();
-  const double cycle = 1.0 / (version ? version->frequency() : 500.0);
+  const double cycle = run.robot().cycle_time();
   Sample sample = run.state();
   double setpoint_time = sample.controller_time / cycle;
   bool at_end = false;
