@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <ur_rtde/robot_state.h>
 #include <ur_rtde/rtde_receive_interface.h>
 
 #include <algorithm>
