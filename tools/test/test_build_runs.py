@@ -129,7 +129,7 @@ def test_an_interrupted_installation_of_the_wheels_continues_in_the_same_environ
     (layout.venv / "pyvenv.cfg").write_text("")
     installed = []
     monkeypatch.setattr(venv, "find_python", lambda: pytest.fail("a new environment"))
-    monkeypatch.setattr(venv, "_pip_install", installed.append)
+    monkeypatch.setattr(venv, "_pip_install", lambda layout, _requirements: installed.append(layout))
     assert not venv.is_current(layout)
     venv.ensure(layout)
     assert installed == [layout] and venv.is_current(layout)

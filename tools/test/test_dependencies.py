@@ -33,6 +33,7 @@ def declared(name, kinds):
 def files(name, *patterns):
     folder = PACKAGES[name].folder
     ignored = [path.parent for path in folder.rglob("COLCON_IGNORE")]
+    ignored += [path.parent / "python" for path in folder.glob("pyproject.toml")]  # installed by pip, which reads pyproject.toml
     found = [path for pattern in patterns for path in folder.rglob(pattern)]
     return [path for path in found if path.is_file() and not any(parent in ignored for parent in path.parents)]
 

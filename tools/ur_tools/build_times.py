@@ -22,6 +22,7 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_ros_rtde_description": (1.0, 9.0),
     "ur_ros_rtde_gripper_commands": (14.0, 17.0),
     "ur_ros_rtde_tutorials": (15.0, 15.0),
+    "ur_ros_rtde_viewer": (2.0, 2.0),
 }
 UNKNOWN_PACKAGE = (30.0, 30.0)
 STEPS_PER_SECOND = 1.0  # until ninja reports the number of steps of a package

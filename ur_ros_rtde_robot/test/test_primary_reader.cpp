@@ -77,6 +77,21 @@ TEST(PrimaryReaderTest, ReadsTheLineFromTheTextIfTheFieldIsEmpty)
   }
 }
 
+TEST(PrimaryReaderTest, ReadsTheErrorCodesOfViolationsAndFaults)
+{
+  const auto error_code = [](std::uint32_t level) {
+    return package(6, big_endian(204) + big_endian(5) + big_endian(level) + big_endian(0) + big_endian(0) +
+                          "the path leads out of the robot's reach");
+  };
+  PrimaryReader reader;
+  ASSERT_TRUE(feed(reader, error_code(1) + error_code(2) + error_code(3) + package(6, "short")));
+  const auto message = reader.next();
+  ASSERT_TRUE(message);
+  EXPECT_EQ(message->kind, PrimaryMessage::Kind::error_code);
+  EXPECT_EQ(message->text, "C204A5: the path leads out of the robot's reach");
+  EXPECT_FALSE(reader.next());
+}
+
 TEST(PrimaryReaderTest, SkipsMessagesThatAreTooShort)
 {
   PrimaryReader reader;

@@ -71,10 +71,10 @@ TEST_F(RtdeSubscriptionTest, LimitsTheFrequencyToTheControllersMaximum)
 TEST_F(RtdeSubscriptionTest, NamesTheFieldsThatTheControllerLacks)
 {
   controller.start();
-  const auto subscription = open({"actual_q", "actual_moment", "encoder0_raw"});
+  const auto subscription = open({"actual_q", "actual_moment", "encoder9_raw"});
   ASSERT_FALSE(subscription);
   EXPECT_EQ(subscription.error().code, ErrorCode::not_supported);
-  EXPECT_NE(subscription.error().message.find("actual_moment, encoder0_raw"), std::string::npos)
+  EXPECT_NE(subscription.error().message.find("actual_moment, encoder9_raw"), std::string::npos)
       << subscription.error().message;
 }
 

@@ -80,7 +80,8 @@ def test_unchanged_positions_send_nothing(server, scene):
     assert buffer.message_counter == sent + 6
 
 
-def test_the_server_keeps_only_the_newest_values(server, scene):
+def test_the_server_keeps_only_the_newest_values(server, scene, monkeypatch):
+    monkeypatch.setattr(trail, "PERIOD", 0.0)  # each step draws the trail
     buffer = server._websock_server._broadcast_buffer
 
     def kept_after(steps):

@@ -23,7 +23,7 @@ constexpr std::size_t message_header = 15;
 constexpr std::uint8_t robot_state = 16;
 constexpr std::uint8_t robot_message = 20;
 
-enum class MessageKind : std::uint8_t { text = 0, key = 7, runtime_exception = 10 };
+enum class MessageKind : std::uint8_t { text = 0, error_code = 6, key = 7, runtime_exception = 10 };
 
 std::string text_of(std::span<const std::byte> data)
 {
@@ -86,6 +86,25 @@ std::optional<PrimaryMessage> exception_message(std::span<const std::byte> body)
   return message;
 }
 
+/// Code, argument, level, type of the data, data (int32 each), text. Lower levels are information and
+/// warnings.
+std::optional<PrimaryMessage> error_code_message(std::span<const std::byte> body)
+{
+  constexpr std::size_t text_begin = 20;
+  constexpr std::uint64_t violation = 3;
+  constexpr std::uint64_t fault = 4;
+  if (body.size() < text_begin) {
+    return std::nullopt;
+  }
+  const auto level = big_endian(body.subspan(8, 4));
+  if (level != violation && level != fault) {
+    return std::nullopt;
+  }
+  return PrimaryMessage{PrimaryMessage::Kind::error_code,
+                        fmt::format("C{}A{}: {}", big_endian(body.first(4)), big_endian(body.subspan(4, 4)),
+                                    text_of(body.subspan(text_begin)))};
+}
+
 std::optional<PrimaryMessage> message_of(std::span<const std::byte> package)
 {
   if (package.size() < message_header || std::to_integer<std::uint8_t>(package[4]) != robot_message) {
@@ -95,6 +114,8 @@ std::optional<PrimaryMessage> message_of(std::span<const std::byte> package)
   switch (MessageKind{std::to_integer<std::uint8_t>(package[message_header - 1])}) {
     case MessageKind::text:
       return PrimaryMessage{PrimaryMessage::Kind::text, text_of(body)};
+    case MessageKind::error_code:
+      return error_code_message(body);
     case MessageKind::key:
       return key_message(body);
     case MessageKind::runtime_exception:

@@ -47,7 +47,7 @@ TEST(TcpAccelerationTest, IsTheDerivativeOfTheTcpSpeed)
   EXPECT_NEAR(fixture.state.target_tcp_acceleration[2], -2.0, 0.02);
   EXPECT_NEAR(fixture.state.actual_tcp_acceleration[2], -2.0, 0.02);
   fixture.until_rest();
-  fixture.step();
+  fixture.run(0.5);
   EXPECT_LT(fixture.state.actual_tcp_acceleration.norm(), 1e-6);
 }
 

@@ -28,9 +28,12 @@ double seconds(std::chrono::steady_clock::duration duration)
 }
 
 /// Replaces the line number in the controller's error text, which counts the added lines, by that of the
-/// original script.
+/// original script. Adds it if the text has none.
 std::string with_original_line(std::string text, int sent_line, int original_line)
 {
+  if (original_line > 0 && text.find("line") == std::string::npos) {
+    return fmt::format("{} (line {})", text, original_line);
+  }
   const std::string sent = std::to_string(sent_line);
   const auto found = text.find(sent, std::min(text.find("line"), text.size()));
   if (original_line > 0 && found != std::string::npos) {
@@ -164,6 +167,11 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
         error_ = message;
       }
       break;
+    case PrimaryMessage::Kind::error_code:
+      if (begin_seen_) {
+        error_code_ = message.text;
+      }
+      break;
     case PrimaryMessage::Kind::program_started:
       if (begin_seen_ && message.text != program_->name) {
         replaced_by_ = message.text;
@@ -220,8 +228,14 @@ bool ScriptMonitor::has_ended()
   if (error_seen_) {
     return complete_with_error();
   }
-  return now - *stop_seen_ > max_skew &&
-         complete(ScriptEnd::stopped, ErrorCode::program_stopped,
+  if (now - *stop_seen_ <= max_skew) {
+    return false;
+  }
+  if (!error_code_.empty()) {
+    return complete(ScriptEnd::runtime_error, ErrorCode::rejected_by_robot,
+                    fmt::format("the controller ended the script: {}", error_code_));
+  }
+  return complete(ScriptEnd::stopped, ErrorCode::program_stopped,
                   "the script was stopped: on the pendant, by the dashboard, or by another program");
 }
 

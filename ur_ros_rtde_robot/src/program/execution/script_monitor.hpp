@@ -62,6 +62,7 @@ class ScriptMonitor {
   std::optional<Clock::time_point> begin_seen_, end_seen_, error_seen_, stop_seen_;
   std::string replaced_by_;
   PrimaryMessage error_{};
+  std::string error_code_;  ///< with its text, of the newest violation or fault since the script began
   ScriptReport report_;
 };
 
