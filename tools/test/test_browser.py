@@ -1,7 +1,7 @@
 """The browser of the browser tests: what is used, and what is reported where there is none."""
 
 import pytest
-from ur_tools import browser, testing
+from ur_tools import browser, console, testing
 from ur_tools.layout import Layout
 
 BACKGROUND = True
@@ -39,6 +39,28 @@ def test_without_debians_tools_reason_and_remedy_are_reported(folder, capsys):
     assert "no apt-get" in found[browser.MISSING] and "Install chromium" in found[browser.MISSING]
     assert "the browser tests are skipped: this machine has no apt-get" in capsys.readouterr().out
     assert not folder.exists()
+
+
+def test_package_lists_are_downloaded_once_where_the_machine_has_none(tmp_path, monkeypatch):
+    calls = []
+
+    def update(command):
+        calls.append(command)
+        (tmp_path / "apt" / "lists" / "main_Packages.lz4").touch()
+
+    monkeypatch.setattr(browser, "SYSTEM_LISTS", tmp_path)
+    monkeypatch.setattr(browser, "LISTS", tmp_path / "apt")
+    monkeypatch.setattr(browser, "_run", update)
+    assert browser._apt_options() == browser._apt_options() and f"Dir::State::lists={tmp_path / 'apt' / 'lists'}" in calls[0]
+    assert len(calls) == 1
+    (tmp_path / "main_Packages.lz4").touch()
+    assert browser._apt_options() == []
+
+
+def test_a_program_that_takes_too_long_is_reported(monkeypatch):
+    monkeypatch.setattr(browser, "LIMIT", 0.1)
+    with pytest.raises(console.Failure, match="took longer than 0.1 s"):
+        browser._run(["sleep", "60"])
 
 
 def test_a_file_may_need_a_browser(tmp_path):

@@ -22,7 +22,9 @@ PACKAGE = "chromium-headless-shell"
 PROGRAM = pathlib.Path("usr/lib/chromium/chromium-headless-shell")  # in the package
 REQUIREMENTS = ROOT / "wheels" / "browser.txt"
 FOLDER = STATE / "browser"
+SYSTEM_LISTS = pathlib.Path("/var/lib/apt/lists")
 LISTS = STATE / "apt"
+LIMIT = 300.0  # s, for each program that is run
 TOOLS = ("apt-get", "dpkg-deb")
 
 # Read by the tests: the program, the folders of its libraries, or why there is none.
@@ -31,40 +33,41 @@ VARIABLE, LIBRARIES, MISSING = "UR_BROWSER", "UR_BROWSER_LIBRARIES", "UR_BROWSER
 
 def _run(command: List[str], folder: pathlib.Path = ROOT) -> str:
     env = {name: value for name, value in os.environ.items() if name not in FOREIGN}
-    result = subprocess.run(command, cwd=folder, env={**env, "LC_ALL": "C"}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                            stderr=subprocess.STDOUT, universal_newlines=True)
+    try:
+        result = subprocess.run(command, cwd=folder, env={**env, "LC_ALL": "C"}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, universal_newlines=True, timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        raise console.Failure(f"`{' '.join(command[:3])} …` took longer than {LIMIT:g} s: check the network connection.") from None
     if result.returncode != 0:
         raise console.Failure(f"`{' '.join(command[:3])} …`: {console.tail(result.stdout, 3)}")
     return result.stdout
 
 
-def _needed(options: List[str]) -> List[str]:
-    """Returns the names of the package and of the libraries that are not installed. Raises Failure if apt does not know it."""
-    listing = _run(["apt-get", *options, "install", "--print-uris", "--yes", "--no-install-recommends", "-o", "Debug::NoLocking=1",
-                    PACKAGE])
-    return [name.split("_")[0] for name in re.findall(r"^'\S+' (\S+\.deb) ", listing, re.M)]
+def _has_lists(folder: pathlib.Path) -> bool:
+    return any(folder.glob("*Packages*"))
 
 
-def _update_lists(folder: pathlib.Path) -> List[str]:
-    """Downloads package lists into `folder`. Returns the options with which apt uses them."""
-    console.step("Downloading the package lists of apt, because this machine has none")
-    start = time.monotonic()
-    for part in ("lists/partial", "cache/archives/partial"):
-        (folder / part).mkdir(parents=True, exist_ok=True)
-    options = ["-o", f"Dir::State::lists={folder / 'lists'}", "-o", f"Dir::Cache={folder / 'cache'}", "-o", "APT::Sandbox::User=root"]
-    _run(["apt-get", *options, "update"])
-    console.line(f"    done in {time.monotonic() - start:.0f} s")
+def _apt_options() -> List[str]:
+    """Returns the options with which apt finds packages. Where the machine has no package lists, they are downloaded into LISTS."""
+    if _has_lists(SYSTEM_LISTS):
+        return []
+    options = ["-o", f"Dir::State::lists={LISTS / 'lists'}", "-o", f"Dir::Cache={LISTS / 'cache'}", "-o", "APT::Sandbox::User=root"]
+    if not _has_lists(LISTS / "lists"):
+        console.step("Downloading the package lists of apt, because this machine has none")
+        start = time.monotonic()
+        for part in ("lists/partial", "cache/archives/partial"):
+            (LISTS / part).mkdir(parents=True, exist_ok=True)
+        _run(["apt-get", *options, "-o", "Acquire::http::Timeout=20", "update"])
+        console.line(f"    done in {time.monotonic() - start:.0f} s")
     return options
 
 
 def _download(folder: pathlib.Path) -> None:
-    """Downloads the archives of the package and of the missing libraries."""
-    options: List[str] = []
-    try:
-        packages = _needed(options)
-    except console.Failure:
-        options = _update_lists(LISTS)
-        packages = _needed(options)
+    """Downloads the archives of the package and of the libraries that are not installed."""
+    options = _apt_options()
+    listing = _run(["apt-get", *options, "install", "--print-uris", "--yes", "--no-install-recommends", "-o", "Debug::NoLocking=1",
+                    PACKAGE])
+    packages = [name.split("_")[0] for name in re.findall(r"^'\S+' (\S+\.deb) ", listing, re.M)]
     console.step("Downloading a headless Chromium for the browser tests (100 MB)")
     start = time.monotonic()
     _run(["apt-get", *options, "download", *packages], folder)

@@ -150,7 +150,7 @@ def _list_input(value: Any, kind: Any, path: Path, comment: str) -> FormField:
         return FormField(path, Kind.YAML, _template(kind.value_type), comment, multiline=True)
     values: List[Any] = fields.to_plain(value)
     exact = re.search(r"Size: exactly (\d+)\b(?!, or empty)", comment)
-    if exact and path[-1] == "joint_positions":  # empty without a robot: zeros would be a target that nobody has chosen
+    if exact and path[-1] == "joint_positions":  # empty without a robot: zeros would be a target that the user has not chosen
         return FormField(path, Kind.LIST, "", comment, source=Source.JOINT_POSITIONS)
     return FormField(path, Kind.LIST, _in_one_line(values or [0.0] * int(exact.group(1) if exact else 0)), comment)
 
