@@ -1,5 +1,6 @@
 """New clients discover the actions, also after other clients were killed. See docs/discovery.md."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -42,10 +43,17 @@ def test_new_clients_find_all_actions_after_others_were_killed(no_profile, addre
     assert max(client["seconds"] for client in found) < LIMIT * TIMEOUT_FACTOR, found
 
 
+def flow_controllers(process):
+    """Yields the threads of the flow controllers, as folders in /proc."""
+    for thread in pathlib.Path(f"/proc/{process.pid}/task").iterdir():
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # other threads may end meanwhile
+            if (thread / "comm").read_text().startswith("dds.asyn"):
+                yield thread
+
+
 def announcement_threads(process):
     """Returns the scheduling policies of the flow controllers' threads. The profile of the nodes sets the policy."""
-    threads = pathlib.Path(f"/proc/{process.pid}/task").iterdir()
-    return [os.sched_getscheduler(int(thread.name)) for thread in threads if (thread / "comm").read_text().startswith("dds.asyn")]
+    return [os.sched_getscheduler(int(thread.name)) for thread in flow_controllers(process)]
 
 
 @pytest.mark.skipif(not FAST_DDS_3, reason="the profile for Fast DDS 2 has no flow controller")
@@ -69,8 +77,7 @@ def test_nodes_load_no_introspection_type_supports(addresses, processes):
 
 def wake_ups(process):
     """Returns how often the flow controllers' threads have woken up so far."""
-    threads = pathlib.Path(f"/proc/{process.pid}/task").iterdir()
-    status = [(thread / "status").read_text() for thread in threads if (thread / "comm").read_text().startswith("dds.asyn")]
+    status = [(thread / "status").read_text() for thread in flow_controllers(process)]
     return sum(int(re.search(r"^voluntary_ctxt_switches:\s+(\d+)", text, re.M)[1]) for text in status)
 
 

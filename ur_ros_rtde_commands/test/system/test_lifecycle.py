@@ -1,5 +1,6 @@
 """Start, shutdown and loss of the controller, and addresses without a controller."""
 
+import contextlib
 import os
 import socket
 import threading
@@ -45,9 +46,13 @@ def test_an_invalid_parameter_is_reported_with_its_limits(name, parameter, what)
 
 
 def threads_with_priority(pid, priority):
-    threads = [int(thread) for thread in os.listdir(f"/proc/{pid}/task")]
-    return [thread for thread in threads if os.sched_getparam(thread).sched_priority == priority
-            and os.sched_getscheduler(thread) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO]
+    found = []
+    for thread in map(int, os.listdir(f"/proc/{pid}/task")):
+        with contextlib.suppress(ProcessLookupError):  # other threads may end meanwhile
+            if (os.sched_getparam(thread).sched_priority == priority
+                    and os.sched_getscheduler(thread) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO):
+                found.append(thread)
+    return found
 
 
 @pytest.mark.parametrize("name", ["robot_state_receiver", "command_server"])
