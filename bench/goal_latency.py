@@ -1,14 +1,31 @@
 """Latency from a goal to its first RTDE command, and from a cancel request to the start of the deceleration.
 
-The goal is sent by a Python client; the effect is taken from the simulator's trace.
+The goal is sent by a client in Python or in C++; the effect is taken from the simulator's trace.
 """
 
+import random
+import subprocess
 import time
 
 import rclpy
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from ur_ros_rtde_msgs.action import MoveJ, SetPayload
+
+# Between two goals, so that the control program waits for a command again, at any phase of its cycle of 2 ms.
+PAUSE, SPREAD = 0.020, 0.002  # s
+CPP_GOALS = 40  # the simulator keeps 256 commands, and each goal has several
+
+
+def first_commands(sent, commands):
+    """Returns [(time of sending a goal, time of the arrival of its command)] in ns, from the arrivals of all commands."""
+    ends = [*sent[1:], float("inf")]
+    found = ((begin, next((when for when in commands if begin < when < end), None)) for begin, end in zip(sent, ends))
+    return [(begin, when) for begin, when in found if when is not None]
+
+
+def milliseconds(goals):
+    return [(arrived - sent) * 1e-6 for sent, arrived in goals]
 
 
 class GoalLatency:
@@ -39,23 +56,31 @@ class GoalLatency:
     def _cycle(self):
         return self.control.request("state")["state"]["cycle"]
 
-    def goals_and_commands(self, count):
+    def from_python(self, count):
         """Returns [(time of sending a goal, time of the arrival of its command at the controller)] in ns."""
         result = []
         for index in range(count):
+            goal = SetPayload.Goal(mass=0.5 + 0.01 * (index % 10))
             before = self._cycle()
             sent = time.time_ns()
-            handle = self._accepted(self.set_payload, SetPayload.Goal(mass=0.5 + 0.01 * (index % 10)))
+            handle = self._accepted(self.set_payload, goal)
             self._finish(handle.get_result_async())
-            commands = self.control.request("trace", after=before)["commands"]
-            arrived = [when for _, when, _ in commands if when > sent]
-            if arrived:
-                result.append((sent, arrived[0]))
+            result += first_commands([sent], self._commands(before))
+            time.sleep(PAUSE + random.uniform(0.0, SPREAD))
         return result
 
-    def goal_to_command(self, count):
-        """Returns the times in ms from sending a goal to the arrival of its command at the controller."""
-        return [(arrived - sent) * 1e-6 for sent, arrived in self.goals_and_commands(count)]
+    def from_cpp(self, program, count):
+        """The same with the client `program`, in parts whose commands the simulator's trace can hold."""
+        result = []
+        for begin in range(0, count, CPP_GOALS):
+            before = self._cycle()
+            command = [program, str(min(CPP_GOALS, count - begin))]
+            output = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
+            result += first_commands([int(line) for line in output.split()], self._commands(before))
+        return result
+
+    def _commands(self, after):
+        return [when for _, when, _ in self.control.request("trace", after=after)["commands"]]
 
     def cancel_to_deceleration(self, count):
         """Returns the times in ms from sending a cancel request to the first cycle with a lower target speed."""

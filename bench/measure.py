@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import rclpy
-from goal_latency import GoalLatency
+from goal_latency import GoalLatency, milliseconds
 from joint_state_subscriber import receive_in_python
 from latency import latencies, percentile
 from process_load import LoadTrace, cpu_percent, resident_megabytes
@@ -47,7 +47,8 @@ def state_figures(options, control, pids):
 
 def goal_figures(options, control):
     latency = GoalLatency(control)
-    measured = {"goal to first RTDE command": latency.goal_to_command(options.repeat),
+    measured = {"goal of C++ client to command": milliseconds(latency.from_cpp(options.goal_client, options.repeat)),
+                "goal of rclpy client to command": milliseconds(latency.from_python(options.repeat)),
                 "cancel to deceleration": latency.cancel_to_deceleration(options.repeat // 2)}
     latency.close()
     samples = {name: list(enumerate(values)) for name, values in measured.items()}
@@ -67,6 +68,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--address", required=True)
     parser.add_argument("--subscriber", required=True, help="path of the C++ subscriber")
+    parser.add_argument("--goal-client", required=True, help="path of the C++ client")
     parser.add_argument("--pid", action="append", default=[], metavar="NAME=PID", help="process whose load is measured")
     parser.add_argument("--output", required=True, type=Path, metavar="FILE", help="file for the figures")
     parser.add_argument("--repeat", type=int, default=40, help="number of goals and cancel requests")

@@ -16,13 +16,12 @@ from rtde_socket import receive_from_socket
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
 from control_port import ControlPort  # noqa: E402
 
-SECONDS = 7  # the simulator keeps 4096 cycles: 8 s at 500 Hz
 FLOOR = ("--ros-args", "-r", "__ns:=/floor")  # where the bare publisher publishes
 
 
 def receive_in_cpp(options, *arguments, **env):
-    output = subprocess.run([options.subscriber, str(SECONDS), *arguments], check=True, capture_output=True, text=True,
-                            timeout=SECONDS + 30, env={**os.environ, **env}).stdout
+    output = subprocess.run([options.subscriber, str(options.seconds), *arguments], check=True, capture_output=True, text=True,
+                            timeout=options.seconds + 30, env={**os.environ, **env}).stdout
     return [tuple(map(int, line.split())) for line in output.splitlines()]
 
 
@@ -31,16 +30,16 @@ def since_stamp(received):
 
 
 def sent_times(control):
-    return [sent for _, sent, _ in control.request("trace")["cycles"]]
+    return [sent for _, sent, *_ in control.request("trace")["cycles"]]
 
 
 def floors(options, control):
     """Returns latencies in ms without the driver, and with it but without the trace."""
-    received = receive_from_socket(options.address, SECONDS)
+    received = receive_from_socket(options.address, options.seconds)
     found = {"socket": latencies([(when, when) for when in received], control.request("trace"))}
-    with subprocess.Popen([options.publisher, str(3 * SECONDS)]) as publisher:
+    with subprocess.Popen([options.publisher, str(3 * options.seconds)]) as publisher:
         found["rcl"] = since_stamp(receive_in_cpp(options, *FLOOR))
-        found["rclpy"] = since_stamp(receive_in_python(SECONDS, "/floor/joint_states"))
+        found["rclpy"] = since_stamp(receive_in_python(options.seconds, "/floor/joint_states"))
         publisher.terminate()
     found["driver"] = latencies(receive_in_cpp(options), control.request("trace"))
     return found
@@ -53,6 +52,8 @@ def main():
     parser.add_argument("--publisher", required=True, help="path of the bare publisher")
     parser.add_argument("--trace-library", required=True, help="library that traces the subscriber")
     parser.add_argument("--trace", required=True, help="file for the trace of the subscriber")
+    parser.add_argument("--goal-client", required=True, help="path of the C++ client")
+    parser.add_argument("--seconds", type=int, required=True, help="duration of each measurement of packages")
     parser.add_argument("--repeat", type=int, default=40, help="number of goals")
     parser.add_argument("--output", required=True, type=Path, metavar="FILE", help="file for the times")
     options = parser.parse_args()
@@ -61,7 +62,7 @@ def main():
         receive_in_cpp(options, LD_PRELOAD=options.trace_library, HAND_OVER_TRACE=options.trace)
         found = {"sent": sent_times(control)}
         goals = GoalLatency(control)
-        found["goals"] = goals.goals_and_commands(options.repeat)
+        found["goals"] = {"C++": goals.from_cpp(options.goal_client, options.repeat), "rclpy": goals.from_python(options.repeat)}
         goals.close()
         found.update(floors(options, control))
     rclpy.try_shutdown()

@@ -1,15 +1,17 @@
 """./ur bench: what its measuring programs calculate, and short runs of them on a simulated robot."""
 
 import os
+import re
 import subprocess
 import sys
 
 import pytest
-from ur_tools import bench, bench_rows, bench_stress
+from ur_tools import bench, bench_rows, bench_stress, bench_trace
 from ur_tools.layout import ROOT, Layout
 
 sys.path.insert(0, str(ROOT / "bench"))
 
+from goal_latency import first_commands  # noqa: E402
 from latency import latencies, missing_percent, percentile  # noqa: E402
 from many_goals import growth  # noqa: E402
 from process_load import LoadTrace, cpu_percent, proportional_megabytes, resident_megabytes  # noqa: E402
@@ -79,6 +81,21 @@ def test_a_robot_and_some_goals_are_measured():
     for row in bench_rows.ROWS:
         if row.name in ("1 robot, driver", "1 robot, three processes", "many goals"):
             assert any(line.startswith(row.name) and f" {row.part} " in line for line in result.stdout.splitlines()), row.title
+
+
+def test_the_first_command_after_each_goal_is_found():
+    assert first_commands([100, 200, 300, 400], [90, 110, 115, 320, 410]) == [(100, 110), (300, 320), (400, 410)]
+    assert first_commands([], [90]) == first_commands([100], [90]) == []
+
+
+def test_hand_overs_of_packages_and_goals_are_measured(capsys):
+    options, layout = bench.parse(["--trace", "--repeat", "3", "--address", ADDRESS]), Layout.of_environment()
+    assert bench_trace.run(options, layout, seconds=1) == 0
+    output = capsys.readouterr().out
+    assert re.search(r"Packages \([1-9]\d\d", output), output
+    for client in ("C++", "rclpy"):
+        assert f"Goals of a {client} client (3)" in output, output
+    assert "nothing measured" not in output and "Lost packages: packages " in output
 
 
 def test_latency_beside_a_python_subscriber_is_measured():

@@ -13,7 +13,7 @@ PACKAGE_STEPS = ("readable", "received", "publish", "published", "notified", "ta
 PACKAGE_TEXTS = ("package sent -> receiving thread runs", "package read from the socket", "decoded, sample stored, message filled",
                  "message serialized and handed to Fast DDS", "Fast DDS thread of the subscriber runs", "subscriber's executor runs, takes it")
 GOAL_STEPS = ("request_notified", "request_taken", "respond", "responded", "send")
-GOAL_TEXTS = ("goal sent by rclpy -> Fast DDS thread of the driver runs", "driver's executor runs, takes it", "goal checked and accepted",
+GOAL_TEXTS = ("goal sent -> Fast DDS thread of the driver runs", "driver's executor runs, takes it", "goal checked and accepted",
               "response handed to Fast DDS", "goal's thread runs, sends the command", "command read by the controller")
 
 

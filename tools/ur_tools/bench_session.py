@@ -43,6 +43,10 @@ def subscriber(layout: Layout) -> str:
     return str(program(layout, "ur_ros_rtde", "joint_state_latency"))
 
 
+def goal_client(layout: Layout) -> str:
+    return str(program(layout, "ur_ros_rtde", "goal_latency"))
+
+
 def _nodes(options: argparse.Namespace, priority: int) -> Dict[str, Tuple[str, ...]]:
     """Returns the nodes to start, with their parameters."""
     # A delay of 100 ms must appear in the figures instead of ending the stream. A slowed robot sends packages less often.
@@ -75,7 +79,8 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace, prio
 
 def _arguments(layout: Layout, options: argparse.Namespace, pids: Dict[str, int]) -> List[str]:
     """Returns the arguments of bench/measure.py."""
-    arguments = ["--address", options.address, "--subscriber", subscriber(layout), "--repeat", str(options.repeat)]
+    arguments = ["--address", options.address, "--subscriber", subscriber(layout), "--goal-client", goal_client(layout),
+                 "--repeat", str(options.repeat)]
     if options.stream:
         arguments += ["--stream", "--real-time-factor", str(options.real_time_factor), "--seconds", str(options.seconds)]
     for name, pid in pids.items():

@@ -12,6 +12,7 @@ from .layout import Layout
 from .processes import Programs
 
 NODES = ("robot_state_receiver", "command_server")
+SECONDS = 7  # of each measurement of packages: the simulator keeps 32 s
 FLOORS = {"socket": "package to a bare socket (Python)", "rcl": "bare rcl publisher to the same C++ subscriber",
           "rclpy": "bare rcl publisher to an rclpy subscriber", "driver": "package to a C++ subscriber, without trace"}
 
@@ -28,8 +29,8 @@ def _traced(layout: Layout, file: pathlib.Path) -> "dict[str, str]":
     return {**bench_session.environment(layout), "LD_PRELOAD": str(library), "HAND_OVER_TRACE": str(file)}
 
 
-def _measure(layout: Layout, options: argparse.Namespace, folder: pathlib.Path) -> dict:
-    """Returns what bench/measure_trace.py found. The nodes have written their traces."""
+def _measure(layout: Layout, options: argparse.Namespace, folder: pathlib.Path, seconds: int) -> dict:
+    """Returns what bench/measure_trace.py found, with `seconds` for each measurement of packages. The nodes have written their traces."""
     env = bench_session.environment(layout)
     with Programs(folder) as programs:
         simulation.start_simulator(programs, layout, env, options.address, options.model)
@@ -37,7 +38,8 @@ def _measure(layout: Layout, options: argparse.Namespace, folder: pathlib.Path) 
             node = simulation.start_node(programs, layout, _traced(layout, folder / f"{name}.trace"), name, options.address,
                                          "silence_limit:=1.0")
         bench_session.wait_until_ready(programs, node)
-        arguments = ["--address", options.address, "--repeat", str(options.repeat), "--subscriber", bench_session.subscriber(layout),
+        arguments = ["--address", options.address, "--repeat", str(options.repeat), "--seconds", str(seconds),
+                     "--subscriber", bench_session.subscriber(layout), "--goal-client", bench_session.goal_client(layout),
                      "--publisher", str(program(layout, "ur_ros_rtde", "joint_state_floor")),
                      "--trace-library", _traced(layout, folder)["LD_PRELOAD"], "--trace", str(folder / "subscriber.trace")]
         return bench_session.run_script(programs, layout, options, "measure_trace.py", arguments, 120.0)
@@ -60,16 +62,17 @@ def _print_steps(title: str, texts: Sequence[str], times: List[List[int]]) -> No
         console.line(_line(text, values))
 
 
-def run(options: argparse.Namespace, layout: Layout) -> int:
+def run(options: argparse.Namespace, layout: Layout, seconds: int = SECONDS) -> int:
     folder = bench_session.log_folder(layout, options.address)
     folder.mkdir(parents=True, exist_ok=True)
     for file in folder.glob("*.trace"):
         file.unlink()
-    found = _measure(layout, options, folder)
+    found = _measure(layout, options, folder, seconds)
     traces = {name: hand_overs.load(folder / f"{name}.trace") for name in (*NODES, "subscriber")}
     states = traces["robot_state_receiver"], traces["subscriber"]
     _print_steps("Packages", hand_overs.PACKAGE_TEXTS, hand_overs.package_times(found["sent"], *states))
-    _print_steps("Goals", hand_overs.GOAL_TEXTS, hand_overs.goal_times(found["goals"], traces["command_server"]))
+    for client, goals in found["goals"].items():
+        _print_steps(f"Goals of a {client} client", hand_overs.GOAL_TEXTS, hand_overs.goal_times(goals, traces["command_server"]))
     console.line(f"\n{'For comparison, ms':64}{'p50':>10}{'p99':>10}{'p99.9':>10}")
     for name, text in FLOORS.items():
         console.line(_line(text, found[name]))

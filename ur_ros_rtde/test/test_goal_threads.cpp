@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <condition_variable>
-#include <fstream>
-#include <functional>
 #include <future>
+#include <memory>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -17,21 +16,6 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 const StopReason shutdown{ErrorCode::shutdown, "the end"};
-
-/// What a thread does when its function has returned.
-struct AtThreadExit {
-  ~AtThreadExit() { action(); }
-  std::function<void()> action;
-};
-
-/// Waits until a thread of this process waits for something.
-void wait_until_asleep(pid_t thread)
-{
-  const std::string file = "/proc/self/task/" + std::to_string(thread) + "/stat";
-  std::string id, name, state;
-  while (state != "S" && std::ifstream(file) >> id >> name >> state) {
-  }
-}
 
 /// Waits until it is asked to end.
 void wait_for(const StopRequest & stop_request)
@@ -83,31 +67,46 @@ TEST(GoalThreadsTest, RefuseAfterClose)
   EXPECT_EQ(status.error().code, ErrorCode::shutdown);
 }
 
-TEST(GoalThreadsTest, RefuseWhenClosedDuringAJoin)
+TEST(GoalThreadsTest, AThreadExecutesTheNextGoal)
 {
   GoalThreads threads;
-  std::promise<void> release;
-  std::promise<void> leaving;
-  ASSERT_TRUE(threads.start("finished", std::make_shared<StopRequest>(), [&] {
-    static thread_local AtThreadExit at_exit;
-    at_exit.action = [&] {
-      leaving.set_value();
-      release.get_future().wait();
-    };
-  }));
-  leaving.get_future().wait();
-  std::promise<pid_t> id;
-  Status status;
-  std::thread starter([&] {
-    id.set_value(::gettid());
-    status = threads.start("late", std::make_shared<StopRequest>(), [] { FAIL(); });
-  });
-  wait_until_asleep(id.get_future().get());
-  threads.close(shutdown, milliseconds(0));
-  release.set_value();
-  starter.join();
-  ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, ErrorCode::shutdown);
+  std::set<std::thread::id> ids;
+  for (int i = 0; i < 3; ++i) {
+    std::promise<std::thread::id> id;
+    ASSERT_TRUE(threads.start("goal", std::make_shared<StopRequest>(),
+                              [&id] { id.set_value(std::this_thread::get_id()); }));
+    ids.insert(id.get_future().get());
+  }
+  EXPECT_LE(ids.size(), 2U);  // a thread may not wait yet when the next goal starts
+}
+
+TEST(GoalThreadsTest, AGoalDoesNotWaitForAThreadThatIsBusy)
+{
+  GoalThreads threads;
+  auto stop_request = std::make_shared<StopRequest>();
+  constexpr int count = 20;
+  std::atomic<int> met{0};
+  std::promise<void> all_run;
+  for (int round = 0; round < count; ++round) {
+    ASSERT_TRUE(threads.start("goal", stop_request, [&] {
+      if (++met == count) {
+        all_run.set_value();
+      }
+      wait_for(*stop_request);
+    }));
+  }
+  EXPECT_EQ(all_run.get_future().wait_for(seconds(10)), std::future_status::ready);
+  stop_request->request(shutdown);
+}
+
+TEST(GoalThreadsTest, TheWorkOfAGoalIsDestroyedWhenItEnds)
+{
+  GoalThreads threads;
+  auto object = std::make_shared<int>(1);
+  const std::weak_ptr<int> observer = object;
+  ASSERT_TRUE(threads.start("goal", std::make_shared<StopRequest>(), [object = std::move(object)] {}));
+  EXPECT_TRUE(threads.close(shutdown, seconds(10)).empty());
+  EXPECT_TRUE(observer.expired());
 }
 
 TEST(GoalThreadsTest, CloseNamesThreadsThatDoNotEnd)

@@ -1,21 +1,11 @@
 #include "ur_ros_rtde/detail/goal_threads.hpp"
 
-#include <algorithm>
-
 namespace ur_ros_rtde {
 
 GoalThreads::~GoalThreads()
 {
   close(Error{ErrorCode::shutdown, "the node is shut down"}, std::chrono::milliseconds(0));
-  // Waits for the remaining threads without a limit: objects that they use must outlive them.
-  std::list<Entry> entries;
-  {
-    const std::lock_guard lock(mutex_);
-    entries.swap(entries_);
-  }
-  for (Entry & entry : entries) {
-    entry.thread.join();
-  }
+  threads_.clear();  // waits without a limit: objects that the threads use must outlive them
 }
 
 Status GoalThreads::can_start() const
@@ -29,9 +19,7 @@ Status GoalThreads::can_start_locked() const
   if (closed_) {
     return failure(ErrorCode::shutdown, "the node is being shut down");
   }
-  const auto running =
-      std::count_if(entries_.begin(), entries_.end(), [](const Entry & e) { return !e.done; });
-  if (static_cast<std::size_t>(running) >= limit) {
+  if (waiting_.size() + running_.size() >= limit) {
     return failure(ErrorCode::busy,
                    std::to_string(limit) + " goals are running, which is the limit: wait for one to end");
   }
@@ -41,60 +29,62 @@ Status GoalThreads::can_start_locked() const
 Status GoalThreads::start(std::string name, std::shared_ptr<StopRequest> stop_request,
                           std::function<void()> work)
 {
-  std::unique_lock lock(mutex_);
-  join_finished(lock);  // before the check: close() may be called while it joins
+  const std::lock_guard lock(mutex_);
   if (Status status = can_start_locked(); !status) {
     return status;
   }
-  Entry & entry = entries_.emplace_back();
-  entry.name = std::move(name);
-  entry.stop_request = std::move(stop_request);
-  try {
-    entry.thread = std::jthread([this, &entry, work = std::move(work)]() mutable {
-      work();
-      work = nullptr;  // destroys captured objects before the thread counts as done
-      const std::lock_guard done_lock(mutex_);
-      entry.done = true;
-      changed_.notify_all();
-    });
-  } catch (const std::system_error & error) {
-    entries_.pop_back();
-    return failure(ErrorCode::exception, std::string("cannot start a thread for the goal: ") + error.what());
+  if (idle_ <= waiting_.size()) {
+    try {
+      threads_.emplace_back([this] { execute_goals(); });
+    } catch (const std::system_error & error) {
+      return failure(ErrorCode::exception,
+                     std::string("cannot start a thread for the goal: ") + error.what());
+    }
   }
+  waiting_.push_back({std::move(name), std::move(stop_request), std::move(work)});
+  started_.notify_one();
   return {};
+}
+
+void GoalThreads::execute_goals()
+{
+  std::unique_lock lock(mutex_);
+  while (true) {
+    ++idle_;
+    started_.wait(lock, [this] { return closed_ || !waiting_.empty(); });
+    --idle_;
+    if (waiting_.empty()) {
+      return;
+    }
+    running_.splice(running_.end(), waiting_, waiting_.begin());
+    const auto goal = std::prev(running_.end());
+    lock.unlock();
+    goal->work();
+    goal->work = nullptr;  // destroys captured objects before the goal counts as ended
+    lock.lock();
+    running_.erase(goal);
+    ended_.notify_all();
+  }
 }
 
 std::vector<std::string> GoalThreads::close(const StopReason & why, std::chrono::milliseconds wait_limit)
 {
   std::unique_lock lock(mutex_);
   closed_ = true;
-  for (const Entry & entry : entries_) {
-    entry.stop_request->request(why);
+  started_.notify_all();
+  for (const auto * goals : {&waiting_, &running_}) {
+    for (const Goal & goal : *goals) {
+      goal.stop_request->request(why);
+    }
   }
-  changed_.wait_for(lock, wait_limit, [this] {
-    return std::all_of(entries_.begin(), entries_.end(), [](const Entry & entry) { return entry.done; });
-  });
-  join_finished(lock);
+  ended_.wait_for(lock, wait_limit, [this] { return waiting_.empty() && running_.empty(); });
   std::vector<std::string> names;
-  for (const Entry & entry : entries_) {
-    names.push_back(entry.name);
+  for (const auto * goals : {&waiting_, &running_}) {
+    for (const Goal & goal : *goals) {
+      names.push_back(goal.name);
+    }
   }
   return names;
-}
-
-void GoalThreads::join_finished(std::unique_lock<std::mutex> & lock)
-{
-  std::list<Entry> finished;
-  for (auto entry = entries_.begin(); entry != entries_.end();) {
-    const auto next = std::next(entry);
-    if (entry->done) {
-      finished.splice(finished.end(), entries_, entry);
-    }
-    entry = next;
-  }
-  lock.unlock();  // the end of their work locks it
-  finished.clear();
-  lock.lock();
 }
 
 }  // namespace ur_ros_rtde
