@@ -1,4 +1,5 @@
-"""Latency from a goal to its first RTDE command, and from a cancel request to the start of the deceleration.
+"""Latency from a goal to its first RTDE command, from a cancel request to the start of the deceleration, and from the end of a
+motion to its result.
 
 The goal is sent by a client in Python or in C++; the effect is taken from the simulator's trace.
 """
@@ -99,6 +100,21 @@ class GoalLatency:
             slower = [when for _, when, speed, *_ in cycles if when > sent and speed < 0.398]
             if slower:
                 result.append((slower[0] - sent) * 1e-6)
+        return result
+
+    def end_to_result(self, count):
+        """Returns the times in ms from the last cycle in which the target moves to the result of a motion."""
+        result = []
+        for index in range(count):
+            joints = list(self.control.request("state")["state"]["actual"]["position"])
+            joints[0] += 0.05 if index % 2 == 0 else -0.05
+            before = self._cycle()
+            handle = self._accepted(self.move_j, MoveJ.Goal(joint_positions=joints, speed=0.5, acceleration=4.0))
+            self._finish(handle.get_result_async())
+            received = time.time_ns()
+            cycles = self.control.request("trace", after=before)["cycles"]
+            moving = [when for _, when, speed, *_ in cycles if speed > 1e-6]
+            result.append((received - moving[-1]) * 1e-6)
         return result
 
     def _wait_for_speed(self, speed, limit=5.0):

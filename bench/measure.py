@@ -49,7 +49,8 @@ def goal_figures(options, control):
     latency = GoalLatency(control)
     measured = {"goal of C++ client to command": milliseconds(latency.from_cpp(options.goal_client, options.repeat)),
                 "goal of rclpy client to command": milliseconds(latency.from_python(options.repeat)),
-                "cancel to deceleration": latency.cancel_to_deceleration(options.repeat // 2)}
+                "cancel to deceleration": latency.cancel_to_deceleration(options.repeat // 2),
+                "end of motion to result": latency.end_to_result(options.repeat)}
     latency.close()
     samples = {name: list(enumerate(values)) for name, values in measured.items()}
     return {name: summary(values) for name, values in measured.items()}, samples

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from ur_tools import bench, bench_rows, bench_stress, bench_trace
+from ur_tools import bench, bench_recovery, bench_rows, bench_stress, bench_trace
 from ur_tools.layout import ROOT, Layout
 
 sys.path.insert(0, str(ROOT / "bench"))
@@ -96,6 +96,13 @@ def test_hand_overs_of_packages_and_goals_are_measured(capsys):
     for client in ("C++", "rclpy"):
         assert f"Goals of a {client} client (3)" in output, output
     assert "nothing measured" not in output and "Lost packages: packages " in output
+
+
+def test_recoveries_are_measured():
+    options, layout = bench.parse(["--recovery", "--repeat", "2", "--address", ADDRESS]), Layout.of_environment()
+    figures, _ = bench_recovery.measure(layout, options)
+    assert set(figures) == set(bench_rows.RECOVERY)
+    assert all(0.0 < found["p50"] <= found["max"] and found["count"] == 2 for found in figures.values()), figures
 
 
 def test_latency_beside_a_python_subscriber_is_measured():

@@ -10,7 +10,7 @@ import sys
 import time
 from typing import List
 
-from . import (bench_compare, bench_discovery, bench_machine, bench_report, bench_results, bench_rows, bench_scale, bench_session,
+from . import (bench_compare, bench_discovery, bench_machine, bench_recovery, bench_report, bench_results, bench_rows, bench_scale, bench_session,
                bench_simulator, bench_stress, bench_trace, bench_trajectory, boilerplate, console, ports, simulation)
 from .bench_results import Results
 from .layout import PROGRAM, Layout
@@ -19,8 +19,8 @@ from .layout import PROGRAM, Layout
 KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 # Options that change what is measured, or how.
 SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots", "stress",
-            "simulator", "count")
-MODES = ("stream", "trajectory", "scale", "stress", "trace", "simulator")
+            "simulator", "count", "recovery")
+MODES = ("stream", "trajectory", "scale", "stress", "trace", "simulator", "recovery")
 
 
 def _add_result_options(parser: argparse.ArgumentParser) -> None:
@@ -57,10 +57,11 @@ def parse(arguments: List[str]) -> argparse.Namespace:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
     parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")
-    parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals and cancels to measure (default: 40)")
+    parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals, cancel requests or interruptions to measure (default: 40)")
     _add_result_options(parser)
     for add_options in (_add_stream_options, bench_scale.add_options, bench_stress.add_options, bench_trace.add_options,
-                        bench_trajectory.add_options, bench_simulator.add_options):
+                        bench_trajectory.add_options, bench_simulator.add_options,
+                        bench_recovery.add_options):
         add_options(parser)
     options = parser.parse_args(arguments)
     _check_combination(parser, options)
@@ -119,6 +120,8 @@ def _measure(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]"
         return bench_scale.measure(layout, options)
     if options.simulator:
         return bench_simulator.measure(layout, options)
+    if options.recovery:
+        return bench_recovery.measure(layout, options)
     return bench_stress.measure(layout, options) if options.stress else _measure_default(layout, options)
 
 
@@ -173,7 +176,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         bench_compare.show(old, results)
     if options.report:
         bench_report.write(options.report, layout, results, old)
-    if not any((options.stream, options.scale, options.stress, options.simulator, options.input)):
+    if not any((options.stream, options.scale, options.stress, options.simulator, options.recovery, options.input)):
         console.line("\n" + boilerplate.table())
     return 0
 

@@ -65,6 +65,8 @@ STRESS: Tuple[Tuple[str, float, str], ...] = (
     ("p99.9", 2.0, "ms from a package to a C++ subscriber"),
     ("missing", 0.1, "% of the packages did not reach the subscriber"),
 )
+# Interruptions of --recovery, and the targets.
+RECOVERY = {"links closed": 10.0, "controller restarted": 30.0, "node restarted": 500.0}
 # Parts of --simulator.
 SIMULATOR: Tuple[Tuple[str, Optional[float], str], ...] = (
     ("start-up", 0.15, "s until all ports are open"),
@@ -86,12 +88,14 @@ ROWS: Tuple[Row, ...] = (
     Row("goal of rclpy client to command", "p50", 0.4, "ms"),
     Row("goal of rclpy client to command", "p99", 0.8, "ms"),
     Row("cancel to deceleration", "p50", 5.0, "ms"),
+    Row("end of motion to result", "p50", 6.0, "ms from the last cycle in which the target moves"),
+    Row("end of motion to result", "p99", None, "ms from the last cycle in which the target moves"),
     *(Row(stream, *part) for stream in STREAMS for part in STREAM),
     Row("cpu", "simulator", 10.0, "% of a core"),
     Row("cpu", "robot_state_receiver", 10.0, "% of a core"),
     Row("cpu", "command_server", 10.0, "% of a core"),
     Row("cpu", "dashboard_server", 10.0, "% of a core"),
-    Row("memory", "command_server", 100.0, "MB"),
+    Row("memory", "command_server", 55.0, "MB"),
     Row("start to ready", None, 2.0, "s"),
     Row("new client finds all actions", "p50", 0.5, "s, after clients were killed"),
     Row("new client finds all actions", "max", 1.0, "s, after clients were killed"),
@@ -100,6 +104,8 @@ ROWS: Tuple[Row, ...] = (
     Row("many goals", "duration", None, "ms per goal, from sending it to its result"),
     *(Row(stress_name(condition, qos), *part) for condition in CONDITIONS for qos in QOS for part in STRESS),
     *(Row(stream, *part) for stream in STRESSED_STREAMS for part in STREAM),
+    *(Row(name, part, target, "ms until the next joint_states")
+      for name, target in RECOVERY.items() for part in ("p50", "max")),
     *(Row("simulator", *part) for part in SIMULATOR),
     Row("simulator, compiling", "ur_rtde", None, "ms for ur_rtde's control program"),
     Row("simulator, compiling", "2000 lines", None, "ms"),
