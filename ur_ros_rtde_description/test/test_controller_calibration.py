@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from ur_ros_rtde_description.calibration import largest_deviation
-from ur_ros_rtde_description.controller_calibration import Deviation, calibration_yaml, deviation, hash_of, origins_from_dh
+from ur_ros_rtde_description.controller_calibration import Deviation, calibration_yaml, deviation, origins_from_dh
 from ur_ros_rtde_description.errors import DescriptionError
 from ur_ros_rtde_description.kinematics import ALPHA, Origin, flange_pose, nominal_origins, rotation
+from ur_ros_rtde_description.kinematics_hash import kinematics_hash, std_hash
 from ur_ros_rtde_description.models import find_model, models
 
 BACKGROUND = True
@@ -21,7 +22,6 @@ class Dh:
     a: tuple
     d: tuple
     alpha: tuple
-    checksums: tuple = (1, 2, 3, 4, 5, 0xffffffff)
 
 
 def nominal(model):
@@ -93,7 +93,20 @@ def test_a_saved_calibration_is_read_back(tmp_path):
         file.write_text(calibration_yaml(dh, model, "two\nlines"))
         assert file.read_text().startswith("# two\n# lines\nkinematics:\n  shoulder:\n")
         assert deviation(dh, name, file) == Deviation(0.0, 0.0)
-    assert hash_of(dh) == "calib_" + "00000001" "00000002" "00000003" "00000004" "00000005" "ffffffff"
+        assert f"hash: {kinematics_hash(dh.theta, dh.d, dh.a, dh.alpha)}\n" in file.read_text()
+
+
+def test_the_hash_is_that_of_universal_robots():
+    """The hash of the nominal UR5e, which the client library of Universal Robots expects of its simulator."""
+    alpha = (1.570796327, 0.0, 0.0, 1.570796327, -1.570796327, 0.0)
+    assert kinematics_hash((0.0,) * 6, (0.1625, 0.0, 0.0, 0.1333, 0.0997, 0.0996), (0.0, -0.425, -0.3922, 0.0, 0.0, 0.0),
+                           alpha) == "calib_12788084448423163542"
+
+
+@pytest.mark.parametrize("text, expected", [("", 6142509188972423790), ("a", 4993892634952068459), ("12345678", 10113836418918046885),
+                                            ("00.1625001.5708", 1148860220319228980)])
+def test_std_hash_is_that_of_libstdcxx(text, expected):
+    assert std_hash(text.encode()) == expected
 
 
 @pytest.mark.parametrize("change, mentions", [({"a": (0.0, math.nan, 0.0, 0.0, 0.0, 0.0)}, "no finite numbers"),

@@ -11,6 +11,7 @@ import yaml
 from .calibration import FIELDS, JOINT_KEYS, check_model, largest_deviation, read_calibration
 from .errors import DescriptionError
 from .kinematics import Origin, nominal_origins, rotation
+from .kinematics_hash import kinematics_hash
 from .models import Model, find_model
 
 # Two reports of one calibration agree far better than this. The repeatability of the arms is 3e-5 m to 1e-4 m.
@@ -25,7 +26,6 @@ class DhParameters(Protocol):
     a: Sequence[float]
     d: Sequence[float]
     alpha: Sequence[float]
-    checksums: Sequence[int]
 
 
 @dataclass(frozen=True)
@@ -73,13 +73,8 @@ def calibration_yaml(dh: DhParameters, model: Model, comment: str = "") -> str:
     """Returns the content of a kinematics file of ur_description."""
     joints = {key: dict(zip(FIELDS, map(float, (*origin.xyz, *origin.rpy))))
               for key, origin in zip(JOINT_KEYS, origins_from_dh(dh, model))}
-    content = {"kinematics": {**joints, "hash": hash_of(dh)}}
+    content = {"kinematics": {**joints, "hash": kinematics_hash(dh.theta, dh.d, dh.a, dh.alpha)}}
     return "".join(f"# {line}\n" for line in comment.splitlines()) + yaml.safe_dump(content, sort_keys=False)
-
-
-def hash_of(dh: DhParameters) -> str:
-    """Returns an identifier of the calibration: the checksums of its joints, as the controller reports them."""
-    return "calib_" + "".join(f"{checksum & 0xffffffff:08x}" for checksum in dh.checksums)
 
 
 def _joint_frames(dh: DhParameters) -> Sequence[np.ndarray]:
