@@ -22,6 +22,7 @@ struct Ports {
   std::uint16_t secondary_read_only = 30012;
   std::uint16_t realtime_read_only = 30013;
   std::uint16_t dashboard = 29999;
+  std::uint16_t robotiq = 63352;  ///< socket server of the URCap "robotiq_gripper"
   std::uint16_t control = 30099;  ///< control port of the simulator: JSON lines, see docs/simulator.md
 };
 
@@ -33,7 +34,9 @@ struct SimulatorOptions {
   Ports ports;
   /// Initial joint positions, rad. Default: tool pointing down in front of the robot.
   std::optional<std::array<double, 6>> initial_joints;
-  std::vector<std::string> urcaps;  ///< installed URCaps: "onrobot_soft_gripper"
+  std::vector<std::string> urcaps;  ///< installed URCaps: "onrobot_soft_gripper", "robotiq_gripper"
+  /// A pneumatic gripper at the digital outputs of the tool: "single" or "double" acting. Empty: none.
+  std::string digital_gripper;
   /// Folder to which the reports and support files of the dashboard are also written. Empty: none.
   std::string reports_folder;
   bool start_running = true;  ///< start powered on with released brakes; false: powered off, as after boot

@@ -50,6 +50,7 @@ void parse_port(Ports & ports, const std::string & text)
       {"primary_read_only", &Ports::primary_read_only},
       {"secondary_read_only", &Ports::secondary_read_only},
       {"realtime_read_only", &Ports::realtime_read_only},
+      {"robotiq", &Ports::robotiq},
       {"rtde", &Ports::rtde},
       {"dashboard", &Ports::dashboard},
       {"control", &Ports::control}};
@@ -60,7 +61,7 @@ void parse_port(Ports & ports, const std::string & text)
   if (port == names.end() || error != std::errc() || end != value.data() + value.size()) {
     throw std::runtime_error(
         fmt::format("--ports '{}' is invalid: give primary, secondary, realtime, one of these with "
-                    "_read_only, rtde, dashboard or control = 0..65535",
+                    "_read_only, rtde, dashboard, robotiq or control = 0..65535",
                     text));
   }
   ports.*(port->second) = number;
@@ -85,7 +86,8 @@ void add_options(CLI::App & app, AppOptions & options)
   app.add_option(
          "--ports", options.port_texts,
          "port numbers as name=number with the names primary, secondary, realtime, primary_read_only, "
-         "secondary_read_only, realtime_read_only, rtde, dashboard and control; 0 selects a free port")
+         "secondary_read_only, realtime_read_only, rtde, dashboard, robotiq and control; 0 selects a free "
+         "port")
       ->delimiter(',');
   app.add_option("--joints", options.joints, "initial joint positions, rad")->expected(6)->delimiter(',');
   app.add_option("--surface", options.surface_texts, "horizontal elastic surface as z=height, m; repeatable");
@@ -93,7 +95,10 @@ void add_options(CLI::App & app, AppOptions & options)
   app.add_option("--calibration-seed", simulator.calibration_seed,
                  "selects a random calibration of the arm; 0: nominal kinematics")
       ->capture_default_str();
-  app.add_option("--urcap", simulator.urcaps, "installed URCap: onrobot_soft_gripper");
+  app.add_option("--urcap", simulator.urcaps,
+                 "installed URCap: onrobot_soft_gripper or robotiq_gripper; repeatable");
+  app.add_option("--digital-gripper", simulator.digital_gripper,
+                 "pneumatic gripper at the digital outputs of the tool: single or double (acting)");
   app.add_option("--reports-folder", simulator.reports_folder,
                  "also write the dashboard's flight reports, support files and logs to this folder");
   app.add_option("--real-time-factor", simulator.real_time_factor,

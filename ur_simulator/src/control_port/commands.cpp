@@ -12,9 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-std::array<std::span<const Command>, 4> command_groups()
+std::array<std::span<const Command>, 5> command_groups()
 {
-  return {world_commands(), robot_commands(), connection_commands(), query_commands()};
+  return {world_commands(), gripper_commands(), robot_commands(), connection_commands(), query_commands()};
 }
 
 json help()

@@ -20,6 +20,7 @@ struct Command {
 };
 
 std::span<const Command> world_commands();       ///< surfaces, pushes, loads, joint positions, inputs
+std::span<const Command> gripper_commands();     ///< objects and faults of the grippers
 std::span<const Command> robot_commands();       ///< power, safety, programs, pendant
 std::span<const Command> connection_commands();  ///< connection faults, reboot
 std::span<const Command> query_commands();       ///< state, registers, log, trace

@@ -33,11 +33,29 @@ json payload_to_json(const Payload & payload)
   return {{"mass", payload.mass}, {"center_of_gravity", to_json_array(payload.center_of_gravity)}};
 }
 
+json tool_communication_to_json(const ToolCommunication & line)
+{
+  return {{"enabled", line.enabled},
+          {"baud_rate", line.baud_rate},
+          {"parity", line.parity},
+          {"stop_bits", line.stop_bits},
+          {"rx_idle_chars", line.rx_idle_chars},
+          {"tx_idle_chars", line.tx_idle_chars}};
+}
+
 json io_to_json(const Io & io)
 {
-  return {{"digital_inputs", io.digital_inputs},   {"digital_outputs", io.digital_outputs},
-          {"analog_inputs", io.analog_inputs},     {"analog_outputs", io.analog_outputs},
-          {"analog_io_types", io.analog_io_types}, {"tool_analog_inputs", io.tool_analog_inputs}};
+  return {{"digital_inputs", io.digital_inputs},
+          {"digital_outputs", io.digital_outputs},
+          {"analog_inputs", io.analog_inputs},
+          {"analog_outputs", io.analog_outputs},
+          {"analog_io_types", io.analog_io_types},
+          {"tool_analog_inputs", io.tool_analog_inputs},
+          {"tool_output_voltage", io.tool_output_voltage},
+          {"tool_output_mode", io.tool_output_mode},
+          {"tool_digital_output_modes", io.tool_digital_output_modes},
+          {"tool_analog_input_types", io.tool_analog_input_types},
+          {"tool_communication", tool_communication_to_json(io.tool_communication)}};
 }
 
 json program_to_json(const ControlPortContext & context)
@@ -68,6 +86,18 @@ json gripper_to_json(const SoftGripper * gripper)
     return nullptr;
   }
   return {{"width", gripper->width()}, {"target", gripper->target()}, {"busy", gripper->busy()}};
+}
+
+json robotiq_gripper_to_json(const RobotiqGripper * gripper)
+{
+  if (gripper == nullptr) {
+    return nullptr;
+  }
+  json result{{"width", gripper->width()}, {"powered", gripper->powered()}};
+  for (const char * name : {"ACT", "GTO", "STA", "POS", "PRE", "OBJ", "FLT", "SPE", "FOR"}) {
+    result[name] = *gripper->get(name);
+  }
+  return result;
 }
 
 json surfaces_to_json(const World & world)
@@ -102,6 +132,7 @@ void add_robot(json & result, const ControlPortContext & context)
                  {"safety_popup", safety_popup ? json(*safety_popup) : json(nullptr)},
                  {"surfaces", surfaces_to_json(context.world)},
                  {"gripper", gripper_to_json(context.world.gripper())},
+                 {"robotiq_gripper", robotiq_gripper_to_json(context.world.robotiq_gripper())},
                  {"io", io_to_json(s.io)},
                  {"clients", clients_to_json(context)},
                  {"actual_execution_time", s.actual_execution_time}});

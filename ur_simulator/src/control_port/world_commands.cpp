@@ -126,20 +126,6 @@ json set_analog_input(ControlPortContext & context, RequestFields & fields)
   return json::object();
 }
 
-json gripper(ControlPortContext & context, RequestFields & fields)
-{
-  SoftGripper * gripper = context.world.gripper();
-  if (gripper == nullptr) {
-    throw RequestError("there is no gripper: start the simulator with --urcap onrobot_soft_gripper");
-  }
-  const bool stuck = fields.boolean("stuck", gripper->stuck());
-  const double object = fields.number("object", {0.0, SoftGripper::max_width}, 0.0);
-  fields.reject_unknown();
-  gripper->set_stuck(stuck);
-  gripper->set_object(object);
-  return {{"width", gripper->width()}, {"busy", gripper->busy()}, {"holds_object", gripper->holds_object()}};
-}
-
 constexpr std::array world_command_table{
     Command{"push", "force [3] N or wrench [6] N, N m; duration s (0.3); frame base|tool (base)",
             "Pushes at the TCP: a half sine with this peak.", push},
@@ -155,9 +141,6 @@ constexpr std::array world_command_table{
     Command{"set_sensor_noise", "force N; torque N m (0)",
             "Sets the standard deviation of the force/torque sensor's noise; 0 switches it off.",
             set_sensor_noise},
-    Command{"gripper", "stuck true|false (unchanged); object mm, 0 none (0)",
-            "Makes the gripper stick, or places an object of this width between its cups; returns its width.",
-            gripper},
     Command{"set_joints", "joints [6] rad",
             "Moves the arm to these joint positions at once and stops the program.", set_joints},
     Command{"set_digital_input", "number 0..17 (8..15 configurable, 16, 17 tool); value true|false",

@@ -61,6 +61,7 @@ Controller::Controller(const SimulatorOptions & options)
       realtime_packet_(version_),
       rtde_(io_, options.address, options.ports.rtde, state_, version_, log_),
       dashboard_(io_, options.address, options.ports.dashboard, *pendant_),
+      robotiq_(open_robotiq_server()),
       control_port_context_(control_port_context()),
       control_port_(io_, options.address, options.ports.control,
                     [this](const nlohmann::json & request) { return control(request); })
@@ -113,17 +114,34 @@ control_port::ControlPortContext Controller::control_port_context()
           *pendant_,
           log_,
           rtde_,
-          {{"primary", &primary_.listener()},
-           {"secondary", &secondary_.listener()},
-           {"realtime", &realtime_.listener()},
-           {"primary_read_only", &primary_read_only_.listener()},
-           {"secondary_read_only", &secondary_read_only_.listener()},
-           {"realtime_read_only", &realtime_read_only_.listener()},
-           {"rtde", &rtde_.listener()},
-           {"dashboard", &dashboard_.listener()}},
+          listeners(),
           missed_cycles_,
           trace_,
           [this](double duration) { reboot(duration); }};
+}
+
+std::map<std::string, Listener *> Controller::listeners()
+{
+  std::map<std::string, Listener *> result{{"primary", &primary_.listener()},
+                                           {"secondary", &secondary_.listener()},
+                                           {"realtime", &realtime_.listener()},
+                                           {"primary_read_only", &primary_read_only_.listener()},
+                                           {"secondary_read_only", &secondary_read_only_.listener()},
+                                           {"realtime_read_only", &realtime_read_only_.listener()},
+                                           {"rtde", &rtde_.listener()},
+                                           {"dashboard", &dashboard_.listener()}};
+  if (robotiq_) {
+    result.emplace("robotiq", &robotiq_->listener());
+  }
+  return result;
+}
+
+std::unique_ptr<urcap::RobotiqServer> Controller::open_robotiq_server()
+{
+  RobotiqGripper * gripper = world_->robotiq_gripper();
+  return gripper == nullptr ? nullptr
+                            : std::make_unique<urcap::RobotiqServer>(io_, options_.address,
+                                                                     options_.ports.robotiq, *gripper);
 }
 
 Ports Controller::ports() const
@@ -137,6 +155,9 @@ Ports Controller::ports() const
   ports.realtime_read_only = realtime_read_only_.listener().port();
   ports.rtde = rtde_.listener().port();
   ports.dashboard = dashboard_.listener().port();
+  if (robotiq_) {
+    ports.robotiq = robotiq_->listener().port();
+  }
   ports.control = control_port_.listener().port();
   return ports;
 }

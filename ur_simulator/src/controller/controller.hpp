@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -27,6 +28,7 @@
 #include "script_api/robot_library.hpp"
 #include "state/controller_state.hpp"
 #include "ur_simulator/simulated_controller.hpp"
+#include "urcap/robotiq_server.hpp"
 #include "world/world.hpp"
 
 namespace ur_simulator {
@@ -71,7 +73,9 @@ class Controller {
   RobotAccess robot_access();
   std::shared_ptr<const urscript::Library> script_library();
   ProgramContext program_context();
+  std::unique_ptr<urcap::RobotiqServer> open_robotiq_server();
   control_port::ControlPortContext control_port_context();
+  std::map<std::string, Listener *> listeners();
 
   void schedule_next_cycle();
   void run_due_cycles();
@@ -126,6 +130,7 @@ class Controller {
   primary::RealtimePacket realtime_packet_;
   rtde::Server rtde_;
   dashboard::Server dashboard_;
+  std::unique_ptr<urcap::RobotiqServer> robotiq_;  ///< null: the URCap is not installed
   control_port::ControlPortContext control_port_context_;
   control_port::Server control_port_;
   std::list<Observer> observers_;

@@ -101,11 +101,21 @@ World create_world(const SimulatorOptions & options, double cycle_time)
 {
   World world(cycle_time, options.seed);
   for (const std::string & urcap : options.urcaps) {
-    if (urcap != "onrobot_soft_gripper") {
-      throw std::runtime_error(
-          fmt::format("URCap '{}' (--urcap) is not supported: give onrobot_soft_gripper", urcap));
+    if (urcap == "onrobot_soft_gripper") {
+      world.mount_gripper();
+    } else if (urcap == "robotiq_gripper") {
+      world.mount_robotiq_gripper();
+    } else {
+      throw std::runtime_error(fmt::format(
+          "URCap '{}' (--urcap) is not supported: give onrobot_soft_gripper or robotiq_gripper", urcap));
     }
-    world.mount_gripper();
+  }
+  if (options.digital_gripper == "single" || options.digital_gripper == "double") {
+    world.mount_digital_gripper(options.digital_gripper == "double");
+  } else if (!options.digital_gripper.empty()) {
+    throw std::runtime_error(
+        fmt::format("digital gripper '{}' (--digital-gripper) is not supported: give single or double",
+                    options.digital_gripper));
   }
   return world;
 }

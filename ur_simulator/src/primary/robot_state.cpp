@@ -231,27 +231,25 @@ std::string force_mode_data(const RobotModel & model, const ControllerState & s)
   return data;
 }
 
-/// The serial line in the tool connector, as set_tool_communication() configures it: disabled.
-std::string tool_communication_data()
+std::string tool_communication_data(const ToolCommunication & line)
 {
   std::string data;
-  put_u8(data, 0);        // disabled
-  put_u32(data, 115200);  // baud rate
-  put_u32(data, 0);       // no parity
-  put_u32(data, 1);       // stop bits
-  put_f32(data, 1.5F);    // characters of silence that end a message
-  put_f32(data, 3.5F);    // characters of silence before a message
+  put_u8(data, line.enabled ? 1 : 0);
+  put_u32(data, static_cast<std::uint32_t>(line.baud_rate));
+  put_u32(data, static_cast<std::uint32_t>(line.parity));
+  put_u32(data, static_cast<std::uint32_t>(line.stop_bits));
+  put_f32(data, static_cast<float>(line.rx_idle_chars));
+  put_f32(data, static_cast<float>(line.tx_idle_chars));
   return data;
 }
 
-std::string tool_mode_data()
+std::string tool_mode_data(const Io & io)
 {
-  constexpr std::uint8_t digital_outputs = 0;
-  constexpr std::uint8_t sinking = 1;
   std::string data;
-  put_u8(data, digital_outputs);
-  put_u8(data, sinking);
-  put_u8(data, sinking);
+  put_u8(data, static_cast<std::uint8_t>(io.tool_output_mode));
+  for (const std::int32_t mode : io.tool_digital_output_modes) {
+    put_u8(data, static_cast<std::uint8_t>(mode));
+  }
   return data;
 }
 
@@ -281,8 +279,9 @@ std::string robot_state_message(const RobotModel & model, const PolyscopeVersion
   append_package(packages, Package::force_mode, force_mode_data(model, state));
   append_package(packages, Package::additional, additional_data(state));
   if (version.is_e_series()) {
-    append_package(packages, Package::tool_communication, tool_communication_data());
-    append_package(packages, Package::tool_mode, tool_mode_data());
+    append_package(packages, Package::tool_communication,
+                   tool_communication_data(state.io.tool_communication));
+    append_package(packages, Package::tool_mode, tool_mode_data(state.io));
   }
   std::string message;
   put_u32(message, static_cast<std::uint32_t>(packages.size() + 5));

@@ -55,6 +55,7 @@ void add_installation_builtins(Library & library, const RobotContextPtr & robot)
 void add_register_builtins(Library & library, const RobotContextPtr & robot);
 void add_digital_io_builtins(Library & library, const RobotContextPtr & robot);
 void add_analog_io_builtins(Library & library, const RobotContextPtr & robot);
+void add_tool_connector_builtins(Library & library, const RobotContextPtr & robot);
 void add_controller_builtins(Library & library, const RobotContextPtr & robot);
 /// Functions of the gripper's URCap, if a gripper is mounted.
 void add_gripper_builtins(Library & library, const RobotContextPtr & robot);

@@ -37,6 +37,7 @@ constexpr BuiltinGroup builtin_groups[] = {
     {"registers", script_api::add_register_builtins},
     {"digital IO", script_api::add_digital_io_builtins},
     {"analog IO", script_api::add_analog_io_builtins},
+    {"tool connector", script_api::add_tool_connector_builtins},
     {"controller", script_api::add_controller_builtins},
     {"encoders", script_api::add_encoder_builtins},
     {"world model", script_api::add_world_model_builtins},

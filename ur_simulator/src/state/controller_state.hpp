@@ -18,6 +18,16 @@ struct Registers {
   std::array<double, 48> doubles{};
 };
 
+/// The serial line (RS485) in the tool connector, as set_tool_communication() configures it.
+struct ToolCommunication {
+  bool enabled = false;
+  std::int32_t baud_rate = 115200;
+  std::int32_t parity = 0;  ///< 0 none, 1 odd, 2 even
+  std::int32_t stop_bits = 1;
+  double rx_idle_chars = 1.5;  ///< silence that ends a message, in characters
+  double tx_idle_chars = 3.5;  ///< silence before a message, in characters
+};
+
 /// Inputs and outputs. Digital bits 0-7 are the standard, 8-15 the configurable, 16-17 the tool IOs. Analog
 /// values are in A (current loop, 4-20 mA) or V (0-10 V); a set bit of the types selects voltage: bit 0 and 1
 /// inputs, bit 2 and 3 outputs (UR, "RTDE Guide", analog_io_types).
@@ -32,6 +42,9 @@ struct Io {
   std::int32_t tool_output_voltage = 0;
   double tool_output_current = 0.0;
   double tool_temperature = 30.0;
+  std::int32_t tool_output_mode = 0;                            ///< 0 digital outputs, 1 dual pin power
+  std::array<std::int32_t, 2> tool_digital_output_modes{1, 1};  ///< 1 sinking, 2 sourcing, 3 push/pull
+  ToolCommunication tool_communication;
 };
 
 struct Payload {

@@ -154,6 +154,12 @@ void World::step(ControllerState & state)
   if (gripper_) {
     gripper_->step(cycle_time_);
   }
+  if (robotiq_gripper_) {
+    robotiq_gripper_->step(cycle_time_, state.is_powered());
+  }
+  if (digital_gripper_) {
+    digital_gripper_->step(cycle_time_, state.io);
+  }
   contact_detector_.record(sensor_.force(), state);
 }
 

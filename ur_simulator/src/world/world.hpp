@@ -10,7 +10,9 @@
 #include "common/types.hpp"
 #include "state/controller_state.hpp"
 #include "world/contact_detector.hpp"
+#include "world/digital_gripper.hpp"
 #include "world/force_torque_sensor.hpp"
+#include "world/robotiq_gripper.hpp"
 #include "world/soft_gripper.hpp"
 
 namespace ur_simulator {
@@ -63,10 +65,14 @@ class World {
   void attach_load(const Payload & load);
   const Payload & load() const { return load_; }
 
-  /// The gripper at the flange, nullptr if there is none.
+  /// The grippers at the flange, nullptr if there is none of this kind.
   SoftGripper * gripper() { return gripper_ ? &*gripper_ : nullptr; }
   const SoftGripper * gripper() const { return gripper_ ? &*gripper_ : nullptr; }
+  RobotiqGripper * robotiq_gripper() { return robotiq_gripper_ ? &*robotiq_gripper_ : nullptr; }
+  DigitalGripper * digital_gripper() { return digital_gripper_ ? &*digital_gripper_ : nullptr; }
   void mount_gripper() { gripper_.emplace(); }
+  void mount_robotiq_gripper() { robotiq_gripper_.emplace(); }
+  void mount_digital_gripper(bool double_acting) { digital_gripper_.emplace(double_acting); }
 
   /// zero_ftsensor(): the reading is relative to that of the next step from then on. RTDE's ft_raw_wrench is
   /// unaffected.
@@ -97,6 +103,8 @@ class World {
   ForceTorqueSensor sensor_;
   ContactDetector contact_detector_;
   std::optional<SoftGripper> gripper_;
+  std::optional<RobotiqGripper> robotiq_gripper_;
+  std::optional<DigitalGripper> digital_gripper_;
 };
 
 }  // namespace ur_simulator

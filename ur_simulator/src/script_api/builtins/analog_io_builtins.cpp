@@ -77,19 +77,6 @@ Outcome set_domain(RobotContext & robot, Arguments arguments)
   return Value();
 }
 
-Outcome set_tool_voltage(RobotContext & robot, Arguments arguments)
-{
-  ArgumentReader reader(arguments);
-  const std::int32_t voltage = reader.integer(0, "voltage");
-  reader.require(voltage == 0 || voltage == 12 || voltage == 24,
-                 fmt::format("voltage must be 0, 12 or 24, is {}", voltage));
-  if (!reader) {
-    return reader.failure();
-  }
-  robot.state().io.tool_output_voltage = voltage;
-  return Value();
-}
-
 }  // namespace
 
 void add_analog_io_builtins(Library & library, const RobotContextPtr & robot)
@@ -109,7 +96,6 @@ void add_analog_io_builtins(Library & library, const RobotContextPtr & robot)
                     set_domain<&Io::tool_analog_input_types, 0>);
   library.add_indexed_name("analog_in", "get_analog_in");
   library.add_indexed_name("analog_out", "get_analog_out", "set_analog_out");
-  add_robot_builtin(library, robot, "set_tool_voltage", {"voltage"}, 1, set_tool_voltage);
 }
 
 }  // namespace ur_simulator::script_api

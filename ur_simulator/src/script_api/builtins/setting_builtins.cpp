@@ -77,7 +77,6 @@ std::vector<Setting> io_settings()
   using enum ArgumentType;
   const char * const freedrive = "accepted; inputs do not start freedrive";
   const char * const runstate = "accepted; outputs keep their values when the program stops";
-  const char * const tool = "accepted; no device is connected to the tool";
   return {
       {"set_standard_digital_input_action", {{"port", integer, 0, 7}, {"action", string}}, 2, freedrive},
       {"set_configurable_digital_input_action", {{"port", integer, 0, 7}, {"action", string}}, 2, freedrive},
@@ -109,17 +108,6 @@ std::vector<Setting> io_settings()
        2,
        "accepted; inputs have one range, 0 to 10 V"},
       {"set_runstate_outputs", {{"outputs", list}}, 1, runstate},
-      {"set_tool_communication",
-       {{"enabled", boolean},
-        {"baud_rate", integer, 9600, 5000000},
-        {"parity", integer, 0, 2},
-        {"stop_bits", integer, 1, 2},
-        {"rx_idle_chars", number, 1.0, 40.0},
-        {"tx_idle_chars", number, 0.0, 40.0}},
-       6,
-       tool},
-      {"set_tool_output_mode", {{"mode", integer, 0, 1}}, 1, tool},
-      {"set_tool_digital_output_mode", {{"n", integer, 0, 1}, {"mode", integer, 1, 3}}, 2, tool},
   };
 }
 

@@ -1,0 +1,101 @@
+#include "urcap/robotiq_server.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+#include <utility>
+#include <vector>
+
+namespace ur_simulator::urcap {
+namespace {
+
+constexpr std::size_t max_line_size = 1024;
+constexpr const char * not_understood = "?";
+
+}  // namespace
+
+RobotiqServer::RobotiqServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
+                             RobotiqGripper & gripper)
+    : gripper_(gripper), listener_(io, address, port, [this](const std::shared_ptr<Connection> & connection) {
+        accept(connection);
+      })
+{
+}
+
+RobotiqServer::~RobotiqServer()
+{
+  listener_.close_connections();
+}
+
+void RobotiqServer::accept(const std::shared_ptr<Connection> & connection)
+{
+  const std::uint64_t id = connection->id();
+  clients_.emplace(id, Client{connection, {}});
+  connection->start(
+      [this, id](std::string_view bytes) {
+        if (const auto client = clients_.find(id); client != clients_.end()) {
+          receive(client->second, bytes);
+        }
+      },
+      [this, id] { clients_.erase(id); });
+}
+
+void RobotiqServer::receive(Client & client, std::string_view bytes)
+{
+  // Sending may close the connection, which destroys the client.
+  const std::shared_ptr<Connection> connection = client.connection;
+  client.received.append(bytes);
+  const std::string received = std::exchange(client.received, {});
+  std::size_t begin = 0;
+  for (std::size_t end = received.find('\n'); end != std::string::npos; end = received.find('\n', begin)) {
+    connection->send(answer(std::string_view(received).substr(begin, end - begin)));
+    if (!connection->is_open()) {
+      return;
+    }
+    begin = end + 1;
+  }
+  if (received.size() - begin > max_line_size) {
+    connection->close();
+    return;
+  }
+  client.received = received.substr(begin);
+}
+
+std::string RobotiqServer::answer(std::string_view line)
+{
+  if (line.ends_with('\r')) {
+    line.remove_suffix(1);
+  }
+  if (line.starts_with("SET ")) {
+    return set(line.substr(4));
+  }
+  const std::string_view name = line.starts_with("GET ") ? line.substr(4) : std::string_view();
+  const auto value = gripper_.get(name);
+  if (!value) {
+    return not_understood;
+  }
+  return gripper_.powered() ? fmt::format("{} {}\n", name, *value) : fmt::format("{} ?\n", name);
+}
+
+std::string RobotiqServer::set(std::string_view assignments)
+{
+  std::istringstream words{std::string(assignments)};
+  std::vector<std::pair<std::string, int>> values;
+  for (std::string name; words >> name;) {
+    int value = 0;
+    if (!(words >> value)) {
+      return not_understood;
+    }
+    values.emplace_back(name, value);
+  }
+  RobotiqGripper changed = gripper_;
+  for (const auto & [name, value] : values) {
+    if (!changed.set(name, value)) {
+      return not_understood;
+    }
+  }
+  gripper_ = changed;
+  return values.empty() ? not_understood : "ack";
+}
+
+}  // namespace ur_simulator::urcap
