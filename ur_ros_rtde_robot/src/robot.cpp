@@ -86,6 +86,11 @@ ArmLimits Robot::limits() const
   return impl_->model.limits();
 }
 
+const std::string & Robot::address() const
+{
+  return impl_->options.address;
+}
+
 int Robot::realtime_priority() const
 {
   return impl_->options.realtime_priority;

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "connection/tcp_socket.hpp"
 #include "program/script_server.hpp"
 #include "robot_fixture.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 
 namespace ur_ros_rtde::test {
 namespace {

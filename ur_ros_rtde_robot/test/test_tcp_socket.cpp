@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "connection/ports.hpp"
-#include "connection/tcp_socket.hpp"
 #include "motion/motion_stopper.hpp"
 #include "support.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 
 namespace {
 /// Host names with this ending resolve to the test's controller.

@@ -7,18 +7,12 @@
 
 #include "check_result.hpp"
 #include "ur_ros_rtde/command.hpp"
+#include "ur_ros_rtde/digital_output.hpp"
 
 namespace ur_ros_rtde {
 
 /// How long it may take until the state of the robot contains a new setting.
 constexpr std::chrono::seconds setting_timeout{1};
-
-/// The digital outputs of the controller: 0-7 standard, 8-15 configurable, 16-17 tool.
-constexpr unsigned first_configurable_output = 8;
-constexpr unsigned first_tool_output = 16;
-
-/// Sets digital output `number` (0-17) and waits until the robot reports its new state.
-Outcome set_digital_output(Run & run, unsigned number, bool state);
 
 /// Calls `set` and waits until the robot reports that analog output `pin` is `value`, in A or V, within
 /// `tolerance`.

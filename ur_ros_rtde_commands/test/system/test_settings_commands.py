@@ -7,8 +7,9 @@ from arm_state import get_tcp_pose
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from support import wait_for
 
-from ur_ros_rtde_msgs.action import (GetPose, SendScript, SetAnalogOutput, SetDigitalOutput, SetGravity, SetPayload, SetRegister,
-                                     SetTargetPayload, SetTcp, SetWatchdog)
+from ur_ros_rtde_msgs.action import (GetPose, MoveJ, SendScript, SetAnalogOutput, SetDigitalOutput, SetGravity, SetPayload, SetRegister,
+                                     SetTargetPayload, SetTcp, SetToolAnalogInputDomain, SetToolCommunication,
+                                     SetToolDigitalOutputMode, SetToolOutputMode, SetToolVoltage, SetWatchdog)
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 
@@ -104,3 +105,39 @@ def test_set_output_without_received_packages_fails_with_link_lost(robot, simula
     finally:
         simulator.control("drop_links", which="rtde")
     wait_for(lambda: robot.send(SetDigitalOutput, "set_standard_digital_output", pin=2, state=True).accepted, 10.0, "the reconnection")
+
+
+@pytest.mark.parametrize("name, kind, fields, output, expected", [
+    ("set_tool_voltage", SetToolVoltage, {"voltage": 12}, "tool_output_voltage", 12),
+    ("set_tool_output_mode", SetToolOutputMode, {"mode": SetToolOutputMode.Goal.DUAL_PIN_POWER}, "tool_output_mode", 1),
+    ("set_tool_digital_output_mode", SetToolDigitalOutputMode, {"pin": 1, "mode": SetToolDigitalOutputMode.Goal.PUSH_PULL},
+     "tool_digital_output_modes", [1, 3]),
+    ("set_tool_analog_input_domain", SetToolAnalogInputDomain, {"pin": 1, "domain": SetToolAnalogInputDomain.Goal.VOLTAGE},
+     "tool_analog_input_types", 2),
+    ("set_tool_communication", SetToolCommunication, {"baud_rate": 1000000, "parity": 2, "stop_bits": 2, "rx_idle_chars": 2.5},
+     "tool_communication", {"enabled": True, "baud_rate": 1000000, "parity": 2, "stop_bits": 2, "rx_idle_chars": 2.5,
+                            "tx_idle_chars": 3.5}),
+])
+def test_sets_the_tool_connector(robot, simulator, name, kind, fields, output, expected):
+    robot.send(kind, name, **fields).succeeded()
+    assert simulator.state()["io"][output] == expected
+
+
+def test_the_tool_voltage_can_be_set_during_a_motion(robot, simulator):
+    goal = robot.send(MoveJ, "move_j", joint_positions=[0.8, -1.57, 1.57, -1.57, -1.57, 0.0], speed=0.3)
+    wait_for(lambda: not simulator.is_at_rest(), 10.0, "the motion")
+    robot.send(SetToolVoltage, "set_tool_voltage", voltage=24).succeeded()
+    assert simulator.state()["io"]["tool_output_voltage"] == 24 and not goal.is_finished()
+    goal.succeeded()
+
+
+@pytest.mark.parametrize("name, kind, fields, mentions", [
+    ("set_tool_voltage", SetToolVoltage, {"voltage": 5}, "voltage is 5 V, it must be 0, 12 or 24"),
+    ("set_tool_output_mode", SetToolOutputMode, {"mode": 2}, "mode is 2"),
+    ("set_tool_digital_output_mode", SetToolDigitalOutputMode, {"pin": 0, "mode": 0}, "mode is 0"),
+    ("set_tool_analog_input_domain", SetToolAnalogInputDomain, {"pin": 2}, "pin is 2"),
+    ("set_tool_communication", SetToolCommunication, {"baud_rate": 14400}, "baud_rate is 14400, it must be one of 9600"),
+])
+def test_invalid_settings_of_the_tool_connector_are_rejected(robot, name, kind, fields, mentions):
+    refused = robot.send(kind, name, **fields)
+    assert not refused.accepted and mentions in robot.refusal(refused).message

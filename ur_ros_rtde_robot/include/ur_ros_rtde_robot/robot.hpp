@@ -68,6 +68,8 @@ class Robot {
   std::string model() const;
   /// Calibrated kinematics of the arm, as its controller reports them; none while they are unknown.
   std::optional<kinematics::DhRows> calibration() const;
+  /// Of the controller: RobotOptions::address.
+  const std::string & address() const;
   int realtime_priority() const;
 
   /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) if the interface is

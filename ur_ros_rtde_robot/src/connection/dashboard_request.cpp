@@ -7,7 +7,7 @@
 #include <span>
 
 #include "connection/ports.hpp"
-#include "connection/tcp_socket.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {

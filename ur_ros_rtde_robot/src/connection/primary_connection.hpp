@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "connection/tcp_socket.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 #include "ur_ros_rtde_trajectory/arm.hpp"
 
 namespace ur_ros_rtde {

@@ -1,4 +1,4 @@
-#include "connection/tcp_socket.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 
 #include <arpa/inet.h>
 #include <fcntl.h>

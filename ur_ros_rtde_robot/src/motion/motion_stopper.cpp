@@ -6,9 +6,9 @@
 #include <array>
 
 #include "connection/ports.hpp"
-#include "connection/tcp_socket.hpp"
 #include "motion/motion_blocker.hpp"
 #include "state/wait_until.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -13,9 +13,9 @@
 #include <thread>
 
 #include "connection/retry_delay.hpp"
-#include "connection/tcp_socket.hpp"
 #include "state/sample_reader.hpp"
 #include "ur_ros_rtde_robot/connection/change_logger.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
 namespace ur_ros_rtde {

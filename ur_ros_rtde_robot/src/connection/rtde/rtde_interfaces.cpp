@@ -12,8 +12,8 @@
 
 #include "connection/ports.hpp"
 #include "connection/script_check.hpp"
-#include "connection/tcp_socket.hpp"
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <string>
 
-#include "connection/tcp_socket.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {

@@ -14,7 +14,7 @@
 #include "connection/ports.hpp"
 #include "connection/rtde/rtde_header.hpp"
 #include "connection/rtde/rtde_probe.hpp"
-#include "connection/tcp_socket.hpp"
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 
 namespace ur_ros_rtde {
 namespace {
