@@ -134,7 +134,7 @@ def test_an_address_that_cannot_be_reached():
     ("5.99.0", "ur10e", State.WARNING, "is newer than 5.25"), ("3.15.8", "ur5", State.OK, "PolyScope 3.15.8"),
     ("3.3.0", "ur5", State.FAULT, "is older than 3.5"), ("5.5.0", "ur3e", State.OK, "PolyScope 5.5.0")])
 def test_versions_of_polyscope(version, model, state, mentions):
-    other = Simulator(another_address(), "--polyscope", version, model=model, urcap="")
+    other = Simulator(another_address(), "--polyscope", version, model=model, urcaps=())
     try:
         findings = check(other.address)
         assert the(findings, "version").state is state and mentions in the(findings, "version").text

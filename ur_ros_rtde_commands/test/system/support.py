@@ -120,12 +120,12 @@ class Process:
 
 
 class Simulator:
-    def __init__(self, address, *arguments, model="ur10e", urcap="onrobot_soft_gripper",
+    def __init__(self, address, *arguments, model="ur10e", urcaps=("onrobot_soft_gripper", "robotiq_gripper"),
                  recovery_time_factor=RECOVERY_TIME_FACTOR, real_time_factor=REAL_TIME_FACTOR):
         self.address = address
         self._real_time_factor = real_time_factor
         self._arguments = ["--model", model, "--recovery-time-factor", str(recovery_time_factor),
-                           *(["--urcap", urcap] if urcap else []), *arguments]
+                           *(f"--urcap={urcap}" for urcap in urcaps), *arguments]
         self.process = None
         self.start()
 

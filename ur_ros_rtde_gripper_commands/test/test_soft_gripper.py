@@ -71,7 +71,7 @@ def test_cancel_ends_the_goal_and_the_driver_stays_ready(gripper, simulator):
 
 
 def test_a_robot_without_the_urcap_rejects_gripper_commands_and_stays_ready(client, addresses):
-    bare = Simulator(addresses[1], urcap=None)
+    bare = Simulator(addresses[1], urcaps=())
     driver = start_node("driver", bare.address, "ur_type:=ur10e", namespace="bare")
     other = Client("bare")
     try:
