@@ -1,13 +1,15 @@
 """The program ur_simulator: several robots in one process, and refused options."""
 
+import contextlib
 import json
 import os
+import re
 import socket
 import subprocess
 
 import pytest
 from ur_tools.environment import program, run_environment
-from ur_tools.layout import Layout
+from ur_tools.layout import ROOT, Layout
 
 BACKGROUND = True
 LAYOUT = Layout.of_environment()
@@ -27,15 +29,20 @@ def control(address, **request):
         return json.loads(lines.readline())
 
 
-@pytest.fixture
-def ten_robots():
-    with subprocess.Popen([PROGRAM, "--address", ADDRESSES[0], "--count", "10"], env=run_environment(LAYOUT),
-                          stdout=subprocess.PIPE, text=True) as process:
+@contextlib.contextmanager
+def running(*options):
+    with subprocess.Popen([PROGRAM, "--address", ADDRESSES[0], *options], env=run_environment(LAYOUT), stdout=subprocess.PIPE,
+                          text=True) as process:
         try:
-            lines = [process.stdout.readline() for _ in ADDRESSES]
-            yield process, lines
+            yield process
         finally:
             process.terminate()
+
+
+@pytest.fixture
+def ten_robots():
+    with running("--count", "10") as process:
+        yield process, [process.stdout.readline() for _ in ADDRESSES]
 
 
 def test_ten_robots_run_on_consecutive_addresses(ten_robots):
@@ -64,3 +71,32 @@ def test_refused_options_are_named(arguments, message):
     result = subprocess.run([PROGRAM, *arguments], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
     assert result.returncode != 0
     assert message in result.stdout + result.stderr
+
+
+def documented_world_file():
+    section = (ROOT / "docs" / "simulator.md").read_text().split("## World files")[1]
+    return re.search(r"```yaml\n(.*?)```", section, re.S).group(1)
+
+
+def test_the_documented_world_file_runs(tmp_path):
+    file = tmp_path / "cell.yaml"
+    file.write_text(documented_world_file())
+    with running("--world", str(file)) as process:
+        assert process.stdout.readline().startswith("ready: ")
+        state = state_of(ADDRESSES[0])
+        assert len(state["surfaces"]) == len(state["boxes"]) == len(state["springs"]) == 1
+        while state["timestamp"] < 2.1:
+            state = state_of(ADDRESSES[0])
+        log = control(ADDRESSES[0], command="log")["entries"]
+    assert state["io"]["digital_inputs"] == 8 and state["safety_mode"] == "PROTECTIVE_STOP"
+    assert 0.05 < state["actual"]["position"][0] <= 0.2 + 1e-3
+    times = {entry["text"].rsplit(": ", 1)[1]: entry["timestamp"] for entry in log if entry["source"] == "world"}
+    assert times == pytest.approx({"push": 0.2, "set_digital_input": 0.5, "run_script": 1.0, "drop_links": 1.5, "protective_stop": 2.0})
+
+
+def test_an_invalid_world_file_is_refused(tmp_path):
+    file = tmp_path / "cell.yaml"
+    file.write_text("boxes:\n  - center: [0, 0, 0]\n    size: [0.4, 0.3, -0.3]\n")
+    result = subprocess.run([PROGRAM, "--world", str(file)], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
+    assert result.returncode == 1
+    assert result.stderr == f"ur_simulator: {file}:3: field 'size[2]' is -0.3: it must be between 0.001 and 20\n"

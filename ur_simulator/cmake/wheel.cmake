@@ -1,5 +1,5 @@
 # The Python wheel (pyproject.toml) contains the program alone. It needs no library of the build machine except the
-# C library: fmt is compiled in, the C++ library is linked statically.
+# C library: fmt is compiled in, yaml-cpp and the C++ library are linked statically.
 set(BUILD_TESTING OFF)
 set(wheel_program_folder ${SKBUILD_PLATLIB_DIR}/ur_simulator/bin)
 set(UR_SIMULATOR_PROGRAM "" CACHE FILEPATH "Program to package instead of building one: for tests of the wheel")
@@ -10,4 +10,6 @@ if(UR_SIMULATOR_PROGRAM)
 endif()
 
 set(fmt_library fmt::fmt-header-only)
+find_library(UR_SIMULATOR_YAML_LIBRARY libyaml-cpp.a REQUIRED)
+set(yaml_library ${UR_SIMULATOR_YAML_LIBRARY})
 add_link_options(-static-libstdc++ -static-libgcc LINKER:--strip-all)

@@ -91,6 +91,8 @@ void add_options(CLI::App & app, AppOptions & options)
       ->delimiter(',');
   app.add_option("--joints", options.joints, "initial joint positions, rad")->expected(6)->delimiter(',');
   app.add_option("--surface", options.surface_texts, "horizontal elastic surface as z=height, m; repeatable");
+  app.add_option("--world", simulator.world_file,
+                 "YAML file with surfaces, boxes, springs, the load and a time line of events");
   app.add_option("--seed", simulator.seed, "seed of the sensor noise")->capture_default_str();
   app.add_option("--calibration-seed", simulator.calibration_seed,
                  "selects a random calibration of the arm; 0: nominal kinematics")

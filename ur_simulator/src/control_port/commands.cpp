@@ -25,7 +25,7 @@ json help()
       list.push_back({{"command", command.name}, {"fields", command.fields}, {"help", command.help}});
     }
   }
-  return {{"ok", true}, {"commands", std::move(list)}};
+  return {{"commands", std::move(list)}};
 }
 
 const Command * find_command(std::string_view name)
@@ -42,23 +42,31 @@ const Command * find_command(std::string_view name)
 
 }  // namespace
 
-json execute_request(ControlPortContext & context, const json & request)
+Action prepare_request(const json & request)
 {
   if (!request.is_object()) {
-    return error_reply(R"(a request is a JSON object with a field "command": try {"command": "help"})");
+    throw RequestError(R"(a request is a JSON object with a field "command": try {"command": "help"})");
   }
+  RequestFields fields(request);
+  const std::string name = fields.string("command");
+  if (name == "help") {
+    return [](ControlPortContext &) { return help(); };
+  }
+  const Command * command = find_command(name);
+  if (command == nullptr) {
+    throw RequestError(fmt::format("command '{}' is not known: \"help\" lists all commands", name),
+                       "command");
+  }
+  Action action = command->prepare(fields);
+  fields.reject_unknown();
+  return action;
+}
+
+json execute_request(ControlPortContext & context, const json & request)
+{
   try {
-    RequestFields fields(request);
-    const std::string name = fields.string("command");
-    if (name == "help") {
-      return help();
-    }
-    const Command * command = find_command(name);
-    if (command == nullptr) {
-      return error_reply(fmt::format("command '{}' is not known: \"help\" lists all commands", name));
-    }
     json reply{{"ok", true}};
-    reply.update(command->execute(context, fields));
+    reply.update(prepare_request(request)(context));
     return reply;
   } catch (const std::exception & error) {
     return error_reply(error.what());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
@@ -9,14 +10,17 @@
 
 namespace ur_simulator::control_port {
 
+/// Executes a request whose fields have been checked. Returns the fields of the reply; throws if the command
+/// is refused in the present state.
+using Action = std::function<nlohmann::json(ControlPortContext & context)>;
+
 /// A command of the control port.
 struct Command {
   std::string_view name;
   std::string_view fields;  ///< for help: names, units, ranges, defaults
   std::string_view help;    ///< one sentence
-  /// Reads the fields, calls RequestFields::reject_unknown() and executes the command. Returns the fields of
-  /// the reply.
-  nlohmann::json (*execute)(ControlPortContext & context, RequestFields & fields);
+  /// Reads the fields. Throws RequestError if one is invalid.
+  Action (*prepare)(RequestFields & fields);
 };
 
 std::span<const Command> world_commands();       ///< surfaces, pushes, loads, joint positions, inputs
@@ -25,6 +29,8 @@ std::span<const Command> robot_commands();       ///< power, safety, programs, p
 std::span<const Command> connection_commands();  ///< connection faults, reboot
 std::span<const Command> query_commands();       ///< state, registers, log, trace
 
+/// Checks a request. Throws RequestError if the command or a field is unknown, missing or invalid.
+Action prepare_request(const nlohmann::json & request);
 /// Executes a request. The reply has the field "ok"; if it is false, "error" states field, value and limit.
 nlohmann::json execute_request(ControlPortContext & context, const nlohmann::json & request);
 

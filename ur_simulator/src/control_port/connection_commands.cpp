@@ -37,104 +37,98 @@ rtde::ClientRole role_of(const std::string & client_name)
   return client_name == "receive" ? rtde::ClientRole::receive : rtde::ClientRole::io;
 }
 
-/// Calls `action` for the connections that the fields "which" and "clients" select. The reply contains their
+/// Calls `visit` for the connections that the fields "which" and "clients" select. The reply contains their
 /// number.
-json for_selected_connections(ControlPortContext & context, RequestFields & fields,
-                              const std::function<void(Connection &)> & action)
+Action for_selected_connections(RequestFields & fields, const std::function<void(Connection &)> & visit)
 {
   const std::string which = fields.choice("which", server_names, "all");
   const std::string clients = fields.choice("clients", client_names, "all");
-  fields.reject_unknown();
-  std::size_t count = 0;
-  const auto counted_action = [&](Connection & connection) {
-    ++count;
-    action(connection);
-  };
-  if (clients == "all") {
-    for (Listener * listener : select_listeners(context, which)) {
-      listener->for_each_connection(counted_action);
-    }
-  } else if (which == "all" || which == "rtde") {
-    context.rtde.for_each_connection(role_of(clients), counted_action);
-  } else {
+  if (clients != "all" && which != "all" && which != "rtde") {
     throw RequestError(
-        fmt::format("field 'clients' is '{}': it applies to connections of 'rtde' only", clients));
+        fmt::format("field 'clients' is '{}': it applies to connections of 'rtde' only", clients), "clients");
   }
-  return {{"connections", count}};
+  return [=](ControlPortContext & context) -> json {
+    std::size_t count = 0;
+    const auto counted_visit = [&](Connection & connection) {
+      ++count;
+      visit(connection);
+    };
+    if (clients != "all") {
+      context.rtde.for_each_connection(role_of(clients), counted_visit);
+    } else {
+      for (Listener * listener : select_listeners(context, which)) {
+        listener->for_each_connection(counted_visit);
+      }
+    }
+    return {{"connections", count}};
+  };
 }
 
-json drop_links(ControlPortContext & context, RequestFields & fields)
+Action drop_links(RequestFields & fields)
 {
   const bool reset = fields.boolean("reset", false);
   return for_selected_connections(
-      context, fields, [reset](Connection & connection) { reset ? connection.reset() : connection.close(); });
+      fields, [reset](Connection & connection) { reset ? connection.reset() : connection.close(); });
 }
 
-json stall_links(ControlPortContext & context, RequestFields & fields)
+Action stall_links(RequestFields & fields)
 {
   const bool stalled = fields.boolean("stalled", true);
-  return for_selected_connections(context, fields,
+  return for_selected_connections(fields,
                                   [stalled](Connection & connection) { connection.set_stalled(stalled); });
 }
 
-json delay_links(ControlPortContext & context, RequestFields & fields)
+Action delay_links(RequestFields & fields)
 {
   const std::chrono::milliseconds delay(fields.integer("ms", 0, 60000));
-  return for_selected_connections(context, fields,
-                                  [delay](Connection & connection) { connection.set_delay(delay); });
+  return for_selected_connections(fields, [delay](Connection & connection) { connection.set_delay(delay); });
 }
 
-json lose_commands(ControlPortContext & context, RequestFields & fields)
+Action lose_commands(RequestFields & fields)
 {
   const auto count = static_cast<std::uint64_t>(fields.integer("count", 0, 1000000, 1));
-  return for_selected_connections(context, fields,
+  return for_selected_connections(fields,
                                   [count](Connection & connection) { connection.discard_next_reads(count); });
 }
 
-json send_garbage(ControlPortContext & context, RequestFields & fields)
+Action send_garbage(RequestFields & fields)
 {
   const auto bytes = static_cast<std::size_t>(fields.integer("bytes", 1, 65536, 64));
   std::string garbage(bytes, '\0');
   for (std::size_t i = 0; i < bytes; ++i) {
     garbage[i] = static_cast<char>((i * 167 + 13) % 256);
   }
-  return for_selected_connections(context, fields,
-                                  [&garbage](Connection & connection) { connection.send(garbage); });
+  return for_selected_connections(fields, [garbage](Connection & connection) { connection.send(garbage); });
 }
 
-json set_accepting(ControlPortContext & context, RequestFields & fields, bool accepting)
+/// Opens or closes the ports that the field "which" selects.
+template <bool accepting>
+Action set_accepting(RequestFields & fields)
 {
   const std::string which = fields.choice("which", server_names, "all");
-  fields.reject_unknown();
-  for (Listener * listener : select_listeners(context, which)) {
-    listener->set_accepting(accepting);
-  }
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    for (Listener * listener : select_listeners(context, which)) {
+      listener->set_accepting(accepting);
+    }
+    return json::object();
+  };
 }
 
-json refuse_connections(ControlPortContext & context, RequestFields & fields)
-{
-  return set_accepting(context, fields, false);
-}
-
-json accept_connections(ControlPortContext & context, RequestFields & fields)
-{
-  return set_accepting(context, fields, true);
-}
-
-json fieldbus(ControlPortContext & context, RequestFields & fields)
+Action fieldbus(RequestFields & fields)
 {
   const bool on = fields.boolean("on", true);
-  fields.reject_unknown();
-  return {{"taken_by_others", context.rtde.set_fieldbus_enabled(on)}};
+  return [=](ControlPortContext & context) -> json {
+    return {{"taken_by_others", context.rtde.set_fieldbus_enabled(on)}};
+  };
 }
 
-json reboot(ControlPortContext & context, RequestFields & fields)
+Action reboot(RequestFields & fields)
 {
   const double duration = fields.number("duration", {0.0, 600.0}, 1.0);
-  fields.reject_unknown();
-  context.reboot(duration);
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    context.reboot(duration);
+    return json::object();
+  };
 }
 
 constexpr std::array connection_command_table{
@@ -153,8 +147,8 @@ constexpr std::array connection_command_table{
     Command{"send_garbage", "which, clients: see drop_links; bytes 1..65536 (64)", "Sends meaningless bytes.",
             send_garbage},
     Command{"refuse_connections", "which (all)", "Closes ports; existing connections stay open.",
-            refuse_connections},
-    Command{"accept_connections", "which (all)", "Opens ports again.", accept_connections},
+            set_accepting<false>},
+    Command{"accept_connections", "which (all)", "Opens ports again.", set_accepting<true>},
     Command{"fieldbus", "on true|false (true)",
             "Reserves the free input registers of the lower range for a fieldbus: IN_USE for RTDE clients. "
             "Returns the number of registers that clients already use.",

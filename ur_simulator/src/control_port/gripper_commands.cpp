@@ -1,4 +1,6 @@
 #include <array>
+#include <optional>
+#include <string>
 
 #include "control_port/commands.hpp"
 
@@ -7,57 +9,76 @@ namespace {
 
 using nlohmann::json;
 
-json soft_gripper(ControlPortContext & context, RequestFields & fields)
+/// Empty: not given.
+std::optional<bool> optional_boolean(RequestFields & fields, const std::string & name)
 {
-  SoftGripper * gripper = context.world.gripper();
-  if (gripper == nullptr) {
-    throw RequestError("there is no gripper: start the simulator with --urcap onrobot_soft_gripper");
-  }
-  const bool stuck = fields.boolean("stuck", gripper->stuck());
-  const double object = fields.number("object", {0.0, SoftGripper::max_width}, 0.0);
-  fields.reject_unknown();
-  gripper->set_stuck(stuck);
-  gripper->set_object(object);
-  return {{"width", gripper->width()}, {"busy", gripper->busy()}, {"holds_object", gripper->holds_object()}};
+  return fields.has(name) ? std::optional(fields.boolean(name)) : std::nullopt;
 }
 
-json robotiq_gripper(ControlPortContext & context, RequestFields & fields)
+/// mm; empty: not given.
+std::optional<double> optional_width(RequestFields & fields, const std::string & name, double max)
 {
-  RobotiqGripper * gripper = context.world.robotiq_gripper();
+  return fields.has(name) ? std::optional(fields.number(name, {0.0, max})) : std::nullopt;
+}
+
+template <typename Gripper>
+Gripper & installed(Gripper * gripper, const char * otherwise)
+{
   if (gripper == nullptr) {
-    throw RequestError("there is no Robotiq gripper: start the simulator with --urcap robotiq_gripper");
+    throw RequestError(otherwise);
   }
-  const bool stuck = fields.boolean("stuck", gripper->stuck());
-  const double object = fields.number("object", {0.0, RobotiqGripper::stroke}, gripper->object_width());
+  return *gripper;
+}
+
+Action soft_gripper(RequestFields & fields)
+{
+  const auto stuck = optional_boolean(fields, "stuck");
+  const double object = fields.number("object", {0.0, SoftGripper::max_width}, 0.0);
+  return [=](ControlPortContext & context) -> json {
+    SoftGripper & gripper =
+        installed(context.world.gripper(),
+                  "there is no gripper: start the simulator with --urcap onrobot_soft_gripper");
+    gripper.set_stuck(stuck.value_or(gripper.stuck()));
+    gripper.set_object(object);
+    return {{"width", gripper.width()}, {"busy", gripper.busy()}, {"holds_object", gripper.holds_object()}};
+  };
+}
+
+Action robotiq_gripper(RequestFields & fields)
+{
+  const auto stuck = optional_boolean(fields, "stuck");
+  const auto object = optional_width(fields, "object", RobotiqGripper::stroke);
   const double stiffness = fields.number("stiffness", {100.0, 1e9}, 1e9);
   const bool activate = fields.boolean("activate", false);
-  const bool has_fault = fields.has("fault");
-  const auto fault = static_cast<int>(fields.integer("fault", 0, 15, 0));
-  fields.reject_unknown();
-  gripper->set_stuck(stuck);
-  gripper->set_object(object, stiffness);
-  if (activate) {
-    gripper->set_active();
-  }
-  if (has_fault) {
-    gripper->set_fault(fault);
-  }
-  return json::object();
+  const auto fault = fields.has("fault") ? std::optional(fields.integer("fault", 0, 15)) : std::nullopt;
+  return [=](ControlPortContext & context) -> json {
+    RobotiqGripper & gripper =
+        installed(context.world.robotiq_gripper(),
+                  "there is no Robotiq gripper: start the simulator with --urcap robotiq_gripper");
+    gripper.set_stuck(stuck.value_or(gripper.stuck()));
+    gripper.set_object(object.value_or(gripper.object_width()), stiffness);
+    if (activate) {
+      gripper.set_active();
+    }
+    if (fault) {
+      gripper.set_fault(static_cast<int>(*fault));
+    }
+    return json::object();
+  };
 }
 
-json digital_gripper(ControlPortContext & context, RequestFields & fields)
+Action digital_gripper(RequestFields & fields)
 {
-  DigitalGripper * gripper = context.world.digital_gripper();
-  if (gripper == nullptr) {
-    throw RequestError(
-        "there is no gripper at the digital outputs: start the simulator with --digital-gripper");
-  }
-  const bool air = fields.boolean("air", gripper->air());
-  const double object = fields.number("object", {0.0, DigitalGripper::stroke}, gripper->object());
-  fields.reject_unknown();
-  gripper->set_air(air);
-  gripper->set_object(object);
-  return {{"width", gripper->width()}};
+  const auto air = optional_boolean(fields, "air");
+  const auto object = optional_width(fields, "object", DigitalGripper::stroke);
+  return [=](ControlPortContext & context) -> json {
+    DigitalGripper & gripper =
+        installed(context.world.digital_gripper(),
+                  "there is no gripper at the digital outputs: start the simulator with --digital-gripper");
+    gripper.set_air(air.value_or(gripper.air()));
+    gripper.set_object(object.value_or(gripper.object()));
+    return {{"width", gripper.width()}};
+  };
 }
 
 constexpr std::array gripper_command_table{
@@ -65,12 +86,13 @@ constexpr std::array gripper_command_table{
             "Makes the soft gripper stick, or places an object of this width between its cups; returns its "
             "width.",
             soft_gripper},
-    Command{"robotiq_gripper",
-            "stuck true|false (unchanged); object mm, 0 none (unchanged); stiffness N/m of the object (1e9); "
-            "fault 0..15, 0 none (unchanged); activate true|false (false)",
-            "Makes the Robotiq gripper stick, places an object between its fingers, causes a fault, or activates "
-            "the gripper without a motion.",
-            robotiq_gripper},
+    Command{
+        "robotiq_gripper",
+        "stuck true|false (unchanged); object mm, 0 none (unchanged); stiffness N/m of the object (1e9); "
+        "fault 0..15, 0 none (unchanged); activate true|false (false)",
+        "Makes the Robotiq gripper stick, places an object between its fingers, causes a fault, or activates "
+        "the gripper without a motion.",
+        robotiq_gripper},
     Command{"digital_gripper", "air true|false (unchanged); object mm, 0 none (unchanged)",
             "Switches the compressed air of the gripper at the digital outputs, or places an object between "
             "its fingers; returns its width.",

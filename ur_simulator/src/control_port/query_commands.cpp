@@ -14,34 +14,35 @@ json registers_to_json(const Registers & registers)
   return {{"integers", registers.integers}, {"doubles", registers.doubles}};
 }
 
-json state(ControlPortContext & context, RequestFields & fields)
+Action state(RequestFields &)
 {
-  fields.reject_unknown();
-  return {{"state", state_to_json(context)}};
+  return [](ControlPortContext & context) -> json { return {{"state", state_to_json(context)}}; };
 }
 
-json registers(ControlPortContext & context, RequestFields & fields)
+Action registers(RequestFields &)
 {
-  fields.reject_unknown();
-  return {{"inputs", registers_to_json(context.state.inputs)},
-          {"outputs", registers_to_json(context.state.outputs)}};
+  return [](ControlPortContext & context) -> json {
+    return {{"inputs", registers_to_json(context.state.inputs)},
+            {"outputs", registers_to_json(context.state.outputs)}};
+  };
 }
 
-json log(ControlPortContext & context, RequestFields & fields)
+Action log(RequestFields & fields)
 {
   const auto after = static_cast<std::uint64_t>(fields.integer("after", 0, INT64_MAX, 0));
-  fields.reject_unknown();
-  json entries = json::array();
-  for (const LogEntry & entry : context.log.entries()) {
-    if (entry.number > after) {
-      entries.push_back({{"number", entry.number},
-                         {"timestamp", entry.timestamp},
-                         {"level", to_string(entry.level)},
-                         {"source", entry.source},
-                         {"text", entry.text}});
+  return [=](ControlPortContext & context) -> json {
+    json entries = json::array();
+    for (const LogEntry & entry : context.log.entries()) {
+      if (entry.number > after) {
+        entries.push_back({{"number", entry.number},
+                           {"timestamp", entry.timestamp},
+                           {"level", to_string(entry.level)},
+                           {"source", entry.source},
+                           {"text", entry.text}});
+      }
     }
-  }
-  return {{"entries", std::move(entries)}};
+    return {{"entries", std::move(entries)}};
+  };
 }
 
 template <typename Entries, typename ToJson>
@@ -66,20 +67,22 @@ json command_to_json(const CycleTrace::Command & command)
   return {command.cycle, command.arrived, command.code};
 }
 
-json trace(ControlPortContext & context, RequestFields & fields)
+Action trace(RequestFields & fields)
 {
   const auto after = static_cast<std::uint64_t>(fields.integer("after", 0, INT64_MAX, 0));
-  fields.reject_unknown();
-  const CycleTrace & trace = context.trace;
-  if (after > 0 && after <= trace.last_incomplete_cycle()) {
-    throw RequestError(
-        fmt::format("field 'after' is {}: the trace is complete only after cycle {}; request it "
-                    "more often, or without 'after' for what is left",
-                    after, trace.last_incomplete_cycle()));
-  }
-  return {{"cycles", entries_from(trace.cycles(), after + 1, cycle_to_json)},
-          {"commands", entries_from(trace.commands(), after, command_to_json)},
-          {"repeats", entries_from(trace.repeats(), after, command_to_json)}};
+  return [=](ControlPortContext & context) -> json {
+    const CycleTrace & trace = context.trace;
+    if (after > 0 && after <= trace.last_incomplete_cycle()) {
+      throw RequestError(
+          fmt::format("field 'after' is {}: the trace is complete only after cycle {}; request it "
+                      "more often, or without 'after' for what is left",
+                      after, trace.last_incomplete_cycle()),
+          "after");
+    }
+    return {{"cycles", entries_from(trace.cycles(), after + 1, cycle_to_json)},
+            {"commands", entries_from(trace.commands(), after, command_to_json)},
+            {"repeats", entries_from(trace.repeats(), after, command_to_json)}};
+  };
 }
 
 constexpr std::array query_command_table{

@@ -8,15 +8,18 @@
 namespace ur_simulator::control_port {
 namespace {
 
-double check_range(const std::string & name, const nlohmann::json & value, Range range)
+/// `element` is the name of the field, or of one of its elements.
+double check_range(const std::string & name, const std::string & element, const nlohmann::json & value,
+                   Range range)
 {
   if (!value.is_number()) {
-    throw RequestError(fmt::format("field '{}' is {}: it must be a number", name, value.dump()));
+    throw RequestError(fmt::format("field '{}' is {}: it must be a number", element, value.dump()), name);
   }
   const double number = value.get<double>();
   if (!std::isfinite(number) || number < range.min || number > range.max) {
-    throw RequestError(fmt::format("field '{}' is {}: it must be between {} and {}", name, value.dump(),
-                                   range.min, range.max));
+    throw RequestError(fmt::format("field '{}' is {}: it must be between {} and {}", element, value.dump(),
+                                   range.min, range.max),
+                       name);
   }
   return number;
 }
@@ -49,7 +52,7 @@ const nlohmann::json * RequestFields::find(const std::string & name, bool option
 double RequestFields::number(const std::string & name, Range range, std::optional<double> default_value)
 {
   const nlohmann::json * value = find(name, default_value.has_value());
-  return value == nullptr ? *default_value : check_range(name, *value, range);
+  return value == nullptr ? *default_value : check_range(name, name, *value, range);
 }
 
 std::int64_t RequestFields::integer(const std::string & name, std::int64_t min, std::int64_t max,
@@ -63,7 +66,8 @@ std::int64_t RequestFields::integer(const std::string & name, std::int64_t min, 
       (value->is_number_unsigned() && value->get<std::uint64_t>() > INT64_MAX) ||
       value->get<std::int64_t>() < min || value->get<std::int64_t>() > max) {
     throw RequestError(fmt::format("field '{}' is {}: it must be a whole number from {} to {}", name,
-                                   value->dump(), min, max));
+                                   value->dump(), min, max),
+                       name);
   }
   return value->get<std::int64_t>();
 }
@@ -75,7 +79,7 @@ bool RequestFields::boolean(const std::string & name, std::optional<bool> defaul
     return *default_value;
   }
   if (!value->is_boolean()) {
-    throw RequestError(fmt::format("field '{}' is {}: it must be true or false", name, value->dump()));
+    throw RequestError(fmt::format("field '{}' is {}: it must be true or false", name, value->dump()), name);
   }
   return value->get<bool>();
 }
@@ -87,7 +91,7 @@ std::string RequestFields::string(const std::string & name, std::optional<std::s
     return *default_value;
   }
   if (!value->is_string()) {
-    throw RequestError(fmt::format("field '{}' is {}: it must be a string", name, value->dump()));
+    throw RequestError(fmt::format("field '{}' is {}: it must be a string", name, value->dump()), name);
   }
   return value->get<std::string>();
 }
@@ -98,7 +102,8 @@ std::string RequestFields::choice(const std::string & name, std::span<const std:
   const std::string value = string(name, std::move(default_value));
   if (std::ranges::find(choices, value) == choices.end()) {
     throw RequestError(fmt::format("field '{}' is '{}': it must be one of {}", name, value,
-                                   fmt::join(choices.begin(), choices.end(), ", ")));
+                                   fmt::join(choices.begin(), choices.end(), ", ")),
+                       name);
   }
   return value;
 }
@@ -108,11 +113,11 @@ std::vector<double> RequestFields::numbers(const std::string & name, std::size_t
   const nlohmann::json & value = *find(name, false);
   if (!value.is_array() || value.size() != count) {
     throw RequestError(
-        fmt::format("field '{}' is {}: it must be an array of {} numbers", name, value.dump(), count));
+        fmt::format("field '{}' is {}: it must be an array of {} numbers", name, value.dump(), count), name);
   }
   std::vector<double> result;
   for (std::size_t i = 0; i < count; ++i) {
-    result.push_back(check_range(fmt::format("{}[{}]", name, i), value[i], range));
+    result.push_back(check_range(name, fmt::format("{}[{}]", name, i), value[i], range));
   }
   return result;
 }
@@ -137,7 +142,7 @@ void RequestFields::reject_unknown() const
 {
   for (const auto & [name, value] : request_.items()) {
     if (std::ranges::find(read_names_, name) == read_names_.end()) {
-      throw RequestError(fmt::format("field '{}' is not known to this command: see \"help\"", name));
+      throw RequestError(fmt::format("field '{}' is not known to this command: see \"help\"", name), name);
     }
   }
 }

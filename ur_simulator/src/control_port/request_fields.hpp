@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/types.hpp"
@@ -15,7 +16,16 @@ namespace ur_simulator::control_port {
 
 /// An invalid request. The text states field, value and limit.
 class RequestError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
+ public:
+  explicit RequestError(const std::string & text, std::string field = "")
+      : std::runtime_error(text), field_(std::move(field))
+  {
+  }
+  /// The invalid field; empty if the error concerns no field or a missing one.
+  const std::string & field() const { return field_; }
+
+ private:
+  std::string field_;
 };
 
 struct Range {
@@ -27,6 +37,7 @@ struct Range {
 /// missing without a default.
 class RequestFields {
  public:
+  /// `request` must outlive the object.
   explicit RequestFields(const nlohmann::json & request);
 
   bool has(std::string_view name) const;

@@ -16,169 +16,183 @@ json require_success(const Pendant::Result & result)
   return json::object();
 }
 
-json unlock_protective_stop(ControlPortContext & context, RequestFields & fields)
+Action unlock_protective_stop(RequestFields &)
 {
-  fields.reject_unknown();
-  return require_success(context.pendant.unlock_protective_stop());
+  return [](ControlPortContext & context) -> json {
+    return require_success(context.pendant.unlock_protective_stop());
+  };
 }
 
 /// Executes a function of the pendant that has no arguments.
 template <Pendant::Result (Pendant::*function)()>
-json call_pendant(ControlPortContext & context, RequestFields & fields)
+Action call_pendant(RequestFields &)
 {
-  fields.reject_unknown();
-  return require_success((context.pendant.*function)());
+  return [](ControlPortContext & context) -> json { return require_success((context.pendant.*function)()); };
 }
 
-json protective_stop(ControlPortContext & context, RequestFields & fields)
+Action protective_stop(RequestFields & fields)
 {
   const std::string reason = fields.string("reason", "requested through the control port");
-  fields.reject_unknown();
-  context.safety.trigger_protective_stop(reason);
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    context.safety.trigger_protective_stop(reason);
+    return json::object();
+  };
 }
 
-json emergency_stop(ControlPortContext & context, RequestFields & fields)
+Action emergency_stop(RequestFields & fields)
 {
   const bool pressed = fields.boolean("pressed", true);
   const bool system = fields.boolean("system", false);
-  fields.reject_unknown();
-  if (!pressed) {
-    return require_success(context.safety.release_emergency_stop());
-  }
-  context.safety.press_emergency_stop(system);
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    if (!pressed) {
+      return require_success(context.safety.release_emergency_stop());
+    }
+    context.safety.press_emergency_stop(system);
+    return json::object();
+  };
 }
 
-json safeguard(ControlPortContext & context, RequestFields & fields)
+Action safeguard(RequestFields & fields)
 {
   const bool open = fields.boolean("open", true);
-  fields.reject_unknown();
-  if (!open) {
-    return require_success(context.safety.reset_safeguard());
-  }
-  context.safety.open_safeguard();
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    if (!open) {
+      return require_success(context.safety.reset_safeguard());
+    }
+    context.safety.open_safeguard();
+    return json::object();
+  };
 }
 
-json reduced_mode(ControlPortContext & context, RequestFields & fields)
+Action reduced_mode(RequestFields & fields)
 {
   const bool on = fields.boolean("on", true);
-  fields.reject_unknown();
-  return require_success(context.safety.set_reduced(on));
+  return
+      [=](ControlPortContext & context) -> json { return require_success(context.safety.set_reduced(on)); };
 }
 
 /// Triggers a violation or a fault of the safety system.
 template <void (Safety::*trigger)(std::string_view reason)>
-json trigger_failure(ControlPortContext & context, RequestFields & fields)
+Action trigger_failure(RequestFields & fields)
 {
   const std::string reason = fields.string("reason", "caused through the control port");
-  fields.reject_unknown();
-  (context.safety.*trigger)(reason);
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    (context.safety.*trigger)(reason);
+    return json::object();
+  };
 }
 
-json power(ControlPortContext & context, RequestFields & fields)
+Action power(RequestFields & fields)
 {
   constexpr std::array<std::string_view, 4> targets{"off", "on", "release_brakes", "running"};
   const std::string to = fields.choice("to", targets);
-  fields.reject_unknown();
-  if (to == "running") {
-    context.safety.start_running(context.state);
-    return json::object();
-  }
-  return require_success(to == "off"  ? context.pendant.power_off()
-                         : to == "on" ? context.pendant.power_on()
-                                      : context.pendant.release_brakes());
+  return [=](ControlPortContext & context) -> json {
+    if (to == "running") {
+      context.safety.start_running(context.state);
+      return json::object();
+    }
+    return require_success(to == "off"  ? context.pendant.power_off()
+                           : to == "on" ? context.pendant.power_on()
+                                        : context.pendant.release_brakes());
+  };
 }
 
-json remote_control(ControlPortContext & context, RequestFields & fields)
+Action remote_control(RequestFields & fields)
 {
   const bool on = fields.boolean("on", true);
-  fields.reject_unknown();
-  context.pendant.set_remote_control(on);
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    context.pendant.set_remote_control(on);
+    return json::object();
+  };
 }
 
-json store_program(ControlPortContext & context, RequestFields & fields)
+Action store_program(RequestFields & fields)
 {
   const std::string name = fields.string("name");
   const std::string script = fields.string("script");
   const bool load = fields.boolean("load", false);
-  fields.reject_unknown();
   if (name.empty()) {
-    throw RequestError("field 'name' is empty: it must be a file name such as 'pick.urp'");
+    throw RequestError("field 'name' is empty: it must be a file name such as 'pick.urp'", "name");
   }
-  context.pendant.store_program(name, script);
-  if (load && !context.pendant.load_program(name)) {
-    throw RequestError("field 'script' does not compile: the log contains the error");
-  }
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    context.pendant.store_program(name, script);
+    if (load && !context.pendant.load_program(name)) {
+      throw RequestError("field 'script' does not compile: the log contains the error");
+    }
+    return json::object();
+  };
 }
 
-json run_script(ControlPortContext & context, RequestFields & fields)
+Action run_script(RequestFields & fields)
 {
   const std::string script = fields.string("script");
-  fields.reject_unknown();
-  return require_success(context.pendant.run_script(script));
+  return [=](ControlPortContext & context) -> json {
+    return require_success(context.pendant.run_script(script));
+  };
 }
 
-json play(ControlPortContext & context, RequestFields & fields)
+Action play(RequestFields &)
 {
-  fields.reject_unknown();
-  // If the program is requested from a host, it starts later and errors are only logged.
-  auto result = std::make_shared<Pendant::Result>();
-  context.pendant.play([result](const Pendant::Result & play_result) { *result = play_result; });
-  return require_success(*result);
+  return [](ControlPortContext & context) -> json {
+    // If the program is requested from a host, it starts later and errors are only logged.
+    auto result = std::make_shared<Pendant::Result>();
+    context.pendant.play([result](const Pendant::Result & play_result) { *result = play_result; });
+    return require_success(*result);
+  };
 }
 
-json store_external_control(ControlPortContext & context, RequestFields & fields)
+Action store_external_control(RequestFields & fields)
 {
   const std::string name = fields.string("name", "external_control.urp");
   ProgramHost host;
   host.address = fields.string("host");
   host.port = static_cast<std::uint16_t>(fields.integer("port", 1, 65535, host.port));
   const bool load = fields.boolean("load", true);
-  fields.reject_unknown();
-  context.pendant.store_external_control(name, host);
-  if (load && !context.pendant.load_program(name)) {
-    throw RequestError("field 'name' is '" + name + "': it cannot be loaded");
-  }
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    context.pendant.store_external_control(name, host);
+    if (load && !context.pendant.load_program(name)) {
+      throw RequestError("field 'name' is '" + name + "': it cannot be loaded");
+    }
+    return json::object();
+  };
 }
 
-json stop_program(ControlPortContext & context, RequestFields & fields)
+Action stop_program(RequestFields &)
 {
-  fields.reject_unknown();
-  context.pendant.stop();
-  return json::object();
+  return [](ControlPortContext & context) -> json {
+    context.pendant.stop();
+    return json::object();
+  };
 }
 
-json kill_program(ControlPortContext & context, RequestFields & fields)
+Action kill_program(RequestFields &)
 {
-  fields.reject_unknown();
-  if (!context.pendant.runner().kill()) {
-    throw RequestError("no program is running");
-  }
-  return json::object();
+  return [](ControlPortContext & context) -> json {
+    if (!context.pendant.runner().kill()) {
+      throw RequestError("no program is running");
+    }
+    return json::object();
+  };
 }
 
-json speed_slider(ControlPortContext & context, RequestFields & fields)
+Action speed_slider(RequestFields & fields)
 {
   const double fraction = fields.number("fraction", {0.0, 1.0});
-  fields.reject_unknown();
-  context.state.speed_slider = fraction;
-  return json::object();
+  return [=](ControlPortContext & context) -> json {
+    context.state.speed_slider = fraction;
+    return json::object();
+  };
 }
 
-json close_popup(ControlPortContext & context, RequestFields & fields)
+Action close_popup(RequestFields &)
 {
-  fields.reject_unknown();
-  if (!context.pendant.runner().popup()) {
-    throw RequestError("no popup is open");
-  }
-  context.pendant.runner().close_popup();
-  return json::object();
+  return [](ControlPortContext & context) -> json {
+    if (!context.pendant.runner().popup()) {
+      throw RequestError("no popup is open");
+    }
+    context.pendant.runner().close_popup();
+    return json::object();
+  };
 }
 
 constexpr std::array robot_command_table{

@@ -103,10 +103,33 @@ json robotiq_gripper_to_json(const RobotiqGripper * gripper)
 json surfaces_to_json(const World & world)
 {
   json result = json::array();
-  for (const PlacedSurface & placed : world.surfaces()) {
-    result.push_back({{"id", placed.id},
-                      {"point", to_json_array(placed.surface.point)},
-                      {"normal", to_json_array(placed.surface.normal)}});
+  for (const auto & [id, surface] : world.surfaces()) {
+    result.push_back(
+        {{"id", id}, {"point", to_json_array(surface.point)}, {"normal", to_json_array(surface.normal)}});
+  }
+  return result;
+}
+
+json boxes_to_json(const World & world)
+{
+  json result = json::array();
+  for (const auto & [id, box] : world.boxes()) {
+    result.push_back({{"id", id},
+                      {"center", to_json_array(box.center)},
+                      {"size", to_json_array(box.size)},
+                      {"rotation", to_json_array(box.rotation)}});
+  }
+  return result;
+}
+
+json springs_to_json(const World & world)
+{
+  json result = json::array();
+  for (const auto & [id, spring] : world.springs()) {
+    result.push_back({{"id", id},
+                      {"anchor", to_json_array(spring.anchor)},
+                      {"stiffness", spring.stiffness},
+                      {"length", spring.length}});
   }
   return result;
 }
@@ -131,6 +154,8 @@ void add_robot(json & result, const ControlPortContext & context)
                  {"popup", popup ? json(popup->message) : json(nullptr)},
                  {"safety_popup", safety_popup ? json(*safety_popup) : json(nullptr)},
                  {"surfaces", surfaces_to_json(context.world)},
+                 {"boxes", boxes_to_json(context.world)},
+                 {"springs", springs_to_json(context.world)},
                  {"gripper", gripper_to_json(context.world.gripper())},
                  {"robotiq_gripper", robotiq_gripper_to_json(context.world.robotiq_gripper())},
                  {"io", io_to_json(s.io)},

@@ -7,6 +7,7 @@
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "controller/options.hpp"
@@ -64,7 +65,8 @@ Controller::Controller(const SimulatorOptions & options)
       robotiq_(open_robotiq_server()),
       control_port_context_(control_port_context()),
       control_port_(io_, options.address, options.ports.control,
-                    [this](const nlohmann::json & request) { return control(request); })
+                    [this](const nlohmann::json & request) { return control(request); }),
+      event_timeline_(load_world_file())
 {
   rtde_.set_data_package_handler(
       [this](std::span<const rtde::InputField * const> fields) { handle_data_package(fields); });
@@ -142,6 +144,22 @@ std::unique_ptr<urcap::RobotiqServer> Controller::open_robotiq_server()
   return gripper == nullptr ? nullptr
                             : std::make_unique<urcap::RobotiqServer>(io_, options_.address,
                                                                      options_.ports.robotiq, *gripper);
+}
+
+EventTimeline Controller::load_world_file()
+{
+  WorldFile file;
+  if (!options_.world_file.empty()) {
+    file = read_world_file(options_.world_file);
+  }
+  for (const WorldFileCommand & object : file.objects) {
+    try {
+      object.action(control_port_context_);
+    } catch (const std::exception & error) {
+      throw std::runtime_error(fmt::format("{}: {}", object.origin, error.what()));
+    }
+  }
+  return {std::move(file.events), version_.cycle_time()};
 }
 
 Ports Controller::ports() const

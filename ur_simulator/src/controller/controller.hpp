@@ -30,6 +30,7 @@
 #include "ur_simulator/simulated_controller.hpp"
 #include "urcap/robotiq_server.hpp"
 #include "world/world.hpp"
+#include "world_file/event_timeline.hpp"
 
 namespace ur_simulator {
 
@@ -76,6 +77,8 @@ class Controller {
   std::unique_ptr<urcap::RobotiqServer> open_robotiq_server();
   control_port::ControlPortContext control_port_context();
   std::map<std::string, Listener *> listeners();
+  /// Places the objects of the world file, and returns its events.
+  EventTimeline load_world_file();
 
   void schedule_next_cycle();
   void run_due_cycles();
@@ -133,6 +136,7 @@ class Controller {
   std::unique_ptr<urcap::RobotiqServer> robotiq_;  ///< null: the URCap is not installed
   control_port::ControlPortContext control_port_context_;
   control_port::Server control_port_;
+  EventTimeline event_timeline_;
   std::list<Observer> observers_;
 };
 

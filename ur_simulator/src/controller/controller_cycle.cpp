@@ -32,6 +32,7 @@ void Controller::run_cycle()
   ++state_.cycle;
   state_.timestamp = static_cast<double>(state_.cycle) * version_.cycle_time();
   log_.set_time(state_.timestamp);
+  event_timeline_.cycle(control_port_context_);
   if (!switch_on_time_) {
     run_robot_cycle();
     publish_state();

@@ -5,86 +5,22 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "common/pose.hpp"
+#include "world/contact_forces.hpp"
+#include "world/requirements.hpp"
 
 namespace ur_simulator {
 namespace {
 
 using std::numbers::pi;
 
-void require(bool condition, const std::string & message)
-{
-  if (!condition) {
-    throw std::invalid_argument(message);
-  }
-}
-
-void require_within(const char * field, double value, double min, double max)
-{
-  require(value >= min && value <= max, fmt::format("{} must be in [{}, {}], is {}", field, min, max, value));
-}
-
-Surface checked(const Surface & surface)
-{
-  require(is_finite(surface.point), "surface: point must be three finite numbers");
-  require(is_finite(surface.normal) && surface.normal.norm() > 1e-9,
-          "surface: normal must be three finite numbers, not all 0");
-  require_within("surface: stiffness (N/m)", surface.stiffness, 0.0, 1e7);
-  require_within("surface: damping (N s/m)", surface.damping, 0.0, 1e5);
-  require_within("surface: friction", surface.friction, 0.0, 10.0);
-  Surface result = surface;
-  result.normal.normalize();
-  return result;
-}
-
-/// Spring and damper along the normal, never pulling; Coulomb friction in the plane, regularized at low
-/// speed. The elasticity of the arm is in series with the surface: `state` holds the TCP of a rigid arm, and
-/// the penetration is shared between arm and surface.
-Vector3 surface_force(const Surface & surface, const ControllerState & state)
-{
-  const Vector3 velocity = state.actual_tcp_speed.head<3>();
-  const double penetration = -surface.normal.dot(state.actual_tcp_pose.head<3>() - surface.point);
-  if (penetration <= 0.0) {
-    return Vector3::Zero();
-  }
-  const double approach = -surface.normal.dot(velocity);
-  const double surface_share =
-      1.0 / (1.0 + surface.stiffness * surface.normal.dot(state.tcp_compliance * surface.normal));
-  const double normal_force =
-      surface_share * std::max(0.0, surface.stiffness * penetration + surface.damping * approach);
-  const Vector3 sliding = velocity + approach * surface.normal;
-  constexpr double full_friction_speed = 1e-3;  // m/s
-  return normal_force * surface.normal -
-         surface.friction * normal_force / std::max(sliding.norm(), full_friction_speed) * sliding;
-}
-
 }  // namespace
 
 World::World(double cycle_time, std::uint64_t seed)
     : cycle_time_(cycle_time), sensor_(cycle_time, seed), contact_detector_(cycle_time)
 {
-  surfaces_.reserve(max_surfaces);
   pushes_.reserve(max_pushes);
-}
-
-std::uint32_t World::place_surface(const Surface & surface)
-{
-  require(surfaces_.size() < max_surfaces,
-          fmt::format("surface: there are {} already, the maximum", max_surfaces));
-  surfaces_.push_back({next_id_, checked(surface)});
-  return next_id_++;
-}
-
-bool World::remove_surface(std::uint32_t id)
-{
-  return std::erase_if(surfaces_, [id](const PlacedSurface & placed) { return placed.id == id; }) > 0;
-}
-
-void World::clear_surfaces()
-{
-  surfaces_.clear();
 }
 
 void World::push(const Push & push)
@@ -126,9 +62,14 @@ void World::set_sensor_noise(double force, double torque)
 Vector6 World::contact(const ControllerState & state) const
 {
   Vector6 wrench = Vector6::Zero();
-  for (const PlacedSurface & placed : surfaces_) {
-    wrench.head<3>() += surface_force(placed.surface, state);
-  }
+  const auto add = [&](const auto & objects) {
+    for (const auto & [id, object] : objects) {
+      wrench.head<3>() += contact_force(object, state);
+    }
+  };
+  add(surfaces_);
+  add(boxes_);
+  add(springs_);
   return wrench;
 }
 

@@ -12,20 +12,11 @@
 #include "world/contact_detector.hpp"
 #include "world/digital_gripper.hpp"
 #include "world/force_torque_sensor.hpp"
+#include "world/objects.hpp"
 #include "world/robotiq_gripper.hpp"
 #include "world/soft_gripper.hpp"
 
 namespace ur_simulator {
-
-/// An elastic half space: below the plane through `point` with the outward `normal` (base frame) the TCP is
-/// pushed back.
-struct Surface {
-  Vector3 point = Vector3::Zero();    ///< m
-  Vector3 normal = Vector3::UnitZ();  ///< any length except 0; normalized by place_surface()
-  double stiffness = 20000.0;         ///< N/m
-  double damping = 50.0;              ///< N s/m
-  double friction = 0.0;              ///< Coulomb coefficient
-};
 
 /// A push at the TCP: a half sine over time, in the base or tool frame.
 struct Push {
@@ -34,27 +25,20 @@ struct Push {
   bool tool_frame = false;
 };
 
-/// A placed surface with its identifier.
-struct PlacedSurface {
-  std::uint32_t id;
-  Surface surface;
-};
-
 /// Environment of the arm and the force/torque sensor. Deterministic for a given seed. Invalid input (not
 /// finite, out of range, too many) throws std::invalid_argument with field, value and limit, and has no
 /// effect.
 class World {
  public:
-  static constexpr std::size_t max_surfaces = 32;
   static constexpr std::size_t max_pushes = 32;
 
   World(double cycle_time, std::uint64_t seed);
-  /// Returns the identifier of the surface.
-  std::uint32_t place_surface(const Surface & surface);
-  /// False if there is no surface with this identifier.
-  bool remove_surface(std::uint32_t id);
-  void clear_surfaces();
-  const std::vector<PlacedSurface> & surfaces() const { return surfaces_; }
+  ObjectList<Surface> & surfaces() { return surfaces_; }
+  const ObjectList<Surface> & surfaces() const { return surfaces_; }
+  ObjectList<Box> & boxes() { return boxes_; }
+  const ObjectList<Box> & boxes() const { return boxes_; }
+  ObjectList<Spring> & springs() { return springs_; }
+  const ObjectList<Spring> & springs() const { return springs_; }
 
   void push(const Push & push);
   bool pushing() const { return !pushes_.empty(); }
@@ -96,8 +80,9 @@ class World {
   Vector6 advance_pushes(const ControllerState & state);
 
   double cycle_time_;
-  std::uint32_t next_id_ = 1;
-  std::vector<PlacedSurface> surfaces_;
+  ObjectList<Surface> surfaces_;
+  ObjectList<Box> boxes_;
+  ObjectList<Spring> springs_;
   std::vector<ActivePush> pushes_;
   Payload load_;
   ForceTorqueSensor sensor_;

@@ -29,7 +29,7 @@ struct ForceModeTest : ::testing::Test {
 
 TEST_F(ForceModeTest, AppliesTheRequestedForceToASurface)
 {
-  fixture.world.place_surface(fixture.table_below(0.02, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(0.02, 20000.0));
   start(pressing_down(30.0));
   fixture.run(4.0);
   EXPECT_NEAR(force(), 30.0, 0.5);
@@ -47,7 +47,7 @@ TEST_F(ForceModeTest, SettlesOnHardAndSoftSurfacesWithTheGainOfUrRtde)
 {
   for (const double stiffness : {2000.0, 20000.0, 200000.0}) {
     RobotFixture other;
-    other.world.place_surface(other.table_below(0.005, stiffness));
+    other.world.surfaces().add(other.table_below(0.005, stiffness));
     other.arm.set_force_mode_scaling(0.5);
     ASSERT_TRUE(other.arm.start_force_mode(pressing_down(20.0)));
     other.run(4.0);
@@ -100,7 +100,7 @@ TEST_F(ForceModeTest, KeepsItsSpeedWithoutDampingAndLosesItWithFullDamping)
 
 TEST_F(ForceModeTest, IsSuperposedOnAMove)
 {
-  fixture.world.place_surface(fixture.table_below(0.01, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(0.01, 20000.0));
   start(pressing_down(20.0));
   fixture.run(2.0);
   Vector6 target = fixture.state.target_tcp_pose;
@@ -137,7 +137,7 @@ TEST_F(ForceModeTest, IgnoresProgramMotionAlongACompliantAxis)
 
 TEST_F(ForceModeTest, EndsAtThePresentPosition)
 {
-  fixture.world.place_surface(fixture.table_below(0.01, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(0.01, 20000.0));
   start(pressing_down(20.0));
   fixture.run(2.0);
   const double pressed = height();
@@ -176,14 +176,14 @@ TEST_F(ForceModeTest, TripsAProtectiveStopWhenAnotherAxisDeviatesTooFar)
 
 TEST_F(ForceModeTest, ContinuesAfterAProtectiveStop)
 {
-  fixture.world.place_surface(fixture.table_below(0.01, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(0.01, 20000.0));
   start(pressing_down(20.0));
   fixture.run(2.0);
   fixture.safety.trigger_protective_stop("a test");
   fixture.run(6.0);
   EXPECT_TRUE(fixture.arm.at_rest());
   ASSERT_TRUE(fixture.safety.unlock_protective_stop());
-  fixture.world.clear_surfaces();
+  fixture.world.surfaces().clear();
   const double previous = height();
   fixture.run(1.0);
   EXPECT_LT(height(), previous - 0.01);

@@ -22,7 +22,7 @@ TEST(JointDeviationTest, TriggersProtectiveStopAtTheLimit)
 TEST(ForceLimitTest, TripsWhenTheToolIsDrivenIntoATable)
 {
   RobotFixture fixture;
-  fixture.world.place_surface(fixture.table_below(0.05, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(0.05, 20000.0));
   ASSERT_TRUE(fixture.move_down(0.3, 0.1));
   fixture.until([&] { return fixture.state.safety_mode == SafetyMode::protective_stop; }, 5.0);
   fixture.until([&] { return fixture.arm.at_rest(); }, 1.0);
@@ -56,7 +56,7 @@ TEST(ForceLimitTest, TripsAtOnceOnACollision)
 TEST(ForceLimitTest, AllowsAPressedToolToRetractAfterUnlockingButNotToPressHarder)
 {
   RobotFixture fixture;
-  fixture.world.place_surface(fixture.table_below(0.02, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(0.02, 20000.0));
   ASSERT_TRUE(fixture.move_down(0.3, 0.1));
   fixture.until([&] { return fixture.state.safety_mode == SafetyMode::protective_stop; }, 5.0);
   fixture.run(5.1);

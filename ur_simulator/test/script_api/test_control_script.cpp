@@ -204,7 +204,7 @@ TEST_F(ControlScriptTest, StopsAtAContactThatIsDetectedDuringACommand)
   constexpr double distance = 0.02;
   Surface table;
   table.point = fixture.state.actual_tcp_pose.head<3>() - distance * Vector3::UnitZ();
-  fixture.world.place_surface(table);
+  fixture.world.surfaces().add(table);
   const double contact_height = fixture.state.actual_tcp_pose[2] - distance;
   parameters((Vector6() << 0.0, 0.0, -1.0, 0.0, 0.0, 0.0).finished());
   command(start_contact_detection);

@@ -18,7 +18,7 @@ const char * const press_down =
 TEST(ForceModeBuiltinTest, ReturnsAtOnceAndPressesWhileTheProgramDoesSomethingElse)
 {
   ScriptFixture fixture;
-  fixture.world.place_surface(table_below(fixture, 0.01));
+  fixture.world.surfaces().add(table_below(fixture, 0.01));
   fixture.run(std::string("def test():\n") + press_down +
               " sleep(3)\n f = get_tcp_force()\n end_force_mode()\nend");
   fixture.finish();
@@ -29,7 +29,7 @@ TEST(ForceModeBuiltinTest, ReturnsAtOnceAndPressesWhileTheProgramDoesSomethingEl
 TEST(ForceModeBuiltinTest, MayBeRepeatedEveryCycle)
 {
   ScriptFixture fixture;
-  fixture.world.place_surface(table_below(fixture, 0.01));
+  fixture.world.surfaces().add(table_below(fixture, 0.01));
   fixture.run(std::string("def test():\n i = 0\n while i < 1500:\n  ") + press_down +
               "  sync()\n  i = i + 1\n end\nend");
   fixture.finish();
@@ -40,7 +40,7 @@ TEST(ForceModeBuiltinTest, MayBeRepeatedEveryCycle)
 TEST(ForceModeBuiltinTest, AMoveLInForceModeEnds)
 {
   ScriptFixture fixture;
-  fixture.world.place_surface(table_below(fixture, 0.01));
+  fixture.world.surfaces().add(table_below(fixture, 0.01));
   fixture.run(std::string("def test():\n") + press_down +
               " sleep(2)\n p0 = get_actual_tcp_pose()\n movel(pose_add(p0, p[0,0.1,0,0,0,0]), v=0.1)\n"
               " end_force_mode()\nend");
@@ -53,7 +53,7 @@ TEST(ForceModeBuiltinTest, AMoveLInForceModeEnds)
 TEST(ForceModeBuiltinTest, MotionsToATargetInsideTheSurfaceEnd)
 {
   ScriptFixture fixture;
-  fixture.world.place_surface(table_below(fixture, 0.01));
+  fixture.world.surfaces().add(table_below(fixture, 0.01));
   fixture.run(
       std::string("def test():\n") + press_down +
       " sleep(2)\n below = pose_add(get_actual_tcp_pose(), p[0,0.1,-0.02,0,0,0])\n"
@@ -70,7 +70,7 @@ TEST(ForceModeBuiltinTest, MotionsToATargetInsideTheSurfaceEnd)
 TEST(ForceModeBuiltinTest, ForceCanChangeDuringAMotionOfAnotherThread)
 {
   ScriptFixture fixture;
-  fixture.world.place_surface(table_below(fixture, 0.01));
+  fixture.world.surfaces().add(table_below(fixture, 0.01));
   fixture.run(R"(def test():
     global wrench = [0, 0, -15, 0, 0, 0]
     global moved = False
@@ -149,7 +149,7 @@ TEST(ForceModeBuiltinTest, IsRejectedInSecondaryPrograms)
 TEST(ScrewDrivingTest, PressesAlongTheTool)
 {
   ScriptFixture fixture;
-  fixture.world.place_surface(table_below(fixture, 0.005));
+  fixture.world.surfaces().add(table_below(fixture, 0.005));
   fixture.run("def test():\n screw_driving(15, 0.05)\n sleep(3)\n end_screw_driving()\nend");
   fixture.finish();
   EXPECT_EQ(fixture.machine->status(), MachineStatus::finished) << fixture.machine->error().message;
@@ -204,7 +204,7 @@ TEST(ToolContactBuiltinTest, LeadsBackToThePointOfContact)
 {
   ScriptFixture fixture;
   const Surface table = table_below(fixture, 0.03);
-  fixture.world.place_surface(table);
+  fixture.world.surfaces().add(table);
   fixture.run(R"(def test():
     while True:
       back = tool_contact(direction=[0, 0, -1, 0, 0, 0])

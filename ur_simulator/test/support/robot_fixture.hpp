@@ -41,8 +41,8 @@ struct RobotFixture : CyclicFixture {
   {
     Surface surface;
     surface.point = state.actual_tcp_pose.head<3>() - distance * Vector3::UnitZ();
-    surface.stiffness = stiffness;
-    surface.damping = damping;
+    surface.elasticity.stiffness = stiffness;
+    surface.elasticity.damping = damping;
     return surface;
   }
   StartResult move_down(double distance, double speed)

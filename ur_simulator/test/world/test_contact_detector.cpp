@@ -25,7 +25,7 @@ TEST_F(ToolContactTest, IsNotDetectedInFreeSpaceWithANoisySensor)
 
 TEST_F(ToolContactTest, ReportsTheCycleOfTheContact)
 {
-  fixture.world.place_surface(fixture.table_below(0.03, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(0.03, 20000.0));
   ASSERT_TRUE(fixture.move_down(0.1, 0.05));
   std::size_t touched = 0;
   fixture.until(
@@ -41,7 +41,7 @@ TEST_F(ToolContactTest, ReportsTheCycleOfTheContact)
 
 TEST_F(ToolContactTest, OnlyForcesAgainstTheDirectionCount)
 {
-  fixture.world.place_surface(fixture.table_below(0.005, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(0.005, 20000.0));
   ASSERT_TRUE(fixture.move_down(0.007, 0.05));
   fixture.run(1.0);
   EXPECT_GT(steps(down), 0u);
@@ -53,7 +53,7 @@ TEST_F(ToolContactTest, OnlyForcesAgainstTheDirectionCount)
 
 TEST_F(ToolContactTest, EndsWhenTheToolRetracts)
 {
-  fixture.world.place_surface(fixture.table_below(0.005, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(0.005, 20000.0));
   ASSERT_TRUE(fixture.move_down(0.007, 0.05));
   fixture.run(1.0);
   ASSERT_GT(steps(down), 0u);

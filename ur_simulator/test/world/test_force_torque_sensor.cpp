@@ -123,7 +123,7 @@ TEST(ForceTorqueSensorTest, FiltersAForceStep)
 {
   RobotFixture fixture;
   fixture.run(0.1);
-  fixture.world.place_surface(fixture.table_below(-0.002, 20000.0));
+  fixture.world.surfaces().add(fixture.table_below(-0.002, 20000.0));
   fixture.step();
   const double sudden = fixture.state.contact_wrench[2];
   EXPECT_LT(fixture.state.actual_tcp_force[2], 0.75 * sudden);

@@ -15,7 +15,7 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 double felt_stiffness(const RobotFixture & fixture, const Surface & surface)
 {
   const Vector3 normal = surface.normal.normalized();
-  return 1.0 / (1.0 / surface.stiffness + normal.dot(fixture.state.tcp_compliance * normal));
+  return 1.0 / (1.0 / surface.elasticity.stiffness + normal.dot(fixture.state.tcp_compliance * normal));
 }
 
 TEST(SurfaceTest, ForceIsStiffnessTimesPenetrationForAStiffArm)
@@ -24,7 +24,7 @@ TEST(SurfaceTest, ForceIsStiffnessTimesPenetrationForAStiffArm)
   World world(0.002, 1);
   Surface table;
   table.point.z() = 0.001;
-  world.place_surface(table);
+  world.surfaces().add(table);
   world.step(state);
   EXPECT_NEAR(state.contact_wrench[2], 20.0, 1e-9);
 }
@@ -33,7 +33,7 @@ TEST(SurfaceTest, ActsInSeriesWithTheElasticityOfTheArm)
 {
   RobotFixture fixture;
   const Surface table = fixture.table_below(-0.001, 20000.0);
-  fixture.world.place_surface(table);
+  fixture.world.surfaces().add(table);
   fixture.step();
   EXPECT_NEAR(fixture.state.contact_wrench[2], 0.001 * felt_stiffness(fixture, table), 1e-6);
   EXPECT_GT(fixture.state.contact_wrench[2], 8.0);
@@ -47,8 +47,8 @@ TEST(SurfaceTest, PushesAlongItsNormal)
   Surface wall;
   wall.normal = Vector3(2.0, 0.0, 2.0);  // not of unit length
   wall.point = fixture.state.actual_tcp_pose.head<3>() + 0.002 * wall.normal.normalized();
-  wall.stiffness = 10000.0;
-  fixture.world.place_surface(wall);
+  wall.elasticity.stiffness = 10000.0;
+  fixture.world.surfaces().add(wall);
   fixture.step();
   const double expected = 0.002 * felt_stiffness(fixture, wall);
   EXPECT_LT((fixture.state.contact_wrench.head<3>() - expected * wall.normal.normalized()).norm(), 1e-6);
@@ -58,7 +58,7 @@ TEST(SurfaceTest, NeverPullsTheTool)
 {
   RobotFixture fixture;
   Surface table = fixture.table_below(-0.0005, 1000.0, 5000.0);
-  fixture.world.place_surface(table);
+  fixture.world.surfaces().add(table);
   ASSERT_TRUE(fixture.move_down(-0.2, 0.3));
   for (int i = 0; i < 200; ++i) {
     fixture.step();
@@ -70,8 +70,8 @@ TEST(SurfaceTest, FrictionOpposesTheSlidingTool)
 {
   RobotFixture fixture;
   Surface table = fixture.table_below(-0.001, 20000.0, 0.0);
-  table.friction = 0.3;
-  fixture.world.place_surface(table);
+  table.elasticity.friction = 0.3;
+  fixture.world.surfaces().add(table);
   ASSERT_TRUE(fixture.arm.speed_linear(six(0.0, 0.05, 0, 0, 0, 0), 1.0, 0.0));
   fixture.run(0.5);
   const double pressing = 0.001 * felt_stiffness(fixture, table);
@@ -82,11 +82,11 @@ TEST(SurfaceTest, FrictionOpposesTheSlidingTool)
 TEST(SurfaceTest, HasNoEffectAfterRemoval)
 {
   RobotFixture fixture;
-  const auto id = fixture.world.place_surface(fixture.table_below(-0.001, 20000.0));
+  const auto id = fixture.world.surfaces().add(fixture.table_below(-0.001, 20000.0));
   fixture.step();
   EXPECT_GT(fixture.state.contact_wrench[2], 5.0);
-  EXPECT_TRUE(fixture.world.remove_surface(id));
-  EXPECT_FALSE(fixture.world.remove_surface(id));
+  EXPECT_TRUE(fixture.world.surfaces().remove(id));
+  EXPECT_FALSE(fixture.world.surfaces().remove(id));
   fixture.step();
   EXPECT_DOUBLE_EQ(fixture.state.contact_wrench.norm(), 0.0);
 }
@@ -120,14 +120,14 @@ TEST(WorldTest, ErrorContainsFieldAndLimitOfInvalidInput)
   RobotFixture fixture;
   Surface bad;
   bad.point.x() = nan_value;
-  EXPECT_THROW(fixture.world.place_surface(bad), std::invalid_argument);
+  EXPECT_THROW(fixture.world.surfaces().add(bad), std::invalid_argument);
   bad = Surface();
   bad.normal.setZero();
-  EXPECT_THROW(fixture.world.place_surface(bad), std::invalid_argument);
+  EXPECT_THROW(fixture.world.surfaces().add(bad), std::invalid_argument);
   bad = Surface();
-  bad.stiffness = -1.0;
+  bad.elasticity.stiffness = -1.0;
   try {
-    fixture.world.place_surface(bad);
+    fixture.world.surfaces().add(bad);
     FAIL() << "accepted";
   } catch (const std::invalid_argument & error) {
     EXPECT_STREQ(error.what(), "surface: stiffness (N/m) must be in [0, 10000000], is -1");
@@ -145,12 +145,12 @@ TEST(WorldTest, ErrorContainsFieldAndLimitOfInvalidInput)
 TEST(WorldTest, LimitsTheNumberOfSurfacesAndPushes)
 {
   RobotFixture fixture;
-  for (std::size_t i = 0; i < World::max_surfaces; ++i) {
-    fixture.world.place_surface({});
+  for (std::size_t i = 0; i < ObjectList<Surface>::max_size; ++i) {
+    fixture.world.surfaces().add({});
   }
-  EXPECT_THROW(fixture.world.place_surface({}), std::invalid_argument);
-  fixture.world.clear_surfaces();
-  EXPECT_NO_THROW(fixture.world.place_surface({}));
+  EXPECT_THROW(fixture.world.surfaces().add({}), std::invalid_argument);
+  fixture.world.surfaces().clear();
+  EXPECT_NO_THROW(fixture.world.surfaces().add({}));
   for (std::size_t i = 0; i < World::max_pushes; ++i) {
     fixture.world.push({});
   }
@@ -162,7 +162,7 @@ double peak_of_force_experiment(double stiffness)
 {
   RobotFixture fixture;
   fixture.world.set_sensor_noise(0.5, 0.02);
-  fixture.world.place_surface(fixture.table_below(0.1, stiffness));
+  fixture.world.surfaces().add(fixture.table_below(0.1, stiffness));
   fixture.world.zero_sensor();
   EXPECT_TRUE(fixture.move_down(0.3, 0.1));
   fixture.until([&] { return fixture.state.actual_tcp_force[2] > 20.0; }, 5.0);
