@@ -6,9 +6,10 @@ import xml.etree.ElementTree as xml
 import numpy as np
 
 from .kinematics import Origin
-from .shapes import Cylinder, Shape, Shapes
+from .shapes import Cylinder, Part, Shape, Shapes
 
-COLORS = {"ur_housing": "0.74 0.75 0.77 1", "ur_lid": "0.32 0.45 0.56 1", "ur_tool": "0.25 0.27 0.30 1"}
+COLORS = {Part.HOUSING: "0.80 0.81 0.83 1", Part.TUBE: "0.69 0.71 0.74 1", Part.LID: "0.47 0.64 0.78 1", Part.RING: "0.17 0.18 0.20 1",
+          Part.FLANGE: "0.42 0.44 0.47 1", Part.TOOL: "0.25 0.27 0.30 1"}
 AXIS_RPY = {"x": (0.0, math.pi / 2, 0.0), "y": (-math.pi / 2, 0.0, 0.0), "z": (0.0, 0.0, 0.0)}  # turns z to the axis
 INERTIA = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
 
@@ -33,20 +34,15 @@ def add_fixed_joint(robot: xml.Element, name: str, parent: str, child: str, orig
     add_origin(add_joint(robot, name, "fixed", parent, child), origin)
 
 
-def add_shapes(link: xml.Element, shapes: Shapes, color: str) -> None:
-    """Adds the visual and the collision geometry. Lids of joints are only visible."""
+def add_shapes(link: xml.Element, shapes: Shapes) -> None:
+    """Adds the visual and the collision geometry."""
     for shape in shapes:
         visual = xml.SubElement(link, "visual")
         _add_geometry(visual, shape)
-        name = "ur_lid" if _is_lid(shape) else color
-        xml.SubElement(xml.SubElement(visual, "material", name=name), "color", rgba=COLORS[name])
+        xml.SubElement(xml.SubElement(visual, "material", name=shape.part.value), "color", rgba=COLORS[shape.part])
     for shape in shapes:
-        if not _is_lid(shape):
+        if not shape.part.is_only_visible:
             _add_geometry(xml.SubElement(link, "collision"), shape)
-
-
-def _is_lid(shape: Shape) -> bool:
-    return isinstance(shape, Cylinder) and shape.is_lid
 
 
 def _add_geometry(element: xml.Element, shape: Shape) -> None:

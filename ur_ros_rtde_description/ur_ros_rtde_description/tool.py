@@ -10,7 +10,7 @@ from typing import Protocol, Sequence
 from .elements import add_fixed_joint, add_inertial, add_shapes, cylinder_inertia
 from .errors import DescriptionError
 from .kinematics import Origin
-from .shapes import along
+from .shapes import Part, along
 from .tree import root_link
 
 
@@ -43,7 +43,7 @@ class CylinderTool:
 
     def add_to(self, robot: xml.Element, tf_prefix: str) -> None:
         link = xml.SubElement(robot, "link", name=tf_prefix + "tool")
-        add_shapes(link, [along("z", 0.0, self.length, self.radius)], "ur_tool")
+        add_shapes(link, [along("z", 0.0, self.length, self.radius, part=Part.TOOL)])
         if self.mass > 0.0:
             inertia = cylinder_inertia(self.mass, self.radius, self.length)
             add_inertial(link, self.mass, inertia, Origin((0.0, 0.0, self.length / 2.0)))

@@ -69,7 +69,7 @@ def _add_links(robot: xml.Element, options: Options) -> None:
     model = options.model
     for name, shapes in link_shapes(model).items():
         link = xml.SubElement(robot, "link", name=options.tf_prefix + name)
-        add_shapes(link, shapes, "ur_housing")
+        add_shapes(link, shapes)
         if name in LINKS:
             index = LINKS.index(name)
             add_inertial(link, model.links[index].mass, model.links[index].inertia, mass_frame(model, index))
