@@ -113,6 +113,36 @@ class Tab:
         node, origin = (np.reshape(elements, (4, 4), order="F") for elements in drawn)
         return np.linalg.inv(origin) @ node
 
+    def on_screen(self, path, point):
+        """Returns where a point of a scene node was drawn last, in pixels of the page."""
+        return self.page.evaluate("""([name, point]) => {
+            const {canvas, camera, nodeRefFromName} = window.__viserMutable, box = canvas.getBoundingClientRect();
+            const drawn = camera.position.clone().set(...point).applyMatrix4(nodeRefFromName[name].matrixWorld).project(camera);
+            return [box.left + 0.5 * (1 + drawn.x) * box.width, box.top + 0.5 * (1 - drawn.y) * box.height];
+        }""", [path, [float(value) for value in point]])
+
+    def drag(self, begin, end, steps=8):
+        """Drags with the left mouse button."""
+        self.page.mouse.move(*begin)
+        self.page.mouse.down()
+        self.page.mouse.move(*end, steps=steps)
+        self.page.mouse.up()
+
+    def plots(self):
+        """Returns for each plot its title, its time range, the oldest time in s, and for the last curve the fraction of the width in
+        which its color is drawn."""
+        return self.page.evaluate("""() => Object.values(window.__viserTestpoints.uplots).map(({chart}) => {
+            const {left, top, width, height} = chart.bbox, color = chart.series.at(-1).stroke();
+            const wanted = [1, 3, 5].map(at => parseInt(color.slice(at, at + 2), 16));
+            const {data} = chart.ctx.getImageData(left, top, width, height);
+            const columns = new Set();
+            for (let at = 0; at < data.length; at += 4)
+                if (data[at + 3] > 128 && wanted.every((value, part) => Math.abs(value - data[at + part]) < 40))
+                    columns.add(at / 4 % width);
+            return {title: chart.root.querySelector(".u-title").textContent, oldest: chart.data[0][0],
+                    range: [chart.scales.x.min, chart.scales.x.max], drawn: columns.size / width};
+        })""")
+
     def close(self):
         self.page.close()
 

@@ -3,7 +3,6 @@
 import importlib
 
 import pytest
-from rclpy.action import get_action_client_names_and_types_by_node
 from running_viewer import RunningViewer, until
 from support import Client
 from ur_ros_rtde_cli import interface_files
@@ -11,11 +10,15 @@ from ur_ros_rtde_cli.fields import FieldError
 from ur_ros_rtde_viewer.control import action_forms
 from ur_ros_rtde_viewer.control.action_forms import Kind, Source
 from ur_ros_rtde_viewer.control.jog import HOLD_RATE, Hold
+from ur_ros_rtde_viewer.panels.recording_panel import RecordingPanel
+from ur_ros_rtde_viewer.panels.twin_panel import TwinPanel
 
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, ForceMode, MoveJ, MoveL, MoveLRelative
 
 BACKGROUND = True
-MOTION_TOPICS = {"/twist", "/servo_joint", "/servo_pose"}
+VIEWER_NODES = ("ur_viewer", "ur_viewer_topics")
+# All that the viewer without --control publishes and calls. None of it moves an arm.
+WITHOUT_CONTROL = {"publishers": {"/fake_joint_states"}, "clients": {"/start_recording", "/publish_fake_joint_states"}}
 
 
 def installed_actions():
@@ -98,20 +101,51 @@ def test_delayed_messages_that_arrive_together_move_nothing():
     assert not any(moves([0.0, *(1.0 + 0.0005 * number for number in range(60))]))
 
 
-def test_without_control_nothing_on_the_page_can_move_an_arm():
-    with_control = {True: RunningViewer("--control"), False: RunningViewer()}
-    observer = Client(name="observer")
+@pytest.fixture
+def observer():
+    created = Client(name="observer")
+    yield created.node
+    created.close()
+
+
+def endpoints(node, names):
+    """Returns the publishers and the clients of services and actions of these nodes, as another node sees them."""
+    found = {"publishers": node.get_publisher_names_and_types_by_node, "clients": node.get_client_names_and_types_by_node}
+    return {kind: {topic for name in names for topic, _ in query(name, "/")} for kind, query in found.items()}
+
+
+def use_all_elements(running):
+    """Clicks what the page of a viewer without --control has."""
+    def use():
+        for panel in running.viewer.robots[0].panels:
+            if isinstance(panel, TwinPanel):
+                panel.switch(True)
+                panel.publish()
+            elif isinstance(panel, RecordingPanel):
+                panel.toggle()
+
+    running.viewer.post(use)
+
+
+def test_without_control_no_path_leads_from_the_page_to_a_motion(observer):
+    running = RunningViewer()
     try:
-        until(lambda: {"ur_viewer", "ur_viewer_control"} <= set(observer.node.get_node_names()), "the nodes of the viewers")
-        node = with_control[False].nodes.node
-        names = {name for name, _ in node.get_publisher_names_and_types_by_node("ur_viewer", "/")}
-        assert not names & MOTION_TOPICS
-        for name in ("ur_viewer", "ur_viewer_topics"):
-            assert get_action_client_names_and_types_by_node(observer.node, name, "/") == []
-        assert with_control[False].viewer.control is None
-        published = {name for name, _ in observer.node.get_publisher_names_and_types_by_node("ur_viewer_control", "/")}
-        assert "/twist" in published  # the same query finds what the viewer with --control has
+        use_all_elements(running)
+        until(lambda: WITHOUT_CONTROL["clients"] <= endpoints(observer, VIEWER_NODES)["clients"], "the clients of the viewer")
+        found = endpoints(observer, VIEWER_NODES)
+        assert found["clients"] == WITHOUT_CONTROL["clients"]
+        assert found["publishers"] - {"/rosout", "/parameter_events"} == WITHOUT_CONTROL["publishers"]
+        assert "ur_viewer_control" not in observer.get_node_names() and running.viewer.control is None
     finally:
-        observer.close()
-        for viewer in with_control.values():
-            viewer.close()
+        running.close()
+
+
+def test_with_control_the_same_look_finds_what_moves_the_arm(observer):
+    running = RunningViewer("--control")
+    try:
+        until(lambda: "ur_viewer_control" in observer.get_node_names(), "the node of the commands")
+        until(lambda: "/twist" in endpoints(observer, ["ur_viewer_control"])["publishers"], "the topic of the jog buttons")
+        until(lambda: "/stop/_action/send_goal" in endpoints(observer, ["ur_viewer_control"])["clients"], "the action client of STOP")
+        assert "/twist" not in endpoints(observer, VIEWER_NODES)["publishers"]
+    finally:
+        running.close()

@@ -13,8 +13,9 @@ from ur_ros_rtde_description.models import JOINTS
 from ur_ros_rtde_description.options import read_options
 from ur_ros_rtde_description.tree import link_poses
 from ur_ros_rtde_description.urdf import make_urdf
-from ur_ros_rtde_viewer.control.target_panel import TargetPanel
+from ur_ros_rtde_viewer.control.target_panel import GIZMO_SCALE, TargetPanel
 from ur_ros_rtde_viewer.control.target_pose import Motion
+from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
@@ -59,9 +60,13 @@ def is_moving(simulator):
     return max(map(abs, simulator.state()["actual"]["velocity"])) > AT_REST
 
 
-def expected_tool(positions):
+def is_at(simulator, position):
+    return np.allclose(simulator.state()["actual_tcp_pose"][:3], position, atol=1e-3)
+
+
+def expected_tool(positions, frame="world"):
     poses = link_poses(xml.fromstring(make_urdf(read_options("ur10e"))), dict(zip(JOINTS, positions)))
-    return poses["tool0"]
+    return np.linalg.inv(poses[frame]) @ poses["tool0"]
 
 
 def test_the_arm_in_the_scene_follows_the_robot(tab, viewer, robot, simulator):
@@ -76,6 +81,19 @@ def test_the_arm_in_the_scene_follows_the_robot(tab, viewer, robot, simulator):
     robot.send(MoveJ, "move_j", joint_positions=home_plus(0.5, 0.2), speed=1.0, acceleration=2.0).succeeded()
     assert not np.allclose(expected_tool(simulator.state()["actual"]["position"]), expected_tool(HOME), atol=0.1)
     until(lambda: shows(expected_tool(simulator.state()["actual"]["position"])), "the arm in the scene to follow")
+
+
+def test_the_plots_show_curves_from_the_first_seconds_on(tab):
+    """The part of the last 30 s that was received is drawn, at the right end."""
+    plots = {}
+
+    def are_drawn():
+        plots.update({plot["title"]: plot for plot in tab.plots()})
+        return all(plot["oldest"] < -2.0 and plot["drawn"] > 0.8 * -plot["oldest"] / DURATION for plot in plots.values())
+
+    until(are_drawn, "the curves")
+    assert [title for title, *_ in PLOTS] == list(plots)
+    assert all(plot["range"] == [-DURATION, 0.0] for plot in plots.values())
 
 
 def test_a_form_sends_a_goal_and_shows_its_result(tab, simulator):
@@ -139,6 +157,25 @@ def test_stop_decelerates_the_arm_within_100_ms(tab, viewer, robot, simulator, t
     assert rows[-1][1] == 0.0
 
 
+def test_escape_stops(tab, robot, simulator):
+    tab.open("State")
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=0.3)
+    until(lambda: is_moving(simulator), "the arm to move")
+    tab.page.keyboard.press("Escape")
+    goal.wait_for_result()
+    assert not goal.result().success
+    until(lambda: not is_moving(simulator), "the arm to stop")
+
+
+def test_stop_returns_into_view_after_it_was_minimized(tab):
+    window = tab.page.locator("[data-floating-window]").bounding_box()
+    stop = tab.button("STOP").bounding_box()
+    assert stop["height"] > 60 and stop["width"] > 200
+    tab.page.mouse.click(window["x"] + window["width"] - 13, window["y"] + 12)
+    tab.button("STOP").wait_for(state="hidden")
+    tab.button("STOP").wait_for()
+
+
 def test_jog_moves_while_a_button_is_held(tab, simulator):
     tab.open("Jog")
     with tab.held("Z +"):
@@ -171,6 +208,27 @@ def test_two_tabs_have_forms_of_their_own_and_only_one_jogs(browser, tab, viewer
     until(lambda: not is_moving(simulator), "the arm to stop")
 
 
+def test_the_target_is_dragged_with_the_mouse(tab, viewer, simulator):
+    tab.open("Target")
+    checkbox = tab.page.get_by_role("checkbox").locator("visible=true").last
+    checkbox.check()
+    panel, = [panel for panels in viewer[-1].viewer.control._tabs.values() for panel in panels if isinstance(panel, TargetPanel)]
+    base = viewer[-1].viewer.robots[0].scene.arm.link_path("base")
+    until(lambda: tab.pose(f"{base}/target", base) is not None, "the target in the scene")
+    start, z = np.array(panel._gizmo.position), expected_tool(HOME, "base")[:3, 2]
+    tip = start + 0.85 * GIZMO_SCALE * z
+    tab.drag(tab.on_screen(base, tip), tab.on_screen(base, tip - 0.12 * z))
+    tab.wait_for_text("Reachable.")
+    moved = np.array(panel._gizmo.position) - start
+    assert moved @ z == pytest.approx(-0.12, abs=0.03) and np.linalg.norm(moved - (moved @ z) * z) < 1e-3
+    tool = panel._arm.link_path("tool0")
+    until(lambda: np.allclose(tab.pose(tool, base)[:3, 3], panel._gizmo.position, atol=2e-3), "the preview of the arm at the target")
+    assert np.allclose(simulator.state()["actual"]["position"], HOME, atol=1e-3)
+    tab.button("Execute").click()
+    until(lambda: is_at(simulator, panel._gizmo.position), "the TCP at the target")
+    checkbox.uncheck()
+
+
 @pytest.mark.parametrize("motion, name", [(Motion.MOVE_J, "move_j"), (Motion.MOVE_L, "move_l")])
 def test_a_target_pose_is_previewed_and_executed(tab, viewer, simulator, motion, name):
     tab.open("Target")
@@ -185,8 +243,8 @@ def test_a_target_pose_is_previewed_and_executed(tab, viewer, simulator, motion,
     tab.wait_for_text("Reachable.")
     assert np.allclose(simulator.state()["actual"]["position"], HOME, atol=1e-3)
     tab.button("Execute").click()
+    until(lambda: is_at(simulator, position), "the TCP at the target")
     tab.wait_for_text(f"/{name}: succeeded")
-    assert simulator.state()["actual_tcp_pose"][:3] == pytest.approx(position, abs=1e-3)
     panel._gizmo.position = (5.0, 0.0, 0.0)
     panel._solve()
     until(lambda: panel._text.content not in ("", "Planning"), "the answer of the inverse kinematics")

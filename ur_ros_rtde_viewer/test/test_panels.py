@@ -14,8 +14,8 @@ def moving(stamp=0.0, position=0.0):
     return RobotState(joints=Joints(stamp, np.full(6, position), np.full(6, 0.1), np.zeros(6)), age=0.0)
 
 
-def banner(state, has_model=True):
-    return banner_text(state, "left", "/left/joint_states", has_model)
+def banner(state, has_model=True, error=""):
+    return banner_text(state, "left", "/left/joint_states", has_model, error)
 
 
 def test_a_ready_robot_has_no_banner():
@@ -40,8 +40,7 @@ def test_a_missing_driver_a_silent_one_and_an_unknown_model_are_explained():
     assert "for 4 s" in banner(silent)[1]
     unknown = moving()
     assert "reports no model" in banner(unknown, has_model=False)[1] and "--model" in banner(unknown, has_model=False)[1]
-    unknown.model = "ur99"
-    assert "ur99" in banner(unknown, has_model=False)[1]
+    assert banner(unknown, has_model=False, error='model is "ur99"') == (AMBER, 'left: model is "ur99"')
 
 
 def test_a_stopped_driver_shows_its_message():

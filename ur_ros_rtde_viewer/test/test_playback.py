@@ -66,7 +66,7 @@ def test_a_file_that_is_no_plan_is_refused(text):
 @pytest.fixture
 def player(server):
     scene = RobotScene(server.scene, RobotOptions("", "ur5e"))
-    created = Player(server.gui.add_folder("player"), server, scene, RobotOptions("", "ur5e"), lambda function: function())
+    created = Player(server.gui.add_folder("player"), server, scene, lambda function: function())
     yield created
     created.remove()
     scene.remove()
@@ -115,4 +115,4 @@ def test_a_replay_never_moves_the_robots_arm(player):
 def test_without_a_model_a_replay_is_refused(server):
     scene = RobotScene(server.scene, RobotOptions("unknown"))
     with pytest.raises(ViewerError, match="--model"):
-        Player(server.gui.add_folder("unknown"), server, scene, RobotOptions("unknown"), lambda function: function()).load(MOTION)
+        Player(server.gui.add_folder("unknown"), server, scene, lambda function: function()).load(MOTION)

@@ -5,8 +5,10 @@ import contextlib
 import socket
 import urllib.request
 
+import msgspec
 import pytest
 import viser
+import zstandard
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
@@ -16,6 +18,8 @@ from ur_ros_rtde_viewer.page.origin import is_accepted
 from ur_ros_rtde_viewer.page.server import start_server, stop_server, url
 from ur_ros_rtde_viewer.program import main
 from ur_ros_rtde_viewer.simulator import may_be_simulator, read_surfaces
+
+A_DAY = 25_000_000  # messages, at 280 per second
 
 
 def parse(*arguments):
@@ -33,6 +37,16 @@ def test_one_robot_without_a_namespace_is_the_default():
 def test_robots_have_models_and_poses():
     left, right = robots(parse("--robot", "left,model=ur5e,y=0.4,yaw=1.57", "--robot", "right"))
     assert left == RobotOptions("left", "ur5e", (0.0, 0.4, 0.0), (0.0, 0.0, 1.57)) and right == RobotOptions("right")
+    tooled, = robots(parse("--robot", "left,kinematics_params_file=left.yaml,tool_length=0.2"))
+    assert tooled == RobotOptions("left", kinematics_params_file="left.yaml", tool_length=0.2)
+    assert robots(parse("--tool", "gripper.urdf"))[0].tool == "gripper.urdf"
+
+
+def test_a_tool_with_an_invalid_shape_is_refused(tmp_path, capfd):
+    tool = tmp_path / "gripper.urdf"
+    tool.write_text('<robot name="g"><link name="palm"><visual><geometry><sphere radius="big"/></geometry></visual></link></robot>')
+    assert main(["--port", "0", "--model", "ur5e", "--tool", str(tool)]) == 2
+    assert "link palm: a visual element has a value" in capfd.readouterr().err
 
 
 @pytest.mark.parametrize("arguments, message", [
@@ -51,7 +65,11 @@ def test_wrong_arguments_are_refused_with_the_value(arguments, message, capsys):
 
 @pytest.mark.parametrize("arguments, message", [
     (["--robot", "a", "--robot", "a"], "2 times"),
-    (["--robot", "a", "--model", "ur5e"], "--robot replaces"),
+    (["--robot", "a", "--model", "ur5e"], "--robot replaces --model: write --robot NAMESPACE,model=ur5e"),
+    (["--robot", "a", "--tool-length", "0.2"], "write --robot NAMESPACE,tool_length=0.2"),
+    (["--model", "ur5e", "--tool", "missing.urdf"], "missing.urdf"),
+    (["--model", "ur5e", "--tool-length", "-1"], "tool_length is -1"),
+    (["--model", "ur5e", "--kinematics-params-file", "missing.yaml"], "missing.yaml"),
     (["--model", "ur99"], "ur99"),
     (["--address", "localhost"], "expected an IP address"),
     (["--address", "192.0.2.1"], "192.0.2.1"),
@@ -98,6 +116,47 @@ def test_another_web_site_cannot_connect(server):
     with pytest.raises(InvalidStatus) as refusal:
         connect(address, origin="http://example.com", **own)
     assert refusal.value.response.status_code == 403
+
+
+def names(window):
+    """Returns the names of the new frames in a window as viser encodes it."""
+    size = int.from_bytes(window[8:16], "little")
+    messages = msgspec.msgpack.decode(zstandard.ZstdDecompressor().decompress(window[16:16 + size]))["messages"]
+    return [message["name"] for message in messages if message["type"] == "FrameMessage"]
+
+
+class CountingDict(dict):
+    lookups = 0
+
+    def get(self, *arguments):
+        self.lookups += 1
+        return super().get(*arguments)
+
+
+def test_a_connection_after_a_day_costs_the_messages_that_are_kept(server):
+    buffer = server._websock_server._broadcast_buffer
+    server.scene.add_frame("/before")
+    buffer.message_counter = A_DAY
+    server.scene.add_frame("/newest")
+    buffer.message_from_id = counting = CountingDict(buffer.message_from_id)
+    received = []
+    own = {"subprotocols": [f"viser-v{viser.__version__}"], "open_timeout": 60, "max_size": None}
+    with connect(url(server).replace("http", "ws"), origin=url(server), **own) as connection:
+        while "/newest" not in received:
+            received += names(connection.recv(timeout=60))
+        server.scene.add_frame("/live")
+        while "/live" not in received:
+            received += names(connection.recv(timeout=60))
+        cursor, = buffer.generator_cursors.values()
+        assert cursor >= A_DAY  # viser's garbage collector compares it with numbers of the server
+    assert [received.count(name) for name in ("/before", "/newest", "/live")] == [1, 1, 1]
+    assert counting.lookups < 2 * len(counting) + 100
+
+
+def test_another_version_of_viser_is_named_with_the_remedy(monkeypatch, capfd):
+    monkeypatch.setattr(viser, "__version__", "2.0.0")
+    assert main(["--port", "0"]) == 2
+    assert "viser 2.0.0 is installed" in (message := capfd.readouterr().err) and "pip install viser==" in message
 
 
 def test_a_stopped_server_releases_its_port():

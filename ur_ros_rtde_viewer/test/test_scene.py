@@ -4,13 +4,15 @@ import time
 
 import numpy as np
 import pytest
-from ur_ros_rtde_description.kinematics import flange_pose, nominal_origins
+import yaml
+from ur_ros_rtde_description.calibration import FIELDS, JOINT_KEYS
+from ur_ros_rtde_description.kinematics import Origin, flange_pose, nominal_origins
 from ur_ros_rtde_description.models import find_model
 
 from ur_ros_rtde_viewer.arguments import RobotOptions
 from ur_ros_rtde_viewer.scene import trail
 from ur_ros_rtde_viewer.scene.robot_scene import STOPPED_COLOR, RobotScene
-from ur_ros_rtde_viewer.scene.surfaces import turn_z_to
+from ur_ros_rtde_viewer.scene.surfaces import LARGEST_OFFSET, THICKNESS, turn_z_to
 from ur_ros_rtde_viewer.state.robot_state import Joints, Pose, RobotState
 
 POSITIONS = np.array((0.3, -1.2, 1.4, -0.7, -1.5, 0.9))
@@ -150,11 +152,38 @@ def test_surfaces_are_drawn_once_and_removed(server, scene):
     def drawn():
         return [handle for handle in (scene._surfaces._drawn.get(surface) for surface in (table, wall)) if handle is not None]
 
-    scene.show_surfaces([table, wall])
+    state = RobotState()
+    scene.show_surfaces([table, wall], state)
     first = drawn()
-    scene.show_surfaces([table])
+    scene.show_surfaces([table], state)
     assert len(first) == 2 and drawn() == first[:1]
-    top = pose_in_scene(server, first[0].name) if hasattr(first[0], "name") else None
-    assert top is None or (np.linalg.inv(pose_in_scene(server, base)) @ top)[2, 3] == pytest.approx(0.098)
-    scene.show_surfaces([])
+    table_pose = np.linalg.inv(pose_in_scene(server, base)) @ pose_in_scene(server, first[0].name)
+    assert table_pose[:3, 3] == pytest.approx((0.0, 0.0, 0.1 - THICKNESS / 2.0))
+    scene.show_surfaces([], state)
     assert not drawn()
+
+
+def test_the_drawn_part_of_a_surface_stays_near_the_tcp(scene):
+    table = ((0.0, 0.0, 0.1), (0.0, 0.0, 1.0))
+
+    def center_with_tcp_at(x, z):
+        scene.show_surfaces([table], RobotState(tcp_pose=Pose(np.array((x, 0.2, z)), np.array((1.0, 0.0, 0.0, 0.0)))))
+        return tuple(scene._surfaces._drawn[table].position)
+
+    top = 0.1 - THICKNESS / 2.0
+    assert center_with_tcp_at(0.5, 0.9) == pytest.approx((0.5, 0.2, top))
+    assert center_with_tcp_at(0.5 + 0.9 * LARGEST_OFFSET, 0.1) == pytest.approx((0.5, 0.2, top))
+    assert center_with_tcp_at(0.5 + 1.1 * LARGEST_OFFSET, 0.1) == pytest.approx((0.5 + 1.1 * LARGEST_OFFSET, 0.2, top))
+
+
+def test_calibration_and_tool_are_part_of_the_scene(server, tmp_path):
+    origins = [Origin(tuple(np.add(origin.xyz, 1e-3)), origin.rpy) for origin in nominal_origins(find_model("ur5e"))]
+    file = tmp_path / "calibration.yaml"
+    joint_origins = {key: dict(zip(FIELDS, map(float, (*origin.xyz, *origin.rpy)))) for key, origin in zip(JOINT_KEYS, origins)}
+    file.write_text(yaml.safe_dump({"kinematics": {**joint_origins, "hash": "calib_1"}}))
+    scene = RobotScene(server.scene, RobotOptions("tooled", "ur5e", kinematics_params_file=str(file), tool_length=0.2))
+    scene.update(RobotState(joints=joints(POSITIONS)))
+    base, tip = (pose_in_scene(server, scene.arm.link_path(name)) for name in ("base", "tool_tip"))
+    expected = flange_pose(origins, POSITIONS) @ Origin((0.0, 0.0, 0.2)).transform()
+    assert np.linalg.inv(base) @ tip == pytest.approx(expected, abs=1e-6)
+    scene.remove()

@@ -3,7 +3,7 @@
 import argparse
 import math
 from dataclasses import dataclass
-from typing import Sequence, Tuple
+from typing import Optional, Sequence, Tuple
 
 DEFAULT_PORT = 8080
 DEFAULT_RATE = 30.0  # Hz
@@ -14,6 +14,8 @@ Shows robots in the browser: the arm and its target, plots, the state of the dri
     ur view --robot left,model=ur5e,y=0.4 --robot right,model=ur5e,y=-0.4
 """
 _POSE_FIELDS = ("x", "y", "z", "roll", "pitch", "yaw")
+_TEXT_FIELDS = ("model", "kinematics_params_file", "tool")
+_NUMBER_FIELDS = (*_POSE_FIELDS, "tool_length")
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,9 @@ class RobotOptions:
     model: str = ""  # empty: the model that the driver reports
     xyz: Tuple[float, float, float] = (0.0, 0.0, 0.0)  # m, position of base_link in the scene
     rpy: Tuple[float, float, float] = (0.0, 0.0, 0.0)  # rad, orientation of base_link
+    kinematics_params_file: str = ""  # calibration
+    tool: str = ""  # URDF of a tool
+    tool_length: Optional[float] = None  # m, of a cylinder as a tool
 
     @property
     def name(self) -> str:
@@ -32,17 +37,19 @@ class RobotOptions:
 
 
 def parse_robot(text: str) -> RobotOptions:
-    """Reads NAMESPACE[,model=MODEL][,x=M]…[,yaw=RAD]."""
+    """Reads NAMESPACE[,model=MODEL][,x=M]…[,yaw=RAD][,tool=FILE]…"""
     namespace, *fields = text.split(",")
     values = {}
     for field in fields:
         key, separator, value = field.partition("=")
-        if not separator or key not in ("model", *_POSE_FIELDS):
-            raise argparse.ArgumentTypeError(f"\"{field}\" in \"{text}\": expected model=MODEL or one of "
-                                             f"{', '.join(name + '=NUMBER' for name in _POSE_FIELDS)}")
+        if not separator or key not in (*_TEXT_FIELDS, *_NUMBER_FIELDS):
+            raise argparse.ArgumentTypeError(f"\"{field}\" in \"{text}\": expected {', '.join(name + '=TEXT' for name in _TEXT_FIELDS)}"
+                                             f" or {', '.join(name + '=NUMBER' for name in _NUMBER_FIELDS)}")
         values[key] = value
     pose = [_number(text, key, values.get(key, "0")) for key in _POSE_FIELDS]
-    return RobotOptions(namespace.strip("/"), values.get("model", ""), tuple(pose[:3]), tuple(pose[3:]))
+    length = _number(text, "tool_length", values["tool_length"]) if "tool_length" in values else None
+    return RobotOptions(namespace.strip("/"), values.get("model", ""), tuple(pose[:3]), tuple(pose[3:]),
+                        values.get("kinematics_params_file", ""), values.get("tool", ""), length)
 
 
 def _number(text: str, key: str, value: str) -> float:
@@ -74,9 +81,13 @@ def _rate(text: str) -> float:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--robot", action="append", type=parse_robot, default=[], metavar="NS[,model=M][,x=…]",
                         help="robot with this namespace; model, position (x, y, z in m) and orientation (roll, pitch, yaw in rad) of "
-                             "its base_link are optional; can be given several times")
+                             "its base_link, kinematics_params_file, tool and tool_length are optional; can be given several times")
     parser.add_argument("--namespace", default="", metavar="NS", help="namespace of the only robot (default: none)")
     parser.add_argument("--model", default="", metavar="MODEL", help="model of the only robot (default: reported by the driver)")
+    parser.add_argument("--kinematics-params-file", default="", metavar="FILE", help="calibration of the only robot, of `ur calibration`")
+    parser.add_argument("--tool", default="", metavar="FILE", help="tool of the only robot, a URDF, of which cylinders, boxes and spheres "
+                                                                   "are shown")
+    parser.add_argument("--tool-length", type=float, metavar="M", help="length of a cylinder as the tool of the only robot")
     parser.add_argument("--address", default="127.0.0.1", metavar="IP",
                         help="address on which the page is served (default: 127.0.0.1, this machine only)")
     parser.add_argument("--port", type=_port, default=DEFAULT_PORT, metavar="PORT", help="port of the page; 0: a free one (default: 8080)")
@@ -92,9 +103,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def robots(options: argparse.Namespace) -> Sequence[RobotOptions]:
     """Returns the robots of the scene. Raises ValueError if a namespace appears twice or options contradict each other."""
     if not options.robot:
-        return (RobotOptions(options.namespace.strip("/"), options.model),)
-    if options.namespace or options.model:
-        raise ValueError("--robot replaces --namespace and --model: write --robot NAMESPACE,model=MODEL")
+        return (RobotOptions(options.namespace.strip("/"), options.model, kinematics_params_file=options.kinematics_params_file,
+                             tool=options.tool, tool_length=options.tool_length),)
+    for name in ("namespace", "model", "kinematics_params_file", "tool", "tool_length"):
+        if getattr(options, name):
+            option = "--" + name.replace("_", "-")
+            field = "NAMESPACE" if name == "namespace" else f"NAMESPACE,{name}={getattr(options, name)}"
+            raise ValueError(f"--robot replaces {option}: write --robot {field}")
     namespaces = [robot.namespace for robot in options.robot]
     for namespace in namespaces:
         if namespaces.count(namespace) > 1:

@@ -9,20 +9,27 @@ from typing import List, Optional
 from .arguments import DESCRIPTION, add_arguments, robots
 from .errors import ViewerError
 
+VISER = "1.1."  # the versions whose internal classes `page` uses
+INSTALL = "pip install viser==1.1.1"
+
 
 def _check(options: argparse.Namespace) -> None:
     try:
-        import viser  # noqa: F401
+        import viser
     except ImportError as error:
-        raise ViewerError(f"The viewer needs the Python package viser: {error}. Install it: `pip install viser`") from None
+        raise ViewerError(f"The viewer needs the Python package viser: {error}. Install it: `{INSTALL}`") from None
+    if not viser.__version__.startswith(VISER):
+        raise ViewerError(f"viser {viser.__version__} is installed, but the viewer needs {VISER}: `{INSTALL}`")
     from ur_ros_rtde_description.errors import DescriptionError
-    from ur_ros_rtde_description.models import find_model
+
+    from .scene.robot_scene import urdf_of
+    from .scene.urdf import read_description
 
     try:
         found = robots(options)
         for robot in found:
             if robot.model:
-                find_model(robot.model)
+                read_description(urdf_of(robot, robot.model))
     except (DescriptionError, ValueError) as error:
         raise ViewerError(str(error)) from None
     if options.plan and not found[0].model:

@@ -62,7 +62,7 @@ class RobotView:
         self._follow_reported_model()
         self.scene.update(self.state)
         if self._simulator is not None:
-            self.scene.show_surfaces(self._simulator.surfaces)
+            self.scene.show_surfaces(self._simulator.surfaces, self.state)
         for panel in self.panels:
             panel.update(self.state)
 
@@ -75,6 +75,7 @@ class RobotView:
         try:
             self.scene.set_model(reported)
         except DescriptionError as error:
+            self.scene.error = str(error)
             logger.warning("%s: %s", self.options.name, error)
 
     def close(self) -> None:

@@ -15,7 +15,7 @@ from .ros.nodes import Nodes
 
 logger = logging.getLogger(__name__)
 CLOSE_LIMIT = 2.0  # s
-CAMERA = (-1.6, -1.9, 1.3), (-0.35, 0.0, 0.35)  # m, position and the point that it looks at
+CAMERA = (-1.35, -1.6, 1.05), (-0.35, 0.0, 0.42)  # m, position and the point that it looks at
 
 
 class Viewer:
@@ -76,6 +76,8 @@ class Viewer:
         with self.server.atomic():
             for robot in self.robots:
                 robot.update()
+            if self.control is not None:
+                self.control.update()
 
     def close(self) -> None:
         """Ends what the page has started: recordings and the digital twin. Waits for the driver, but not long."""

@@ -1,6 +1,7 @@
 """The control side of the page: STOP for all robots, and for each browser tab forms, jog buttons and a target pose."""
 
 import threading
+import time
 from typing import Any, Dict, List
 
 from .control_node import ControlNode
@@ -11,7 +12,12 @@ from .stop import Outcome
 from .target_panel import TargetPanel
 
 STOP_REPEAT = 2.0  # Hz, while the button is held
-STOP_WIDTH = 260  # pixels
+STOP_WIDTH = 300  # pixels
+STOP_KEY: Any = "escape"
+EXPAND_PERIOD = 1.0  # s
+# viser has no option for the size of a button. `+` selects the button after this element.
+STOP_STYLE = """<style>div:has(> .stop-style) + div button {height: 72px !important; font-size: 30px; font-weight: 700}</style>
+<div class="stop-style"></div>"""
 
 
 class Control:
@@ -25,6 +31,7 @@ class Control:
         self._containers = [[view.tabs.add_tab(name) for name in ("Commands", "Jog", "Target")] for view in viewer.robots]
         self._tabs: Dict[int, List[Any]] = {}
         self._lock = threading.Lock()
+        self._expanded = -float("inf")
         for robot in self._robots:
             robot.view.panels.append(robot)
         self._node.start()
@@ -33,18 +40,27 @@ class Control:
         viewer.server.on_client_disconnect(self._disconnect)
 
     def _add_stop(self, gui: Any) -> None:
-        """Adds STOP in a window of its own, which stays in view when tabs change or scroll."""
-        panel = gui.add_panel()
-        with panel.add_tab("STOP"):
+        """Adds STOP in a window of its own, which stays in view when tabs change or scroll. Notifications of viser are at the top."""
+        self._stop_panel = gui.add_panel()
+        with self._stop_panel.add_tab("STOP"):
+            gui.add_html(STOP_STYLE)
             button = gui.add_button("STOP", color="red", hint="Decelerates all robots of this page. No substitute for an emergency stop")
-            self._stop_text = gui.add_markdown("")
-        panel.float(x=-15, y=15, width=STOP_WIDTH)
+            self._stop_text = gui.add_markdown("The key Esc does the same, except in an input.")
+        self._stop_panel.float(x=-15, y=-15, width=STOP_WIDTH)
 
         async def stop(_event: Any) -> None:
             self.stop()
 
         button.on_hold(stop, callback_hz=STOP_REPEAT)  # the first call comes when the button is pressed, not when it is released
         button.on_click(stop)  # with the keyboard
+        gui.add_command("STOP", description="Decelerates all robots of this page", hotkey=STOP_KEY).on_trigger(stop)
+
+    def update(self) -> None:
+        """Opens the window with STOP again if it was minimized. Called in the thread of the viewer's loop."""
+        now = time.monotonic()
+        if now - self._expanded >= EXPAND_PERIOD:
+            self._expanded = now
+            self._stop_panel.expand()
 
     def stop(self) -> None:
         """Stops all robots."""

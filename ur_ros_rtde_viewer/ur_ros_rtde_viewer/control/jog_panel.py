@@ -23,7 +23,7 @@ class JogPanel:
                     self._add_button(axis, sign)
 
     def _add_button(self, axis: int, sign: float) -> None:
-        button = self._gui.add_button(f"{AXES[axis]} {'+' if sign > 0 else '−'}", color="blue" if axis < 3 else "teal")
+        button = self._gui.add_button(f"{AXES[axis]} {'+' if sign > 0 else '−'}", color="blue" if axis < 3 else "indigo")
 
         async def hold(_event: Any) -> None:  # coroutines are called in the order of the messages
             reason = self._jog.hold(self._tab, axis, sign, FRAMES[self._frame.value],

@@ -63,7 +63,7 @@ class _Press:
 
     def _on_result(self, result: Any) -> None:
         if result.success:
-            self._report(Outcome.STOPPED, f"at rest after {result.time_to_standstill:.2f} s")
+            self._report(Outcome.STOPPED, f"At rest after {result.time_to_standstill:.2f} s")
         else:
             self._stop_program(result.message)
 
@@ -93,7 +93,7 @@ class _Press:
 
     def _on_dashboard_result(self, result: Optional[Any]) -> None:
         if result is not None and result.success:
-            self._report(Outcome.STOPPED, "the robot program was stopped")
+            self._report(Outcome.STOPPED, "The robot program was stopped.")
         else:
             reason = "refused" if result is None else result.message
             self._report(Outcome.FAILED, f"dashboard/stop: {reason}. Use the emergency stop button")

@@ -5,9 +5,7 @@ from typing import Any, List, Optional
 
 import numpy as np
 from ur_ros_rtde_description.models import JOINTS
-from ur_ros_rtde_description.options import read_options
 from ur_ros_rtde_description.tree import link_poses
-from ur_ros_rtde_description.urdf import make_urdf
 
 from ..scene.arm import Arm
 from ..scene.urdf import read_description
@@ -67,11 +65,9 @@ class TargetPanel:
         if scene.arm is None or tcp is None or self._robot.joint_positions is None:
             self._say("there is no state of the robot yet")
             return
-        model = read_options(scene.model)
-        text = make_urdf(model)
-        self._urdf = xml.fromstring(text)
+        self._urdf = xml.fromstring(scene.urdf)
         self._base = scene.arm.link_path("base")
-        self._arm = Arm(self._client.scene, f"{scene.root}/preview", read_description(text), GHOST_OPACITY, GHOST_COLOR)
+        self._arm = Arm(self._client.scene, f"{scene.root}/preview", read_description(scene.urdf), GHOST_OPACITY, GHOST_COLOR)
         self._arm.set_visible(False)
         self._gizmo = self._client.scene.add_transform_controls(f"{self._base}/target", scale=GIZMO_SCALE, position=tcp.position,
                                                                 wxyz=tcp.wxyz, depth_test=False)

@@ -8,6 +8,7 @@ import socket
 import viser
 
 from ..errors import ViewerError
+from .backlog import bound_backlog
 from .origin import only_own_pages
 
 TITLE = "ur_ros_rtde"
@@ -40,6 +41,7 @@ def start_server(address: str, port: int) -> viser.ViserServer:
     if port not in (0, server.get_port()):
         server.stop()
         raise ViewerError(f"{address}:{port} was taken by another program during the start: start again, or choose another --port")
+    bound_backlog(server)
     server.request_share_url = _refuse_to_share  # type: ignore[method-assign]
     server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large", dark_mode=False)
     server.scene.set_up_direction("+z")

@@ -13,14 +13,14 @@ from .twin_panel import TwinPanel
 
 
 def _player(viewer: Any, robot: Any, container: Any) -> Player:
-    return Player(container, viewer.server, robot.scene, robot.options, viewer.post)
+    return Player(container, viewer.server, robot.scene, viewer.post)
 
 
 def add_panels(viewer: Any, robot: Any) -> None:
     """Adds the panels of a RobotView. Those that move it are added by control.Control."""
     server, tabs, post = viewer.server, robot.tabs, viewer.post
     recordings = pathlib.Path(viewer.options.recordings).absolute()
-    state_tab, recording_tab, twin_tab = (tabs.add_tab(name) for name in ("State", "Recording", "Twin"))
+    state_tab, recording_tab, twin_tab = (tabs.add_tab(name) for name in ("State", "Record", "Twin"))
     robot.panels += [
         Banner(viewer.layout.banner(robot.options), robot.options.name, robot.topics.name_of("joint_states"), robot.scene),
         StatePanel(state_tab, server.gui),

@@ -9,19 +9,18 @@ SILENT = 1.0  # s without joint states
 RED, AMBER = "#c62828", "#b26a00"
 
 
-def banner_text(state: RobotState, name: str, topic: str, has_model: bool) -> Optional[Tuple[str, str]]:
-    """Returns color and text, None if there is nothing to report."""
+def banner_text(state: RobotState, name: str, topic: str, has_model: bool, error: str = "") -> Optional[Tuple[str, str]]:
+    """Returns color and text, None if there is nothing to report. `error`: why the model cannot be shown."""
     if state.is_stopped:
         title = state.safety_mode.replace("_", " ")
-        return RED, f"{name}: {title}. {state.driver.message if state.driver is not None else ''}"
+        return RED, f"{name}: {title}: {state.driver.message if state.driver is not None else ''}"
     if state.joints is None:
         return AMBER, (f"{name}: no messages on {topic}. Start the driver (`ros2 launch ur_ros_rtde driver.launch.py` or `./ur demo "
                        "--keep-running`) with the same ROS_DOMAIN_ID and namespace.")
     if state.age > SILENT:
         return AMBER, f"{name}: no messages on {topic} for {state.age:.0f} s. The driver has ended or has lost the robot."
     if not has_model:
-        return AMBER, (f"{name}: the driver reports " + (f"the model {state.model}, which has no description"
-                                                         if state.model else "no model") + ". State the model: --model ur10e")
+        return AMBER, f"{name}: {error or 'the driver reports no model. State the model: --model ur10e'}"
     if state.driver is not None and state.driver.name == "STOPPED":
         return AMBER, f"{name}: {state.driver.message}"
     return None
@@ -35,7 +34,7 @@ class Banner:
         self.shown: Optional[Tuple[str, str]] = None
 
     def update(self, state: RobotState) -> None:
-        shown = banner_text(state, self._name, self._topic, self._scene.arm is not None)
+        shown = banner_text(state, self._name, self._topic, self._scene.arm is not None, self._scene.error)
         if shown != self.shown:
             self.shown = shown
             if shown is not None:

@@ -1,7 +1,7 @@
 """Plots of the last 30 s: joint positions, joint velocities and the force at the TCP."""
 
 import time
-from typing import Any, List, Tuple
+from typing import Any, Dict, List, Tuple
 
 import numpy as np
 from viser import uplot
@@ -14,8 +14,18 @@ SAMPLE_PERIOD = 1.0 / 15.0  # s
 DRAW_PERIOD = 0.25  # s; each drawing sends all samples
 JOINTS = ("pan", "lift", "elbow", "wrist 1", "wrist 2", "wrist 3")
 COLORS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
-PLOTS = (("Joint positions, rad", JOINTS, 0), ("Joint velocities, rad/s", JOINTS, 6), ("Force at the TCP, N", ("x", "y", "z"), 12))
+# Title, curves, first column after the time, and half of the range that is shown at least: noise must not look like a motion.
+PLOTS = (("Joint positions, rad", JOINTS, 0, 0.1), ("Joint velocities, rad/s", JOINTS, 6, 0.1),
+         ("Force at the TCP, N", ("x", "y", "z"), 12, 5.0))
+HEIGHT, PADDING = 190, (10, 16, 0, 0)  # pixels; top, right, bottom, left
 COLUMNS = 1 + 6 + 6 + 3
+
+
+def _scales(smallest: float) -> Dict[str, uplot.Scale]:
+    """The time axis is fixed: viser keeps the part of an automatic axis that is in view, and loses the curves while they grow."""
+    limit = {"pad": 0.1, "mode": 1}
+    y_range = {"min": {**limit, "soft": -smallest}, "max": {**limit, "soft": smallest}}
+    return {"x": uplot.Scale(time=False, range=(-DURATION, 0.0)), "y": uplot.Scale(auto=True, range=y_range)}
 
 
 def sample(state: RobotState) -> np.ndarray:
@@ -35,14 +45,13 @@ class PlotsPanel:
         self._last_stamp, self._drawn = -np.inf, -np.inf
         with tab:
             self._pause = server.gui.add_checkbox("Pause", False)
-            self._plots = [self._add(title, names) for title, names, _ in PLOTS]
+            self._plots = [self._add(title, names, smallest) for title, names, _, smallest in PLOTS]
 
-    def _add(self, title: str, names: Tuple[str, ...]) -> Any:
+    def _add(self, title: str, names: Tuple[str, ...], smallest: float) -> Any:
         series = (uplot.Series(label="s"), *(uplot.Series(label=name, stroke=color, width=1.5, points={"show": False})
                                              for name, color in zip(names, COLORS)))
-        return self._server.gui.add_uplot(tuple(np.zeros(1) for _ in range(len(names) + 1)), series, title=title, height=190,
-                                          scales={"x": uplot.Scale(time=False), "y": uplot.Scale(auto=True)},
-                                          legend=uplot.Legend(show=True, live=False))
+        return self._server.gui.add_uplot(tuple(np.zeros(1) for _ in range(len(names) + 1)), series, title=title, height=HEIGHT,
+                                          padding=PADDING, scales=_scales(smallest), legend=uplot.Legend(show=True, live=False))
 
     @property
     def paused(self) -> bool:
@@ -74,7 +83,7 @@ class PlotsPanel:
 
     def _draw(self) -> None:
         data = self.data
-        for plot, (_, names, first) in zip(self._plots, PLOTS):
+        for plot, (_, names, first, _) in zip(self._plots, PLOTS):
             plot.data = (data[0], *data[1 + first:1 + first + len(names)])
 
     def close(self) -> None:

@@ -3,9 +3,6 @@
 import time
 from typing import Any, Callable, Optional
 
-from ur_ros_rtde_description.options import read_options
-from ur_ros_rtde_description.urdf import make_urdf
-
 from ..errors import ViewerError
 from ..scene.arm import Arm
 from ..scene.urdf import read_description
@@ -18,8 +15,8 @@ COLOR, OPACITY = (255, 170, 40), 0.75
 class Player:
     """Play, pause, and a slider for the time. `scene` is the RobotScene of the robot to which the motion belongs."""
 
-    def __init__(self, container: Any, server: Any, scene: Any, options: Any, post: Callable[[Callable[[], None]], None]):
-        self._server, self._robot_scene, self._options = server, scene, options
+    def __init__(self, container: Any, server: Any, scene: Any, post: Callable[[Callable[[], None]], None]):
+        self._server, self._robot_scene = server, scene
         self._motion: Optional[Motion] = None
         self._arm: Optional[Arm] = None
         self._began = 0.0  # monotonic time of the motion's start, while it plays
@@ -40,12 +37,10 @@ class Player:
 
     def load(self, motion: Motion) -> None:
         """Shows a motion from its start. Raises ViewerError while the model of the robot is unknown."""
-        model = self._robot_scene.model
-        if not model:
+        if not self._robot_scene.urdf:
             raise ViewerError("The model of the arm is unknown: start the viewer with --model, for example --model ur10e")
         self.remove()
-        options = read_options(model, xyz=self._options.xyz, rpy=self._options.rpy)
-        self._arm = Arm(self._server.scene, f"{self._robot_scene.root}/playback", read_description(make_urdf(options)), OPACITY, COLOR)
+        self._arm = Arm(self._server.scene, f"{self._robot_scene.root}/playback", read_description(self._robot_scene.urdf), OPACITY, COLOR)
         self._motion = motion
         self._slider.max = max(motion.duration, 0.01)
         self._show_controls(True)

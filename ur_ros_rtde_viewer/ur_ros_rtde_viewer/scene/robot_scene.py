@@ -18,8 +18,15 @@ STOPPED_COLOR = (220, 40, 40)
 SAME_POSITION = 2e-3  # rad; a ghost that is this close to the arm is hidden
 
 
+def urdf_of(robot: RobotOptions, model: str) -> str:
+    """Returns the URDF of a robot with its mounting pose, calibration and tool. Raises DescriptionError if there is none."""
+    return make_urdf(read_options(model, kinematics_params_file=robot.kinematics_params_file, xyz=robot.xyz, rpy=robot.rpy,
+                                  tool=robot.tool, tool_length=robot.tool_length))
+
+
 class RobotScene:
-    """Has no arm until the model is known. `arm`, `ghost` and `tcp` are None until then.
+    """Has no arm until the model is known. `arm`, `ghost` and `tcp` are None, and `urdf` is empty until then. `error` is the reason why
+    the reported model cannot be shown.
 
     Nodes: <root> is base_link's pose in the scene, <root>/arm and <root>/ghost the arms, <root>/base the frame of the controller.
     """
@@ -27,7 +34,7 @@ class RobotScene:
     def __init__(self, scene: viser.SceneApi, options: RobotOptions):
         self._scene, self._options = scene, options
         self.root = f"/{options.namespace or 'robot'}"
-        self.model = ""
+        self.urdf = self.error = ""
         self.arm: Optional[Arm] = None
         self.ghost: Optional[Arm] = None
         self.tcp: Optional[ToolCenterPoint] = None
@@ -37,17 +44,17 @@ class RobotScene:
             self.set_model(options.model)
 
     def set_model(self, model: str) -> None:
-        """Builds the arm. Raises DescriptionError if there is no such model."""
-        options = read_options(model, xyz=self._options.xyz, rpy=self._options.rpy)
-        description = read_description(make_urdf(options))
+        """Builds the arm. Raises DescriptionError if there is no such model, or if calibration or tool do not fit."""
         self.remove()
+        urdf = urdf_of(self._options, model)
+        description = read_description(urdf)
         self.arm = Arm(self._scene, f"{self.root}/arm", description)
         self.arm.set_visible(False)  # until its positions are known
         self.ghost = Arm(self._scene, f"{self.root}/ghost", description, GHOST_OPACITY, GHOST_COLOR)
         self.ghost.set_visible(False)
         base = self.arm.link_path("base")
         self.tcp, self._surfaces = ToolCenterPoint(self._scene, base), Surfaces(self._scene, base)
-        self.model, self._stopped = options.model.name, False
+        self.urdf, self.error, self._stopped = urdf, "", False
 
     def update(self, state: RobotState) -> None:
         if self.arm is None or self.ghost is None or self.tcp is None:
@@ -69,13 +76,14 @@ class RobotScene:
             self.ghost.set_positions(other.positions)
         self.ghost.set_visible(differs)
 
-    def show_surfaces(self, surfaces: Sequence[Surface]) -> None:
+    def show_surfaces(self, surfaces: Sequence[Surface], state: RobotState) -> None:
         """Shows the surfaces of a simulated world, in the base frame of the controller."""
         if self._surfaces is not None:
-            self._surfaces.show(surfaces)
+            self._surfaces.show(surfaces, None if state.tcp_pose is None else state.tcp_pose.position)
 
     def remove(self) -> None:
         for part in (self._surfaces, self.tcp, self.ghost, self.arm):
             if part is not None:
                 part.remove()
         self.arm = self.ghost = self.tcp = self._surfaces = None
+        self.urdf = ""

@@ -1,12 +1,14 @@
 """The surfaces of a simulated world."""
 
-from typing import Any, Dict, Sequence, Tuple
+from typing import Any, Dict, Optional, Sequence, Tuple
 
 import numpy as np
 import viser
 
-SIZE = 1.6  # m, of the drawn part of a plane
-COLOR, OPACITY = (150, 120, 90), 0.5
+SIZE = 0.7  # m, of the drawn part of a plane
+LARGEST_OFFSET = 0.3  # m, of the TCP from the center of this part, along the plane
+THICKNESS = 0.006  # m
+COLOR, OPACITY = (190, 150, 105), 0.75
 
 Surface = Tuple[Tuple[float, ...], Tuple[float, ...]]  # point in m and unit normal, both in the base frame
 
@@ -21,28 +23,36 @@ def turn_z_to(normal: Sequence[float]) -> np.ndarray:
 
 
 class Surfaces:
-    """Draws each surface as a square around the point below the base, in the controller's base frame `base`."""
+    """Draws of each plane a square near the TCP, in the controller's base frame `base`. The simulated planes are infinite; the whole
+    of them would hide the arm."""
 
     def __init__(self, scene: viser.SceneApi, base: str):
         self._scene, self._base = scene, base
         self._drawn: Dict[Surface, Any] = {}
+        self._centers: Dict[Surface, np.ndarray] = {}
 
     def __len__(self) -> int:
         return len(self._drawn)
 
-    def show(self, surfaces: Sequence[Surface]) -> None:
+    def show(self, surfaces: Sequence[Surface], tcp: Optional[np.ndarray] = None) -> None:
+        """`tcp` is the position of the TCP in the base frame, if it is known."""
         for gone in set(self._drawn) - set(surfaces):
             self._drawn.pop(gone).remove()
+            del self._centers[gone]
         for surface in surfaces:
+            point, normal = (np.array(part) for part in surface)
+            near = np.zeros(3) if tcp is None else tcp
+            center = near - normal * float(normal @ (near - point))
             if surface not in self._drawn:
-                self._drawn[surface] = self._draw(surface)
+                self._drawn[surface] = self._draw(surface, normal)
+            elif np.linalg.norm(center - self._centers[surface]) < LARGEST_OFFSET:
+                continue
+            self._centers[surface] = center
+            self._drawn[surface].position = center - 0.5 * THICKNESS * normal
 
-    def _draw(self, surface: Surface) -> Any:
-        point, normal = (np.array(part) for part in surface)
-        center = normal * float(normal @ point)  # nearest to the base
+    def _draw(self, surface: Surface, normal: np.ndarray) -> Any:
         path = f"{self._base}/surface_{abs(hash(surface)):x}"
-        return self._scene.add_box(path, dimensions=(SIZE, SIZE, 0.004), color=COLOR, opacity=OPACITY, position=center - 0.002 * normal,
-                                   wxyz=turn_z_to(normal))
+        return self._scene.add_box(path, dimensions=(SIZE, SIZE, THICKNESS), color=COLOR, opacity=OPACITY, wxyz=turn_z_to(normal))
 
     def remove(self) -> None:
         self.show(())

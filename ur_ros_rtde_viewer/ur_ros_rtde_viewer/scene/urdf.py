@@ -3,9 +3,10 @@
 import math
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass
-from typing import List, Tuple, Union
+from typing import List, Optional, Tuple, Union
 
 import numpy as np
+from ur_ros_rtde_description.errors import DescriptionError
 from ur_ros_rtde_description.kinematics import Origin
 from ur_ros_rtde_description.tree import origin_of
 
@@ -73,7 +74,7 @@ def quaternion(origin: Origin) -> np.ndarray:
 
 
 def read_description(text: str) -> Description:
-    """Reads a URDF of ur_ros_rtde_description. Meshes of tools are left out."""
+    """Reads a URDF of ur_ros_rtde_description. Meshes of tools are left out. Raises DescriptionError if a shape of a tool is invalid."""
     robot = xml.fromstring(text)
     links = tuple(Link(link.get("name", ""), tuple(_shapes(link))) for link in robot.findall("link"))
     joints = [_joint(element) for element in robot.findall("joint")]
@@ -85,15 +86,17 @@ def read_description(text: str) -> Description:
 def _shapes(link: xml.Element) -> List[Shape]:
     found = []
     for visual in link.findall("visual"):
-        geometry = _geometry(visual.find("geometry"))
+        try:
+            geometry, origin, color = _geometry(visual.find("geometry")), origin_of(visual), _color(visual)
+        except (AttributeError, TypeError, ValueError):
+            raise DescriptionError(f"link {link.get('name')}: a visual element has a value that is missing or no number") from None
         if geometry is not None:
-            origin = origin_of(visual)
-            found.append(Shape(geometry, np.array(origin.xyz), quaternion(origin), _color(visual)))
+            found.append(Shape(geometry, np.array(origin.xyz), quaternion(origin), color))
     return found
 
 
-def _geometry(element: xml.Element) -> Union[Cylinder, Sphere, Box, None]:
-    for shape in element:
+def _geometry(element: Optional[xml.Element]) -> Union[Cylinder, Sphere, Box, None]:
+    for shape in element if element is not None else ():
         if shape.tag == "cylinder":
             return Cylinder(float(shape.get("radius")), float(shape.get("length")))
         if shape.tag == "sphere":
