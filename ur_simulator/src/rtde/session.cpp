@@ -135,8 +135,10 @@ void Session::handle_request_protocol_version(std::string_view payload)
   PackageReader reader(payload);
   const std::uint16_t version = reader.read_u16();
   const bool supported = reader.ok() && (version == 1 || version == 2);
-  if (supported) {
+  if (supported && version != protocol_version_) {
     protocol_version_ = version;
+    set_output_recipe("");  // packages of the versions differ in length
+    started_ = false;
   }
   reply(PackageType::request_protocol_version, acceptance(supported));
 }
@@ -217,7 +219,7 @@ std::string Session::set_output_recipe(std::string_view names)
 
 void Session::publish()
 {
-  if (!started_ || output_fields_.empty()) {
+  if (!started_ || output_fields_.empty() || !output_recipe_valid_) {
     return;
   }
   publish_phase_ += output_frequency_ / control_frequency(context_.version);

@@ -47,6 +47,29 @@ TEST_F(RtdeMalformedDataTest, AnswersUnknownPackageTypeWithTextMessage)
   EXPECT_EQ(client.request('v', "").size(), 16u);
 }
 
+TEST_F(RtdeMalformedDataTest, InvalidRecipeAfterStartEndsThePackages)
+{
+  RtdeClient client(controller.address());
+  ASSERT_TRUE(client.negotiate(2));
+  client.setup_outputs(500.0, "timestamp");
+  ASSERT_TRUE(client.start());
+  EXPECT_EQ(client.setup_outputs(500.0, "actual_q,target_q,actual_qd,nothing"),
+            std::string(1, '\0') + "VECTOR6D,VECTOR6D,VECTOR6D,NOT_FOUND");
+  ASSERT_TRUE(wait_simulated_time(controller, 0.1, seconds(5)));
+  client.send('v', "");
+  EXPECT_EQ(client.receive().type, 'v');
+}
+
+TEST_F(RtdeMalformedDataTest, NewProtocolVersionDiscardsTheOutputRecipe)
+{
+  RtdeClient client(controller.address());
+  ASSERT_TRUE(client.negotiate(1));
+  client.request('O', "timestamp,actual_q");
+  ASSERT_TRUE(client.start());
+  ASSERT_TRUE(client.negotiate(2));
+  EXPECT_FALSE(client.start());
+}
+
 TEST_F(RtdeMalformedDataTest, AcceptsPackageByteByByte)
 {
   RtdeClient client(controller.address());
