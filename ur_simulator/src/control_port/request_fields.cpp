@@ -108,6 +108,16 @@ std::string RequestFields::choice(const std::string & name, std::span<const std:
   return value;
 }
 
+nlohmann::json RequestFields::scalar(const std::string & name)
+{
+  const nlohmann::json & value = *find(name, false);
+  if (!value.is_boolean() && !value.is_number() && !value.is_string()) {
+    throw RequestError(
+        fmt::format("field '{}' is {}: it must be a boolean, a number or a string", name, value.dump()), name);
+  }
+  return value;
+}
+
 std::vector<double> RequestFields::numbers(const std::string & name, std::size_t count, Range range)
 {
   const nlohmann::json & value = *find(name, false);

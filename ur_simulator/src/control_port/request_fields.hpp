@@ -49,6 +49,8 @@ class RequestFields {
   /// A string that is one of the choices.
   std::string choice(const std::string & name, std::span<const std::string_view> choices,
                      std::optional<std::string> default_value = {});
+  /// A boolean, a number or a string.
+  nlohmann::json scalar(const std::string & name);
   Vector3 vector3(const std::string & name, Range range, std::optional<Vector3> default_value = {});
   Vector6 vector6(const std::string & name, Range range, std::optional<Vector6> default_value = {});
   /// Throws RequestError if the request has a field that has not been read, such as a misspelled one.

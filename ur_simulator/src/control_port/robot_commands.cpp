@@ -195,6 +195,34 @@ Action close_popup(RequestFields &)
   };
 }
 
+/// Reads the field `value` with the type that the program requests.
+urscript::Value requested_value(RequestFields & fields, urscript::Type type)
+{
+  switch (type) {
+    case urscript::Type::boolean:
+      return urscript::Value(fields.boolean("value"));
+    case urscript::Type::integer:
+      return urscript::Value(static_cast<std::int32_t>(fields.integer("value", INT32_MIN, INT32_MAX)));
+    case urscript::Type::floating:
+      return urscript::Value(fields.number("value", {-1e300, 1e300}));
+    default:
+      return urscript::Value(fields.string("value"));
+  }
+}
+
+Action answer_request(RequestFields & fields)
+{
+  return [request = json{{"value", fields.scalar("value")}}](ControlPortContext & context) -> json {
+    ProgramRunner & runner = context.pendant.runner();
+    if (runner.value_request() == nullptr) {
+      throw RequestError("the program does not request a value");
+    }
+    RequestFields answer(request);
+    runner.answer_request(requested_value(answer, runner.value_request()->type));
+    return json::object();
+  };
+}
+
 constexpr std::array robot_command_table{
     Command{"protective_stop", "reason", "Triggers a protective stop.", protective_stop},
     Command{"unlock_protective_stop", "",
@@ -228,6 +256,8 @@ constexpr std::array robot_command_table{
             kill_program},
     Command{"speed_slider", "fraction 0..1", "Sets the speed slider of the pendant.", speed_slider},
     Command{"close_popup", "", "Closes the open popup.", close_popup},
+    Command{"answer_request", "value bool|number|string",
+            "Enters the value that the program requests from the operator.", answer_request},
 };
 
 }  // namespace

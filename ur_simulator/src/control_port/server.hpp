@@ -20,6 +20,8 @@ class Server {
   Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
          RequestHandler handle_request);
   ~Server();
+  /// Serves a connection, as each that the listener accepts.
+  void accept(const std::shared_ptr<Connection> & connection);
   Listener & listener() { return listener_; }
   const Listener & listener() const { return listener_; }
 
@@ -28,7 +30,6 @@ class Server {
     std::shared_ptr<Connection> connection;
     std::string received;
   };
-  void accept(const std::shared_ptr<Connection> & connection);
   void receive(Client & client, std::string_view bytes);
   std::string reply_to(std::string_view line) const;
 

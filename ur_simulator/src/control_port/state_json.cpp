@@ -64,7 +64,8 @@ json program_to_json(const ControlPortContext & context)
   return {{"state", to_string(context.state.runtime_state)},
           {"name", runner.program_name()},
           {"loaded", context.pendant.loaded_program()},
-          {"threads", runner.machine() != nullptr ? runner.machine()->thread_count() : 0}};
+          {"threads", runner.machine() != nullptr ? runner.machine()->thread_count() : 0},
+          {"instructions", runner.machine() != nullptr ? runner.machine()->instructions() : 0}};
 }
 
 json clients_to_json(const ControlPortContext & context)
@@ -139,6 +140,7 @@ void add_robot(json & result, const ControlPortContext & context)
   const ControllerState & s = context.state;
   const Pendant & pendant = context.pendant;
   const auto & popup = context.pendant.runner().popup();
+  const auto * request = context.pendant.runner().value_request();
   const auto & safety_popup = pendant.safety_popup();
   result.update({{"cycle", s.cycle},
                  {"timestamp", s.timestamp},
@@ -152,6 +154,7 @@ void add_robot(json & result, const ControlPortContext & context)
                  {"remote_control", pendant.remote_control()},
                  {"program", program_to_json(context)},
                  {"popup", popup ? json(popup->message) : json(nullptr)},
+                 {"value_request", request != nullptr ? json(request->message) : json(nullptr)},
                  {"safety_popup", safety_popup ? json(*safety_popup) : json(nullptr)},
                  {"surfaces", surfaces_to_json(context.world)},
                  {"boxes", boxes_to_json(context.world)},

@@ -48,16 +48,22 @@ Controller::Controller(const SimulatorOptions & options)
       safety_(std::in_place, model_, version_.cycle_time(), SafetyLimits{}, safety_times(options)),
       runner_(std::in_place, program_context()),
       pendant_(std::in_place, model_, pendant_options(options, version_), state_, *safety_, *runner_, log_),
-      primary_(io_, options.address, options.ports.primary, *pendant_, primary::version_message(version_),
-               primary::ScriptAccess::full),
-      secondary_(io_, options.address, options.ports.secondary, *pendant_, primary::version_message(version_),
-                 primary::ScriptAccess::full),
-      realtime_(io_, options.address, options.ports.realtime, *pendant_, "", primary::ScriptAccess::full),
-      primary_read_only_(io_, options.address, options.ports.primary_read_only, *pendant_,
-                         primary::version_message(version_), primary::ScriptAccess::read_only),
-      secondary_read_only_(io_, options.address, options.ports.secondary_read_only, *pendant_,
-                           primary::version_message(version_), primary::ScriptAccess::read_only),
-      realtime_read_only_(io_, options.address, options.ports.realtime_read_only, *pendant_, "",
+      global_variables_(version_),
+      primary_(
+          io_, options.address, options.ports.primary, *pendant_, [this] { return primary_greeting(); },
+          primary::ScriptAccess::full),
+      secondary_(
+          io_, options.address, options.ports.secondary, *pendant_,
+          [this] { return primary::version_message(version_); }, primary::ScriptAccess::full),
+      realtime_(io_, options.address, options.ports.realtime, *pendant_, nullptr,
+                primary::ScriptAccess::full),
+      primary_read_only_(
+          io_, options.address, options.ports.primary_read_only, *pendant_,
+          [this] { return primary_greeting(); }, primary::ScriptAccess::read_only),
+      secondary_read_only_(
+          io_, options.address, options.ports.secondary_read_only, *pendant_,
+          [this] { return primary::version_message(version_); }, primary::ScriptAccess::read_only),
+      realtime_read_only_(io_, options.address, options.ports.realtime_read_only, *pendant_, nullptr,
                           primary::ScriptAccess::read_only),
       realtime_packet_(version_),
       rtde_(io_, options.address, options.ports.rtde, state_, version_, log_),
@@ -74,6 +80,11 @@ Controller::Controller(const SimulatorOptions & options)
     async_request_text(io_, host.address, host.port, "request_program\n", std::move(done));
   });
   log_.add_listener([this](const LogEntry & entry) {
+    if (entry.kind == LogKind::program_started) {
+      global_variables_.begin_program();
+    } else if (entry.kind == LogKind::program_ended) {
+      publish_global_variables();
+    }
     broadcast(primary_, primary_read_only_, primary::robot_message_for(entry));
   });
   arm_->teleport(initial_joints_, state_);

@@ -22,6 +22,7 @@
 #include "polyscope/pendant.hpp"
 #include "polyscope/program_runner.hpp"
 #include "primary/client_interface_server.hpp"
+#include "primary/global_variables.hpp"
 #include "primary/realtime_packet.hpp"
 #include "rtde/server.hpp"
 #include "safety/safety.hpp"
@@ -90,6 +91,9 @@ class Controller {
   void log_safety_events();
   void publish_state();
   void publish_robot_state();
+  void publish_global_variables();
+  /// The first messages to a client of the primary interface.
+  std::string primary_greeting() const;
   /// Sends a message to the clients of an interface and of its read-only variant.
   static void broadcast(primary::ClientInterfaceServer & server, primary::ClientInterfaceServer & read_only,
                         std::string_view message);
@@ -124,6 +128,7 @@ class Controller {
   std::optional<ProgramRunner> runner_;
   std::optional<Pendant> pendant_;
 
+  primary::GlobalVariables global_variables_;
   primary::ClientInterfaceServer primary_;
   primary::ClientInterfaceServer secondary_;
   primary::ClientInterfaceServer realtime_;

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "controller/controller.hpp"
+#include "primary/messages.hpp"
 #include "primary/robot_state.hpp"
 
 namespace ur_simulator {
@@ -80,7 +81,8 @@ void Controller::handle_script_requests()
 {
   const ScriptRequestFlags requests = std::exchange(script_requests_, {});
   if (requests.protective_stop) {
-    safety_->trigger_protective_stop("the program called protective_stop()");
+    safety_->trigger_protective_stop("the program called protective_stop()",
+                                     error_codes::requested_protective_stop);
   }
   if (requests.invalid_setpoint) {
     log_.error("program", error_codes::invalid_setpoint, *requests.invalid_setpoint);
@@ -135,6 +137,7 @@ void Controller::publish_state()
   const auto cycles = static_cast<std::uint64_t>(std::lround(robot_state_period / version_.cycle_time()));
   if (state_.cycle % cycles == 0) {
     publish_robot_state();
+    publish_global_variables();
   }
   if (realtime_.has_clients() || realtime_read_only_.has_clients()) {
     broadcast(realtime_, realtime_read_only_, realtime_packet_.encode(state_));
@@ -149,6 +152,23 @@ void Controller::publish_robot_state()
     broadcast(primary_, primary_read_only_, message);
     broadcast(secondary_, secondary_read_only_, message);
   }
+}
+
+void Controller::publish_global_variables()
+{
+  const urscript::Machine * machine = runner_->machine();
+  if (machine != nullptr && (primary_.has_clients() || primary_read_only_.has_clients())) {
+    broadcast(primary_, primary_read_only_, global_variables_.changes(*machine, state_.timestamp));
+  }
+}
+
+std::string Controller::primary_greeting() const
+{
+  std::string messages = primary::version_message(version_);
+  if (runner_->machine() != nullptr) {
+    messages += global_variables_.all(*runner_->machine(), state_.timestamp);
+  }
+  return messages;
 }
 
 void Controller::broadcast(primary::ClientInterfaceServer & server,

@@ -17,6 +17,8 @@ class Server {
  public:
   Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, Pendant & pendant);
   ~Server();
+  /// Serves a connection, as each that the listener accepts.
+  void accept(const std::shared_ptr<Connection> & connection);
   Listener & listener() { return listener_; }
   const Listener & listener() const { return listener_; }
   /// Sends the pending replies that have become available. Call once per control cycle.
@@ -32,7 +34,6 @@ class Server {
     /// Reply of the current command. Later commands of the client wait for it.
     PendingReply pending_reply = nullptr;
   };
-  void accept(const std::shared_ptr<Connection> & connection);
   void receive(Client & client, std::string_view bytes);
   void handle_line(Client & client, std::string_view line);
   bool is_refused(const Client & client, bool requires_remote_control) const;

@@ -17,7 +17,7 @@ enum class LogLevel { info, warning, error };
 std::string_view to_string(LogLevel level);
 
 /// Selects the message type in which the primary interface reports an entry.
-enum class LogKind { text, program_started, program_ended, popup, error_code, safety_mode };
+enum class LogKind { text, program_started, program_ended, popup, value_request, error_code, safety_mode };
 
 struct LogEntry {
   std::uint64_t number = 0;  ///< consecutive, starts at 1
@@ -28,11 +28,12 @@ struct LogEntry {
   std::int32_t line = -1;    ///< line of the program, 1-based; -1: none
   std::int32_t column = -1;  ///< column of the program, 1-based; -1: none
   LogKind kind = LogKind::text;
-  std::string title;             ///< title of the popup, or name of the program
-  bool blocking = false;         ///< popups only: the program waits until the popup is closed
-  ErrorCode code;                ///< error codes only
-  std::uint8_t safety_mode = 0;  ///< safety modes only: as in the RTDE output
-  std::string exception;         ///< text of the runtime exception message; empty: `text`
+  std::string title;                ///< title of the popup, or name of the program
+  std::uint8_t requested_type = 0;  ///< value requests only: as in the request value message
+  bool blocking = false;            ///< popups only: the program waits until the popup is closed
+  ErrorCode code;                   ///< error codes only
+  std::uint8_t safety_mode = 0;     ///< safety modes only: as in the RTDE output
+  std::string exception;            ///< text of the runtime exception message; empty: `text`
 };
 
 /// One line: timestamp, level, source and text, in columns.

@@ -11,6 +11,21 @@ constexpr std::string_view program_source = "program";
 constexpr std::size_t max_secondary_programs = 16;
 constexpr double paused_speed_scaling = 1e-3;  // below this speed scaling a program counts as paused
 
+/// The type in a request value message (UR, "Client Interface").
+std::uint8_t requested_type(urscript::Type type)
+{
+  switch (type) {
+    case urscript::Type::boolean:
+      return 0;
+    case urscript::Type::integer:
+      return 1;
+    case urscript::Type::floating:
+      return 2;
+    default:
+      return 3;  // string
+  }
+}
+
 }  // namespace
 
 ProgramRunner::ProgramRunner(const ProgramContext & context) : context_(context) {}
@@ -89,6 +104,7 @@ void ProgramRunner::end_program(RuntimeState next)
 {
   program_.reset();
   popup_.reset();
+  request_.reset();
   context_.watchdog.clear();
   context_.state.runtime_state = next;
   context_.arm.end_program();
@@ -193,6 +209,31 @@ void ProgramRunner::show_popup(const urscript::Popup & popup)
   entry.title = popup.title;
   entry.blocking = popup.blocking;
   context_.log.add(std::move(entry));
+}
+
+std::optional<std::uint64_t> ProgramRunner::show_request(const urscript::ValueRequest & request)
+{
+  if (request_) {
+    return std::nullopt;
+  }
+  request_ = OpenRequest{++request_count_, request, std::nullopt};
+  LogEntry entry;
+  entry.source = "popup";
+  entry.text = request.message;
+  entry.kind = LogKind::value_request;
+  entry.requested_type = requested_type(request.type);
+  context_.log.add(std::move(entry));
+  return request_count_;
+}
+
+std::optional<urscript::Value> ProgramRunner::take_answer(std::uint64_t number)
+{
+  if (!request_ || request_->number != number || !request_->answer) {
+    return std::nullopt;
+  }
+  std::optional<urscript::Value> answer = std::move(request_->answer);
+  request_.reset();
+  return answer;
 }
 
 }  // namespace ur_simulator

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 #include "log/event_log.hpp"
@@ -58,11 +60,24 @@ class ProgramRunner final : public urscript::Host {
   const std::optional<urscript::Popup> & popup() const { return popup_; }
   void close_popup() { popup_.reset(); }
 
+  /// The value that the program asks the operator to enter, if it does.
+  const urscript::ValueRequest * value_request() const { return request_ ? &request_->request : nullptr; }
+  /// Enters the value. Its type must be that of the request.
+  void answer_request(urscript::Value value) { request_->answer = std::move(value); }
+
   void text_message(const std::string & text) override;
   void show_popup(const urscript::Popup & popup) override;
   bool popup_open() const override { return popup_.has_value(); }
+  std::optional<std::uint64_t> show_request(const urscript::ValueRequest & request) override;
+  std::optional<urscript::Value> take_answer(std::uint64_t number) override;
 
  private:
+  struct OpenRequest {
+    std::uint64_t number;
+    urscript::ValueRequest request;
+    std::optional<urscript::Value> answer;
+  };
+
   void start_secondary(std::unique_ptr<urscript::Machine> machine);
   void run_program();
   void run_secondary_programs();
@@ -76,6 +91,8 @@ class ProgramRunner final : public urscript::Host {
   std::unique_ptr<urscript::Machine> program_;
   std::vector<std::unique_ptr<urscript::Machine>> secondary_programs_;
   std::optional<urscript::Popup> popup_;
+  std::optional<OpenRequest> request_;
+  std::uint64_t request_count_ = 0;
 };
 
 }  // namespace ur_simulator

@@ -11,6 +11,12 @@ inline void put_u8(std::string & to, std::uint8_t value)
   to += static_cast<char>(value);
 }
 
+inline void put_u16(std::string & to, std::uint16_t value)
+{
+  put_u8(to, static_cast<std::uint8_t>(value >> 8));
+  put_u8(to, static_cast<std::uint8_t>(value));
+}
+
 inline void put_u32(std::string & to, std::uint32_t value)
 {
   for (int shift = 24; shift >= 0; shift -= 8) {

@@ -7,10 +7,10 @@
 namespace ur_simulator::primary {
 
 ClientInterfaceServer::ClientInterfaceServer(boost::asio::io_context & io, const std::string & address,
-                                             std::uint16_t port, Pendant & pendant, std::string first_message,
+                                             std::uint16_t port, Pendant & pendant, Greeting greeting,
                                              ScriptAccess access)
     : pendant_(pendant),
-      first_message_(std::move(first_message)),
+      greeting_(std::move(greeting)),
       access_(access),
       listener_(io, address, port,
                 [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
@@ -28,7 +28,9 @@ void ClientInterfaceServer::accept(const std::shared_ptr<Connection> & connectio
   auto client = std::make_shared<Client>();
   client->connection = connection;
   clients_.emplace(id, client);
-  connection->send(first_message_);
+  if (greeting_) {
+    connection->send(greeting_());
+  }
   connection->start(
       [this, weak = std::weak_ptr(client)](std::string_view bytes) {
         if (const auto locked = weak.lock()) {

@@ -2,6 +2,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -20,11 +21,15 @@ enum class ScriptAccess : std::uint8_t { full, read_only };
 /// messages. Messages are dropped for clients that do not read; their connections stay open.
 class ClientInterfaceServer {
  public:
-  /// `first_message` is sent to each new client; it may be empty.
+  /// Returns the messages for a new client; may be null.
+  using Greeting = std::function<std::string()>;
+
   ClientInterfaceServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
-                        Pendant & pendant, std::string first_message, ScriptAccess access);
+                        Pendant & pendant, Greeting greeting, ScriptAccess access);
   ~ClientInterfaceServer();
 
+  /// Serves a connection, as each that the listener accepts.
+  void accept(const std::shared_ptr<Connection> & connection);
   /// Sends a complete message to each client without unsent data.
   void broadcast(std::string_view message);
   Listener & listener() { return listener_; }
@@ -37,12 +42,11 @@ class ClientInterfaceServer {
     urscript::ScriptReader reader;
     std::uint64_t dropped_scripts = 0;
   };
-  void accept(const std::shared_ptr<Connection> & connection);
   void receive(Client & client, std::string_view bytes);
   void log_dropped_scripts(Client & client);
 
   Pendant & pendant_;
-  std::string first_message_;
+  Greeting greeting_;
   ScriptAccess access_;
   std::map<std::uint64_t, std::shared_ptr<Client>> clients_;
   Listener listener_;

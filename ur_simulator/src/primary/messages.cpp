@@ -17,6 +17,7 @@ enum class MessageType : std::uint8_t {
   safety_mode = 5,
   error_code = 6,
   key = 7,
+  request_value = 9,
   runtime_exception = 10
 };
 
@@ -105,6 +106,15 @@ std::string safety_mode_message(double timestamp, std::uint8_t safety_mode)
   return finish_message(std::move(message));
 }
 
+std::string request_value_message(const LogEntry & entry)
+{
+  std::string message = begin_message(MessageType::request_value, entry.timestamp);
+  put_u32(message, static_cast<std::uint32_t>(entry.number));
+  put_u32(message, entry.requested_type);
+  message += entry.text;
+  return finish_message(std::move(message));
+}
+
 std::string popup_message(const LogEntry & entry)
 {
   const std::string title = entry.title.substr(0, 255);  // the length field has one byte
@@ -130,6 +140,8 @@ std::string robot_message_for(const LogEntry & entry)
       return key_message(entry.timestamp, "PROGRAM_XXX_STOPPED", entry.title);
     case LogKind::popup:
       return popup_message(entry);
+    case LogKind::value_request:
+      return request_value_message(entry);
     case LogKind::error_code:
       return error_code_message(entry.timestamp, entry.code, entry.text);
     case LogKind::safety_mode:

@@ -26,6 +26,8 @@ std::string key_message(double timestamp, std::string_view title, std::string_vi
 std::string error_code_message(double timestamp, const ErrorCode & code, std::string_view text);
 /// `safety_mode` as in the RTDE output safety_mode.
 std::string safety_mode_message(double timestamp, std::uint8_t safety_mode);
+/// A value that the program asks the operator to enter.
+std::string request_value_message(const LogEntry & entry);
 /// A popup on the pendant's screen.
 std::string popup_message(const LogEntry & entry);
 

@@ -5,10 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/forward_kinematics.hpp"
+
 namespace ur_simulator {
 namespace {
 
 constexpr double position_tolerance = 0.02;  // rad: the lag of the servo loops may exceed a limit
+
+/// The joint, 0..5, with the largest magnitude.
+std::int32_t largest(const Vector6 & values)
+{
+  Eigen::Index joint = 0;
+  values.cwiseAbs().maxCoeff(&joint);
+  return static_cast<std::int32_t>(joint);
+}
 
 }  // namespace
 
@@ -19,9 +29,11 @@ std::optional<ExceededLimit> LimitMonitor::check(const SafetyLimits & limits, co
     return joint;
   }
   if (state.joint_deviation_ratio >= 1.0) {
-    return ExceededLimit{error_codes::position_deviates(0),
-                         fmt::format("the joints deviate from their path: {:.2f} times the allowed deviation",
-                                     state.joint_deviation_ratio)};
+    return ExceededLimit{
+        error_codes::position_deviates(largest(state.target.position - state.actual.position),
+                                       state.payload.mass > 0.0),
+        fmt::format("the joints deviate from their path: {:.2f} times the allowed deviation",
+                    state.joint_deviation_ratio)};
   }
   const double speed = state.actual_tcp_speed.head<3>().norm();
   if (speed > limits.tool_speed) {
@@ -61,6 +73,13 @@ void LimitMonitor::tolerate_present_force()
   tolerate_next_force_ = true;
 }
 
+ErrorCode LimitMonitor::collision_code(const ControllerState & state) const
+{
+  const Vector6 torques =
+      jacobian(model_, state.actual.position, state.tcp_offset).transpose() * state.contact_wrench;
+  return error_codes::collision_detected_by(largest(torques), state.payload.mass > 0.0);
+}
+
 std::optional<ExceededLimit> LimitMonitor::check_force(const SafetyLimits & limits,
                                                        const ControllerState & state)
 {
@@ -80,7 +99,7 @@ std::optional<ExceededLimit> LimitMonitor::check_force(const SafetyLimits & limi
   force_ratio_ = std::max(filtered_force_ / sustained_limit, force / peak_limit);
   if (filtered_force_ > sustained_limit) {
     return ExceededLimit{
-        error_codes::collision_detected,
+        collision_code(state),
         fmt::format(
             "tool force {:.0f} N, sustained, is over the safety limit of {:.0f} N; release the tool, or "
             "press less",
@@ -88,7 +107,7 @@ std::optional<ExceededLimit> LimitMonitor::check_force(const SafetyLimits & limi
   }
   if (force > peak_limit) {
     return ExceededLimit{
-        error_codes::collision_detected,
+        collision_code(state),
         fmt::format("tool force {:.0f} N is over the peak of {:.0f} N: collision", force, peak_limit)};
   }
   return std::nullopt;

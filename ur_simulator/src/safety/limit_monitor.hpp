@@ -30,6 +30,8 @@ class LimitMonitor {
   void tolerate_present_force();
 
  private:
+  /// Names the joint on which the contact exerts the largest torque.
+  ErrorCode collision_code(const ControllerState & state) const;
   std::optional<ExceededLimit> check_joints(const SafetyLimits & limits, const JointState & joints) const;
   std::optional<ExceededLimit> check_force(const SafetyLimits & limits, const ControllerState & state);
 

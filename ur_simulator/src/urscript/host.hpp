@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+
+#include "urscript/value.hpp"
 
 namespace ur_simulator::urscript {
 
@@ -10,6 +14,12 @@ struct Popup {
   bool warning = false;
   bool error = false;
   bool blocking = false;
+};
+
+/// A value that the operator is asked to enter: a bool, int, float or string.
+struct ValueRequest {
+  Type type;
+  std::string message;
 };
 
 /// Receives the messages and popups of a program. Called on the thread that runs the machine. The defaults
@@ -22,6 +32,10 @@ class Host {
   virtual void show_popup(const Popup &) {}
   /// A blocking popup() returns when this is false.
   virtual bool popup_open() const { return false; }
+  /// Shows a request. Returns its number, or nothing while another one is open.
+  virtual std::optional<std::uint64_t> show_request(const ValueRequest &) { return std::nullopt; }
+  /// The answer to this request, once.
+  virtual std::optional<Value> take_answer(std::uint64_t) { return std::nullopt; }
 };
 
 }  // namespace ur_simulator::urscript

@@ -223,6 +223,11 @@ std::uint32_t Machine::instructions() const
   return impl_->instructions;
 }
 
+const std::vector<std::string> & Machine::global_names() const
+{
+  return impl_->program.code().global_names;
+}
+
 const Value * Machine::global(const std::string & name) const
 {
   return impl_->interpreter.global(name);

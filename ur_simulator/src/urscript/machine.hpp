@@ -56,6 +56,8 @@ class Machine {
   std::size_t thread_count() const;
   /// Number of instructions executed in the last cycle.
   std::uint32_t instructions() const;
+  /// The names of the global variables, in the order of their first appearance in the program.
+  const std::vector<std::string> & global_names() const;
   /// The present value of a global variable; null if it has none.
   const Value * global(const std::string & name) const;
 

@@ -112,8 +112,19 @@ TEST_F(PrimaryInterfaceTest, ReportsCollisionWithItsCode)
   client.receive_message(16);
   controller.control({{"command", "push"}, {"force", {0, 900, 0}}, {"duration", 0.5}});
   const ReceivedErrorCode error = receive_error_code(client);
-  EXPECT_EQ(error.code, 158u);
+  EXPECT_EQ(error.code, 158u);  // the payload is 0 kg
+  EXPECT_EQ(error.argument, 0u) << "the base joint has the longest lever";
   EXPECT_EQ(error.level, 2u);
+}
+
+TEST_F(PrimaryInterfaceTest, ReportsCollisionWithPayload)
+{
+  controller.control({{"command", "run_script"}, {"script", "sec load():\n  set_payload(1.0)\nend\n"}});
+  ASSERT_TRUE(wait_simulated_time(controller, 0.1, seconds(5)));
+  PrimaryClient client(controller.address(), 30001);
+  client.receive_message(16);
+  controller.control({{"command", "push"}, {"force", {0, 900, 0}}, {"duration", 0.5}});
+  EXPECT_EQ(receive_error_code(client).code, 157u);
 }
 
 TEST_F(PrimaryInterfaceTest, ReportsSafetyModesAndLevelsOfFailures)
@@ -162,7 +173,9 @@ TEST_F(PrimaryInterfaceTest, SecondaryProgramTriggersProtectiveStop)
   PrimaryClient client(controller.address(), 30001);
   client.socket().send("sec stop_it():\n  protective_stop()\nend\n");
   EXPECT_EQ(receive_safety_mode(client), 3);
-  EXPECT_NE(receive_error_code(client).text.find("protective_stop()"), std::string::npos);
+  const ReceivedErrorCode error = receive_error_code(client);
+  EXPECT_EQ(error.code, 209u);
+  EXPECT_NE(error.text.find("protective_stop()"), std::string::npos);
 }
 
 TEST_F(PrimaryInterfaceTest, LocalControlMakesItReadOnly)

@@ -110,17 +110,6 @@ RefusedGroup sockets()
           }};
 }
 
-RefusedGroup operator_input()
-{
-  return {"no operator answers on the pendant",
-          {
-              {"request_boolean_from_primary_client", {"Text"}, 1},
-              {"request_float_from_primary_client", {"Text"}, 1},
-              {"request_integer_from_primary_client", {"Text"}, 1},
-              {"request_string_from_primary_client", {"Text"}, 1},
-          }};
-}
-
 RefusedGroup interpreter()
 {
   return {"interpreter mode is not modelled",
@@ -146,9 +135,8 @@ RefusedGroup frame_tracking()
 
 void add_refused_builtins(Library & library)
 {
-  for (const RefusedGroup & group :
-       {path_offsets(), conveyor_tracking(), modbus_signals(), modbus_server(), euromap(), sockets(),
-        operator_input(), interpreter(), frame_tracking()}) {
+  for (const RefusedGroup & group : {path_offsets(), conveyor_tracking(), modbus_signals(), modbus_server(),
+                                     euromap(), sockets(), interpreter(), frame_tracking()}) {
     for (const RefusedBuiltin & builtin : group.builtins) {
       library.add_refused(builtin.name, builtin.parameters, builtin.required, group.reason);
     }

@@ -62,6 +62,34 @@ Outcome popup(CallContext & context, Arguments arguments)
   return Value();
 }
 
+/// Waits until the operator has entered a value.
+class AnswerWait : public Operation {
+ public:
+  explicit AnswerWait(ValueRequest request) : request_(std::move(request)) {}
+
+  tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override
+  {
+    if (!number_) {
+      number_ = context.host.show_request(request_);
+    }
+    return number_ ? context.host.take_answer(*number_) : std::nullopt;
+  }
+
+ private:
+  ValueRequest request_;
+  std::optional<std::uint64_t> number_;  ///< once it is shown
+};
+
+template <Type type>
+Outcome request_value(CallContext &, Arguments arguments)
+{
+  const std::string message = arguments[0].text();
+  if (message.empty()) {
+    return Failure{"the message must not be empty"};
+  }
+  return std::make_unique<AnswerWait>(ValueRequest{type, message});
+}
+
 Outcome textmsg(CallContext & context, Arguments arguments)
 {
   std::string text = arguments[0].text();
@@ -108,6 +136,10 @@ void add_program_builtins(Library & library)
                1,
                popup});
   library.add({"time", {{"mode", Value(0)}}, 0, time});
+  library.add({"request_boolean_from_primary_client", {"message"}, 1, request_value<Type::boolean>});
+  library.add({"request_float_from_primary_client", {"message"}, 1, request_value<Type::floating>});
+  library.add({"request_integer_from_primary_client", {"message"}, 1, request_value<Type::integer>});
+  library.add({"request_string_from_primary_client", {"message"}, 1, request_value<Type::string>});
 }
 
 void add_standard_builtins(Library & library)
