@@ -2,14 +2,22 @@
 
 import pytest
 from ur_tools import console, fuzz
+from ur_tools.layout import ROOT
 
 
-def test_every_target_has_a_corpus_and_is_built():
-    listed = (fuzz.FUZZ / "CMakeLists.txt").read_text()
-    assert "urscript" in fuzz.targets()
-    for name in fuzz.targets():
-        assert f"add_fuzz_target({name} " in listed
-        assert any((fuzz.FUZZ / "corpus" / name).iterdir()), name
+def test_every_target_has_a_corpus_and_is_built_and_replayed():
+    built = (fuzz.PROJECT / "CMakeLists.txt").read_text()
+    assert {"urscript", "rtde_session"} <= set(fuzz.targets())
+    for name, folder in fuzz.folders().items():
+        package = folder.parent
+        assert f"add_fuzz_target({package.name} {name} " in built
+        assert f"add_fuzz_replay({name} " in (package / "test" / "CMakeLists.txt").read_text()
+        assert any((folder / "corpus" / name).iterdir()), name
+
+
+def test_every_corpus_has_a_target():
+    corpora = {path.name for path in ROOT.glob("*/fuzz/corpus/*")}
+    assert corpora == set(fuzz.targets())
 
 
 def test_an_unknown_target_is_refused_with_the_known_ones():
@@ -19,8 +27,8 @@ def test_an_unknown_target_is_refused_with_the_known_ones():
 
 
 def test_new_inputs_are_kept_apart_from_the_seeds(tmp_path):
-    command = fuzz.command(tmp_path, "urscript", 5)
-    assert "-max_total_time=5" in command
+    command = fuzz.command(tmp_path, "urscript", 5, 1000)
+    assert "-max_total_time=5" in command and "-runs=1000" in command
     # libFuzzer writes to the first corpus only.
-    assert command[-2:] == [str(tmp_path / "corpus" / "urscript"), str(fuzz.FUZZ / "corpus" / "urscript")]
+    assert command[-2:] == [str(tmp_path / "corpus" / "urscript"), str(ROOT / "ur_simulator" / "fuzz" / "corpus" / "urscript")]
     assert (tmp_path / "corpus" / "urscript").is_dir()

@@ -165,7 +165,7 @@ def command_lint(options: argparse.Namespace) -> int:
 
 
 def command_fuzz(options: argparse.Namespace) -> int:
-    return fuzz.run(_prepared(options), options.names, options.seconds, options.jobs)
+    return fuzz.run(_prepared(options), options.names, options.seconds, options.executions, options.jobs)
 
 
 def _prepared(options: argparse.Namespace) -> Layout:
@@ -266,9 +266,10 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
         if name == "lint":
             sub.add_argument("--tidy", action="store_true", help="also run clang-tidy (minutes)")
 
-    sub = add("fuzz", command_fuzz, "feed random input to the parsers of the simulator; needs clang")
+    sub = add("fuzz", command_fuzz, "feed random input to the parsers of the simulator and the driver; needs clang")
     sub.add_argument("names", nargs="*", metavar="TARGET", help=f"fuzz targets (default: all: {', '.join(fuzz.targets())})")
     sub.add_argument("--seconds", type=int, default=60, metavar="S", help="duration for each target (default: %(default)s)")
+    sub.add_argument("--executions", type=int, default=-1, metavar="N", help="end a target after N inputs, also before its time")
     sub.add_argument("-j", "--jobs", type=int, default=2, metavar="N", help="jobs of the build (default: %(default)s)")
     sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
 
