@@ -23,8 +23,7 @@ from control_port import ControlPort  # noqa: E402
 
 RTDE_PORT = 30004
 LIMIT = 20.0  # s, for each recovery
-STEADY = 300  # messages before each interruption: connections that break again at once are replaced at longer intervals
-STEADY_TIME = 1.0  # s within which they arrive
+STEADY = 0.5  # s with messages before each interruption: connections that break again at once are replaced at longer intervals
 
 
 class JointStates:
@@ -57,14 +56,14 @@ class JointStates:
             return find()
 
     def steady(self):
-        """Waits until messages arrive regularly."""
+        """Waits until messages have arrived for some time."""
         begin = time.time_ns()
 
         def found():
-            recent = [when for _, when in self._messages[-STEADY:] if when > begin]
-            return True if len(recent) == STEADY and recent[-1] - recent[0] < STEADY_TIME * 1e9 else None
+            first = next((when for _, when in self._messages if when > begin), None)
+            return first is not None and self._messages[-1][1] - first > STEADY * 1e9 or None
 
-        self._wait(found, "regular joint_states")
+        self._wait(found, f"joint_states for {STEADY:g} s")
 
     def first_after(self, begin):
         """Returns the time in ns at which the first message with data from after `begin` arrived."""
