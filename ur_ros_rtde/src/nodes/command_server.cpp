@@ -17,8 +17,9 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
   driver_state_ = std::make_unique<DriverStateTopic>(*node_);
   robot_ = std::make_unique<Robot>(parameters.robot, log_connection(*node_));
   robot_->on_status([this](const RobotStatus & status) { driver_state_->publish(status); });
-  diagnostics_ = std::make_unique<Diagnostics>(*node_, parameters.robot.address,
-                                               [this] { return diagnose_driver(*robot_); });
+  description_check_ = std::make_unique<DescriptionCheck>(*node_, *robot_, parameters.tf_prefix);
+  diagnostics_ =
+      std::make_unique<Diagnostics>(*node_, parameters.robot.address, [this] { return diagnose(); });
   host_ = std::make_unique<CommandHost>(*node_, *robot_, parameters.goals);
   teleoperation_ =
       std::make_unique<Teleoperation>(*host_, parameters.teleoperation, log_to(node_->get_logger()));
@@ -28,6 +29,15 @@ CommandServer::~CommandServer()
 {
   close();
   plugins_.stop();
+}
+
+std::vector<Diagnosis> CommandServer::diagnose()
+{
+  auto findings = diagnose_driver(*robot_);
+  if (auto description = description_check_->diagnose()) {
+    findings.push_back(std::move(*description));
+  }
+  return findings;
 }
 
 void CommandServer::load_plugins()

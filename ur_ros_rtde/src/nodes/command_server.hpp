@@ -6,6 +6,7 @@
 #include "nodes/parameters.hpp"
 #include "nodes/server.hpp"
 #include "plugins/plugin_set.hpp"
+#include "state/description_check.hpp"
 #include "state/driver_state.hpp"
 #include "teleoperation/teleoperation.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
@@ -27,6 +28,7 @@ class CommandServer : public Server {
   std::vector<std::string> close() override;
 
  private:
+  std::vector<Diagnosis> diagnose();
   void add_extensions(const ReportProblem & report);
 
   PluginSet<CommandPlugin, CommandHost> plugins_;  // destroyed last, because it unloads the libraries
@@ -35,6 +37,7 @@ class CommandServer : public Server {
   std::unique_ptr<Robot> robot_;
   std::unique_ptr<CommandHost> host_;
   std::unique_ptr<Teleoperation> teleoperation_;
+  std::unique_ptr<DescriptionCheck> description_check_;
   std::unique_ptr<Diagnostics> diagnostics_;
   PluginChoice choice_;
 };

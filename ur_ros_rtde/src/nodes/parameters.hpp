@@ -33,6 +33,7 @@ PluginChoice declare_plugin_choice(rcl_cxx::Node & node);
 RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node);
 
 struct CommandServerParameters {
+  std::string tf_prefix;
   RobotOptions robot;
   CommandHost::Options goals;
   TeleoperationOptions teleoperation;
