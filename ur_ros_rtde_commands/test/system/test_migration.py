@@ -1,0 +1,91 @@
+"""Each name in the second columns of docs/migration.md exists in a running driver, as what its table says it is.
+
+The goals of the actions are tried by test_good_goals.py, which sends the documented example of each one.
+"""
+
+import importlib.util
+import pathlib
+import re
+
+import pytest
+import rclpy.action
+from rcl_interfaces.srv import ListParameters
+from support import start_node, wait_for
+from ur_ros_rtde.launch_arguments import DRIVER, MOVEIT
+
+from ur_ros_rtde_msgs.action import ServoJ
+
+PAGE = (pathlib.Path(__file__).resolve().parents[3] / "docs" / "migration.md").read_text()
+NODES = ("command_server", "dashboard_server", "robot_state_receiver")
+LAUNCH_FILES = pathlib.Path(__file__).resolve().parents[3] / "ur_ros_rtde" / "launch"
+GOAL_FIELDS = {"gain", "lookahead_time"}  # "fields `gain` and `lookahead_time` of the goals"
+
+
+def rows(system, table):
+    """Returns the cells of the rows of a table: the names of both sides."""
+    text = PAGE.split(f"\n## {system}\n")[1].split("\n## ")[0].split(f"\n### {table}\n")[1].split("\n###")[0]
+    lines = [line.strip("|").split(" | ") for line in text.splitlines() if line.startswith("| ")]
+    return [tuple(re.findall(r"`([^`]+)`", cell) for cell in cells[:2]) for cells in lines[1:]]
+
+
+ACTIONS = rows("From the published ur_ros_rtde", "Actions")
+PUBLISHED = rows("From the published ur_ros_rtde", "Topics, services and parameters")
+LAUNCH = rows("From ur_robot_driver", "Launch arguments")
+UR_ROBOT_DRIVER = rows("From ur_robot_driver", "Topics, services and actions")
+
+
+@pytest.fixture(scope="module")
+def interfaces(simulator, client):
+    """The actions, topics, services and parameters of a running driver with all plugins."""
+    driver = start_node("driver", simulator.address)
+    try:
+        def actions():
+            return {name.lstrip("/") for name, _ in rclpy.action.get_action_names_and_types(client.node)}
+
+        wanted = {name for names in ACTIONS for name in names[1]}
+        wait_for(lambda: wanted <= actions(), 30.0, "the actions of the driver")
+        topics = {name.lstrip("/") for name, _ in client.node.get_topic_names_and_types()}
+        services = {name.lstrip("/") for name, _ in client.node.get_service_names_and_types()}
+        parameters = {name for node in NODES for name in client.call(ListParameters, f"{node}/list_parameters").result.names}
+        yield {"actions": actions(), "topics": topics, "services": services, "parameters": parameters,
+               "launch arguments": {argument.name for argument in (*DRIVER, *MOVEIT)},
+               "launch files": {file.name for file in LAUNCH_FILES.glob("*.launch.py")}, "fields": GOAL_FIELDS}
+    finally:
+        driver.stop()
+        print(driver.output())
+
+
+def missing(interfaces, names, *kinds):
+    known = set().union(*(interfaces[kind] for kind in kinds))
+    if importlib.util.find_spec("control_msgs") is None:
+        known.add("follow_joint_trajectory")  # tested by test_follow_joint_trajectory.py
+    return {name.split(":=")[0] for name in names} - known
+
+
+@pytest.mark.parametrize("old, new", ACTIONS, ids=lambda names: " ".join(names))
+def test_an_action_of_the_published_package_has_its_counterpart(interfaces, old, new):
+    assert new and not missing(interfaces, new, "actions")
+
+
+@pytest.mark.parametrize("old, new", PUBLISHED, ids=lambda names: " ".join(names))
+def test_a_topic_service_or_parameter_of_the_published_package_has_its_counterpart(interfaces, old, new):
+    kinds = ("topics",) if old and old[0].startswith("/") else ("services", "parameters", "launch arguments", "fields")
+    assert new and not missing(interfaces, new, *kinds)
+
+
+@pytest.mark.parametrize("old, new", LAUNCH, ids=lambda names: " ".join(names))
+def test_a_launch_argument_of_ur_robot_driver_has_its_counterpart(interfaces, old, new):
+    assert old and not missing(interfaces, new, "launch arguments", "launch files", "actions")
+
+
+@pytest.mark.parametrize("old, new", UR_ROBOT_DRIVER, ids=lambda names: " ".join(names))
+def test_an_interface_of_ur_robot_driver_has_its_counterpart(interfaces, old, new):
+    assert old and not missing(interfaces, new, "actions", "topics", "services")
+
+
+def test_the_tables_are_complete():
+    assert (len(ACTIONS), len(PUBLISHED) > 10, len(LAUNCH) > 15, len(UR_ROBOT_DRIVER) > 25) == (47, True, True, True)
+
+
+def test_the_servo_gains_are_fields_of_the_goals():
+    assert GOAL_FIELDS <= set(ServoJ.Goal.get_fields_and_field_types())
