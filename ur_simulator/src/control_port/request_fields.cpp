@@ -113,7 +113,8 @@ nlohmann::json RequestFields::scalar(const std::string & name)
   const nlohmann::json & value = *find(name, false);
   if (!value.is_boolean() && !value.is_number() && !value.is_string()) {
     throw RequestError(
-        fmt::format("field '{}' is {}: it must be a boolean, a number or a string", name, value.dump()), name);
+        fmt::format("field '{}' is {}: it must be a boolean, a number or a string", name, value.dump()),
+        name);
   }
   return value;
 }
