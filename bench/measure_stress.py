@@ -9,6 +9,7 @@ from pathlib import Path
 
 import rclpy
 from latency import latencies, missing_percent, percentile
+from process_load import cpu_seconds, tree
 from rclpy.node import Node
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
@@ -36,6 +37,21 @@ def receive(program, qos):
     return [tuple(map(int, line.split())) for line in output.splitlines()]
 
 
+class Loads:
+    """The loads in % of a core of processes with their descendants, since it was created."""
+
+    def __init__(self, pids):
+        self._pids = {name: tree(pid) for name, pid in pids.items()}
+        self._begin, self._before = time.monotonic(), self._seconds()
+
+    def _seconds(self):
+        return {name: sum(map(cpu_seconds, pids)) for name, pids in self._pids.items()}
+
+    def result(self):
+        elapsed = time.monotonic() - self._begin
+        return {name: 100.0 * (seconds - self._before[name]) / elapsed for name, seconds in self._seconds().items()}
+
+
 def figures(received, trace):
     """Returns the figures, and the latencies with the times of reception in s for the report."""
     values = latencies(received, trace)
@@ -53,17 +69,20 @@ def main():
     parser.add_argument("--address", required=True)
     parser.add_argument("--subscriber", required=True, help="path of the C++ subscriber")
     parser.add_argument("--subscribers", type=int, required=True, help="number of other subscribers to wait for")
+    parser.add_argument("--load", action="append", default=[], metavar="NAME=PID", help="process whose load is measured; repeatable")
     parser.add_argument("--output", required=True, type=Path, metavar="FILE", help="file for the figures")
     options = parser.parse_args()
     rclpy.init()
     wait_for_subscribers(options.subscribers)
     found = {}
     with ControlPort(options.address) as control:
+        loads = Loads({name: int(pid) for name, pid in (pair.split("=") for pair in options.load)})
         for qos in ARGUMENTS:
             found[qos] = figures(receive(options.subscriber, qos), control.request("trace"))
+        load = loads.result()
     rclpy.try_shutdown()
     options.output.write_text(json.dumps({"figures": {qos: one for qos, (one, _) in found.items()},
-                                          "samples": {qos: points for qos, (_, points) in found.items()}}))
+                                          "samples": {qos: points for qos, (_, points) in found.items()}, "load": load}))
 
 
 if __name__ == "__main__":

@@ -13,6 +13,24 @@ def cpu_seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def _parent(pid):
+    return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
+
+
+def tree(pid):
+    """Returns a process and all its descendants."""
+    children = {}
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            children.setdefault(_parent(entry.name), []).append(int(entry.name))
+        except (FileNotFoundError, ProcessLookupError):  # it has ended
+            continue
+    found = [pid]
+    for parent in found:
+        found += children.get(parent, [])
+    return found
+
+
 def _megabytes(pid, file, field):
     text = Path(f"/proc/{pid}/{file}").read_text()
     return next(int(line.split()[1]) for line in text.splitlines() if line.startswith(field)) / 1024.0

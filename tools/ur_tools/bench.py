@@ -10,8 +10,9 @@ import sys
 import time
 from typing import List
 
-from . import (bench_compare, bench_discovery, bench_machine, bench_recovery, bench_report, bench_results, bench_rows, bench_scale, bench_session,
-               bench_simulator, bench_stress, bench_trace, bench_trajectory, boilerplate, console, ports, simulation)
+from . import (bench_compare, bench_discovery, bench_machine, bench_recovery, bench_report, bench_results, bench_rows, bench_scale,
+               bench_session, bench_simulator, bench_stress, bench_trace, bench_trajectory, bench_viewer, boilerplate, console, ports,
+               simulation)
 from .bench_results import Results
 from .layout import PROGRAM, Layout
 
@@ -19,8 +20,10 @@ from .layout import PROGRAM, Layout
 KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 # Options that change what is measured, or how.
 SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots", "stress",
-            "simulator", "count", "recovery")
-MODES = ("stream", "trajectory", "scale", "stress", "trace", "simulator", "recovery")
+            "simulator", "count", "recovery", "viewer")
+# What is measured instead of the default rows.
+SEPARATE = {"scale": bench_scale, "stress": bench_stress, "simulator": bench_simulator, "recovery": bench_recovery, "viewer": bench_viewer}
+MODES = ("stream", "trajectory", "trace", *SEPARATE)
 
 
 def _add_result_options(parser: argparse.ArgumentParser) -> None:
@@ -60,8 +63,8 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals, cancel requests or interruptions to measure (default: 40)")
     _add_result_options(parser)
     for add_options in (_add_stream_options, bench_scale.add_options, bench_stress.add_options, bench_trace.add_options,
-                        bench_trajectory.add_options, bench_simulator.add_options,
-                        bench_recovery.add_options):
+                        bench_trajectory.add_options, bench_simulator.add_options, bench_recovery.add_options,
+                        bench_viewer.add_options):
         add_options(parser)
     options = parser.parse_args(arguments)
     _check_combination(parser, options)
@@ -116,13 +119,10 @@ def _measure_default(layout: Layout, options: argparse.Namespace) -> "tuple[dict
 def _measure(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]":
     if options.stream:
         return bench_session.measure_streams(layout, options, bench_rows.STREAMS)
-    if options.scale:
-        return bench_scale.measure(layout, options)
-    if options.simulator:
-        return bench_simulator.measure(layout, options)
-    if options.recovery:
-        return bench_recovery.measure(layout, options)
-    return bench_stress.measure(layout, options) if options.stress else _measure_default(layout, options)
+    for name, module in SEPARATE.items():
+        if getattr(options, name):
+            return module.measure(layout, options)
+    return _measure_default(layout, options)
 
 
 def _run_once(layout: Layout, options: argparse.Namespace) -> dict:
@@ -176,7 +176,7 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         bench_compare.show(old, results)
     if options.report:
         bench_report.write(options.report, layout, results, old)
-    if not any((options.stream, options.scale, options.stress, options.simulator, options.recovery, options.input)):
+    if not (options.stream or options.input or any(getattr(options, name) for name in SEPARATE)):
         console.line("\n" + boilerplate.table())
     return 0
 

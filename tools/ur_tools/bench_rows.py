@@ -24,6 +24,8 @@ CONDITIONS = {
     "Python subscriber": "an rclpy node that subscribes to all topics",
     "20 subscribers": "20 more subscribers to joint_states, each a process",
 }
+# Conditions of --viewer, and what runs beside the driver in each.
+VIEWER_CONDITIONS = {"without viewer": (), "with viewer": ("viewer",), "with viewer and browser": ("viewer", "browser")}
 QOS = ("best effort", "reliable")
 # Numbers of robots of --scale, and the processes of each robot.
 ROBOTS = (1, 4, 8)
@@ -103,6 +105,9 @@ ROWS: Tuple[Row, ...] = (
     Row("many goals", "growth", 1.0, "MB of the driver's memory over the second half of the goals"),
     Row("many goals", "duration", None, "ms per goal, from sending it to its result"),
     *(Row(stress_name(condition, qos), *part) for condition in CONDITIONS for qos in QOS for part in STRESS),
+    *(Row(stress_name(condition, qos), *part) for condition in VIEWER_CONDITIONS for qos in QOS for part in STRESS),
+    Row("viewer", "cpu", 25.0, "% of a core at 30 updates per second, with a page open, while the arm moves"),
+    Row("browser", "cpu", None, "% of a core; without a GPU, it draws a hundredth of the scene's pixels"),
     *(Row(stream, *part) for stream in STRESSED_STREAMS for part in STREAM),
     *(Row(name, part, target, "ms until the next joint_states")
       for name, target in RECOVERY.items() for part in ("p50", "max")),

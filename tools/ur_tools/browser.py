@@ -11,7 +11,7 @@ import re
 import shutil
 import subprocess
 import time
-from typing import Dict, List, Optional
+from typing import Any, Dict, List, Optional
 
 from . import console
 from .environment import FOREIGN
@@ -29,6 +29,16 @@ TOOLS = ("apt-get", "dpkg-deb")
 
 # Read by the tests: the program, the folders of its libraries, or why there is none.
 VARIABLE, LIBRARIES, MISSING = "UR_BROWSER", "UR_BROWSER_LIBRARIES", "UR_BROWSER_MISSING"
+
+# For a machine without a GPU.
+ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
+             "--disable-gpu-compositing"]
+
+
+def launch(playwright: Any, limit: float) -> Any:
+    """Returns a Chromium, started by Playwright as the variables say."""
+    env = {**os.environ, "LD_LIBRARY_PATH": os.environ.get(LIBRARIES, "")}
+    return playwright.chromium.launch(executable_path=os.environ[VARIABLE], args=ARGUMENTS, env=env, timeout=1e3 * limit)
 
 
 def _run(command: List[str], folder: pathlib.Path = ROOT) -> str:
