@@ -23,8 +23,6 @@ from ur_tools.processes import Programs  # noqa: E402
 
 ADDRESS, PORT = "127.0.0.1", 8180
 LIMIT = 300.0  # s, of an operation in the browser
-ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
-             "--disable-gpu-compositing"]
 SLOW = ("silence_limit:=10.0", "rtde_frequency:=125.0"), ("silence_limit:=10.0", "watchdog_frequency:=1.0"), ()
 DROP = 0.3  # m, height of the tool above the table
 PUSHES = ((0.8, [30.0, 0.0, 0.0, 0.0, 0.0, 0.0]), (1.8, [0.0, 30.0, 0.0, 0.0, 0.0, 0.0]))  # s after the start, N and N m
@@ -45,15 +43,13 @@ def start(programs, layout, options):
 
 
 def open_page(playwright, width, height, scale):
-    env = {**os.environ, "LD_LIBRARY_PATH": os.environ.get(browser.LIBRARIES, "")}
-    chromium = playwright.chromium.launch(executable_path=os.environ[browser.VARIABLE], args=ARGUMENTS, env=env)
-    page = chromium.new_page(viewport={"width": width, "height": height}, device_scale_factor=scale)
+    page = browser.launch(playwright, LIMIT).new_page(viewport={"width": width, "height": height}, device_scale_factor=scale)
     page.set_default_timeout(1e3 * LIMIT)
     page.goto(f"http://127.0.0.1:{PORT}/?fixedDpr={scale}")
     page.get_by_role("button", name="STOP", exact=True).wait_for()
     close = page.locator(".mantine-Notification-closeButton")  # the warning about software rendering
     if close.count():
-        close.first.click()
+        close.first.evaluate("button => button.click()")  # does not wait for the end of its animation
     return page
 
 
@@ -87,6 +83,7 @@ def film(page, control, options):
 def write(frames, options):
     from PIL import Image
 
+    options.folder.mkdir(parents=True, exist_ok=True)
     frames[-1].save(options.folder / "viewer.png", optimize=True)
     small = [frame.resize((options.width, options.height * options.width // options.page_width), Image.LANCZOS).quantize(COLORS)
              for frame in frames]
