@@ -83,6 +83,12 @@ def test_the_arm_in_the_scene_follows_the_robot(tab, viewer, robot, simulator):
     until(lambda: shows(expected_tool(simulator.state()["actual"]["position"])), "the arm in the scene to follow")
 
 
+def test_the_tabs_of_a_robot_are_in_one_row(tab):
+    boxes = [tab.page.get_by_role("tab", name=name, exact=True).bounding_box()
+             for name in ("State", "Record", "Twin", "Commands", "Jog", "Target")]
+    assert len({box["y"] for box in boxes}) == 1, boxes
+
+
 def test_the_plots_show_curves_from_the_first_seconds_on(tab):
     """The part of the last 30 s that was received is drawn, at the right end."""
     plots = {}

@@ -6,7 +6,7 @@ import viser
 
 from ..arguments import RobotOptions
 
-PLOTS_WIDTH = 380  # pixels
+PLOTS_WIDTH, PANEL_WIDTH = 370, 400  # pixels; the six tabs of a robot fit into one row
 
 
 class Layout:
@@ -16,6 +16,7 @@ class Layout:
     def __init__(self, server: viser.ViserServer, robots: Sequence[RobotOptions]):
         gui = server.gui
         gui.main_panel.dock_right()
+        gui.main_panel.set_width(PANEL_WIDTH)
         self._banners: Dict[str, Any] = {robot.namespace: gui.add_html("", visible=False) for robot in robots}
         self._plots = gui.add_panel()
         self._plots.dock_left()
