@@ -112,6 +112,15 @@ def test_a_replay_never_moves_the_robots_arm(player):
     assert np.isnan(player._robot_scene.arm.positions).all() and player.arm is not player._robot_scene.arm
 
 
+def test_a_replay_stands_where_the_robot_is_mounted(server):
+    scene = RobotScene(server.scene, RobotOptions("mounted", "ur5e", (0.0, 0.4, 0.8)))
+    player = Player(server.gui.add_folder("mounted"), server, scene, lambda function: function())
+    player.load(MOTION)
+    assert server.scene.get_handle_by_name(player.arm.link_path("base_link")).position == pytest.approx((0.0, 0.4, 0.8))
+    player.remove()
+    scene.remove()
+
+
 def test_without_a_model_a_replay_is_refused(server):
     scene = RobotScene(server.scene, RobotOptions("unknown"))
     with pytest.raises(ViewerError, match="--model"):
