@@ -78,6 +78,10 @@ SIMULATOR: Tuple[Tuple[str, Optional[float], str], ...] = (
     ("cycle p99.9", None, "ms deviation of a control cycle from 2 ms"),
     ("host p99", None, "ms deviation of a loop that only sleeps"),
     ("host p99.9", None, "ms deviation of a loop that only sleeps"),
+    ("cycle moving", None, "us of processor time for each control cycle of a moving robot, with its sockets"),
+    ("instructions", None, "of URScript in a cycle in which ur_rtde's control program waits"),
+    ("memory", None, "MiB, resident, of a moving robot"),
+    ("growth", 64.0, "KiB of memory per simulated hour"),
 )
 
 ROWS: Tuple[Row, ...] = (

@@ -3,6 +3,7 @@
 import argparse
 import json
 import pathlib
+import re
 import socket
 import statistics
 import subprocess
@@ -18,6 +19,9 @@ STARTS = 10
 WINDOW = 5.0  # s of the host for each measurement of load and time
 SCRIPT_LINES = 2000
 CYCLE = 0.002  # s
+FAST = 10  # simulated seconds per second of the host, for memory
+WARM_UP = 20.0  # s of the host until the log of the robot is full
+MEMORY_WINDOW = 60.0  # s of the host
 MOVING = ("def back_and_forth():\n  q = get_actual_joint_positions()\n  while True:\n"
           "    movej([q[0] + 0.3, q[1], q[2], q[3], q[4], q[5]], a=3, v=2)\n    movej(q, a=3, v=2)\n  end\nend\n")
 
@@ -25,7 +29,7 @@ MOVING = ("def back_and_forth():\n  q = get_actual_joint_positions()\n  while Tr
 def add_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("simulator")
     group.add_argument("--simulator", action="store_true",
-                       help="only measure the simulator: start-up, load, jitter, scripts, robots in one process (about a minute)")
+                       help="only measure the simulator: start-up, load, jitter, scripts, robots in one process, memory (about three minutes)")
     group.add_argument("--count", type=int, default=10, metavar="N",
                        help="with --simulator: robots in one process (default: 10)")
 
@@ -121,9 +125,48 @@ def _long_script() -> str:
     return f"def long():\n{body}end\n"
 
 
-def _control_script(layout: Layout) -> pathlib.Path:
+def _control_script(layout: Layout) -> str:
+    """ur_rtde's control program as it is uploaded to PolyScope 5.25: without markers of versions, with register offsets."""
     (found,) = (layout.build / "ur_rtde_vendor" / "source").rglob("rtde_control.script")
-    return found
+    lines = []
+    for line in found.read_text().splitlines():
+        marker = re.match(r"\$(\d+)\.(\d+)\S*", line)
+        if marker and (int(marker[1]), int(marker[2])) > (5, 25):
+            continue
+        line = line[marker.end():] if marker else line
+        lines.append(re.sub(r"#.* register offset$", "0", line))
+    return "\n".join(["def rtde_control():", *lines, "end", ""])
+
+
+def _instructions(layout: Layout, address: str) -> int:
+    """Instructions of URScript in a cycle in which ur_rtde's control program waits for a command: median of 50 states."""
+    _control(address, command="run_script", script=_control_script(layout))
+    counts = [_control(address, command="state")["state"]["program"]["instructions"] for _ in range(51)]
+    _control(address, command="stop_program")
+    return statistics.median(counts[1:])
+
+
+def _resident(pid: int) -> int:
+    """Memory of a process, KiB."""
+    status = pathlib.Path(f"/proc/{pid}/status").read_text()
+    return int(status.split("VmRSS:")[1].split()[0])
+
+
+def _memory(layout: Layout, options: argparse.Namespace) -> Dict[str, float]:
+    """Of a robot that moves in accelerated time, with a program that is started again every second of the host."""
+    with _Simulator(layout, options, "--real-time-factor", str(FAST)) as simulator:
+        def work(seconds: float) -> float:
+            """Returns the simulated hours."""
+            begin, end = _robot_time(options.address), time.monotonic() + seconds
+            while time.monotonic() < end:
+                _control(options.address, command="run_script", script=MOVING)
+                time.sleep(1.0)
+            return (_robot_time(options.address) - begin) / 3600.0
+        work(WARM_UP)
+        before = _resident(simulator.process.pid)
+        hours = work(MEMORY_WINDOW)
+        after = _resident(simulator.process.pid)
+    return {"memory": after / 1024.0, "growth": (after - before) / hours}
 
 
 def _lost_time(layout: Layout, options: argparse.Namespace) -> Dict[str, float]:
@@ -143,7 +186,7 @@ def _lost_time(layout: Layout, options: argparse.Namespace) -> Dict[str, float]:
 
 def measure(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]":
     """Returns figures and samples."""
-    console.step("Measuring the simulator, for about a minute")
+    console.step("Measuring the simulator, for about three minutes")
     starts = []
     for _ in range(STARTS):
         with _Simulator(layout, options) as simulator:
@@ -151,15 +194,17 @@ def measure(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]":
     with _Simulator(layout, options) as simulator:
         idle = _cpu_percent(simulator.process.pid, WINDOW)
         deviations = _cycle_deviations(options.address)
-        scripts = {"ur_rtde": _script_seconds(options.address, _control_script(layout).read_text()),
+        scripts = {"ur_rtde": _script_seconds(options.address, _control_script(layout)),
                    f"{SCRIPT_LINES} lines": _script_seconds(options.address, _long_script())}
+        instructions = _instructions(layout, options.address)
         _control(options.address, command="run_script", script=MOVING)
         moving = _cpu_percent(simulator.process.pid, WINDOW)
     host = _host_deviations(WINDOW)
     figures = {
         "simulator": {"start-up": statistics.median(starts), "cpu idle": idle, "cpu moving": moving,
                       "cycle p99": _percentile(deviations, 99.0), "cycle p99.9": _percentile(deviations, 99.9),
-                      "host p99": _percentile(host, 99.0), "host p99.9": _percentile(host, 99.9)},
+                      "host p99": _percentile(host, 99.0), "host p99.9": _percentile(host, 99.9),
+                      "cycle moving": 1e6 * CYCLE * moving / 100.0, "instructions": instructions, **_memory(layout, options)},
         "simulator, compiling": {name: 1e3 * seconds for name, seconds in scripts.items()},
         "simulator, robots": _lost_time(layout, options),
     }
