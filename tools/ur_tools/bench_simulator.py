@@ -20,7 +20,8 @@ WINDOW = 5.0  # s of the host for each measurement of load and time
 SCRIPT_LINES = 2000
 CYCLE = 0.002  # s
 FAST = 10  # simulated seconds per second of the host, for memory
-WARM_UP = 20.0  # s of the host until the log of the robot is full
+WARM_UP = 10.0  # s of the host
+FILL_LOG = "def fill_log():\n  i = 0\n  while i < 1500:\n    textmsg(\"program 'back_and_forth' stopped\")\n    i = i + 1\n  end\nend\n"
 MEMORY_WINDOW = 60.0  # s of the host
 MOVING = ("def back_and_forth():\n  q = get_actual_joint_positions()\n  while True:\n"
           "    movej([q[0] + 0.3, q[1], q[2], q[3], q[4], q[5]], a=3, v=2)\n    movej(q, a=3, v=2)\n  end\nend\n")
@@ -162,6 +163,7 @@ def _memory(layout: Layout, options: argparse.Namespace) -> Dict[str, float]:
                 _control(options.address, command="run_script", script=MOVING)
                 time.sleep(1.0)
             return (_robot_time(options.address) - begin) / 3600.0
+        _control(options.address, command="run_script", script=FILL_LOG)  # the log keeps 1000 entries
         work(WARM_UP)
         before = _resident(simulator.process.pid)
         hours = work(MEMORY_WINDOW)
