@@ -2,7 +2,10 @@
 #include <ur_rtde/dashboard_client.h>
 
 #include <atomic>
+#include <boost/system/system_error.hpp>
 
+#include "../fuzz/reply_server.hpp"
+#include "connection/ports.hpp"
 #include "support.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
 
@@ -30,6 +33,27 @@ struct DashboardConnectionTest : testing::Test {
     return eventually([this] { return link->link().connected; });
   }
 };
+
+TEST(DashboardReplyTest, VersionsInLongRepliesAreRead)
+{
+  ur_fuzz::ReplyServer server(own_address(), dashboard_port);
+  server.set_reply("Connected\nURSoftware 5.25.1.0 " + std::string(60000, '1') + "\n" +
+                   std::string(60000, '1') + "\n" + std::string(60000, '.') + "\n");
+  ur_rtde::DashboardClient client(own_address());
+  client.connect();
+  EXPECT_EQ(client.polyscopeVersion(), "5.25.1.0");
+  EXPECT_EQ(client.polyscopeVersion(), std::string(256, '1'));
+  EXPECT_THROW(client.isInRemoteControl(), std::runtime_error);
+}
+
+TEST(DashboardReplyTest, RepliesWithoutEndAreRefused)
+{
+  ur_fuzz::ReplyServer server(own_address(), dashboard_port);
+  server.set_reply("Connected\n" + std::string(70000, 'x') + "\n");
+  ur_rtde::DashboardClient client(own_address());
+  client.connect();
+  EXPECT_THROW(client.robotmode(), boost::system::system_error);
+}
 
 TEST_F(DashboardConnectionTest, ConnectsToAControllerThatStartsLater)
 {
