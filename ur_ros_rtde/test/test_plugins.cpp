@@ -80,6 +80,14 @@ TEST_F(PluginDescriptionTest, ReportsAnotherRootElement)
   EXPECT_TRUE(mentions(problems_[0], {"<package>", "<library>"})) << problems_[0];
 }
 
+TEST_F(PluginDescriptionTest, ReportsADescriptionWithoutElement)
+{
+  EXPECT_TRUE(read("<?xml version=\"1.0\"?><!DOCTYPE library>").empty());
+  ASSERT_EQ(problems_.size(), 1U);
+  EXPECT_TRUE(mentions(problems_[0], {"plugins.xml", "some_package", "no element", "<library>"}))
+      << problems_[0];
+}
+
 TEST_F(PluginDescriptionTest, SkipsAndReportsInvalidClasses)
 {
   const auto entries =

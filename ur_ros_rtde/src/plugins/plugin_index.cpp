@@ -87,6 +87,11 @@ std::vector<PluginEntry> read_plugins_file(const std::string & file, const std::
     return entries;
   }
   const tinyxml2::XMLElement * root = document.RootElement();
+  if (root == nullptr) {
+    report(fmt::format("{} (package {}) has no element: it has to begin with <library> or <class_libraries>",
+                       file, package));
+    return entries;
+  }
   const std::string root_name = root->Name();
   if (root_name != "library" && root_name != "class_libraries") {
     report(fmt::format("{}:{}: begins with <{}>, it has to begin with <library> or <class_libraries>", file,
