@@ -81,7 +81,7 @@ void solve_wrist(const RobotModel & model, const Transform & flange, double q1, 
 {
   const Vector3 z1(std::sin(q1), -std::cos(q1), 0.0);             // direction of axes 2, 3, 4
   const Vector3 z1_in_flange = flange.linear().transpose() * z1;  // = (s5 c6, -s5 s6, c5)
-  const double sine = std::hypot(z1_in_flange.x(), z1_in_flange.y());
+  const double sine = z1_in_flange.head<2>().norm();
   if (sine < wrist_singularity_threshold) {
     solve_elbow(model, flange, {q1, z1_in_flange.z() > 0.0 ? 0.0 : pi, free_q6}, out);
     return;
@@ -243,7 +243,7 @@ InverseSolutions all_inverse_solutions(const RobotModel & model, const Transform
   // The origin of joint 5 lies at distance d4 from the plane of the arm, which rotates about the z axis of
   // the base.
   const Vector3 wrist = flange.translation() - model.d[5] * flange.linear().col(2);
-  const double distance = std::hypot(wrist.x(), wrist.y());
+  const double distance = wrist.head<2>().norm();
   const auto sine = clamp_to_unit(model.d[3] / distance);
   if (!sine) {
     return solutions;
@@ -296,7 +296,7 @@ double singularity_distance(const RobotModel & model, const Vector6 & joints)
   const auto frames = link_frames(model, joints);
   const Vector3 wrist = frames[4].translation();
   // The distance of the wrist from the base axis is at least d4, where both shoulder configurations coincide.
-  const double wrist_distance = std::hypot(wrist.x(), wrist.y());
+  const double wrist_distance = wrist.head<2>().norm();
   const double shoulder =
       std::sqrt(std::max(0.0, wrist_distance * wrist_distance - model.d[3] * model.d[3])) /
       (std::abs(model.a[1]) + std::abs(model.a[2]));

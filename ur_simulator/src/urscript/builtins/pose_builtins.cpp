@@ -96,9 +96,9 @@ Outcome rotvec2rpy(CallContext &, Arguments arguments)
 {
   ArgumentReader reader(arguments);
   const Eigen::Matrix3d r = to_rotation_matrix(reader.vector3(0, "rotation_vector"));
-  const double pitch = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
+  const double pitch = std::atan2(-r(2, 0), r.col(0).head<2>().norm());
   // Gimbal lock at pitch +-90 degrees: yaw is 0, roll takes the whole rotation.
-  const bool locked = std::hypot(r(0, 0), r(1, 0)) < 1e-9;
+  const bool locked = r.col(0).head<2>().norm() < 1e-9;
   const double roll =
       locked ? std::atan2(r(0, 1) * (pitch > 0.0 ? 1.0 : -1.0), r(1, 1)) : std::atan2(r(2, 1), r(2, 2));
   const double yaw = locked ? 0.0 : std::atan2(r(1, 0), r(0, 0));
