@@ -6,8 +6,8 @@ from ur_tools.layout import ROOT
 
 
 def test_every_target_has_a_corpus_and_is_built_and_replayed():
-    built = (fuzz.PROJECT / "CMakeLists.txt").read_text()
-    assert {"urscript", "rtde_session"} <= set(fuzz.targets())
+    built = "".join(path.read_text() for path in (fuzz.PROJECT / "CMakeLists.txt", fuzz.PROJECT / "driver.cmake"))
+    assert {"urscript", "rtde_stream", "plugin_description"} <= set(fuzz.targets())
     for name, folder in fuzz.folders().items():
         package = folder.parent
         assert f"add_fuzz_target({package.name} {name} " in built
