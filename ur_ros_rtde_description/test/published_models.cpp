@@ -1,5 +1,6 @@
 // Prints, for every model of the simulator, as JSON: names and limits; and for random joint positions the
-// pose of the flange, as simulator and driver calculate it, and the masses of the links.
+// pose of the flange, as simulator and driver calculate it, the masses of the links, and the cylinders of the
+// collision detection.
 #include <fmt/format.h>
 
 #include <array>
@@ -11,6 +12,7 @@
 #include <stdexcept>
 
 #include "kinematics/forward_kinematics.hpp"
+#include "kinematics/link_shapes.hpp"
 #include "kinematics/robot_model.hpp"
 #include "ur_ros_rtde_trajectory/arm.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
@@ -49,6 +51,20 @@ json masses_of(const RobotModel & model, const std::array<ur_simulator::Transfor
   return result;
 }
 
+/// Axis and radius of the cylinders of each body in the base frame, by the number of the body.
+json cylinders_of(const RobotModel & model, const std::array<ur_simulator::Transform, 6> & frames)
+{
+  json result = json::array();
+  for (const ur_simulator::LinkCylinder & cylinder : ur_simulator::link_cylinders(model)) {
+    const auto placed = ur_simulator::in_base_frame({cylinder.body, cylinder.axis, cylinder.radius}, frames);
+    result.push_back({{"body", static_cast<int>(cylinder.body)},
+                      {"begin", to_json(placed.axis.begin)},
+                      {"end", to_json(placed.axis.end)},
+                      {"radius", placed.radius}});
+  }
+  return result;
+}
+
 /// The arm of the trajectory library whose kinematics are nearest to those of the model.
 ur_ros_rtde::kinematics::Arm driver_arm(const RobotModel & model)
 {
@@ -73,7 +89,8 @@ json samples_of(const RobotModel & model, std::mt19937 & random)
     result.push_back({{"joints", to_json(joints)},
                       {"simulator", to_json(frames[5].matrix())},
                       {"driver", to_json(arm.forward(joints.array()).matrix())},
-                      {"masses", masses_of(model, frames)}});
+                      {"masses", masses_of(model, frames)},
+                      {"cylinders", cylinders_of(model, frames)}});
   }
   return result;
 }

@@ -68,6 +68,37 @@ def test_masses_are_those_of_the_simulator(published, name):
                                        atol=TOLERANCE, err_msg=link)
 
 
+def collision_cylinders(robot, frames, link):
+    """Returns the ends of the axis (unordered) and the radius of the cylinders of a link in the frame `base`."""
+    for shape in robot.find(f"link[@name='{link}']").findall("collision"):
+        geometry = shape.find("geometry")[0]
+        if geometry.tag == "cylinder":
+            pose = in_base(frames, link) @ origin_of(shape).transform()
+            half = 0.5 * float(geometry.get("length")) * pose[:3, 2]
+            yield pose[:3, 3] - half, pose[:3, 3] + half, float(geometry.get("radius"))
+
+
+def same_cylinder(first, second):
+    begin, end, radius = second
+    return abs(first[2] - radius) < TOLERANCE and any(
+        np.allclose(first[0], a, rtol=0.0, atol=TOLERANCE) and np.allclose(first[1], b, rtol=0.0, atol=TOLERANCE)
+        for a, b in ((begin, end), (end, begin)))
+
+
+@pytest.mark.parametrize("name", models())
+def test_the_simulator_detects_collisions_of_the_same_cylinders(published, name):
+    """All but the foot of the base, which does not move."""
+    robot = urdf(name)
+    foot = find_model(name).base_radius
+    for sample in published[name]["samples"][:5]:
+        frames = poses(robot, sample["joints"])
+        for body, link in enumerate(("base_link_inertia", *LINKS)):
+            expected = [shape for shape in collision_cylinders(robot, frames, link) if body or shape[2] != foot]
+            found = [(c["begin"], c["end"], c["radius"]) for c in sample["cylinders"] if c["body"] == body]
+            assert len(found) == len(expected), link
+            assert all(any(same_cylinder(shape, other) for other in found) for shape in expected), link
+
+
 @pytest.mark.parametrize("name", models())
 def test_limits_are_those_of_driver_and_simulator(published, name):
     expected = published[name]

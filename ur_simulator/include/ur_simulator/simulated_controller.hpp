@@ -53,6 +53,8 @@ struct SimulatorOptions {
   /// Scales the time of power on, brake release, the unlock delay of a protective stop and a restart of the
   /// safety system, 0.01 to 10. Use values below 1 for tests that recover often.
   double recovery_time_factor = 1.0;
+  /// Collisions of links with each other and with objects trigger a protective stop.
+  bool detect_collisions = true;
   /// Run the controller's thread with SCHED_FIFO if permitted, otherwise with normal priority.
   bool realtime_priority = false;
 };

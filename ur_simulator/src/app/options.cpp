@@ -113,6 +113,8 @@ void add_options(CLI::App & app, AppOptions & options)
       ->capture_default_str();
   app.add_flag("--powered-off", options.powered_off, "start with the arm powered off, as after boot");
   app.add_flag("--local-control", options.local_control, "start in local control");
+  app.add_flag("--ignore-collisions", options.ignore_collisions,
+               "let links pass through each other and through objects");
   app.add_flag("--realtime-priority", simulator.realtime_priority,
                "run the control loop with SCHED_FIFO if permitted");
   app.add_flag("--quiet", options.quiet, "do not print the ready message");
@@ -132,6 +134,7 @@ void parse_values(AppOptions & options)
     std::ranges::copy(options.joints, options.simulator.initial_joints->begin());
   }
   options.simulator.start_running = !options.powered_off;
+  options.simulator.detect_collisions = !options.ignore_collisions;
   options.simulator.remote_control = !options.local_control;
 }
 

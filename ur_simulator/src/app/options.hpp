@@ -25,6 +25,7 @@ struct AppOptions {
   std::vector<double> joints;
   bool powered_off = false;
   bool local_control = false;
+  bool ignore_collisions = false;
 };
 
 /// Adds description and options to the command line.

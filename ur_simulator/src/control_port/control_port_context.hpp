@@ -10,6 +10,7 @@
 #include "net/listener.hpp"
 #include "polyscope/pendant.hpp"
 #include "rtde/server.hpp"
+#include "safety/collision_monitor.hpp"
 #include "safety/safety.hpp"
 #include "state/controller_state.hpp"
 #include "state/cycle_trace.hpp"
@@ -23,6 +24,7 @@ struct ControlPortContext {
   Arm & arm;
   World & world;
   Safety & safety;
+  CollisionMonitor & collisions;
   Pendant & pendant;
   EventLog & log;
   rtde::Server & rtde;

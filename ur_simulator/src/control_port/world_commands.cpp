@@ -146,6 +146,7 @@ Action set_joints(RequestFields & fields)
   return [=](ControlPortContext & context) -> json {
     context.pendant.runner().stop("the joints were set through the control port");
     context.arm.teleport(joints, context.state);
+    context.collisions.reset();
     return json::object();
   };
 }

@@ -25,6 +25,7 @@
 #include "primary/global_variables.hpp"
 #include "primary/realtime_packet.hpp"
 #include "rtde/server.hpp"
+#include "safety/collision_monitor.hpp"
 #include "safety/safety.hpp"
 #include "script_api/robot_library.hpp"
 #include "state/controller_state.hpp"
@@ -86,6 +87,7 @@ class Controller {
   void run_cycle();
   void run_robot_cycle();
   void check_watchdog();
+  void check_collisions();
   void handle_script_requests();
   void apply_safety_actions(const SafetyActions & actions);
   void log_safety_events();
@@ -122,6 +124,7 @@ class Controller {
   std::optional<Arm> arm_;
   std::optional<World> world_;
   std::optional<Safety> safety_;
+  CollisionMonitor collisions_;
   Watchdog watchdog_;
   JointHistory joint_history_;
   ScriptRequestFlags script_requests_;

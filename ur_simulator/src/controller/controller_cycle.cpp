@@ -56,10 +56,22 @@ void Controller::run_robot_cycle()
     safety_->trigger_protective_stop(*fault);
   }
   world_->step(state_);
+  check_collisions();
   apply_safety_actions(safety_->step(state_));
   log_safety_events();
   if (pendant_->take_shutdown_request()) {
     switch_off();
+  }
+}
+
+void Controller::check_collisions()
+{
+  if (!options_.detect_collisions) {
+    return;
+  }
+  const auto collision = collisions_.check(*world_, state_);
+  if (collision && state_.robot_mode == RobotMode::running && allows_motion(state_.safety_mode)) {
+    safety_->trigger_protective_stop(collision->description, collision->code);
   }
 }
 

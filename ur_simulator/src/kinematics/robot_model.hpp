@@ -45,6 +45,10 @@ struct RobotModel {
   Vector6 torque_max;        ///< N m
   Vector6 stiffness;         ///< N m/rad of each joint
   Vector6 torque_constant;   ///< N m/A at the joint, after the gear
+  Vector6 joint_radius;      ///< m, of the housings
+  double upper_arm_offset;   ///< m, of the tube of the upper arm from the origin of its link, along the
+                             ///< joint's axis
+  double forearm_offset;     ///< m, the same for the forearm
   double payload_max;        ///< kg, rated
   double reach;              ///< m
 
