@@ -15,9 +15,18 @@ constexpr int cycles = 3;
 struct Target {
   control_port::ControlPortContext make_context()
   {
-    return {robot.state,    *robot.arm, *robot.world, *robot.safety,
-            *robot.pendant, robot.log,  rtde,         {{"rtde", &rtde.listener()}},
-            missed_cycles,  trace,      [](double) {}};
+    return {robot.state,
+            *robot.arm,
+            *robot.world,
+            *robot.safety,
+            robot.collisions,
+            *robot.pendant,
+            robot.log,
+            rtde,
+            {{"rtde", &rtde.listener()}},
+            missed_cycles,
+            trace,
+            [](double) {}};
   }
 
   void run(ur_fuzz::Input input)

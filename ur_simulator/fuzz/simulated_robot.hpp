@@ -6,6 +6,7 @@
 
 #include "kinematics/robot_model.hpp"
 #include "polyscope/pendant.hpp"
+#include "safety/collision_monitor.hpp"
 #include "world/world.hpp"
 
 namespace ur_simulator::fuzz {
@@ -30,6 +31,7 @@ class SimulatedRobot {
     arm.emplace(model, cycle_time, default_position(model));
     world.emplace(cycle_time, 1);
     safety.emplace(model, cycle_time);
+    collisions.reset();
     if (!library_) {
       ScriptRequests requests;
       requests.power_down = [] {};
@@ -68,6 +70,7 @@ class SimulatedRobot {
   std::optional<Arm> arm;
   std::optional<World> world;
   std::optional<Safety> safety;
+  CollisionMonitor collisions{model};
   std::optional<ProgramRunner> runner;
   std::optional<Pendant> pendant;
 
