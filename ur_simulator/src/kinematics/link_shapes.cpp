@@ -81,7 +81,8 @@ void add_wrist(const RobotModel & model, CylinderList & list)
   list.add(Body::wrist_1, {0, 0, wrist_side - d4}, {0, 0, wrist_1}, wrist_1, End::free);
   list.add(Body::wrist_1, {0, 0, 0}, {0, -d5 / 2.0, 0}, wrist_1);
   list.add(Body::wrist_2, {0, 0, -d5 / 2.0}, {0, 0, wrist_2}, wrist_2, End::free);
-  list.add(Body::wrist_2, {0, 0, 0}, {0, d6 - flange_length, 0}, wrist_2);
+  // Free: a hemisphere there would reach almost to the flange, which may be pressed into soft objects.
+  list.add(Body::wrist_2, {0, 0, 0}, {0, d6 - flange_length, 0}, wrist_2, End::free);
   list.add(Body::wrist_3, {0, 0, -flange_length}, {0, 0, 0}, wrist_3, End::free);
 }
 
