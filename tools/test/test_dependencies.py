@@ -21,7 +21,8 @@ KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "
         "numpy": "python3-numpy", "pytest": "python3-pytest", "yaml": "python3-yaml"}
 NOT_DECLARED = {"Threads",  # part of CMake
                 "copp_py", "toppra",  # solvers that oracle.py compares with
-                "viser", "websockets",  # no rosdep key for viser, which requires websockets; the viewer says how to install it
+                # No rosdep key for viser, which requires the others; the viewer says how to install it.
+                "viser", "websockets", "msgspec", "zstandard",
                 "playwright"}  # installed by `./ur test` for the browser tests
 
 

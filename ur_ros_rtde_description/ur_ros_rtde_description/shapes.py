@@ -17,10 +17,11 @@ FOREARM_TUBE = 0.92  # radius of the tube of the forearm, in radii of the wrist 
 LID = ((0.95, 0.08), (0.78, 0.08))  # radius and height of the two steps of the lid of a joint, in radii
 RING = 1.01, 0.09  # radius and width of the ring between two links, in radii
 FLANGE = 0.25  # length of the metal part of wrist_3_link, in lengths of the link
+COVER = 2e-4  # m by which the metal part covers the housing
 
 
 class Part(Enum):
-    """What a shape represents. Lids and rings belong to the visual geometry alone."""
+    """What a shape represents. Lids, rings and the flange belong to the visual geometry alone."""
 
     HOUSING = "ur_housing"
     TUBE = "ur_tube"
@@ -31,7 +32,7 @@ class Part(Enum):
 
     @property
     def is_only_visible(self) -> bool:
-        return self in (Part.LID, Part.RING)
+        return self in (Part.LID, Part.RING, Part.FLANGE)
 
 
 @dataclass(frozen=True)
@@ -108,6 +109,6 @@ def link_shapes(model: Model) -> Dict[str, Shapes]:
                          _ring("y", -d5 / 2.0, wrist_1)],
         "wrist_2_link": [*_joint(-d5 / 2.0, CAP * wrist_2, wrist_2), along("y", 0.0, d6 - flange_length, wrist_2, (0.0, 0.0)),
                          _ring("y", d6 - flange_length, wrist_2)],
-        "wrist_3_link": [along("z", -flange_length, -FLANGE * flange_length, wrist_3),
-                         along("z", -FLANGE * flange_length, 0.0, 0.96 * wrist_3, part=Part.FLANGE)],
+        "wrist_3_link": [along("z", -flange_length, 0.0, wrist_3),
+                         along("z", -FLANGE * flange_length, COVER, wrist_3 + COVER, part=Part.FLANGE)],
     }

@@ -121,18 +121,9 @@ ProgramContext Controller::program_context()
 
 control_port::ControlPortContext Controller::control_port_context()
 {
-  return {state_,
-          *arm_,
-          *world_,
-          *safety_,
-          collisions_,
-          *pendant_,
-          log_,
-          rtde_,
-          listeners(),
-          missed_cycles_,
-          trace_,
-          [this](double duration) { reboot(duration); }};
+  return {state_,      *arm_,          *world_, *safety_,
+          collisions_, *pendant_,      log_,    rtde_,
+          listeners(), missed_cycles_, trace_,  [this](double duration) { reboot(duration); }};
 }
 
 std::map<std::string, Listener *> Controller::listeners()
