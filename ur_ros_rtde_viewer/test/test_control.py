@@ -131,7 +131,7 @@ def test_without_control_no_path_leads_from_the_page_to_a_motion(observer):
     running = RunningViewer()
     try:
         use_all_elements(running)
-        until(lambda: WITHOUT_CONTROL["clients"] <= endpoints(observer, VIEWER_NODES)["clients"], "the clients of the viewer")
+        until(lambda: all(WITHOUT_CONTROL[kind] <= found for kind, found in endpoints(observer, VIEWER_NODES).items()), "the endpoints")
         found = endpoints(observer, VIEWER_NODES)
         assert found["clients"] == WITHOUT_CONTROL["clients"]
         assert found["publishers"] - {"/rosout", "/parameter_events"} == WITHOUT_CONTROL["publishers"]

@@ -50,7 +50,8 @@ def test_without_a_driver_stop_names_the_remedy(running):
 
 def test_a_driver_that_does_not_answer_is_stopped_through_the_dashboard(running, nodes, simulator, client):  # noqa: F811
     make_ready(client)
-    until(lambda: {"stop", "dashboard/stop"} <= set(running.viewer.control._robots[0].action_types), "the actions")
+    stopper = running.viewer.control._robots[0]._stopper
+    until(lambda: stopper._stop.server_is_ready() and stopper._dashboard.server_is_ready(), "the actions")
     assert client.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=0.1).accepted
     until(lambda: is_moving(simulator), "the arm to move")
     nodes["command_server"].pause()
