@@ -1,8 +1,6 @@
 // Sends goals of set_payload with nothing but rcl, and prints for each when it was sent: ns since the epoch,
 // by the host's clock.
-#include <rcl/error_handling.h>
 #include <rcl/graph.h>
-#include <rcl/rcl.h>
 #include <time.h>
 
 #include <cstdint>
@@ -11,8 +9,12 @@
 #include <rosidl_typesupport_cpp/service_type_support.hpp>
 #include <ur_ros_rtde_msgs/action/set_payload.hpp>
 
+#include "bare_node.hpp"
+
 namespace {
 
+using bench::check;
+using bench::fail;
 using ur_ros_rtde_msgs::action::SetPayload;
 using SendGoal = SetPayload::Impl::SendGoalService;
 using GetResult = SetPayload::Impl::GetResultService;
@@ -22,19 +24,6 @@ constexpr std::int64_t response_limit = 30 * second;
 /// Between two goals, so that the control program waits for a command again, at any phase of its cycle.
 constexpr long pause = 20'000'000;
 constexpr long spread = 2'000'000;
-
-void fail(const char * reason)
-{
-  std::fprintf(stderr, "goal_latency: %s\n", reason);
-  std::exit(1);
-}
-
-void check(rcl_ret_t code)
-{
-  if (code != RCL_RET_OK) {
-    fail(rcl_get_error_string().str);
-  }
-}
 
 std::int64_t now()
 {
@@ -53,13 +42,14 @@ void sleep_for(long nanoseconds)
 template <typename Service>
 class Client {
  public:
-  Client(rcl_node_t & node, rcl_context_t & context, const char * name) : node_(node)
+  Client(bench::BareNode & bare, const char * name) : node_(bare.node)
   {
     const rcl_client_options_t options = rcl_client_get_default_options();
-    check(rcl_client_init(&client_, &node, rosidl_typesupport_cpp::get_service_type_support_handle<Service>(),
-                          name, &options));
+    check(rcl_client_init(&client_, &node_,
+                          rosidl_typesupport_cpp::get_service_type_support_handle<Service>(), name,
+                          &options));
     rcl_reset_error();  // the type support for another language was tried first
-    check(rcl_wait_set_init(&wait_set_, 0, 0, 0, 1, 0, 0, &context, rcl_get_default_allocator()));
+    check(rcl_wait_set_init(&wait_set_, 0, 0, 0, 1, 0, 0, &bare.context, rcl_get_default_allocator()));
   }
   ~Client()
   {
@@ -115,10 +105,10 @@ SendGoal::Request make_request(int number)
   return request;
 }
 
-void send_goals(rcl_node_t & node, rcl_context_t & context, int count)
+void send_goals(bench::BareNode & node, int count)
 {
-  Client<SendGoal> goals(node, context, "set_payload/_action/send_goal");
-  Client<GetResult> results(node, context, "set_payload/_action/get_result");
+  Client<SendGoal> goals(node, "set_payload/_action/send_goal");
+  Client<GetResult> results(node, "set_payload/_action/get_result");
   goals.wait_for_service();
   results.wait_for_service();
   for (int i = 0; i < count; ++i) {
@@ -146,15 +136,7 @@ int main(int argc, char ** argv)
     std::fprintf(stderr, "usage: goal_latency GOALS (1 to 100000)\n");
     return 2;
   }
-  rcl_init_options_t options = rcl_get_zero_initialized_init_options();
-  check(rcl_init_options_init(&options, rcl_get_default_allocator()));
-  rcl_context_t context = rcl_get_zero_initialized_context();
-  check(rcl_init(0, nullptr, &options, &context));
-  rcl_node_t node = rcl_get_zero_initialized_node();
-  const rcl_node_options_t node_options = rcl_node_get_default_options();
-  check(rcl_node_init(&node, "goal_latency", "", &context, &node_options));
-  send_goals(node, context, count);
-  check(rcl_node_fini(&node));
-  check(rcl_shutdown(&context));
+  bench::BareNode node("goal_latency", "");
+  send_goals(node, count);
   return 0;
 }

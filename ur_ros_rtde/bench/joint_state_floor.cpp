@@ -1,7 +1,5 @@
 // Publishes joint_states at 500 Hz with nothing but rcl, so that the time from publishing to a subscriber can
 // be compared with that of the driver. The stamp of a message is the time just before it is published.
-#include <rcl/error_handling.h>
-#include <rcl/rcl.h>
 #include <time.h>
 
 #include <cstdio>
@@ -9,8 +7,11 @@
 #include <rosidl_typesupport_cpp/message_type_support.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
 
+#include "bare_node.hpp"
+
 namespace {
 
+using bench::check;
 using sensor_msgs::msg::JointState;
 constexpr long period = 2'000'000;  // ns
 constexpr long second = 1'000'000'000;
@@ -24,14 +25,6 @@ JointState make_message()
     values->assign(message.name.size(), 1.0);
   }
   return message;
-}
-
-void check(rcl_ret_t code)
-{
-  if (code != RCL_RET_OK) {
-    std::fprintf(stderr, "joint_state_floor: %s\n", rcl_get_error_string().str);
-    std::exit(1);
-  }
 }
 
 void publish(const rcl_publisher_t & publisher, int count)
@@ -61,22 +54,14 @@ int main(int argc, char ** argv)
     std::fprintf(stderr, "usage: joint_state_floor SECONDS (1 to 600)\n");
     return 2;
   }
-  rcl_init_options_t options = rcl_get_zero_initialized_init_options();
-  check(rcl_init_options_init(&options, rcl_get_default_allocator()));
-  rcl_context_t context = rcl_get_zero_initialized_context();
-  check(rcl_init(0, nullptr, &options, &context));
-  rcl_node_t node = rcl_get_zero_initialized_node();
-  const rcl_node_options_t node_options = rcl_node_get_default_options();
-  check(rcl_node_init(&node, "joint_state_floor", "/floor", &context, &node_options));
+  bench::BareNode bare("joint_state_floor", "/floor");
   rcl_publisher_t publisher = rcl_get_zero_initialized_publisher();
   rcl_publisher_options_t publisher_options = rcl_publisher_get_default_options();
   publisher_options.qos = rmw_qos_profile_sensor_data;
-  check(rcl_publisher_init(&publisher, &node,
+  check(rcl_publisher_init(&publisher, &bare.node,
                            rosidl_typesupport_cpp::get_message_type_support_handle<JointState>(),
                            "joint_states", &publisher_options));
   publish(publisher, seconds * static_cast<int>(second / period));
-  check(rcl_publisher_fini(&publisher, &node));
-  check(rcl_node_fini(&node));
-  check(rcl_shutdown(&context));
+  check(rcl_publisher_fini(&publisher, &bare.node));
   return 0;
 }
