@@ -5,9 +5,19 @@ import signal
 import subprocess
 
 import pytest
-from support import HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
+from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
+
+
+def has_program(name):
+    try:
+        return bool(find_program("ur_ros_rtde_tutorials", name))
+    except FileNotFoundError:
+        return False
+
+
+needs_rclcpp = pytest.mark.skipif(not has_program("c01_send_a_goal"), reason="rclcpp is not installed: no examples in C++")
 
 
 @pytest.fixture(scope="module")
@@ -55,3 +65,76 @@ def test_a_closed_output_cancels_the_goal_of_the_example(running, tmp_path):
     assert example.wait(TIMEOUT_FACTOR * 20.0) == 128 + signal.SIGPIPE, errors.read_text()
     assert running.is_at_rest()
     assert errors.read_text() == ""
+
+
+@needs_rclcpp
+@pytest.mark.parametrize("name, texts", [
+    ("c01_send_a_goal", ["%", "done, error_code 0"]),
+    ("c02_read_the_state", ["shoulder_pan_joint", "wrist_3_joint"]),
+    ("c03_waypoints", ["s left", "done, error_code 0"]),
+    ("c04_power_on", ["robot mode: RUNNING"]),
+])
+def test_the_cpp_example_succeeds(running, name, texts):
+    example = Process([find_program("ur_ros_rtde_tutorials", name)])
+    assert example.wait(90.0) == 0, example.output()
+    assert all(text in example.output() for text in texts), example.output()
+
+
+@needs_rclcpp
+def test_the_cpp_example_powers_the_arm_on(running):
+    running.control("power", to="off")
+    wait_for(lambda: running.state()["robot_mode"] == "POWER_OFF", 10.0, "the arm to be off")
+    example = Process([find_program("ur_ros_rtde_tutorials", "c04_power_on")])
+    assert example.wait(90.0) == 0, example.output()
+    assert running.state()["robot_mode"] == "RUNNING"
+
+
+@needs_rclcpp
+@pytest.mark.parametrize("name", ["c01_send_a_goal", "c03_waypoints"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_cancels_the_goal_of_the_cpp_example(running, name, number):
+    example = Process([find_program("ur_ros_rtde_tutorials", name)])
+    wait_for(lambda: not running.is_at_rest(), 20.0, "the arm to move")
+    example.signal(number)
+    assert example.wait(20.0) == 128 + number, example.output()
+    assert running.is_at_rest()
+
+
+@needs_rclcpp
+def test_the_cpp_example_reports_a_refused_goal(running):
+    example = Process([find_program("ur_ros_rtde_tutorials", "c01_send_a_goal"), "--ros-args", "-p", "speed:=-1.0"])
+    assert example.wait(30.0) == 1
+    assert "refused: see the log of command_server" in example.output()
+    assert running.is_at_rest()
+
+
+@needs_rclcpp
+@pytest.mark.parametrize("name, text", [
+    ("c01_send_a_goal", "start the driver first"),
+    ("c02_read_the_state", "no messages received"),
+    ("c03_waypoints", "the action execute_trajectory is not available: start the driver first"),
+    ("c04_power_on", "the action dashboard/power_on is not available: start the driver first"),
+])
+def test_the_cpp_example_reports_a_missing_driver(name, text):
+    example = Process([find_program("ur_ros_rtde_tutorials", name), "--ros-args", "-r", "__ns:=/no_driver"])
+    assert example.wait(30.0) == 1
+    assert text in example.output()
+
+
+@needs_rclcpp
+@pytest.mark.parametrize("end", [Process.stop, Process.kill])
+def test_the_cpp_example_ends_with_the_driver(addresses, end):
+    simulator = Simulator(addresses[1])
+    driver = start_node("driver", simulator.address, FEW_PLUGINS, namespace="ending")
+    client = Client(namespace="ending")
+    try:
+        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to accept a motion")
+        example = Process([find_program("ur_ros_rtde_tutorials", "c01_send_a_goal"), "--ros-args", "-r", "__ns:=/ending"])
+        wait_for(lambda: not simulator.is_at_rest(), 20.0, "the arm to move")
+        end(driver)
+        assert example.wait(40.0) == 1, example.output()
+        wait_for(simulator.is_at_rest, 10.0, "the arm to stop")
+    finally:
+        client.close()
+        driver.stop()
+        simulator.stop()
