@@ -67,17 +67,18 @@ TEST(GoalThreadsTest, RefuseAfterClose)
   EXPECT_EQ(status.error().code, ErrorCode::shutdown);
 }
 
-TEST(GoalThreadsTest, AThreadExecutesTheNextGoal)
+TEST(GoalThreadsTest, ThreadsExecuteFurtherGoals)
 {
   GoalThreads threads;
   std::set<std::thread::id> ids;
-  for (int i = 0; i < 3; ++i) {
+  constexpr std::size_t count = 60;
+  for (std::size_t i = 0; i < count; ++i) {
     std::promise<std::thread::id> id;
     ASSERT_TRUE(threads.start("goal", std::make_shared<StopRequest>(),
                               [&id] { id.set_value(std::this_thread::get_id()); }));
     ids.insert(id.get_future().get());
   }
-  EXPECT_LE(ids.size(), 2U);  // a thread may not wait yet when the next goal starts
+  EXPECT_LT(ids.size(), count / 2);  // some threads may not wait yet when the next goal starts
 }
 
 TEST(GoalThreadsTest, AGoalDoesNotWaitForAThreadThatIsBusy)
