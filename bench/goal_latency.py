@@ -109,7 +109,7 @@ class GoalLatency:
             joints = list(self.control.request("state")["state"]["actual"]["position"])
             joints[0] += 0.05 if index % 2 == 0 else -0.05
             before = self._cycle()
-            handle = self._accepted(self.move_j, MoveJ.Goal(joint_positions=joints, speed=0.5, acceleration=4.0))
+            handle = self._accepted(self.move_j, MoveJ.Goal(joint_positions=joints, speed=0.5, acceleration=1.4))
             self._finish(handle.get_result_async())
             received = time.time_ns()
             cycles = self.control.request("trace", after=before)["cycles"]

@@ -1,5 +1,6 @@
 // Prints, for each message of joint_states, its stamp and when it was received: ns since the epoch, by the
 // host's clock.
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -11,6 +12,9 @@
 #include "rcl_cxx/rcl_cxx.hpp"
 
 namespace {
+
+/// After the first message, which may arrive while the node still discovers the other topics of the driver.
+constexpr std::chrono::seconds discovery_time{1};
 
 std::int64_t nanoseconds(std::chrono::system_clock::time_point time)
 {
@@ -41,6 +45,7 @@ int main(int argc, char ** argv)
                               nanoseconds(std::chrono::system_clock::now()));
       });
   executor.spin_until([&] { return !received.empty(); }, std::chrono::seconds(15));
+  executor.spin_until([] { return false; }, discovery_time);
   received.clear();
   executor.spin_until([] { return false; }, std::chrono::seconds(seconds));
   for (const auto & [stamp, when] : received) {
