@@ -72,7 +72,7 @@ def run(options: argparse.Namespace, layout: Layout, seconds: int = SECONDS) -> 
     states = traces["robot_state_receiver"], traces["subscriber"]
     _print_steps("Packages", hand_overs.PACKAGE_TEXTS, hand_overs.package_times(found["sent"], *states))
     for client, goals in found["goals"].items():
-        _print_steps(f"Goals of a {client} client", hand_overs.GOAL_TEXTS, hand_overs.goal_times(goals, traces["command_server"]))
+        _print_steps(f"Goals of a client in {client}", hand_overs.GOAL_TEXTS, hand_overs.goal_times(goals, traces["command_server"]))
     console.line(f"\n{'For comparison, ms':64}{'p50':>10}{'p99':>10}{'p99.9':>10}")
     for name, text in FLOORS.items():
         console.line(_line(text, found[name]))
