@@ -42,6 +42,16 @@ TEST(TypeSupportTest, KeepsHashOfMessageWithoutDescription)
   expect_hash_without_description(generated, type_support.get());
 }
 
+// A participant of Fast DDS still refers to it when the type is registered again.
+TEST(TypeSupportTest, IsKeptWhenTheEntityIsGone)
+{
+  const auto * const generated =
+      rosidl_typesupport_cpp::get_message_type_support_handle<std_msgs::msg::String>();
+  const auto * const first = MessageTypeSupport(generated).get();
+  EXPECT_EQ(MessageTypeSupport(generated).get(), first);
+  EXPECT_NE(first, generated);
+}
+
 TEST(TypeSupportTest, KeepsHashOfServiceWithoutDescription)
 {
   const auto * const generated =

@@ -3,6 +3,8 @@
 #include <rcl/error_handling.h>
 #include <rmw/rmw.h>
 
+#include <map>
+#include <mutex>
 #include <string_view>
 
 #include "rcl_support/rcl_compat.hpp"
@@ -34,15 +36,28 @@ const T * find_type_support(const T * type)
   }
   return found;
 }
+/// Thread-safe. A library that was loaded at the place of another one may have its type there.
+template <typename T>
+const T * make_copy(const T * generated)
+{
+  static std::mutex mutex;
+  static std::map<const T *, T> & copies =
+      *new std::map<const T *, T>();  // not destroyed before participants
+  T copy = *find_type_support(generated);
+  compat::remove_type_description(copy);
+  const std::lock_guard lock(mutex);
+  const auto [known, is_new] = copies.try_emplace(generated, copy);
+  if (!is_new && known->second.data != copy.data) {
+    known->second = copy;
+  }
+  return &known->second;
+}
 }  // namespace
 
 template <typename T>
 TypeSupport<T>::TypeSupport(const T * generated)
+    : copy_(generated == nullptr ? nullptr : make_copy(generated))
 {
-  if (generated != nullptr) {
-    copy_ = *find_type_support(generated);
-    compat::remove_type_description(*copy_);
-  }
 }
 
 template class TypeSupport<rosidl_message_type_support_t>;

@@ -4,8 +4,6 @@
 #include <rosidl_runtime_c/message_type_support_struct.h>
 #include <rosidl_runtime_c/service_type_support_struct.h>
 
-#include <optional>
-
 namespace rcl_cxx::detail {
 /// The type support that rcl receives, a copy of the generated one with two differences. With
 /// rmw_fastrtps_cpp it is that of the middleware: if rmw_fastrtps_cpp selects it, it also loads the
@@ -13,17 +11,19 @@ namespace rcl_cxx::detail {
 /// finds no description of the type, of which it would keep a copy for the service ~/get_type_description,
 /// which this library does not provide. With 130 actions, this saves 9 MB and 7 MB (docs/discovery.md).
 ///
-/// Must live as long as the entity that is created with it. `T` is a type support of messages or of services.
+/// The copy is kept until the process ends, like the generated one: a participant of Fast DDS refers to the
+/// type support of a type that was registered once, also when the entity is gone and another one is created.
+/// `T` is a type support of messages or of services.
 template <typename T>
 class TypeSupport {
  public:
   /// nullptr is passed on to rcl, which reports it.
   explicit TypeSupport(const T * generated);
 
-  const T * get() const noexcept { return copy_ ? &*copy_ : nullptr; }
+  const T * get() const noexcept { return copy_; }
 
  private:
-  std::optional<T> copy_;
+  const T * copy_;
 };
 
 using MessageTypeSupport = TypeSupport<rosidl_message_type_support_t>;
