@@ -24,7 +24,7 @@ inline std::string test_address()
 }
 
 /// A TCP server which sends each client the same bytes and then the end of the
-/// stream, whatever the client sends.
+/// stream. It ignores what the client sends.
 class ReplyServer {
  public:
   /// Port 0 selects a free port.

@@ -45,7 +45,8 @@ def test_the_example_succeeds(running, name, limit, text):
     assert text in example.output()
 
 
-@pytest.mark.parametrize("name", ["t01_send_a_goal.py", "t03_cancel_a_goal.py"])
+@pytest.mark.parametrize("name", ["t01_send_a_goal.py", "t03_cancel_a_goal.py",
+                                  *(pytest.param(name, marks=needs_rclcpp) for name in ("c01_send_a_goal", "c03_waypoints"))])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_cancels_the_goal_of_the_example(running, name, number):
     example = Process([find_program("ur_ros_rtde_tutorials", name)])
@@ -87,17 +88,6 @@ def test_the_cpp_example_powers_the_arm_on(running):
     example = Process([find_program("ur_ros_rtde_tutorials", "c04_power_on")])
     assert example.wait(90.0) == 0, example.output()
     assert running.state()["robot_mode"] == "RUNNING"
-
-
-@needs_rclcpp
-@pytest.mark.parametrize("name", ["c01_send_a_goal", "c03_waypoints"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_cancels_the_goal_of_the_cpp_example(running, name, number):
-    example = Process([find_program("ur_ros_rtde_tutorials", name)])
-    wait_for(lambda: not running.is_at_rest(), 20.0, "the arm to move")
-    example.signal(number)
-    assert example.wait(20.0) == 128 + number, example.output()
-    assert running.is_at_rest()
 
 
 @needs_rclcpp

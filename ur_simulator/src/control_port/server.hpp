@@ -3,12 +3,12 @@
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
-#include "net/listener.hpp"
+#include "net/line_server.hpp"
 
 namespace ur_simulator::control_port {
 
@@ -19,23 +19,17 @@ class Server {
 
   Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
          RequestHandler handle_request);
-  ~Server();
   /// Serves a connection, as each that the listener accepts.
-  void accept(const std::shared_ptr<Connection> & connection);
-  Listener & listener() { return listener_; }
-  const Listener & listener() const { return listener_; }
+  void accept(const std::shared_ptr<Connection> & connection) { server_.accept(connection); }
+  Listener & listener() { return server_.listener(); }
+  const Listener & listener() const { return server_.listener(); }
 
  private:
-  struct Client {
-    std::shared_ptr<Connection> connection;
-    std::string received;
-  };
-  void receive(Client & client, std::string_view bytes);
+  /// Empty for an empty line.
   std::string reply_to(std::string_view line) const;
 
   RequestHandler handle_request_;
-  std::map<std::uint64_t, std::shared_ptr<Client>> clients_;
-  Listener listener_;
+  LineServer server_;
 };
 
 }  // namespace ur_simulator::control_port

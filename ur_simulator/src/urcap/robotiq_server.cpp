@@ -16,49 +16,9 @@ constexpr const char * not_understood = "?";
 
 RobotiqServer::RobotiqServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
                              RobotiqGripper & gripper)
-    : gripper_(gripper), listener_(io, address, port, [this](const std::shared_ptr<Connection> & connection) {
-        accept(connection);
-      })
+    : gripper_(gripper),
+      server_(io, address, port, {max_line_size}, [this](std::string_view line) { return answer(line); })
 {
-}
-
-RobotiqServer::~RobotiqServer()
-{
-  listener_.close_connections();
-}
-
-void RobotiqServer::accept(const std::shared_ptr<Connection> & connection)
-{
-  const std::uint64_t id = connection->id();
-  clients_.emplace(id, Client{connection, {}});
-  connection->start(
-      [this, id](std::string_view bytes) {
-        if (const auto client = clients_.find(id); client != clients_.end()) {
-          receive(client->second, bytes);
-        }
-      },
-      [this, id] { clients_.erase(id); });
-}
-
-void RobotiqServer::receive(Client & client, std::string_view bytes)
-{
-  // Sending may close the connection, which destroys the client.
-  const std::shared_ptr<Connection> connection = client.connection;
-  client.received.append(bytes);
-  const std::string received = std::exchange(client.received, {});
-  std::size_t begin = 0;
-  for (std::size_t end = received.find('\n'); end != std::string::npos; end = received.find('\n', begin)) {
-    connection->send(answer(std::string_view(received).substr(begin, end - begin)));
-    if (!connection->is_open()) {
-      return;
-    }
-    begin = end + 1;
-  }
-  if (received.size() - begin > max_line_size) {
-    connection->close();
-    return;
-  }
-  client.received = received.substr(begin);
 }
 
 std::string RobotiqServer::answer(std::string_view line)

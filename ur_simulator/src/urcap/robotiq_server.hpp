@@ -2,11 +2,10 @@
 
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <string>
+#include <string_view>
 
-#include "net/listener.hpp"
+#include "net/line_server.hpp"
 #include "world/robotiq_gripper.hpp"
 
 namespace ur_simulator::urcap {
@@ -18,22 +17,14 @@ class RobotiqServer {
  public:
   RobotiqServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
                 RobotiqGripper & gripper);
-  ~RobotiqServer();
-  Listener & listener() { return listener_; }
+  Listener & listener() { return server_.listener(); }
 
  private:
-  struct Client {
-    std::shared_ptr<Connection> connection;
-    std::string received;
-  };
-  void accept(const std::shared_ptr<Connection> & connection);
-  void receive(Client & client, std::string_view bytes);
   std::string answer(std::string_view line);
   std::string set(std::string_view assignments);
 
   RobotiqGripper & gripper_;
-  std::map<std::uint64_t, Client> clients_;
-  Listener listener_;
+  LineServer server_;
 };
 
 }  // namespace ur_simulator::urcap
