@@ -20,7 +20,7 @@ from .layout import PROGRAM, Layout
 KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 # Options that change what is measured, or how.
 SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots", "stress",
-            "simulator", "count", "recovery", "viewer")
+            "simulator", "count", "hours", "recovery", "viewer")
 # What is measured instead of the default rows.
 SEPARATE = {"scale": bench_scale, "stress": bench_stress, "simulator": bench_simulator, "recovery": bench_recovery, "viewer": bench_viewer}
 MODES = ("stream", "trajectory", "trace", *SEPARATE)

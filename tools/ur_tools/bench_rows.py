@@ -81,7 +81,7 @@ SIMULATOR: Tuple[Tuple[str, Optional[float], str], ...] = (
     ("cycle moving", None, "us of processor time for each control cycle of a moving robot, with its sockets"),
     ("instructions", None, "of URScript in a cycle in which ur_rtde's control program waits"),
     ("memory", None, "MiB, resident, of a moving robot"),
-    ("growth", 64.0, "KiB of memory per simulated hour"),
+    ("growth", 64.0, "KiB of memory per simulated hour of --hours"),
 )
 
 ROWS: Tuple[Row, ...] = (

@@ -19,10 +19,9 @@ STARTS = 10
 WINDOW = 5.0  # s of the host for each measurement of load and time
 SCRIPT_LINES = 2000
 CYCLE = 0.002  # s
-FAST = 10  # simulated seconds per second of the host, for memory
-WARM_UP = 10.0  # s of the host
+FASTEST = 1000  # simulated seconds per second of the host: as many as the host can compute, for memory
+WARM_UP = 0.1  # simulated hours
 FILL_LOG = "def fill_log():\n  i = 0\n  while i < 1500:\n    textmsg(\"program 'back_and_forth' stopped\")\n    i = i + 1\n  end\nend\n"
-MEMORY_WINDOW = 60.0  # s of the host
 MOVING = ("def back_and_forth():\n  q = get_actual_joint_positions()\n  while True:\n"
           "    movej([q[0] + 0.3, q[1], q[2], q[3], q[4], q[5]], a=3, v=2)\n    movej(q, a=3, v=2)\n  end\nend\n")
 
@@ -33,10 +32,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                        help="only measure the simulator: start-up, load, jitter, scripts, robots in one process, memory (about three minutes)")
     group.add_argument("--count", type=int, default=10, metavar="N",
                        help="with --simulator: robots in one process (default: 10)")
+    group.add_argument("--hours", type=float, default=1.0, metavar="H",
+                       help="with --simulator: simulated hours over which the growth of the memory is measured; about a minute each (default: 1)")
 
 
 def check(options: argparse.Namespace) -> None:
-    """Raises Failure if an address is in use."""
+    """Raises Failure if an option is out of range or an address is in use."""
+    if not 0.01 <= options.hours <= 1000.0:
+        raise console.Failure(f"--hours {options.hours:g} is out of range: give 0.01 to 1000")
     for address in bench_scale.addresses(options, options.count):
         ports.check(address)
 
@@ -153,22 +156,29 @@ def _resident(pid: int) -> int:
     return int(status.split("VmRSS:")[1].split()[0])
 
 
-def _memory(layout: Layout, options: argparse.Namespace) -> Dict[str, float]:
-    """Of a robot that moves in accelerated time, with a program that is started again every second of the host."""
-    with _Simulator(layout, options, "--real-time-factor", str(FAST)) as simulator:
-        def work(seconds: float) -> float:
-            """Returns the simulated hours."""
-            begin, end = _robot_time(options.address), time.monotonic() + seconds
-            while time.monotonic() < end:
+def _memory(layout: Layout, options: argparse.Namespace) -> "tuple[Dict[str, float], List[float]]":
+    """Of a robot that moves as fast as the host can compute it, with a program that is started again every second of the host.
+
+    Returns the figures, and the memory in KiB for each of these seconds.
+    """
+    status, samples = console.Status(), []
+    with _Simulator(layout, options, "--real-time-factor", str(FASTEST)) as simulator:
+        def work(hours: float) -> None:
+            start, begin = _robot_time(options.address), time.monotonic()
+            done = 0.0
+            while done < hours:
                 _control(options.address, command="run_script", script=MOVING)
                 time.sleep(1.0)
-            return (_robot_time(options.address) - begin) / 3600.0
+                samples.append(_resident(simulator.process.pid))
+                done = (_robot_time(options.address) - start) / 3600.0
+                left = (time.monotonic() - begin) * (hours / done - 1.0)
+                status.show(f"{done:.2f} of {hours:g} simulated hours, {samples[-1]} KiB, about {max(0.0, left):.0f} s left")
+            status.clear()
         _control(options.address, command="run_script", script=FILL_LOG)  # the log keeps 1000 entries
         work(WARM_UP)
-        before = _resident(simulator.process.pid)
-        hours = work(MEMORY_WINDOW)
-        after = _resident(simulator.process.pid)
-    return {"memory": after / 1024.0, "growth": (after - before) / hours}
+        del samples[:-1]
+        work(options.hours)
+    return {"memory": samples[-1] / 1024.0, "growth": (samples[-1] - samples[0]) / options.hours}, samples
 
 
 def _lost_time(layout: Layout, options: argparse.Namespace) -> Dict[str, float]:
@@ -202,12 +212,13 @@ def measure(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]":
         _control(options.address, command="run_script", script=MOVING)
         moving = _cpu_percent(simulator.process.pid, WINDOW)
     host = _host_deviations(WINDOW)
+    memory, memory_samples = _memory(layout, options)
     figures = {
         "simulator": {"start-up": statistics.median(starts), "cpu idle": idle, "cpu moving": moving,
                       "cycle p99": _percentile(deviations, 99.0), "cycle p99.9": _percentile(deviations, 99.9),
                       "host p99": _percentile(host, 99.0), "host p99.9": _percentile(host, 99.9),
-                      "cycle moving": 1e6 * CYCLE * moving / 100.0, "instructions": instructions, **_memory(layout, options)},
+                      "cycle moving": 1e6 * CYCLE * moving / 100.0, "instructions": instructions, **memory},
         "simulator, compiling": {name: 1e3 * seconds for name, seconds in scripts.items()},
         "simulator, robots": _lost_time(layout, options),
     }
-    return figures, {"simulator cycle": deviations, "simulator host": host}
+    return figures, {"simulator cycle": deviations, "simulator host": host, "simulator memory": memory_samples}

@@ -12,4 +12,6 @@ endif()
 set(fmt_library fmt::fmt-header-only)
 find_library(UR_SIMULATOR_YAML_LIBRARY libyaml-cpp.a REQUIRED)
 set(yaml_library ${UR_SIMULATOR_YAML_LIBRARY})
-add_link_options(-static-libstdc++ -static-libgcc LINKER:--strip-all)
+# Without unused sections and with a shared libgcc, which every Linux has, the program needs glibc 2.34, not that
+# of the build machine.
+add_link_options(-static-libstdc++ LINKER:--gc-sections LINKER:--strip-all)

@@ -47,8 +47,9 @@ struct SimulatorOptions {
   /// millimeter. 0: nominal kinematics.
   std::uint64_t calibration_seed = 0;
   std::uint64_t seed = 1;  ///< seed of the sensor noise
-  /// Simulated seconds per second of the host, 0.01 to 10. Use values below 1 if the host is too slow for the
-  /// control rate, for example with a sanitizer.
+  /// Simulated seconds per second of the host, 0.01 to 1000. Use values below 1 if the host is too slow for
+  /// the control rate, for example with a sanitizer. Beyond what the host can compute, the controller runs as
+  /// fast as it can.
   double real_time_factor = 1.0;
   /// Scales the time of power on, brake release, the unlock delay of a protective stop and a restart of the
   /// safety system, 0.01 to 10. Use values below 1 for tests that recover often.

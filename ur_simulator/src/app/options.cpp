@@ -104,7 +104,7 @@ void add_options(CLI::App & app, AppOptions & options)
   app.add_option("--reports-folder", simulator.reports_folder,
                  "also write the dashboard's flight reports, support files and logs to this folder");
   app.add_option("--real-time-factor", simulator.real_time_factor,
-                 "simulated seconds per second of the host, 0.01 to 10; below 1 for slow hosts")
+                 "simulated seconds per second of the host, 0.01 to 1000; below 1 for slow hosts")
       ->capture_default_str();
   app.add_option(
          "--recovery-time-factor", simulator.recovery_time_factor,

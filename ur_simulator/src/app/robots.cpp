@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/address_v4.hpp>
 #include <cstdio>
 #include <limits>
@@ -52,6 +53,20 @@ std::vector<std::string> consecutive_addresses(const std::string & first, unsign
   return addresses;
 }
 
+std::string exposure_warning(const std::string & address)
+{
+  boost::system::error_code error;
+  const auto parsed = boost::asio::ip::make_address(address, error);
+  if (error || parsed.is_loopback()) {
+    return "";
+  }
+  return fmt::format(
+      "other hosts can connect to {} (--address). Neither a robot nor this simulator asks for a password: "
+      "every client can run programs, which open connections from this host, and inject faults through the "
+      "control port. Use 127.0.0.1, or a firewall that admits your clients only",
+      address);
+}
+
 Robots::Robots(const AppOptions & options)
 {
   SimulatorOptions simulator = options.simulator;
@@ -59,6 +74,9 @@ Robots::Robots(const AppOptions & options)
     simulator.address = address;
     add(options, simulator);
     ++simulator.seed;  // each robot has its own sensor noise
+  }
+  if (const std::string warning = exposure_warning(options.simulator.address); !warning.empty()) {
+    fmt::print(stderr, "ur_simulator: warning: {}\n", warning);
   }
   print_ready(options);
 }

@@ -14,6 +14,9 @@ namespace ur_simulator {
 /// there are not as many.
 std::vector<std::string> consecutive_addresses(const std::string & first, unsigned count);
 
+/// What it means that other hosts can connect to this address; empty for a loopback address.
+std::string exposure_warning(const std::string & address);
+
 /// The robots of this process. Each runs in a thread of its own from start() to stop().
 class Robots {
  public:

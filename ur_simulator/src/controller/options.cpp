@@ -10,10 +10,9 @@ namespace ur_simulator {
 namespace {
 
 /// Returns the factor; throws unless it is in the range that the options allow.
-double checked_factor(double factor, std::string_view what, std::string_view option)
+double checked_factor(double factor, double largest, std::string_view what, std::string_view option)
 {
   constexpr double smallest = 0.01;
-  constexpr double largest = 10.0;
   if (!(factor >= smallest && factor <= largest)) {
     throw std::runtime_error(
         fmt::format("{} {} ({}) is out of range: give {} to {}", what, factor, option, smallest, largest));
@@ -71,7 +70,8 @@ Vector6 initial_joint_positions(const SimulatorOptions & options, const RobotMod
 std::chrono::steady_clock::duration cycle_period(const SimulatorOptions & options,
                                                  const PolyscopeVersion & version)
 {
-  const double factor = checked_factor(options.real_time_factor, "real-time factor", "--real-time-factor");
+  const double factor =
+      checked_factor(options.real_time_factor, 1000.0, "real-time factor", "--real-time-factor");
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
       std::chrono::duration<double>(version.cycle_time() / factor));
 }
@@ -79,7 +79,7 @@ std::chrono::steady_clock::duration cycle_period(const SimulatorOptions & option
 SafetyTimes safety_times(const SimulatorOptions & options)
 {
   const double factor =
-      checked_factor(options.recovery_time_factor, "recovery time factor", "--recovery-time-factor");
+      checked_factor(options.recovery_time_factor, 10.0, "recovery time factor", "--recovery-time-factor");
   SafetyTimes times;
   for (double SafetyTimes::* time : {&SafetyTimes::power_on, &SafetyTimes::brake_release,
                                      &SafetyTimes::unlock_delay, &SafetyTimes::restart}) {
