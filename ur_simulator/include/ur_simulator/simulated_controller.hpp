@@ -21,6 +21,7 @@ struct Ports {
   std::uint16_t primary_read_only = 30011;
   std::uint16_t secondary_read_only = 30012;
   std::uint16_t realtime_read_only = 30013;
+  std::uint16_t interpreter = 30020;  ///< interpreter mode, from PolyScope 5.10 on
   std::uint16_t dashboard = 29999;
   std::uint16_t robotiq = 63352;  ///< socket server of the URCap "robotiq_gripper"
   std::uint16_t control = 30099;  ///< control port of the simulator: JSON lines, see docs/simulator.md

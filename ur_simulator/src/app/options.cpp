@@ -50,6 +50,7 @@ void parse_port(Ports & ports, const std::string & text)
       {"primary_read_only", &Ports::primary_read_only},
       {"secondary_read_only", &Ports::secondary_read_only},
       {"realtime_read_only", &Ports::realtime_read_only},
+      {"interpreter", &Ports::interpreter},
       {"robotiq", &Ports::robotiq},
       {"rtde", &Ports::rtde},
       {"dashboard", &Ports::dashboard},
@@ -61,7 +62,7 @@ void parse_port(Ports & ports, const std::string & text)
   if (port == names.end() || error != std::errc() || end != value.data() + value.size()) {
     throw std::runtime_error(
         fmt::format("--ports '{}' is invalid: give primary, secondary, realtime, one of these with "
-                    "_read_only, rtde, dashboard, robotiq or control = 0..65535",
+                    "_read_only, interpreter, rtde, dashboard, robotiq or control = 0..65535",
                     text));
   }
   ports.*(port->second) = number;
@@ -86,8 +87,8 @@ void add_options(CLI::App & app, AppOptions & options)
   app.add_option(
          "--ports", options.port_texts,
          "port numbers as name=number with the names primary, secondary, realtime, primary_read_only, "
-         "secondary_read_only, realtime_read_only, rtde, dashboard, robotiq and control; 0 selects a free "
-         "port")
+         "secondary_read_only, realtime_read_only, interpreter, rtde, dashboard, robotiq and control; 0 "
+         "selects a free port")
       ->delimiter(',');
   app.add_option("--joints", options.joints, "initial joint positions, rad")->expected(6)->delimiter(',');
   app.add_option("--surface", options.surface_texts, "horizontal elastic surface as z=height, m; repeatable");

@@ -12,15 +12,15 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 8> server_names{"all",     "rtde",      "dashboard", "script",
-                                                       "primary", "secondary", "realtime",  "robotiq"};
+constexpr std::array<std::string_view, 9> server_names{
+    "all", "rtde", "dashboard", "script", "primary", "secondary", "realtime", "robotiq", "interpreter"};
 constexpr std::array<std::string_view, 4> client_names{"all", "control", "receive", "io"};
 
 std::vector<Listener *> select_listeners(ControlPortContext & context, const std::string & which)
 {
   std::vector<Listener *> listeners;
   for (const auto & [name, listener] : context.listeners) {
-    const bool script = name != "rtde" && name != "dashboard" && name != "robotiq";
+    const bool script = name != "rtde" && name != "dashboard" && name != "robotiq" && name != "interpreter";
     // "primary" also selects "primary_read_only".
     if (which == "all" || name.starts_with(which) || (which == "script" && script)) {
       listeners.push_back(listener);
@@ -133,7 +133,7 @@ Action reboot(RequestFields & fields)
 
 constexpr std::array connection_command_table{
     Command{"drop_links",
-            "which all|rtde|dashboard|script|primary|secondary|realtime|robotiq (all); clients "
+            "which all|rtde|dashboard|script|primary|secondary|realtime|interpreter|robotiq (all); clients "
             "all|control|receive|io (all); reset true|false (false)",
             "Closes connections, orderly or with a TCP reset.", drop_links},
     Command{"stall_links", "which, clients: see drop_links; stalled true|false (true)",

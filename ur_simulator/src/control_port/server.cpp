@@ -30,7 +30,7 @@ Server::Server(boost::asio::io_context & io, const std::string & address, std::u
       server_(io, address, port,
               {max_line_size,
                error_reply(fmt::format("a line has at most {} bytes", max_line_size)).dump() + "\n"},
-              [this](std::string_view line) { return reply_to(line); })
+              [this](std::string_view line, const auto &) { return reply_to(line); })
 {
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "controller/options.hpp"
+#include "controller/rtde_value.hpp"
 #include "controller/tcp_script_socket.hpp"
 #include "net/text_request.hpp"
 #include "primary/messages.hpp"
@@ -66,6 +67,7 @@ Controller::Controller(const SimulatorOptions & options)
           [this] { return primary::version_message(version_); }, primary::ScriptAccess::read_only),
       realtime_read_only_(io_, options.address, options.ports.realtime_read_only, *pendant_, nullptr,
                           primary::ScriptAccess::read_only),
+      interpreter_(open_interpreter_server()),
       realtime_packet_(version_),
       rtde_(io_, options.address, options.ports.rtde, state_, version_, log_),
       dashboard_(io_, options.address, options.ports.dashboard, *pendant_),
@@ -102,8 +104,16 @@ RobotAccess Controller::robot_access()
   requests.stop_with_invalid_setpoint = [this](std::string reason) {
     script_requests_.invalid_setpoint = std::move(reason);
   };
-  return {state_,         *arm_, *world_, model_, watchdog_, std::move(requests), version_.cycle_time(),
-          &joint_history_};
+  return {state_,
+          *arm_,
+          *world_,
+          model_,
+          watchdog_,
+          std::move(requests),
+          version_.cycle_time(),
+          &joint_history_,
+          [this](std::string_view name) { return rtde_value(state_, version_, name); },
+          interpreter_mode_};
 }
 
 std::shared_ptr<const urscript::Library> Controller::script_library()
@@ -139,6 +149,9 @@ std::map<std::string, Listener *> Controller::listeners()
   if (robotiq_) {
     result.emplace("robotiq", &robotiq_->listener());
   }
+  if (interpreter_) {
+    result.emplace("interpreter", &interpreter_->listener());
+  }
   return result;
 }
 
@@ -148,6 +161,14 @@ std::unique_ptr<urcap::RobotiqServer> Controller::open_robotiq_server()
   return gripper == nullptr ? nullptr
                             : std::make_unique<urcap::RobotiqServer>(io_, options_.address,
                                                                      options_.ports.robotiq, *gripper);
+}
+
+std::unique_ptr<primary::InterpreterServer> Controller::open_interpreter_server()
+{
+  return version_ >= PolyscopeVersion{5, 10, 0, 0}
+             ? std::make_unique<primary::InterpreterServer>(io_, options_.address, options_.ports.interpreter,
+                                                            *pendant_, *interpreter_mode_)
+             : nullptr;
 }
 
 EventTimeline Controller::load_world_file()
@@ -179,6 +200,9 @@ Ports Controller::ports() const
   ports.dashboard = dashboard_.listener().port();
   if (robotiq_) {
     ports.robotiq = robotiq_->listener().port();
+  }
+  if (interpreter_) {
+    ports.interpreter = interpreter_->listener().port();
   }
   ports.control = control_port_.listener().port();
   return ports;

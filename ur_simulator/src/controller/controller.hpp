@@ -23,6 +23,7 @@
 #include "polyscope/program_runner.hpp"
 #include "primary/client_interface_server.hpp"
 #include "primary/global_variables.hpp"
+#include "primary/interpreter_server.hpp"
 #include "primary/realtime_packet.hpp"
 #include "rtde/server.hpp"
 #include "safety/collision_monitor.hpp"
@@ -77,6 +78,7 @@ class Controller {
   std::shared_ptr<const urscript::Library> script_library();
   ProgramContext program_context();
   std::unique_ptr<urcap::RobotiqServer> open_robotiq_server();
+  std::unique_ptr<primary::InterpreterServer> open_interpreter_server();
   control_port::ControlPortContext control_port_context();
   std::map<std::string, Listener *> listeners();
   /// Places the objects of the world file, and returns its events.
@@ -127,6 +129,7 @@ class Controller {
   CollisionMonitor collisions_;
   Watchdog watchdog_;
   JointHistory joint_history_;
+  std::shared_ptr<InterpreterMode> interpreter_mode_ = std::make_shared<InterpreterMode>();
   ScriptRequestFlags script_requests_;
   std::optional<ProgramRunner> runner_;
   std::optional<Pendant> pendant_;
@@ -138,6 +141,7 @@ class Controller {
   primary::ClientInterfaceServer primary_read_only_;
   primary::ClientInterfaceServer secondary_read_only_;
   primary::ClientInterfaceServer realtime_read_only_;
+  std::unique_ptr<primary::InterpreterServer> interpreter_;  ///< null: the version has no interpreter mode
   primary::RealtimePacket realtime_packet_;
   rtde::Server rtde_;
   dashboard::Server dashboard_;

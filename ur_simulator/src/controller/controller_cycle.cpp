@@ -41,6 +41,9 @@ void Controller::run_cycle()
     switch_on();
   }
   dashboard_.cycle();
+  if (interpreter_) {
+    interpreter_->cycle();
+  }
   observers_.remove_if([](const Observer & observer) { return observer(); });
   state_.actual_execution_time = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }

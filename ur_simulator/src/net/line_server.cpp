@@ -40,7 +40,7 @@ void LineServer::receive(Client & client, std::string_view bytes)
        end = client.received.find('\n', begin)) {
     const std::string_view line = std::string_view(client.received).substr(begin, end - begin);
     begin = end + 1;
-    client.connection->send(answer_(line));
+    client.connection->send(answer_(line, client.connection));
   }
   client.received.erase(0, begin);
   if (client.received.size() > limit_.size) {

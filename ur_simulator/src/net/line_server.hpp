@@ -12,11 +12,13 @@
 
 namespace ur_simulator {
 
-/// A server whose clients send lines, each of which is answered at once and in order.
+/// A server whose clients send lines, each of which is answered at once or later.
 class LineServer {
  public:
-  /// Returns the reply to a line, with its line end if it has one; empty: none.
-  using Answer = std::function<std::string(std::string_view line)>;
+  /// Returns the reply to a line, with its line end if it has one; empty: none, or a later one that the
+  /// function sends itself.
+  using Answer =
+      std::function<std::string(std::string_view line, const std::shared_ptr<Connection> & client)>;
   struct LineLimit {
     std::size_t size;        ///< bytes; the connection of a client that sends a longer line is closed
     std::string reply = "";  ///< sent before that

@@ -51,6 +51,9 @@ tl::expected<std::optional<Value>, std::string> MoveOperation::poll(CallContext 
 {
   // In its blend the motion reaches its target without being restarted.
   Arm & arm = robot().access.arm;
+  if (aborted_) {
+    return abort_complete();
+  }
   const bool arrives = arm.in_blend(motion()) || arm.reached_target(motion());
   auto result = MotionOperation::poll(context);
   if (!result || !*result || arrives) {
@@ -66,6 +69,21 @@ tl::expected<std::optional<Value>, std::string> MoveOperation::poll(CallContext 
   set_motion(*again);
   robot().motion_owner = this;
   return std::nullopt;
+}
+
+tl::expected<std::optional<Value>, std::string> MoveOperation::abort_complete()
+{
+  if (robot().access.arm.active(motion())) {
+    return std::nullopt;
+  }
+  release();
+  return Value();
+}
+
+void MoveOperation::abort()
+{
+  aborted_ = true;
+  robot().access.arm.cancel(motion());
 }
 
 Outcome start_motion(const RobotContextPtr & robot, const std::function<StartResult(Arm & arm)> & start)

@@ -18,15 +18,16 @@ class MotionOperation : public urscript::Operation {
 
   tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override;
   void cancel() override;
+  /// The command `abort` of interpreter mode: a motion to a target ends with a controlled stop.
+  virtual void abort() {}
 
  protected:
   RobotContext & robot() { return *robot_; }
   MotionId motion() const { return motion_; }
   void set_motion(MotionId motion) { motion_ = motion; }
-
- private:
   void release();
 
+ private:
   RobotContextPtr robot_;
   MotionId motion_;
 };
@@ -39,9 +40,13 @@ class MoveOperation final : public MotionOperation {
 
   MoveOperation(RobotContextPtr robot, MotionId motion, StartFunction start);
   tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override;
+  void abort() override;
 
  private:
+  tl::expected<std::optional<Value>, std::string> abort_complete();
+
   StartFunction start_;
+  bool aborted_ = false;
 };
 
 /// Starts a motion without a target to resume to (servoj, speedj, stopj, …).

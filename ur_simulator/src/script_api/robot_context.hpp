@@ -21,16 +21,14 @@ class MotionOperation;
 
 /// State that the robot builtins of one library share.
 struct RobotContext {
-  explicit RobotContext(const RobotAccess & robot_access) : access(robot_access), dynamics(robot_access.model)
-  {
-  }
+  explicit RobotContext(RobotAccess robot_access) : access(std::move(robot_access)), dynamics(access.model) {}
 
   ControllerState & state() const { return access.state; }
 
   RobotAccess access;
   Dynamics dynamics;
   /// The call that moves the arm. Only one thread of a program may move the arm at a time.
-  const MotionOperation * motion_owner = nullptr;
+  MotionOperation * motion_owner = nullptr;
   /// TCP pose of the target of the present motion, for get_target_waypoint().
   Vector6 waypoint = Vector6::Zero();
 };
@@ -56,6 +54,7 @@ void add_register_builtins(Library & library, const RobotContextPtr & robot);
 void add_digital_io_builtins(Library & library, const RobotContextPtr & robot);
 void add_analog_io_builtins(Library & library, const RobotContextPtr & robot);
 void add_tool_connector_builtins(Library & library, const RobotContextPtr & robot);
+void add_interpreter_builtins(Library & library, const RobotContextPtr & robot);
 void add_controller_builtins(Library & library, const RobotContextPtr & robot);
 /// Functions of the gripper's URCap, if a gripper is mounted.
 void add_gripper_builtins(Library & library, const RobotContextPtr & robot);

@@ -39,6 +39,7 @@ constexpr BuiltinGroup builtin_groups[] = {
     {"analog IO", script_api::add_analog_io_builtins},
     {"tool connector", script_api::add_tool_connector_builtins},
     {"controller", script_api::add_controller_builtins},
+    {"interpreter mode", script_api::add_interpreter_builtins},
     {"encoders", script_api::add_encoder_builtins},
     {"world model", script_api::add_world_model_builtins},
     {"OnRobot gripper URCap", script_api::add_gripper_builtins},

@@ -2,8 +2,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
+#include "script_api/interpreter_mode.hpp"
 #include "script_api/joint_history.hpp"
 #include "script_api/watchdog.hpp"
 #include "state/controller_state.hpp"
@@ -35,6 +38,10 @@ struct RobotAccess {
   double cycle_time = 0.002;  ///< s
   /// Recorded by the controller in each cycle after Arm::step(); if null, only the present position is known.
   const JointHistory * history = nullptr;
+  /// The value of an RTDE output, or nothing if there is none of this name; null: no program can read them.
+  std::function<std::optional<urscript::Value>(std::string_view name)> rtde_value = nullptr;
+  /// Shared with the server that receives the statements.
+  std::shared_ptr<InterpreterMode> interpreter_mode = std::make_shared<InterpreterMode>();
 };
 
 /// The standard builtins and the robot builtins of URScript. Builtins that the simulator does not model exist

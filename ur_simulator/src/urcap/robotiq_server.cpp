@@ -17,7 +17,8 @@ constexpr const char * not_understood = "?";
 RobotiqServer::RobotiqServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
                              RobotiqGripper & gripper)
     : gripper_(gripper),
-      server_(io, address, port, {max_line_size}, [this](std::string_view line) { return answer(line); })
+      server_(io, address, port, {max_line_size},
+              [this](std::string_view line, const auto &) { return answer(line); })
 {
 }
 

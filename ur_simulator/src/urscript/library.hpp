@@ -17,6 +17,17 @@
 
 namespace ur_simulator::urscript {
 
+/// Adds statements to a running program, for interpreter mode.
+class ProgramExtension {
+ public:
+  virtual ~ProgramExtension() = default;
+  /// Compiles statements. Returns the function that executes them, or why they cannot be compiled.
+  virtual tl::expected<std::uint32_t, std::string> add(std::string_view statements) = 0;
+  /// Removes all added statements with their functions and variables, and ends the threads that they and
+  /// their functions have started. No thread may execute an added statement.
+  virtual void remove_all() = 0;
+};
+
 /// Context of a call of a builtin.
 struct CallContext {
   Host & host;
@@ -25,6 +36,8 @@ struct CallContext {
   std::int32_t line;      ///< of the call, 1-based
   bool secondary;         ///< called from a secondary program (`sec`), which may not take physical time
   std::uint64_t program;  ///< identifies the execution of the program
+  ProgramExtension & extension;
+  bool main_thread = false;  ///< called from the main thread of the program
   /// Set by a builtin that returned data from outside without taking physical time. A thread that receives
   /// data is not an infinite loop.
   bool received_data = false;
@@ -37,6 +50,9 @@ class Operation {
   virtual ~Operation() = default;
   /// The value of the call, nothing while it is in progress, or the error that ends the program.
   virtual tl::expected<std::optional<Value>, std::string> poll(CallContext & context) = 0;
+  /// Asked after each poll() without a value: a function of the program that the thread executes before the
+  /// next poll().
+  virtual std::optional<std::uint32_t> next_function() { return std::nullopt; }
   /// The thread was killed or the program stopped; poll() is not called again.
   virtual void cancel() {}
 };

@@ -19,6 +19,8 @@ constexpr std::uint32_t min_instructions_per_turn = 200;
 // instruction costs in proportion to the elements that it creates.
 constexpr std::uint32_t instructions_between_measurements = 250000;
 
+constexpr std::int32_t main_thread = 1;  // handle
+
 std::uint64_t next_program()
 {
   static std::atomic<std::uint64_t> count{0};
@@ -27,12 +29,13 @@ std::uint64_t next_program()
 
 }  // namespace
 
-struct Machine::Impl {
+struct Machine::Impl final : ProgramExtension {
   Impl(Program compiled, std::shared_ptr<const Library> functions, Host & to, const MachineOptions & settings)
       : program(std::move(compiled)),
+        original(program),
         library(std::move(functions)),
         options(settings),
-        context{to, settings.cycle_time, 0.0, 0, program.secondary(), next_program()},
+        context{to, settings.cycle_time, 0.0, 0, program.secondary(), next_program(), *this},
         interpreter(program.code(), *library, options)
   {
     interpreter.start_thread(0, {});
@@ -85,7 +88,27 @@ struct Machine::Impl {
     } else if (*result) {
       thread.operation.reset();
       resume(thread, std::move(**result));
+    } else if (const auto function = thread.operation->next_function()) {
+      interpreter.call_from_operation(thread, *function);
     }
+  }
+
+  tl::expected<std::uint32_t, std::string> add(std::string_view statements) override
+  {
+    auto extended = extend(program, statements, *library);
+    if (!extended) {
+      return tl::unexpected(extended.error().text());
+    }
+    program = std::move(extended->program);
+    interpreter.replace_code(program.code());
+    return extended->function;
+  }
+
+  void remove_all() override
+  {
+    interpreter.kill_threads_of_extensions(original.code().functions.size());
+    program = original;
+    interpreter.replace_code(program.code());
   }
 
   static void resume(Thread & thread, Value value)
@@ -103,6 +126,7 @@ struct Machine::Impl {
     const std::uint32_t share =
         std::max(left / static_cast<std::uint32_t>(threads_left), min_instructions_per_turn);
     context.received_data = false;
+    context.main_thread = thread.handle == main_thread;
     instructions += interpreter.run(thread, share, context);
     if (context.received_data) {
       thread.cycles_without_wait = 0;
@@ -139,7 +163,7 @@ struct Machine::Impl {
   {
     if (interpreter.error()) {
       finish(MachineStatus::failed);
-    } else if (interpreter.halted() || interpreter.find_thread(1) == nullptr) {
+    } else if (interpreter.halted() || interpreter.find_thread(main_thread) == nullptr) {
       finish(MachineStatus::finished);
     }
   }
@@ -156,7 +180,8 @@ struct Machine::Impl {
     library->handle_end(context.program);
   }
 
-  Program program;
+  Program program;         ///< with its extensions
+  const Program original;  ///< without
   std::shared_ptr<const Library> library;
   MachineOptions options;
   CallContext context;
@@ -225,7 +250,7 @@ std::uint32_t Machine::instructions() const
 
 const std::vector<std::string> & Machine::global_names() const
 {
-  return impl_->program.code().global_names;
+  return impl_->original.code().global_names;
 }
 
 const Value * Machine::global(const std::string & name) const

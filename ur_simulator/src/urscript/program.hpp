@@ -52,4 +52,17 @@ class Program {
 tl::expected<Program, CompileError> compile(std::string_view text, const Library & library,
                                             const CompileLimits & limits = {});
 
+/// A program with statements that were added while it runs.
+struct ExtendedProgram {
+  Program program;
+  std::uint32_t function;  ///< in Code::functions: executes the statements
+};
+
+/// Adds statements at the first level of a program. Its code, and that of earlier extensions, keeps its
+/// place, so that running threads can continue. A new variable of the statements is a global of the extended
+/// program. Compiles the whole program again.
+tl::expected<ExtendedProgram, CompileError> extend(const Program & program, std::string_view statements,
+                                                   const Library & library,
+                                                   const CompileLimits & limits = {});
+
 }  // namespace ur_simulator::urscript

@@ -35,6 +35,20 @@ Outcome set_watchdog(RobotContext & robot, Arguments arguments)
   return Value();
 }
 
+Outcome get_rtde_value(RobotContext & robot, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::string key = reader.string(0, "key");
+  if (!reader) {
+    return reader.failure();
+  }
+  auto value = robot.access.rtde_value ? robot.access.rtde_value(key) : std::nullopt;
+  if (!value) {
+    return Failure{fmt::format("there is no RTDE output '{}' in this version", key)};
+  }
+  return std::move(*value);
+}
+
 /// The request takes effect after this cycle; the call returns in the next one. A secondary program may not
 /// wait.
 Outcome request(const CallContext & context, const std::function<void()> & what)
@@ -53,6 +67,7 @@ void add_controller_builtins(Library & library, const RobotContextPtr & robot)
                {"variable_name", "min_frequency", {"action", Value("pause")}},
                2,
                [robot](CallContext &, Arguments arguments) { return set_watchdog(*robot, arguments); }});
+  add_robot_builtin(library, robot, "get_rtde_value", {"key"}, 1, get_rtde_value, 50);
   library.add({"powerdown", {}, 0, [robot](CallContext & context, Arguments) {
                  return request(context, robot->access.requests.power_down);
                }});

@@ -110,16 +110,6 @@ RefusedGroup sockets()
           }};
 }
 
-RefusedGroup interpreter()
-{
-  return {"interpreter mode is not modelled",
-          {
-              {"interpreter_mode", {"clearQueueOnEnter", "clearOnEnd"}, 0},
-              {"clear_interpreter", {}, 0},
-              {"end_interpreter", {}, 0},
-          }};
-}
-
 RefusedGroup frame_tracking()
 {
   return {"frames have no mass and are not tracked",
@@ -136,7 +126,7 @@ RefusedGroup frame_tracking()
 void add_refused_builtins(Library & library)
 {
   for (const RefusedGroup & group : {path_offsets(), conveyor_tracking(), modbus_signals(), modbus_server(),
-                                     euromap(), sockets(), interpreter(), frame_tracking()}) {
+                                     euromap(), sockets(), frame_tracking()}) {
     for (const RefusedBuiltin & builtin : group.builtins) {
       library.add_refused(builtin.name, builtin.parameters, builtin.required, group.reason);
     }
@@ -145,7 +135,6 @@ void add_refused_builtins(Library & library)
     library.add_refused(name, {"connection", "size"}, 2, "no EtherNet/IP scanner is connected");
   }
   library.add_refused("rpc_factory", {"type", "url"}, 2, "XML-RPC is not modelled");
-  library.add_refused("get_rtde_value", {"key"}, 1, "programs cannot read RTDE outputs yet");
   library.add_refused("set_pos", {"q"}, 1, "only PolyScope's simulation mode places the arm");
   library.add_refused("estimate_payload", {"poses", "wrenches"}, 2, "the estimation is not modelled");
 }

@@ -20,6 +20,16 @@ class Compiler : private ExpressionCompiler {
     code().global_names = symbols().global_names();
   }
 
+  /// Returns the function that executes the statements.
+  std::uint32_t compile_extension(const Definition & statements)
+  {
+    Scope & added = symbols().extend(statements);
+    code().functions.resize(symbols().count());
+    compile_function(statements);
+    code().global_names = symbols().global_names();
+    return added.function;
+  }
+
  private:
   struct Loop {
     std::uint32_t start;
@@ -249,23 +259,55 @@ std::string CompileError::text() const
          message;
 }
 
-tl::expected<Program, CompileError> compile(std::string_view text, const Library & library,
-                                            const CompileLimits & limits)
+namespace {
+
+/// Compiles the text of a program and those of its extensions. Returns the function of the last one.
+tl::expected<ExtendedProgram, CompileError> compile_sources(std::vector<std::string> sources,
+                                                            const Library & library,
+                                                            const CompileLimits & limits)
 {
-  auto definition = parse(text, limits);
-  if (!definition) {
-    return tl::unexpected(definition.error());
+  std::vector<std::unique_ptr<Definition>> definitions;
+  for (const std::string & source : sources) {
+    auto definition = definitions.empty() ? parse(source, limits) : parse_statements(source, limits);
+    if (!definition) {
+      return tl::unexpected(definition.error());
+    }
+    definitions.push_back(std::move(*definition));
   }
   auto code = std::make_shared<Code>();
-  code->name = (*definition)->name;
-  code->secondary = (*definition)->kind == DefinitionKind::secondary;
+  code->name = definitions.front()->name;
+  code->secondary = definitions.front()->kind == DefinitionKind::secondary;
+  code->sources = std::move(sources);
+  std::uint32_t function = 0;
   try {
-    SymbolTable symbols(**definition);
-    Compiler(*code, symbols, library, limits).compile_program(**definition);
+    SymbolTable symbols(*definitions.front());
+    Compiler compiler(*code, symbols, library, limits);
+    compiler.compile_program(*definitions.front());
+    for (std::size_t i = 1; i < definitions.size(); ++i) {
+      function = compiler.compile_extension(*definitions[i]);
+    }
   } catch (const CompileError & error) {
     return tl::unexpected(error);
   }
-  return Program(std::move(code));
+  return ExtendedProgram{Program(std::move(code)), function};
+}
+
+}  // namespace
+
+tl::expected<Program, CompileError> compile(std::string_view text, const Library & library,
+                                            const CompileLimits & limits)
+{
+  return compile_sources({std::string(text)}, library, limits).map([](ExtendedProgram compiled) {
+    return std::move(compiled.program);
+  });
+}
+
+tl::expected<ExtendedProgram, CompileError> extend(const Program & program, std::string_view statements,
+                                                   const Library & library, const CompileLimits & limits)
+{
+  std::vector<std::string> sources = program.code().sources;
+  sources.emplace_back(statements);
+  return compile_sources(std::move(sources), library, limits);
 }
 
 }  // namespace ur_simulator::urscript

@@ -1,5 +1,7 @@
 #include "urscript/compiler/symbol_table.hpp"
 
+#include "urscript/program.hpp"
+
 namespace ur_simulator::urscript {
 
 std::uint32_t Scope::slot(const std::string & name)
@@ -10,9 +12,42 @@ std::uint32_t Scope::slot(const std::string & name)
 SymbolTable::SymbolTable(const Definition & program)
 {
   declare(program, nullptr);
+  program_definitions_ = definitions_.size();
 }
 
-void SymbolTable::declare(const Definition & definition, Scope * parent)
+Scope & SymbolTable::extend(const Definition & statements)
+{
+  Scope & top = scope_of(*definitions_.front());
+  for (const Statement & statement : statements.body) {
+    check_extension(statement);
+  }
+  Scope & scope = add_scope(statements, &top);
+  scope.top = true;
+  visit_block(statements.body, scope);
+  for (const auto & [name, function] : scope.functions) {
+    top.functions.insert_or_assign(name, function);
+  }
+  return scope;
+}
+
+void SymbolTable::check_extension(const Statement & statement) const
+{
+  if (statement.definition) {
+    const auto & functions = symbols_.at(definitions_.front()).functions;
+    const auto same = functions.find(statement.definition->name);
+    if (same != functions.end() && same->second < program_definitions_) {
+      throw CompileError{statement.line, statement.column,
+                         "'" + statement.definition->name + "' is already a function of the program"};
+    }
+  }
+  if (statement.qualifier == Qualifier::global && !globals_.contains(statement.target->name)) {
+    throw CompileError{
+        statement.line, statement.column,
+        "new global variables cannot be declared in interpreter mode: '" + statement.target->name + "'"};
+  }
+}
+
+Scope & SymbolTable::add_scope(const Definition & definition, Scope * parent)
 {
   Scope & scope = symbols_[&definition];
   scope.definition = &definition;
@@ -24,7 +59,12 @@ void SymbolTable::declare(const Definition & definition, Scope * parent)
     scope.parameters.insert(parameter.name);
     scope.slot(parameter.name);
   }
-  visit_block(definition.body, scope);
+  return scope;
+}
+
+void SymbolTable::declare(const Definition & definition, Scope * parent)
+{
+  visit_block(definition.body, add_scope(definition, parent));
 }
 
 void SymbolTable::visit_block(const Block & block, Scope & scope)

@@ -43,6 +43,10 @@ class SymbolTable {
   /// Collects the declarations of the whole program, so that the order of definitions does not matter.
   /// Functions are numbered in order of appearance.
   explicit SymbolTable(const Definition & program);
+  /// Declares statements that extend the program at its first level. Their variables are new globals. Throws
+  /// CompileError if they replace a function of the program or declare a new variable with the qualifier
+  /// `global`.
+  Scope & extend(const Definition & statements);
 
   const std::vector<std::string> & global_names() const { return global_names_; }
   Scope & scope_of(const Definition & definition) { return symbols_.at(&definition); }
@@ -55,12 +59,15 @@ class SymbolTable {
   std::optional<const Definition *> function(const Scope & scope, const std::string & name) const;
 
  private:
+  Scope & add_scope(const Definition & definition, Scope * parent);
   void declare(const Definition & definition, Scope * parent);
   void visit_block(const Block & block, Scope & scope);
   void visit_assignment(const Statement & statement, Scope & scope);
+  void check_extension(const Statement & statement) const;
 
   std::map<const Definition *, Scope> symbols_;
   std::vector<const Definition *> definitions_;
+  std::size_t program_definitions_;  ///< without extensions
   std::unordered_map<std::string, std::uint32_t> globals_;
   std::vector<std::string> global_names_;
 };

@@ -17,20 +17,26 @@ constexpr std::uint32_t container_cost = 4;
 }  // namespace
 
 Interpreter::Interpreter(const Code & code, const Library & library, const MachineOptions & options)
-    : code_(code), library_(library), options_(options), globals_(code.global_names.size())
+    : code_(&code), library_(library), options_(options), globals_(code.global_names.size())
 {
+}
+
+void Interpreter::replace_code(const Code & code)
+{
+  code_ = &code;
+  globals_.resize(code.global_names.size());
 }
 
 Thread & Interpreter::start_thread(std::uint32_t function, std::span<Value> arguments)
 {
-  const Function & entry = code_.functions[function];
+  const Function & entry = code_->functions[function];
   auto thread = std::make_unique<Thread>();
   thread->handle = next_handle_++;
   thread->next = entry.entry;
   thread->stack.reserve(64);
   thread->stack.assign(arguments.begin(), arguments.end());
   thread->stack.resize(entry.locals);
-  thread->frames.push_back({function, 0, 0});
+  thread->frames.push_back({function, 0, 0, nullptr});
   threads_.push_back(std::move(thread));
   return *threads_.back();
 }
@@ -63,6 +69,17 @@ void Interpreter::kill_thread(Thread & thread)
   }
 }
 
+void Interpreter::kill_threads_of_extensions(std::size_t program_functions)
+{
+  for (const auto & thread : threads_) {
+    const bool added =
+        thread->started_by >= program_functions || thread->frames.front().function >= program_functions;
+    if (added && thread->state != ThreadState::ended) {
+      kill_thread(*thread);
+    }
+  }
+}
+
 void Interpreter::remove_ended()
 {
   std::erase_if(threads_, [](const auto & thread) { return thread->state == ThreadState::ended; });
@@ -77,18 +94,18 @@ void Interpreter::fail(std::int32_t line, std::string message)
 
 std::int32_t Interpreter::line_of(const Thread & thread) const
 {
-  return code_.lines[thread.next == 0 ? 0 : thread.next - 1];
+  return code_->lines[thread.next == 0 ? 0 : thread.next - 1];
 }
 
 const std::string & Interpreter::name_of(const Thread & thread) const
 {
-  return code_.functions[thread.frames.empty() ? 0 : thread.frames.front().function].name;
+  return code_->functions[thread.frames.empty() ? 0 : thread.frames.front().function].name;
 }
 
 const Value * Interpreter::global(const std::string & name) const
 {
-  for (std::size_t i = 0; i < code_.global_names.size(); ++i) {
-    if (code_.global_names[i] == name) {
+  for (std::size_t i = 0; i < code_->global_names.size(); ++i) {
+    if (code_->global_names[i] == name) {
       return globals_[i].is(Type::none) ? nullptr : &globals_[i];
     }
   }
@@ -111,7 +128,7 @@ std::uint32_t Interpreter::run(Thread & thread, std::uint32_t share, CallContext
   context_ = &context;
   cost_ = 0;
   critical_owner_ = 0;
-  const Instruction * instructions = code_.instructions.data();
+  const Instruction * instructions = code_->instructions.data();
   while (cost_ < share) {
     ++cost_;
     if (execute(instructions[thread.next++]) == Next::yield) {
@@ -167,10 +184,10 @@ Interpreter::Next Interpreter::load(const Value & value, const Instruction & ins
 {
   if (value.is(Type::none)) {
     const bool is_local = instruction.op == Opcode::load_local;
-    const auto & locals = code_.functions[thread_->frames.back().function].local_names;
+    const auto & locals = code_->functions[thread_->frames.back().function].local_names;
     return fail_at_current_line(
         fmt::format("The variable '{}' has no value",
-                    is_local ? locals[instruction.a] : code_.global_names[instruction.a]));
+                    is_local ? locals[instruction.a] : code_->global_names[instruction.a]));
   }
   thread_->stack.push_back(value);
   return Next::proceed;
@@ -214,7 +231,7 @@ Interpreter::Next Interpreter::execute(const Instruction & instruction)
   std::vector<Value> & stack = thread_->stack;
   switch (instruction.op) {
     case Opcode::push_constant:
-      stack.push_back(code_.constants[instruction.a]);
+      stack.push_back(code_->constants[instruction.a]);
       return Next::proceed;
     case Opcode::load_global:
       return load(globals_[instruction.a], instruction);
@@ -266,12 +283,12 @@ Interpreter::Next Interpreter::execute_infrequent(const Instruction & instructio
     case Opcode::make_pose:
       return replace_top(6, make_pose(top(6)));
     case Opcode::make_structure: {
-      const auto & names = code_.structure_types[instruction.a];
+      const auto & names = code_->structure_types[instruction.a];
       return make_container(names.size(),
                             [&](std::span<Value> members) { return make_structure(names, members); });
     }
     case Opcode::member:
-      return replace_top(1, member(stack.back(), code_.names[instruction.a]));
+      return replace_top(1, member(stack.back(), code_->names[instruction.a]));
     case Opcode::store_lvalue:
       return store_lvalue(instruction);
     case Opcode::call_method_of_lvalue:

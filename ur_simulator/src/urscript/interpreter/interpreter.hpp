@@ -27,8 +27,14 @@ class Interpreter {
   Thread & start_thread(std::uint32_t function, std::span<Value> arguments);
   Thread * find_thread(std::int32_t handle);
   void end_thread(Thread & thread);
+  /// The thread executes the function before its operation goes on.
+  void call_from_operation(Thread & thread, std::uint32_t function);
+  /// Continues with the code of an extended program, or with that of the program before it was extended.
+  void replace_code(const Code & code);
   /// Ends a thread and the threads that it and its children have started.
   void kill_thread(Thread & thread);
+  /// Likewise for threads that functions beyond this number are or have started.
+  void kill_threads_of_extensions(std::size_t program_functions);
   void remove_ended();
 
   std::vector<std::unique_ptr<Thread>> & threads() { return threads_; }
@@ -66,6 +72,7 @@ class Interpreter {
   Next call_builtin(const Instruction & instruction);
   Next handle_outcome(Outcome outcome, std::size_t arguments);
   Next return_value();
+  Next return_to_operation();
   Next store_lvalue(const Instruction & instruction);
   Next method(const Instruction & instruction);
   Next run_thread(const Instruction & instruction);
@@ -79,7 +86,7 @@ class Interpreter {
   std::span<Value> top(std::size_t count) { return std::span(thread_->stack).last(count); }
   void drop(std::size_t count) { thread_->stack.resize(thread_->stack.size() - count); }
 
-  const Code & code_;
+  const Code * code_;
   const Library & library_;
   const MachineOptions & options_;
   std::vector<Value> globals_;

@@ -16,25 +16,50 @@ constexpr std::size_t stack_limit = 100000;
 
 Interpreter::Next Interpreter::call(const Instruction & instruction)
 {
-  const Function & callee = code_.functions[instruction.a];
+  const Function & callee = code_->functions[instruction.a];
   if (thread_->frames.size() >= options_.call_depth || thread_->stack.size() > stack_limit) {
     return fail_at_current_line(
         fmt::format("call depth exceeds {} at '{}'", options_.call_depth, callee.name));
   }
   const auto base = static_cast<std::uint32_t>(thread_->stack.size() - instruction.b);
-  thread_->frames.push_back({instruction.a, base, thread_->next});
+  thread_->frames.push_back({instruction.a, base, thread_->next, nullptr});
   thread_->stack.resize(base + callee.locals);
   thread_->next = callee.entry;
   return Next::proceed;
 }
 
+void Interpreter::call_from_operation(Thread & thread, std::uint32_t function)
+{
+  const Function & callee = code_->functions[function];
+  const auto base = static_cast<std::uint32_t>(thread.stack.size());
+  thread.frames.push_back({function, base, thread.next, std::move(thread.operation)});
+  thread.stack.resize(base + callee.locals);
+  thread.next = callee.entry;
+  thread.state = ThreadState::ready;
+  thread.cycles_without_wait = 0;
+}
+
+Interpreter::Next Interpreter::return_to_operation()
+{
+  Frame frame = std::move(thread_->frames.back());
+  thread_->frames.pop_back();
+  thread_->stack.resize(frame.base);
+  thread_->next = frame.return_to;
+  thread_->operation = std::move(frame.caller);
+  thread_->state = ThreadState::operation;
+  return Next::yield;
+}
+
 Interpreter::Next Interpreter::return_value()
 {
-  const Frame frame = thread_->frames.back();
+  if (thread_->frames.back().caller) {
+    return return_to_operation();
+  }
   if (thread_->frames.size() == 1) {
     end_thread(*thread_);
     return Next::yield;
   }
+  const Frame frame = std::move(thread_->frames.back());
   Value result = pop();
   thread_->frames.pop_back();
   thread_->stack.resize(frame.base);
@@ -101,7 +126,7 @@ Value & Interpreter::variable(const Lvalue & lvalue)
 
 Interpreter::Next Interpreter::store_lvalue(const Instruction & instruction)
 {
-  const Lvalue & lvalue = code_.lvalues[instruction.a];
+  const Lvalue & lvalue = code_->lvalues[instruction.a];
   Value & target = variable(lvalue);
   if (target.is(Type::none)) {
     return fail_at_current_line(fmt::format("The variable '{}' has no value", lvalue.name));
@@ -119,7 +144,7 @@ Interpreter::Next Interpreter::store_lvalue(const Instruction & instruction)
 Interpreter::Next Interpreter::method(const Instruction & instruction)
 {
   cost_ += method_cost;
-  const MethodCall & call = code_.methods[instruction.b];
+  const MethodCall & call = code_->methods[instruction.b];
   const auto arguments = top(call.arguments);
   add_cost(arguments);
   if (instruction.op == Opcode::call_method_of_value) {
@@ -127,7 +152,7 @@ Interpreter::Next Interpreter::method(const Instruction & instruction)
     add_cost(object);
     return replace_top(call.arguments + 1, call_method(object, call.name, arguments));
   }
-  const Lvalue & lvalue = code_.lvalues[instruction.a];
+  const Lvalue & lvalue = code_->lvalues[instruction.a];
   const auto indices = top(call.arguments + lvalue.indices).first(lvalue.indices);
   const auto object = follow(variable(lvalue), lvalue, indices, lvalue.steps.size());
   if (!object) {
@@ -151,6 +176,7 @@ Interpreter::Next Interpreter::run_thread(const Instruction & instruction)
   // The new thread first runs after this one waits, hence after the handle is assigned.
   Thread & child = start_thread(instruction.a, top(instruction.b));
   child.parent = thread_->handle;
+  child.started_by = thread_->frames.back().function;
   drop(instruction.b);
   thread_->stack.emplace_back(child.handle);
   return Next::proceed;

@@ -14,6 +14,8 @@ struct Frame {
   std::uint32_t function = 0;
   std::uint32_t base = 0;       ///< of its locals on the stack
   std::uint32_t return_to = 0;  ///< instruction of the caller
+  /// The operation that called the function, which goes on when it returns; else null.
+  std::unique_ptr<Operation> caller = nullptr;
 };
 
 enum class ThreadState : std::uint8_t {
@@ -27,7 +29,8 @@ enum class ThreadState : std::uint8_t {
 /// State of a thread of a program, which can be interrupted at any instruction and continue in a later cycle.
 struct Thread {
   std::int32_t handle = 0;
-  std::int32_t parent = 0;  ///< handle of the thread that started it
+  std::int32_t parent = 0;       ///< handle of the thread that started it
+  std::uint32_t started_by = 0;  ///< function that started it
   ThreadState state = ThreadState::ready;
   std::uint32_t next = 0;  ///< instruction
   std::vector<Value> stack;
@@ -43,6 +46,12 @@ struct Thread {
     if (operation) {
       operation->cancel();
       operation.reset();
+    }
+    for (Frame & frame : frames) {
+      if (frame.caller) {
+        frame.caller->cancel();
+        frame.caller.reset();
+      }
     }
     state = ThreadState::ended;
   }

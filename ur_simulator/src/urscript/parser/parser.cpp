@@ -10,7 +10,9 @@ class StatementParser : private ExpressionParser {
  public:
   StatementParser(std::string_view text, const CompileLimits & limits) : ExpressionParser(text, limits) {}
 
-  std::unique_ptr<Definition> parse_program()
+  std::unique_ptr<Definition> parse_program() { return unwrapped(parse_text()); }
+
+  std::unique_ptr<Definition> parse_text()
   {
     auto text = std::make_unique<Definition>();
     text->kind = DefinitionKind::text;
@@ -19,7 +21,7 @@ class StatementParser : private ExpressionParser {
     while (current().kind != TokenKind::end_of_text) {
       text->body.push_back(parse_statement());
     }
-    return unwrapped(std::move(text));
+    return text;
   }
 
  private:
@@ -217,20 +219,35 @@ class StatementParser : private ExpressionParser {
   }
 };
 
-}  // namespace
+using Parse = std::unique_ptr<Definition> (StatementParser::*)();
 
-tl::expected<std::unique_ptr<Definition>, CompileError> parse(std::string_view text,
-                                                              const CompileLimits & limits)
+tl::expected<std::unique_ptr<Definition>, CompileError> parse_with(Parse function, std::string_view text,
+                                                                   const CompileLimits & limits)
 {
   if (text.size() > limits.text_bytes) {
     return tl::unexpected(
         CompileError{1, 1, "the program is larger than " + std::to_string(limits.text_bytes) + " bytes"});
   }
   try {
-    return StatementParser(text, limits).parse_program();
+    StatementParser parser(text, limits);
+    return (parser.*function)();
   } catch (const CompileError & error) {
     return tl::unexpected(error);
   }
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<Definition>, CompileError> parse(std::string_view text,
+                                                              const CompileLimits & limits)
+{
+  return parse_with(&StatementParser::parse_program, text, limits);
+}
+
+tl::expected<std::unique_ptr<Definition>, CompileError> parse_statements(std::string_view text,
+                                                                         const CompileLimits & limits)
+{
+  return parse_with(&StatementParser::parse_text, text, limits);
 }
 
 }  // namespace ur_simulator::urscript

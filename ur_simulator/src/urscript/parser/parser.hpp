@@ -14,4 +14,8 @@ namespace ur_simulator::urscript {
 tl::expected<std::unique_ptr<Definition>, CompileError> parse(std::string_view text,
                                                               const CompileLimits & limits);
 
+/// Parses statements that extend a program.
+tl::expected<std::unique_ptr<Definition>, CompileError> parse_statements(std::string_view text,
+                                                                         const CompileLimits & limits);
+
 }  // namespace ur_simulator::urscript

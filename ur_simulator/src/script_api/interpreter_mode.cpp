@@ -1,0 +1,180 @@
+#include "script_api/interpreter_mode.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace ur_simulator {
+
+namespace {
+
+constexpr std::size_t max_statements = 1000;  // each new one compiles the program with all of them
+constexpr std::size_t max_queued = 1000;
+
+std::string_view trimmed(std::string_view text)
+{
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  return begin == std::string_view::npos ? std::string_view()
+                                         : text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+}
+
+std::string discarded(std::string_view reason, std::string_view statement)
+{
+  return fmt::format("discard: {}: {}\n", reason, statement);
+}
+
+}  // namespace
+
+void InterpreterMode::receive(std::string_view line, Reply reply)
+{
+  const std::string_view text = trimmed(line);
+  if (text.empty()) {
+    return;
+  }
+  if (auto answer = handle_command(text)) {
+    reply(std::move(*answer));
+  } else if (!program_running_) {
+    reply(discarded("no program is running", text));
+  } else if (queue_.size() == max_queued) {
+    reply(discarded(fmt::format("{} statements are queued", max_queued), text));
+  } else {
+    queue_.push_back({std::string(text), std::move(reply)});
+    if (active() && may_interpret_) {
+      interpret_queue();
+    }
+  }
+}
+
+std::optional<std::string> InterpreterMode::handle_command(std::string_view line)
+{
+  const auto state = [line](std::size_t value) { return fmt::format("state: {}: {}\n", value, line); };
+  if (line == "statelastexecuted") {
+    return state(last_executed_);
+  }
+  if (line == "statelastinterpreted") {
+    return state(last_id_);
+  }
+  if (line == "statelastcleared") {
+    return state(last_cleared_);
+  }
+  if (line == "stateunexecuted") {
+    return state(statements_.size() + queue_.size());
+  }
+  if (line != "skipbuffer" && line != "abort") {
+    return std::nullopt;
+  }
+  if (line == "skipbuffer") {
+    statements_.clear();
+    clearing_ = false;
+    discard_queue("skipped");
+  } else if (abort_) {
+    abort_();
+  }
+  return fmt::format("ack: {}: {}\n", last_id_, line);
+}
+
+void InterpreterMode::interpret(const Line & line)
+{
+  if (interpreted_ == max_statements) {
+    line.reply(discarded(
+        fmt::format("the program has {} interpreted statements: send clear_interpreter()", max_statements),
+        line.text));
+    return;
+  }
+  const auto function = extension_->add(line.text);
+  if (!function) {
+    line.reply(discarded(function.error(), line.text));
+    return;
+  }
+  ++interpreted_;
+  statements_.push_back({++last_id_, *function});
+  clearing_ = line.text.find("clear_interpreter") != std::string::npos;
+  line.reply(fmt::format("ack: {}: {}\n", last_id_, line.text));
+}
+
+void InterpreterMode::interpret_queue()
+{
+  while (!queue_.empty() && !clearing_) {
+    const Line line = std::move(queue_.front());
+    queue_.pop_front();
+    interpret(line);
+  }
+}
+
+void InterpreterMode::discard_queue(std::string_view reason)
+{
+  for (const Line & line : std::exchange(queue_, {})) {
+    line.reply(discarded(reason, line.text));
+  }
+}
+
+void InterpreterMode::begin(std::uint64_t program, urscript::ProgramExtension & extension,
+                            const Options & options)
+{
+  if (program != std::exchange(program_, program)) {
+    last_id_ = last_executed_ = last_cleared_ = 0;
+    interpreted_ = 0;
+  }
+  extension_ = &extension;
+  options_ = options;
+  may_interpret_ = false;
+  end_requested_ = false;
+  clear_requested_ = false;
+  clearing_ = false;
+  statements_.clear();
+  if (options_.clear_queue_on_enter) {
+    discard_queue("cleared when interpreter mode was entered");
+  }
+}
+
+bool InterpreterMode::cycle()
+{
+  may_interpret_ = true;
+  if (std::exchange(clear_requested_, false)) {
+    clear();
+  }
+  if (end_requested_) {
+    statements_.clear();
+    if (options_.clear_on_end) {
+      clear();
+    }
+    extension_ = nullptr;
+    return false;
+  }
+  interpret_queue();
+  return true;
+}
+
+std::optional<std::uint32_t> InterpreterMode::next_function()
+{
+  if (statements_.empty()) {
+    return std::nullopt;
+  }
+  const Statement next = statements_.front();
+  statements_.pop_front();
+  last_executed_ = next.id;
+  return next.function;
+}
+
+void InterpreterMode::clear()
+{
+  extension_->remove_all();
+  interpreted_ = 0;
+  clearing_ = false;
+  last_cleared_ = last_id_;
+}
+
+void InterpreterMode::cancel()
+{
+  extension_ = nullptr;
+  statements_.clear();
+}
+
+void InterpreterMode::set_program_running(bool running)
+{
+  if (std::exchange(program_running_, running) && !running) {
+    discard_queue("the program has ended");
+  }
+}
+
+}  // namespace ur_simulator
