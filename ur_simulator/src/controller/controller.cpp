@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "controller/http_post.hpp"
 #include "controller/options.hpp"
 #include "controller/rtde_value.hpp"
 #include "controller/tcp_script_socket.hpp"
@@ -118,10 +119,13 @@ RobotAccess Controller::robot_access()
 
 std::shared_ptr<const urscript::Library> Controller::script_library()
 {
-  return with_sockets(*make_robot_library(robot_access()),
-                      [this](const std::string & host, std::uint16_t port) {
-                        return TcpScriptSocket::open(io_, host, port);
-                      });
+  const auto library =
+      with_sockets(*make_robot_library(robot_access()), [this](const std::string & host, std::uint16_t port) {
+        return TcpScriptSocket::open(io_, host, port);
+      });
+  return with_xml_rpc(*library, [this](const HttpAddress & to, std::string body) {
+    return post_xml(io_, to, std::move(body));
+  });
 }
 
 ProgramContext Controller::program_context()

@@ -104,6 +104,7 @@ void put_value(std::string & to, const TypeCodes & codes, const Value & value)
       put_matrix(to, codes, value.matrix());
       break;
     case Type::none:
+    case Type::remote:
     case Type::structure:  // the protocol has no type for them
       put_u8(to, none_code);
       break;

@@ -74,6 +74,14 @@ using Outcome = std::variant<Value, NextCycle, std::unique_ptr<Operation>, Failu
 
 /// One value per parameter of the builtin. A parameter without default that was not passed is Type::none.
 using Arguments = std::span<const Value>;
+
+/// A value whose methods are executed outside of the program, such as the handle of rpc_factory().
+class RemoteObject {
+ public:
+  virtual ~RemoteObject() = default;
+  virtual Outcome call(const std::string & method, Arguments arguments) = 0;
+};
+
 using BuiltinFunction = std::function<Outcome(CallContext & context, Arguments arguments)>;
 
 struct Parameter {

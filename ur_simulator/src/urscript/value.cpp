@@ -96,6 +96,9 @@ void append_text(std::string & out, const Value & value, bool nested)
     case Type::structure:
       append_structure(out, value.structure());
       return;
+    case Type::remote:
+      out += "RPC";
+      return;
   }
 }
 
@@ -148,8 +151,8 @@ std::optional<VectorN> to_vector(const Value & value)
 
 std::string_view name_of(Type type)
 {
-  constexpr std::array<std::string_view, 9> names{"none", "bool", "int",    "float", "string",
-                                                  "pose", "list", "matrix", "struct"};
+  constexpr std::array<std::string_view, 10> names{"none", "bool", "int",    "float",  "string",
+                                                   "pose", "list", "matrix", "struct", "RPC handle"};
   return names[static_cast<std::size_t>(type)];
 }
 
@@ -158,6 +161,7 @@ Value::Value(const char * value) : Value(std::string(value)) {}
 Value::Value(List value) : Value(Type::list, std::make_shared<List>(std::move(value))) {}
 Value::Value(Matrix value) : Value(Type::matrix, std::make_shared<Matrix>(std::move(value))) {}
 Value::Value(Structure value) : Value(Type::structure, std::make_shared<Structure>(std::move(value))) {}
+Value::Value(std::shared_ptr<RemoteObject> object) : Value(Type::remote, std::move(object)) {}
 
 Value Value::pose(const Vector6 & pose)
 {
@@ -244,6 +248,8 @@ bool equal(const Value & left, const Value & right)
       return left.matrix() == right.matrix();
     case Type::structure:
       return equal_structures(left.structure(), right.structure());
+    case Type::remote:
+      return &left.remote() == &right.remote();
     default:
       return true;
   }

@@ -12,12 +12,24 @@
 
 namespace ur_simulator::urscript {
 
-enum class Type : std::uint8_t { none, boolean, integer, floating, string, pose, list, matrix, structure };
+enum class Type : std::uint8_t {
+  none,
+  boolean,
+  integer,
+  floating,
+  string,
+  pose,
+  list,
+  matrix,
+  structure,
+  remote
+};
 
 /// The name of the type in error messages ("int", "pose", …).
 std::string_view name_of(Type type);
 
 class Value;
+class RemoteObject;
 
 using List = std::vector<Value>;
 
@@ -52,11 +64,12 @@ class Value {
   {
     scalar_.floating = value;
   }  // NOLINT(google-explicit-constructor)
-  Value(std::string value);   // NOLINT(google-explicit-constructor)
-  Value(const char * value);  // NOLINT(google-explicit-constructor)
-  Value(List value);          // NOLINT(google-explicit-constructor)
-  Value(Matrix value);        // NOLINT(google-explicit-constructor)
-  Value(Structure value);     // NOLINT(google-explicit-constructor)
+  Value(std::string value);                     // NOLINT(google-explicit-constructor)
+  Value(const char * value);                    // NOLINT(google-explicit-constructor)
+  Value(List value);                            // NOLINT(google-explicit-constructor)
+  Value(Matrix value);                          // NOLINT(google-explicit-constructor)
+  Value(Structure value);                       // NOLINT(google-explicit-constructor)
+  Value(std::shared_ptr<RemoteObject> object);  // NOLINT(google-explicit-constructor)
   /// p[x, y, z, rx, ry, rz] in m and rad (rotation vector).
   static Value pose(const Vector6 & pose);
   /// A list of six numbers (joint positions, a wrench, …).
@@ -76,6 +89,8 @@ class Value {
   const List & list() const { return get<List>(); }
   const Matrix & matrix() const { return get<Matrix>(); }
   const Structure & structure() const { return get<Structure>(); }
+  /// Copies refer to the same object.
+  RemoteObject & remote() const { return *static_cast<RemoteObject *>(shared_.get()); }
 
   /// Accessors for writing. They copy the storage if other values share it.
   Vector6 & own_pose() { return own<Vector6>(); }

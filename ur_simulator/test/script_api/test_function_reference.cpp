@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "script_api/function_reference.hpp"
+#include "script_api/http_request.hpp"
 #include "script_api/script_socket.hpp"
 #include "script_fixture.hpp"
 
@@ -71,7 +72,9 @@ zero_ftsensor
 
 std::shared_ptr<const urscript::Library> complete_library(const ScriptFixture & fixture)
 {
-  return with_sockets(*fixture.library, [](const std::string &, std::uint16_t) { return nullptr; });
+  const auto library =
+      with_sockets(*fixture.library, [](const std::string &, std::uint16_t) { return nullptr; });
+  return with_xml_rpc(*library, [](const HttpAddress &, const std::string &) { return nullptr; });
 }
 
 TEST(FunctionReferenceTest, TheLibraryHasEveryFunctionOfTheManual)

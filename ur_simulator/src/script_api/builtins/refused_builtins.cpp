@@ -134,7 +134,7 @@ void add_refused_builtins(Library & library)
   for (const char * name : {"eip_reader_factory", "eip_writer_factory"}) {
     library.add_refused(name, {"connection", "size"}, 2, "no EtherNet/IP scanner is connected");
   }
-  library.add_refused("rpc_factory", {"type", "url"}, 2, "XML-RPC is not modelled");
+  library.add_refused("rpc_factory", {"type", "url"}, 2, "the library has no connections");
   library.add_refused("set_pos", {"q"}, 1, "only PolyScope's simulation mode places the arm");
   library.add_refused("estimate_payload", {"poses", "wrenches"}, 2, "the estimation is not modelled");
 }

@@ -70,7 +70,8 @@ class Interpreter {
   Next jump_or_pop(const Instruction & instruction, bool jump_value);
   Next call(const Instruction & instruction);
   Next call_builtin(const Instruction & instruction);
-  Next handle_outcome(Outcome outcome, std::size_t arguments);
+  /// Of a call of this name: replaces its arguments on the stack by the value, or waits for it.
+  Next handle_outcome(const std::string & name, Outcome outcome, std::size_t arguments);
   Next return_value();
   Next return_to_operation();
   Next store_lvalue(const Instruction & instruction);

@@ -81,16 +81,16 @@ Interpreter::Next Interpreter::call_builtin(const Instruction & instruction)
     }
   }
   context_->line = line_of(*thread_);
-  Outcome outcome = builtin.function(*context_, arguments);
-  if (auto * failure = std::get_if<Failure>(&outcome)) {
-    const bool named = failure->message.starts_with(builtin.name + ":");
-    return fail_at_current_line(named ? failure->message : builtin.name + ": " + failure->message);
-  }
-  return handle_outcome(std::move(outcome), instruction.b);
+  return handle_outcome(builtin.name, builtin.function(*context_, arguments), instruction.b);
 }
 
-Interpreter::Next Interpreter::handle_outcome(Outcome outcome, std::size_t arguments)
+Interpreter::Next Interpreter::handle_outcome(const std::string & name, Outcome outcome,
+                                              std::size_t arguments)
 {
+  if (auto * failure = std::get_if<Failure>(&outcome)) {
+    const bool named = failure->message.starts_with(name + ":");
+    return fail_at_current_line(named ? failure->message : name + ": " + failure->message);
+  }
   const bool waits = std::holds_alternative<NextCycle>(outcome) ||
                      std::holds_alternative<std::unique_ptr<Operation>>(outcome);
   if (waits && context_->secondary) {
@@ -150,6 +150,9 @@ Interpreter::Next Interpreter::method(const Instruction & instruction)
   if (instruction.op == Opcode::call_method_of_value) {
     Value & object = *(thread_->stack.end() - 1 - call.arguments);
     add_cost(object);
+    if (object.is(Type::remote)) {
+      return handle_outcome(call.name, object.remote().call(call.name, arguments), call.arguments + 1);
+    }
     return replace_top(call.arguments + 1, call_method(object, call.name, arguments));
   }
   const Lvalue & lvalue = code_->lvalues[instruction.a];
@@ -159,6 +162,10 @@ Interpreter::Next Interpreter::method(const Instruction & instruction)
     return fail_at_current_line(object.error());
   }
   add_cost(**object);
+  if ((*object)->is(Type::remote)) {
+    return handle_outcome(call.name, (*object)->remote().call(call.name, arguments),
+                          call.arguments + lvalue.indices);
+  }
   auto result = call_method(**object, call.name, arguments);
   if (!result) {
     return fail_at_current_line(std::move(result.error()));

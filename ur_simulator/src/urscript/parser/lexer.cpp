@@ -160,6 +160,11 @@ Token Lexer::read_symbol()
   if (std::string_view("()[],:.=<>+-*/%").find(c) != std::string_view::npos) {
     return make(TokenKind::symbol, 1);
   }
+  if (c == '!') {  // the script manual, "Remote Procedure Call", writes it for `not`
+    Token token = make(TokenKind::keyword, 1);
+    token.text = "not";
+    return token;
+  }
   Token token = make(TokenKind::error, 1);
   token.text = "unexpected character";
   return token;
