@@ -213,7 +213,21 @@ void Arm::step(ControllerState & state)
   state.in_force_mode = arm.force.has_value();
   state.joint_deviation_ratio =
       (arm.commanded.position - arm.servo_loop.position()).cwiseAbs().maxCoeff() / max_servo_error;
-  arm.writer.write(arm.setpoint, arm.servo_loop, state);
+  arm.writer.write(arm.path_offset.enabled() && !arm.force ? arm.commanded : arm.setpoint, arm.servo_loop,
+                   state);
+  arm.write_path(state);
+}
+
+void Arm::Impl::write_path(ControllerState & current)
+{
+  if (path_offset.enabled()) {
+    const TcpKinematics kinematics = tcp_kinematics();
+    current.path_tcp_pose = to_pose(kinematics.tcp_pose(setpoint.position));
+    current.path_tcp_speed = kinematics.tcp_twist(setpoint);
+  } else {
+    current.path_tcp_pose = current.target_tcp_pose;
+    current.path_tcp_speed = current.target_tcp_speed;
+  }
 }
 
 void Arm::teleport(const Vector6 & position, ControllerState & state)
@@ -229,6 +243,7 @@ void Arm::teleport(const Vector6 & position, ControllerState & state)
   impl_->state = &state;
   impl_->writer.reset();
   impl_->writer.write(impl_->setpoint, impl_->servo_loop, state);
+  impl_->write_path(state);
 }
 
 }  // namespace ur_simulator

@@ -10,6 +10,7 @@
 #include "common/types.hpp"
 #include "motion/force/force_mode.hpp"
 #include "motion/path/tcp_segment.hpp"
+#include "motion/path_offset.hpp"
 #include "state/controller_state.hpp"
 #include "state/faults.hpp"
 
@@ -94,7 +95,11 @@ class Arm {
   /// friction that the controller compensates.
   StartResult direct_torque(const Vector6 & torque, const Vector6 & viscous_scale,
                             const Vector6 & coulomb_scale);
-  /// Ends force mode and freedrive and resets their settings, as the end of a program does.
+  /// path_offset_…(): superposed on every motion of the program while it is enabled, except in force mode.
+  PathOffset & path_offset();
+  /// The path of the program continues from the present position; a motion must be stopped afterwards.
+  void disable_path_offset();
+  /// Ends force mode, freedrive and path offset and resets their settings, as the end of a program does.
   void end_program();
 
   /// True when the URScript call that started this motion may return: paths at the target or in the blend;

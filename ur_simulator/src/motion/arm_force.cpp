@@ -84,6 +84,7 @@ double Arm::force_mode_damping() const
 void Arm::Impl::reset_deviation()
 {
   setpoint = commanded;
+  path_offset.restart();
   if (force) {
     const ForceModeSettings settings = force->settings();
     force.emplace(model, cycle_time, settings);
@@ -105,6 +106,21 @@ void Arm::Impl::apply_force_mode(const TimeStep & time_step)
     }
     return;
   }
+  stop_with_fault(*found, time_step);
+}
+
+void Arm::Impl::apply_path_offset(const TimeStep & time_step)
+{
+  const TcpKinematics kinematics = tcp_kinematics();
+  const Transform tcp =
+      path_offset.apply(kinematics.tcp_pose(setpoint.position), kinematics.tcp_twist(setpoint).head<3>());
+  if (const auto found = kinematics.move_to(tcp, cycle_time, commanded)) {
+    stop_with_fault(*found, time_step);
+  }
+}
+
+void Arm::Impl::stop_with_fault(const MotionFault & found, const TimeStep & time_step)
+{
   if (!fault) {
     fault = found;
   }
@@ -119,6 +135,8 @@ void Arm::Impl::command_joints(const TimeStep & time_step)
   const bool controls_actual = running != nullptr && running->controls_actual_joints();
   if (force && may_move() && !stopping() && !controls_actual) {
     apply_force_mode(time_step);
+  } else if (path_offset.enabled() && may_move() && !stopping() && !controls_actual) {
+    apply_path_offset(time_step);
   } else {
     commanded = setpoint;
   }
@@ -179,9 +197,26 @@ StartResult Arm::direct_torque(const Vector6 & torque, const Vector6 & viscous_s
       TorqueMotion(impl_->model, impl_->dynamics, *impl_->state, torque, viscous_scale, coulomb_scale));
 }
 
+PathOffset & Arm::path_offset()
+{
+  return impl_->path_offset;
+}
+
+void Arm::disable_path_offset()
+{
+  if (impl_->path_offset.enabled()) {
+    impl_->path_offset.disable();
+    impl_->setpoint = impl_->commanded;
+  }
+}
+
 void Arm::end_program()
 {
   end_force_mode();
+  if (impl_->path_offset.enabled()) {
+    impl_->replace_with_stop(compliance_stop_deceleration);
+  }
+  impl_->path_offset = PathOffset();
   end_freedrive();
   impl_->force_scaling = default_force_scaling;
   impl_->force_damping = default_force_damping;

@@ -17,6 +17,7 @@
 #include "motion/force/torque_motion.hpp"
 #include "motion/joint_servo_loop.hpp"
 #include "motion/path/path_motion.hpp"
+#include "motion/path_offset.hpp"
 #include "motion/servo/joint_servo_motion.hpp"
 #include "motion/servo/joint_speed_motion.hpp"
 #include "motion/servo/linear_speed_motion.hpp"
@@ -78,7 +79,9 @@ struct Arm::Impl {
   std::optional<ForceMode> force;
   double force_scaling = default_force_scaling;
   double force_damping = default_force_damping;
-  Setpoint commanded;  ///< target of the servo loops: the setpoint plus the deviation of force mode
+  PathOffset path_offset;
+  Setpoint
+      commanded;  ///< target of the servo loops: the setpoint plus the deviation of force mode or path offset
   ForwardDynamics dynamics;
 
   Motion * current_motion() { return get_motion(active_motion); }
@@ -142,6 +145,10 @@ struct Arm::Impl {
   void replace_with_stop(double deceleration);
   void command_joints(const TimeStep & time_step);
   void apply_force_mode(const TimeStep & time_step);
+  void apply_path_offset(const TimeStep & time_step);
+  /// Stops at the commanded position because of a fault of force mode or path offset.
+  void stop_with_fault(const MotionFault & found, const TimeStep & time_step);
+  void write_path(ControllerState & current);
   /// Moves the program's setpoint to the commanded position, so that force mode starts without deviation.
   void reset_deviation();
   /// Sets the setpoint to the actual joint state, for motions that control the actual joints.

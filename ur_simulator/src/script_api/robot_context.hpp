@@ -44,6 +44,7 @@ void add_robot_builtin(Library & library, const RobotContextPtr & robot, const c
 // Groups of builtins that make_robot_library() adds.
 void add_move_builtins(Library & library, const RobotContextPtr & robot);
 void add_servo_speed_builtins(Library & library, const RobotContextPtr & robot);
+void add_path_offset_builtins(Library & library, const RobotContextPtr & robot);
 void add_force_builtins(Library & library, const RobotContextPtr & robot);
 void add_freedrive_builtins(Library & library, const RobotContextPtr & robot);
 void add_state_builtins(Library & library, const RobotContextPtr & robot);

@@ -28,6 +28,7 @@ struct BuiltinGroup {
 constexpr BuiltinGroup builtin_groups[] = {
     {"motion", script_api::add_move_builtins},
     {"motion", script_api::add_servo_speed_builtins},
+    {"path offset", script_api::add_path_offset_builtins},
     {"force mode, freedrive, contact", script_api::add_force_builtins},
     {"force mode, freedrive, contact", script_api::add_freedrive_builtins},
     {"state", script_api::add_state_builtins},

@@ -89,6 +89,8 @@ struct ControllerState {
 
   Vector6 target_tcp_pose = Vector6::Zero();
   Vector6 target_tcp_speed = Vector6::Zero();
+  Vector6 path_tcp_pose = Vector6::Zero();   ///< target without path offset
+  Vector6 path_tcp_speed = Vector6::Zero();  ///< likewise
   Vector6 actual_tcp_pose = Vector6::Zero();
   Vector6 actual_tcp_speed = Vector6::Zero();
   Vector6 target_tcp_acceleration = Vector6::Zero();

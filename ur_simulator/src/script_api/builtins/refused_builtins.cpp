@@ -17,19 +17,6 @@ struct RefusedGroup {
   std::vector<RefusedBuiltin> builtins;
 };
 
-RefusedGroup path_offsets()
-{
-  return {"path offsets are not modelled",
-          {
-              {"path_offset_enable", {}, 0},
-              {"path_offset_disable", {"a"}, 0},
-              {"path_offset_get", {"type"}, 1},
-              {"path_offset_set", {"offset", "type"}, 2},
-              {"path_offset_set_alpha_filter", {"alpha"}, 1},
-              {"path_offset_set_max_offset", {"transLimit", "rotLimit"}, 2},
-          }};
-}
-
 RefusedGroup conveyor_tracking()
 {
   return {
@@ -125,8 +112,8 @@ RefusedGroup frame_tracking()
 
 void add_refused_builtins(Library & library)
 {
-  for (const RefusedGroup & group : {path_offsets(), conveyor_tracking(), modbus_signals(), modbus_server(),
-                                     euromap(), sockets(), frame_tracking()}) {
+  for (const RefusedGroup & group :
+       {conveyor_tracking(), modbus_signals(), modbus_server(), euromap(), sockets(), frame_tracking()}) {
     for (const RefusedBuiltin & builtin : group.builtins) {
       library.add_refused(builtin.name, builtin.parameters, builtin.required, group.reason);
     }

@@ -26,11 +26,10 @@ constexpr StateGetter state_getters[] = {
      [](const ControllerState & s) { return Value::list(s.target.acceleration); }},
     {"get_target_tcp_pose", [](const ControllerState & s) { return Value::pose(s.target_tcp_pose); }},
     {"get_target_tcp_speed", [](const ControllerState & s) { return Value::list(s.target_tcp_speed); }},
-    // Without path offsets and conveyor tracking the arm is on the path.
     {"get_target_tcp_pose_along_path",
-     [](const ControllerState & s) { return Value::pose(s.target_tcp_pose); }},
+     [](const ControllerState & s) { return Value::pose(s.path_tcp_pose); }},
     {"get_target_tcp_speed_along_path",
-     [](const ControllerState & s) { return Value::list(s.target_tcp_speed); }},
+     [](const ControllerState & s) { return Value::list(s.path_tcp_speed); }},
     {"get_tcp_force", [](const ControllerState & s) { return Value::list(s.actual_tcp_force); }},
     {"get_tcp_offset", [](const ControllerState & s) { return Value::pose(s.tcp_offset); }},
     {"get_tool_accelerometer_reading",
