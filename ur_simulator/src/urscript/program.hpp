@@ -59,8 +59,8 @@ struct ExtendedProgram {
 };
 
 /// Adds statements at the first level of a program. Its code, and that of earlier extensions, keeps its
-/// place, so that running threads can continue. A new variable of the statements is a global of the extended
-/// program. Compiles the whole program again.
+/// place, so that running threads can continue. Only extensions see the new variables of the statements.
+/// Compiles the whole program again.
 tl::expected<ExtendedProgram, CompileError> extend(const Program & program, std::string_view statements,
                                                    const Library & library,
                                                    const CompileLimits & limits = {});

@@ -159,6 +159,18 @@ TEST_F(InterpreterModeTest, StatementsAfterAClearWaitForIt)
   EXPECT_EQ(ask("statelastcleared"), "state: 4: statelastcleared");
 }
 
+TEST_F(InterpreterModeTest, TheProgramDoesNotSeeVariablesOfStatements)
+{
+  run("def host():\n  def count():\n    i = 1\n    i = i + 1\n    return i\n  end\n  "
+      "set_standard_digital_out(7, True)\n"
+      "  interpreter_mode()\nend\n");
+  ASSERT_TRUE(wait_for_output(7));
+  ask("i = 40");
+  ask("n = count()");
+  ask("if i == 40 and n == 2: set_standard_digital_out(1, True) end");
+  EXPECT_TRUE(wait_for_output(1));
+}
+
 TEST_F(InterpreterModeTest, SkipsTheBuffer)
 {
   enter();

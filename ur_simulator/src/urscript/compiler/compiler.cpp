@@ -173,7 +173,7 @@ class Compiler : private ExpressionCompiler {
     compile_expression(*statement.value);
     emitter().set_line(statement.line);
     if (statement.qualifier == Qualifier::global) {
-      emitter().emit(Opcode::store_global, symbols().global_slot(target.name));
+      emitter().emit(Opcode::store_global, symbols().global_slot(scope(), target.name));
     } else {
       emit_store(variable(target));
     }

@@ -23,6 +23,7 @@ Scope & SymbolTable::extend(const Definition & statements)
   }
   Scope & scope = add_scope(statements, &top);
   scope.top = true;
+  scope.extension = true;
   visit_block(statements.body, scope);
   for (const auto & [name, function] : scope.functions) {
     top.functions.insert_or_assign(name, function);
@@ -54,6 +55,7 @@ Scope & SymbolTable::add_scope(const Definition & definition, Scope * parent)
   scope.parent = parent;
   scope.function = static_cast<std::uint32_t>(definitions_.size());
   scope.top = parent == nullptr;
+  scope.extension = parent != nullptr && parent->extension;
   definitions_.push_back(&definition);
   for (const FormalParameter & parameter : definition.parameters) {
     scope.parameters.insert(parameter.name);
@@ -90,7 +92,7 @@ void SymbolTable::visit_assignment(const Statement & statement, Scope & scope)
   }
   const std::string & name = statement.target->name;
   if (scope.top || statement.qualifier == Qualifier::global) {
-    global_slot(name);
+    declare_global(scope, name);
     scope.global.insert(name);
   } else if (statement.qualifier == Qualifier::local) {
     scope.local.insert(name);
@@ -99,13 +101,28 @@ void SymbolTable::visit_assignment(const Statement & statement, Scope & scope)
   }
 }
 
-std::uint32_t SymbolTable::global_slot(const std::string & name)
+void SymbolTable::declare_global(const Scope & scope, const std::string & name)
 {
-  const auto [entry, new_index] = globals_.emplace(name, static_cast<std::uint32_t>(global_names_.size()));
-  if (new_index) {
+  if (!find_global(scope, name)) {
+    auto & variables = scope.extension ? extension_variables_ : globals_;
+    variables.emplace(name, static_cast<std::uint32_t>(global_names_.size()));
     global_names_.push_back(name);
   }
-  return entry->second;
+}
+
+std::optional<std::uint32_t> SymbolTable::find_global(const Scope & scope, const std::string & name) const
+{
+  if (const auto own = extension_variables_.find(name);
+      scope.extension && own != extension_variables_.end()) {
+    return own->second;
+  }
+  const auto found = globals_.find(name);
+  return found == globals_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::uint32_t SymbolTable::global_slot(const Scope & scope, const std::string & name) const
+{
+  return find_global(scope, name).value();
 }
 
 std::optional<Variable> SymbolTable::find(Scope & scope, const std::string & name)
@@ -113,14 +130,14 @@ std::optional<Variable> SymbolTable::find(Scope & scope, const std::string & nam
   if (scope.parameters.contains(name) || scope.local.contains(name)) {
     return Variable{Storage::local, 0, scope.slot(name)};
   }
-  const auto global = globals_.find(name);
-  if (global == globals_.end()) {
+  const auto global = find_global(scope, name);
+  if (!global) {
     return scope.assigned.contains(name) ? std::optional(Variable{Storage::local, 0, scope.slot(name)})
                                          : std::nullopt;
   }
   const bool free = scope.assigned.contains(name) && !scope.global.contains(name);
-  return free ? Variable{Storage::global_or_local, global->second, scope.slot(name)}
-              : Variable{Storage::global, global->second, 0};
+  return free ? Variable{Storage::global_or_local, *global, scope.slot(name)}
+              : Variable{Storage::global, *global, 0};
 }
 
 std::optional<const Definition *> SymbolTable::function(const Scope & scope, const std::string & name) const

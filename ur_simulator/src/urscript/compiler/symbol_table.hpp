@@ -19,6 +19,7 @@ struct Scope {
   Scope * parent = nullptr;
   std::uint32_t function = 0;  ///< index in Code::functions
   bool top = false;
+  bool extension = false;                                ///< belongs to statements that extend the program
   std::unordered_map<std::string, std::uint32_t> slots;  ///< of locals and parameters
   std::unordered_set<std::string> parameters;
   std::unordered_set<std::string> local;     ///< declared with this qualifier
@@ -43,16 +44,17 @@ class SymbolTable {
   /// Collects the declarations of the whole program, so that the order of definitions does not matter.
   /// Functions are numbered in order of appearance.
   explicit SymbolTable(const Definition & program);
-  /// Declares statements that extend the program at its first level. Their variables are new globals. Throws
-  /// CompileError if they replace a function of the program or declare a new variable with the qualifier
-  /// `global`.
+  /// Declares statements that extend the program at its first level. Only they see their new variables.
+  /// Throws CompileError if they replace a function of the program or declare a new variable with the
+  /// qualifier `global`.
   Scope & extend(const Definition & statements);
 
   const std::vector<std::string> & global_names() const { return global_names_; }
   Scope & scope_of(const Definition & definition) { return symbols_.at(&definition); }
   std::size_t count() const { return symbols_.size(); }
 
-  std::uint32_t global_slot(const std::string & name);
+  /// The slot of a variable that this scope declares with the qualifier `global`.
+  std::uint32_t global_slot(const Scope & scope, const std::string & name) const;
   /// Nothing if the name is neither a global of the program nor assigned in this scope.
   std::optional<Variable> find(Scope & scope, const std::string & name);
   /// The function or thread that a call in this scope refers to; inner scopes take precedence.
@@ -63,12 +65,15 @@ class SymbolTable {
   void declare(const Definition & definition, Scope * parent);
   void visit_block(const Block & block, Scope & scope);
   void visit_assignment(const Statement & statement, Scope & scope);
+  void declare_global(const Scope & scope, const std::string & name);
+  std::optional<std::uint32_t> find_global(const Scope & scope, const std::string & name) const;
   void check_extension(const Statement & statement) const;
 
   std::map<const Definition *, Scope> symbols_;
   std::vector<const Definition *> definitions_;
   std::size_t program_definitions_;  ///< without extensions
   std::unordered_map<std::string, std::uint32_t> globals_;
+  std::unordered_map<std::string, std::uint32_t> extension_variables_;  ///< the program does not see them
   std::vector<std::string> global_names_;
 };
 
