@@ -35,8 +35,7 @@ class SimulatedRobot {
     if (!library_) {
       ScriptRequests requests;
       requests.power_down = [] {};
-      requests.protective_stop = [this] { protective_stop_ = true; };
-      requests.stop_with_invalid_setpoint = [this](const std::string &) { stop_ = true; };
+      requests.protective_stop = [this](const ErrorCode &, const std::string &) { protective_stop_ = true; };
       library_ = make_robot_library({state, *arm, *world, model, watchdog, requests, cycle_time, nullptr});
     }
     runner.emplace(ProgramContext{state, *arm, watchdog, log, library_, cycle_time});
@@ -55,9 +54,6 @@ class SimulatedRobot {
     state.timestamp = static_cast<double>(state.cycle) * options_.version.cycle_time();
     log.set_time(state.timestamp);
     runner->cycle();
-    if (std::exchange(stop_, false)) {
-      runner->stop("invalid setpoint");
-    }
     if (std::exchange(protective_stop_, false)) {
       safety->trigger_protective_stop("protective_stop()");
     }
@@ -76,7 +72,6 @@ class SimulatedRobot {
 
  private:
   bool protective_stop_ = false;  ///< requested by the program in this cycle
-  bool stop_ = false;             ///< likewise
   PendantOptions options_;
   std::shared_ptr<const urscript::Library> library_;
 };

@@ -23,7 +23,7 @@ constexpr ErrorCode singularity{154};
 constexpr ErrorCode collision_detected{157};
 constexpr ErrorCode danger_of_clamping{403};
 constexpr ErrorCode sudden_change_of_target{204, 1};
-constexpr ErrorCode invalid_setpoint{204, 5, ReportLevel::violation};
+constexpr ErrorCode invalid_setpoint{204, 5};
 constexpr ErrorCode read_only_interface{210, 0, ReportLevel::violation};
 constexpr ErrorCode requested_protective_stop{209};
 constexpr ErrorCode unnumbered_protective_stop{};

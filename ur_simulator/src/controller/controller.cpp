@@ -101,9 +101,9 @@ RobotAccess Controller::robot_access()
 {
   ScriptRequests requests;
   requests.power_down = [this] { script_requests_.power_down = true; };
-  requests.protective_stop = [this] { script_requests_.protective_stop = true; };
-  requests.stop_with_invalid_setpoint = [this](std::string reason) {
-    script_requests_.invalid_setpoint = std::move(reason);
+  requests.protective_stop = [this](const ErrorCode & code, std::string reason) {
+    script_requests_.protective_stop = code;
+    script_requests_.stop_reason = std::move(reason);
   };
   return {state_,
           *arm_,

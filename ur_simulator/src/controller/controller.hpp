@@ -70,8 +70,8 @@ class Controller {
   /// Requests of the program, handled after its cycle.
   struct ScriptRequestFlags {
     bool power_down = false;
-    bool protective_stop = false;
-    std::optional<std::string> invalid_setpoint;
+    std::optional<ErrorCode> protective_stop;
+    std::string stop_reason;
   };
 
   RobotAccess robot_access();

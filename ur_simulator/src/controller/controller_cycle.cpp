@@ -96,12 +96,7 @@ void Controller::handle_script_requests()
 {
   const ScriptRequestFlags requests = std::exchange(script_requests_, {});
   if (requests.protective_stop) {
-    safety_->trigger_protective_stop("the program called protective_stop()",
-                                     error_codes::requested_protective_stop);
-  }
-  if (requests.invalid_setpoint) {
-    log_.error("program", error_codes::invalid_setpoint, *requests.invalid_setpoint);
-    runner_->stop(*requests.invalid_setpoint);
+    safety_->trigger_protective_stop(requests.stop_reason, *requests.protective_stop);
   }
   if (requests.power_down) {
     pendant_->power_off();
@@ -132,6 +127,8 @@ void Controller::log_safety_events()
     entry.source = "safety";
     entry.text = event->message;
     if (event->entered_safety_mode) {
+      // No client of the message sees an older robot state.
+      publish_robot_state();
       entry.kind = LogKind::safety_mode;
       entry.safety_mode = static_cast<std::uint8_t>(event->safety_mode);
     } else if (event->code) {

@@ -22,6 +22,36 @@ tl::expected<Vector6, std::string> joint_target(const RobotContext & robot, cons
                          robot.state().tcp_offset);
 }
 
+namespace {
+
+/// A path to an unreachable pose: a protective stop, again whenever the program is resumed.
+class UnreachableMove : public urscript::Operation {
+ public:
+  UnreachableMove(const RobotContextPtr & robot, std::string reason)
+      : robot_(robot), reason_(std::move(reason))
+  {
+    stop();
+  }
+  tl::expected<std::optional<Value>, std::string> poll(CallContext &) override
+  {
+    stop();
+    return std::nullopt;
+  }
+
+ private:
+  void stop()
+  {
+    if (const auto & protective_stop = robot_->access.requests.protective_stop) {
+      protective_stop(error_codes::invalid_setpoint, reason_);
+    }
+  }
+
+  RobotContextPtr robot_;
+  std::string reason_;
+};
+
+}  // namespace
+
 Outcome start_path_move(const RobotContextPtr & robot, CallContext & context,
                         MoveOperation::StartFunction start)
 {
@@ -63,10 +93,8 @@ Outcome move_to_pose(const RobotContextPtr & robot, CallContext & context, Argum
     return reader.failure();
   }
   const Vector6 target = tcp_target(*robot, arguments[0], target_values);
-  const auto & stop = robot->access.requests.stop_with_invalid_setpoint;
-  if (const auto joints = joint_target(*robot, Value::pose(target), target); !joints && stop) {
-    stop(joints.error());
-    return NextCycle{};  // the program does not continue
+  if (const auto joints = joint_target(*robot, Value::pose(target), target); !joints) {
+    return std::make_unique<UnreachableMove>(robot, joints.error());
   }
   return start_path_move(robot, context, [=](Arm & arm) { return (arm.*move)(target, options); });
 }

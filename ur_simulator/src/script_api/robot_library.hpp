@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/error_code.hpp"
 #include "script_api/interpreter_mode.hpp"
 #include "script_api/joint_history.hpp"
 #include "script_api/watchdog.hpp"
@@ -21,10 +22,8 @@ struct RobotModel;
 /// Requests of robot builtins to the controller. They are called on the controller's thread inside
 /// Machine::cycle(); the controller must act on them after the cycle.
 struct ScriptRequests {
-  std::function<void()> power_down;       ///< powerdown()
-  std::function<void()> protective_stop;  ///< protective_stop()
-  /// A motion has an unreachable target: the program must be stopped with an error code.
-  std::function<void(std::string reason)> stop_with_invalid_setpoint;
+  std::function<void()> power_down;  ///< powerdown()
+  std::function<void(const ErrorCode & code, std::string reason)> protective_stop;
 };
 
 /// Objects that the robot builtins act on. They must outlive the library.

@@ -143,7 +143,7 @@ TEST_F(PrimaryInterfaceTest, ReportsSafetyModesAndLevelsOfFailures)
   EXPECT_EQ(receive_error_code(client).level, 4u);
 }
 
-TEST_F(PrimaryInterfaceTest, UnreachableTargetIsAnErrorCodeAndStopsTheProgram)
+TEST_F(PrimaryInterfaceTest, UnreachableTargetIsAProtectiveStopWithItsCode)
 {
   PrimaryClient client(controller.address(), 30001);
   client.socket().send(
@@ -151,10 +151,47 @@ TEST_F(PrimaryInterfaceTest, UnreachableTargetIsAnErrorCodeAndStopsTheProgram)
   const ReceivedErrorCode error = receive_error_code(client);
   EXPECT_EQ(error.code, 204u);
   EXPECT_EQ(error.argument, 5u);
-  EXPECT_GE(error.level, 2u);
-  EXPECT_NE(client.receive_robot_message(7).find("PROGRAM_XXX_STOPPEDfar"), std::string::npos);
-  EXPECT_TRUE(wait_for_program_state(controller, "STOPPED"));
-  EXPECT_EQ(controller.state()["safety_mode"], "NORMAL");
+  EXPECT_EQ(error.level, 2u);
+  EXPECT_TRUE(wait_for_program_state(controller, "PAUSED"));
+  EXPECT_EQ(controller.state()["safety_mode"], "PROTECTIVE_STOP");
+  EXPECT_EQ(controller.state()["io"]["digital_outputs"], 0);
+}
+
+// A client that waits for the safety mode in one of the two must not find another one in the other.
+TEST_F(PrimaryInterfaceTest, RobotStateIsNotOlderThanTheSafetyModeMessage)
+{
+  constexpr std::size_t protective_stopped = 12;  // after the timestamp and four flags
+  PrimaryClient client(controller.address(), 30001);
+  EXPECT_EQ(client.receive_robot_state().at(0)[protective_stopped], 0);
+  client.socket().send("def stop_it():\n  protective_stop()\nend\n");
+  char stopped = 0;
+  for (;;) {
+    const std::string message = client.receive_message();
+    if (message[0] == 16) {
+      stopped = robot_state_packages(message).at(0)[protective_stopped];
+    } else if (message[0] == 20 && message[10] == 5) {
+      break;
+    }
+  }
+  EXPECT_EQ(stopped, 1);
+}
+
+TEST_F(PrimaryInterfaceTest, ProgramEndsAfterItsLastStatementIsAProtectiveStop)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send("def stop_it():\n  protective_stop()\nend\n");
+  EXPECT_NE(client.receive_robot_message(7).find("PROGRAM_XXX_STARTEDstop_it"), std::string::npos);
+  EXPECT_NE(client.receive_robot_message(7).find("PROGRAM_XXX_STOPPEDstop_it"), std::string::npos);
+  EXPECT_EQ(receive_safety_mode(client), 3);
+}
+
+TEST_F(PrimaryInterfaceTest, ProgramPausesAfterAProtectiveStopWhereItWaits)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send(
+      "def stop_it():\n  protective_stop()\n  sync()\n  set_standard_digital_out(0, True)\nend\n");
+  EXPECT_EQ(receive_safety_mode(client), 3);
+  EXPECT_TRUE(wait_for_program_state(controller, "PAUSED"));
   EXPECT_EQ(controller.state()["io"]["digital_outputs"], 0);
 }
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "kinematics/robot_model.hpp"
@@ -28,7 +29,10 @@ class ScriptFixture {
     arm.teleport(default_position(model), state);
     ScriptRequests requests;
     requests.power_down = [this] { powered_down = true; };
-    requests.protective_stop = [this] { protective_stop = true; };
+    requests.protective_stop = [this](const ErrorCode & code, const std::string & reason) {
+      protective_stop = code;
+      stop_reason = reason;
+    };
     library = make_robot_library({state, arm, world, model, watchdog, requests, cycle_time, &history});
   }
 
@@ -102,7 +106,8 @@ class ScriptFixture {
   urscript::RecordingHost host;
   urscript::MachineOptions options;
   bool powered_down = false;
-  bool protective_stop = false;
+  std::optional<ErrorCode> protective_stop;
+  std::string stop_reason;
   bool paused = false;
   std::unique_ptr<urscript::Machine> machine;
 };

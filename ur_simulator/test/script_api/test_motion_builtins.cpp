@@ -41,13 +41,26 @@ TEST(MovelTest, MovesStraightToAPoseOrJoints)
   EXPECT_LT((fixture.state.target.position - home).norm(), 1e-5);
 }
 
-TEST(MovelTest, UnreachableTargetIsARunTimeError)
+TEST(MovelTest, UnreachableTargetIsAProtectiveStopAgainAfterEachResume)
 {
   ScriptFixture fixture;
-  const std::string error = fixture.error_of("def test():\n movel(p[9, 0, 0, 0, 0, 0])\nend");
-  EXPECT_NE(error.find("movel"), std::string::npos) << error;
-  EXPECT_NE(error.find("out of reach"), std::string::npos) << error;
-  EXPECT_EQ(fixture.machine->error().line, 2);
+  fixture.run("def test():\n movel(p[9, 0, 0, 0, 0, 0])\n reached = True\nend");
+  for (int i = 0; i < 2; ++i) {
+    fixture.cycle();
+    ASSERT_TRUE(fixture.protective_stop.has_value());
+    EXPECT_EQ(fixture.protective_stop->code, 204);
+    EXPECT_EQ(fixture.protective_stop->argument, 5);
+    EXPECT_NE(fixture.stop_reason.find("out of reach"), std::string::npos) << fixture.stop_reason;
+    EXPECT_EQ(fixture.machine->status(), urscript::MachineStatus::running);
+    fixture.protective_stop.reset();
+  }
+  EXPECT_EQ(fixture.global("reached"), "");
+}
+
+TEST(MotionBuiltinsTest, InvalidArgumentsAreRunTimeErrors)
+{
+  ScriptFixture fixture;
+  EXPECT_NE(fixture.error_of("movej(p[9, 0, 0, 0, 0, 0])").find("out of reach"), std::string::npos);
   EXPECT_NE(fixture.error_of("movej([1, 2, 3])").find("'q' must be a list of six numbers"),
             std::string::npos);
   EXPECT_NE(fixture.error_of("movej([0,0,0,0,0,0], v=-1)").find("velocity"), std::string::npos);

@@ -161,7 +161,8 @@ TEST(ScriptRequestTest, AreForwardedToTheController)
 {
   ScriptFixture fixture;
   EXPECT_EQ(fixture.error_of("def t():\n protective_stop()\n powerdown()\nend"), "");
-  EXPECT_TRUE(fixture.protective_stop);
+  ASSERT_TRUE(fixture.protective_stop.has_value());
+  EXPECT_EQ(fixture.protective_stop->code, 209);
   EXPECT_TRUE(fixture.powered_down);
 }
 

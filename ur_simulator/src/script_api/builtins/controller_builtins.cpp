@@ -49,14 +49,24 @@ Outcome get_rtde_value(RobotContext & robot, Arguments arguments)
   return std::move(*value);
 }
 
-/// The request takes effect after this cycle; the call returns in the next one. A secondary program may not
-/// wait.
-Outcome request(const CallContext & context, const std::function<void()> & what)
+/// Takes effect after this cycle; the call returns in the next one. A secondary program may not wait.
+Outcome power_down(const RobotContext & robot, const CallContext & context)
 {
-  if (what) {
-    what();
+  if (robot.access.requests.power_down) {
+    robot.access.requests.power_down();
   }
   return context.secondary ? Outcome(Value()) : Outcome(NextCycle{});
+}
+
+/// Returns at once: the safety system pauses the program where it next uses physical time. A program that
+/// ends before has ended.
+Outcome protective_stop(const RobotContext & robot)
+{
+  if (robot.access.requests.protective_stop) {
+    robot.access.requests.protective_stop(error_codes::requested_protective_stop,
+                                          "the program called protective_stop()");
+  }
+  return Value();
 }
 
 }  // namespace
@@ -69,11 +79,10 @@ void add_controller_builtins(Library & library, const RobotContextPtr & robot)
                [robot](CallContext &, Arguments arguments) { return set_watchdog(*robot, arguments); }});
   add_robot_builtin(library, robot, "get_rtde_value", {"key"}, 1, get_rtde_value, 50);
   library.add({"powerdown", {}, 0, [robot](CallContext & context, Arguments) {
-                 return request(context, robot->access.requests.power_down);
+                 return power_down(*robot, context);
                }});
-  library.add({"protective_stop", {}, 0, [robot](CallContext & context, Arguments) {
-                 return request(context, robot->access.requests.protective_stop);
-               }});
+  library.add(
+      {"protective_stop", {}, 0, [robot](CallContext &, Arguments) { return protective_stop(*robot); }});
 }
 
 }  // namespace ur_simulator::script_api

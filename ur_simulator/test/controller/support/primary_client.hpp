@@ -9,16 +9,30 @@
 
 namespace ur_simulator::testing {
 
+/// The sub-packages of a robot state by type, without size and type.
+inline std::map<int, std::string> robot_state_packages(const std::string & message)
+{
+  std::map<int, std::string> packages;
+  for (std::size_t begin = 1; begin < message.size();) {
+    const std::size_t size = decode_uint(message.substr(begin, 4));
+    packages[message[begin + 4]] = message.substr(begin + 5, size - 5);
+    begin += size;
+  }
+  return packages;
+}
+
 /// A client of the primary (30001) or secondary (30002) interface.
 class PrimaryClient {
  public:
   PrimaryClient(const std::string & address, std::uint16_t port) : socket_(address, port) {}
 
-  /// Returns the next message of a type (16 robot state, 20 robot message), starting with the type byte.
+  /// Returns the next message, starting with the type byte.
+  std::string receive_message() { return socket_.receive(decode_uint(socket_.receive(4)) - 4); }
+  /// Returns the next message of a type (16 robot state, 20 robot message).
   std::string receive_message(char type)
   {
     for (;;) {
-      std::string message = socket_.receive(decode_uint(socket_.receive(4)) - 4);
+      std::string message = receive_message();
       if (message[0] == type) {
         return message;
       }
@@ -35,17 +49,7 @@ class PrimaryClient {
     }
   }
   /// Returns the sub-packages of the next robot state by type, without size and type.
-  std::map<int, std::string> receive_robot_state()
-  {
-    const std::string message = receive_message(16);
-    std::map<int, std::string> packages;
-    for (std::size_t begin = 1; begin < message.size();) {
-      const std::size_t size = decode_uint(message.substr(begin, 4));
-      packages[message[begin + 4]] = message.substr(begin + 5, size - 5);
-      begin += size;
-    }
-    return packages;
-  }
+  std::map<int, std::string> receive_robot_state() { return robot_state_packages(receive_message(16)); }
   TcpClient & socket() { return socket_; }
 
  private:
