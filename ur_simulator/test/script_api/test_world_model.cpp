@@ -36,10 +36,12 @@ TEST(WorldModelTest, PosesAreConvertedBetweenFrames)
     e = get_pose("base", "table", "base")
     x = [point_dist(a, p[1, 1, 0, 0, 0, 0]) < 0.000001, point_dist(b, c) < 0.000001]
     y = point_dist(e, p[-1, 0, 0, 0, 0, 0]) < 0.000001
+    z = pose_dist(get_pose("table"), get_pose("table", "base"))
   end)"),
             "");
   EXPECT_EQ(fixture.global("x"), "[True, True]") << fixture.global("a") << fixture.global("c");
   EXPECT_EQ(fixture.global("y"), "True") << fixture.global("e");
+  EXPECT_EQ(fixture.global("z"), "0");
 }
 
 TEST(WorldModelTest, RefusesUnknownFixedAndCyclicFrames)

@@ -132,7 +132,7 @@ void add_world_model_builtins(Library & library, const RobotContextPtr & robot)
   add("is_frame", {"name"}, 1, is_frame);
   add("get_frame_parent", {"name"}, 1, frame_parent);
   add("get_children", {"name"}, 1, frame_children);
-  add("get_pose", {"name", "rel_name", "ref_name"}, 2, relative_pose);
+  add("get_pose", {"name", urscript::Parameter("rel_name", Value("base")), "ref_name"}, 1, relative_pose);
   add("convert_pose", {"pose", "from_frame", "to_frame"}, 3, convert_pose);
 }
 
