@@ -15,7 +15,7 @@ DIRECTORIES = {
                     "detail"),
     "ur_ros_rtde_robot": ("program", "motion", "state", "connection", "script"),
     "ur_ros_rtde_trajectory": ("kinematics", "trajectory", "timing", "solver", "motion", "path"),
-    "ur_simulator": ("app", "library", "controller", "world_file", "control_port", "urcap", "primary", "dashboard", "polyscope", "rtde", "net",
+    "ur_simulator": ("app", "library", "controller", "world_file", "control_port", "urcap", "primary", "robot_api", "dashboard", "polyscope", "rtde", "net",
                      "log", "version", "script_api", "urscript", "safety", "world", "motion", "dynamics", "kinematics", "state", "common"),
 }
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)

@@ -12,7 +12,8 @@
 
 namespace ur_simulator {
 
-/// TCP ports of a UR controller. 0 selects a free port; SimulatedController::ports() returns it.
+/// TCP ports of a UR controller. 0 selects a free port; SimulatedController::ports() returns it, and 0 for a
+/// server that the version does not have.
 struct Ports {
   std::uint16_t primary = 30001;
   std::uint16_t secondary = 30002;
@@ -23,6 +24,7 @@ struct Ports {
   std::uint16_t realtime_read_only = 30013;
   std::uint16_t interpreter = 30020;  ///< interpreter mode, from PolyScope 5.10 on
   std::uint16_t dashboard = 29999;
+  std::uint16_t robot_api = 80;   ///< HTTP, PolyScope X from 10.11 on; ports below 1024 need privileges
   std::uint16_t robotiq = 63352;  ///< socket server of the URCap "robotiq_gripper"
   std::uint16_t control = 30099;  ///< control port of the simulator: JSON lines, see docs/simulator.md
 };
@@ -30,7 +32,8 @@ struct Ports {
 struct SimulatorOptions {
   std::string address = "127.0.0.1";
   std::string model = "ur10e";  ///< ur3 ur5 ur10 ur3e ur5e ur7e ur10e ur12e ur15 ur16e ur18 ur20 ur30 …
-  /// Version 3.x for CB3 models (125 Hz), 5.x for all others (500 Hz). Empty: 3.15.8 or 5.25.1.
+  /// Version 3.x for CB3 models (125 Hz), 5.x or 10.x (PolyScope X) for all others (500 Hz). Empty: 3.15.8 or
+  /// 5.25.1.
   std::string polyscope_version;
   Ports ports;
   /// Initial joint positions, rad. Default: tool pointing down in front of the robot.

@@ -54,6 +54,7 @@ void parse_port(Ports & ports, const std::string & text)
       {"robotiq", &Ports::robotiq},
       {"rtde", &Ports::rtde},
       {"dashboard", &Ports::dashboard},
+      {"robot_api", &Ports::robot_api},
       {"control", &Ports::control}};
   const auto [name, value] = split_assignment(text, "--ports", "rtde=30004");
   const auto port = names.find(name);
@@ -62,7 +63,7 @@ void parse_port(Ports & ports, const std::string & text)
   if (port == names.end() || error != std::errc() || end != value.data() + value.size()) {
     throw std::runtime_error(
         fmt::format("--ports '{}' is invalid: give primary, secondary, realtime, one of these with "
-                    "_read_only, interpreter, rtde, dashboard, robotiq or control = 0..65535",
+                    "_read_only, interpreter, rtde, dashboard, robot_api, robotiq or control = 0..65535",
                     text));
   }
   ports.*(port->second) = number;
@@ -83,12 +84,12 @@ void add_options(CLI::App & app, AppOptions & options)
   app.add_option("--model", simulator.model, "robot model, for example ur5e, ur10e, ur20 or ur10 (CB3)")
       ->capture_default_str();
   app.add_option("--polyscope", simulator.polyscope_version,
-                 "PolyScope version (default: 5.25.1; 3.15.8 for CB3 models)");
+                 "PolyScope version, 10.x for PolyScope X (default: 5.25.1; 3.15.8 for CB3 models)");
   app.add_option(
          "--ports", options.port_texts,
          "port numbers as name=number with the names primary, secondary, realtime, primary_read_only, "
-         "secondary_read_only, realtime_read_only, interpreter, rtde, dashboard, robotiq and control; 0 "
-         "selects a free port")
+         "secondary_read_only, realtime_read_only, interpreter, rtde, dashboard, robot_api, robotiq and "
+         "control; 0 selects a free port")
       ->delimiter(',');
   app.add_option("--joints", options.joints, "initial joint positions, rad")->expected(6)->delimiter(',');
   app.add_option("--surface", options.surface_texts, "horizontal elastic surface as z=height, m; repeatable");

@@ -105,10 +105,12 @@ void Robots::print_ready(const AppOptions & options) const
   }
   for (const Robot & robot : robots_) {
     const Ports ports = robot.controller->ports();
-    print_line(fmt::format(
-        "ready: {} on {}, dashboard {}, primary {}, secondary {}, real-time {}, RTDE {}, control {}",
-        options.simulator.model, robot.address, ports.dashboard, ports.primary, ports.secondary,
-        ports.realtime, ports.rtde, ports.control));
+    const std::string operator_port = ports.dashboard != 0   ? fmt::format("dashboard {}, ", ports.dashboard)
+                                      : ports.robot_api != 0 ? fmt::format("Robot API {}, ", ports.robot_api)
+                                                             : "";
+    print_line(fmt::format("ready: {} on {}, {}primary {}, secondary {}, real-time {}, RTDE {}, control {}",
+                           options.simulator.model, robot.address, operator_port, ports.primary,
+                           ports.secondary, ports.realtime, ports.rtde, ports.control));
   }
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <functional>
@@ -12,15 +13,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 9> server_names{
-    "all", "rtde", "dashboard", "script", "primary", "secondary", "realtime", "robotiq", "interpreter"};
+constexpr std::array<std::string_view, 10> server_names{"all",     "rtde",       "dashboard", "robot_api",
+                                                        "script",  "primary",    "secondary", "realtime",
+                                                        "robotiq", "interpreter"};
+constexpr std::array<std::string_view, 5> not_script_ports{"rtde", "dashboard", "robot_api", "robotiq",
+                                                           "interpreter"};
 constexpr std::array<std::string_view, 4> client_names{"all", "control", "receive", "io"};
 
 std::vector<Listener *> select_listeners(ControlPortContext & context, const std::string & which)
 {
   std::vector<Listener *> listeners;
   for (const auto & [name, listener] : context.listeners) {
-    const bool script = name != "rtde" && name != "dashboard" && name != "robotiq" && name != "interpreter";
+    const bool script = std::ranges::find(not_script_ports, name) == not_script_ports.end();
     // "primary" also selects "primary_read_only".
     if (which == "all" || name.starts_with(which) || (which == "script" && script)) {
       listeners.push_back(listener);

@@ -101,7 +101,16 @@ Action remote_control(RequestFields & fields)
 {
   const bool on = fields.boolean("on", true);
   return [=](ControlPortContext & context) -> json {
-    context.pendant.set_remote_control(on);
+    return require_success(context.pendant.set_remote_control(on));
+  };
+}
+
+Action operational_mode(RequestFields & fields)
+{
+  constexpr std::array<std::string_view, 2> modes{"MANUAL", "AUTOMATIC"};
+  const std::string mode = fields.choice("mode", modes);
+  return [=](ControlPortContext & context) -> json {
+    context.pendant.set_operational_mode(mode);
     return json::object();
   };
 }
@@ -115,7 +124,7 @@ Action store_program(RequestFields & fields)
     throw RequestError("field 'name' is empty: it must be a file name such as 'pick.urp'", "name");
   }
   return [=](ControlPortContext & context) -> json {
-    context.pendant.store_program(name, script);
+    context.pendant.store_program(name, {.script = script});
     if (load && !context.pendant.load_program(name)) {
       throw RequestError("field 'script' does not compile: the log contains the error");
     }
@@ -149,7 +158,7 @@ Action store_external_control(RequestFields & fields)
   host.port = static_cast<std::uint16_t>(fields.integer("port", 1, 65535, host.port));
   const bool load = fields.boolean("load", true);
   return [=](ControlPortContext & context) -> json {
-    context.pendant.store_external_control(name, host);
+    context.pendant.store_program(name, {.script = "", .external_control = host});
     if (load && !context.pendant.load_program(name)) {
       throw RequestError("field 'name' is '" + name + "': it cannot be loaded");
     }
@@ -241,6 +250,9 @@ constexpr std::array robot_command_table{
     Command{"power", "to off|on|release_brakes|running",
             "Switches the power of the arm; 'running' skips the delays of a real robot.", power},
     Command{"remote_control", "on true|false (true)", "Selects remote or local control.", remote_control},
+    Command{"operational_mode", "mode MANUAL|AUTOMATIC",
+            "Selects the operational mode. Manual mode ends remote control with PolyScope X.",
+            operational_mode},
     Command{"store_program", "name; script; load true|false (false)",
             "Stores a program on the controller's disk.", store_program},
     Command{"store_external_control",

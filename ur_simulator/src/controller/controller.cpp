@@ -71,7 +71,8 @@ Controller::Controller(const SimulatorOptions & options)
       interpreter_(open_interpreter_server()),
       realtime_packet_(version_),
       rtde_(io_, options.address, options.ports.rtde, state_, version_, log_),
-      dashboard_(io_, options.address, options.ports.dashboard, *pendant_),
+      dashboard_(open_dashboard_server()),
+      robot_api_(open_robot_api()),
       robotiq_(open_robotiq_server()),
       control_port_context_(control_port_context()),
       control_port_(io_, options.address, options.ports.control,
@@ -148,8 +149,13 @@ std::map<std::string, Listener *> Controller::listeners()
                                            {"primary_read_only", &primary_read_only_.listener()},
                                            {"secondary_read_only", &secondary_read_only_.listener()},
                                            {"realtime_read_only", &realtime_read_only_.listener()},
-                                           {"rtde", &rtde_.listener()},
-                                           {"dashboard", &dashboard_.listener()}};
+                                           {"rtde", &rtde_.listener()}};
+  if (dashboard_) {
+    result.emplace("dashboard", &dashboard_->listener());
+  }
+  if (robot_api_) {
+    result.emplace("robot_api", &robot_api_->listener());
+  }
   if (robotiq_) {
     result.emplace("robotiq", &robotiq_->listener());
   }
@@ -157,6 +163,21 @@ std::map<std::string, Listener *> Controller::listeners()
     result.emplace("interpreter", &interpreter_->listener());
   }
   return result;
+}
+
+std::unique_ptr<dashboard::Server> Controller::open_dashboard_server()
+{
+  return version_.is_polyscope_x() ? nullptr
+                                   : std::make_unique<dashboard::Server>(io_, options_.address,
+                                                                         options_.ports.dashboard, *pendant_);
+}
+
+std::unique_ptr<robot_api::Server> Controller::open_robot_api()
+{
+  return version_ < robot_api::Server::first_version
+             ? nullptr
+             : std::make_unique<robot_api::Server>(io_, options_.address, options_.ports.robot_api,
+                                                   *pendant_);
 }
 
 std::unique_ptr<urcap::RobotiqServer> Controller::open_robotiq_server()
@@ -201,7 +222,8 @@ Ports Controller::ports() const
   ports.secondary_read_only = secondary_read_only_.listener().port();
   ports.realtime_read_only = realtime_read_only_.listener().port();
   ports.rtde = rtde_.listener().port();
-  ports.dashboard = dashboard_.listener().port();
+  ports.dashboard = dashboard_ ? dashboard_->listener().port() : std::uint16_t{0};
+  ports.robot_api = robot_api_ ? robot_api_->listener().port() : std::uint16_t{0};
   if (robotiq_) {
     ports.robotiq = robotiq_->listener().port();
   }

@@ -25,6 +25,7 @@
 #include "primary/global_variables.hpp"
 #include "primary/interpreter_server.hpp"
 #include "primary/realtime_packet.hpp"
+#include "robot_api/server.hpp"
 #include "rtde/server.hpp"
 #include "safety/collision_monitor.hpp"
 #include "safety/safety.hpp"
@@ -77,6 +78,8 @@ class Controller {
   RobotAccess robot_access();
   std::shared_ptr<const urscript::Library> script_library();
   ProgramContext program_context();
+  std::unique_ptr<dashboard::Server> open_dashboard_server();
+  std::unique_ptr<robot_api::Server> open_robot_api();
   std::unique_ptr<urcap::RobotiqServer> open_robotiq_server();
   std::unique_ptr<primary::InterpreterServer> open_interpreter_server();
   control_port::ControlPortContext control_port_context();
@@ -144,7 +147,8 @@ class Controller {
   std::unique_ptr<primary::InterpreterServer> interpreter_;  ///< null: the version has no interpreter mode
   primary::RealtimePacket realtime_packet_;
   rtde::Server rtde_;
-  dashboard::Server dashboard_;
+  std::unique_ptr<dashboard::Server> dashboard_;   ///< null: PolyScope X
+  std::unique_ptr<robot_api::Server> robot_api_;   ///< null: the version has none
   std::unique_ptr<urcap::RobotiqServer> robotiq_;  ///< null: the URCap is not installed
   control_port::ControlPortContext control_port_context_;
   control_port::Server control_port_;

@@ -40,7 +40,12 @@ void Controller::run_cycle()
   } else if (state_.timestamp >= *switch_on_time_) {
     switch_on();
   }
-  dashboard_.cycle();
+  if (dashboard_) {
+    dashboard_->cycle();
+  }
+  if (robot_api_) {
+    robot_api_->cycle();
+  }
   if (interpreter_) {
     interpreter_->cycle();
   }

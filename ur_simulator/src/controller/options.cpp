@@ -38,14 +38,19 @@ PolyscopeVersion select_version(const SimulatorOptions & options, const RobotMod
   const std::string text =
       options.polyscope_version.empty() ? (cb3 ? "3.15.8" : "5.25.1") : options.polyscope_version;
   const auto version = PolyscopeVersion::parse(text);
-  if (!version || (version->major != 3 && version->major != 5)) {
+  constexpr PolyscopeVersion first_polyscope_x{10, 7, 0, 0};
+  const bool known = version && (version->major == 3 || version->major == 5 ||
+                                 (version->major == 10 && *version >= first_polyscope_x));
+  if (!known) {
     throw std::runtime_error(fmt::format(
-        "PolyScope version '{}' (--polyscope) is not supported: give 3.x or 5.x, such as 5.25.1", text));
+        "PolyScope version '{}' (--polyscope) is not supported: give 3.x, 5.x or, for PolyScope X, "
+        "10.7 or later, such as 5.25.1",
+        text));
   }
   if (version->is_e_series() == cb3) {
     throw std::runtime_error(
         fmt::format("model {} does not run PolyScope {}: CB3 models (ur3, ur5, ur10) run 3.x, all "
-                    "others 5.x (--model, --polyscope)",
+                    "others 5.x and 10.x (--model, --polyscope)",
                     model.name, text));
   }
   return *version;

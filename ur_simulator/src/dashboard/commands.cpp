@@ -182,19 +182,19 @@ std::string set_operational_mode(Pendant & pendant, std::string_view mode)
   if (wanted != "MANUAL" && wanted != "AUTOMATIC") {
     return fmt::format("Failed setting operational mode: {}", mode);
   }
-  pendant.operational_mode = wanted;
+  pendant.set_operational_mode(wanted);
   return fmt::format("Operational mode '{}' is set", mode);
 }
 
 std::string get_operational_mode(Pendant & pendant, std::string_view)
 {
-  return pendant.operational_mode.value_or("NONE");
+  return pendant.operational_mode().value_or("NONE");
 }
 
 std::string clear_operational_mode(Pendant & pendant, std::string_view)
 {
-  const std::string mode = pendant.operational_mode.value_or("NONE");
-  pendant.operational_mode.reset();
+  const std::string mode = pendant.operational_mode().value_or("NONE");
+  pendant.set_operational_mode(std::nullopt);
   return fmt::format("No longer controlling the operational mode. Current operational mode: '{}'.", mode);
 }
 

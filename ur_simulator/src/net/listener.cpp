@@ -23,7 +23,9 @@ std::string describe_bind_error(const boost::system::error_code & error, const t
            "(--ports)";
   }
   if (error == asio::error::access_denied) {
-    return where + " cannot be opened without privileges: select a port above 1023 (--ports)";
+    return where +
+           " cannot be opened without privileges: select a port above 1023, for the Robot API "
+           "--ports robot_api=8080";
   }
   if (error == boost::system::errc::address_not_available) {
     return where + " cannot be opened: no network interface of this machine has this address (--address)";

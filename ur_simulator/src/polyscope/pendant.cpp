@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::string_view pendant_source = "pendant";
 constexpr std::string_view script_source = "program";
+constexpr std::string_view default_program = "Default program";  // of PolyScope X
 constexpr std::string_view programs_folder_prefix = "/programs/";
 
 /// The name within the programs folder. Clients give it with or without the folder.
@@ -50,35 +51,37 @@ Pendant::Pendant(const RobotModel & model, const PendantOptions & options, Contr
       remote_control_(options.remote_control),
       reports_(state, log, options.serial_number, options.reports_folder)
 {
+  if (options_.version.is_polyscope_x()) {
+    loaded_program_ = default_program;
+    store_program(loaded_program_, {.script = "def default_program():\nend\n"});
+  }
 }
 
 // ---- stored programs
 
-void Pendant::store_program(const std::string & name, const std::string & script)
+void Pendant::store_program(const std::string & name, StoredProgram program)
 {
-  programs_.insert_or_assign(file_name(name), script);
-  external_control_hosts_.erase(file_name(name));
+  programs_.insert_or_assign(file_name(name), std::move(program));
 }
 
-void Pendant::store_external_control(const std::string & name, const ProgramHost & host)
+const StoredProgram * Pendant::find_program(const std::string & name) const
 {
-  store_program(name, "");
-  external_control_hosts_.insert_or_assign(file_name(name), host);
+  const auto found = programs_.find(file_name(name));
+  return found == programs_.end() ? nullptr : &found->second;
 }
 
 tl::expected<void, Pendant::LoadError> Pendant::load_program(const std::string & name)
 {
-  const auto found = programs_.find(file_name(name));
-  if (found == programs_.end()) {
+  const StoredProgram * program = find_program(name);
+  if (program == nullptr) {
     return tl::make_unexpected(LoadError::not_found);
   }
-  const bool external = external_control_hosts_.contains(found->first);
-  if (const auto compiled = runner_.compile(found->second); !external && !compiled) {
+  if (const auto compiled = runner_.compile(program->script); !program->external_control && !compiled) {
     log_.error(pendant_source, fmt::format("'{}' cannot be loaded: {}", name, compiled.error().text()));
     return tl::make_unexpected(LoadError::does_not_compile);
   }
   runner_.stop("another program was loaded");
-  loaded_program_ = found->first;
+  loaded_program_ = file_name(name);
   return {};
 }
 
@@ -173,9 +176,9 @@ Pendant::Result Pendant::reject_script(Result reason)
 
 void Pendant::play(const std::function<void(const Result &)> & done)
 {
-  const auto external = external_control_hosts_.find(loaded_program_);
-  if (runner_.running() || external == external_control_hosts_.end() || !request_program_ ||
-      !check_can_run()) {
+  const StoredProgram * loaded = find_program(loaded_program_);
+  const bool external = loaded != nullptr && loaded->external_control;
+  if (runner_.running() || !external || !request_program_ || !check_can_run()) {
     done(log_refusal("play", resume_or_start_program()));
     return;
   }
@@ -184,7 +187,8 @@ void Pendant::play(const std::function<void(const Result &)> & done)
     return;
   }
   program_requested_ = true;
-  request_program_(external->second, [this, done, host = external->second](const ProgramText & text) {
+  const ProgramHost host = *loaded->external_control;
+  request_program_(host, [this, done, host](const ProgramText & text) {
     program_requested_ = false;
     done(log_refusal("play", start_external_program(host, text)));
   });
@@ -208,7 +212,7 @@ Pendant::Result Pendant::resume_or_start_program()
   if (runner_.running()) {
     return runner_.resume() ? Result() : refusal("the program is running already");
   }
-  const std::string script = loaded_program_.empty() ? last_script_ : programs_.at(loaded_program_);
+  const std::string script = loaded_program_.empty() ? last_script_ : programs_.at(loaded_program_).script;
   return script.empty() ? refusal("no program is loaded") : start(script);
 }
 
@@ -267,10 +271,22 @@ Pendant::Result Pendant::restart_safety()
   return log_refusal("restart safety", safety_.restart_safety());
 }
 
-void Pendant::set_remote_control(bool remote)
+Pendant::Result Pendant::set_remote_control(bool remote)
 {
+  if (remote && in_manual_mode() && options_.version.is_polyscope_x()) {
+    return refusal("the operational mode is MANUAL: remote control needs automatic mode");
+  }
   remote_control_ = remote;
   log_.info(pendant_source, remote ? "remote control" : "local control");
+  return {};
+}
+
+void Pendant::set_operational_mode(std::optional<std::string> mode)
+{
+  operational_mode_ = std::move(mode);
+  if (in_manual_mode() && options_.version.is_polyscope_x()) {
+    set_remote_control(false);
+  }
 }
 
 }  // namespace ur_simulator

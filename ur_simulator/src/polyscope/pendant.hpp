@@ -13,6 +13,7 @@
 #include "log/event_log.hpp"
 #include "polyscope/program_runner.hpp"
 #include "polyscope/report_writer.hpp"
+#include "polyscope/stored_program.hpp"
 #include "safety/safety.hpp"
 #include "state/controller_state.hpp"
 #include "version/polyscope_version.hpp"
@@ -26,14 +27,8 @@ struct PendantOptions {
   std::string reports_folder;
 };
 
-/// The host from which the External Control URCap requests its program.
-struct ProgramHost {
-  std::string address;
-  std::uint16_t port = 50002;
-};
-
 /// The operator's functions of PolyScope: programs, power, safety, modes and popups. The dashboard server,
-/// the client interfaces and the control port use them.
+/// the Robot API, the client interfaces and the control port use them.
 class Pendant {
  public:
   /// Success, or the reason for the refusal.
@@ -46,9 +41,7 @@ class Pendant {
   // ---- programs
 
   /// Stores a program on the controller's disk. A name that ends in ".installation" is an installation.
-  void store_program(const std::string & name, const std::string & script);
-  /// Stores a program that consists of the External Control URCap's program node.
-  void store_external_control(const std::string & name, const ProgramHost & host);
+  void store_program(const std::string & name, StoredProgram program);
   tl::expected<void, LoadError> load_program(const std::string & name);
   /// Returns false if there is no such installation.
   bool load_installation(const std::string & name);
@@ -70,6 +63,10 @@ class Pendant {
   void set_program_request(ProgramRequest request) { request_program_ = std::move(request); }
 
   const std::string & loaded_program() const { return loaded_program_; }
+  /// Returns nullptr if there is no such program.
+  const StoredProgram * find_program(const std::string & name) const;
+  /// The programs on the controller's disk by name.
+  const std::map<std::string, StoredProgram> & programs() const { return programs_; }
   const std::string & installation() const { return installation_; }
 
   // ---- power and safety
@@ -79,6 +76,7 @@ class Pendant {
   Result release_brakes();
   Result unlock_protective_stop(UnlockDelay delay = UnlockDelay::required);
   Result restart_safety();
+  bool restarting_safety() const { return safety_.restarting(); }
   void close_safety_popup() { safety_popup_.reset(); }
   void show_safety_popup(std::string text) { safety_popup_ = std::move(text); }
   const std::optional<std::string> & safety_popup() const { return safety_popup_; }
@@ -93,12 +91,16 @@ class Pendant {
   /// Sets the speed slider, 0..1.
   void set_speed_slider(double fraction) { state_.speed_slider = fraction; }
   bool remote_control() const { return remote_control_; }
-  void set_remote_control(bool remote);
-  /// The dashboard server has set the operational mode to manual: programs cannot be started remotely.
-  bool in_manual_mode() const { return operational_mode == "MANUAL"; }
+  /// PolyScope X refuses remote control in manual mode.
+  Result set_remote_control(bool remote);
+  /// Sets the operational mode: "MANUAL" or "AUTOMATIC"; nullopt: PolyScope 5 no longer controls it. With
+  /// PolyScope X, manual mode ends remote control.
+  void set_operational_mode(std::optional<std::string> mode);
+  /// Programs cannot be started remotely.
+  bool in_manual_mode() const { return operational_mode_ == "MANUAL"; }
 
-  /// "MANUAL" or "AUTOMATIC" while the dashboard server controls the mode.
-  std::optional<std::string> operational_mode;
+  /// "MANUAL" or "AUTOMATIC", if it has been set.
+  const std::optional<std::string> & operational_mode() const { return operational_mode_; }
   /// CB3 only: "PROGRAMMER", "OPERATOR", "NONE", "LOCKED" or "RESTRICTED".
   std::string user_role = "PROGRAMMER";
 
@@ -107,6 +109,7 @@ class Pendant {
   const PendantOptions & options() const { return options_; }
   const ControllerState & state() const { return state_; }
   ProgramRunner & runner() { return runner_; }
+  const ProgramRunner & runner() const { return runner_; }
   EventLog & log() { return log_; }
 
  private:
@@ -128,9 +131,9 @@ class Pendant {
   ProgramRunner & runner_;
   EventLog & log_;
   bool remote_control_;
+  std::optional<std::string> operational_mode_;
   bool shutdown_requested_ = false;
-  std::map<std::string, std::string> programs_;
-  std::map<std::string, ProgramHost> external_control_hosts_;  ///< of the External Control programs
+  std::map<std::string, StoredProgram> programs_;
   ProgramRequest request_program_;
   bool program_requested_ = false;
   ReportWriter reports_;

@@ -65,7 +65,7 @@ PendingReply ReportWriter::start_report(double duration, std::function<std::stri
   // Whether a report is being generated depends on the simulated time only, because the client may disconnect
   // before the report is finished. A reboot resets the time and ends the report.
   const double now = state_.timestamp;
-  if (now >= report_started_ && now < report_finished_) {
+  if (busy()) {
     return immediate_reply("Error: Another report is already being generated");
   }
   report_started_ = now;
@@ -86,19 +86,29 @@ std::string ReportWriter::finish_flight_report(const std::string & type)
 std::string ReportWriter::finish_support_file(const std::string & folder)
 {
   const std::string report = finish_flight_report("system");
-  if (report.starts_with("Error")) {
+  if (is_error(report)) {
     return report;
   }
+  const std::string name =
+      fmt::format("ur_{}_{:%Y-%m-%d_%H-%M-%S}.zip", serial_number_, fmt::gmtime(std::time(nullptr)));
+  const auto failure = write_file(name, archive());
+  return failure ? *failure : fmt::format("Completed successfully: {}/{}", folder, name);
+}
+
+bool ReportWriter::busy() const
+{
+  return state_.timestamp >= report_started_ && state_.timestamp < report_finished_;
+}
+
+std::string ReportWriter::archive() const
+{
   std::vector<std::pair<std::string, std::string>> content;
   for (const auto & [name, text] : files_) {
     if (!name.ends_with(".zip")) {
       content.emplace_back(name, text);
     }
   }
-  const std::string name =
-      fmt::format("ur_{}_{:%Y-%m-%d_%H-%M-%S}.zip", serial_number_, fmt::gmtime(std::time(nullptr)));
-  const auto failure = write_file(name, zip_archive(content));
-  return failure ? *failure : fmt::format("Completed successfully: {}/{}", folder, name);
+  return content.empty() ? "" : zip_archive(content);
 }
 
 std::string ReportWriter::save_log()

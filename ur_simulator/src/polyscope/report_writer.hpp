@@ -33,6 +33,12 @@ class ReportWriter {
   PendingReply start_support_file(std::string_view folder);
   /// Returns the dashboard reply.
   std::string save_log();
+  /// Whether a report is being generated.
+  bool busy() const;
+  /// Whether a reply reports a failure.
+  static bool is_error(std::string_view reply) { return reply.starts_with("Error"); }
+  /// A ZIP archive with all reports and logs; "" if there are none.
+  std::string archive() const;
 
  private:
   PendingReply start_report(double duration, std::function<std::string()> finish);

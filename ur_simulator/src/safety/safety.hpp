@@ -67,6 +67,7 @@ class Safety {
   void trigger_violation(std::string_view reason);
   void trigger_fault(std::string_view reason);
   SafetyResult restart_safety();
+  bool restarting() const { return restart_ends_at_ >= 0.0; }
 
   void set_limits(const SafetyLimits & limits) { limits_ = limits; }
   const SafetyLimits & limits() const { return limits_; }

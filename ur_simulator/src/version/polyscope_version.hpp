@@ -9,7 +9,7 @@
 namespace ur_simulator {
 
 /// Version of the controller software. Major version 3 runs on CB3 controllers (125 Hz control rate), major
-/// version 5 on e-Series controllers (500 Hz).
+/// versions 5 and 10 (PolyScope X) on e-Series controllers (500 Hz).
 struct PolyscopeVersion {
   std::uint32_t major = 5;
   std::uint32_t minor = 0;
@@ -19,6 +19,13 @@ struct PolyscopeVersion {
   auto operator<=>(const PolyscopeVersion &) const = default;
 
   bool is_e_series() const { return major >= 5; }
+  bool is_polyscope_x() const { return major >= 10; }
+  /// The version of PolyScope 5 whose controller has the same interfaces: 5.23 for 10.10, 5.25 for 10.12
+  /// (Universal Robots Client Library: first versions of direct torque control and of friction scales).
+  PolyscopeVersion controller_version() const
+  {
+    return is_polyscope_x() ? PolyscopeVersion{5, minor + 13, bugfix, build} : *this;
+  }
   /// Duration of a control cycle, s.
   double cycle_time() const { return is_e_series() ? 0.002 : 0.008; }
   /// "5.25.1.0"
@@ -28,6 +35,7 @@ struct PolyscopeVersion {
 };
 
 /// The first version of each controller generation that has a feature; `never` if the generation lacks it.
+/// PolyScope X has the features of the version of PolyScope 5 with the same controller.
 struct MinVersion {
   static constexpr PolyscopeVersion always{0, 0, 0, 0};
   static constexpr PolyscopeVersion never{0xffffffff, 0, 0, 0};
@@ -37,7 +45,7 @@ struct MinVersion {
 
   bool is_met_by(const PolyscopeVersion & version) const
   {
-    return version >= (version.is_e_series() ? e_series : cb3);
+    return version.controller_version() >= (version.is_e_series() ? e_series : cb3);
   }
 };
 
