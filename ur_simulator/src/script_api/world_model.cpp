@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t frame_limit = 100;
 constexpr const char * world = "world";
+constexpr const char * base_frame = "base";
 
 struct FixedFrame {
   const char * name;
@@ -17,7 +18,7 @@ struct FixedFrame {
 };
 
 // Frames that programs can neither add nor move. The world has no parent.
-constexpr FixedFrame fixed_frames[] = {{world, ""}, {"base", world}, {"flange", "base"}, {"tcp", "flange"}};
+constexpr FixedFrame fixed_frames[] = {{world, ""}, {"flange", base_frame}, {"tcp", "flange"}};
 
 const FixedFrame * find_fixed(const std::string & name)
 {
@@ -33,6 +34,11 @@ tl::unexpected<std::string> no_frame(const std::string & name)
 
 }  // namespace
 
+std::map<std::string, WorldModel::Frame> WorldModel::initial_frames()
+{
+  return {{base_frame, {world, Transform::Identity()}}};
+}
+
 void WorldModel::set_arm(const Transform & flange, const Transform & tcp)
 {
   flange_ = flange;
@@ -41,21 +47,26 @@ void WorldModel::set_arm(const Transform & flange, const Transform & tcp)
 
 bool WorldModel::contains(const std::string & name) const
 {
-  return find_fixed(name) != nullptr || added_.contains(name);
+  return find_fixed(name) != nullptr || frames_.contains(name);
 }
 
 tl::expected<Transform, std::string> WorldModel::pose(const std::string & name) const
 {
   Transform total = Transform::Identity();
   std::string at = name;
-  for (auto frame = added_.find(at); frame != added_.end(); frame = added_.find(at)) {
-    total = frame->second.pose * total;
-    at = frame->second.parent;
+  while (at != world) {
+    const auto frame = frames_.find(at);
+    if (frame != frames_.end()) {
+      total = frame->second.pose * total;
+      at = frame->second.parent;
+    } else if (find_fixed(at) != nullptr) {
+      total = (at == "tcp" ? tcp_ : flange_) * total;
+      at = base_frame;
+    } else {
+      return no_frame(name);
+    }
   }
-  if (find_fixed(at) == nullptr) {
-    return no_frame(name);
-  }
-  return Transform(at == "flange" ? flange_ * total : at == "tcp" ? tcp_ * total : total);
+  return total;
 }
 
 tl::expected<std::string, std::string> WorldModel::parent(const std::string & name) const
@@ -63,8 +74,8 @@ tl::expected<std::string, std::string> WorldModel::parent(const std::string & na
   if (const FixedFrame * frame = find_fixed(name)) {
     return std::string(frame->parent);
   }
-  const auto found = added_.find(name);
-  if (found == added_.end()) {
+  const auto found = frames_.find(name);
+  if (found == frames_.end()) {
     return no_frame(name);
   }
   return found->second.parent;
@@ -78,7 +89,7 @@ std::vector<std::string> WorldModel::children(const std::string & name) const
       result.emplace_back(frame.name);
     }
   }
-  for (const auto & [child, frame] : added_) {
+  for (const auto & [child, frame] : frames_) {
     if (frame.parent == name) {
       result.push_back(child);
     }
@@ -108,21 +119,21 @@ WorldModel::Result WorldModel::add(const std::string & name, const Transform & p
     return tl::unexpected(
         fmt::format("the world model has a frame '{}' already, or the name is empty", name));
   }
-  if (added_.size() >= frame_limit) {
+  if (frames_.size() > frame_limit) {
     return tl::unexpected(fmt::format("the world model has {} frames already", frame_limit));
   }
   const auto place = placement(world, pose_in_reference, reference);
   if (!place) {
     return tl::unexpected(place.error());
   }
-  added_[name] = {world, *place};
+  frames_[name] = {world, *place};
   return {};
 }
 
-tl::expected<WorldModel::Frame *, std::string> WorldModel::added(const std::string & name)
+tl::expected<WorldModel::Frame *, std::string> WorldModel::movable(const std::string & name)
 {
-  const auto found = added_.find(name);
-  if (found != added_.end()) {
+  const auto found = frames_.find(name);
+  if (found != frames_.end()) {
     return &found->second;
   }
   return find_fixed(name) == nullptr ? no_frame(name)
@@ -132,7 +143,7 @@ tl::expected<WorldModel::Frame *, std::string> WorldModel::added(const std::stri
 WorldModel::Result WorldModel::move(const std::string & name, const Transform & pose_in_reference,
                                     const std::string & reference)
 {
-  const auto frame = added(name);
+  const auto frame = movable(name);
   if (!frame) {
     return tl::unexpected(frame.error());
   }
@@ -146,13 +157,13 @@ WorldModel::Result WorldModel::move(const std::string & name, const Transform & 
 
 WorldModel::Result WorldModel::attach(const std::string & child, const std::string & parent_name)
 {
-  const auto frame = added(child);
+  const auto frame = movable(child);
   if (!frame) {
     return tl::unexpected(frame.error());
   }
-  for (auto above = added_.find(parent_name); above != added_.end();
-       above = added_.find(above->second.parent)) {
-    if (above->first == child) {
+  for (auto above = tl::expected<std::string, std::string>(parent_name); above && *above != world;
+       above = parent(*above)) {
+    if (*above == child) {
       return tl::unexpected(fmt::format("the frame '{}' is attached to '{}' already", parent_name, child));
     }
   }
@@ -166,14 +177,17 @@ WorldModel::Result WorldModel::attach(const std::string & child, const std::stri
 
 WorldModel::Result WorldModel::erase(const std::string & name)
 {
-  const auto frame = added(name);
+  if (name == base_frame) {
+    return tl::unexpected(fmt::format("the frame '{}' cannot be deleted", name));
+  }
+  const auto frame = movable(name);
   if (!frame) {
     return tl::unexpected(frame.error());
   }
   for (const std::string & child : children(name)) {
     attach(child, world);
   }
-  added_.erase(name);
+  frames_.erase(name);
   return {};
 }
 

@@ -44,6 +44,32 @@ TEST(WorldModelTest, PosesAreConvertedBetweenFrames)
   EXPECT_EQ(fixture.global("z"), "0");
 }
 
+// UR, "World Model API": the base may be moved and attached, the arm moves with it.
+TEST(WorldModelTest, ArmFollowsBaseUntilReset)
+{
+  ScriptFixture fixture;
+  EXPECT_EQ(fixture.error_of(R"(def test():
+    move_frame("base", p[1, 2, 0, 0, 0, 0], "world")
+    a = pose_dist(get_pose("base", "world"), p[1, 2, 0, 0, 0, 0]) < 0.000001
+    b = point_dist(get_pose("tcp", "world"), pose_trans(p[1, 2, 0, 0, 0, 0], get_actual_tcp_pose())) < 0.000001
+    add_frame("rail", p[0, 0, 1, 0, 0, 0], "world")
+    attach_frame("base", "rail")
+    move_frame("rail", p[0, 0, 2, 0, 0, 0], "world")
+    c = pose_dist(get_pose("base", "world"), p[1, 2, 1, 0, 0, 0]) < 0.000001
+    reset_world_model()
+    x = [a, b, c, pose_dist(get_pose("base", "world"), p[0, 0, 0, 0, 0, 0])]
+  end)"),
+            "");
+  EXPECT_EQ(fixture.global("x"), "[True, True, True, 0]");
+  EXPECT_EQ(fixture.error_of("delete_frame(\"base\")"), "delete_frame: the frame 'base' cannot be deleted");
+  EXPECT_EQ(fixture.error_of(R"(def test():
+    add_frame("a", p[0, 0, 0, 0, 0, 0])
+    attach_frame("a", "tcp")
+    attach_frame("base", "a")
+  end)"),
+            "attach_frame: the frame 'a' is attached to 'base' already");
+}
+
 TEST(WorldModelTest, RefusesUnknownFixedAndCyclicFrames)
 {
   ScriptFixture fixture;
