@@ -164,7 +164,11 @@ class WorldFileReader {
 
 WorldFile read_world_file(const std::string & path)
 {
-  const std::string text = read_file(path);
+  return parse_world_file(read_file(path), path);
+}
+
+WorldFile parse_world_file(const std::string & text, const std::string & path)
+{
   try {
     return WorldFileReader(path).read(YAML::Load(text));
   } catch (const YamlError & error) {

@@ -23,5 +23,7 @@ struct WorldFile {
 /// Throws std::runtime_error with file, line, field, value and remedy if the file cannot be read or is
 /// invalid.
 WorldFile read_world_file(const std::string & path);
+/// The same for the content of a file. `path` appears in messages.
+WorldFile parse_world_file(const std::string & text, const std::string & path);
 
 }  // namespace ur_simulator

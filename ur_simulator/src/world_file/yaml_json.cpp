@@ -30,9 +30,20 @@ std::optional<Number> parse_number(std::string_view text)
   return number;
 }
 
+/// The text of a scalar. JSON, in which it is reported, consists of UTF-8.
+const std::string & text_of(const YAML::Node & node)
+{
+  try {
+    (void)json(node.Scalar()).dump();
+  } catch (const json::type_error &) {
+    throw YamlError(line_of(node), "the text is not UTF-8: save the file with this encoding");
+  }
+  return node.Scalar();
+}
+
 json scalar_to_json(const YAML::Node & node)
 {
-  const std::string & text = node.Scalar();
+  const std::string & text = text_of(node);
   if (node.Tag() == "!") {  // quoted
     return text;
   }
@@ -93,7 +104,7 @@ class Converter {
       if (!key.IsScalar()) {
         throw YamlError(line_of(key), "a name of a field is missing: give name: value");
       }
-      const std::string & name = key.Scalar();
+      const std::string & name = text_of(key);
       if (result.contains(name)) {
         throw YamlError(line_of(key), fmt::format("field '{}' is given twice: remove one of them", name));
       }

@@ -109,6 +109,16 @@ TEST(WorldFileTest, ErrorsOfTheStructureNameTheLine)
   EXPECT_TRUE(error_of("a: [1\nb: 2\n").starts_with(":2: no valid YAML: ")) << error_of("a: [1\nb: 2\n");
 }
 
+TEST(WorldFileTest, RefusesTextThatIsNotUtf8)
+{
+  const std::string message = ": the text is not UTF-8: save the file with this encoding";
+  EXPECT_EQ(error_of("boxes: []\nsurfaces:\n  - {z: \xd1}\n"), ":3" + message);
+  EXPECT_EQ(error_of("load: {m\xff: 1}\n"), ":1" + message);
+  EXPECT_EQ(error_of("boxes:\n  - \xc3\x28\n"), ":2" + message);
+  EXPECT_EQ(error_of("load: {mass: 1, m\u00e4ss: 2}\n"),
+            ":1: field 'm\u00e4ss' is not known to this command: see \"help\"");
+}
+
 TEST(WorldFileTest, ErrorOfAFileThatCannotBeReadNamesTheOption)
 {
   try {
