@@ -6,8 +6,8 @@
 #include "script/program.hpp"
 #include "script/scan.hpp"
 
-// Scripts and extensions of users, which the driver completes before it sends them. The parts of the input
-// are separated by the byte 1.
+// Scripts and extensions of users, which the driver completes before it sends them. The parts of the
+// extensions are separated by the byte 1.
 
 namespace {
 
@@ -26,9 +26,9 @@ $5.10|3.15 y = 1
         end
 )";
 
-std::array<std::string, 5> split(std::string_view text)
+std::array<std::string, 4> split(std::string_view text)
 {
-  std::array<std::string, 5> parts;
+  std::array<std::string, 4> parts;
   for (std::string & part : parts) {
     part = text.substr(0, text.find('\1'));
     text.remove_prefix(std::min(text.size(), part.size() + 1));
@@ -43,8 +43,9 @@ void require(bool condition)
   }
 }
 
-void add_extensions(const std::array<std::string, 5> & parts)
+void add_extensions(std::string_view text, unsigned major, unsigned minor)
 {
+  const auto parts = split(text);
   ScriptExtension first;
   first.name = parts[0];
   first.snippet = parts[1];
@@ -58,25 +59,21 @@ void add_extensions(const std::array<std::string, 5> & parts)
     return;
   }
   require(script->ids.size() == 2);
-  for (const auto & [major, minor] : {std::pair(5U, 10U), std::pair(5U, 25U), std::pair(3U, 15U)}) {
-    const auto sent = script::for_controller(*script, major, minor, minor == 25);
-    for (int line = 0; sent && line < 200; ++line) {
-      (void)script::place(*sent, line);
-    }
+  const auto sent = script::for_controller(*script, major, minor, minor == 25);
+  for (int line = 0; sent && line < 50; ++line) {
+    (void)script::place(*sent, line);
   }
 }
 
-void make_program(const std::string & script)
+void make_program(std::string_view text, bool secondary)
 {
-  for (const bool secondary : {false, true}) {
-    const auto program = script::make_program(script, {secondary, "begin", "end", "a = 1"});
-    // What is sent is one program, also if the script tries to end it early.
-    if (program) {
-      const auto scanned = script::scan(program->text.text());
-      require(scanned && !scanned->tokens.empty());
-      require(scanned->tokens.front().is(secondary ? "sec" : "def"));
-      require(scanned->block_from(0)->last + 1 == scanned->tokens.size());
-    }
+  const auto program = script::make_program(std::string(text), {secondary, "begin", "end", "a = 1"});
+  // What is sent is one program, also if the script tries to end it early.
+  if (program) {
+    const auto scanned = script::scan(program->text.text());
+    require(scanned && !scanned->tokens.empty());
+    require(scanned->tokens.front().is(secondary ? "sec" : "def"));
+    require(scanned->block_from(0)->last + 1 == scanned->tokens.size());
   }
 }
 
@@ -84,8 +81,21 @@ void make_program(const std::string & script)
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t * data, std::size_t size)
 {
-  const auto parts = split(ur_fuzz::Input(data, size).take_piece(0));
-  add_extensions(parts);
-  make_program(parts[4]);
+  ur_fuzz::Input input(data, size);
+  const unsigned kind = input.take_option() % 5;
+  const std::string_view text = input.take_piece(0);
+  switch (kind) {
+    case 0:
+      add_extensions(text, 5, 10);
+      break;
+    case 1:
+      add_extensions(text, 5, 25);
+      break;
+    case 2:
+      add_extensions(text, 3, 15);
+      break;
+    default:
+      make_program(text, kind == 3);
+  }
   return 0;
 }

@@ -4,10 +4,13 @@
 #include <boost/system/error_code.hpp>
 #include <iostream>
 
+#include "connection/ports.hpp"
+#include "connection/rtde/rtde_probe.hpp"
 #include "input.hpp"
-#include "reply_server.hpp"
+#include "memory_socket.hpp"
 
-// The bytes that an RTDE server sends to ur_rtde: replies of the negotiation, then data packages.
+// The bytes that an RTDE server sends to ur_rtde, replies of the negotiation and data packages, and to the
+// driver when it tests whether there is one.
 
 namespace {
 
@@ -33,9 +36,9 @@ const std::string negotiation =
     "DOUBLE,"s
     "\x00\x04S\x01"s;
 
-void receive_all(std::uint16_t port)
+void receive_all()
 {
-  ur_rtde::RTDE rtde(ur_fuzz::test_address(), port);
+  ur_rtde::RTDE rtde(ur_fuzz::address, ur_ros_rtde::rtde_port);
   rtde.connect();
   rtde.negotiateProtocolVersion();
   rtde.getControllerVersion();
@@ -51,14 +54,20 @@ void receive_all(std::uint16_t port)
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t * data, std::size_t size)
 {
-  static ur_fuzz::ReplyServer server(ur_fuzz::test_address(), 0);
   static const auto * const no_output = std::cerr.rdbuf(nullptr);
   (void)no_output;
   ur_fuzz::Input input(data, size);
-  const bool negotiated = input.take_option() % 2 == 1;
-  server.set_reply((negotiated ? negotiation : "") + std::string(input.take_piece(0)));
+  const unsigned kind = input.take_option() % 4;
+  const std::size_t piece = input.take_option();
+  const bool negotiated = kind % 2 == 1;
+  const std::string bytes = (negotiated ? negotiation : "") + std::string(input.take_piece(0));
+  ur_fuzz::set_replies(bytes, piece);
+  if (kind == 2) {
+    (void)ur_ros_rtde::probe_rtde(ur_fuzz::address, std::chrono::seconds(2));
+    return 0;
+  }
   try {
-    receive_all(server.port());
+    receive_all();
   } catch (const std::exception &) {  // the error that the driver handles
   }
   return 0;

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <boost/system/system_error.hpp>
 
-#include "../fuzz/reply_server.hpp"
 #include "connection/ports.hpp"
+#include "reply_server.hpp"
 #include "support.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
 

@@ -29,6 +29,13 @@ class Input {
     rest_.remove_prefix(piece.size());
     return piece;
   }
+  /// Removes the first line and returns it without its line end.
+  std::string_view take_line()
+  {
+    const std::string_view line = rest_.substr(0, rest_.find('\n'));
+    rest_.remove_prefix(std::min(rest_.size(), line.size() + 1));
+    return line;
+  }
   bool empty() const { return rest_.empty(); }
 
  private:

@@ -1,5 +1,5 @@
 # Adds the test fuzz.<name>: the target fuzz/fuzz_<name>.cpp of this package on its corpus and on mutations of it, with
-# any compiler. libFuzzer itself is used by ./ur fuzz.
+# any compiler. libFuzzer itself is used by ./ur fuzz. The mutations should take about 25 s of processor time.
 function(add_fuzz_replay name mutations)
   set(fuzz ${PROJECT_SOURCE_DIR}/fuzz)
   add_executable(replay_${name} ${fuzz}/fuzz_${name}.cpp ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/replay.cpp)
@@ -9,5 +9,5 @@ function(add_fuzz_replay name mutations)
   target_compile_options(replay_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
   target_link_libraries(replay_${name} PRIVATE ${ARGN})
   add_test(NAME fuzz.${name} COMMAND replay_${name} ${fuzz}/corpus/${name} ${mutations})
-  set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT 120 LABELS background)
+  set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT 600 LABELS background)
 endfunction()

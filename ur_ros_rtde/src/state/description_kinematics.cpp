@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde_trajectory/limits.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -91,7 +91,7 @@ std::optional<JointOrigins> read_description(const std::string & urdf, const std
   JointOrigins origins;
   std::string last_link;
   for (std::size_t i = 0; i < origins.size(); ++i) {
-    const auto found = joints.find(prefix + joint_names()[i]);
+    const auto found = joints.find(prefix + std::string(trajectory::joint_name(static_cast<int>(i))));
     if (found == joints.end() || !turns_about_z(*found->second) ||
         (i > 0 && link_of(*found->second, "parent") != last_link)) {
       return std::nullopt;

@@ -23,11 +23,10 @@ class Server {
   void accept(const std::shared_ptr<Connection> & connection) { server_.accept(connection); }
   Listener & listener() { return server_.listener(); }
   const Listener & listener() const { return server_.listener(); }
-
- private:
-  /// Empty for an empty line.
+  /// The reply to a line, with its line end. Empty for an empty line.
   std::string reply_to(std::string_view line) const;
 
+ private:
   RequestHandler handle_request_;
   LineServer server_;
 };

@@ -18,9 +18,10 @@ class RobotiqServer {
   RobotiqServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
                 RobotiqGripper & gripper);
   Listener & listener() { return server_.listener(); }
+  /// Executes a line and returns its reply.
+  std::string answer(std::string_view line);
 
  private:
-  std::string answer(std::string_view line);
   std::string set(std::string_view assignments);
 
   RobotiqGripper & gripper_;
