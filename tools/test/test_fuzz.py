@@ -1,8 +1,7 @@
 """./ur fuzz: its targets, their corpora and the command line of libFuzzer."""
 
 import pytest
-from ur_tools import console, fuzz
-from ur_tools.layout import ROOT
+from ur_tools import console, fuzz, layout
 
 
 def test_every_target_has_a_corpus_and_is_built_and_replayed():
@@ -16,7 +15,7 @@ def test_every_target_has_a_corpus_and_is_built_and_replayed():
 
 
 def test_every_corpus_has_a_target():
-    corpora = {path.name for path in ROOT.glob("*/fuzz/corpus/*")}
+    corpora = {path.name for path in layout.ROOT.glob("*/fuzz/corpus/*")}
     assert corpora == set(fuzz.targets())
 
 
@@ -26,9 +25,12 @@ def test_an_unknown_target_is_refused_with_the_known_ones():
     assert fuzz.selected([]) == fuzz.targets()
 
 
-def test_new_inputs_are_kept_apart_from_the_seeds(tmp_path):
-    command = fuzz.command(tmp_path, "urscript", 5, 1000)
-    assert "-max_total_time=5" in command and "-runs=1000" in command
-    # libFuzzer writes to the first corpus only.
-    assert command[-2:] == [str(tmp_path / "corpus" / "urscript"), str(ROOT / "ur_simulator" / "fuzz" / "corpus" / "urscript")]
-    assert (tmp_path / "corpus" / "urscript").is_dir()
+def test_new_inputs_are_kept_apart_from_the_seeds(tmp_path, monkeypatch):
+    monkeypatch.setattr(layout, "STATE", tmp_path)
+    for fast, build in ((False, "fuzz"), (True, "fuzz-fast")):
+        command = fuzz.command(layout.Layout("kilted"), "urscript", fast, "-runs=1000")
+        assert command[:2] == [str(tmp_path / "kilted" / build / "fuzz_urscript"), "-runs=1000"]
+        # libFuzzer writes to the first corpus only. The builds share it.
+        found = tmp_path / "kilted" / "fuzz" / "corpus" / "urscript"
+        assert command[-2:] == [str(found), str(layout.ROOT / "ur_simulator" / "fuzz" / "corpus" / "urscript")]
+        assert found.is_dir()

@@ -6,6 +6,7 @@ import subprocess
 from typing import Dict, List
 
 from . import console
+from . import fuzz_campaign as campaign
 from .environment import build_environment
 from .layout import ROOT, Layout
 
@@ -13,6 +14,8 @@ PROJECT = ROOT / "tools" / "fuzz"
 COMPILER = "clang++"
 INPUT_BYTES = 4096
 INPUT_SECONDS = 10
+# A small quarantine and short stacks of allocations save time. Remove them to see where the memory of a report came from.
+ASAN_OPTIONS = "quarantine_size_mb=8:malloc_context_size=2"
 
 
 def folders() -> Dict[str, pathlib.Path]:
@@ -31,34 +34,58 @@ def selected(names: List[str]) -> List[str]:
     return names or targets()
 
 
-def _build(layout: Layout, names: List[str], jobs: int) -> pathlib.Path:
-    folder = layout.base / "fuzz"
+def build_folder(layout: Layout, fast: bool) -> pathlib.Path:
+    return layout.base / ("fuzz-fast" if fast else "fuzz")
+
+
+def _build(layout: Layout, names: List[str], fast: bool, jobs: int) -> None:
+    folder = build_folder(layout, fast)
     cmake = str(layout.venv / "bin" / "cmake")
     env = build_environment(layout, jobs)
     subprocess.run([cmake, "-S", str(PROJECT), "-B", str(folder), "-GNinja", "-DCMAKE_BUILD_TYPE=Release",
-                    f"-DCMAKE_CXX_COMPILER={COMPILER}"], env=env, check=True)
+                    f"-DCMAKE_CXX_COMPILER={COMPILER}", f"-DFUZZ_FAST={'ON' if fast else 'OFF'}"], env=env, check=True)
     subprocess.run([cmake, "--build", str(folder), "--target", *(f"fuzz_{name}" for name in names)], env=env, check=True)
-    return folder
 
 
-def command(folder: pathlib.Path, name: str, seconds: int, executions: int = -1) -> List[str]:
-    """Returns the command that fuzzes one target. Inputs that it finds are kept between runs; `folder` is the build."""
+def command(layout: Layout, name: str, fast: bool, *options: str) -> List[str]:
+    """Returns the command that fuzzes one target. The inputs that it finds are kept between runs and builds."""
+    folder = build_folder(layout, False)
     found = folder / "corpus" / name
     found.mkdir(parents=True, exist_ok=True)
-    return [str(folder / f"fuzz_{name}"), f"-max_total_time={seconds}", f"-runs={executions}", f"-max_len={INPUT_BYTES}",
-            f"-timeout={INPUT_SECONDS}", f"-artifact_prefix={folder}/{name}-", "-print_final_stats=1", str(found),
-            str(folders()[name] / "corpus" / name)]
+    return [str(build_folder(layout, fast) / f"fuzz_{name}"), *options, f"-max_len={INPUT_BYTES}", f"-timeout={INPUT_SECONDS}",
+            f"-artifact_prefix={folder}/{name}-", "-print_final_stats=1", str(found), str(folders()[name] / "corpus" / name)]
 
 
-def run(layout: Layout, names: List[str], seconds: int, executions: int, jobs: int) -> int:
+def _environment(layout: Layout) -> Dict[str, str]:
+    """Returns the environment of a target."""
+    env = build_environment(layout, 1)
+    env["LD_LIBRARY_PATH"] = str(layout.venv / "lib")  # of ament_index_cpp
+    env.setdefault("ASAN_OPTIONS", ASAN_OPTIONS)
+    return env
+
+
+def _campaign(layout: Layout, names: List[str], fast: bool, options: List[str], executions: int, jobs: int) -> List[str]:
+    """Runs the targets and returns those that failed."""
+    _build(layout, names, fast, jobs)
+    folder = build_folder(layout, False)
+    targets = [campaign.Target(name, command(layout, name, fast, *options), folder / f"{name}.log") for name in names]
+    results = campaign.run(targets, _environment(layout), executions, jobs)
+    console.line(campaign.table(results))
+    return [result.name for result in results if result.failed]
+
+
+def run(layout: Layout, names: List[str], seconds: int, executions: int, fast: bool, jobs: int) -> int:
+    """Fuzzes the targets; 0 seconds, -1 executions: no limit. After a fast run, the saved inputs run with all sanitizers."""
     chosen = selected(names)
     if shutil.which(COMPILER) is None:
         raise console.Failure(f"{COMPILER} is not installed; libFuzzer is part of clang (Debian package clang)")
-    folder = _build(layout, chosen, max(jobs, 1))
-    env = build_environment(layout, 1)
-    env["LD_LIBRARY_PATH"] = str(layout.venv / "lib")  # of ament_index_cpp
-    failed = [name for name in chosen if subprocess.run(command(folder, name, seconds, executions), env=env).returncode != 0]
+    failed = _campaign(layout, chosen, fast, [f"-max_total_time={seconds}", f"-runs={executions}"], executions, jobs)
+    passed = [name for name in chosen if name not in failed]
+    if fast and passed:
+        console.step("Running the saved inputs with AddressSanitizer")
+        failed += _campaign(layout, passed, False, ["-runs=0"], -1, jobs)
+    folder = build_folder(layout, False)
     for name in failed:
-        console.line(f"{name} failed; the input is in {folder}/{name}-*. Add it to "
+        console.line(f"{name} failed: {folder}/{name}.log has the report, {folder}/{name}-* is the input. Add it to "
                      f"{folders()[name].relative_to(ROOT)}/corpus/{name} with the fix.")
     return 1 if failed else 0

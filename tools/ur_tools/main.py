@@ -165,7 +165,8 @@ def command_lint(options: argparse.Namespace) -> int:
 
 
 def command_fuzz(options: argparse.Namespace) -> int:
-    return fuzz.run(_prepared(options), options.names, options.seconds, options.executions, options.jobs)
+    seconds = options.seconds if options.seconds is not None else 0 if options.executions > 0 else 60
+    return fuzz.run(_prepared(options), options.names, seconds, options.executions, options.fast, max(options.jobs, 1))
 
 
 def _prepared(options: argparse.Namespace) -> Layout:
@@ -268,9 +269,11 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
 
     sub = add("fuzz", command_fuzz, "feed random input to the parsers of the simulator and the driver; needs clang")
     sub.add_argument("names", nargs="*", metavar="TARGET", help=f"fuzz targets (default: all: {', '.join(fuzz.targets())})")
-    sub.add_argument("--seconds", type=int, default=60, metavar="S", help="duration for each target (default: %(default)s)")
+    sub.add_argument("--seconds", type=int, metavar="S", help="duration for each target (default: 60, or unlimited with --executions)")
     sub.add_argument("--executions", type=int, default=-1, metavar="N", help="end a target after N inputs, also before its time")
-    sub.add_argument("-j", "--jobs", type=int, default=2, metavar="N", help="jobs of the build (default: %(default)s)")
+    sub.add_argument("--fast", action="store_true", help="without AddressSanitizer, with which the saved inputs run at the end")
+    sub.add_argument("-j", "--jobs", type=int, default=2, metavar="N",
+                     help="targets that run at the same time, and jobs of the build (default: %(default)s)")
     sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
 
     add_forwarding("doctor", command_doctor, "check this machine, or with --robot ADDRESS a robot, and give advice; status 1 if it "
