@@ -3,13 +3,14 @@
 #include "simulated_robot.hpp"
 #include "socket_pair.hpp"
 
-// What an HTTP client sends to the Robot API of PolyScope X in one or two pieces, with some control cycles.
+// What an HTTP client sends to the Robot API of PolyScope X in one or two pieces. One request is executed per
+// control cycle.
 
 namespace {
 
 using namespace ur_simulator;
 
-constexpr int cycles = 3;
+constexpr int cycles = 12;
 
 struct Target {
   void run(ur_fuzz::Input input)

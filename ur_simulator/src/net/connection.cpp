@@ -35,7 +35,7 @@ void Connection::start(DataHandler on_data, CloseHandler on_close)
 
 void Connection::read()
 {
-  if (reading_ || stalled_ || reading_paused_) {
+  if (reading_ || stalled_ || reading_paused_ || end_of_input_) {
     return;
   }
   reading_ = true;
@@ -50,6 +50,10 @@ void Connection::read()
 void Connection::handle_read(const boost::system::error_code & error, std::size_t size)
 {
   if (!open_) {
+    return;
+  }
+  if (error == asio::error::eof && half_close_allowed_) {
+    end_of_input_ = true;
     return;
   }
   if (error && error != asio::error::operation_aborted) {  // set_stalled() aborts the read

@@ -39,6 +39,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void reset();
   /// A stalled connection neither reads nor writes but stays open, as if the cable were unplugged.
   void set_stalled(bool stalled);
+  /// Keeps the connection open for sending when the peer has ended its direction.
+  void allow_half_close() { half_close_allowed_ = true; }
+  /// Whether the peer has ended its direction of a connection that may be half-closed.
+  bool end_of_input() const { return end_of_input_; }
   /// Pauses or resumes reading. While it is paused, TCP slows the peer down.
   void set_reading_paused(bool paused);
   /// Delays all data in both directions from now on. 0 ends the delay.
@@ -90,6 +94,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool close_after_sending_ = false;
   bool stalled_ = false;
   bool reading_paused_ = false;
+  bool half_close_allowed_ = false;
+  bool end_of_input_ = false;
   std::chrono::milliseconds delay_{0};
   boost::asio::steady_timer delay_timer_;
   std::deque<DelayedData> delayed_;

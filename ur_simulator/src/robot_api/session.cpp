@@ -20,7 +20,7 @@ namespace http = boost::beast::http;
 
 // Of a reply that is longer than the connection's buffer, one piece is sent per control cycle.
 constexpr std::size_t piece_size = 32 * 1024;
-// Received data that waits for the current request. TCP slows a client down that sends more.
+// Received data that waits for its turn. TCP slows a client down that sends more.
 constexpr std::size_t max_waiting = 64 * 1024;
 // Time for a client to receive the reply to a request that was rejected while the client was sending it.
 constexpr std::chrono::milliseconds rejection_time{1000};
@@ -79,6 +79,7 @@ Session::Session(std::shared_ptr<Connection> connection, Pendant & pendant, cons
       parser_(std::make_unique<Parser>(limits)),
       deadline_(Clock::now() + limits.request_time)
 {
+  connection_->allow_half_close();
 }
 
 Session::~Session() = default;
@@ -94,15 +95,7 @@ void Session::receive(std::string_view bytes)
     extend_deadline();
   }
   received_.append(bytes);
-  serve_requests();
-}
-
-void Session::serve_requests()
-{
-  while (connection_->is_open() && !rejected_ && !replying() && parse()) {
-    execute();
-  }
-  connection_->set_reading_paused(!rejected_ && replying() && received_.size() > max_waiting);
+  connection_->set_reading_paused(received_.size() > max_waiting);
 }
 
 bool Session::parse()
@@ -141,8 +134,8 @@ void Session::execute()
   const HttpRequest request{to_text(message.method_string()), to_text(message.target()),
                             to_text(message[http::field::content_type]), std::move(message.body())};
   Answer answer = execute_request(request, pendant_);
-  if (const Reply * reply = std::get_if<Reply>(&answer)) {
-    send(*reply);
+  if (Reply * reply = std::get_if<Reply>(&answer)) {
+    pending_ = [reply = std::move(*reply)] { return std::optional(reply); };
   } else {
     pending_ = std::get<PendingReply>(std::move(answer));
   }
@@ -188,10 +181,13 @@ void Session::cycle()
   } else if (!outgoing_.empty()) {
     send_outgoing();
   }
-  if (!replying()) {
-    serve_requests();
+  if (!replying() && keep_alive_ && parse()) {
+    execute();
   }
-  if (pending_ == nullptr && Clock::now() > deadline_) {
+  connection_->set_reading_paused(received_.size() > max_waiting);
+  if (!replying() && connection_->end_of_input()) {
+    connection_->close_after_sending();
+  } else if (pending_ == nullptr && Clock::now() > deadline_) {
     connection_->close();
   }
 }

@@ -21,7 +21,8 @@ struct HttpLimits {
   std::chrono::milliseconds request_time{60000};
 };
 
-/// The HTTP connection of a client. It serves one request at a time; further requests of the client wait.
+/// The HTTP connection of a client. It executes one request at a time, at most one per control cycle, and
+/// sends the reply in a later cycle. Further requests of the client wait.
 class Session {
  public:
   Session(std::shared_ptr<Connection> connection, Pendant & pendant, const HttpLimits & limits);
@@ -37,7 +38,6 @@ class Session {
   using Clock = std::chrono::steady_clock;
   struct Parser;
 
-  void serve_requests();
   /// Returns whether a request is complete.
   bool parse();
   void execute();

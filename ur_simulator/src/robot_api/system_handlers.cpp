@@ -66,8 +66,11 @@ Answer add_to_log(const Call & call)
 
 Answer shut_down(const Call & call)
 {
-  call.pendant.request_shutdown();
-  return json_reply(202, {{"message", nullptr}});
+  // The shutdown closes the connections: the reply is sent before.
+  return [&pendant = call.pendant]() -> std::optional<Reply> {
+    pendant.request_shutdown();
+    return json_reply(202, {{"message", nullptr}});
+  };
 }
 
 Answer get_openapi(const Call & call)

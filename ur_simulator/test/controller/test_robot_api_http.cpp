@@ -2,6 +2,8 @@
 #include <memory>
 #include <vector>
 
+#include "../../fuzz/simulated_robot.hpp"
+#include "robot_api/server.hpp"
 #include "support/polyscope_x_test.hpp"
 
 namespace ur_simulator::testing {
@@ -124,6 +126,18 @@ TEST_F(RobotApiHttpTest, ClosesAfterReplyIfClientAsksForIt)
   }
 }
 
+TEST_F(RobotApiHttpTest, RepliesToHalfClosedConnection)
+{
+  ASSERT_EQ(client.put("/robotstate/v1/state", {{"action", "POWER_OFF"}}).status, 200);
+  HttpClient other(controller.address(), controller.ports().robot_api);
+  other.socket().send(
+      "PUT /universal-robots/robot-api/robotstate/v1/state HTTP/1.1\r\nContent-Length: 21\r\n\r\n"
+      "{\"action\":\"POWER_ON\"}");
+  other.socket().shut_down_sending();
+  EXPECT_EQ(other.receive().json()["state"], "IDLE");
+  EXPECT_TRUE(other.socket().closed_by_peer());
+}
+
 TEST_F(RobotApiHttpTest, SurvivesClientsThatLeave)
 {
   for (int i = 0; i < 20; ++i) {
@@ -164,6 +178,30 @@ TEST_F(RobotApiHttpTest, ClientThatNeverReadsDoesNotDelayOthers)
   }
   EXPECT_TRUE(wait_for_next_cycle(controller));
   EXPECT_GT(controller.state()["timestamp"].get<double>(), before);
+}
+
+// The limit is by the host's clock, and a minute on a robot.
+TEST(RobotApiLimitsTest, ClosesConnectionWithoutCompleteRequestInTime)
+{
+  boost::asio::io_context io;
+  fuzz::SimulatedRobot robot("ur10e", "10.14.0");
+  robot_api::HttpLimits limits;
+  limits.request_time = milliseconds(50);
+  const std::string address = unique_address();
+  robot_api::Server server(io, address, 0, *robot.pendant, limits);
+  const auto serve_until = [&](const auto & condition) {
+    const auto end = std::chrono::steady_clock::now() + seconds(10);
+    while (!condition() && std::chrono::steady_clock::now() < end) {
+      io.poll();
+      server.cycle();
+    }
+    return condition();
+  };
+  TcpClient slow(address, server.listener().port());
+  slow.send("GET /universal-robots HT");
+  EXPECT_TRUE(serve_until([&] { return server.listener().connection_count() == 1; }));
+  EXPECT_TRUE(serve_until([&] { return server.listener().connection_count() == 0; }));
+  EXPECT_TRUE(slow.closed_by_peer());
 }
 
 }  // namespace
