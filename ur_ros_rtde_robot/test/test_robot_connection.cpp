@@ -46,6 +46,20 @@ TEST_F(RobotConnectionTest, AffectsTheRobotOnlyAfterTheStart)
   EXPECT_EQ(log.count("is a ur10e"), 1U) << log.text();
 }
 
+TEST_F(RobotConnectionTest, ReportsThatPolyScopeXIsNotSupported)
+{
+  auto options = Controller::options();
+  options.polyscope_version = "10.12.0";
+  options.ports.robot_api = 0;
+  controller.start(options);
+  make_robot();
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::not_supported));
+  EXPECT_NE(robot->status().message.find("PolyScope 10.12.0: PolyScope X has no dashboard server"),
+            std::string::npos)
+      << robot->status().message;
+  EXPECT_TRUE(robot->latest());
+}
+
 TEST_F(RobotConnectionTest, BecomesReadyOnEarlyVersionsOfPolyscope5)
 {
   for (const char * version : {"5.0.0", "5.3.0"}) {
