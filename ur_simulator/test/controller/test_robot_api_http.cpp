@@ -4,7 +4,9 @@
 
 #include "../../fuzz/simulated_robot.hpp"
 #include "robot_api/server.hpp"
+#include "support/flood.hpp"
 #include "support/polyscope_x_test.hpp"
+#include "support/rtde_client.hpp"
 
 namespace ur_simulator::testing {
 namespace {
@@ -178,6 +180,24 @@ TEST_F(RobotApiHttpTest, ClientThatNeverReadsDoesNotDelayOthers)
   }
   EXPECT_TRUE(wait_for_next_cycle(controller));
   EXPECT_GT(controller.state()["timestamp"].get<double>(), before);
+}
+
+TEST_F(RobotApiHttpTest, FloodDoesNotDisturbOthers)
+{
+  RtdeClient victim(controller.address());
+  ASSERT_TRUE(victim.negotiate(2));
+  victim.setup_outputs(500.0, "timestamp");
+  ASSERT_TRUE(victim.start());
+  const auto receive_timestamp = [&] { return decode_double(victim.receive('U').payload.substr(1, 8)); };
+  const Flood requests(controller.address(), controller.ports().robot_api, get_mode);
+  const Flood invalid(controller.address(), controller.ports().robot_api, "no HTTP\r\n\r\n");
+  double previous = receive_timestamp();
+  for (int i = 0; i < 250; ++i) {
+    const double timestamp = receive_timestamp();
+    ASSERT_NEAR(timestamp - previous, 0.002, 1e-9);
+    previous = timestamp;
+  }
+  EXPECT_EQ(client.get("/robotstate/v1/robotmode").status, 200);
 }
 
 // The limit is by the host's clock, and a minute on a robot.
