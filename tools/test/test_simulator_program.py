@@ -1,11 +1,13 @@
-"""The program ur_simulator: several robots in one process, and refused options."""
+"""The program ur_simulator: several robots in one process, refused options, client log."""
 
 import contextlib
 import json
 import os
 import re
 import socket
+import struct
 import subprocess
+import time
 
 import pytest
 from ur_tools.environment import program, run_environment
@@ -30,9 +32,9 @@ def control(address, **request):
 
 
 @contextlib.contextmanager
-def running(*options):
+def running(*options, **arguments):
     with subprocess.Popen([PROGRAM, "--address", ADDRESSES[0], *options], env=run_environment(LAYOUT), stdout=subprocess.PIPE,
-                          text=True) as process:
+                          text=True, **arguments) as process:
         try:
             yield process
         finally:
@@ -66,6 +68,7 @@ def test_ten_robots_run_on_consecutive_addresses(ten_robots):
     (["--count", "2", "--address", "::1"], "needs an IPv4 address"),
     (["--count", "0"], "--count"),
     (["--ports", "rtde=99999"], "0..65535"),
+    (["--client-log", "/nonexistent/log.mmd"], "client log '/nonexistent/log.mmd' cannot be written (--client-log): No such file"),
 ])
 def test_refused_options_are_named(arguments, message):
     result = subprocess.run([PROGRAM, *arguments], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
@@ -112,3 +115,78 @@ def test_an_invalid_world_file_is_refused(tmp_path):
     result = subprocess.run([PROGRAM, "--world", str(file)], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
     assert result.returncode == 1
     assert result.stderr == f"ur_simulator: {file}:3: field 'size[2]' is -0.3: it must be between 0.001 and 20\n"
+
+
+# ---- client log
+
+
+def wait_for(condition, what, limit=10.0):
+    """Polls the condition and returns its first true value."""
+    end = time.monotonic() + limit
+    while not (value := condition()):
+        assert time.monotonic() < end, f"waited {limit} s for {what}"
+        time.sleep(0.01)
+    return value
+
+
+def rtde_package(kind, payload=b""):
+    return struct.pack(">HB", len(payload) + 3, ord(kind)) + payload
+
+
+def documented(heading, language):
+    section = (ROOT / "docs" / "simulator.md").read_text().split(f"\n## {heading}\n")[1]
+    return re.search(rf"```{language}\n(.*?)```", section, re.S).group(1)
+
+
+def without_numbers(text):
+    """Replaces times, ports and counts of packages, which differ from run to run."""
+    text = re.sub(r"\[\d+\.\d{3}\]", "[T]", text)
+    text = re.sub(r"connects from [\d.]+:\d+", "connects from ADDRESS", text)
+    return re.sub(r"data packages: \d+ sent", "data packages: N sent", text)
+
+
+def test_the_documented_client_log_is_that_of_its_session(tmp_path):
+    file = tmp_path / "log.mmd"
+    with running("--client-log", str(file)) as process:
+        assert process.stdout.readline().startswith("ready: ")
+        wait_for(lambda: "RUNNING" in file.read_text(), "the robot")
+        with socket.create_connection((ADDRESSES[0], 29999)) as dashboard, dashboard.makefile("rw") as lines:
+            lines.write("robotmode\nquit\n")
+            lines.flush()
+            assert lines.readlines()[-1] == "Disconnected\n"
+        with socket.create_connection((ADDRESSES[0], 30002)) as script:
+            script.sendall(b"def greet():\n  textmessage(\"hello\")\nend\n")
+            wait_for(lambda: "refused" in file.read_text(), "the first script")
+            script.sendall(b"def greet():\n  textmsg(\"hello\")\nend\n")
+            wait_for(lambda: "ended" in file.read_text(), "the second script")
+            script.shutdown(socket.SHUT_WR)  # closing would reset the connection, because of unread data
+            wait_for(lambda: "secondary client 1-x" in file.read_text(), "the end of the script session")
+        with socket.create_connection((ADDRESSES[0], 30004)) as rtde:
+            rtde.sendall(rtde_package("V", b"\0\2") + rtde_package("O", struct.pack(">d", 500.0) + b"timestamp,actual_q") + rtde_package("S"))
+            wait_for(lambda: "data packages of" in file.read_text(), "data packages")
+            rtde.shutdown(socket.SHUT_WR)
+            wait_for(lambda: "data packages: " in file.read_text(), "the end of the RTDE session")
+    assert process.wait(10.0) == 0
+    assert without_numbers(file.read_text()) == without_numbers(documented("Client log", "mermaid"))
+
+
+def test_the_client_log_on_the_standard_output_is_a_diagram():
+    with running("--quiet", "--client-log", "--count", "2") as process:
+        lines = iter(process.stdout.readline, "")
+        assert next(lines) == "sequenceDiagram\n"
+        assert f"participant robot {ADDRESSES[1]}\n" in lines  # its ports are open
+        state_of(ADDRESSES[1])
+        line = next(line for line in lines if f"->>robot {ADDRESSES[1]}" in line)
+    assert line.startswith(f"control port client 1 of {ADDRESSES[1]}->>robot {ADDRESSES[1]}: [")
+
+
+def test_a_full_disk_ends_the_client_log_and_not_the_robot():
+    with running("--client-log", "/dev/full", stderr=subprocess.PIPE) as process:
+        assert process.stdout.readline().startswith("ready: ")
+        assert process.stderr.readline() == \
+            "ur_simulator: the client log ends: /dev/full cannot be written: No space left on device\n"
+        assert state_of(ADDRESSES[0])["robot_mode"] == "RUNNING"
+        process.terminate()
+        assert process.stderr.read() == ""
+    assert process.wait(10.0) == 0
+

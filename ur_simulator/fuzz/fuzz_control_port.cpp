@@ -44,7 +44,7 @@ struct Target {
       sockets.drain();
     }
     robot.world->step(robot.state);
-    sockets.connection()->close();
+    sockets.connection()->close("the test ends");
     io.poll();
   }
 

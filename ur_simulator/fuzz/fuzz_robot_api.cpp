@@ -30,7 +30,7 @@ struct Target {
       server.cycle();
       sockets.drain();
     }
-    sockets.connection()->close();
+    sockets.connection()->close("the test ends");
     io.poll();
   }
 

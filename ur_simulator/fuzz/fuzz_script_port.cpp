@@ -31,7 +31,7 @@ struct Target {
       robot.cycle();
       sockets.drain();
     }
-    sockets.connection()->close();
+    sockets.connection()->close("the test ends");
     io.poll();
   }
 

@@ -31,7 +31,7 @@ class SocketPair {
   }
   ~SocketPair()
   {
-    connection_->close();
+    connection_->close("the test ends");
     ::close(client_);
   }
   SocketPair(const SocketPair &) = delete;

@@ -45,6 +45,10 @@ struct SimulatorOptions {
   std::string digital_gripper;
   /// Folder to which the reports and support files of the dashboard are also written. Empty: none.
   std::string reports_folder;
+  /// File for a Mermaid sequence diagram of what the clients and the robot do (docs/simulator.md, "Client
+  /// log").
+  /// "-": standard output. Empty: none.
+  std::string client_log;
   bool start_running = true;  ///< start powered on with released brakes; false: powered off, as after boot
   bool remote_control = true;
   /// Selects a random calibration of the arm: its kinematics then deviate from the nominal ones by about a

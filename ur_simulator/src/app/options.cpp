@@ -121,6 +121,13 @@ void add_options(CLI::App & app, AppOptions & options)
                "run the control loop with SCHED_FIFO if permitted");
   app.add_flag("--quiet", options.quiet, "do not print the ready message");
   app.add_flag("--log", options.print_log, "print the log of the controller");
+  app.add_option(
+         "--client-log", simulator.client_log,
+         "write what clients and robots do to this file, as a Mermaid sequence diagram; default: standard "
+         "output")
+      ->expected(0, 1)
+      ->default_str("-")
+      ->type_name("[FILE]");
 }
 
 void parse_values(AppOptions & options)

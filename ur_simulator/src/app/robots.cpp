@@ -70,6 +70,9 @@ std::string exposure_warning(const std::string & address)
 Robots::Robots(const AppOptions & options)
 {
   SimulatorOptions simulator = options.simulator;
+  if (!simulator.client_log.empty()) {
+    client_log_.emplace(simulator.client_log);
+  }
   for (const std::string & address : consecutive_addresses(options.simulator.address, options.count)) {
     simulator.address = address;
     add(options, simulator);
@@ -94,6 +97,9 @@ void Robots::add(const AppOptions & options, const SimulatorOptions & simulator)
     const std::string prefix = options.count > 1 ? simulator.address + " " : "";
     controller->log().add_listener(
         [prefix](const LogEntry & entry) { print_line(prefix + to_string(entry)); });
+  }
+  if (client_log_) {
+    controller->log_clients(*client_log_, options.count > 1 ? simulator.address : "");
   }
   robots_.push_back({simulator.address, std::move(controller), {}});
 }

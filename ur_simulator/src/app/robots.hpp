@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -40,6 +41,7 @@ class Robots {
   void add(const AppOptions & options, const SimulatorOptions & simulator);
   void print_ready(const AppOptions & options) const;
 
+  std::optional<DiagramWriter> client_log_;
   std::vector<Robot> robots_;
 };
 

@@ -71,8 +71,9 @@ Action for_selected_connections(RequestFields & fields, const std::function<void
 Action drop_links(RequestFields & fields)
 {
   const bool reset = fields.boolean("reset", false);
-  return for_selected_connections(
-      fields, [reset](Connection & connection) { reset ? connection.reset() : connection.close(); });
+  return for_selected_connections(fields, [reset](Connection & connection) {
+    reset ? connection.reset() : connection.close("drop_links");
+  });
 }
 
 Action stall_links(RequestFields & fields)

@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <sched.h>
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <limits>
@@ -81,17 +82,9 @@ Controller::Controller(const SimulatorOptions & options)
 {
   rtde_.set_data_package_handler(
       [this](std::span<const rtde::InputField * const> fields) { handle_data_package(fields); });
-  pendant_->set_program_request([this](const ProgramHost & host, auto done) {
-    async_request_text(io_, host.address, host.port, "request_program\n", std::move(done));
-  });
-  log_.add_listener([this](const LogEntry & entry) {
-    if (entry.kind == LogKind::program_started) {
-      global_variables_.begin_program();
-    } else if (entry.kind == LogKind::program_ended) {
-      publish_global_variables();
-    }
-    broadcast(primary_, primary_read_only_, primary::robot_message_for(entry));
-  });
+  pendant_->set_program_request(
+      [this](const ProgramHost & host, auto done) { request_program(host, std::move(done)); });
+  log_.add_listener([this](const LogEntry & entry) { report(entry); });
   arm_->teleport(initial_joints_, state_);
   if (options_.start_running) {
     safety_->start_running(state_);
@@ -122,10 +115,10 @@ std::shared_ptr<const urscript::Library> Controller::script_library()
 {
   const auto library =
       with_sockets(*make_robot_library(robot_access()), [this](const std::string & host, std::uint16_t port) {
-        return TcpScriptSocket::open(io_, host, port);
+        return TcpScriptSocket::open(io_, host, port, add_host());
       });
   return with_xml_rpc(*library, [this](const HttpAddress & to, std::string body) {
-    return post_xml(io_, to, std::move(body));
+    return post_xml(io_, to, std::move(body), add_host());
   });
 }
 
@@ -239,6 +232,40 @@ nlohmann::json Controller::control(const nlohmann::json & request)
   return control_port::execute_request(control_port_context_, request);
 }
 
+// ---- client log
+
+void Controller::log_clients(DiagramWriter & writer, const std::string & robot_name)
+{
+  client_log_.emplace(writer, state_.timestamp, robot_name);
+  for (const auto & [name, listener] : control_port_context_.listeners) {
+    std::string kind = (name == "rtde" ? "RTDE" : name) + " client";
+    std::ranges::replace(kind, '_', ' ');
+    listener->set_client_log(*client_log_, std::move(kind));
+  }
+  control_port_.listener().set_client_log(*client_log_, "control port client");
+}
+
+PeerLog Controller::add_host()
+{
+  return client_log_ ? client_log_->add_peer("host") : PeerLog();
+}
+
+void Controller::request_program(const ProgramHost & host,
+                                 std::function<void(const Pendant::ProgramText &)> done)
+{
+  const PeerLog log = add_host();
+  log.to_peer("connects to {}:{}: request_program", host.address, host.port);
+  async_request_text(io_, host.address, host.port, "request_program\n",
+                     [log, done = std::move(done)](const Pendant::ProgramText & text) {
+                       if (text) {
+                         log.from_peer("program of {} bytes", text->size());
+                       } else {
+                         log.note("no program: {}", text.error());
+                       }
+                       done(text);
+                     });
+}
+
 // ---- event loop
 
 void Controller::run()
@@ -310,7 +337,7 @@ void Controller::switch_on()
 void Controller::switch_off()
 {
   for (const auto & [name, listener] : control_port_context_.listeners) {
-    listener->close_connections();
+    listener->close_connections("the controller switches off");
     listener->set_accepting(false);
   }
   runner_->shut_down();

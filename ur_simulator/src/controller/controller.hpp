@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 
+#include "client_log/client_log.hpp"
 #include "control_port/commands.hpp"
 #include "control_port/server.hpp"
 #include "dashboard/server.hpp"
@@ -66,6 +67,9 @@ class Controller {
   nlohmann::json control(const nlohmann::json & request);
   nlohmann::json state() const { return control_port::state_to_json(control_port_context_); }
   void add_observer(Observer observer) { observers_.push_back(std::move(observer)); }
+  /// Adds what this robot and its clients do to the diagram, from now on. `robot_name`: "" if it is the only
+  /// robot of the diagram.
+  void log_clients(DiagramWriter & writer, const std::string & robot_name);
 
  private:
   /// Requests of the program, handled after its cycle.
@@ -103,7 +107,12 @@ class Controller {
   std::string primary_greeting() const;
   /// Sends a message to the clients of an interface and of its read-only variant.
   static void broadcast(primary::ClientInterfaceServer & server, primary::ClientInterfaceServer & read_only,
-                        std::string_view message);
+                        std::string_view message, std::string_view name = {});
+  /// Reports an entry of the log to the clients of the primary interface, and in the client log.
+  void report(const LogEntry & entry);
+  void request_program(const ProgramHost & host, std::function<void(const Pendant::ProgramText &)> done);
+  /// A host that the robot connects to.
+  PeerLog add_host();
   void handle_data_package(std::span<const rtde::InputField * const> fields);
 
   void switch_on();
@@ -125,6 +134,7 @@ class Controller {
 
   EventLog log_;
   ControllerState state_;
+  std::optional<ClientLog> client_log_;
   CycleTrace trace_;
   std::optional<Arm> arm_;
   std::optional<World> world_;

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 
@@ -188,11 +190,27 @@ std::string Controller::primary_greeting() const
   return messages;
 }
 
-void Controller::broadcast(primary::ClientInterfaceServer & server,
-                           primary::ClientInterfaceServer & read_only, std::string_view message)
+void Controller::report(const LogEntry & entry)
 {
-  server.broadcast(message);
-  read_only.broadcast(message);
+  if (entry.kind == LogKind::program_started) {
+    global_variables_.begin_program();
+  } else if (entry.kind == LogKind::program_ended) {
+    publish_global_variables();
+  }
+  if (client_log_ && entry.source != "rtde") {  // what RTDE clients do is in the client log already
+    client_log_->add_event(fmt::format("{}: {}", entry.source, entry.text));
+  }
+  if (const std::string message = primary::robot_message_for(entry); !message.empty()) {
+    broadcast(primary_, primary_read_only_, message, primary::robot_message_name(entry));
+  }
+}
+
+void Controller::broadcast(primary::ClientInterfaceServer & server,
+                           primary::ClientInterfaceServer & read_only, std::string_view message,
+                           std::string_view name)
+{
+  server.broadcast(message, name);
+  read_only.broadcast(message, name);
 }
 
 void Controller::handle_data_package(std::span<const rtde::InputField * const> fields)

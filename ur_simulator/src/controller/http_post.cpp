@@ -23,8 +23,8 @@ constexpr std::uint64_t max_response = 1U << 20U;  // bytes
 /// The connection of a request. The pending asynchronous operations own it.
 class HttpPost : public std::enable_shared_from_this<HttpPost> {
  public:
-  HttpPost(boost::asio::io_context & io, const HttpAddress & to, std::string body)
-      : resolver_(io), stream_(io), request_(http::verb::post, to.path, 11)
+  HttpPost(boost::asio::io_context & io, const HttpAddress & to, std::string body, PeerLog log)
+      : resolver_(io), stream_(io), log_(std::move(log)), request_(http::verb::post, to.path, 11)
   {
     request_.set(http::field::host, fmt::format("{}:{}", to.host, to.port));
     request_.set(http::field::user_agent, "ur_simulator");
@@ -37,6 +37,7 @@ class HttpPost : public std::enable_shared_from_this<HttpPost> {
 
   void start(const HttpAddress & to)
   {
+    log_.to_peer("POST http://{}:{}{} {}", to.host, to.port, to.path, request_.body());
     resolver_.async_resolve(
         to.host, std::to_string(to.port),
         [self = shared_from_this()](const error_code & error, const tcp::resolver::results_type & endpoints) {
@@ -87,10 +88,16 @@ class HttpPost : public std::enable_shared_from_this<HttpPost> {
     } else {
       response_ = std::move(parser_.get().body());
     }
+    if (*response_) {
+      log_.from_peer("{}", **response_);
+    } else {
+      log_.note("no response: {}", response_->error());
+    }
   }
 
   tcp::resolver resolver_;
   beast::tcp_stream stream_;
+  PeerLog log_;
   beast::flat_buffer buffer_;
   http::request<http::string_body> request_;
   http::response_parser<http::string_body> parser_;
@@ -115,9 +122,10 @@ class HttpPostHandle final : public HttpRequest {
 
 }  // namespace
 
-std::shared_ptr<HttpRequest> post_xml(boost::asio::io_context & io, const HttpAddress & to, std::string body)
+std::shared_ptr<HttpRequest> post_xml(boost::asio::io_context & io, const HttpAddress & to, std::string body,
+                                      PeerLog log)
 {
-  const auto post = std::make_shared<HttpPost>(io, to, std::move(body));
+  const auto post = std::make_shared<HttpPost>(io, to, std::move(body), std::move(log));
   post->start(to);
   return std::make_shared<HttpPostHandle>(post);
 }

@@ -9,21 +9,22 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 std::shared_ptr<TcpScriptSocket> TcpScriptSocket::open(boost::asio::io_context & io, const std::string & host,
-                                                       std::uint16_t port)
+                                                       std::uint16_t port, PeerLog log)
 {
-  const std::shared_ptr<TcpScriptSocket> self(new TcpScriptSocket(io));
+  const std::shared_ptr<TcpScriptSocket> self(new TcpScriptSocket(io, std::move(log)));
+  self->log_.to_peer("connects to {}:{}", host, port);
   // The pending asynchronous operations own the socket.
   self->resolver_.async_resolve(
       host, std::to_string(port),
       [self](const error_code & resolve_error, const tcp::resolver::results_type & endpoints) {
         if (resolve_error) {
-          self->failed_ = true;
+          self->fail(resolve_error);
           return;
         }
         boost::asio::async_connect(self->socket_, endpoints,
                                    [self](const error_code & connect_error, const tcp::endpoint &) {
                                      if (connect_error) {
-                                       self->failed_ = true;
+                                       self->fail(connect_error);
                                      } else {
                                        self->start();
                                      }
@@ -32,11 +33,19 @@ std::shared_ptr<TcpScriptSocket> TcpScriptSocket::open(boost::asio::io_context &
   return self;
 }
 
+void TcpScriptSocket::fail(const error_code & error)
+{
+  failed_ = true;
+  log_.note("the connection failed: {}", error.message());
+}
+
 void TcpScriptSocket::start()
 {
-  connection_ = std::make_shared<Connection>(std::move(socket_), 0);
+  log_.note("connected");
+  connection_ = std::make_shared<Connection>(std::move(socket_), 0, log_);
   connection_->start(
       [this](std::string_view bytes) {
+        log_.from_peer("{}", bytes);
         received_.append(bytes);
         connection_->set_reading_paused(received_.size() > unread_limit);
       },
@@ -49,7 +58,7 @@ TcpScriptSocket::~TcpScriptSocket()
   resolver_.cancel();
   socket_.close(ignored);
   if (connection_) {
-    connection_->close();
+    connection_->close("the program closes the socket");
   }
 }
 
@@ -69,6 +78,7 @@ std::string & TcpScriptSocket::received()
 void TcpScriptSocket::send(std::string_view bytes)
 {
   if (connection_) {
+    log_.to_peer("{}", bytes);
     connection_->send(bytes);
   }
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "net/connection.hpp"
 #include "script_api/script_socket.hpp"
@@ -16,7 +17,7 @@ namespace ur_simulator {
 class TcpScriptSocket final : public ScriptSocket {
  public:
   static std::shared_ptr<TcpScriptSocket> open(boost::asio::io_context & io, const std::string & host,
-                                               std::uint16_t port);
+                                               std::uint16_t port, PeerLog log);
   ~TcpScriptSocket() override;
   TcpScriptSocket(const TcpScriptSocket &) = delete;
   TcpScriptSocket & operator=(const TcpScriptSocket &) = delete;
@@ -27,13 +28,18 @@ class TcpScriptSocket final : public ScriptSocket {
   std::string & received() override;
 
  private:
-  explicit TcpScriptSocket(boost::asio::io_context & io) : resolver_(io), socket_(io) {}
+  TcpScriptSocket(boost::asio::io_context & io, PeerLog log)
+      : resolver_(io), socket_(io), log_(std::move(log))
+  {
+  }
   void start();
+  void fail(const boost::system::error_code & error);
 
   static constexpr std::size_t unread_limit = 64 * 1024;  ///< reading pauses above it
 
   boost::asio::ip::tcp::resolver resolver_;
   boost::asio::ip::tcp::socket socket_;
+  PeerLog log_;
   std::shared_ptr<Connection> connection_;
   std::string received_;
   bool failed_ = false;

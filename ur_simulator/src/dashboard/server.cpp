@@ -9,6 +9,12 @@ namespace {
 
 constexpr std::size_t max_line_size = 16 * 1024;
 
+void send_reply(Connection & connection, std::string_view reply)
+{
+  connection.log().to_peer("{}", reply);
+  connection.send(fmt::format("{}\n", reply));
+}
+
 }  // namespace
 
 Server::Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
@@ -21,14 +27,14 @@ Server::Server(boost::asio::io_context & io, const std::string & address, std::u
 
 Server::~Server()
 {
-  listener_.close_connections();
+  listener_.close_connections("the simulator ends");
 }
 
 void Server::accept(const std::shared_ptr<Connection> & connection)
 {
   const std::uint64_t id = connection->id();
   clients_.emplace(id, Client{connection, {}, pendant_.remote_control(), nullptr});
-  connection->send("Connected: Universal Robots Dashboard Server\n");
+  send_reply(*connection, "Connected: Universal Robots Dashboard Server");
   connection->start(
       [this, id](std::string_view bytes) {
         if (const auto client = clients_.find(id); client != clients_.end()) {
@@ -62,7 +68,7 @@ void Server::receive(Client & client, std::string_view bytes)
   if (received.size() - begin > max_line_size) {
     pendant_.log().error("dashboard", fmt::format("{} sent a line of more than {} bytes: disconnected",
                                                   connection->remote_endpoint(), max_line_size));
-    connection->close();
+    connection->close("the line is too long");
     return;
   }
   client.received = received.substr(begin);
@@ -87,7 +93,7 @@ void Server::send_pending_reply(Client & client)
 {
   if (const auto reply = client.pending_reply()) {
     client.pending_reply = nullptr;
-    client.connection->send(*reply + "\n");
+    send_reply(*client.connection, *reply);
   }
 }
 
@@ -101,15 +107,16 @@ void Server::handle_line(Client & client, std::string_view line)
 {
   const std::shared_ptr<Connection> connection = client.connection;
   std::string_view argument;
+  connection->log().from_peer("{}", line);
   const Command * command = find_command(line, pendant_.options().version, argument);
   if (command == nullptr) {
-    connection->send(fmt::format("could not understand: '{}'\n", line));
+    send_reply(*connection, fmt::format("could not understand: '{}'", line));
     return;
   }
   if (is_refused(client, command->requires_remote_control)) {
-    connection->send(
-        "Command is not allowed due to safety reasons, please switch robot to Remote Control mode and "
-        "reconnect to port 29999\n");
+    send_reply(*connection,
+               "Command is not allowed due to safety reasons, please switch robot to Remote Control mode and "
+               "reconnect to port 29999");
     return;
   }
   if (command->start != nullptr) {
@@ -117,9 +124,9 @@ void Server::handle_line(Client & client, std::string_view line)
     send_pending_reply(client);
     return;
   }
-  connection->send(command->execute(pendant_, argument) + "\n");
+  send_reply(*connection, command->execute(pendant_, argument));
   if (command->name == "quit") {
-    connection->close_after_sending();
+    connection->close_after_sending("quit");
   }
 }
 

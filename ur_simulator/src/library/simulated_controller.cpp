@@ -3,6 +3,7 @@
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <future>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -12,6 +13,9 @@ namespace ur_simulator {
 struct SimulatedController::Impl {
   explicit Impl(const SimulatorOptions & options_) : options(options_), controller(options_)
   {
+    if (!options.client_log.empty()) {
+      controller.log_clients(client_log.emplace(options.client_log), "");
+    }
     thread = std::thread([this] { controller.run(); });
   }
   ~Impl()
@@ -33,6 +37,7 @@ struct SimulatedController::Impl {
   }
 
   SimulatorOptions options;
+  std::optional<DiagramWriter> client_log;
   Controller controller;
   std::thread thread;
 };

@@ -10,8 +10,8 @@ namespace ur_simulator {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
-Connection::Connection(tcp::socket socket, std::uint64_t id)
-    : socket_(std::move(socket)), id_(id), delay_timer_(socket_.get_executor())
+Connection::Connection(tcp::socket socket, std::uint64_t id, PeerLog log)
+    : socket_(std::move(socket)), id_(id), log_(std::move(log)), delay_timer_(socket_.get_executor())
 {
   boost::system::error_code ignored;
   socket_.non_blocking(true, ignored);
@@ -57,7 +57,7 @@ void Connection::handle_read(const boost::system::error_code & error, std::size_
     return;
   }
   if (error && error != asio::error::operation_aborted) {  // set_stalled() aborts the read
-    close();
+    handle_socket_error(error);
     return;
   }
   if (size > 0) {
@@ -80,8 +80,8 @@ void Connection::deliver(std::string_view bytes)
   // An exception in a protocol handler closes this connection; the controller's thread continues.
   try {
     on_data_(bytes);
-  } catch (const std::exception &) {
-    close();
+  } catch (const std::exception & error) {
+    close(error.what());
   }
 }
 
@@ -131,7 +131,7 @@ void Connection::write(std::string_view bytes)
     return;
   }
   if (send_buffer_.size() + bytes.size() - written > send_buffer_limit) {
-    close();
+    close("the peer does not read");
     return;
   }
   send_buffer_.append(bytes.substr(written));
@@ -143,7 +143,7 @@ std::size_t Connection::write_to_socket(std::string_view bytes)
   boost::system::error_code error;
   const std::size_t written = socket_.write_some(asio::buffer(bytes.data(), bytes.size()), error);
   if (error && error != asio::error::would_block && error != asio::error::try_again) {
-    close();
+    handle_socket_error(error);
   }
   return written;
 }
@@ -167,7 +167,7 @@ void Connection::flush_when_writable()
                        if (!self->send_buffer_.empty()) {
                          self->flush_when_writable();
                        } else if (self->close_after_sending_) {
-                         self->close();
+                         self->close(*self->close_after_sending_);
                        }
                      });
 }
@@ -195,7 +195,7 @@ void Connection::delay(Direction direction, std::string_view bytes)
 {
   delayed_bytes_ += bytes.size();
   if (delayed_bytes_ > send_buffer_limit) {
-    close();
+    close("too much data is delayed");
     return;
   }
   // The order is kept, also after the delay has been reduced.
@@ -231,18 +231,18 @@ void Connection::process_delayed_data()
   if (open_ && !delayed_.empty()) {
     schedule_delayed_data();
   } else if (open_ && close_after_sending_ && send_buffer_.empty()) {
-    close();
+    close(*close_after_sending_);
   }
 }
 
 // ---- closing
 
-void Connection::close_after_sending()
+void Connection::close_after_sending(std::string_view reason)
 {
   if (send_buffer_.empty() && delayed_.empty()) {
-    close();
+    close(reason);
   } else {
-    close_after_sending_ = true;
+    close_after_sending_ = reason;
   }
 }
 
@@ -250,14 +250,27 @@ void Connection::reset()
 {
   boost::system::error_code ignored;
   socket_.set_option(asio::socket_base::linger(true, 0), ignored);
-  close();
+  close("reset");
 }
 
-void Connection::close()
+void Connection::close(std::string_view reason)
 {
-  if (!open_) {
-    return;
+  if (open_) {
+    log_.closed_by_robot(reason);
+    close_socket();
   }
+}
+
+void Connection::handle_socket_error(const boost::system::error_code & error)
+{
+  if (open_) {
+    log_.closed_by_peer(error == asio::error::eof ? "closes the connection" : error.message());
+    close_socket();
+  }
+}
+
+void Connection::close_socket()
+{
   open_ = false;
   boost::system::error_code ignored;
   delay_timer_.cancel();
@@ -272,6 +285,7 @@ void Connection::notify_closed()
   if (on_close) {
     on_close();
   }
+  log_ = {};
 }
 
 }  // namespace ur_simulator

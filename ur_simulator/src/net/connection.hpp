@@ -9,8 +9,11 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "client_log/client_log.hpp"
 
 namespace ur_simulator {
 
@@ -24,17 +27,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// Called exactly once, after the connection has been closed by either side.
   using CloseHandler = std::function<void()>;
 
-  Connection(boost::asio::ip::tcp::socket socket, std::uint64_t id);
+  Connection(boost::asio::ip::tcp::socket socket, std::uint64_t id, PeerLog log = {});
 
   void start(DataHandler on_data, CloseHandler on_close);
   /// Sends or buffers all bytes. Closes the connection if more than `send_buffer_limit` bytes are buffered.
   void send(std::string_view bytes);
   /// Sends all bytes, or none if earlier bytes are still buffered. Returns false if the bytes are dropped.
   bool send_or_drop(std::string_view bytes);
-  /// Closes the connection and discards the buffered data.
-  void close();
+  /// Closes the connection and discards the buffered data. The client log states the reason.
+  void close(std::string_view reason);
   /// Closes the connection after the buffered data has been sent.
-  void close_after_sending();
+  void close_after_sending(std::string_view reason);
   /// Closes the connection with a TCP reset, as after a crash.
   void reset();
   /// A stalled connection neither reads nor writes but stays open, as if the cable were unplugged.
@@ -54,6 +57,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool is_open() const { return open_; }
   /// Address and port of the peer: "127.0.0.1:43210"
   const std::string & remote_endpoint() const { return remote_endpoint_; }
+  /// The peer in the client log. Protocols add their messages here.
+  const PeerLog & log() const { return log_; }
 
   static constexpr std::size_t send_buffer_limit = 256 * 1024;
 
@@ -73,6 +78,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void write(std::string_view bytes);
   std::size_t write_to_socket(std::string_view bytes);
   void flush_when_writable();
+  void handle_socket_error(const boost::system::error_code & error);
+  void close_socket();
   void notify_closed();
   bool delays_data() const { return delay_.count() > 0 || !delayed_.empty(); }
   void delay(Direction direction, std::string_view bytes);
@@ -82,6 +89,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   boost::asio::ip::tcp::socket socket_;
   std::uint64_t id_;
   std::string remote_endpoint_;
+  PeerLog log_;
   DataHandler on_data_;
   CloseHandler on_close_;
   /// Small, so that a client that floods the controller does not delay the control cycle: the data of one
@@ -91,7 +99,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool open_ = true;
   bool reading_ = false;
   bool waiting_to_write_ = false;
-  bool close_after_sending_ = false;
+  /// Set: the connection is closed with this reason after the buffered data has been sent.
+  std::optional<std::string> close_after_sending_;
   bool stalled_ = false;
   bool reading_paused_ = false;
   bool half_close_allowed_ = false;

@@ -15,7 +15,7 @@ LineServer::LineServer(boost::asio::io_context & io, const std::string & address
 
 LineServer::~LineServer()
 {
-  listener_.close_connections();
+  listener_.close_connections("the simulator ends");
 }
 
 void LineServer::accept(const std::shared_ptr<Connection> & connection)
@@ -40,12 +40,18 @@ void LineServer::receive(Client & client, std::string_view bytes)
        end = client.received.find('\n', begin)) {
     const std::string_view line = std::string_view(client.received).substr(begin, end - begin);
     begin = end + 1;
-    client.connection->send(answer_(line, client.connection));
+    client.connection->log().from_peer("{}", line);
+    const std::string reply = answer_(line, client.connection);
+    if (!reply.empty()) {
+      client.connection->log().to_peer("{}",
+                                       std::string_view(reply).substr(0, reply.find_last_not_of('\n') + 1));
+    }
+    client.connection->send(reply);
   }
   client.received.erase(0, begin);
   if (client.received.size() > limit_.size) {
     client.connection->send(limit_.reply);
-    client.connection->close_after_sending();
+    client.connection->close_after_sending("the line is too long");
   }
 }
 

@@ -51,7 +51,13 @@ Listener::Listener(asio::io_context & io, const std::string & address, std::uint
 
 Listener::~Listener()
 {
-  close_connections();
+  close_connections("the simulator ends");
+}
+
+void Listener::set_client_log(ClientLog & log, std::string kind)
+{
+  client_log_ = &log;
+  client_kind_ = std::move(kind);
 }
 
 void Listener::listen()
@@ -87,16 +93,22 @@ void Listener::accept()
       return;
     }
     std::erase_if(connections_, [](const auto & entry) { return entry.second.expired(); });
-    if (connection_count() >= max_connections) {
-      accept();
-      return;  // closes the socket
-    }
-    const std::uint64_t id = next_id_++;
-    auto connection = std::make_shared<Connection>(std::move(socket), id);
-    connections_.emplace(id, connection);
-    on_accept_(connection);
+    serve(std::move(socket));
     accept();
   });
+}
+
+void Listener::serve(tcp::socket socket)
+{
+  auto connection = std::make_shared<Connection>(
+      std::move(socket), next_id_, client_log_ != nullptr ? client_log_->add_peer(client_kind_) : PeerLog());
+  connection->log().from_peer("connects from {}", connection->remote_endpoint());
+  if (connection_count() >= max_connections) {
+    connection->close("too many clients");
+    return;
+  }
+  connections_.emplace(next_id_++, connection);
+  on_accept_(connection);
 }
 
 void Listener::retry_accept()
@@ -146,9 +158,9 @@ void Listener::for_each_connection(const std::function<void(Connection &)> & act
   }
 }
 
-void Listener::close_connections()
+void Listener::close_connections(std::string_view reason)
 {
-  for_each_connection([](Connection & connection) { connection.close(); });
+  for_each_connection([reason](Connection & connection) { connection.close(reason); });
 }
 
 }  // namespace ur_simulator

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "net/connection.hpp"
 
@@ -30,23 +31,28 @@ class Listener {
   Listener(const Listener &) = delete;
   Listener & operator=(const Listener &) = delete;
 
+  /// Clients that connect from now on are participants of the log, as clients of this kind.
+  void set_client_log(ClientLog & log, std::string kind);
   std::uint16_t port() const { return endpoint_.port(); }
   /// Number of open connections.
   std::size_t connection_count() const;
   /// While accepting is off, the port is closed and clients are refused, as by a controller without power.
   void set_accepting(bool accepting);
   void for_each_connection(const std::function<void(Connection &)> & action);
-  void close_connections();
+  void close_connections(std::string_view reason);
 
  private:
   void listen();
   void accept();
+  void serve(boost::asio::ip::tcp::socket socket);
   void retry_accept();
 
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer retry_timer_;
   boost::asio::ip::tcp::endpoint endpoint_;
   AcceptHandler on_accept_;
+  ClientLog * client_log_ = nullptr;
+  std::string client_kind_;
   std::map<std::uint64_t, std::weak_ptr<Connection>> connections_;
   std::uint64_t next_id_ = 1;
 };

@@ -30,8 +30,9 @@ class ClientInterfaceServer {
 
   /// Serves a connection, as each that the listener accepts.
   void accept(const std::shared_ptr<Connection> & connection);
-  /// Sends a complete message to each client without unsent data.
-  void broadcast(std::string_view message);
+  /// Sends a complete message to each client without unsent data. `name`: in the client log; empty: not
+  /// logged.
+  void broadcast(std::string_view message, std::string_view name = {});
   Listener & listener() { return listener_; }
   const Listener & listener() const { return listener_; }
   bool has_clients() const { return !clients_.empty(); }
@@ -43,6 +44,7 @@ class ClientInterfaceServer {
     std::uint64_t dropped_scripts = 0;
   };
   void receive(Client & client, std::string_view bytes);
+  Pendant::Result run(std::string_view script);
   void log_dropped_scripts(Client & client);
 
   Pendant & pendant_;

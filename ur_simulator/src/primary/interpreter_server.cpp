@@ -30,6 +30,7 @@ void InterpreterServer::receive(std::string_view line, const std::shared_ptr<Con
   cycle();
   mode_.receive(line, [weak = std::weak_ptr(client)](const std::string & reply) {
     if (const auto connection = weak.lock()) {
+      connection->log().to_peer("{}", reply.substr(0, reply.find('\n')));
       connection->send(reply);
     }
   });

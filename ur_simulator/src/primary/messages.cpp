@@ -1,5 +1,7 @@
 #include "primary/messages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "primary/big_endian.hpp"
@@ -157,6 +159,27 @@ std::string robot_message_for(const LogEntry & entry)
                                      entry.exception.empty() ? entry.text : entry.exception);
   }
   return {};
+}
+
+std::string robot_message_name(const LogEntry & entry)
+{
+  switch (entry.kind) {
+    case LogKind::program_started:
+      return "key message PROGRAM_XXX_STARTED";
+    case LogKind::program_ended:
+      return "key message PROGRAM_XXX_STOPPED";
+    case LogKind::popup:
+      return "popup message";
+    case LogKind::value_request:
+      return "request value message";
+    case LogKind::error_code:
+      return fmt::format("error code message C{}A{}", entry.code.code, entry.code.argument);
+    case LogKind::safety_mode:
+      return fmt::format("safety mode message {}", entry.safety_mode);
+    case LogKind::text:
+      break;
+  }
+  return entry.source == "textmsg" ? "text message" : "runtime exception message";
 }
 
 }  // namespace ur_simulator::primary

@@ -33,5 +33,7 @@ std::string popup_message(const LogEntry & entry);
 
 /// The robot message that reports a log entry, or "" if the primary interface does not report it.
 std::string robot_message_for(const LogEntry & entry);
+/// The name of this message in the client log, such as "error code message C153A2".
+std::string robot_message_name(const LogEntry & entry);
 
 }  // namespace ur_simulator::primary

@@ -13,7 +13,7 @@ Server::Server(boost::asio::io_context & io, const std::string & address, std::u
 
 Server::~Server()
 {
-  listener_.close_connections();
+  listener_.close_connections("the simulator ends");
 }
 
 void Server::accept(const std::shared_ptr<Connection> & connection)

@@ -133,6 +133,7 @@ void Session::execute()
   head_ = message.method() == http::verb::head;
   const HttpRequest request{to_text(message.method_string()), to_text(message.target()),
                             to_text(message[http::field::content_type]), std::move(message.body())};
+  connection_->log().from_peer("{} {} {}", request.method, request.target, request.body);
   Answer answer = execute_request(request, pendant_);
   if (Reply * reply = std::get_if<Reply>(&answer)) {
     pending_ = [reply = std::move(*reply)] { return std::optional(reply); };
@@ -148,12 +149,14 @@ void Session::reject(unsigned status, std::string_view message)
   rejected_ = true;
   keep_alive_ = false;
   received_.clear();
+  connection_->log().to_peer("{} {}", status, message);
   connection_->send(encode(json_reply(status, {{"detail", message}}), false, false));
   deadline_ = Clock::now() + rejection_time;
 }
 
 void Session::send(const Reply & reply)
 {
+  connection_->log().to_peer("{} {}", reply.status, reply.body);
   outgoing_ = encode(reply, keep_alive_, head_);
   send_outgoing();
 }
@@ -167,7 +170,7 @@ void Session::send_outgoing()
   outgoing_.erase(0, piece.size());
   extend_deadline();
   if (outgoing_.empty() && !keep_alive_) {
-    connection_->close_after_sending();
+    connection_->close_after_sending("as the client requests");
   }
 }
 
@@ -188,7 +191,7 @@ void Session::cycle()
   if (!replying() && connection_->end_of_input()) {
     connection_->close_after_sending();
   } else if (pending_ == nullptr && Clock::now() > deadline_) {
-    connection_->close();
+    connection_->close(rejected_ ? "the request was rejected" : "there was no complete request in time");
   }
 }
 

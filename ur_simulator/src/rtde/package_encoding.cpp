@@ -32,4 +32,15 @@ std::size_t encoded_size(FieldType type)
   return type_descriptions[static_cast<std::size_t>(type)].size;
 }
 
+std::vector<std::string_view> split_names(std::string_view names)
+{
+  std::vector<std::string_view> parts;
+  while (!names.empty()) {
+    const std::size_t comma = names.find(',');
+    parts.push_back(names.substr(0, comma));
+    names.remove_prefix(comma == std::string_view::npos ? names.size() : comma + 1);
+  }
+  return parts;
+}
+
 }  // namespace ur_simulator::rtde

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <vector>
 
 #include "common/types.hpp"
 
@@ -20,6 +21,8 @@ enum class FieldType { boolean, uint8, uint32, uint64, int32, double_, vector3d,
 std::string_view type_name(FieldType type);
 /// Encoded size, bytes.
 std::size_t encoded_size(FieldType type);
+/// Splits "a,b". A trailing comma is ignored.
+std::vector<std::string_view> split_names(std::string_view names);
 
 /// Package types; the value is the type byte.
 enum class PackageType : std::uint8_t {

@@ -20,24 +20,6 @@ double control_frequency(const PolyscopeVersion & version)
   return version.is_e_series() ? 500.0 : 125.0;
 }
 
-/// Splits "a,b". A trailing comma is ignored.
-std::vector<std::string_view> split_names(std::string_view names)
-{
-  std::vector<std::string_view> parts;
-  while (!names.empty()) {
-    const std::size_t comma = names.find(',');
-    parts.push_back(names.substr(0, comma));
-    names.remove_prefix(comma == std::string_view::npos ? names.size() : comma + 1);
-  }
-  return parts;
-}
-
-/// The payload of a reply that accepts or rejects a request.
-std::string acceptance(bool accepted)
-{
-  return std::string(1, accepted ? '\1' : '\0');
-}
-
 /// The types of a recipe reply. Empty if they do not fit into a package, which is the case only for invalid
 /// recipes: NOT_FOUND can be longer than the requested name.
 std::string join_types(const std::vector<std::string_view> & types)
@@ -67,6 +49,8 @@ void Session::handle_disconnect()
   std::erase_if(context_.input_owners,
                 [this](const auto & owner) { return owner.second == connection_->id(); });
   context_.log.info("rtde", fmt::format("client {} disconnected", connection_->id()));
+  connection_->log().note("data packages: {} sent, {} dropped, {} received", sent_packages_,
+                          dropped_packages_, received_packages_);
 }
 
 ClientRole Session::role() const
@@ -89,10 +73,7 @@ void Session::receive(std::string_view bytes)
     const std::uint8_t type = header.read_u8();
     if (size < header_size) {
       // The start of the next package is unknown.
-      context_.log.error(
-          "rtde", fmt::format("client {}: package size is {}, the header alone has {} bytes: disconnected",
-                              connection_->id(), size, header_size));
-      connection_->close();
+      disconnect(fmt::format("package size is {}, the header alone has {} bytes", size, header_size));
       return;
     }
     if (received_.size() - begin < size) {
@@ -122,8 +103,9 @@ void Session::handle_package(std::uint8_t type, std::string_view payload)
     case PackageType::start:
       return handle_start();
     case PackageType::pause:
+      connection_->log().from_peer("pause");
       started_ = false;
-      return reply(PackageType::pause, acceptance(true));
+      return reply_accepted(PackageType::pause, true);
   }
   send_warning(fmt::format("Unknown package type {}", type));
 }
@@ -134,13 +116,14 @@ void Session::handle_request_protocol_version(std::string_view payload)
 {
   PackageReader reader(payload);
   const std::uint16_t version = reader.read_u16();
+  connection_->log().from_peer("requests RTDE protocol version {}", version);
   const bool supported = reader.ok() && (version == 1 || version == 2);
   if (supported && version != protocol_version_) {
     protocol_version_ = version;
     set_output_recipe("");  // packages of the versions differ in length
     started_ = false;
   }
-  reply(PackageType::request_protocol_version, acceptance(supported));
+  reply_accepted(PackageType::request_protocol_version, supported);
 }
 
 void Session::handle_get_urcontrol_version()
@@ -151,7 +134,9 @@ void Session::handle_get_urcontrol_version()
        {context_.version.major, context_.version.minor, context_.version.bugfix, context_.version.build}) {
     writer.put(part);
   }
-  reply(PackageType::get_urcontrol_version, {payload.data(), payload.size()});
+  connection_->log().from_peer("requests the controller version");
+  connection_->log().to_peer("{}", context_.version.to_string());
+  reply(PackageType::get_urcontrol_version, std::string_view(payload.data(), payload.size()));
 }
 
 void Session::handle_text_message(std::string_view payload)
@@ -165,14 +150,16 @@ void Session::handle_text_message(std::string_view payload)
     text = reader.read_bytes(reader.read_u8());
   }
   context_.log.info("rtde", fmt::format("client {} says: {}", connection_->id(), text));
+  connection_->log().from_peer("text message: {}", text);
 }
 
 void Session::handle_start()
 {
+  connection_->log().from_peer("start");
   const bool can_start = output_recipe_valid_ && (!output_fields_.empty() || !input_recipes_.empty());
   started_ = can_start;
   publish_phase_ = 1.0 - output_frequency_ / control_frequency(context_.version);
-  reply(PackageType::start, acceptance(can_start));
+  reply_accepted(PackageType::start, can_start);
 }
 
 // ---- outputs
@@ -180,21 +167,24 @@ void Session::handle_start()
 void Session::handle_setup_outputs(std::string_view payload)
 {
   PackageReader reader(payload);
-  read_output_frequency(reader);
-  const std::string types = set_output_recipe(reader.read_remaining());
-  reply(PackageType::setup_outputs,
-        protocol_version_ == 1 ? types : with_recipe_id(output_recipe_valid_ ? output_recipe_id : 0, types));
+  const double frequency = protocol_version_ == 1 ? protocol_version_1_frequency : reader.read_f64();
+  const std::string_view names = reader.read_remaining();
+  connection_->log().from_peer("requests outputs at {:g} Hz: {}", frequency, names);
+  set_output_frequency(frequency);
+  const std::string types = set_output_recipe(names);
+  const std::uint8_t id = output_recipe_valid_ ? output_recipe_id : 0;
+  log_recipe_reply(connection_->log(), id, names, types);
+  reply(PackageType::setup_outputs, protocol_version_ == 1 ? types : with_recipe_id(id, types));
 }
 
-void Session::read_output_frequency(PackageReader & reader)
+void Session::set_output_frequency(double frequency)
 {
-  output_frequency_ = protocol_version_ == 1 ? protocol_version_1_frequency : reader.read_f64();
   const double highest = control_frequency(context_.version);
-  if (!reader.ok() || !std::isfinite(output_frequency_) || output_frequency_ <= 0.0) {
+  if (!std::isfinite(frequency) || frequency <= 0.0) {
     send_warning(fmt::format("Output frequency must be above 0 and at most {} Hz", highest));
-    output_frequency_ = highest;
+    frequency = highest;
   }
-  output_frequency_ = std::min(output_frequency_, highest);
+  output_frequency_ = std::min(frequency, highest);
 }
 
 std::string Session::set_output_recipe(std::string_view names)
@@ -238,7 +228,11 @@ void Session::publish()
   for (const OutputField * field : output_fields_) {
     field->write(context_.state, field->index, writer);
   }
-  dropped_packages_ += connection_->send_or_drop(data_package_) ? 0 : 1;
+  if (!connection_->send_or_drop(data_package_)) {
+    ++dropped_packages_;
+  } else if (sent_packages_++ == 0) {
+    connection_->log().to_peer("data packages of {} bytes", data_package_.size());
+  }
 }
 
 // ---- inputs
@@ -262,6 +256,7 @@ void Session::claim_inputs(const std::vector<const InputField *> & fields)
 
 void Session::handle_setup_inputs(std::string_view payload)
 {
+  connection_->log().from_peer("requests inputs: {}", payload);
   InputRecipe recipe;
   std::vector<std::string_view> types;
   bool valid = input_recipes_.size() < max_input_recipes;
@@ -278,7 +273,9 @@ void Session::handle_setup_inputs(std::string_view payload)
     input_recipes_.push_back(std::move(recipe));
     id = static_cast<std::uint8_t>(input_recipes_.size());
   }
-  reply(PackageType::setup_inputs, with_recipe_id(id, join_types(types)));
+  const std::string joined_types = join_types(types);
+  log_recipe_reply(connection_->log(), id, payload, joined_types);
+  reply(PackageType::setup_inputs, with_recipe_id(id, joined_types));
 }
 
 void Session::handle_data_package(std::string_view payload)
@@ -286,9 +283,8 @@ void Session::handle_data_package(std::string_view payload)
   PackageReader reader(payload);
   const unsigned id = reader.read_u8();
   if (!reader.ok() || id == 0 || id > input_recipes_.size()) {
-    context_.log.warning(
-        "rtde", fmt::format("client {}: data package for recipe {}, which was not set up (there are {})",
-                            connection_->id(), id, input_recipes_.size()));
+    log_warning(fmt::format("data package for recipe {}, which was not set up (there are {})", id,
+                            input_recipes_.size()));
     return;
   }
   read_input_fields(input_recipes_[id - 1], reader.read_remaining(), id);
@@ -311,15 +307,32 @@ void Session::read_input_fields(InputRecipe & recipe, std::string_view values, u
     ++fields_read;
   }
   apply_masked_inputs(masked_inputs_, context_.state);
+  ++received_packages_;
+  if (connection_->log()) {
+    recipe.log.add(connection_->log(), recipe_id, recipe.fields, values, context_.state.timestamp);
+  }
   if (context_.on_data_package) {
     context_.on_data_package(std::span(recipe.fields).first(fields_read));
   }
   if (recipe_size != values.size() && !recipe.wrong_size_logged) {
     recipe.wrong_size_logged = true;
-    context_.log.warning("rtde",
-                         fmt::format("client {}: data package for recipe {} has {} bytes, the recipe {}",
-                                     connection_->id(), recipe_id, values.size(), recipe_size));
+    log_warning(fmt::format("data package for recipe {} has {} bytes, the recipe {}", recipe_id,
+                            values.size(), recipe_size));
   }
+}
+
+// ---- logging
+
+void Session::log_warning(std::string_view text)
+{
+  context_.log.warning("rtde", fmt::format("client {}: {}", connection_->id(), text));
+  connection_->log().note("{}", text);
+}
+
+void Session::disconnect(const std::string & reason)
+{
+  context_.log.error("rtde", fmt::format("client {}: {}: disconnected", connection_->id(), reason));
+  connection_->close(reason);
 }
 
 // ---- sending packages
@@ -334,15 +347,20 @@ void Session::reply(PackageType type, std::string_view payload)
   connection_->send(package);
 }
 
+void Session::reply_accepted(PackageType type, bool accepted)
+{
+  connection_->log().to_peer("{}", accepted ? "accepted" : "refused");
+  reply(type, std::string_view(accepted ? "\1" : "\0", 1));
+}
+
 void Session::send_warning(std::string_view text)
 {
   if (++warnings_ > max_warnings) {
-    context_.log.error("rtde", fmt::format("client {} sent {} invalid packages: disconnected",
-                                           connection_->id(), warnings_));
-    connection_->close();
+    disconnect(fmt::format("sent {} invalid packages", warnings_));
     return;
   }
   context_.log.warning("rtde", fmt::format("client {}: {}", connection_->id(), text));
+  connection_->log().to_peer("text message: {}", text);
   constexpr std::string_view source = "RTDE";
   constexpr std::uint8_t warning = 2;  // 0 exception, 1 error, 2 warning, 3 info
   text = text.substr(0, 255);          // the length field has one byte

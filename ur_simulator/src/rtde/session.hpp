@@ -9,6 +9,7 @@
 
 #include "net/connection.hpp"
 #include "rtde/server.hpp"
+#include "rtde/session_log.hpp"
 
 namespace ur_simulator::rtde {
 
@@ -30,6 +31,7 @@ class Session {
   struct InputRecipe {
     std::vector<const InputField *> fields;
     bool wrong_size_logged = false;
+    DataPackageLog log;
   };
 
   void handle_package(std::uint8_t type, std::string_view payload);
@@ -40,7 +42,7 @@ class Session {
   void handle_setup_inputs(std::string_view payload);
   void handle_start();
   void handle_data_package(std::string_view payload);
-  void read_output_frequency(PackageReader & reader);
+  void set_output_frequency(double frequency);
   /// Sets the output recipe. Returns the comma-separated types of the fields, NOT_FOUND for unknown fields.
   std::string set_output_recipe(std::string_view names);
   void read_input_fields(InputRecipe & recipe, std::string_view values, unsigned recipe_id);
@@ -49,6 +51,10 @@ class Session {
   std::string_view input_type_or_error(const InputField * field) const;
 
   void reply(PackageType type, std::string_view payload);
+  /// Accepts or rejects a request.
+  void reply_accepted(PackageType type, bool accepted);
+  void log_warning(std::string_view text);
+  void disconnect(const std::string & reason);
   /// Sends a text message of level WARNING to the client and logs it.
   void send_warning(std::string_view text);
 
@@ -64,8 +70,10 @@ class Session {
   double publish_phase_ = 1.0;  ///< output periods since the last package; a package is due at 1
   std::string data_package_;    ///< buffer of the outgoing data package
   bool started_ = false;
-  unsigned warnings_ = 0;  ///< sent to the client
-  std::uint64_t dropped_packages_ = 0;
+  unsigned warnings_ = 0;                ///< sent to the client
+  std::uint64_t sent_packages_ = 0;      ///< data packages
+  std::uint64_t dropped_packages_ = 0;   ///< data packages
+  std::uint64_t received_packages_ = 0;  ///< data packages
 };
 
 }  // namespace ur_simulator::rtde

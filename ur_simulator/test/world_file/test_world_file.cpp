@@ -1,40 +1,22 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
+#include "support/temporary_file.hpp"
 #include "world_file/world_file.hpp"
 
 namespace ur_simulator {
 namespace {
 
-/// A file in the folder for temporary files, removed at the end.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string & text)
-      : path_(std::filesystem::temp_directory_path() / ("world_" + std::to_string(getpid()) + ".yaml"))
-  {
-    std::ofstream(path_) << text;
-  }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  TemporaryFile(const TemporaryFile &) = delete;
-  TemporaryFile & operator=(const TemporaryFile &) = delete;
-  std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
+using testing::TemporaryFile;
 
 WorldFile read(const std::string & text)
 {
-  return read_world_file(TemporaryFile(text).path());
+  return read_world_file(TemporaryFile("world.yaml", text).path());
 }
 
 /// The message after the path: ":line: text".
 std::string error_of(const std::string & text)
 {
-  const TemporaryFile file(text);
+  const TemporaryFile file("world.yaml", text);
   try {
     read_world_file(file.path());
     return "no error";
