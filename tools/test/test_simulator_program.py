@@ -1,15 +1,20 @@
-"""The program ur_simulator: several robots in one process, refused options, client log."""
+"""The program ur_simulator: several robots in one process, refused options, client log and status."""
 
 import contextlib
+import fcntl
 import json
 import os
+import pty
 import re
+import select
 import socket
 import struct
 import subprocess
+import termios
 import time
 
 import pytest
+from ur_tools import simulation
 from ur_tools.environment import program, run_environment
 from ur_tools.layout import ROOT, Layout
 
@@ -69,6 +74,8 @@ def test_ten_robots_run_on_consecutive_addresses(ten_robots):
     (["--count", "0"], "--count"),
     (["--ports", "rtde=99999"], "0..65535"),
     (["--client-log", "/nonexistent/log.mmd"], "client log '/nonexistent/log.mmd' cannot be written (--client-log): No such file"),
+    (["--status", "--log"], "give --status alone or with --client-log FILE"),
+    (["--status", "--client-log"], "give --status alone or with --client-log FILE"),
 ])
 def test_refused_options_are_named(arguments, message):
     result = subprocess.run([PROGRAM, *arguments], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
@@ -190,3 +197,86 @@ def test_a_full_disk_ends_the_client_log_and_not_the_robot():
         assert process.stderr.read() == ""
     assert process.wait(10.0) == 0
 
+
+# ---- status
+
+
+def test_the_status_in_a_pipe_is_a_line_for_each_change():
+    with running("--quiet", "--status") as process:
+        assert re.fullmatch(rf"\[\d+\.\d{{3}}\] {ADDRESSES[0]}: RUNNING, NORMAL, program STOPPED; no clients; no error\n",
+                            process.stdout.readline())
+        control(ADDRESSES[0], command="protective_stop", reason="a \x1b test")
+        line = process.stdout.readline()
+    assert "RUNNING, PROTECTIVE_STOP, program STOPPED" in line
+    assert "last error: [" in line and line.endswith("safety: protective stop: a \\x1b test\n")
+
+
+class Terminal:
+    """The simulator on a pseudo-terminal."""
+
+    def __init__(self, *options, columns=200):
+        self.file, terminal = pty.openpty()
+        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        self.attributes = termios.tcgetattr(terminal)
+        self.process = subprocess.Popen([PROGRAM, "--address", ADDRESSES[0], "--quiet", "--status", *options], stdout=terminal,
+                                        env={**run_environment(LAYOUT), "TERM": "xterm"})
+        os.close(terminal)
+        self.output = ""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_unused):
+        self.process.terminate()
+        self.process.wait(10.0)
+        os.close(self.file)
+
+    def frame(self, text, limit=10.0):
+        """Waits for a complete frame with the text, and returns its lines."""
+        end = time.monotonic() + limit
+        while True:
+            frames = [frame for frame in self.output.split("\x1b[J")[:-1] if text in frame]
+            if frames:
+                return [line.replace("\r", "") for line in frames[-1].split("\x1b[K")[:-1]]
+            assert select.select([self.file], [], [], max(0.0, end - time.monotonic()))[0], f"waited for {text!r}"
+            self.output += os.read(self.file, 65536).decode().replace("\r\n", "")
+
+
+def test_the_status_on_a_terminal_is_redrawn_in_place():
+    with Terminal() as terminal:
+        terminal.frame("program STOPPED")
+        with socket.create_connection((ADDRESSES[0], 29999)) as dashboard:
+            dashboard.recv(100)
+            control(ADDRESSES[0], command="run_script", script="def wait_forever():\n  while True:\n    sync()\n  end\nend\n")
+            control(ADDRESSES[0], command="run_script", script="textmessage(\"hello\")\n")
+            terminal.frame("dashboard 1")
+            lines = terminal.frame("textmessage")
+        assert "\x1b[4A" in terminal.output
+        frame = [re.sub(r"\x1b\[\d+A", "", line) for line in lines]
+        terminal.process.terminate()
+        assert terminal.process.wait(10.0) == 0
+        assert termios.tcgetattr(terminal.file) == terminal.attributes
+    expected = documented("Status", "text").splitlines()
+
+    def numbers_replaced(line):
+        return re.sub(r" *-?\d+(\.\d+)*", " N", line)
+    assert [numbers_replaced(line) for line in frame] == [numbers_replaced(line) for line in expected]
+
+
+def test_ten_robots_have_a_status_of_one_line_each():
+    with Terminal("--count", "10", columns=60) as terminal:
+        lines = terminal.frame(ADDRESSES[9])
+    assert len(lines) == 10
+    for address, line in zip(ADDRESSES, lines):
+        assert re.sub(r"^\x1b\[\d+A", "", line).startswith(f"{address}: RUNNING, NORMAL, program STOPPED; ")
+        assert len(re.sub(r"^\x1b\[\d+A", "", line)) == 59
+
+
+@pytest.mark.parametrize("arguments, terminal, expected", [
+    (["--model", "ur5e"], True, ["--model", "ur5e", "--status"]),
+    (["--model", "ur5e"], False, ["--model", "ur5e"]),
+    (["--log"], True, ["--log"]),
+    (["--client-log=log.mmd"], True, ["--client-log=log.mmd"]),
+])
+def test_ur_sim_shows_the_status_on_a_terminal(arguments, terminal, expected):
+    assert simulation.with_status(arguments, terminal) == expected

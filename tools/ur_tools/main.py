@@ -13,7 +13,7 @@ import sys
 from typing import List, Optional, Tuple
 
 from . import build as building
-from . import console, disk, doctor, fuzz, lint, new, testing, viewer
+from . import console, disk, doctor, fuzz, lint, new, simulation, testing, viewer
 from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
@@ -71,7 +71,7 @@ def command_test(options: argparse.Namespace) -> int:
 def command_sim(options: argparse.Namespace) -> int:
     layout = _build(options, packages=["ur_simulator"])
     simulator = str(program(layout, "ur_simulator", "ur_simulator"))
-    os.execve(simulator, [simulator, *_forwarded(options)], run_environment(layout))
+    os.execve(simulator, [simulator, *simulation.with_status(_forwarded(options), sys.stdout.isatty())], run_environment(layout))
 
 
 def command_shell(options: argparse.Namespace) -> int:

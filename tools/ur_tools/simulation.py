@@ -13,6 +13,15 @@ NODES = ("robot_state_receiver", "command_server", "dashboard_server")
 MODELS = ("ur3", "ur5", "ur10", "ur3e", "ur5e", "ur7e", "ur10e", "ur12e", "ur16e", "ur8long", "ur15", "ur18", "ur20", "ur30")
 
 
+OUTPUT_OPTIONS = ("--status", "--log", "--client-log", "--quiet", "--help", "-h")
+
+
+def with_status(arguments: List[str], terminal: bool) -> List[str]:
+    """On a terminal, the simulator shows its status unless the options select what it prints."""
+    selected = any(argument.split("=")[0] in OUTPUT_OPTIONS for argument in arguments)
+    return [*arguments, "--status"] if terminal and not selected else arguments
+
+
 def start_simulator(programs: Programs, layout: Layout, env: Dict[str, str], address: str, model: str,
                     *arguments: str) -> Program:
     """Returns when the simulator reports that its ports listen. A connection attempt could reach another simulator."""

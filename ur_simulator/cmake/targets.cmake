@@ -9,7 +9,8 @@ target_include_directories(ur_simulator PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT
 target_link_libraries(ur_simulator PUBLIC nlohmann_json::nlohmann_json PRIVATE sim_controller)
 target_compile_features(ur_simulator PUBLIC cxx_std_20)
 
-add_executable(ur_simulator_app src/app/main.cpp src/app/options.cpp src/app/robots.cpp)
+add_executable(ur_simulator_app src/app/main.cpp src/app/options.cpp src/app/robots.cpp src/app/status_display.cpp
+               src/app/status_text.cpp)
 target_link_libraries(ur_simulator_app PRIVATE sim_controller CLI11::CLI11)
 # It parses the command line; optimizing CLI11 would double the compile time.
 target_compile_options(ur_simulator_app PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion

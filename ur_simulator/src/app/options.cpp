@@ -121,6 +121,10 @@ void add_options(CLI::App & app, AppOptions & options)
                "run the control loop with SCHED_FIFO if permitted");
   app.add_flag("--quiet", options.quiet, "do not print the ready message");
   app.add_flag("--log", options.print_log, "print the log of the controller");
+  app.add_flag(
+      "--status", options.show_status,
+      "show modes, program, joints, clients and errors; if the standard output is no terminal, a line for "
+      "each change");
   app.add_option(
          "--client-log", simulator.client_log,
          "write what clients and robots do to this file, as a Mermaid sequence diagram; default: standard "
@@ -132,6 +136,11 @@ void add_options(CLI::App & app, AppOptions & options)
 
 void parse_values(AppOptions & options)
 {
+  if (options.show_status && (options.print_log || options.simulator.client_log == "-")) {
+    throw std::runtime_error(
+        "--status, --log and --client-log without a file all write to the standard output: give --status "
+        "alone or with --client-log FILE");
+  }
   for (const std::string & text : options.port_texts) {
     parse_port(options.simulator.ports, text);
   }

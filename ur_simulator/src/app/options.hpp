@@ -18,6 +18,7 @@ struct AppOptions {
   unsigned count = 1;                   ///< robots, on consecutive addresses
   bool quiet = false;
   bool print_log = false;
+  bool show_status = false;
 
   // Unparsed values, evaluated by parse_values().
   std::vector<std::string> surface_texts;

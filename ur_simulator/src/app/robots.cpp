@@ -67,7 +67,7 @@ std::string exposure_warning(const std::string & address)
       address);
 }
 
-Robots::Robots(const AppOptions & options)
+Robots::Robots(const AppOptions & options) : shows_status_(options.show_status)
 {
   SimulatorOptions simulator = options.simulator;
   if (!simulator.client_log.empty()) {
@@ -125,10 +125,18 @@ void Robots::start()
   for (Robot & robot : robots_) {
     robot.thread = std::thread([controller = robot.controller.get()] { controller->run(); });
   }
+  if (shows_status_) {
+    std::vector<StatusDisplay::Robot> robots;
+    for (const Robot & robot : robots_) {
+      robots.push_back({robot.address, robot.controller.get()});
+    }
+    status_.emplace(robots);
+  }
 }
 
 void Robots::stop()
 {
+  status_.reset();
   for (Robot & robot : robots_) {
     robot.controller->stop();
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/options.hpp"
+#include "app/status_display.hpp"
 #include "controller/controller.hpp"
 
 namespace ur_simulator {
@@ -43,6 +44,8 @@ class Robots {
 
   std::optional<DiagramWriter> client_log_;
   std::vector<Robot> robots_;
+  bool shows_status_;
+  std::optional<StatusDisplay> status_;
 };
 
 }  // namespace ur_simulator

@@ -5,7 +5,6 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <boost/asio/post.hpp>
 #include <exception>
 #include <limits>
 #include <stdexcept>

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <list>
 #include <map>
 #include <memory>
@@ -12,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "client_log/client_log.hpp"
 #include "control_port/commands.hpp"
@@ -57,7 +60,15 @@ class Controller {
   /// Thread-safe.
   void stop();
 
-  boost::asio::io_context & io() { return io_; }
+  /// Runs the function on the controller's thread, between two control cycles. Thread-safe.
+  template <typename Function>
+  auto call(Function function)
+  {
+    auto task = std::make_shared<std::packaged_task<decltype(function())()>>(std::move(function));
+    auto result = task->get_future();
+    boost::asio::post(io_, [task] { (*task)(); });
+    return result;
+  }
   Ports ports() const;
 
   // The functions below must be called on the controller's thread, or while run() is not running.

@@ -1,6 +1,5 @@
 #include "ur_simulator/simulated_controller.hpp"
 
-#include <boost/asio/post.hpp>
 #include <exception>
 #include <future>
 #include <optional>
@@ -30,10 +29,7 @@ struct SimulatedController::Impl {
   template <typename Function>
   auto call(Function function)
   {
-    std::packaged_task<decltype(function())()> task(std::move(function));
-    auto result = task.get_future();
-    boost::asio::post(controller.io(), [&task] { task(); });
-    return result.get();
+    return controller.call(std::move(function)).get();
   }
 
   SimulatorOptions options;
