@@ -16,6 +16,7 @@
 #include "controller/tcp_script_socket.hpp"
 #include "net/text_request.hpp"
 #include "primary/messages.hpp"
+#include "script_api/function_versions.hpp"
 #include "script_api/script_socket.hpp"
 
 namespace ur_simulator {
@@ -116,9 +117,10 @@ std::shared_ptr<const urscript::Library> Controller::script_library()
       with_sockets(*make_robot_library(robot_access()), [this](const std::string & host, std::uint16_t port) {
         return TcpScriptSocket::open(io_, host, port, add_host());
       });
-  return with_xml_rpc(*library, [this](const HttpAddress & to, std::string body) {
+  const auto complete = with_xml_rpc(*library, [this](const HttpAddress & to, std::string body) {
     return post_xml(io_, to, std::move(body), add_host());
   });
+  return with_functions_of(version_, *complete);
 }
 
 ProgramContext Controller::program_context()

@@ -35,6 +35,12 @@ void Library::simplify(std::string_view name, std::string note)
   builtin.note = std::move(note);
 }
 
+void Library::hide(std::string_view name)
+{
+  index_of(name);
+  index_.erase(std::string(name));
+}
+
 std::uint32_t Library::index_of(std::string_view name) const
 {
   const auto index = find(name);

@@ -145,6 +145,8 @@ class Library {
                    std::string reason);
   /// Documents what the present builtin of this name simplifies. Throws std::out_of_range if there is none.
   void simplify(std::string_view name, std::string note);
+  /// Makes the builtin of this name unknown to programs. Throws std::out_of_range if there is none.
+  void hide(std::string_view name);
   /// Starts a group of the reference for the builtins that are added next.
   void begin_group(std::string title) { group_ = std::move(title); }
   /// Adds a constant that programs can read, such as MATH_PI.

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "script_api/function_reference.hpp"
+#include "script_api/function_versions.hpp"
 #include "script_api/http_request.hpp"
 #include "script_api/script_socket.hpp"
 #include "script_fixture.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 // The functions that the script manual of PolyScope 5.25 lists, and those that only manuals of 3.x have.
 constexpr const char * manual_functions = R"(
-servoc set_runstate_outputs
+servoc set_runstate_outputs set_runstate_gp_float_output_to_value set_runstate_gp_integer_output_to_value
 acos add_frame asin atan atan2 attach_frame binary_list_to_integer ceil convert_pose
 conveyor_pulse_decode cos d2r delete_all_frames delete_frame direct_torque enable_external_ft_sensor
 encoder_enable_pulse_decode encoder_enable_set_tick_count encoder_get_tick_count encoder_set_tick_count
@@ -98,11 +99,11 @@ TEST(FunctionReferenceTest, EveryDifferenceFromTheRobotHasANote)
   }
 }
 
-// docs/urscript.md contains the reference between these lines. UPDATE_DOCS=1 writes it.
-TEST(FunctionReferenceTest, TheDocumentationIsUpToDate)
+// docs/urscript.md contains the texts between such lines. UPDATE_DOCS=1 writes them.
+void expect_documented(const std::string & title, const std::string & reference)
 {
-  const std::string begin = "<!-- begin of the generated function reference -->\n\n";
-  const std::string end = "\n<!-- end of the generated function reference -->\n";
+  const std::string begin = "<!-- begin of the generated " + title + " -->\n\n";
+  const std::string end = "\n<!-- end of the generated " + title + " -->\n";
   std::ifstream file(URSCRIPT_DOCUMENTATION);
   std::ostringstream buffer;
   buffer << file.rdbuf();
@@ -112,13 +113,53 @@ TEST(FunctionReferenceTest, TheDocumentationIsUpToDate)
   const std::size_t start = first + begin.size();
   const std::size_t last = text.find(end, start);
   ASSERT_NE(last, std::string::npos);
-  const ScriptFixture fixture;
-  const std::string reference = function_reference(*complete_library(fixture));
   if (std::getenv("UPDATE_DOCS") != nullptr) {
     std::ofstream(URSCRIPT_DOCUMENTATION) << text.replace(start, last - start, reference);
     return;
   }
   EXPECT_EQ(text.substr(start, last - start), reference) << "run this test with UPDATE_DOCS=1";
+}
+
+TEST(FunctionReferenceTest, TheDocumentationIsUpToDate)
+{
+  const ScriptFixture fixture;
+  expect_documented("function reference", function_reference(*complete_library(fixture)));
+  expect_documented("version reference", function_version_reference());
+}
+
+std::string compile_error(const ScriptFixture & fixture, const char * version, const std::string & program)
+{
+  const auto library = with_functions_of(*PolyscopeVersion::parse(version), *complete_library(fixture));
+  const auto compiled = urscript::compile(program, *library);
+  return compiled ? "" : compiled.error().message;
+}
+
+// The names are those of the script manual for PolyScope 3.15.
+TEST(FunctionVersionTest, Cb3HasTheFunctionsOfItsManualOnly)
+{
+  const ScriptFixture fixture;
+  for (const char * call : {"get_target_tcp_pose_along_path()", "freedrive_mode_no_incorrect_payload_check()",
+                            "get_euromap_input(0)", "encoder_get_tick_count(0)", "servoc(p[0,0,0,0,0,0])",
+                            "ft_rtde_input_enable(False)"}) {
+    EXPECT_EQ(compile_error(fixture, "3.15.8", call), "") << call;
+  }
+  for (const char * call :
+       {"screw_driving(10, 0.1)", "path_offset_enable()", "set_target_payload(1, [0,0,0])",
+        "interpreter_mode()", "optimovej([0,0,0,0,0,0])", "get_mass_matrix()"}) {
+    EXPECT_NE(compile_error(fixture, "3.15.8", call).find("is not defined"), std::string::npos) << call;
+    EXPECT_EQ(compile_error(fixture, "5.25.1", call), "") << call;
+  }
+}
+
+TEST(FunctionVersionTest, FunctionsExistFromTheirFirstVersion)
+{
+  const ScriptFixture fixture;
+  EXPECT_NE(compile_error(fixture, "5.20", "optimovel(p[0,0,0,0,0,0])"), "");
+  EXPECT_EQ(compile_error(fixture, "5.21", "optimovel(p[0,0,0,0,0,0])"), "");
+  EXPECT_NE(compile_error(fixture, "5.9", "ft_rtde_input_enable(False)"), "");
+  EXPECT_EQ(compile_error(fixture, "5.9.1", "ft_rtde_input_enable(False)"), "");
+  EXPECT_NE(compile_error(fixture, "3.7", "protective_stop()"), "");
+  EXPECT_EQ(compile_error(fixture, "3.8", "protective_stop()"), "");
 }
 
 }  // namespace
