@@ -189,7 +189,7 @@ void Session::cycle()
   }
   connection_->set_reading_paused(received_.size() > max_waiting);
   if (!replying() && connection_->end_of_input()) {
-    connection_->close_after_sending();
+    connection_->close_after_sending("the client sends no more requests");
   } else if (pending_ == nullptr && Clock::now() > deadline_) {
     connection_->close(rejected_ ? "the request was rejected" : "there was no complete request in time");
   }

@@ -259,11 +259,14 @@ TEST(RobotApiClientLogTest, ShowsRequestsAndReplies)
     SimulatedController controller(options);
     HttpClient client(controller.address(), controller.ports().robot_api);
     EXPECT_EQ(client.request("POST", "/no/such/path", "{}").status, 404);
+    client.socket().shut_down_sending();
+    EXPECT_TRUE(client.socket().closed_by_peer());
   }
   const Lines session = after_connecting(session_of(read_diagram(file.path()), "robot api client 1"));
   ASSERT_EQ(session.size(), 3u);
   EXPECT_EQ(session[0], "> POST /universal-robots/robot-api/no/such/path {}");
   EXPECT_TRUE(session[1].starts_with("< 404 {")) << session[1];
+  EXPECT_EQ(session[2], "x< closes the connection: the client sends no more requests");
 }
 
 TEST_F(ControllerClientLogTest, ShowsWhoEndsConnections)
