@@ -20,7 +20,7 @@ struct Target {
 
   void run(ur_fuzz::Input input)
   {
-    robot.reset();
+    robot.reset_controller();  // there is no program that could run
     const fuzz::SocketPair sockets(io);
     server.accept(sockets.connection());
     sockets.send(input.take_piece(0));

@@ -10,7 +10,6 @@
 #include "script_api/script_socket.hpp"
 #include "urscript/machine.hpp"
 #include "urscript/program.hpp"
-#include "urscript/script_reader.hpp"
 #include "world/world.hpp"
 
 // Compiles the input with all builtins and runs it for some cycles on a simulated arm.
@@ -88,11 +87,6 @@ class Robot {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t * data, std::size_t size)
 {
   static Robot robot;
-  const std::string text(reinterpret_cast<const char *>(data), size);
-  robot.run(text);
-  urscript::ScriptReader reader(4096);
-  reader.feed(text);
-  while (reader.next()) {
-  }
+  robot.run({reinterpret_cast<const char *>(data), size});
   return 0;
 }

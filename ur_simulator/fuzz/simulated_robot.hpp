@@ -25,13 +25,24 @@ class SimulatedRobot {
     pendant.reset();
     runner.reset();
     state = ControllerState();
+    arm.emplace(model, options_.version.cycle_time(), default_position(model));
+    world.emplace(options_.version.cycle_time(), 1);
+    collisions.reset();
+    arm->teleport(default_position(model), state);
+    initial_state_ = state;
+    reset_controller();
+  }
+
+  /// The same without arm and world. Sufficient if no program has run, and takes a fraction of the time.
+  void reset_controller()
+  {
+    pendant.reset();
+    runner.reset();
+    state = initial_state_;
     log = EventLog();
     watchdog = Watchdog();
     const double cycle_time = options_.version.cycle_time();
-    arm.emplace(model, cycle_time, default_position(model));
-    world.emplace(cycle_time, 1);
     safety.emplace(model, cycle_time);
-    collisions.reset();
     if (!library_) {
       ScriptRequests requests;
       requests.power_down = [] {};
@@ -42,7 +53,6 @@ class SimulatedRobot {
     pendant.emplace(model, options_, state, *safety, *runner, log);
     pendant->set_program_request(
         [](const ProgramHost &, const auto & done) { done(tl::unexpected<std::string>("no host")); });
-    arm->teleport(default_position(model), state);
     safety->start_running(state);
   }
 
@@ -73,6 +83,7 @@ class SimulatedRobot {
  private:
   bool protective_stop_ = false;  ///< requested by the program in this cycle
   PendantOptions options_;
+  ControllerState initial_state_;
   std::shared_ptr<const urscript::Library> library_;
 };
 
