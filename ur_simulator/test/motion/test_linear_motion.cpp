@@ -147,6 +147,22 @@ TEST(MoveLTest, SlowsDownWhereAJointWouldBeTooFast)
   EXPECT_EQ(fixture.state.time_scale_source, TimeScaleSource::none);
 }
 
+TEST(MoveLTest, TakesLongerThanATimeThatIsTooShortForAJoint)
+{
+  FastPassFixture fixture;
+  const Vector6 from = fixture.tcp();
+  const auto motion = fixture.arm.move_linear(fixture.to, {1.2, 0.25, 0.1});
+  ASSERT_TRUE(motion) << motion.error();
+  while (!fixture.arm.call_complete(*motion)) {
+    fixture.step();
+    ASSERT_LT(off_line(from, fixture.to, fixture.tcp()), 1e-8);
+  }
+  const auto fault = fixture.arm.take_fault();
+  EXPECT_FALSE(fault) << describe(*fault);
+  EXPECT_LT(pose_distance(fixture.tcp(), fixture.to), 1e-6);
+  EXPECT_TRUE((fixture.max_velocity.array() <= fixture.model.velocity_max.array()).all());
+}
+
 TEST(MoveLTest, IsNotSlowedDownWithinTheJointSpeedLimits)
 {
   FastPassFixture fixture;

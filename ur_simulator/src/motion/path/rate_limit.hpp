@@ -12,7 +12,7 @@ namespace ur_simulator {
 /// The highest rate of the clock of a Cartesian path at which all joints keep their speed limits, as a
 /// function of the time of the path. The rate changes by at most 3 per second, so that the motion slows down
 /// before it reaches a fast section. Sections that would need a rate below 0.2 are not slowed down further:
-/// there the path leads through a singularity.
+/// there the path leads through a singularity. The rate of a path faster than 1 m/s may be lower.
 class RateLimit {
  public:
   /// No limit.
