@@ -68,7 +68,7 @@ def checks(options: argparse.Namespace, version: str) -> List[Check]:
     if options.client_library:
         # Tests with a simulated server of their own do not use the robot.
         tests = ["ctest", "--timeout", "60", "-R", "_headless$|_urcap$|RTDEClientTest|PrimaryClientTest|UrDriverTestDeprecated"]
-        result.append(Check("Universal Robots Client Library", options.client_library, [*tests, "-E", "[Ff]ake|server_stops"]))
+        result.append(Check("Universal Robots Client Library", options.client_library, [*tests, "-E", "[Ff]ake|server_stops|connect_non_running"]))
     if options.rtde_python:
         record = [options.python, "record.py", "--host", ADDRESS, "--samples", "300", "--output", "/dev/null"]
         result.append(Check("RTDE Python Client Library", options.rtde_python / "examples", record))

@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 from support import HOME, REAL_TIME_FACTOR, wait_for
 from trajectories import TargetRecorder
 
-from ur_ros_rtde_msgs.action import (Decelerate, Jog, MoveC, MoveJ, MoveJIK, MoveJRelative, MoveLFK, MoveLRelative, MoveP,
+from ur_ros_rtde_msgs.action import (Decelerate, Jog, MakeReady, MoveC, MoveJ, MoveJIK, MoveJRelative, MoveLFK, MoveLRelative, MoveP,
                                      MovePath, ServoC, ServoJ, ServoL, SpeedJ, SpeedL)
 from ur_ros_rtde_msgs.msg import ErrorCode, PathWaypoint
 
@@ -137,15 +137,16 @@ def test_move_path_combines_motion_types_and_reports_the_waypoint(robot):
     assert seen == sorted(seen) and {1, 2} <= set(seen)
 
 
-def test_a_path_that_cannot_be_continued_is_aborted_with_the_controllers_message(robot):
+def test_a_path_that_cannot_be_continued_is_aborted_by_a_protective_stop(robot):
     start = get_tcp_pose(robot)
     near = [translated(start, z=-0.002 * i) for i in range(1, 21)]  # the number of waypoints that are checked in advance
     status, result = robot.send(MovePath, "move_path", waypoints=[
         PathWaypoint(type=PathWaypoint.MOVE_L, pose=pose, speed=0.2, acceleration=2.0)
         for pose in [*near, translated(start, x=-0.8)]]).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED
-    assert result.error_code == ErrorCode.REJECTED_BY_ROBOT and "the controller ended the script" in result.message
+    assert result.error_code == ErrorCode.PROTECTIVE_STOP, result.message
     assert distance(result.final_state.tcp_pose, near[-1]) < 0.01 and get_joint_speed(robot) < 0.01
+    robot.send(MakeReady, "make_ready").succeeded(60.0)
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 

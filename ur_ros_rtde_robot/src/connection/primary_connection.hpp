@@ -20,7 +20,7 @@ struct PrimaryMessage {
   enum class Kind {
     text,             ///< from `textmsg`
     error,            ///< a script was rejected or aborted
-    error_code,       ///< a violation or fault stopped the robot, or a motion is impossible: "C204A5: …"
+    error_code,       ///< a violation or fault stopped the robot: "C4A65: …"
     program_started,  ///< `text` is its name
     program_stopped,  ///< likewise, also after a regular end
   };

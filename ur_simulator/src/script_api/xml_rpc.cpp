@@ -22,8 +22,8 @@ using urscript::Type;
 using urscript::Value;
 
 constexpr std::array<const char *, 6> pose_members{"x", "y", "z", "rx", "ry", "rz"};
-constexpr std::ptrdiff_t max_elements = 20000;  // of a response
-constexpr int max_depth = 14;                   // of values in each other
+constexpr int max_depth = 14;  // of values in each other
+constexpr int max_tags = 100;  // in each other
 
 std::string escaped(std::string_view text)
 {
@@ -213,11 +213,26 @@ Value decode(const ptree & value, int depth)
                        : decode_typed(value.front().first, value.front().second, depth);
 }
 
+/// Whether more than `limit` tags are open at a time. Comments may count as tags.
+bool nested_deeper(std::string_view document, int limit)
+{
+  int depth = 0;
+  while (!document.empty()) {
+    const std::string_view part = document.substr(0, document.find('<', 1));  // begins with a tag
+    document.remove_prefix(part.size());
+    const bool opens = part.starts_with('<') && !part.starts_with("<?") && part.find("/>") == part.npos;
+    depth = part.starts_with("</") ? std::max(0, depth - 1) : depth + (opens ? 1 : 0);
+    if (depth > limit) {
+      return true;
+    }
+  }
+  return false;
+}
+
 Value parse_response(const std::string & body)
 {
-  // The parser of the library recurses: a document with that many tags is refused before.
-  if (std::ranges::count(body, '<') > max_elements) {
-    throw std::runtime_error("it is too large");
+  if (nested_deeper(body, max_tags)) {  // the parser of the library recurses
+    throw std::runtime_error(fmt::format("it is nested deeper than {} tags", max_tags));
   }
   std::istringstream stream(body);
   ptree document;

@@ -92,6 +92,18 @@ TEST(XmlRpcTest, ReportsFaultsAndMalformedResponses)
             std::string::npos);
 }
 
+TEST(XmlRpcTest, ALongListIsDecoded)
+{
+  std::string elements;
+  for (int i = 0; i < 5000; ++i) {
+    elements += "<value><int>" + std::to_string(i) + "</int></value>";
+  }
+  const auto value = parse_xml_rpc_response(response("<array><data>" + elements + "</data></array>"));
+  ASSERT_TRUE(value) << value.error();
+  EXPECT_EQ(value->list().size(), 5000U);
+  EXPECT_EQ(value->list().back().integer(), 4999);
+}
+
 TEST(XmlRpcTest, DeepNestingIsRefused)
 {
   std::string value = "<int>1</int>";
@@ -103,7 +115,7 @@ TEST(XmlRpcTest, DeepNestingIsRefused)
   for (int i = 0; i < 30000; ++i) {
     tags += "<value>";
   }
-  EXPECT_EQ(parse_xml_rpc_response(tags).error(), "XML-RPC response: it is too large");
+  EXPECT_EQ(parse_xml_rpc_response(tags).error(), "XML-RPC response: it is nested deeper than 100 tags");
 }
 
 }  // namespace
