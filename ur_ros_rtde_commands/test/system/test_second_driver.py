@@ -81,6 +81,7 @@ def test_a_driver_in_another_namespace_reports_the_conflict_and_takes_over_a_rel
     state = wait_for_state(states, DriverState.STOPPED, ErrorCode.ROBOT_IN_USE)
     for part in ("in use", "input_int_register_23", "another driver", simulator.address):
         assert part in state.message, state.message
+    second.wait_for_output("are in use")
     assert sum("are in use" in line for line in second.lines) == 1, second.output()
     goal = first_client.send(MoveJ, "move_j", joint_positions=TARGET, speed=0.5)
     refused = other_client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.5)
