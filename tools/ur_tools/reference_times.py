@@ -1,4 +1,4 @@
-"""Duration (s) and load (cores) of long pytest files on two cores. Used until a checkout has its own measurements."""
+"""Duration (s) and load (cores) of long tests on two cores. Used until a checkout has its own measurements."""
 
 from typing import Dict, Tuple
 
@@ -9,6 +9,12 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "tools: test_demo": (40.0, 0.45),
     "tools: test_plan": (10.0, 0.8),
     "tools: test_writing_a_plugin": (100.0, 1.0),
+    "ur_ros_rtde: fuzz.plugin_description": (25.0, 1.0),
+    "ur_ros_rtde: fuzz.robot_description": (25.0, 1.0),
+    "ur_ros_rtde_cli: test_cli": (75.0, 0.45),
+    "ur_ros_rtde_commands: every_command/goals": (90.0, 0.8),
+    "ur_ros_rtde_commands: every_command/losses": (90.0, 0.75),
+    "ur_ros_rtde_commands: every_command/stops": (85.0, 0.7),
     "ur_ros_rtde_commands: system/test_client_lost": (31.0, 0.25),
     "ur_ros_rtde_commands: system/test_commands": (28.0, 0.3),
     "ur_ros_rtde_commands: system/test_dashboard": (27.0, 0.35),
@@ -27,9 +33,24 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_ros_rtde_commands: system/test_streams": (55.0, 0.2),
     "ur_ros_rtde_commands: system/test_trajectory_commands": (70.0, 0.3),
     "ur_ros_rtde_commands: system/test_until_commands": (41.0, 0.25),
-    "ur_ros_rtde_commands: every_command/goals": (90.0, 0.8),
-    "ur_ros_rtde_commands: every_command/losses": (90.0, 0.75),
-    "ur_ros_rtde_commands: every_command/stops": (85.0, 0.7),
-    "ur_ros_rtde_cli: test_cli": (75.0, 0.45),
+    "ur_ros_rtde_gripper_commands: fuzz.robotiq_replies": (25.0, 1.0),
+    "ur_ros_rtde_robot: fuzz.composed_script": (25.0, 1.0),
+    "ur_ros_rtde_robot: fuzz.dashboard_client": (25.0, 1.0),
+    "ur_ros_rtde_robot: fuzz.dashboard_replies": (25.0, 1.0),
+    "ur_ros_rtde_robot: fuzz.primary_stream": (25.0, 1.0),
+    "ur_ros_rtde_robot: fuzz.rtde_stream": (25.0, 1.0),
     "ur_ros_rtde_tutorials: test_examples": (30.0, 0.5),
+    "ur_simulator: fuzz.control_port": (25.0, 1.0),
+    "ur_simulator: fuzz.control_request": (25.0, 1.0),
+    "ur_simulator: fuzz.dashboard": (25.0, 1.0),
+    "ur_simulator: fuzz.gripper_server": (25.0, 1.0),
+    "ur_simulator: fuzz.robot_api": (25.0, 1.0),
+    "ur_simulator: fuzz.robot_api_body": (25.0, 1.0),
+    "ur_simulator: fuzz.rtde_session": (25.0, 1.0),
+    "ur_simulator: fuzz.script_port": (25.0, 1.0),
+    "ur_simulator: fuzz.socket_data": (25.0, 1.0),
+    "ur_simulator: fuzz.urscript": (25.0, 1.0),
+    "ur_simulator: fuzz.urscript_compile": (25.0, 1.0),
+    "ur_simulator: fuzz.world_file": (25.0, 1.0),
+    "ur_simulator: fuzz.xml_rpc": (25.0, 1.0),
 }
