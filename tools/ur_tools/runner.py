@@ -17,7 +17,7 @@ from .environment import run_environment
 from .layout import ROOT, SANITIZERS, Layout
 from .processes import end_group
 
-BACKGROUND_NICENESS = 5  # of background tests: they get about a quarter of a core that other tests use all the time
+BACKGROUND_NICENESS = 10  # of background tests: they get about a tenth of a core that other tests use all the time
 LOWEST_PRIORITY = 19
 SANITIZED_PATIENCE = 4.0  # programs with a sanitizer are slower by about this factor
 SANITIZED_REAL_TIME_FACTOR = 0.5  # lets the simulated robot's time pass at half speed, so that its cycles are not late
