@@ -108,8 +108,11 @@ def test_an_unreadable_file_of_times_is_ignored(tmp_path, monkeypatch, text):
     assert Times(tmp_path / "durations.json").cost("known", True) == Cost(7.0, 0.3)
 
 
-def test_every_reference_time_belongs_to_a_test_file_or_a_group():
+def test_every_reference_time_belongs_to_a_test_file_a_group_or_a_fuzz_target():
     for name in REFERENCE:
         package, _, file = name.partition(": ")
+        if file.startswith("fuzz."):
+            assert (ROOT / package / "fuzz" / f"fuzz_{file[5:]}.cpp").is_file(), name
+            continue
         path = ROOT / package / "test" / f"{file}.py"
         assert path.is_file() or any(f'GROUP = "{path.stem}"' in other.read_text() for other in path.parent.glob("test_*.py")), name
