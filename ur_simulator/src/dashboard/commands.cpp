@@ -6,6 +6,8 @@
 #include <array>
 #include <cctype>
 
+#include "common/trim.hpp"
+
 namespace ur_simulator::dashboard {
 namespace {
 
@@ -301,19 +303,14 @@ bool starts_with_command(std::string_view line, std::string_view name)
   return prefix && (line.size() == name.size() || line[name.size()] == ' ');
 }
 
-std::string_view trim(std::string_view text)
-{
-  const std::size_t first = text.find_first_not_of(" \t");
-  const std::size_t last = text.find_last_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
-}
+constexpr std::string_view blanks = " \t";
 
 }  // namespace
 
 const Command * find_command(std::string_view line, const PolyscopeVersion & version,
                              std::string_view & argument)
 {
-  line = trim(line);
+  line = trim(line, blanks);
   const Command * longest = nullptr;
   for (const Command & command : command_table) {
     const bool longer = longest == nullptr || command.name.size() > longest->name.size();
@@ -322,7 +319,7 @@ const Command * find_command(std::string_view line, const PolyscopeVersion & ver
     }
   }
   if (longest != nullptr) {
-    argument = trim(line.substr(longest->name.size()));
+    argument = trim(line.substr(longest->name.size()), blanks);
   }
   return longest;
 }

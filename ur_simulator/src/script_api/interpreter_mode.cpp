@@ -4,19 +4,14 @@
 
 #include <utility>
 
+#include "common/trim.hpp"
+
 namespace ur_simulator {
 
 namespace {
 
 constexpr std::size_t max_statements = 1000;  // each new one compiles the program with all of them
 constexpr std::size_t max_queued = 1000;
-
-std::string_view trimmed(std::string_view text)
-{
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  return begin == std::string_view::npos ? std::string_view()
-                                         : text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
 
 std::string discarded(std::string_view reason, std::string_view statement)
 {
@@ -27,7 +22,7 @@ std::string discarded(std::string_view reason, std::string_view statement)
 
 void InterpreterMode::receive(std::string_view line, Reply reply)
 {
-  const std::string_view text = trimmed(line);
+  const std::string_view text = trim(line, " \t\r");
   if (text.empty()) {
     return;
   }
