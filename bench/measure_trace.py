@@ -17,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
 from control_port import ControlPort  # noqa: E402
 
 FLOOR = ("--ros-args", "-r", "__ns:=/floor")  # where the bare publisher publishes
+FLOOR_SECONDS = 600  # it is terminated before, however long subscribers take to find it
 
 
 def receive_in_cpp(options, *arguments, **env):
@@ -37,10 +38,13 @@ def floors(options, control):
     """Returns latencies in ms without the driver, and with it but without the trace."""
     received = receive_from_socket(options.address, options.seconds)
     found = {"socket": latencies([(when, when) for when in received], control.request("trace"))}
-    with subprocess.Popen([options.publisher, str(3 * options.seconds)]) as publisher:
+    publisher = subprocess.Popen([options.publisher, str(FLOOR_SECONDS)])
+    try:
         found["rcl"] = since_stamp(receive_in_cpp(options, *FLOOR))
         found["rclpy"] = since_stamp(receive_in_python(options.seconds, "/floor/joint_states"))
+    finally:
         publisher.terminate()
+        publisher.wait(10.0)
     found["driver"] = latencies(receive_in_cpp(options), control.request("trace"))
     return found
 

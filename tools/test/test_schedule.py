@@ -30,8 +30,9 @@ class Simulation:
             timetable.end(job)
 
 
-def jobs(*costs, exclusive=(), background=()):
-    return [Job(number, Cost(*cost), number in exclusive, number in background) for number, cost in enumerate(costs)]
+def jobs(*costs, exclusive=(), background=(), last=()):
+    return [Job(number, Cost(*cost), number in exclusive, number in (*background, *last), number in last)
+            for number, cost in enumerate(costs)]
 
 
 def test_the_longest_test_starts_first():
@@ -85,6 +86,11 @@ def test_no_background_test_runs_beside_an_exclusive_one():
     begin = simulation.begins[0]
     assert all(simulation.begins[number] >= begin + 5.0 or simulation.begins[number] + duration <= begin
                for number, duration in ((1, 6.0), (2, 3.0), (3, 4.0)))
+
+
+def test_the_last_tests_start_when_no_other_waits():
+    simulation = Simulation(jobs((10.0, 1.8), (4.0, 1.8), (20.0, 1.0), (12.0, 1.0), last=[2], background=[3]))
+    assert simulation.begins == {0: 0.0, 3: 0.0, 1: 10.0, 2: 10.0}
 
 
 def test_background_tests_count_among_the_tests_at_a_time():

@@ -34,6 +34,7 @@ class Test:
     env: Dict[str, str] = field(default_factory=dict)
     exclusive: bool = False  # runs while no other test does
     background: bool = False  # runs with low priority beside the other tests: its result does not depend on its speed
+    last: bool = False  # a background test that starts when no other test waits
     measures_time: bool = False  # is given a core, even if it uses less
     browser: bool = False  # needs a browser: see browser.py
     load: Optional[float] = None  # cores that it is given; None: its measured load

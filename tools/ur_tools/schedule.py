@@ -59,6 +59,7 @@ class Job:
     cost: Cost
     exclusive: bool = False  # runs alone
     background: bool = False  # has low priority: uses the processor time that the other jobs leave
+    last: bool = False  # a background job that does nothing but compute: it starts when no other job waits
     expected_end: float = 0.0
 
 
@@ -66,7 +67,7 @@ class Schedule:
     """Starts the longest waiting test as soon as its load fits beside the running tests.
 
     While that test does not fit, shorter ones are started as long as they do not delay it (EASY backfilling). Background tests run in
-    addition, as many as there are cores.
+    addition, as many as there are cores. The last tests are background tests that start when no other waits.
     """
 
     def __init__(self, jobs: Iterable[Job], cores: int, most: int = 0, clock: Callable[[], float] = time.monotonic):
@@ -77,7 +78,7 @@ class Schedule:
         self._clock = clock
         jobs = list(jobs)
         self._waiting = sorted((job for job in jobs if not job.background), key=lambda job: -job.cost.seconds)
-        self._background = sorted((job for job in jobs if job.background), key=lambda job: -job.cost.seconds)
+        self._background = sorted((job for job in jobs if job.background), key=lambda job: (job.last, -job.cost.seconds))
         self._running: List[Job] = []
         self._running_background: List[Job] = []
 
@@ -103,9 +104,12 @@ class Schedule:
         (self._running_background if job.background else self._running).remove(job)
 
     def _takes_background(self) -> bool:
-        """Background tests start when no exclusive test runs or is the next one."""
-        return (bool(self._background) and len(self._running_background) < self._background_most
-                and not any(job.exclusive for job in [*self._running, *self._waiting[:1]]))
+        """Background tests start when no exclusive test runs or is the next one, the last tests when no other waits."""
+        if not self._background or len(self._running_background) >= self._background_most:
+            return False
+        if self._background[0].last and self._waiting:
+            return False
+        return not any(job.exclusive for job in [*self._running, *self._waiting[:1]])
 
     def _choose(self, now: float) -> Optional[Job]:
         if not self._waiting:

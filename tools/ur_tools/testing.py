@@ -25,6 +25,7 @@ PYTEST_LIMIT = 600.0
 # Lines of a pytest file that set the field of the same name of its Test.
 MARKERS = re.compile(r"^(MEASURES_TIME|BACKGROUND|BROWSER|LOAD|GROUP) = (True|\d+\.\d+|\"\w+\")", re.M)
 BACKGROUND_LABEL = "background"  # of a CTest test: the same as BACKGROUND
+LAST_LABEL = "last"  # of a CTest test: a background test that starts when no other test waits
 SHOWN_LINES = 60  # of a failed test's output
 FAILS_ALONE, PASSES_ALONE = "fails alone too", "passes alone: depends on load or on other tests"
 
@@ -59,11 +60,12 @@ def _ctest(layout: Layout, package: Package) -> List[Test]:
         properties = {item["name"]: item["value"] for item in entry.get("properties", [])}
         if properties.get("DISABLED"):
             continue
+        labels = properties.get("LABELS", [])
         env = dict(pair.split("=", 1) for pair in properties.get("ENVIRONMENT", []))
         tests.append(Test(f"{package.name}: {entry['name']}", command,
                           pathlib.Path(properties.get("WORKING_DIRECTORY", folder)),
                           float(properties.get("TIMEOUT", DEFAULT_LIMIT)), env, bool(properties.get("RUN_SERIAL")),
-                          BACKGROUND_LABEL in properties.get("LABELS", [])))
+                          background=BACKGROUND_LABEL in labels or LAST_LABEL in labels, last=LAST_LABEL in labels))
     return tests
 
 
@@ -118,7 +120,7 @@ def _select(options: Options) -> selection.Selection:
 def _job(test: Test, times: Times) -> Job:
     cost = times.cost(test.name, test.is_pytest)
     load = max(cost.load, float(test.measures_time)) if test.load is None else test.load
-    return Job(test, replace(cost, load=load), test.exclusive, test.background)
+    return Job(test, replace(cost, load=load), test.exclusive, test.background, test.last)
 
 
 def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result]:
