@@ -3,12 +3,11 @@
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 
-#include "net/listener.hpp"
+#include "net/session_server.hpp"
 
 namespace ur_simulator {
 
@@ -26,26 +25,18 @@ class LineServer {
 
   LineServer(boost::asio::io_context & io, const std::string & address, std::uint16_t port, LineLimit limit,
              Answer answer);
-  ~LineServer();
-  LineServer(const LineServer &) = delete;
-  LineServer & operator=(const LineServer &) = delete;
 
   /// Serves a connection, as each that the listener accepts.
   void accept(const std::shared_ptr<Connection> & connection);
-  Listener & listener() { return listener_; }
-  const Listener & listener() const { return listener_; }
+  Listener & listener() { return sessions_.listener(); }
+  const Listener & listener() const { return sessions_.listener(); }
 
  private:
-  struct Client {
-    std::shared_ptr<Connection> connection;
-    std::string received;
-  };
-  void receive(Client & client, std::string_view bytes);
+  class Session;
 
   const LineLimit limit_;
   const Answer answer_;
-  std::map<std::uint64_t, std::shared_ptr<Client>> clients_;
-  Listener listener_;
+  SessionServer<Session> sessions_;
 };
 
 }  // namespace ur_simulator

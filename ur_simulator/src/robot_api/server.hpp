@@ -2,11 +2,10 @@
 
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 
-#include "net/listener.hpp"
+#include "net/session_server.hpp"
 #include "robot_api/session.hpp"
 
 namespace ur_simulator::robot_api {
@@ -19,19 +18,15 @@ class Server {
 
   Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port, Pendant & pendant,
          const HttpLimits & limits = {});
-  ~Server();
   /// Serves a connection, as each that the listener accepts.
-  void accept(const std::shared_ptr<Connection> & connection);
-  Listener & listener() { return listener_; }
-  const Listener & listener() const { return listener_; }
+  void accept(const std::shared_ptr<Connection> & connection) { sessions_.accept(connection); }
+  Listener & listener() { return sessions_.listener(); }
+  const Listener & listener() const { return sessions_.listener(); }
   /// Sends the replies that have become available. Call once per control cycle.
   void cycle();
 
  private:
-  Pendant & pendant_;
-  HttpLimits limits_;
-  std::map<std::uint64_t, std::shared_ptr<Session>> sessions_;
-  Listener listener_;
+  SessionServer<Session> sessions_;
 };
 
 }  // namespace ur_simulator::robot_api

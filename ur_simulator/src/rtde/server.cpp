@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "rtde/session.hpp"
 
 namespace ur_simulator::rtde {
@@ -11,63 +9,42 @@ namespace ur_simulator::rtde {
 Server::Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
                ControllerState & state, const PolyscopeVersion & version, EventLog & log)
     : context_{state, version, log, {}, nullptr},
-      listener_(io, address, port,
-                [this](const std::shared_ptr<Connection> & connection) { accept(connection); })
+      sessions_(
+          io, address, port,
+          [this](const std::shared_ptr<Connection> & connection) { return make_session(connection); },
+          [this](Session & session) {
+            dropped_by_closed_sessions_ += session.dropped_packages();
+            session.handle_disconnect();
+          })
 {
 }
 
-Server::~Server()
+std::shared_ptr<Session> Server::make_session(const std::shared_ptr<Connection> & connection)
 {
-  // Closing a connection calls remove_session(): the members must still exist.
-  listener_.close_connections("the simulator ends");
-}
-
-void Server::accept(const std::shared_ptr<Connection> & connection)
-{
-  const std::uint64_t id = connection->id();
-  auto session = std::make_shared<Session>(connection, context_);
-  sessions_.emplace(id, session);
-  context_.log.info("rtde", fmt::format("client {} ({}) connected", id, connection->remote_endpoint()));
-  connection->start(
-      [weak = std::weak_ptr(session)](std::string_view bytes) {
-        // Keeps the session alive: the received data may close its connection.
-        if (const auto locked = weak.lock()) {
-          locked->receive(bytes);
-        }
-      },
-      [this, id] { remove_session(id); });
-}
-
-void Server::remove_session(std::uint64_t id)
-{
-  const auto session = sessions_.extract(id).mapped();
-  dropped_by_closed_sessions_ += session->dropped_packages();
-  session->handle_disconnect();
+  context_.log.info("rtde",
+                    fmt::format("client {} ({}) connected", connection->id(), connection->remote_endpoint()));
+  return std::make_shared<Session>(connection, context_);
 }
 
 void Server::publish()
 {
-  // A failed write removes the session from the map: advance first and keep the session alive.
-  for (auto next = sessions_.begin(); next != sessions_.end();) {
-    const std::shared_ptr<Session> session = (next++)->second;
-    session->publish();
-  }
+  sessions_.for_each([](Session & session) { session.publish(); });
 }
 
 std::size_t Server::client_count(ClientRole role) const
 {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(sessions_, [role](const auto & entry) { return entry.second->role() == role; }));
+  std::size_t count = 0;
+  sessions_.for_each([&](const Session & session) { count += session.role() == role ? 1 : 0; });
+  return count;
 }
 
 void Server::for_each_connection(ClientRole role, const std::function<void(Connection &)> & action)
 {
-  for (auto next = sessions_.begin(); next != sessions_.end();) {
-    const std::shared_ptr<Session> session = (next++)->second;
-    if (session->role() == role) {
-      action(session->connection());
+  sessions_.for_each([&](Session & session) {
+    if (session.role() == role) {
+      action(session.connection());
     }
-  }
+  });
 }
 
 std::size_t Server::set_fieldbus_enabled(bool enabled)
@@ -94,9 +71,7 @@ std::size_t Server::set_fieldbus_enabled(bool enabled)
 std::uint64_t Server::dropped_packages() const
 {
   std::uint64_t dropped = dropped_by_closed_sessions_;
-  for (const auto & [id, session] : sessions_) {
-    dropped += session->dropped_packages();
-  }
+  sessions_.for_each([&](const Session & session) { dropped += session.dropped_packages(); });
   return dropped;
 }
 

@@ -3,14 +3,13 @@
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <unordered_map>
 
 #include "log/event_log.hpp"
-#include "net/listener.hpp"
+#include "net/session_server.hpp"
 #include "rtde/fields.hpp"
 
 namespace ur_simulator::rtde {
@@ -40,14 +39,13 @@ class Server {
  public:
   Server(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
          ControllerState & state, const PolyscopeVersion & version, EventLog & log);
-  ~Server();
 
   void set_data_package_handler(DataPackageHandler handler) { context_.on_data_package = std::move(handler); }
   /// Sends the current state to each client whose output frequency requires a package in this cycle. Does not
   /// allocate memory.
   void publish();
-  Listener & listener() { return listener_; }
-  const Listener & listener() const { return listener_; }
+  Listener & listener() { return sessions_.listener(); }
+  const Listener & listener() const { return sessions_.listener(); }
   std::size_t client_count(ClientRole role) const;
   void for_each_connection(ClientRole role, const std::function<void(Connection &)> & action);
   /// Reserves the input registers 0-23 and the input bit registers 0-63 for a fieldbus, or releases them.
@@ -57,13 +55,11 @@ class Server {
   std::uint64_t dropped_packages() const;
 
  private:
-  void accept(const std::shared_ptr<Connection> & connection);
-  void remove_session(std::uint64_t id);
+  std::shared_ptr<Session> make_session(const std::shared_ptr<Connection> & connection);
 
   ServerContext context_;
-  std::map<std::uint64_t, std::shared_ptr<Session>> sessions_;
   std::uint64_t dropped_by_closed_sessions_ = 0;
-  Listener listener_;
+  SessionServer<Session> sessions_;
 };
 
 }  // namespace ur_simulator::rtde
