@@ -74,6 +74,8 @@ class Interpreter {
   Next handle_outcome(const std::string & name, Outcome outcome, std::size_t arguments);
   Next return_value();
   Next return_to_operation();
+  /// Ends the current function of the thread.
+  Frame pop_frame();
   Next store_lvalue(const Instruction & instruction);
   Next method(const Instruction & instruction);
   Next run_thread(const Instruction & instruction);

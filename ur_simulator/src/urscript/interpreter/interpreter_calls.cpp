@@ -39,13 +39,18 @@ void Interpreter::call_from_operation(Thread & thread, std::uint32_t function)
   thread.cycles_without_wait = 0;
 }
 
-Interpreter::Next Interpreter::return_to_operation()
+Frame Interpreter::pop_frame()
 {
   Frame frame = std::move(thread_->frames.back());
   thread_->frames.pop_back();
   thread_->stack.resize(frame.base);
   thread_->next = frame.return_to;
-  thread_->operation = std::move(frame.caller);
+  return frame;
+}
+
+Interpreter::Next Interpreter::return_to_operation()
+{
+  thread_->operation = pop_frame().caller;
   thread_->state = ThreadState::operation;
   return Next::yield;
 }
@@ -59,12 +64,9 @@ Interpreter::Next Interpreter::return_value()
     end_thread(*thread_);
     return Next::yield;
   }
-  const Frame frame = std::move(thread_->frames.back());
   Value result = pop();
-  thread_->frames.pop_back();
-  thread_->stack.resize(frame.base);
+  pop_frame();
   thread_->stack.push_back(std::move(result));
-  thread_->next = frame.return_to;
   return Next::proceed;
 }
 
