@@ -51,6 +51,7 @@ void add_state_builtins(Library & library, const RobotContextPtr & robot);
 void add_kinematics_builtins(Library & library, const RobotContextPtr & robot);
 void add_dynamics_builtins(Library & library, const RobotContextPtr & robot);
 void add_installation_builtins(Library & library, const RobotContextPtr & robot);
+void add_estimate_payload_builtin(Library & library, const RobotContextPtr & robot);
 void add_register_builtins(Library & library, const RobotContextPtr & robot);
 void add_digital_io_builtins(Library & library, const RobotContextPtr & robot);
 void add_analog_io_builtins(Library & library, const RobotContextPtr & robot);

@@ -35,6 +35,7 @@ constexpr BuiltinGroup builtin_groups[] = {
     {"kinematics, dynamics", script_api::add_kinematics_builtins},
     {"kinematics, dynamics", script_api::add_dynamics_builtins},
     {"payload, TCP, sensor", script_api::add_installation_builtins},
+    {"payload, TCP, sensor", script_api::add_estimate_payload_builtin},
     {"registers", script_api::add_register_builtins},
     {"digital IO", script_api::add_digital_io_builtins},
     {"analog IO", script_api::add_analog_io_builtins},

@@ -99,10 +99,17 @@ RefusedGroup sockets()
 
 RefusedGroup frame_tracking()
 {
-  return {"frames have no mass and are not tracked",
+  return {"frames are not tracked",
           {
               {"frame_tracking_disable", {}, 0},
               {"frame_tracking_enable", {"frame_name"}, 1},
+          }};
+}
+
+RefusedGroup frame_masses()
+{
+  return {"frames have no mass",
+          {
               {"set_mass_properties", {"frame", "m", "cog", "inertia"}, 4},
               {"set_payload_from_attached_frames", {}, 0},
           }};
@@ -112,8 +119,8 @@ RefusedGroup frame_tracking()
 
 void add_refused_builtins(Library & library)
 {
-  for (const RefusedGroup & group :
-       {conveyor_tracking(), modbus_signals(), modbus_server(), euromap(), sockets(), frame_tracking()}) {
+  for (const RefusedGroup & group : {conveyor_tracking(), modbus_signals(), modbus_server(), euromap(),
+                                     sockets(), frame_tracking(), frame_masses()}) {
     for (const RefusedBuiltin & builtin : group.builtins) {
       library.add_refused(builtin.name, builtin.parameters, builtin.required, group.reason);
     }
@@ -123,7 +130,6 @@ void add_refused_builtins(Library & library)
   }
   library.add_refused("rpc_factory", {"type", "url"}, 2, "the library has no connections");
   library.add_refused("set_pos", {"q"}, 1, "only PolyScope's simulation mode places the arm");
-  library.add_refused("estimate_payload", {"poses", "wrenches"}, 2, "the estimation is not modelled");
 }
 
 }  // namespace ur_simulator::script_api
