@@ -183,7 +183,9 @@ std::uint32_t kinematics_checksum(const RobotModel & model, Eigen::Index joint)
 
 std::string kinematics_data(const RobotModel & model)
 {
-  constexpr std::uint32_t calibration_status = 0;  // UR does not document the values
+  // An example of the Universal Robots Client Library and the packages in its tests: 2 is a calibrated arm
+  // ("linearized"), 0 is that of UR's simulator.
+  const std::uint32_t calibration_status = model.calibrated ? 2 : 0;
   std::string data;
   for (Eigen::Index i = 0; i < 6; ++i) {
     put_u32(data, kinematics_checksum(model, i));

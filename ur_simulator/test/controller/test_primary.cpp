@@ -239,37 +239,47 @@ TEST_F(PrimaryInterfaceTest, ReadOnlyPortsSendTheSameDataAndRefuseScripts)
 }
 
 /// Sizes of the sub-packages of a robot state message by type, without size and type.
-std::map<int, std::size_t> package_sizes(const char * model_name, const char * version)
+std::map<int, std::string> packages_of(const RobotModel & model, const char * version)
 {
-  const RobotModel & model = find_robot_model(model_name)->get();
   const std::string message =
       primary::robot_state_message(model, *PolyscopeVersion::parse(version), ControllerState());
-  std::map<int, std::size_t> sizes;
+  std::map<int, std::string> packages;
   for (std::size_t begin = 5; begin < message.size();) {
     const std::size_t size = decode_uint(message.substr(begin, 4));
-    sizes[message[begin + 4]] = size - 5;
+    packages[message[begin + 4]] = message.substr(begin + 5, size - 5);
     begin += size;
   }
-  return sizes;
+  return packages;
 }
 
 TEST(RobotStateVersionTest, LengthsAreThoseOfTheVersion)
 {
   // Lengths of the parsers of ur_modern_driver.
   const auto expect_lengths = [](const char * version, std::size_t robot_mode, std::size_t masterboard) {
-    const auto sizes = package_sizes("ur10", version);
-    EXPECT_EQ(sizes.at(0), robot_mode) << version;
-    EXPECT_EQ(sizes.at(3), masterboard) << version;
-    EXPECT_FALSE(sizes.contains(11));
+    const auto packages = packages_of(find_robot_model("ur10")->get(), version);
+    EXPECT_EQ(packages.at(0).size(), robot_mode) << version;
+    EXPECT_EQ(packages.at(3).size(), masterboard) << version;
+    EXPECT_FALSE(packages.contains(11));
   };
   expect_lengths("3.1", 33, 67);
   expect_lengths("3.4", 41, 69);
   expect_lengths("3.5", 42, 69);
   expect_lengths("3.15", 42, 70);
-  const auto e_series = package_sizes("ur10e", "5.25");
-  EXPECT_EQ(e_series.at(0), 42u);
-  EXPECT_EQ(e_series.at(11), 21u);
-  EXPECT_EQ(e_series.at(12), 3u);
+  const auto e_series = packages_of(find_robot_model("ur10e")->get(), "5.25");
+  EXPECT_EQ(e_series.at(0).size(), 42u);
+  EXPECT_EQ(e_series.at(11).size(), 21u);
+  EXPECT_EQ(e_series.at(12).size(), 3u);
+}
+
+// An example of the Universal Robots Client Library accepts 2 as a valid calibration; UR's simulator sends 0.
+TEST(RobotStateVersionTest, CalibrationStatusIsThatOfTheModel)
+{
+  const RobotModel & nominal = find_robot_model("ur5e")->get();
+  const auto status = [](const RobotModel & model) {
+    return decode_uint(packages_of(model, "5.25").at(5).substr(216, 4));
+  };
+  EXPECT_EQ(status(nominal), 0u);
+  EXPECT_EQ(status(with_random_calibration(nominal, 1)), 2u);
 }
 
 }  // namespace
