@@ -48,10 +48,14 @@ def test_without_a_driver_stop_names_the_remedy(running):
     assert "neither command_server nor dashboard_server answers. Use the emergency stop button" in text()
 
 
-def test_a_driver_that_does_not_answer_is_stopped_through_the_dashboard(running, nodes, simulator, client):  # noqa: F811
+def ready_to_stop(running, client):
     make_ready(client)
     stopper = running.viewer.control._robots[0]._stopper
     until(lambda: stopper._stop.server_is_ready() and stopper._dashboard.server_is_ready(), "the actions")
+
+
+def test_a_driver_that_does_not_answer_is_stopped_through_the_dashboard(running, nodes, simulator, client):  # noqa: F811
+    ready_to_stop(running, client)
     assert client.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=0.1).accepted
     until(lambda: is_moving(simulator), "the arm to move")
     nodes["command_server"].pause()
@@ -59,4 +63,17 @@ def test_a_driver_that_does_not_answer_is_stopped_through_the_dashboard(running,
     until(lambda: "The robot program was stopped." in text(), "the end of the robot program")
     until(lambda: not is_moving(simulator), "the arm to stop")
     assert simulator.state()["actual"]["position"][0] < HOME[0] + 2.5
+    nodes["command_server"].resume()
+
+
+def test_a_driver_that_is_silent_after_it_has_accepted_the_stop_is_stopped_through_the_dashboard(running, nodes, simulator, client):  # noqa: F811
+    ready_to_stop(running, client)
+    assert client.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=2.0, acceleration=15.0).accepted
+    until(lambda: simulator.state()["actual"]["velocity"][0] > 1.9, "the speed from which the arm stops in 1 s")
+    text = press(running)
+    until(lambda: "The arm decelerates." in text(), "the acceptance of the stop")
+    nodes["command_server"].pause()
+    assert is_moving(simulator)
+    until(lambda: "The robot program was stopped." in text(), "the end of the robot program")
+    until(lambda: not is_moving(simulator), "the arm to stop")
     nodes["command_server"].resume()

@@ -100,7 +100,9 @@ class Process:
         self._process.send_signal(number)
 
     def pause(self):
+        """Stops all threads. On a busy machine, some still run for a while after the signal."""
         self._process.send_signal(signal.SIGSTOP)
+        wait_for(lambda: os.waitid(os.P_PID, self.pid, os.WSTOPPED | os.WNOHANG), 10.0, "the process to stop")
 
     def resume(self):
         self._process.send_signal(signal.SIGCONT)

@@ -1,11 +1,12 @@
 """STOP: decelerates the arm, by the fastest way that the driver offers.
 
 The action `stop` is never refused because the arm is busy, ends the goal that moves the arm, and stops the robot program if the
-controller does not carry it out. If command_server does not accept the goal in time, dashboard_server stops the program.
+controller does not carry it out. If command_server does not accept the goal in time, or sends nothing more while the arm decelerates,
+dashboard_server stops the program.
 """
 
 from enum import Enum
-from typing import Any, Callable, Optional
+from typing import Any, Callable
 
 from rclpy.action import ActionClient
 from ur_ros_rtde_msgs.action import DashboardCommand, Stop
@@ -14,12 +15,14 @@ from .control_node import ControlNode
 from .goals import Goals
 
 ACCEPTANCE_LIMIT = 0.3  # s; the driver needs 2 ms
+SILENCE_LIMIT = 0.5  # s, until the next feedback or the result; the driver sends feedback at 20 Hz
+DASHBOARD_LIMIT = 3.0  # s; a controller needs up to 1 s
 
 
 class Outcome(Enum):
     STOPPING = "The arm decelerates."
     STOPPED = "Stopped."
-    PROGRAM = "command_server did not accept the stop: the robot program is being stopped through dashboard_server."
+    PROGRAM = "The robot program is being stopped through dashboard_server:"
     FAILED = "STOP failed"
 
 
@@ -43,29 +46,41 @@ class _Press:
     def __init__(self, control: ControlNode, stop: ActionClient, dashboard: ActionClient, report: Report):
         self._node = control.node
         self._stop, self._dashboard, self._report = stop, dashboard, report
-        self._timer: Any = None
-        self._fell_back = False
+        self._timer: Any = None  # of the answer that is expected
+        self._fell_back = False  # to dashboard_server
 
     def start(self) -> None:
         if not self._stop.server_is_ready():
-            self._stop_program("")
+            self._stop_program("command_server does not answer")
             return
-        self._timer = self._node.create_timer(ACCEPTANCE_LIMIT, lambda: self._stop_program(""))
-        self._stop.send_goal_async(Stop.Goal()).add_done_callback(lambda future: self._on_response(future.result()))
+        self._expect_answer(ACCEPTANCE_LIMIT, lambda: self._stop_program("command_server did not accept the stop"))
+        self._stop.send_goal_async(Stop.Goal(), feedback_callback=lambda message: self._on_feedback()).add_done_callback(
+            lambda future: self._on_response(future.result()))
 
     def _on_response(self, handle: Any) -> None:
         if not handle.accepted:
-            self._stop_program("")
+            self._stop_program("command_server refused the stop")
             return
-        self._cancel_timer()
-        self._report(Outcome.STOPPING, "")
         handle.get_result_async().add_done_callback(lambda future: self._on_result(future.result().result))
+        if not self._fell_back:
+            self._report(Outcome.STOPPING, "")
+            self._expect_answer(SILENCE_LIMIT, lambda: self._stop_program("command_server has not answered since it accepted the stop"))
+
+    def _on_feedback(self) -> None:
+        if self._timer is not None and not self._fell_back:
+            self._timer.reset()
 
     def _on_result(self, result: Any) -> None:
-        if result.success:
-            self._report(Outcome.STOPPED, f"At rest after {result.time_to_standstill:.2f} s")
-        else:
+        if not result.success:
             self._stop_program(result.message)
+            return
+        self._cancel_timer()
+        self._report(Outcome.STOPPED, f"At rest after {result.time_to_standstill:.2f} s")
+
+    def _expect_answer(self, limit: float, on_silence: Callable[[], None]) -> None:
+        """Calls `on_silence` after `limit` s, unless the answer comes."""
+        self._cancel_timer()
+        self._timer = self._node.create_timer(limit, lambda: (self._cancel_timer(), on_silence()))
 
     def _cancel_timer(self) -> None:
         if self._timer is not None:
@@ -73,15 +88,16 @@ class _Press:
             self._timer = None
 
     def _stop_program(self, reason: str) -> None:
-        self._cancel_timer()
         if self._fell_back:
             return
+        self._cancel_timer()
         self._fell_back = True
         if not self._dashboard.server_is_ready():
             self._report(Outcome.FAILED, "neither command_server nor dashboard_server answers. Use the emergency stop button, then check "
                                          "that the driver runs with this ROS_DOMAIN_ID")
             return
         self._report(Outcome.PROGRAM, reason)
+        self._expect_answer(DASHBOARD_LIMIT, lambda: self._report_failure(f"no answer within {DASHBOARD_LIMIT:g} s"))
         self._dashboard.send_goal_async(DashboardCommand.Goal()).add_done_callback(
             lambda future: self._on_dashboard_response(future.result()))
 
@@ -89,11 +105,15 @@ class _Press:
         if handle.accepted:
             handle.get_result_async().add_done_callback(lambda future: self._on_dashboard_result(future.result().result))
         else:
-            self._on_dashboard_result(None)
+            self._report_failure("refused")
 
-    def _on_dashboard_result(self, result: Optional[Any]) -> None:
-        if result is not None and result.success:
-            self._report(Outcome.STOPPED, "The robot program was stopped.")
-        else:
-            reason = "refused" if result is None else result.message
-            self._report(Outcome.FAILED, f"dashboard/stop: {reason}. Use the emergency stop button")
+    def _on_dashboard_result(self, result: Any) -> None:
+        if not result.success:
+            self._report_failure(result.message)
+            return
+        self._cancel_timer()
+        self._report(Outcome.STOPPED, "The robot program was stopped.")
+
+    def _report_failure(self, reason: str) -> None:
+        self._cancel_timer()
+        self._report(Outcome.FAILED, f"dashboard/stop: {reason}. Use the emergency stop button")
