@@ -8,10 +8,10 @@ namespace {
 
 std::size_t packet_size(const PolyscopeVersion & version)
 {
-  if (!version.is_e_series()) {
-    return 1060;
+  if (version.is_e_series()) {
+    return version >= PolyscopeVersion{5, 10, 0, 0} ? 1220 : 1116;
   }
-  return version >= PolyscopeVersion{5, 10, 0, 0} ? 1220 : 1116;
+  return version >= PolyscopeVersion{3, 5, 0, 0} ? 1108 : 1060;
 }
 
 }  // namespace
@@ -95,7 +95,8 @@ void RealtimePacket::put_status(const ControllerState & s)
   put(Vector6::Constant(powered ? main_voltage : 0.0));       // joint voltages
   put(static_cast<double>(s.io.digital_outputs));
   put(static_cast<double>(s.runtime_state));
-  put_zeros(6);                             // elbow position and velocity are not simulated
+  put(s.elbow_position);
+  put(s.elbow_velocity);
   put(static_cast<double>(s.safety_mode));  // safety status
   put_zeros(3);                             // internal
   put(s.payload.mass);

@@ -10,7 +10,9 @@
 namespace ur_simulator::primary {
 
 /// The packet that port 30003 sends in each cycle: a 4-byte size and big-endian doubles. UR, "Client
-/// Interface", sheets "RealTime 3.5" (1060 bytes), "RealTime 5.4" (1116) and "RealTime 5.10" (1220).
+/// Interface", sheets "RealTime 5.4" (1116 bytes) and "RealTime 5.10" (1220). PolyScope 3 ends with the
+/// program state (1060 bytes), from 3.5 on with the velocity of the elbow (1108, the size that public clients
+/// of CB3 robots read).
 class RealtimePacket {
  public:
   explicit RealtimePacket(const PolyscopeVersion & version);

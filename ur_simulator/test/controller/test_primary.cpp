@@ -1,4 +1,5 @@
 #include "kinematics/robot_model.hpp"
+#include "primary/realtime_packet.hpp"
 #include "primary/robot_state.hpp"
 #include "support/primary_client.hpp"
 #include "support/simulator_test.hpp"
@@ -269,6 +270,32 @@ TEST(RobotStateVersionTest, LengthsAreThoseOfTheVersion)
   EXPECT_EQ(e_series.at(0).size(), 42u);
   EXPECT_EQ(e_series.at(11).size(), 21u);
   EXPECT_EQ(e_series.at(12).size(), 3u);
+}
+
+TEST(RealtimePacketTest, SizeIsThatOfTheVersion)
+{
+  const auto size = [](const char * version) {
+    primary::RealtimePacket packet(*PolyscopeVersion::parse(version));
+    const std::string bytes(packet.encode(ControllerState()));
+    EXPECT_EQ(decode_uint(bytes.substr(0, 4)), bytes.size()) << version;
+    return bytes.size();
+  };
+  EXPECT_EQ(size("3.4"), 1060u);
+  EXPECT_EQ(size("3.5"), 1108u);
+  EXPECT_EQ(size("3.15.8"), 1108u);
+  EXPECT_EQ(size("5.9"), 1116u);
+  EXPECT_EQ(size("5.10"), 1220u);
+}
+
+TEST(RealtimePacketTest, EndsWithTheElbowOnCb3)
+{
+  ControllerState state;
+  state.elbow_position = Vector3(0.1, 0.2, 0.3);
+  state.elbow_velocity = Vector3(-1.0, -2.0, -3.0);
+  primary::RealtimePacket packet(*PolyscopeVersion::parse("3.15"));
+  const std::string bytes(packet.encode(state));
+  EXPECT_EQ(decode_double(bytes.substr(1060, 8)), 0.1);
+  EXPECT_EQ(decode_double(bytes.substr(1100, 8)), -3.0);
 }
 
 // An example of the Universal Robots Client Library accepts 2 as a valid calibration; UR's simulator sends 0.
