@@ -23,13 +23,21 @@ enum class MessageType : std::uint8_t {
   runtime_exception = 10
 };
 
+/// As in the messages that the tests of the Universal Robots Client Library contain.
+std::uint8_t source_of(MessageType type)
+{
+  constexpr std::uint8_t robot_interface = 0xfe;  // -2
+  constexpr std::uint8_t runtime_machine = 0xfd;  // -3
+  return type == MessageType::version || type == MessageType::key ? robot_interface : runtime_machine;
+}
+
 std::string begin_message(MessageType type, double timestamp)
 {
   std::string message;
   put_u32(message, 0);  // size, set by finish_message()
   put_u8(message, robot_message);
   put_u64(message, static_cast<std::uint64_t>(timestamp * 1e6));
-  put_u8(message, 0xff);  // source: -1, the controller
+  put_u8(message, source_of(type));
   put_u8(message, static_cast<std::uint8_t>(type));
   return message;
 }

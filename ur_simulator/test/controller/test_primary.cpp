@@ -1,4 +1,5 @@
 #include "kinematics/robot_model.hpp"
+#include "primary/messages.hpp"
 #include "primary/realtime_packet.hpp"
 #include "primary/robot_state.hpp"
 #include "support/primary_client.hpp"
@@ -270,6 +271,16 @@ TEST(RobotStateVersionTest, LengthsAreThoseOfTheVersion)
   EXPECT_EQ(e_series.at(0).size(), 42u);
   EXPECT_EQ(e_series.at(11).size(), 21u);
   EXPECT_EQ(e_series.at(12).size(), 3u);
+}
+
+// The messages in the tests of the Universal Robots Client Library: -2 robot interface, -3 runtime machine.
+TEST(RobotMessageTest, NamesItsSource)
+{
+  constexpr std::size_t source = 13;
+  EXPECT_EQ(primary::version_message(*PolyscopeVersion::parse("5.25"))[source], char(-2));
+  EXPECT_EQ(primary::key_message(1.0, "PROGRAM_XXX_STARTED", "mine")[source], char(-2));
+  EXPECT_EQ(primary::runtime_exception_message(1.0, 3, 1, "compile_error")[source], char(-3));
+  EXPECT_EQ(primary::safety_mode_message(1.0, 3)[source], char(-3));
 }
 
 TEST(RealtimePacketTest, SizeIsThatOfTheVersion)
