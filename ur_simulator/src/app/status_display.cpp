@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ranges>
 #include <string_view>
 #include <utility>
 
@@ -27,12 +26,11 @@ bool standard_output_is_terminal()
 
 std::string last_error_of(const EventLog & log)
 {
-  for (const LogEntry & entry : std::views::reverse(log.entries())) {
-    if (entry.level == LogLevel::error) {
-      return fmt::format("[{:.3f}] {}: {}", entry.timestamp, entry.source, entry.text);
-    }
-  }
-  return "";
+  const auto & entries = log.entries();
+  const auto last = std::find_if(entries.rbegin(), entries.rend(),
+                                 [](const LogEntry & entry) { return entry.level == LogLevel::error; });
+  return last == entries.rend() ? ""
+                                : fmt::format("[{:.3f}] {}: {}", last->timestamp, last->source, last->text);
 }
 
 void print(const std::string & text)
