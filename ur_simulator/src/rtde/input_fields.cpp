@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rtde/fields.hpp"
+#include "state/io_values.hpp"
 
 namespace ur_simulator::rtde {
 namespace {
@@ -81,13 +82,6 @@ void add_external_force_torque(std::vector<InputField> & fields)
 
 #undef UR_INPUT
 
-/// Sets the bits that the mask selects. Bit 0 of mask and values is bit `shift` of the outputs.
-void set_bits(std::uint64_t & outputs, unsigned shift, std::uint8_t mask, std::uint8_t values)
-{
-  const std::uint64_t selected = static_cast<std::uint64_t>(mask) << shift;
-  outputs = (outputs & ~selected) | ((static_cast<std::uint64_t>(values) << shift) & selected);
-}
-
 void apply_speed_slider(const MaskedInputs & masked, State & state)
 {
   if (masked.speed_slider_mask != 0 && std::isfinite(masked.speed_slider_fraction)) {
@@ -95,8 +89,8 @@ void apply_speed_slider(const MaskedInputs & masked, State & state)
   }
 }
 
-/// RTDE transmits an analog output as a fraction 0..1 of its range: 4..20 mA (type bit clear) or 0..10 V
-/// (type bit set).
+/// RTDE transmits an analog output as a fraction 0..1 of its range: in mA (type bit clear) or V (type bit
+/// set).
 void apply_analog(const MaskedInputs & masked, State & state)
 {
   for (unsigned i = 0; i < 2; ++i) {
@@ -109,7 +103,7 @@ void apply_analog(const MaskedInputs & masked, State & state)
     const std::uint32_t domain = 1u << (2 + i);
     state.io.analog_io_types =
         voltage ? state.io.analog_io_types | domain : state.io.analog_io_types & ~domain;
-    state.io.analog_outputs[i] = voltage ? 10.0 * fraction : 0.004 + 0.016 * fraction;
+    state.io.analog_outputs[i] = analog_value(fraction, voltage);
   }
 }
 

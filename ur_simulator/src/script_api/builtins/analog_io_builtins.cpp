@@ -1,4 +1,5 @@
 #include "script_api/robot_context.hpp"
+#include "state/io_values.hpp"
 
 namespace ur_simulator::script_api {
 
@@ -18,17 +19,7 @@ std::size_t port(ArgumentReader & reader, const char * name)
 
 bool is_voltage(const Io & io, std::size_t output)
 {
-  return ((io.analog_io_types >> (output_type_bit + output)) & 1U) != 0;
-}
-
-// A level of 0 to 1 corresponds to 4 to 20 mA or 0 to 10 V (script manual, "set_standard_analog_out").
-double to_physical(double level, bool voltage)
-{
-  return voltage ? level * 10.0 : 0.004 + level * 0.016;
-}
-double to_level(double value, bool voltage)
-{
-  return voltage ? value / 10.0 : (value - 0.004) / 0.016;
+  return bit_of(io.analog_io_types, output_type_bit + static_cast<unsigned>(output));
 }
 
 Outcome set_output(RobotContext & robot, Arguments arguments)
@@ -41,7 +32,7 @@ Outcome set_output(RobotContext & robot, Arguments arguments)
     return reader.failure();
   }
   Io & io = robot.state().io;
-  io.analog_outputs[n] = to_physical(level, is_voltage(io, n));
+  io.analog_outputs[n] = analog_value(level, is_voltage(io, n));
   return Value();
 }
 
@@ -50,7 +41,7 @@ Outcome get_output(RobotContext & robot, Arguments arguments)
   ArgumentReader reader(arguments);
   const std::size_t n = port(reader, "n");
   const Io & io = robot.state().io;
-  return reader ? Outcome(Value(to_level(io.analog_outputs[n], is_voltage(io, n)))) : reader.failure();
+  return reader ? Outcome(Value(analog_level(io.analog_outputs[n], is_voltage(io, n)))) : reader.failure();
 }
 
 template <std::array<double, 2> Io::* inputs>
