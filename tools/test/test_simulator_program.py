@@ -86,7 +86,8 @@ def test_refused_options_are_named(arguments, message):
 @pytest.mark.parametrize("address, reachable", [("0.0.0.0", True), (ADDRESSES[0], False)])
 def test_an_address_that_other_hosts_reach_is_announced(address, reachable):
     free_ports = ",".join(f"{name}=0" for name in (
-        "primary", "secondary", "realtime", "primary_read_only", "secondary_read_only", "realtime_read_only", "interpreter", "rtde", "dashboard", "control"))
+        "primary", "secondary", "realtime", "primary_read_only", "secondary_read_only", "realtime_read_only", "interpreter", "rtde", "dashboard",
+        "modbus", "control"))
     with subprocess.Popen([PROGRAM, "--address", address, "--ports", free_ports], env=run_environment(LAYOUT), stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout.readline().startswith(f"ready: ur10e on {address}, ")

@@ -13,7 +13,8 @@
 namespace ur_simulator {
 
 /// TCP ports of a UR controller. 0 selects a free port; SimulatedController::ports() returns it, and 0 for a
-/// server that the version does not have.
+/// server that the version does not have. Ports below 1024 need privileges on many hosts: without them,
+/// construction fails for `robot_api`, and there is no MODBUS server (ports().modbus is 0).
 struct Ports {
   std::uint16_t primary = 30001;
   std::uint16_t secondary = 30002;
@@ -24,7 +25,8 @@ struct Ports {
   std::uint16_t realtime_read_only = 30013;
   std::uint16_t interpreter = 30020;  ///< interpreter mode, from PolyScope 5.10 on
   std::uint16_t dashboard = 29999;
-  std::uint16_t robot_api = 80;   ///< HTTP, PolyScope X from 10.11 on; ports below 1024 need privileges
+  std::uint16_t robot_api = 80;   ///< HTTP, PolyScope X from 10.11 on
+  std::uint16_t modbus = 502;     ///< MODBUS TCP
   std::uint16_t robotiq = 63352;  ///< socket server of the URCap "robotiq_gripper"
   std::uint16_t control = 30099;  ///< control port of the simulator: JSON lines, see docs/simulator.md
 };

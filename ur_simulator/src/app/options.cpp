@@ -55,16 +55,17 @@ void parse_port(Ports & ports, const std::string & text)
       {"rtde", &Ports::rtde},
       {"dashboard", &Ports::dashboard},
       {"robot_api", &Ports::robot_api},
+      {"modbus", &Ports::modbus},
       {"control", &Ports::control}};
   const auto [name, value] = split_assignment(text, "--ports", "rtde=30004");
   const auto port = names.find(name);
   std::uint16_t number = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
   if (port == names.end() || error != std::errc() || end != value.data() + value.size()) {
-    throw std::runtime_error(
-        fmt::format("--ports '{}' is invalid: give primary, secondary, realtime, one of these with "
-                    "_read_only, interpreter, rtde, dashboard, robot_api, robotiq or control = 0..65535",
-                    text));
+    throw std::runtime_error(fmt::format(
+        "--ports '{}' is invalid: give primary, secondary, realtime, one of these with "
+        "_read_only, interpreter, rtde, dashboard, robot_api, modbus, robotiq or control = 0..65535",
+        text));
   }
   ports.*(port->second) = number;
 }
@@ -88,7 +89,8 @@ void add_options(CLI::App & app, AppOptions & options)
   app.add_option(
          "--ports", options.port_texts,
          "port numbers as name=number with the names primary, secondary, realtime, primary_read_only, "
-         "secondary_read_only, realtime_read_only, interpreter, rtde, dashboard, robot_api, robotiq and "
+         "secondary_read_only, realtime_read_only, interpreter, rtde, dashboard, robot_api, modbus, robotiq "
+         "and "
          "control; 0 selects a free port")
       ->delimiter(',');
   app.add_option("--joints", options.joints, "initial joint positions, rad")->expected(6)->delimiter(',');

@@ -82,6 +82,7 @@ Robots::Robots(const AppOptions & options) : shows_status_(options.show_status)
     fmt::print(stderr, "ur_simulator: warning: {}\n", warning);
   }
   print_ready(options);
+  print_warnings();
 }
 
 Robots::~Robots()
@@ -114,9 +115,20 @@ void Robots::print_ready(const AppOptions & options) const
     const std::string operator_port = ports.dashboard != 0   ? fmt::format("dashboard {}, ", ports.dashboard)
                                       : ports.robot_api != 0 ? fmt::format("Robot API {}, ", ports.robot_api)
                                                              : "";
-    print_line(fmt::format("ready: {} on {}, {}primary {}, secondary {}, real-time {}, RTDE {}, control {}",
+    const std::string modbus_port = ports.modbus != 0 ? fmt::format("MODBUS {}, ", ports.modbus) : "";
+    print_line(fmt::format("ready: {} on {}, {}primary {}, secondary {}, real-time {}, RTDE {}, {}control {}",
                            options.simulator.model, robot.address, operator_port, ports.primary,
-                           ports.secondary, ports.realtime, ports.rtde, ports.control));
+                           ports.secondary, ports.realtime, ports.rtde, modbus_port, ports.control));
+  }
+}
+
+void Robots::print_warnings() const
+{
+  // All robots have the same options.
+  for (const LogEntry & entry : robots_.front().controller->log().entries()) {
+    if (entry.level == LogLevel::warning) {
+      fmt::print(stderr, "ur_simulator: warning: {}\n", entry.text);
+    }
   }
 }
 

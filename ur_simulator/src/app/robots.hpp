@@ -41,6 +41,8 @@ class Robots {
 
   void add(const AppOptions & options, const SimulatorOptions & simulator);
   void print_ready(const AppOptions & options) const;
+  /// What was logged while the robots were created.
+  void print_warnings() const;
 
   std::optional<DiagramWriter> client_log_;
   std::vector<Robot> robots_;

@@ -13,11 +13,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 10> server_names{"all",     "rtde",       "dashboard", "robot_api",
-                                                        "script",  "primary",    "secondary", "realtime",
-                                                        "robotiq", "interpreter"};
-constexpr std::array<std::string_view, 5> not_script_ports{"rtde", "dashboard", "robot_api", "robotiq",
-                                                           "interpreter"};
+constexpr std::array<std::string_view, 11> server_names{"all",      "rtde",    "dashboard",  "robot_api",
+                                                        "modbus",   "script",  "primary",    "secondary",
+                                                        "realtime", "robotiq", "interpreter"};
+constexpr std::array<std::string_view, 6> not_script_ports{"rtde",   "dashboard", "robot_api",
+                                                           "modbus", "robotiq",   "interpreter"};
 constexpr std::array<std::string_view, 4> client_names{"all", "control", "receive", "io"};
 
 std::vector<Listener *> select_listeners(ControlPortContext & context, const std::string & which)
@@ -138,7 +138,9 @@ Action reboot(RequestFields & fields)
 
 constexpr std::array connection_command_table{
     Command{"drop_links",
-            "which all|rtde|dashboard|script|primary|secondary|realtime|interpreter|robotiq (all); clients "
+            "which all|rtde|dashboard|robot_api|modbus|script|primary|secondary|realtime|interpreter|robotiq "
+            "(all); "
+            "clients "
             "all|control|receive|io (all); reset true|false (false)",
             "Closes connections, orderly or with a TCP reset.", drop_links},
     Command{"stall_links", "which, clients: see drop_links; stalled true|false (true)",

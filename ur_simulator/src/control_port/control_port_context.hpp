@@ -29,7 +29,8 @@ struct ControlPortContext {
   EventLog & log;
   rtde::Server & rtde;
   /// By name: "rtde", "primary", "secondary", "realtime", and the last three with "_read_only"; "dashboard"
-  /// or "robot_api", depending on the version; "robotiq" with the URCap "robotiq_gripper".
+  /// or "robot_api", depending on the version; "modbus" if the port is permitted; "robotiq" with the URCap
+  /// "robotiq_gripper".
   std::map<std::string, Listener *> listeners;
   /// Number of control cycles that were skipped because the host was too slow.
   const std::uint64_t & missed_cycles;

@@ -75,6 +75,7 @@ Controller::Controller(const SimulatorOptions & options)
       dashboard_(open_dashboard_server()),
       robot_api_(open_robot_api()),
       robotiq_(open_robotiq_server()),
+      modbus_(open_modbus_server()),
       control_port_context_(control_port_context()),
       control_port_(io_, options.address, options.ports.control,
                     [this](const nlohmann::json & request) { return control(request); }),
@@ -108,7 +109,8 @@ RobotAccess Controller::robot_access()
           version_.cycle_time(),
           &joint_history_,
           [this](std::string_view name) { return rtde_value(state_, version_, name); },
-          interpreter_mode_};
+          interpreter_mode_,
+          version_};
 }
 
 std::shared_ptr<const urscript::Library> Controller::script_library()
@@ -153,6 +155,9 @@ std::map<std::string, Listener *> Controller::listeners()
   if (robotiq_) {
     result.emplace("robotiq", &robotiq_->listener());
   }
+  if (modbus_) {
+    result.emplace("modbus", &modbus_->listener());
+  }
   if (interpreter_) {
     result.emplace("interpreter", &interpreter_->listener());
   }
@@ -180,6 +185,17 @@ std::unique_ptr<urcap::RobotiqServer> Controller::open_robotiq_server()
   return gripper == nullptr ? nullptr
                             : std::make_unique<urcap::RobotiqServer>(io_, options_.address,
                                                                      options_.ports.robotiq, *gripper);
+}
+
+std::unique_ptr<modbus::Server> Controller::open_modbus_server()
+{
+  try {
+    return std::make_unique<modbus::Server>(io_, options_.address, options_.ports.modbus, state_, version_);
+  } catch (const PortNotPermitted & error) {
+    // The default port needs privileges on many hosts, and most clients do without MODBUS.
+    log_.warning("modbus", fmt::format("there is no MODBUS server: {}", error.what()));
+    return nullptr;
+  }
 }
 
 std::unique_ptr<primary::InterpreterServer> Controller::open_interpreter_server()
@@ -218,6 +234,7 @@ Ports Controller::ports() const
   ports.rtde = rtde_.listener().port();
   ports.dashboard = dashboard_ ? dashboard_->listener().port() : std::uint16_t{0};
   ports.robot_api = robot_api_ ? robot_api_->listener().port() : std::uint16_t{0};
+  ports.modbus = modbus_ ? modbus_->listener().port() : std::uint16_t{0};
   if (robotiq_) {
     ports.robotiq = robotiq_->listener().port();
   }

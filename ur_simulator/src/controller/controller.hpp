@@ -22,6 +22,7 @@
 #include "dashboard/server.hpp"
 #include "kinematics/robot_model.hpp"
 #include "log/event_log.hpp"
+#include "modbus/server.hpp"
 #include "motion/arm.hpp"
 #include "polyscope/pendant.hpp"
 #include "polyscope/program_runner.hpp"
@@ -97,6 +98,7 @@ class Controller {
   std::unique_ptr<robot_api::Server> open_robot_api();
   std::unique_ptr<urcap::RobotiqServer> open_robotiq_server();
   std::unique_ptr<primary::InterpreterServer> open_interpreter_server();
+  std::unique_ptr<modbus::Server> open_modbus_server();
   control_port::ControlPortContext control_port_context();
   std::map<std::string, Listener *> listeners();
   /// Places the objects of the world file, and returns its events.
@@ -171,6 +173,7 @@ class Controller {
   std::unique_ptr<dashboard::Server> dashboard_;   ///< null: PolyScope X
   std::unique_ptr<robot_api::Server> robot_api_;   ///< null: the version has none
   std::unique_ptr<urcap::RobotiqServer> robotiq_;  ///< null: the URCap is not installed
+  std::unique_ptr<modbus::Server> modbus_;         ///< null: the port is not permitted
   control_port::ControlPortContext control_port_context_;
   control_port::Server control_port_;
   EventTimeline event_timeline_;

@@ -77,6 +77,9 @@ void Connection::handle_read(const boost::system::error_code & error, std::size_
 
 void Connection::deliver(std::string_view bytes)
 {
+  if (close_after_sending_) {
+    return;
+  }
   // An exception in a protocol handler closes this connection; the controller's thread continues.
   try {
     on_data_(bytes);

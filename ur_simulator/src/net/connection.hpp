@@ -36,7 +36,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool send_or_drop(std::string_view bytes);
   /// Closes the connection and discards the buffered data. The client log states the reason.
   void close(std::string_view reason);
-  /// Closes the connection after the buffered data has been sent.
+  /// Closes the connection after the buffered data has been sent. Until then, received data is discarded.
   void close_after_sending(std::string_view reason);
   /// Closes the connection with a TCP reset, as after a crash.
   void reset();

@@ -24,8 +24,8 @@ std::string describe_bind_error(const boost::system::error_code & error, const t
   }
   if (error == asio::error::access_denied) {
     return where +
-           " cannot be opened without privileges: select a port above 1023, for the Robot API "
-           "--ports robot_api=8080";
+           " cannot be opened without privileges: select a port above 1023, such as "
+           "--ports robot_api=8080 or --ports modbus=1502";
   }
   if (error == boost::system::errc::address_not_available) {
     return where + " cannot be opened: no network interface of this machine has this address (--address)";
@@ -76,7 +76,11 @@ void Listener::listen()
   if (error) {
     boost::system::error_code ignored;
     acceptor_.close(ignored);
-    throw std::runtime_error(describe_bind_error(error, endpoint_));
+    const std::string message = describe_bind_error(error, endpoint_);
+    if (error == asio::error::access_denied) {
+      throw PortNotPermitted(message);
+    }
+    throw std::runtime_error(message);
   }
   endpoint_ = acceptor_.local_endpoint();
   accept();

@@ -7,12 +7,19 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "net/connection.hpp"
 
 namespace ur_simulator {
+
+/// The process may not open this port: those below 1024 usually need privileges.
+class PortNotPermitted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// A listening TCP port and the connections accepted on it. Connections beyond `max_connections` are closed
 /// at once, so that a client that opens connections in a loop does not use up the file descriptors of the
@@ -24,7 +31,8 @@ class Listener {
   /// Receives each new connection and calls Connection::start().
   using AcceptHandler = std::function<void(const std::shared_ptr<Connection> &)>;
 
-  /// Port 0 selects a free port. Throws std::runtime_error with address and port if the port cannot be bound.
+  /// Port 0 selects a free port. Throws std::runtime_error with address and port if the port cannot be bound;
+  /// PortNotPermitted if privileges are missing.
   Listener(boost::asio::io_context & io, const std::string & address, std::uint16_t port,
            AcceptHandler on_accept);
   ~Listener();

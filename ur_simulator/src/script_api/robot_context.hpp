@@ -53,6 +53,8 @@ void add_dynamics_builtins(Library & library, const RobotContextPtr & robot);
 void add_installation_builtins(Library & library, const RobotContextPtr & robot);
 void add_estimate_payload_builtin(Library & library, const RobotContextPtr & robot);
 void add_register_builtins(Library & library, const RobotContextPtr & robot);
+/// Access to the registers and bits of the MODBUS server.
+void add_port_builtins(Library & library, const RobotContextPtr & robot);
 void add_digital_io_builtins(Library & library, const RobotContextPtr & robot);
 void add_analog_io_builtins(Library & library, const RobotContextPtr & robot);
 void add_tool_connector_builtins(Library & library, const RobotContextPtr & robot);

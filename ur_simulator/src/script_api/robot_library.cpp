@@ -37,6 +37,7 @@ constexpr BuiltinGroup builtin_groups[] = {
     {"payload, TCP, sensor", script_api::add_installation_builtins},
     {"payload, TCP, sensor", script_api::add_estimate_payload_builtin},
     {"registers", script_api::add_register_builtins},
+    {"MODBUS server", script_api::add_port_builtins},
     {"digital IO", script_api::add_digital_io_builtins},
     {"analog IO", script_api::add_analog_io_builtins},
     {"tool connector", script_api::add_tool_connector_builtins},

@@ -12,6 +12,7 @@
 #include "script_api/watchdog.hpp"
 #include "state/controller_state.hpp"
 #include "urscript/library.hpp"
+#include "version/polyscope_version.hpp"
 
 namespace ur_simulator {
 
@@ -41,6 +42,7 @@ struct RobotAccess {
   std::function<std::optional<urscript::Value>(std::string_view name)> rtde_value = nullptr;
   /// Shared with the server that receives the statements.
   std::shared_ptr<InterpreterMode> interpreter_mode = std::make_shared<InterpreterMode>();
+  PolyscopeVersion version = {5, 25, 1, 0};
 };
 
 /// The standard builtins and the robot builtins of URScript. Builtins that the simulator does not model exist

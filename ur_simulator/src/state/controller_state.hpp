@@ -18,6 +18,12 @@ struct Registers {
   std::array<double, 48> doubles{};
 };
 
+/// The registers that exist for MODBUS clients and port functions of programs alone.
+struct PortRegisters {
+  std::array<std::uint16_t, 128> general_purpose{};
+  double split_time = 0.0;  ///< s since start, stored by the last write to the split time register
+};
+
 /// The serial line (RS485) in the tool connector, as set_tool_communication() configures it.
 struct ToolCommunication {
   bool enabled = false;
@@ -139,8 +145,9 @@ struct ControllerState {
 
   ExternalSensor external_sensor;
   Io io;
-  Registers inputs;                                 ///< written by RTDE clients, read by the program
-  Registers outputs;                                ///< written by the program, read by RTDE clients
+  Registers inputs;   ///< written by RTDE clients, read by the program
+  Registers outputs;  ///< written by the program, read by RTDE clients
+  PortRegisters ports;
   Vector6 external_force_torque = Vector6::Zero();  ///< RTDE input, flange axes
   double actual_execution_time = 0.0;               ///< computation time of the last cycle, ms
 

@@ -55,17 +55,6 @@ RefusedGroup modbus_signals()
           }};
 }
 
-RefusedGroup modbus_server()
-{
-  return {"the robot's MODBUS server is not modelled",
-          {
-              {"read_port_bit", {"address"}, 1},
-              {"read_port_register", {"address"}, 1},
-              {"write_port_bit", {"address", "value"}, 2},
-              {"write_port_register", {"address", "value"}, 2},
-          }};
-}
-
 RefusedGroup euromap()
 {
   return {"no Euromap67 interface is installed",
@@ -119,8 +108,8 @@ RefusedGroup frame_masses()
 
 void add_refused_builtins(Library & library)
 {
-  for (const RefusedGroup & group : {conveyor_tracking(), modbus_signals(), modbus_server(), euromap(),
-                                     sockets(), frame_tracking(), frame_masses()}) {
+  for (const RefusedGroup & group : {conveyor_tracking(), modbus_signals(), euromap(), sockets(),
+                                     frame_tracking(), frame_masses()}) {
     for (const RefusedBuiltin & builtin : group.builtins) {
       library.add_refused(builtin.name, builtin.parameters, builtin.required, group.reason);
     }
