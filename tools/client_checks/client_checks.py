@@ -14,6 +14,7 @@ import sys
 from typing import Dict, List, NamedTuple, Tuple
 
 ADDRESS = "127.0.0.1"  # the External Control program and the clients' own servers use the ports from 50001 on
+MODBUS_PORT = 1502  # 502 may need privileges
 MODELS = {"3": "ur5", "5": "ur5e"}
 TIMEOUT = 1800.0  # s for each client
 # Replaces the address in the examples of urx, which they contain as a literal. math3d 3 looks for names that Python 3.10 has moved.
@@ -86,7 +87,8 @@ class Simulator:
 
     def __init__(self, program: str, version: str, log: pathlib.Path) -> None:
         self._log = log.open("w")
-        command = [program, "--address", ADDRESS, "--model", MODELS[version[0]], "--polyscope", version, "--log"]
+        command = [program, "--address", ADDRESS, "--model", MODELS[version[0]], "--polyscope", version,
+                   "--ports", f"modbus={MODBUS_PORT}", "--log"]
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         line = self._process.stdout.readline()
         if not line.startswith("ready: "):
@@ -127,6 +129,9 @@ def checks(options: argparse.Namespace, version: str) -> List[Check]:
         result.append(Check("RTDE Python Client Library", options.rtde_python / "examples", record))
         loop = RTDE_CONTROL_LOOP.format(address=ADDRESS, program=RTDE_CONTROL_PROGRAM)
         result.append(Check("RTDE Python control loop", options.rtde_python / "examples", [options.python, "-c", loop]))
+    if options.pymodbus:
+        folder = pathlib.Path(__file__).parent
+        result.append(Check("pymodbus", folder, [options.python, "modbus_check.py", ADDRESS, str(MODBUS_PORT)]))
     for example in ("simple.py", "matrices.py", "test_all.py") if options.urx else ():
         program = URX_EXAMPLE.format(address=ADDRESS, example=example)
         result.append(Check(f"urx {example}", options.urx / "examples", [options.python, "-c", program]))
@@ -148,10 +153,11 @@ def run(check: Check, log: pathlib.Path) -> str:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--simulator", default="ur_simulator", help="program of the simulator")
-    parser.add_argument("--python", default=sys.executable, help="interpreter with the package math3d, which urx needs")
+    parser.add_argument("--python", default=sys.executable, help="interpreter with the packages math3d, which urx needs, and pymodbus")
     parser.add_argument("--client-library", type=pathlib.Path, help="build folder of the Universal Robots Client Library")
     parser.add_argument("--rtde-python", type=pathlib.Path, help="folder of the RTDE Python Client Library")
     parser.add_argument("--urx", type=pathlib.Path, help="folder of urx")
+    parser.add_argument("--pymodbus", action="store_true", help="call the functions of pymodbus")
     parser.add_argument("--versions", default="5.25.1,5.13.0,3.15.8", help="versions of PolyScope")
     parser.add_argument("--only", default="", help="checks whose names contain this text")
     parser.add_argument("--logs", type=pathlib.Path, default=pathlib.Path("client_checks_logs"), help="folder")

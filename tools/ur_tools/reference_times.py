@@ -44,6 +44,7 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_simulator: fuzz.control_request": (25.0, 1.0),
     "ur_simulator: fuzz.dashboard": (25.0, 1.0),
     "ur_simulator: fuzz.gripper_server": (25.0, 1.0),
+    "ur_simulator: fuzz.modbus": (25.0, 1.0),
     "ur_simulator: fuzz.robot_api": (25.0, 1.0),
     "ur_simulator: fuzz.robot_api_body": (25.0, 1.0),
     "ur_simulator: fuzz.rtde_session": (25.0, 1.0),
