@@ -108,8 +108,8 @@ RefusedGroup frame_masses()
 
 void add_refused_builtins(Library & library)
 {
-  for (const RefusedGroup & group : {conveyor_tracking(), modbus_signals(), euromap(), sockets(),
-                                     frame_tracking(), frame_masses()}) {
+  for (const RefusedGroup & group :
+       {conveyor_tracking(), modbus_signals(), euromap(), sockets(), frame_tracking(), frame_masses()}) {
     for (const RefusedBuiltin & builtin : group.builtins) {
       library.add_refused(builtin.name, builtin.parameters, builtin.required, group.reason);
     }
