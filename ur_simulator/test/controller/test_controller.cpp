@@ -82,7 +82,7 @@ TEST(ControllerTest, AppliesRealTimeFactor)
 TEST(ControllerTest, SelectsFreePorts)
 {
   SimulatorOptions options = with_unique_address();
-  options.ports = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  options.ports = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   SimulatedController first(options);
   SimulatedController second(options);
   EXPECT_NE(first.ports().rtde, 0);
