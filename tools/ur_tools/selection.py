@@ -15,6 +15,7 @@ from .packages import Package
 TOOLS = "tools"  # stands for tools/test
 _CASE = re.compile(r"^\s*(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)", re.M)
 _TARGET = re.compile(r"\b(?:add_executable|ament_add_gtest)\((\w+)[\s)]")
+_FUZZ_REPLAY = re.compile(r"\badd_fuzz_replay\((\w+)")
 _CPP = (".cpp", ".hpp", ".h", ".c")
 # A change below these folders affects all packages.
 _ALL_PACKAGES = ("wheels/", "tools/cmake/")
@@ -50,7 +51,9 @@ def sources(packages: Dict[str, Package], root: pathlib.Path = ROOT) -> List[Sou
             elif path.suffix == ".cpp":
                 found.append(Source(package, path, [".".join(case) for case in _CASE.findall(path.read_text())]))
             elif path.name == "CMakeLists.txt":
-                found += [Source(package, path.with_name(f"{target}.cpp")) for target in _TARGET.findall(path.read_text())]
+                text = path.read_text()
+                names = _TARGET.findall(text) + [f"fuzz.{name}" for name in _FUZZ_REPLAY.findall(text)]
+                found += [Source(package, path.with_name(f"{name}.cpp")) for name in names]
     return found
 
 
