@@ -14,8 +14,8 @@
 namespace ur_simulator {
 
 /// A listening TCP port with a session for each connection. `void Session::receive(std::string_view)` gets
-/// the data of the connection in pieces of any size. The session ends with its connection. Sending may close
-/// a connection: it ends the session after the call of the session that sends.
+/// the data of the connection in pieces of any size. The session ends with its connection; if it closes the
+/// connection itself, it is destroyed after the call in which it does so.
 template <typename Session>
 class SessionServer {
  public:
