@@ -1,8 +1,8 @@
 #include <array>
 #include <cstdlib>
 
+#include "common/big_endian.hpp"
 #include "input.hpp"
-#include "modbus/message.hpp"
 #include "modbus/session.hpp"
 
 // What a MODBUS TCP client sends, in pieces, for three versions.
@@ -15,8 +15,8 @@ using namespace ur_simulator;
 bool are_messages(std::string_view bytes)
 {
   while (bytes.size() >= 9) {
-    const std::size_t length = modbus::get_u16(bytes, 4);
-    if (modbus::get_u16(bytes, 2) != 0 || length < 3 || length > 254 || bytes.size() < 6 + length) {
+    const std::size_t length = get_u16(bytes, 4);
+    if (get_u16(bytes, 2) != 0 || length < 3 || length > 254 || bytes.size() < 6 + length) {
       return false;
     }
     bytes.remove_prefix(6 + length);

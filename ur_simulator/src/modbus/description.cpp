@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "common/big_endian.hpp"
 #include "modbus/message.hpp"
 
 namespace ur_simulator::modbus {

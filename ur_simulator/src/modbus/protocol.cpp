@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/big_endian.hpp"
 #include "modbus/message.hpp"
 
 namespace ur_simulator::modbus {
@@ -21,8 +22,8 @@ constexpr std::uint16_t coil_off = 0x0000;
 std::string exception_response(std::string_view request, Exception exception)
 {
   std::string response;
-  put_u8(response, get_u8(request, 0) | error_bit);
-  put_u8(response, static_cast<unsigned>(exception));
+  put_u8(response, static_cast<std::uint8_t>(get_u8(request, 0) | error_bit));
+  put_u8(response, static_cast<std::uint8_t>(exception));
   return response;
 }
 
@@ -57,7 +58,7 @@ std::string read_bits(PortMap & ports, std::string_view request)
     bytes[i / 8] = static_cast<char>(bytes[i / 8] | *bit << i % 8);
   }
   std::string response(request.substr(0, 1));
-  put_u8(response, static_cast<unsigned>(bytes.size()));
+  put_u8(response, static_cast<std::uint8_t>(bytes.size()));
   return response + bytes;
 }
 
@@ -69,7 +70,7 @@ std::string read_registers(PortMap & ports, std::string_view request)
     return exception_response(request, Exception::illegal_data_value);
   }
   std::string response(request.substr(0, 1));
-  put_u8(response, 2 * span->quantity);
+  put_u8(response, static_cast<std::uint8_t>(2 * span->quantity));
   for (unsigned i = 0; i < span->quantity; ++i) {
     const auto word = ports.read_register(span->address + i);
     if (!word) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "common/big_endian.hpp"
 #include "modbus/description.hpp"
 #include "modbus/message.hpp"
 #include "modbus/protocol.hpp"
@@ -59,7 +60,7 @@ void Session::answer(std::string_view message, std::string & responses, const Pe
     log.to_peer("{}", describe_response(response));
   }
   responses += message.substr(0, length_at);
-  put_u16(responses, static_cast<unsigned>(1 + response.size()));
+  put_u16(responses, static_cast<std::uint16_t>(1 + response.size()));
   responses += message[unit_at];
   responses += response;
 }

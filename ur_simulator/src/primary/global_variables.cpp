@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "primary/big_endian.hpp"
+#include "common/big_endian.hpp"
 
 namespace ur_simulator::primary {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "primary/big_endian.hpp"
+#include "common/big_endian.hpp"
 
 namespace ur_simulator::primary {
 namespace {

@@ -1,6 +1,6 @@
 #include "primary/realtime_packet.hpp"
 
-#include "primary/big_endian.hpp"
+#include "common/big_endian.hpp"
 #include "state/electrical_constants.hpp"
 
 namespace ur_simulator::primary {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "common/big_endian.hpp"
 #include "kinematics/inverse_kinematics.hpp"
-#include "primary/big_endian.hpp"
 #include "state/electrical_constants.hpp"
 
 namespace ur_simulator::primary {

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
-namespace ur_simulator::primary {
+namespace ur_simulator {
+
+// Big-endian numbers in messages.
 
 inline void put_u8(std::string & to, std::uint8_t value)
 {
@@ -40,4 +44,16 @@ inline void put_f64(std::string & to, double value)
   put_u64(to, std::bit_cast<std::uint64_t>(value));
 }
 
-}  // namespace ur_simulator::primary
+// The bytes that are read must exist.
+
+inline std::uint8_t get_u8(std::string_view bytes, std::size_t at)
+{
+  return static_cast<std::uint8_t>(bytes[at]);
+}
+
+inline std::uint16_t get_u16(std::string_view bytes, std::size_t at)
+{
+  return static_cast<std::uint16_t>(get_u8(bytes, at) << 8 | get_u8(bytes, at + 1));
+}
+
+}  // namespace ur_simulator
