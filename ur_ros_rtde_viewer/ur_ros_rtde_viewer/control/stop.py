@@ -36,7 +36,7 @@ class Stopper:
         self._dashboard = goals.client("dashboard/stop", DashboardCommand)
 
     def press(self, report: Report) -> None:
-        """Stops the arm. `report` is called in the thread of the node, at most once for each Outcome."""
+        """Stops the arm. `report` is called in the thread of the node. An answer that comes late is reported, too."""
         self._control.post(lambda: _Press(self._control, self._stop, self._dashboard, report).start())
 
 
@@ -78,9 +78,9 @@ class _Press:
         self._report(Outcome.STOPPED, f"At rest after {result.time_to_standstill:.2f} s")
 
     def _expect_answer(self, limit: float, on_silence: Callable[[], None]) -> None:
-        """Calls `on_silence` after `limit` s, unless the answer comes."""
+        """Calls `on_silence`, which cancels the timer, after `limit` s, unless the answer comes."""
         self._cancel_timer()
-        self._timer = self._node.create_timer(limit, lambda: (self._cancel_timer(), on_silence()))
+        self._timer = self._node.create_timer(limit, on_silence)
 
     def _cancel_timer(self) -> None:
         if self._timer is not None:
