@@ -59,7 +59,8 @@ class ResponseSenderTest : public InThread {
         [this](rcl_ret_t code) { done.push_back(code); }};
   }
 
-  std::shared_ptr<ResponseSender> sender = std::make_shared<ResponseSender>(node.impl());
+  std::shared_ptr<ResponseSender> sender =
+      std::make_shared<ResponseSender>(node.impl(), node.impl()->default_group());
   ClientDiscovery client = ClientDiscovery::found;
   int attempts = 0;
   int checks = 0;

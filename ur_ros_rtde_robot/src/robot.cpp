@@ -10,6 +10,11 @@
 
 namespace ur_ros_rtde {
 
+Error stopped_by_the_driver()
+{
+  return {ErrorCode::preempted, "the arm was stopped"};
+}
+
 Robot::Robot(RobotOptions options, LogFunction log) : impl_(std::make_unique<Impl>(std::move(options), log))
 {
 }
@@ -49,11 +54,7 @@ RobotStatus Robot::status() const
 
 Status Robot::ready_to_move() const
 {
-  const auto now = status();
-  if (now.state != RobotState::ready) {
-    return failure(now.cause, now.message);
-  }
-  return motion_possible();
+  return impl_->ready_to_move();
 }
 
 Status Robot::wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop) const
@@ -96,7 +97,92 @@ int Robot::realtime_priority() const
   return impl_->options.realtime_priority;
 }
 
-Locked<ur_rtde::RTDEControlInterface> Robot::control() const
+Expected<Lease> Robot::acquire(Claim claim)
+{
+  const Claim asked = claim;
+  return impl_->arbiter.acquire(std::move(claim), [&] { return impl_->admit(asked); });
+}
+
+Expected<Lease> Robot::acquire_preempting(Claim claim, std::chrono::milliseconds timeout,
+                                          const std::stop_token & stop)
+{
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  const auto left = [&] {
+    return std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+  };
+  while (true) {
+    auto lease = impl_->arbiter.acquire_preempting(claim, [&] { return impl_->admit(claim); }, left(), stop);
+    if (lease || !impl_->stopper.wait_until_idle(deadline, stop) || left().count() <= 0) {
+      return lease;
+    }
+  }
+}
+
+Status Robot::may_use(const Claim & claim) const
+{
+  return impl_->may_use(claim);
+}
+
+std::optional<Claim> Robot::holder(Resource resource) const
+{
+  const auto permit = impl_->arbiter.holder(resource);
+  return permit ? std::optional(permit->claim()) : std::nullopt;
+}
+
+Generation Robot::generation() const
+{
+  return impl_->generation();
+}
+
+Status Robot::is_current(const Generation & generation) const
+{
+  const Generation now = impl_->generation();
+  if (now == generation) {
+    return {};
+  }
+  if (now.link != generation.link) {
+    return failure(ErrorCode::link_lost, connection_replaced);
+  }
+  if (now.ends != generation.ends) {
+    return tl::unexpected(impl_->program_ended_error());
+  }
+  return failure(ErrorCode::program_stopped,
+                 "the control program was replaced or started again; the motion is not resumed");
+}
+
+Status Robot::may_continue(const Lease & lease) const
+{
+  if (!lease) {
+    return failure(ErrorCode::exception, "there is no lease");
+  }
+  if (auto why = lease.permit_->revoked()) {
+    return tl::unexpected(*std::move(why));
+  }
+  if (Status possible = motion_possible(); !possible) {
+    return possible;  // names the cause better than the change of the generation that follows from it
+  }
+  return is_current(lease.permit_->generation());
+}
+
+std::function<Status()> Robot::permission(const Lease & lease) const
+{
+  return [this, permit = lease.permit_]() -> Status {
+    if (!permit) {
+      return failure(ErrorCode::exception, "there is no lease");
+    }
+    if (auto why = permit->revoked()) {
+      return tl::unexpected(*std::move(why));
+    }
+    return is_current(permit->generation());
+  };
+}
+
+Locked<ur_rtde::RTDEControlInterface> Robot::control(const Lease & lease)
+{
+  return control().permitted_by(permission(lease));
+}
+
+Locked<ur_rtde::RTDEControlInterface> Robot::control()
 {
   if (auto control = impl_->interfaces.control()) {
     return *control;
@@ -145,41 +231,7 @@ bool Robot::wait_for_next(Sample & last, std::chrono::milliseconds limit, std::s
 
 Status Robot::motion_possible() const
 {
-  const auto link = impl_->state.link();
-  const auto sample = latest();
-  if (!link.connected || !sample) {
-    return failure(ErrorCode::link_lost, link.connected
-                                             ? "no package from the controller has been received yet"
-                                             : link.error.message);
-  }
-  if (const auto condition = motion_blocker(*sample)) {
-    return tl::unexpected(*condition);
-  }
-  if (impl_->manager.control_owner() == ControlOwner::script) {
-    return {};
-  }
-  if (!sample->program_running()) {
-    const char * then = impl_->options.control_mode == ControlMode::upload
-                            ? "it is restarted, without resuming the motion, as soon as the robot is ready"
-                            : "restart the program with the External Control node";
-    return failure(ErrorCode::program_stopped,
-                   fmt::format("the control program was stopped (runtime state {}); {}",
-                               to_string(sample->runtime_state), then));
-  }
-  const auto control = impl_->interfaces.control_interface();
-  if (!control) {
-    auto why = impl_->unavailable_error();
-    if (why.code == ErrorCode::not_ready) {  // the connection is being re-established
-      why = {ErrorCode::link_lost,
-             "the connection to the control program was lost; it is being re-established"};
-    }
-    return tl::unexpected(std::move(why));
-  }
-  if (!control->isConnected()) {
-    return failure(ErrorCode::link_lost,
-                   "the robot closed the connection to the control program; it is being re-established");
-  }
-  return {};
+  return impl_->motion_possible();
 }
 
 MotionMark Robot::mark_motion() const
@@ -200,17 +252,15 @@ MotionProgress Robot::motion_progress(const MotionMark & mark) const
   return result;
 }
 
-bool Robot::moving() const
+bool Robot::is_moving() const
 {
   const auto view = impl_->tracker.view();
   return !view.at_rest || view.operating();
 }
 
-bool Robot::in_freedrive() const
+Activities Robot::activities() const
 {
-  using Control = ur_rtde::RTDEControlInterface;
-  const auto control = impl_->interfaces.control_interface();
-  return control && (control->getStartedMotions() & (Control::MOTION_FREEDRIVE | Control::MOTION_TEACH)) != 0;
+  return impl_->activities.now();
 }
 
 Status Robot::set_watchdog(double frequency)
@@ -218,14 +268,76 @@ Status Robot::set_watchdog(double frequency)
   return impl_->set_watchdog(frequency);
 }
 
-Expected<StopReport> Robot::stop_motion(const StopOptions & options)
+Expected<StopReport> Robot::stop_motion(const StopOptions & options, const Error & why)
 {
-  return impl_->stopper.stop(options);
+  return begin_stop(options, why).get();
 }
 
-ScriptReport Robot::run_script(const std::string & script, const ScriptOptions & options)
+std::shared_future<Expected<StopReport>> Robot::begin_stop(const StopOptions & options, const Error & why)
 {
-  return impl_->scripts.run(script, options);
+  return impl_->stopper.begin(options, why);
+}
+
+void Robot::request_stop(const Lease & lease, const StopOptions & options, const Error & why,
+                         std::chrono::milliseconds braking_timeout)
+{
+  if (lease && moves_arm(lease.permit_->claim().resource)) {
+    impl_->stopper.request(lease.permit_, options, why, braking_timeout);
+  }
+}
+
+Expected<StopReport> Robot::end_motion(const Lease & lease, const StopOptions & options)
+{
+  if (!lease || !moves_arm(lease.permit_->claim().resource)) {
+    return StopReport{};
+  }
+  return impl_->stopper.end(*lease.permit_, options).get();
+}
+
+bool Robot::is_stopping() const
+{
+  return impl_->stopper.is_stopping();
+}
+
+bool Robot::is_stopped(const Lease & lease) const
+{
+  if (!lease || !moves_arm(lease.permit_->claim().resource)) {
+    return true;
+  }
+  return lease.permit_->revoked() && !is_stopping();
+}
+
+Robot::Braking::Braking(const Lease & lease) : permit_(lease.permit_)
+{
+  permit_->set_brakes_itself(true);
+}
+
+Robot::Braking::~Braking()
+{
+  permit_->set_brakes_itself(false);
+}
+
+void Robot::Braking::sent(std::chrono::duration<double> remaining) const
+{
+  permit_->set_braking(Permit::Clock::now() + std::chrono::duration_cast<Permit::Clock::duration>(remaining));
+}
+
+ScriptReport Robot::run_script(const Lease & lease, const std::string & script, const ScriptOptions & options)
+{
+  ScriptOptions options_of_holder = options;
+  options_of_holder.stop_reason = [permit = lease.permit_, &options]() -> std::optional<Error> {
+    if (auto why = permit ? permit->revoked() : std::nullopt) {
+      return why;
+    }
+    return options.stop_reason ? options.stop_reason() : std::nullopt;
+  };
+  ScriptReport report = impl_->scripts.run(lease.permit_.get(), script, options_of_holder);
+  const bool nothing_is_left = report.end == ScriptEnd::finished || report.end == ScriptEnd::refused ||
+                               report.end == ScriptEnd::compile_error;
+  if (lease && nothing_is_left) {
+    lease.permit_->renew(impl_->generation());  // the script has replaced the control program
+  }
+  return report;
 }
 
 std::vector<std::string> Robot::set_extensions(const std::vector<ScriptExtension> & extensions)
@@ -239,29 +351,36 @@ Status Robot::has_extension(const std::string & name) const
   return id ? Status() : tl::unexpected(id.error());
 }
 
-Status Robot::run_extension(const std::string & name, const ExtensionOptions & options)
+Status Robot::run_extension(const Lease & lease, const std::string & name, const ExtensionOptions & options)
 {
-  return impl_->extensions.run(name, options);
+  Status result;
+  try {
+    result = impl_->extensions.run(name, options, permission(lease));
+  } catch (...) {  // from ExtensionOptions::stop_reason
+    impl_->stopper.end(*lease.permit_, {}).wait();
+    throw;
+  }
+  if (!result && impl_->registers.extension_started()) {
+    if (const auto stopped = impl_->stopper.end(*lease.permit_, {}).get(); !stopped) {
+      result.error().message += fmt::format("; standstill is not confirmed: {}", stopped.error().message);
+    }
+  }
+  return result;
 }
 
 Status Robot::set_input_register(int index, std::int32_t value)
 {
-  return impl_->extensions.set_input(index, value);
+  return impl_->registers.set(index, value);
 }
 
 Status Robot::set_input_register(int index, double value)
 {
-  return impl_->extensions.set_input(index, value);
+  return impl_->registers.set(index, value);
 }
 
 int Robot::register_offset() const
 {
   return ur_ros_rtde::register_offset(impl_->options);
-}
-
-Arbiter & Robot::arbiter()
-{
-  return impl_->arbiter;
 }
 
 }  // namespace ur_ros_rtde

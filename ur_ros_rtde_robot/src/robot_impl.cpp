@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "connection/dashboard_request.hpp"
+
 namespace ur_ros_rtde {
 namespace {
 
@@ -56,14 +58,16 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       model(options.address, options.model, log),
       control_scripts(options.upper_range_registers),
       interfaces(options, control_scripts, log),
-      stopper(options.address, state, interfaces, tracker),
+      registers(options, interfaces),
+      activities(interfaces, registers, tracker),
+      stopper(options, state, interfaces, registers, tracker, activities, arbiter),
       server(options.urcap_port, options.retry_interval,
              {[this] { return state.version(); },
               [this](const ControllerVersion & version) { return control_scripts.program(version); }},
              log),
       manager(options, state, dashboard, model, interfaces, server, log),
-      scripts(options, state, tracker, interfaces, manager),
-      extensions(options, state, tracker, interfaces, control_scripts),
+      scripts(options, state, tracker, activities, stopper, manager, [this] { return generation(); }),
+      extensions(options, state, tracker, registers, control_scripts),
       watchdog_frequency_(options.watchdog_frequency)
 {
   state.on_link([this](const LinkStatus &) { manager.wake(); });
@@ -129,6 +133,109 @@ Error Robot::Impl::unavailable_error() const
   return {ErrorCode::not_ready, "the control program is being started"};
 }
 
+Error Robot::Impl::program_ended_error() const
+{
+  if (Error cause = tracker.end_cause(); cause.code != ErrorCode::none) {
+    return cause;
+  }
+  const char * then = options.control_mode == ControlMode::upload
+                          ? "it is restarted, without resuming the motion, as soon as the robot is ready"
+                          : "restart the program with the External Control node";
+  const double frequency = watchdog_frequency_;
+  if (const double gap = tracker.view().gap; frequency > 0.0 && gap > 1.0 / frequency) {
+    return {
+        ErrorCode::program_stopped,
+        fmt::format(
+            "the watchdog of the control program stopped it: this host sent no heartbeat for {:.0f} ms, at "
+            "most {:.0f} ms are allowed (watchdog_frequency); {}",
+            1e3 * gap, 1e3 / frequency, then)};
+  }
+  return {ErrorCode::program_stopped,
+          fmt::format("the control program was stopped (runtime state {}); {}",
+                      to_string(state.latest().value_or(Sample{}).runtime_state), then)};
+}
+
+Status Robot::Impl::motion_possible() const
+{
+  const auto link = state.link();
+  const auto sample = state.latest();
+  if (!link.connected || !sample) {
+    return failure(ErrorCode::link_lost, link.connected
+                                             ? "no package from the controller has been received yet"
+                                             : link.error.message);
+  }
+  if (const auto condition = motion_blocker(*sample)) {
+    return tl::unexpected(*condition);
+  }
+  if (manager.control_owner() == ControlOwner::script) {
+    return {};
+  }
+  if (!sample->program_running()) {
+    return tl::unexpected(program_ended_error());
+  }
+  const auto control = interfaces.control_interface();
+  if (!control) {
+    auto why = unavailable_error();
+    if (why.code == ErrorCode::not_ready) {  // the connection is being re-established
+      why = {ErrorCode::link_lost,
+             "the connection to the control program was lost; it is being re-established"};
+    }
+    return tl::unexpected(std::move(why));
+  }
+  if (!control->isConnected()) {
+    return failure(ErrorCode::link_lost,
+                   "the robot closed the connection to the control program; it is being re-established");
+  }
+  return {};
+}
+
+Status Robot::Impl::ready_to_move() const
+{
+  const RobotStatus now = manager.status();
+  if (now.state != RobotState::ready) {
+    return failure(now.cause, now.message);
+  }
+  return motion_possible();
+}
+
+Generation Robot::Impl::generation() const
+{
+  const auto view = tracker.view();
+  return {view.program, interfaces.starts(), view.link};
+}
+
+Status Robot::Impl::may_use(const Claim & claim) const
+{
+  if (!moves_arm(claim.resource)) {
+    const RobotStatus status = manager.status();
+    const bool connected = status.state == RobotState::ready || status.state == RobotState::stopped;
+    return connected ? Status()
+                     : failure(status.cause == ErrorCode::none ? ErrorCode::not_ready : status.cause,
+                               status.message);
+  }
+  if (Status ready = ready_to_move(); !ready) {
+    return ready;
+  }
+  if (!claim.switches_hand_guiding && activities.now().contains_any(hand_guiding)) {
+    return failure(ErrorCode::busy,
+                   "the arm is in freedrive or teach mode and may be moved by hand: end the mode first "
+                   "(freedrive_stop, end_teach_mode, stop)");
+  }
+  return {};
+}
+
+Expected<Generation> Robot::Impl::admit(const Claim & claim) const
+{
+  const Generation now = generation();  // before the checks: a change afterwards ends the lease
+  if (Status usable = may_use(claim); !usable) {
+    return tl::unexpected(usable.error());
+  }
+  if (moves_arm(claim.resource) && stopper.is_stopping()) {
+    return failure(ErrorCode::busy, "the arm is being stopped: wait until it is at rest");
+  }
+  return now;
+}
+
 void Robot::Impl::end_program()
 {
   const auto control = interfaces.control();
@@ -137,7 +244,7 @@ void Robot::Impl::end_program()
   }
   if (options.control_mode == ControlMode::control_urcap) {
     // The program must not continue after its External Control node: that might move the arm.
-    const auto ended = stop_program(options.address, std::chrono::milliseconds(500));
+    const auto ended = stop_program(options.address);
     if (ended || options.watchdog_frequency > 0.0) {
       return;
     }
@@ -155,9 +262,10 @@ Robot::Impl::~Impl()
 {
   manager.stop();
   if (interfaces.control_interface()) {
-    stopper.stop({});
+    stopper.begin({}, Error{ErrorCode::shutdown, "the driver is shutting down"}).wait();
     end_program();
   }
+  stopper.close();
   // Their threads use members that are destroyed before them.
   server.stop();
   state.stop();

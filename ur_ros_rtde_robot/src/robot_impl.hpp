@@ -5,9 +5,12 @@
 #include <functional>
 
 #include "connection/rtde/control_scripts.hpp"
+#include "connection/rtde/input_registers.hpp"
 #include "connection/rtde/rtde_interfaces.hpp"
+#include "motion/arbiter.hpp"
 #include "motion/motion_stopper.hpp"
 #include "motion/motion_tracker.hpp"
+#include "motion/started_activities.hpp"
 #include "program/control_program_manager.hpp"
 #include "program/execution/extension_runner.hpp"
 #include "program/execution/script_runner.hpp"
@@ -30,6 +33,14 @@ class Robot::Impl {
   Status set_watchdog(double frequency);
   /// Why there is no control or IO interface.
   Error unavailable_error() const;
+  /// Why the newest program has ended.
+  Error program_ended_error() const;
+  Status motion_possible() const;
+  Status ready_to_move() const;
+  Generation generation() const;
+  Status may_use(const Claim & claim) const;
+  /// For a claim that is granted now.
+  Expected<Generation> admit(const Claim & claim) const;
 
   const RobotOptions options;
   Arbiter arbiter;
@@ -40,6 +51,8 @@ class Robot::Impl {
   ArmModel model;
   ControlScripts control_scripts;
   RtdeInterfaces interfaces;
+  InputRegisters registers;
+  StartedActivities activities;
   MotionStopper stopper;
   ScriptServer server;  ///< for ControlMode::control_urcap
   ControlProgramManager manager;

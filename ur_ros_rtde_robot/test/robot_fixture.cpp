@@ -59,6 +59,31 @@ testing::AssertionResult RobotFixture::becomes_ready_again(std::size_t times)
   return becomes_ready();
 }
 
+Lease RobotFixture::acquire(Resource resource)
+{
+  auto lease = robot->acquire(claim(resource));
+  EXPECT_TRUE(lease) << lease.error().message << "\n" << log.text();
+  return lease ? std::move(*lease) : Lease();
+}
+
+/// The robot, not the arbiter, decides whether a script can run.
+ScriptReport RobotFixture::run_script(const std::string & script, const ScriptOptions & options)
+{
+  const auto lease =
+      robot->acquire(claim(options.kind == ScriptKind::secondary ? Resource::none : Resource::script));
+  ScriptReport rejected;
+  if (!lease) {
+    rejected.error = lease.error();
+  }
+  return lease ? robot->run_script(*lease, script, options) : rejected;
+}
+
+Status RobotFixture::run_extension(const std::string & name, const ExtensionOptions & options)
+{
+  Lease lease = acquire();
+  return robot->run_extension(lease, name, options);
+}
+
 void RobotFixture::move_joints()
 {
   auto q = robot->receive()->getActualQ();

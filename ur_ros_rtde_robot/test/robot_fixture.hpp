@@ -40,7 +40,17 @@ struct RobotFixture : testing::Test {
   void move_joints();
   /// The same straight up, 0.1 m/s.
   void move_linear();
-  bool at_rest() const { return !robot->moving(); }
+  bool at_rest() const { return !robot->is_moving(); }
+
+  /// A claim of a goal of a command.
+  static Claim claim(Resource resource = Resource::motion)
+  {
+    return {.resource = resource, .owner = "/test", .id = "1"};
+  }
+  /// Fails the test without a lease.
+  Lease acquire(Resource resource = Resource::motion);
+  ScriptReport run_script(const std::string & script, const ScriptOptions & options = {});
+  Status run_extension(const std::string & name, const ExtensionOptions & options = {});
 
   /// Highest deceleration of joint `index` (rad/s^2) in the recorded samples, by target velocities over 10
   /// ms.

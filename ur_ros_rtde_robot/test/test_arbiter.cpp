@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "ur_ros_rtde_robot/motion/arbiter.hpp"
+#include "motion/arbiter.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -11,15 +11,20 @@ using namespace std::chrono_literals;
 
 Claim claim(Resource resource, const char * owner = "move_l", const char * id = "3f2a")
 {
-  return {resource, owner, id, {}};
+  return {.resource = resource, .owner = owner, .id = id};
+}
+
+Expected<Generation> admit()
+{
+  return Generation{};
 }
 
 TEST(ArbiterTest, GrantsAResourceToOneHolderAndNamesIt)
 {
   Arbiter arbiter;
-  const auto first = arbiter.acquire(claim(Resource::motion));
+  const auto first = arbiter.acquire(claim(Resource::motion), admit);
   ASSERT_TRUE(first);
-  const auto second = arbiter.acquire(claim(Resource::motion, "move_j", "77"));
+  const auto second = arbiter.acquire(claim(Resource::motion, "move_j", "77"), admit);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, ErrorCode::busy);
   EXPECT_NE(second.error().message.find("move_l"), std::string::npos);
@@ -30,34 +35,34 @@ TEST(ArbiterTest, GrantsTheResourceAgainAfterRelease)
 {
   Arbiter arbiter;
   {
-    const auto lease = arbiter.acquire(claim(Resource::motion));
+    const auto lease = arbiter.acquire(claim(Resource::motion), admit);
     ASSERT_TRUE(lease);
-    EXPECT_EQ(arbiter.holder(Resource::motion)->owner, "move_l");
+    EXPECT_EQ(arbiter.holder(Resource::motion)->claim().owner, "move_l");
   }
   EXPECT_FALSE(arbiter.holder(Resource::motion));
-  EXPECT_TRUE(arbiter.acquire(claim(Resource::motion)));
+  EXPECT_TRUE(arbiter.acquire(claim(Resource::motion), admit));
 }
 
 TEST(ArbiterTest, AllowsMotionAndIoConcurrentlyAndNoneAlways)
 {
   Arbiter arbiter;
-  const auto motion = arbiter.acquire(claim(Resource::motion));
-  const auto io = arbiter.acquire(claim(Resource::io));
-  const auto none = arbiter.acquire(claim(Resource::none));
-  const auto more = arbiter.acquire(claim(Resource::none));
+  const auto motion = arbiter.acquire(claim(Resource::motion), admit);
+  const auto io = arbiter.acquire(claim(Resource::io), admit);
+  const auto none = arbiter.acquire(claim(Resource::none), admit);
+  const auto more = arbiter.acquire(claim(Resource::none), admit);
   EXPECT_TRUE(motion && io && none && more);
 }
 
 TEST(ArbiterTest, ExcludesScriptAndMotionMutually)
 {
   Arbiter arbiter;
-  auto script = arbiter.acquire(claim(Resource::script, "send_script"));
+  auto script = arbiter.acquire(claim(Resource::script, "send_script"), admit);
   ASSERT_TRUE(script);
-  EXPECT_FALSE(arbiter.acquire(claim(Resource::motion)));
+  EXPECT_FALSE(arbiter.acquire(claim(Resource::motion), admit));
   script->release();
-  const auto motion = arbiter.acquire(claim(Resource::motion));
+  const auto motion = arbiter.acquire(claim(Resource::motion), admit);
   EXPECT_TRUE(motion);
-  EXPECT_FALSE(arbiter.acquire(claim(Resource::script)));
+  EXPECT_FALSE(arbiter.acquire(claim(Resource::script), admit));
 }
 
 TEST(ArbiterTest, PreemptsTheHolderAndWaits)
@@ -65,16 +70,16 @@ TEST(ArbiterTest, PreemptsTheHolderAndWaits)
   Arbiter arbiter;
   std::optional<Lease> held;
   std::jthread leaving;
-  std::string asked_by;
+  std::string reason;
   auto first = claim(Resource::motion);
-  first.preempt = [&](const std::string & by) {
-    asked_by = by;
+  first.preempt = [&](const Error & why) {
+    reason = why.message;
     leaving = std::jthread([&] { held.reset(); });
   };
-  held = std::move(*arbiter.acquire(std::move(first)));
-  const auto second = arbiter.acquire_preempting(claim(Resource::motion, "move_j", "77"), 5s);
+  held = std::move(*arbiter.acquire(std::move(first), admit));
+  const auto second = arbiter.acquire_preempting(claim(Resource::motion, "move_j", "77"), admit, 5s, {});
   EXPECT_TRUE(second);
-  EXPECT_EQ(asked_by, "move_j, goal 77");
+  EXPECT_EQ(reason, "preempted by move_j, goal 77");
 }
 
 TEST(ArbiterTest, RefusesWhenTheHolderDoesNotReleaseInTime)
@@ -82,9 +87,9 @@ TEST(ArbiterTest, RefusesWhenTheHolderDoesNotReleaseInTime)
   Arbiter arbiter;
   int asked = 0;
   auto first = claim(Resource::motion);
-  first.preempt = [&](const std::string &) { ++asked; };
-  const auto held = arbiter.acquire(std::move(first));
-  const auto second = arbiter.acquire_preempting(claim(Resource::motion, "move_j"), 20ms);
+  first.preempt = [&](const Error &) { ++asked; };
+  const auto held = arbiter.acquire(std::move(first), admit);
+  const auto second = arbiter.acquire_preempting(claim(Resource::motion, "move_j"), admit, 20ms, {});
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, ErrorCode::busy);
   EXPECT_EQ(asked, 1);
@@ -93,8 +98,57 @@ TEST(ArbiterTest, RefusesWhenTheHolderDoesNotReleaseInTime)
 TEST(ArbiterTest, DoesNotPreemptAHolderWithoutCallback)
 {
   Arbiter arbiter;
-  const auto held = arbiter.acquire(claim(Resource::motion));
-  EXPECT_FALSE(arbiter.acquire_preempting(claim(Resource::motion, "move_j"), 10s));
+  const auto held = arbiter.acquire(claim(Resource::motion), admit);
+  EXPECT_FALSE(arbiter.acquire_preempting(claim(Resource::motion, "move_j"), admit, 10s, {}));
+}
+
+TEST(ArbiterTest, GrantsAModeDuringAMotionButNotDuringAScript)
+{
+  Arbiter arbiter;
+  const auto motion = arbiter.acquire(claim(Resource::motion), admit);
+  {
+    const auto mode = arbiter.acquire(claim(Resource::mode, "force_mode_start"), admit);
+    EXPECT_TRUE(mode);
+    EXPECT_EQ(arbiter.arm_holders().size(), 2U);
+    EXPECT_FALSE(arbiter.acquire(claim(Resource::script), admit));
+  }
+  EXPECT_EQ(arbiter.arm_holders().size(), 1U);
+}
+
+TEST(ArbiterTest, DoesNotGrantWhatIsNotAdmitted)
+{
+  Arbiter arbiter;
+  const auto rejected = arbiter.acquire(claim(Resource::motion), []() -> Expected<Generation> {
+    return failure(ErrorCode::protective_stop, "stopped");
+  });
+  ASSERT_FALSE(rejected);
+  EXPECT_EQ(rejected.error().code, ErrorCode::protective_stop);
+  EXPECT_FALSE(arbiter.holder(Resource::motion));
+}
+
+/// Two claims wait for the same holder: the newer one, a stop for instance, must not come second.
+TEST(ArbiterTest, TheNewestOfTwoPreemptingClaimsWins)
+{
+  Arbiter arbiter;
+  auto first = claim(Resource::motion);
+  std::atomic<bool> asked{false};
+  first.preempt = [&](const Error &) { asked = true; };
+  std::optional<Lease> held = std::move(*arbiter.acquire(std::move(first), admit));
+  std::stop_source older_stops;
+  auto older = claim(Resource::motion, "move_j", "1");
+  older.preempt = [&](const Error &) { older_stops.request_stop(); };
+  std::optional<bool> older_granted;
+  std::jthread waiting([&] {
+    older_granted = arbiter.acquire_preempting(older, admit, 20s, older_stops.get_token()).has_value();
+  });
+  while (!asked) {
+    std::this_thread::yield();
+  }
+  std::jthread newer(
+      [&] { EXPECT_TRUE(arbiter.acquire_preempting(claim(Resource::motion, "stop", "2"), admit, 20s, {})); });
+  waiting.join();
+  EXPECT_FALSE(*older_granted);
+  held.reset();
 }
 
 TEST(ArbiterTest, MayBeDestroyedBeforeItsLeases)
@@ -102,11 +156,11 @@ TEST(ArbiterTest, MayBeDestroyedBeforeItsLeases)
   Lease lease;
   {
     Arbiter arbiter;
-    lease = std::move(*arbiter.acquire(claim(Resource::motion)));
+    lease = std::move(*arbiter.acquire(claim(Resource::motion), admit));
   }
   EXPECT_TRUE(lease);
   lease.release();
-  EXPECT_FALSE(lease);
+  lease.release();
 }
 
 TEST(ArbiterTest, GrantsAContestedResourceToExactlyOne)
@@ -120,7 +174,7 @@ TEST(ArbiterTest, GrantsAContestedResourceToExactlyOne)
     for (int i = 0; i < 8; ++i) {
       threads.emplace_back([&] {
         for (int n = 0; n < 500; ++n) {
-          if (const auto lease = arbiter.acquire(claim(Resource::motion))) {
+          if (const auto lease = arbiter.acquire(claim(Resource::motion), admit)) {
             const int now = ++inside;
             most = std::max(most.load(), now);
             ++got;

@@ -128,7 +128,7 @@ TEST_F(StatedModelTest, PreventsMotionIfItContradictsTheController)
   EXPECT_THROW(robot->control(), RobotError);
   EXPECT_TRUE(robot->io()->setStandardDigitalOut(1, true)) << "commands without motion work";
   EXPECT_TRUE(robot->latest());
-  EXPECT_EQ(robot->run_script("textmsg(\"here\")").error.code, ErrorCode::model_mismatch);
+  EXPECT_EQ(run_script("textmsg(\"here\")").error.code, ErrorCode::model_mismatch);
   EXPECT_EQ(controller.state().at("program").at("state"), "STOPPED");
   EXPECT_EQ(log.count("ur_type is ur5e"), 1U) << log.text();
 }

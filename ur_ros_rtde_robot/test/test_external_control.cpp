@@ -283,7 +283,7 @@ TEST_F(ExternalControlTest, RefusesScriptsThatWouldReplaceTheProgram)
   start(options());
   play();
   ASSERT_TRUE(becomes_ready());
-  const auto report = robot->run_script("textmsg(\"no\")");
+  const auto report = run_script("textmsg(\"no\")");
   EXPECT_EQ(report.end, ScriptEnd::refused);
   EXPECT_EQ(report.error.code, ErrorCode::not_supported);
   EXPECT_NE(report.error.message.find("control_urcap"), std::string::npos) << report.error.message;
@@ -291,7 +291,7 @@ TEST_F(ExternalControlTest, RefusesScriptsThatWouldReplaceTheProgram)
   ScriptOptions beside;
   beside.kind = ScriptKind::secondary;
   beside.limit = 5s;
-  EXPECT_TRUE(robot->run_script("sec f():\n  textmsg(\"yes\")\nend\n", beside));
+  EXPECT_TRUE(run_script("sec f():\n  textmsg(\"yes\")\nend\n", beside));
   EXPECT_TRUE(robot->ready_to_move());
 }
 

@@ -121,8 +121,8 @@ TEST_F(QueryTest, DoesNotWriteOtherRegisters)
   ScriptOptions secondary;
   secondary.kind = ScriptKind::secondary;
   secondary.limit = 5s;
-  ASSERT_TRUE(robot->run_script(
-      "write_output_float_register(13, 7.5)\nwrite_output_float_register(19, 8.5)\n", secondary));
+  ASSERT_TRUE(
+      run_script("write_output_float_register(13, 7.5)\nwrite_output_float_register(19, 8.5)\n", secondary));
   control()->getMassMatrix();
   control()->getJacobian();
   Sample sample = *robot->latest();

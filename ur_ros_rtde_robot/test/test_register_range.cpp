@@ -56,7 +56,7 @@ TEST_P(UpperRangeTest, SupportsExtensionsWithParametersAndResults)
 {
   ASSERT_TRUE(robot->set_input_register(19, 41));
   ASSERT_TRUE(robot->set_input_register(20, 1.25));
-  const auto ran = robot->run_extension("adds");
+  const auto ran = run_extension("adds");
   ASSERT_TRUE(ran) << ran.error().message;
   EXPECT_EQ(robot->latest()->output_int_registers[1], 42);
   EXPECT_EQ(robot->latest()->output_double_registers[2], 2.5);
@@ -68,13 +68,13 @@ TEST_P(UpperRangeTest, EndsAnExtensionThatMovesTheArm)
   options.stop_reason = [&]() -> std::optional<Error> {
     return turning() ? std::optional(Error{ErrorCode::canceled, "enough"}) : std::nullopt;
   };
-  EXPECT_EQ(robot->run_extension("turns", options).error().code, ErrorCode::canceled);
+  EXPECT_EQ(run_extension("turns", options).error().code, ErrorCode::canceled);
   EXPECT_TRUE(eventually([&] { return at_rest(); }));
 }
 
 TEST_P(UpperRangeTest, SupportsScriptsWithTheirWatchdog)
 {
-  EXPECT_TRUE(robot->run_script("textmsg(\"here\")"));
+  EXPECT_TRUE(run_script("textmsg(\"here\")"));
   EXPECT_TRUE(becomes_ready());
 }
 
@@ -98,7 +98,7 @@ TEST_P(UpperRangeTest, DoesNotWriteTheLowerRegisters)
 {
   move_joints();
   ASSERT_TRUE(robot->stop_motion());
-  ASSERT_TRUE(robot->run_extension("adds"));
+  ASSERT_TRUE(run_extension("adds"));
   const auto all = controller.control({{"command", "registers"}});
   for (const char * direction : {"inputs", "outputs"}) {
     for (const char * kind : {"integers", "doubles"}) {

@@ -23,7 +23,7 @@ TEST_F(RobotMotionTest, IsTrackedFromStartToEnd)
   EXPECT_FALSE(robot->motion_progress(mark).finished());
   ASSERT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); }, 10s));
   EXPECT_NEAR(robot->latest()->actual_q[5], q[5], 1e-3);
-  EXPECT_FALSE(robot->moving());
+  EXPECT_FALSE(robot->is_moving());
 }
 
 TEST_F(RobotMotionTest, IsNotFinishedByTheEndOfThePreviousOne)
@@ -244,7 +244,7 @@ TEST_F(RobotMotionTest, BlockingCallReturnsWhenTheConnectionIsLost)
     control->moveJ(q, 0.5, 1.0);
     returned = true;
   });
-  ASSERT_TRUE(eventually([&] { return robot->moving(); }));
+  ASSERT_TRUE(eventually([&] { return robot->is_moving(); }));
   EXPECT_FALSE(returned);
   controller.control({{"command", "stall_links"}, {"which", "rtde"}});
   EXPECT_TRUE(eventually([&] { return returned.load(); }, 2s));

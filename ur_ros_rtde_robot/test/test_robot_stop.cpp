@@ -90,7 +90,7 @@ TEST_F(StopTest, EndsServoJ)
     ASSERT_TRUE(robot->control()->servoJ(q, 0.0, 0.0, 0.002, 0.05, 300.0)) << log.text();
     ASSERT_TRUE(robot->wait_for_next(sample, 1s));
   }
-  EXPECT_TRUE(robot->moving());
+  EXPECT_TRUE(robot->is_moving());
   const auto report = robot->stop_motion();
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->means, StopMeans::stop_command);
@@ -132,7 +132,7 @@ TEST_F(StopTest, StopsTheProgramDuringABlockingMotion)
   std::jthread blocked([&, control = robot->control()] { control->moveJ(q, 0.5, 1.0); });
   ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.4; }));
   auto options = decelerating(2.0, 2.0);
-  options.limit = 500ms;
+  options.timeout = 500ms;
   const auto report = robot->stop_motion(options);
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->means, StopMeans::program_stopped);

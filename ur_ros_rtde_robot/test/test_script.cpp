@@ -50,7 +50,7 @@ struct ScriptTest : RobotFixture {
 TEST_F(ScriptTest, RunsToItsEndAndReportsItsText)
 {
   make_both();
-  const auto report = robot->run_script(
+  const auto report = run_script(
       "def f():\n  textmsg(\"one\")\n  sync()\n  textmsg(\"two \", 2)\n  q = get_actual_joint_positions()\n"
       "  q[0] = q[0] + 0.1\n  movej(q, a=3, v=1)\nend\n");
   EXPECT_TRUE(report) << report.error.message;
@@ -64,7 +64,7 @@ TEST_F(ScriptTest, FollowsScriptsOfAnyDuration)
 {
   make_both();
   for (int i = 0; i < 3; ++i) {
-    const auto report = robot->run_script("textmsg(\"there\")");
+    const auto report = run_script("textmsg(\"there\")");
     EXPECT_TRUE(report) << report.error.message;
     EXPECT_EQ(report.text, std::vector<std::string>{"there"});
   }
@@ -77,7 +77,7 @@ TEST_F(ScriptTest, RestartsTheControlProgramWithinASecond)
   std::vector<Clock::time_point> text;
   ScriptOptions options;
   options.on_text = [&](const std::string &) { text.push_back(Clock::now()); };
-  ASSERT_TRUE(robot->run_script("textmsg(\"done\")", options));
+  ASSERT_TRUE(run_script("textmsg(\"done\")", options));
   ASSERT_EQ(text.size(), 1U);
   ASSERT_TRUE(robot->ready_to_move());
   const std::chrono::duration<double> back = Clock::now() - text.front();
@@ -91,7 +91,7 @@ TEST_F(ScriptTest, RestartsTheControlProgramWithinASecond)
 TEST_F(ScriptTest, ReportsTheLineOfACompileError)
 {
   make_both();
-  const auto report = robot->run_script("def f():\n  sync()\n\n  sync(1, 2, 3) nonsense\nend\n");
+  const auto report = run_script("def f():\n  sync()\n\n  sync(1, 2, 3) nonsense\nend\n");
   EXPECT_EQ(report.end, ScriptEnd::compile_error) << report.error.message;
   EXPECT_EQ(report.error.code, ErrorCode::rejected_by_robot);
   EXPECT_EQ(report.line, 4) << report.error.message;
@@ -102,7 +102,7 @@ TEST_F(ScriptTest, ReportsTheLineOfACompileError)
 TEST_F(ScriptTest, ReportsTheLineOfARuntimeError)
 {
   make_both();
-  const auto report = robot->run_script("def f():\n  textmsg(\"so far\")\n  a = [1, 2]\n  b = a[7]\nend\n");
+  const auto report = run_script("def f():\n  textmsg(\"so far\")\n  a = [1, 2]\n  b = a[7]\nend\n");
   EXPECT_EQ(report.end, ScriptEnd::runtime_error) << report.error.message;
   EXPECT_EQ(report.line, 4) << report.error.message;
   EXPECT_EQ(report.text, std::vector<std::string>{"so far"});
@@ -112,7 +112,7 @@ TEST_F(ScriptTest, ReportsTheLineOfARuntimeError)
 TEST_F(ScriptTest, RefusesUnbalancedBlocksWithoutSending)
 {
   make_both();
-  const auto report = robot->run_script("def f():\n  while True:\n  sync()\nend\n");
+  const auto report = run_script("def f():\n  while True:\n  sync()\nend\n");
   EXPECT_EQ(report.end, ScriptEnd::refused);
   EXPECT_EQ(report.error.code, ErrorCode::invalid_goal);
   EXPECT_EQ(report.line, 1) << report.error.message;
@@ -127,7 +127,7 @@ TEST_F(ScriptTest, StopsTheArmWhenCanceled)
     return turns() ? std::optional(Error{ErrorCode::canceled, "enough"}) : std::nullopt;
   };
   recording = true;
-  const auto report = robot->run_script(turning(), options);
+  const auto report = run_script(turning(), options);
   recording = false;
   EXPECT_EQ(report.end, ScriptEnd::interrupted);
   EXPECT_EQ(report.error.code, ErrorCode::canceled);
@@ -142,7 +142,7 @@ TEST_F(ScriptTest, StopsTheArmAtItsTimeLimit)
   make_both();
   ScriptOptions options;
   options.limit = 700ms;
-  const auto report = robot->run_script(turning(), options);
+  const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::timeout);
   EXPECT_EQ(report.error.code, ErrorCode::timeout);
   EXPECT_TRUE(at_rest());
@@ -160,7 +160,7 @@ TEST_F(ScriptTest, DoesNotCountAsFinishedWhenStoppedOnThePendant)
     }
     return std::nullopt;
   };
-  const auto report = robot->run_script(turning(), options);
+  const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::stopped);
   EXPECT_EQ(report.error.code, ErrorCode::program_stopped);
   EXPECT_TRUE(is_back());
@@ -178,7 +178,7 @@ TEST_F(ScriptTest, LeavesAProgramAloneThatReplacesTheScript)
     }
     return std::nullopt;
   };
-  const auto report = robot->run_script(turning(), options);
+  const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::stopped);
   EXPECT_NE(report.error.message.find("another program, `other`"), std::string::npos) << report.error.message;
   EXPECT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
@@ -199,7 +199,7 @@ TEST_F(ScriptTest, EndsInAProtectiveStopWithoutResuming)
     }
     return std::nullopt;
   };
-  const auto report = robot->run_script(turning(), options);
+  const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::robot_stopped);
   EXPECT_EQ(report.error.code, ErrorCode::protective_stop);
   EXPECT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
@@ -230,7 +230,7 @@ TEST_F(ScriptTest, EndsWithTheLink)
     }
     return std::nullopt;
   };
-  const auto report = robot->run_script(turning(), options);
+  const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::link_lost);
   EXPECT_EQ(report.error.code, ErrorCode::link_lost);
   ASSERT_TRUE(becomes_ready());
@@ -251,7 +251,7 @@ TEST_F(ScriptTest, IsStoppedByItsWatchdogWithoutSignsOfLife)
     }
     return std::nullopt;
   };
-  const auto report = robot->run_script(turning(), options);
+  const auto report = run_script(turning(), options);
   EXPECT_FALSE(report);
   EXPECT_TRUE(becomes_ready());
 }
@@ -263,14 +263,14 @@ TEST_F(ScriptTest, KeepsTheControlInterfaceToItself)
   std::optional<ErrorCode> found;
   options.on_text = [&](const std::string &) {
     EXPECT_TRUE(robot->ready_to_move()) << "a command that preempts the script can be accepted";
-    EXPECT_EQ(robot->run_script("sync()").error.code, ErrorCode::busy);
+    EXPECT_EQ(run_script("sync()").error.code, ErrorCode::busy);
     try {
       robot->control();
     } catch (const RobotError & error) {
       found = error.error().code;
     }
   };
-  EXPECT_TRUE(robot->run_script("textmsg(\"now\")\nsleep(0.1)", options));
+  EXPECT_TRUE(run_script("textmsg(\"now\")\nsleep(0.1)", options));
   EXPECT_EQ(found, ErrorCode::busy);
   EXPECT_TRUE(is_back());
 }
@@ -280,7 +280,7 @@ TEST_F(ScriptTest, IsRefusedWhileTheRobotIsNotReady)
   make_both();
   controller.control({{"command", "protective_stop"}, {"reason", "test"}});
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
-  const auto report = robot->run_script("sync()");
+  const auto report = run_script("sync()");
   EXPECT_EQ(report.end, ScriptEnd::refused);
   EXPECT_EQ(report.error.code, ErrorCode::protective_stop);
 }
@@ -297,7 +297,7 @@ TEST_F(ScriptTest, StopsAtItsTimeLimitWhileItWritesFasterThanTheCallbackReturns)
     }
   };
   const auto report =
-      robot->run_script("def f():\n  while True:\n    textmsg(\"x\")\n    sync()\n  end\nend\n", options);
+      run_script("def f():\n  while True:\n    textmsg(\"x\")\n    sync()\n  end\nend\n", options);
   EXPECT_EQ(report.end, ScriptEnd::timeout) << report.error.message;
   EXPECT_LT(Clock::now() - begin, 10s);
 }
@@ -312,7 +312,7 @@ TEST_F(ScriptTest, LeavesTheRobotUsableWhenACallbackThrows)
     }
     return std::nullopt;
   };
-  EXPECT_THROW(robot->run_script(turning(), options), std::runtime_error);
+  EXPECT_THROW(run_script(turning(), options), std::runtime_error);
   EXPECT_TRUE(eventually([&] { return at_rest(); }));
   EXPECT_TRUE(is_back());
 }
@@ -321,7 +321,7 @@ TEST_F(ScriptTest, RunsDuringAMotionAsSecondaryProgram)
 {
   make_both();
   move_joints();
-  const auto report = robot->run_script("sec s():\n  set_standard_digital_out(2, True)\nend\n", secondary());
+  const auto report = run_script("sec s():\n  set_standard_digital_out(2, True)\nend\n", secondary());
   EXPECT_TRUE(report) << report.error.message;
   EXPECT_TRUE(turns()) << "the motion continues";
   EXPECT_TRUE(eventually([&] { return (robot->latest()->digital_outputs & 4U) != 0; }));
@@ -331,10 +331,10 @@ TEST_F(ScriptTest, RunsDuringAMotionAsSecondaryProgram)
 TEST_F(ScriptTest, ReportsTheLinesOfErrorsInSecondaryPrograms)
 {
   make_both();
-  const auto wrong = robot->run_script("sec s():\n  nonsense nonsense\nend\n", secondary());
+  const auto wrong = run_script("sec s():\n  nonsense nonsense\nend\n", secondary());
   EXPECT_EQ(wrong.end, ScriptEnd::compile_error) << wrong.error.message;
   EXPECT_EQ(wrong.line, 2) << wrong.error.message;
-  const auto failing = robot->run_script("a = [1]\nb = a[3]\n", secondary());
+  const auto failing = run_script("a = [1]\nb = a[3]\n", secondary());
   EXPECT_EQ(failing.end, ScriptEnd::runtime_error) << failing.error.message;
   EXPECT_EQ(failing.line, 2) << failing.error.message;
   EXPECT_TRUE(is_back());

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <string_view>
 
+#include "connection/dashboard_request.hpp"
 #include "connection/ports.hpp"
-#include "motion/motion_stopper.hpp"
 #include "support.hpp"
 #include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 
@@ -34,7 +34,7 @@ TEST(StopProgramTest, DoesNotWaitForANameServer)
   Controller controller(Controller::options());
   ASSERT_TRUE(TcpSocket::connect("robot.test", dashboard_port, 1s));  // as when the driver starts
   name_server_answers = false;
-  const auto stopped = stop_program("robot.test", 1s);
+  const auto stopped = stop_program("robot.test");
   EXPECT_TRUE(stopped) << stopped.error().message;
 }
 

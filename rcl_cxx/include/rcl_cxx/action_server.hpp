@@ -7,6 +7,7 @@
 #include <string>
 
 #include "rcl_cxx/action_type.hpp"
+#include "rcl_cxx/callback_group.hpp"
 #include "rcl_cxx/goal_response.hpp"
 #include "rcl_cxx/server_goal_handle.hpp"
 
@@ -20,11 +21,16 @@ struct ActionServerOptions {
   /// How long the result of a finished goal is kept. Unset: rcl_action's default (10 s; Humble: 15 min).
   /// Negative: for ever.
   std::optional<std::chrono::nanoseconds> result_timeout{};
+  /// For goal requests: handle_goal, handle_accepted. Empty: the default group of the node.
+  CallbackGroup::SharedPtr goal_callback_group{};
+  /// For requests to cancel a goal, requests for results, and lost clients. Empty: the default group of the
+  /// node. Their callbacks may run at the same time as those of goal requests.
+  CallbackGroup::SharedPtr cancel_callback_group{};
 };
 
-/// The callbacks of an action server. They run in the executor's thread and must return soon: a goal is
-/// executed in a thread of the user. Only handle_accepted is mandatory. `goal` is an A::Goal, `result` an
-/// A::Result, for the `A` of Node::create_action_server<A>.
+/// The callbacks of an action server. They run in the thread of the executor of their group and must return
+/// soon: a goal is executed in a thread of the user. Only handle_accepted is mandatory. `goal` is an A::Goal,
+/// `result` an A::Result, for the `A` of Node::create_action_server<A>.
 struct ActionServerCallbacks {
   /// Accepts a goal, rejects it with a reason, which is logged as a warning, or defers the response. An
   /// exception rejects the goal. Default: accepts every goal.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 
+#include "rcl_cxx/callback_group.hpp"
 #include "rcl_cxx/context.hpp"
 
 namespace rcl_cxx {
@@ -27,9 +28,12 @@ class Executor {
   Executor(const Executor &) = delete;
   Executor & operator=(const Executor &) = delete;
 
-  /// A node belongs to one executor for its lifetime. @throws Error if the node has an executor already.
+  /// The default callback group of a node belongs to one executor for its lifetime. @throws Error if the node
+  /// has an executor already.
   void add_node(const Node & node);
   void add_node(const std::shared_ptr<Node> & node) { add_node(*node); }
+  /// For a group made by Node::create_callback_group(). @throws Error if it has an executor already.
+  void add_callback_group(const CallbackGroup & group);
 
   /// Runs callbacks until cancel() or the end of the context's shutdown. @throws Error if a thread is
   /// spinning already.

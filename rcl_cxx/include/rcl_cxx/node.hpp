@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "rcl_cxx/action_server.hpp"
+#include "rcl_cxx/callback_group.hpp"
 #include "rcl_cxx/context.hpp"
 #include "rcl_cxx/error.hpp"
 #include "rcl_cxx/logging.hpp"
@@ -75,6 +76,9 @@ class Node {
   {
     return std::make_shared<Service<S>>(impl_, std::forward<F>(callback), service, qos);
   }
+
+  /// A group for callbacks that must not wait for those of this node; see CallbackGroup.
+  CallbackGroup::SharedPtr create_callback_group() { return std::make_shared<CallbackGroup>(); }
 
   /// The first call is one period from now. @throws Error for a period <= 0.
   std::shared_ptr<Timer> create_wall_timer(std::chrono::nanoseconds period, std::function<void()> callback)

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "action/action_messages.hpp"
+#include "events/event_queue.hpp"
 #include "executor/timer_impl.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_compat.hpp"
@@ -37,7 +38,10 @@ ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const ActionT
       type_(type),
       type_support_(*type.type_support()),
       callbacks_(std::move(callbacks)),
-      sender_(std::make_shared<ResponseSender>(this->node()))
+      goal_group_(options.goal_callback_group ? options.goal_callback_group : this->node()->default_group()),
+      cancel_group_(options.cancel_callback_group ? options.cancel_callback_group
+                                                  : this->node()->default_group()),
+      sender_(std::make_shared<ResponseSender>(this->node(), cancel_group_))
 {
   if (!callbacks_.handle_accepted) {
     throw Error(fmt::format("{}: the callback handle_accepted is missing", label()));
@@ -76,11 +80,14 @@ void ActionServerImpl::set_on_ready_callbacks()
 {
   const std::weak_ptr<ActionServerImpl> weak = std::static_pointer_cast<ActionServerImpl>(shared_from_this());
   const auto make_timer = [&](std::chrono::nanoseconds period, void (ActionServerImpl::*callback)()) {
-    auto timer = make_waitable<TimerImpl>(node(), period, [weak, callback] {
-      if (const auto self = weak.lock()) {
-        ((*self).*callback)();
-      }
-    });
+    auto timer = make_waitable<TimerImpl>(
+        node(), period,
+        [weak, callback] {
+          if (const auto self = weak.lock()) {
+            ((*self).*callback)();
+          }
+        },
+        cancel_group_);
     timer->cancel();
     return timer;
   };
@@ -90,7 +97,7 @@ void ActionServerImpl::set_on_ready_callbacks()
   }
   shutdown_callback_ = node()->get_context().add_callback(ContextImpl::Phase::action_servers, [weak] {
     if (const auto self = weak.lock()) {
-      self->abort_all("shutdown", self->node()->in_own_callback());
+      self->abort_all("shutdown", self->cancel_group_->pending_events().in_own_callback());
     }
   });
   set_callback(rcl_action_server_set_goal_service_callback, server_, kGoal);
@@ -122,6 +129,11 @@ void ActionServerImpl::execute(std::size_t source)
     default:
       take_result();
   }
+}
+
+const CallbackGroup & ActionServerImpl::group(std::size_t source) const
+{
+  return source == kCancel || source == kResult ? *cancel_group_ : *goal_group_;
 }
 
 std::shared_ptr<ServerGoalImpl> ActionServerImpl::find(const GoalUUID & id) const

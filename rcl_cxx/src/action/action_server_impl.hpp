@@ -52,6 +52,7 @@ class ActionServerImpl : public Waitable {
 
  protected:
   void execute(std::size_t source) override;
+  const CallbackGroup & group(std::size_t source) const override;
   void clear_on_ready_callbacks() noexcept override;
 
  private:
@@ -127,6 +128,8 @@ class ActionServerImpl : public Waitable {
   const ActionType & type_;
   const ActionTypeSupport type_support_;
   const ActionServerCallbacks callbacks_;
+  const CallbackGroup::SharedPtr goal_group_;
+  const CallbackGroup::SharedPtr cancel_group_;
   const std::shared_ptr<ResponseSender> sender_;
   std::string name_;
   std::chrono::nanoseconds result_timeout_{0};

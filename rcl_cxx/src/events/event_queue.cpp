@@ -151,10 +151,10 @@ bool PendingEvents::attach(std::shared_ptr<EventQueue> queue)
   return true;
 }
 
-std::shared_ptr<EventQueue> PendingEvents::queue() const
+bool PendingEvents::in_own_callback() const
 {
   const std::lock_guard lock(mutex_);
-  return queue_;
+  return queue_ && queue_.get() == EventQueue::current();
 }
 
 }  // namespace rcl_cxx::detail

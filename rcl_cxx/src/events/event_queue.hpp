@@ -66,17 +66,18 @@ class EventQueue {
   bool ended_ = false;
 };
 
-/// Passes the events of a node to the queue of its executor. Events that arrive before the node has an
-/// executor are kept.
+/// Passes the events of a callback group to the queue of its executor. Events that arrive before the group
+/// has an executor are kept.
 class PendingEvents {
  public:
   void push(Event event);
   void add_timer(std::shared_ptr<TimerSchedule> timer);
   void wake();
 
-  /// Returns false if the node has an executor already.
+  /// Returns false if the group has an executor already.
   bool attach(std::shared_ptr<EventQueue> queue);
-  std::shared_ptr<EventQueue> queue() const;
+  /// True in a callback of the executor: waiting for another callback of this group would never end.
+  bool in_own_callback() const;
 
  private:
   mutable std::mutex mutex_;

@@ -76,8 +76,15 @@ Executor::~Executor()
 
 void Executor::add_node(const Node & node)
 {
-  if (!node.impl()->pending_events().attach(queue_)) {
+  if (!node.impl()->default_group()->pending_events().attach(queue_)) {
     throw Error(fmt::format("executor: node {} has an executor already", node.get_fully_qualified_name()));
+  }
+}
+
+void Executor::add_callback_group(const CallbackGroup & group)
+{
+  if (!group.pending_events().attach(queue_)) {
+    throw Error("executor: the callback group has an executor already");
   }
 }
 

@@ -9,9 +9,10 @@
 namespace rcl_cxx {
 namespace detail {
 TimerImpl::TimerImpl(std::shared_ptr<NodeImpl> node, std::chrono::nanoseconds period,
-                     std::function<void()> callback)
+                     std::function<void()> callback, CallbackGroup::SharedPtr group)
     : Waitable(std::move(node),
                fmt::format("timer of {} ms", std::chrono::duration<double, std::milli>(period).count())),
+      group_(std::move(group)),
       callback_(std::move(callback)),
       period_(period),
       due_(Clock::now() + period)
@@ -25,7 +26,7 @@ void TimerImpl::set_on_ready_callbacks()
 {
   schedule_->timer = weak_from_this();
   schedule_->due = due_;
-  node()->pending_events().add_timer(schedule_);
+  group(0).pending_events().add_timer(schedule_);
 }
 
 void TimerImpl::execute(std::size_t /*source*/)
@@ -52,7 +53,7 @@ void TimerImpl::start(std::chrono::nanoseconds delay, bool once)
     once_ = once;
     schedule_->due = due_;
   }
-  node()->pending_events().wake();
+  group(0).pending_events().wake();
 }
 
 void TimerImpl::reset()

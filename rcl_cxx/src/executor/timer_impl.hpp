@@ -13,7 +13,9 @@ class TimerImpl : public Waitable {
  public:
   using Clock = TimerSchedule::Clock;
 
-  TimerImpl(std::shared_ptr<NodeImpl> node, std::chrono::nanoseconds period, std::function<void()> callback);
+  /// `group`: empty for the default group of the node.
+  TimerImpl(std::shared_ptr<NodeImpl> node, std::chrono::nanoseconds period, std::function<void()> callback,
+            CallbackGroup::SharedPtr group = {});
 
   void cancel();
   bool is_canceled() const;
@@ -25,10 +27,15 @@ class TimerImpl : public Waitable {
   void execute(std::size_t source) override;
   void set_on_ready_callbacks() override;
   void clear_on_ready_callbacks() noexcept override { cancel(); }
+  const CallbackGroup & group(std::size_t source) const override
+  {
+    return group_ ? *group_ : Waitable::group(source);
+  }
 
  private:
   void start(std::chrono::nanoseconds delay, bool once);
 
+  const CallbackGroup::SharedPtr group_;
   const std::function<void()> callback_;
   const std::chrono::nanoseconds period_;
   const std::shared_ptr<TimerSchedule> schedule_ = std::make_shared<TimerSchedule>();

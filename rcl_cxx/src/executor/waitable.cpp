@@ -1,7 +1,9 @@
 #include "executor/waitable.hpp"
 
 #include <exception>
+#include <tuple>
 
+#include "events/event_queue.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_cxx/logging.hpp"
 
@@ -26,13 +28,18 @@ void Waitable::on_ready(const void * source, std::size_t count) noexcept
 
 void Waitable::push_event(std::size_t source) noexcept
 {
-  node_->pending_events().push(Event{weak_from_this(), source, {}});
+  group(source).pending_events().push(Event{weak_from_this(), source, {}});
+}
+
+const CallbackGroup & Waitable::group(std::size_t /*source*/) const
+{
+  return *node_->default_group();
 }
 
 void Waitable::take_and_execute(std::size_t source) noexcept
 {
   {
-    const std::lock_guard lock(callback_mutex_);
+    const std::lock_guard lock(sources_[source].callback);
     if (closed_) {
       return;
     }
@@ -52,7 +59,10 @@ void Waitable::take_and_execute(std::size_t source) noexcept
 
 void Waitable::close() noexcept
 {
-  const std::lock_guard lock(callback_mutex_);
+  std::array<std::unique_lock<std::recursive_mutex>, std::tuple_size_v<decltype(sources_)>> locks;
+  for (std::size_t i = 0; i < locks.size(); ++i) {
+    locks[i] = std::unique_lock(sources_[i].callback);
+  }
   if (!closed_) {
     closed_ = true;
     clear_on_ready_callbacks();

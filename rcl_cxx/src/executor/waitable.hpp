@@ -9,13 +9,15 @@
 #include <mutex>
 #include <string>
 
+#include "rcl_cxx/callback_group.hpp"
 #include "rcl_support/rcl_error.hpp"
 
 namespace rcl_cxx::detail {
 class NodeImpl;
 
 /// A part of a node that has callbacks: subscription, service, timer, … The middleware reports new data to
-/// on_ready(), the executor's thread calls take_and_execute() for each, the user's handle calls close().
+/// on_ready(), the thread of the executor calls take_and_execute() for each, the user's handle calls close().
+/// Sources of different callback groups may be executed at the same time.
 ///
 /// The middleware keeps raw pointers to `sources_`, until clear_on_ready_callbacks().
 class Waitable : public std::enable_shared_from_this<Waitable> {
@@ -38,6 +40,9 @@ class Waitable : public std::enable_shared_from_this<Waitable> {
 
  protected:
   Waitable(std::shared_ptr<NodeImpl> node, std::string label);
+
+  /// The group of a source. By default that of the node.
+  virtual const CallbackGroup & group(std::size_t source) const;
 
   /// Takes one message or request from `source` and runs its callback. There may be nothing to take: the
   /// middleware counts what has arrived, not what its history has kept.
@@ -63,6 +68,7 @@ class Waitable : public std::enable_shared_from_this<Waitable> {
   struct Source {
     Waitable * waitable = nullptr;
     std::atomic<std::size_t> pending{0};
+    std::recursive_mutex callback;  // held while a callback runs; the callback may call close()
   };
 
   static void on_ready(const void * source, std::size_t count) noexcept;
@@ -70,9 +76,8 @@ class Waitable : public std::enable_shared_from_this<Waitable> {
 
   const std::shared_ptr<NodeImpl> node_;
   const std::string label_;
-  std::array<Source, 5> sources_;        // an action client has five
-  std::recursive_mutex callback_mutex_;  // held while a callback runs; the callback may call close()
-  bool closed_ = false;                  // guarded by callback_mutex_
+  std::array<Source, 5> sources_;  // an action client has five
+  bool closed_ = false;            // written with all of their mutexes, read with one of them
 };
 
 template <typename T, typename... Arguments>

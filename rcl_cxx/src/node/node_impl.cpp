@@ -81,10 +81,4 @@ std::map<std::string, ParameterValue> NodeImpl::read_parameter_overrides() const
   return detail::read_parameter_overrides(context_impl_->handle()->global_arguments, fully_qualified_name_);
 }
 
-bool NodeImpl::in_own_callback() const
-{
-  const auto queue = pending_events_.queue();
-  return queue && queue.get() == EventQueue::current();
-}
-
 }  // namespace rcl_cxx::detail

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "context/context_impl.hpp"
-#include "events/event_queue.hpp"
 #include "node/ros_clock.hpp"
+#include "rcl_cxx/callback_group.hpp"
 #include "rcl_cxx/logging.hpp"
 #include "rcl_cxx/parameter.hpp"
 
@@ -35,7 +35,7 @@ class NodeImpl {
   /// To hold while the entity `label` is initialized: locks mutex(), and rcl is not shut down meanwhile.
   /// @throws Error during and after a shutdown
   CreationLock lock_to_create(const std::string & label);
-  PendingEvents & pending_events() noexcept { return pending_events_; }
+  const CallbackGroup::SharedPtr & default_group() const noexcept { return default_group_; }
   RosClock & get_clock() noexcept { return clock_; }
   ContextImpl & get_context() noexcept { return *context_impl_; }
 
@@ -48,9 +48,6 @@ class NodeImpl {
   std::string resolve(const std::string & name, bool is_service) const;
   /// The values for this node from the command line and parameter files.
   std::map<std::string, ParameterValue> read_parameter_overrides() const;
-
-  /// True in a callback of the executor of this node: waiting for another callback would never end.
-  bool in_own_callback() const;
 
  private:
   void end_rosout();
@@ -65,7 +62,7 @@ class NodeImpl {
   std::string namespace_;
   std::string fully_qualified_name_;
   RosClock clock_;
-  PendingEvents pending_events_;
+  const CallbackGroup::SharedPtr default_group_ = std::make_shared<CallbackGroup>();
 };
 
 }  // namespace rcl_cxx::detail

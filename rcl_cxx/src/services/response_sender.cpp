@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "events/event_queue.hpp"
 #include "executor/timer_impl.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_error.hpp"
@@ -18,7 +19,17 @@ constexpr std::chrono::seconds kLongestPause{1};
 
 void ResponseSender::send(Response response)
 {
-  try_to_send({std::move(response), kFirstPause, Clock::now()});
+  Pending pending{std::move(response), kFirstPause, Clock::now()};
+  if (must_not_block() && pending.response.client() == ClientDiscovery::pending) {
+    keep(std::move(pending));
+  } else {
+    try_to_send(std::move(pending));
+  }
+}
+
+bool ResponseSender::must_not_block() const
+{
+  return group_ != node_->default_group() && group_->pending_events().in_own_callback();
 }
 
 void ResponseSender::try_to_send(Pending pending)
@@ -48,11 +59,14 @@ void ResponseSender::keep(Pending pending)
   }
   pending_.push_back(std::move(pending));
   if (!timer_) {
-    timer_ = make_waitable<TimerImpl>(node_, kCheckPeriod, [weak = weak_from_this()] {
-      if (const auto self = weak.lock()) {
-        self->check_clients();
-      }
-    });
+    timer_ = make_waitable<TimerImpl>(
+        node_, kCheckPeriod,
+        [weak = weak_from_this()] {
+          if (const auto self = weak.lock()) {
+            self->check_clients();
+          }
+        },
+        group_);
   }
   timer_->call_once_in(kCheckPeriod);
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 
+#include "rcl_cxx/callback_group.hpp"
 #include "services/service_clients.hpp"
 
 namespace rcl_cxx::detail {
@@ -34,7 +35,11 @@ class ResponseSender : public std::enable_shared_from_this<ResponseSender> {
     std::function<void(rcl_ret_t)> done;
   };
 
-  explicit ResponseSender(std::shared_ptr<NodeImpl> node) : node_(std::move(node)) {}
+  /// `group`: in whose thread responses are sent again.
+  ResponseSender(std::shared_ptr<NodeImpl> node, CallbackGroup::SharedPtr group)
+      : node_(std::move(node)), group_(std::move(group))
+  {
+  }
   ~ResponseSender() { stop(); }
   ResponseSender(const ResponseSender &) = delete;
   ResponseSender & operator=(const ResponseSender &) = delete;
@@ -52,12 +57,16 @@ class ResponseSender : public std::enable_shared_from_this<ResponseSender> {
     Clock::time_point next;  ///< no attempt before
   };
 
+  /// This is the thread of a group of its own, whose callbacks are not to be delayed. The check of the client
+  /// costs more than most responses.
+  bool must_not_block() const;
   void try_to_send(Pending pending);
   void keep(Pending pending);
   void check_clients();
   bool is_stopped();
 
   const std::shared_ptr<NodeImpl> node_;
+  const CallbackGroup::SharedPtr group_;
   std::mutex mutex_;
   std::list<Pending> pending_;
   std::shared_ptr<TimerImpl> timer_;

@@ -45,7 +45,7 @@ ServiceImpl::ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, c
     : Waitable(std::move(node), fmt::format("service {}", name)),
       erased_(std::move(erased)),
       type_support_(erased_.type_support),
-      sender_(std::make_shared<ResponseSender>(this->node()))
+      sender_(std::make_shared<ResponseSender>(this->node(), this->node()->default_group()))
 {
   rcl_service_options_t options = rcl_service_get_default_options();
   options.qos = qos.get_rmw_qos_profile();

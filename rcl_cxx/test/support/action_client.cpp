@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "action_client_impl.hpp"
+#include "events/event_queue.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_cxx/error.hpp"
 #include "wait.hpp"
@@ -90,7 +91,7 @@ void ActionClientBase::abandon(const GoalUUID & id) noexcept
 
 tl::expected<void, std::string> ActionClientBase::check_blocking_call(std::chrono::nanoseconds timeout) const
 {
-  if (impl_->node()->in_own_callback()) {
+  if (impl_->node()->default_group()->pending_events().in_own_callback()) {
     return tl::make_unexpected(get_action_name() +
                                ": a blocking call from a callback never returns, use async_send_goal");
   }

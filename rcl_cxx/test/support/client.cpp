@@ -4,6 +4,7 @@
 #include <rcl/graph.h>
 
 #include "client_impl.hpp"
+#include "events/event_queue.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_error.hpp"
 #include "rcl_support/type_support.hpp"
@@ -65,7 +66,7 @@ tl::expected<std::shared_ptr<void>, std::string> ClientImpl::call(const void * r
                                                                   std::chrono::nanoseconds timeout)
 {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
-  if (node()->in_own_callback()) {
+  if (node()->default_group()->pending_events().in_own_callback()) {
     return tl::make_unexpected(
         fmt::format("{}: a blocking call from a callback never returns, use async_send_request", name_));
   }

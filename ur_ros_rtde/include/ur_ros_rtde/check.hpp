@@ -18,16 +18,6 @@ namespace ur_ros_rtde {
 
 class Robot;
 
-/// Gives a check access to the robot. Implemented by the base class of the commands.
-class Preflight {
- public:
-  virtual ~Preflight() = default;
-  /// Success if the robot can execute this command now and no other goal is in the way.
-  virtual Status prepare() = 0;
-  virtual ArmLimits limits() const = 0;
-  virtual Robot & robot() = 0;
-};
-
 /// A check that waits for an answer of the robot.
 using RobotQuery = std::function<Status(Robot &)>;
 
@@ -38,8 +28,12 @@ using RobotQuery = std::function<Status(Robot &)>;
 ///     check.above_zero("speed", goal.speed, 3.14, "rad/s");
 class Check {
  public:
-  /// Without `preflight`, checks that need the robot succeed.
-  explicit Check(Preflight * preflight = nullptr) : preflight_(preflight) {}
+  /// Without a robot, checks that need it succeed. `prepare`: success if the robot can execute the command
+  /// now and no other goal is in the way.
+  explicit Check(Robot * robot = nullptr, std::function<Status()> prepare = {})
+      : robot_(robot), prepare_(std::move(prepare))
+  {
+  }
 
   /// Six finite values within the position limits of the arm, rad.
   Check & joints(std::string_view field, const std::vector<double> & values);
@@ -97,7 +91,8 @@ class Check {
   ArmLimits limits() const;
   std::optional<Sample> newest();
 
-  Preflight * preflight_;
+  Robot * robot_;
+  std::function<Status()> prepare_;
   std::optional<Error> error_;
   std::vector<RobotQuery> queries_;
 };

@@ -1,9 +1,17 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
-#include "ur_ros_rtde/detail/command_base.hpp"
+#include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde/command_traits.hpp"
+#include "ur_ros_rtde/detail/command_goal.hpp"
+#include "ur_ros_rtde/detail/goal_server.hpp"
+#include "ur_ros_rtde/detail/guarded.hpp"
+#include "ur_ros_rtde/plugin.hpp"
+#include "ur_ros_rtde/run.hpp"
 
 namespace ur_ros_rtde {
 
@@ -25,12 +33,13 @@ namespace ur_ros_rtde {
 ///     UR_ROS_RTDE_EXPORT(MoveL, "move_l")
 ///
 /// The base class does the rest. A goal is rejected with a reason before it is accepted. Only one command
-/// moves the arm at a time. Each goal runs in a thread of its own. When run() returns or throws, the arm is
-/// brought to a standstill by decelerating, and the goal gets its only result. The result of `A` begins with
-/// `bool success, uint16 error_code, string message`. The fields `ArmState final_state` of the result and
-/// `MotionFeedback motion` of the feedback are filled in if `A` has them.
+/// moves the arm at a time. Each goal runs in a thread of its own. When run() returns or throws, what it has
+/// started is stopped by decelerating, and the goal gets its only result. When a goal has to end earlier, the
+/// arm is stopped without waiting for run(). The result of `A` begins with `bool success, uint16 error_code,
+/// string message`. The fields `ArmState final_state` of the result and `MotionFeedback motion` of the
+/// feedback are filled in if `A` has them.
 template <typename A>
-class Command : public CommandBase {
+class Command : public CommandPlugin {
  public:
   using Action = A;
   using Goal = typename A::Goal;
@@ -38,14 +47,16 @@ class Command : public CommandBase {
   using Feedback = typename A::Feedback;
   using Run = GoalRun<A>;
 
-  ~Command() override { CommandBase::stop_action_server(); }
+  ~Command() override { stop_server(); }
 
-  /// Checks the fields of the goal, then what depends on the robot. Runs in the executor's thread and must
-  /// not wait.
+  /// How goals share the robot with the goals of other commands. Asked once.
+  virtual CommandTraits traits() const { return {}; }
+  /// Checks the fields of the goal, then what depends on the robot. Runs in the thread that serves the
+  /// requests of all commands, and must not wait.
   virtual void check(const Goal &, Check &) const {}
   /// Executes the goal in a thread of its own.
   virtual Outcome run(const Goal & goal, Run & run) = 0;
-  /// How the arm is stopped if it moves when run() ends or has to end.
+  /// How the arm is stopped if it moves when run() ends or has to end. Asked when the goal is accepted.
   virtual StopOptions stop_options(const Goal &) const { return {}; }
   /// Writes the outcome into the result. Override it for results that begin with other fields.
   virtual void fill_result(const Outcome & outcome, Result & result) const
@@ -53,29 +64,74 @@ class Command : public CommandBase {
     write_standard_fields(outcome, result);
   }
 
- private:
-  static const Goal & typed(const void * goal) { return *static_cast<const Goal *>(goal); }
+  void start_action_server(CommandHost & host, const std::string & name) override;
+  void stop_action_server() override { stop_server(); }
 
-  const rcl_cxx::ActionType & action_type() const final { return rcl_cxx::action_type<A>(); }
-  void check_goal(const void * goal, Check & result) const final { check(typed(goal), result); }
-  StopOptions stop_options_of(const void * goal) const final { return stop_options(typed(goal)); }
-  std::unique_ptr<ur_ros_rtde::Run> make_run(Robot & robot, std::shared_ptr<StopRequest> stop_request,
-                                             bool moves, PublishFeedback publish) const final
-  {
-    return std::make_unique<Run>(robot, std::move(stop_request), moves, std::move(publish));
-  }
-  Outcome run_goal(const void * goal, ur_ros_rtde::Run & goal_run) final
-  {
-    return run(typed(goal), static_cast<Run &>(goal_run));
-  }
-  void write_outcome(const Outcome & outcome, void * result) const final
-  {
-    fill_result(outcome, *static_cast<Result *>(result));
-  }
-  void write_failure(const Outcome & outcome, void * result) const final
-  {
-    write_standard_fields(outcome, *static_cast<Result *>(result));
-  }
+ private:
+  class GoalOfCommand;
+  void stop_server() { server_.reset(); }
+
+  std::shared_ptr<const CommandDescription> description_;
+  std::unique_ptr<GoalServer> server_;
 };
+
+/// A goal of this command, with its types.
+template <typename A>
+class Command<A>::GoalOfCommand final : public CommandGoal {
+ public:
+  using Message = typename A::Goal;
+
+  GoalOfCommand(Command & command, const rcl_cxx::GoalUUID & id, const Message & message)
+      : CommandGoal(command.description_, id), command_(command), message_(message)
+  {
+  }
+
+ private:
+  void check_fields(Check & check) const override { command_.check(message_, check); }
+  StopOptions stop_options() const override { return command_.stop_options(message_); }
+  Outcome run_command(const RunContext & context) override
+  {
+    run_.emplace(context);
+    return run_->with_warnings(command_.run(message_, *run_));
+  }
+  void send_result(const Outcome & outcome, bool abandoned) override
+  {
+    Result unused;
+    Result & result = abandoned || !run_ ? unused : run_->result();
+    if constexpr (requires { result.final_state; }) {
+      result.final_state = to_arm_state(robot().latest());
+    }
+    const Outcome actual = guarded([&] {
+      command_.fill_result(outcome, result);
+      return outcome;
+    });
+    if (actual.code() == ErrorCode::exception) {
+      write_standard_fields(actual, result);
+    }
+    send(actual, &result);
+  }
+
+  Command & command_;
+  const Message & message_;
+  std::optional<Run> run_;
+};
+
+template <typename A>
+void Command<A>::start_action_server(CommandHost & host, const std::string & name)
+{
+  description_ = std::make_shared<const CommandDescription>(CommandDescription{
+      host, name, host.node().resolve_service_name(name), traits(), script_extension().has_value()});
+  const GoalServer::Description server{rcl_cxx::action_type<A>(), name,
+                                       description_->stops_when_client_lost(),
+                                       description_->traits.preempts_all};
+  server_ = std::make_unique<GoalServer>(
+      host, server,
+      [this](const rcl_cxx::GoalUUID & id, const void * message) {
+        return std::make_shared<GoalOfCommand>(*this, id, *static_cast<const Goal *>(message));
+      },
+      [this](const Outcome & outcome, void * result) {
+        fill_result(outcome, *static_cast<Result *>(result));
+      });
+}
 
 }  // namespace ur_ros_rtde

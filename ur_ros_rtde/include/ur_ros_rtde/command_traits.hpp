@@ -1,24 +1,28 @@
 #pragma once
 
-#include "ur_ros_rtde_robot/motion/arbiter.hpp"
+#include "ur_ros_rtde_robot/motion/lease.hpp"
 
 namespace ur_ros_rtde {
 
 /// How the goals of a command share the robot with other goals.
 struct CommandTraits {
   /// What no other goal may use at the same time. `motion` for everything that moves the arm or must not
-  /// happen during a motion; `none` for what may happen at any time.
+  /// happen during a motion; `mode` for a mode that may be switched on during a motion; `none` for what may
+  /// happen at any time and does not move the arm.
   Resource resource = Resource::motion;
-  /// Preempts the goal that holds the resource instead of being rejected as busy, and needs no more than a
-  /// connection: a stop.
+  /// A stop: when a goal arrives, the arm is taken out of the hands of all others and decelerates as
+  /// Command::stop_options() says. Accepted in every state of the robot.
   bool preempts_all = false;
   /// A new goal preempts the active goal of the same action instead of being rejected as busy.
   bool preempts_self = false;
-  /// Switches a mode of the arm on or off that outlasts the goal (freedrive_start): after success the arm is
-  /// left as it is, moving or not.
+  /// Switches force mode, freedrive or teach mode on or off, which outlasts the goal (freedrive_start): after
+  /// success, the mode and the arm are left as they are. What else the goal has started is stopped at its
+  /// end.
   bool leaves_mode_active = false;
   /// Accepts and executes goals in every state of the robot; needs the dashboard server only.
   bool allowed_in_any_state = false;
+  /// The control program cannot answer queries during a goal.
+  bool blocks_queries = false;
 };
 
 }  // namespace ur_ros_rtde

@@ -1,14 +1,23 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <ur_ros_rtde_msgs/action/dashboard_command.hpp>
 #include <ur_ros_rtde_msgs/action/dashboard_query.hpp>
 #include <ur_ros_rtde_msgs/action/dashboard_text.hpp>
 
-#include "ur_ros_rtde/detail/dashboard_command_base.hpp"
+#include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde/dashboard_run.hpp"
+#include "ur_ros_rtde/detail/goal_server.hpp"
+#include "ur_ros_rtde/detail/guarded.hpp"
+#include "ur_ros_rtde/plugin.hpp"
 
 namespace ur_ros_rtde {
+
+/// Success if the dashboard server is connected and has a version within `limits`.
+Status dashboard_ready(const std::string & action, const DashboardLimits & limits,
+                       const DashboardConnection & connection);
 
 /// Fails unless `text` is one of `texts`. Every text is allowed if `texts` is empty.
 void check_text(const std::string & text, const std::vector<std::string> & texts, Check & check);
@@ -24,7 +33,7 @@ void check_text(const std::string & text, const std::vector<std::string> & texts
 ///     };
 ///     UR_ROS_RTDE_EXPORT(PowerOff, "dashboard/power_off")
 template <typename A>
-class DashboardCommand : public DashboardCommandBase {
+class DashboardCommand : public DashboardPlugin {
  public:
   using Action = A;
   using Goal = typename A::Goal;
@@ -34,8 +43,9 @@ class DashboardCommand : public DashboardCommandBase {
   using Limits = DashboardLimits;
   using Run = DashboardGoalRun<A>;
 
-  ~DashboardCommand() override { DashboardCommandBase::stop_action_server(); }
+  ~DashboardCommand() override { stop_server(); }
 
+  virtual Limits limits() const { return {}; }
   virtual Request request(const Goal &) const { return {}; }
   /// By default checks the fields `timeout` and `text` of the goal, if it has them.
   virtual void check(const Goal & goal, Check & check) const;
@@ -48,30 +58,81 @@ class DashboardCommand : public DashboardCommandBase {
     write_standard_fields(outcome, result);
   }
 
- private:
-  static const Goal & typed(const void * goal) { return *static_cast<const Goal *>(goal); }
+  void start_action_server(DashboardHost & host, const std::string & name) override;
+  void stop_action_server() override { stop_server(); }
 
-  const rcl_cxx::ActionType & action_type() const final { return rcl_cxx::action_type<A>(); }
-  void check_goal(const void * goal, Check & result) const final { check(typed(goal), result); }
-  std::unique_ptr<DashboardRun> make_run(DashboardConnection & connection,
-                                         std::shared_ptr<StopRequest> stop_request,
-                                         PublishFeedback publish) const final
-  {
-    return std::make_unique<Run>(connection, std::move(stop_request), std::move(publish));
-  }
-  Outcome run_goal(const void * goal, DashboardRun & goal_run) final
-  {
-    return run(typed(goal), static_cast<Run &>(goal_run));
-  }
-  void write_outcome(const Outcome & outcome, void * result) const final
-  {
-    fill_result(outcome, *static_cast<Result *>(result));
-  }
-  void write_failure(const Outcome & outcome, void * result) const final
-  {
-    write_standard_fields(outcome, *static_cast<Result *>(result));
-  }
+ private:
+  class GoalOfCommand;
+  void stop_server() { server_.reset(); }
+
+  std::unique_ptr<GoalServer> server_;
 };
+
+/// A goal of this command, with its types.
+template <typename A>
+class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
+ public:
+  GoalOfCommand(DashboardCommand & command, DashboardHost & host, const std::string & action,
+                const rcl_cxx::GoalUUID & id, const typename A::Goal & message)
+      : ur_ros_rtde::Goal(host, action, id),
+        command_(command),
+        connection_(host.connection()),
+        message_(message)
+  {
+  }
+
+ private:
+  Status check(std::vector<GoalQuery> &) override
+  {
+    Check check;
+    command_.check(message_, check);
+    return check.ok() ? dashboard_ready(action(), command_.limits(), connection_)
+                      : tl::unexpected(*check.error());
+  }
+  Outcome execute() override
+  {
+    run_.emplace(connection_, shared_stop_request(),
+                 [this](const void * feedback) { handle().publish_feedback(feedback); });
+    return guarded(stop_request(), [this] { return command_.run(message_, *run_); });
+  }
+  void send_result(const Outcome & outcome, bool abandoned) override
+  {
+    Result unused;
+    const bool has_run = !abandoned && run_;
+    Result & result = has_run ? run_->result() : unused;
+    if constexpr (requires { result.answer; }) {
+      result.answer = has_run ? run_->answer() : std::string();
+    }
+    const Outcome actual = guarded([&] {
+      command_.fill_result(outcome, result);
+      return outcome;
+    });
+    if (actual.code() == ErrorCode::exception) {
+      write_standard_fields(actual, result);
+    }
+    send(actual, &result);
+  }
+
+  DashboardCommand & command_;
+  DashboardConnection & connection_;
+  const typename A::Goal & message_;
+  std::optional<Run> run_;
+};
+
+template <typename A>
+void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::string & name)
+{
+  const std::string action = host.node().resolve_service_name(name);
+  server_ = std::make_unique<GoalServer>(
+      host, GoalServer::Description{rcl_cxx::action_type<A>(), name},
+      [this, &host, action](const rcl_cxx::GoalUUID & id, const void * message) {
+        return std::make_shared<GoalOfCommand>(*this, host, action, id,
+                                               *static_cast<const typename A::Goal *>(message));
+      },
+      [this](const Outcome & outcome, void * result) {
+        fill_result(outcome, *static_cast<Result *>(result));
+      });
+}
 
 template <typename A>
 void DashboardCommand<A>::check(const Goal & goal, Check & check) const

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "ur_ros_rtde/detail/publish_feedback.hpp"
 #include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/outcome.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
@@ -56,7 +55,7 @@ Status supported(const std::string & action, const DashboardLimits & limits,
 /// Gives a dashboard command access to the dashboard server while it executes a goal, in the goal's thread.
 class DashboardRun {
  public:
-  DashboardRun(DashboardConnection & connection, std::shared_ptr<StopRequest> stop_request);
+  DashboardRun(DashboardConnection & connection, std::shared_ptr<const StopRequest> stop_request);
   virtual ~DashboardRun() = default;
   DashboardRun(const DashboardRun &) = delete;
   DashboardRun & operator=(const DashboardRun &) = delete;
@@ -86,8 +85,6 @@ class DashboardRun {
 
   /// The last answer to a command or query, for the result.
   const std::string & answer() const { return answer_; }
-  /// Fills in `answer` and returns the result, an A::Result.
-  virtual void * finish_result() = 0;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -97,7 +94,7 @@ class DashboardRun {
   Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout);
 
   DashboardConnection & connection_;
-  std::shared_ptr<StopRequest> stop_request_;
+  std::shared_ptr<const StopRequest> stop_request_;
   std::string answer_;
 };
 
@@ -105,7 +102,9 @@ class DashboardRun {
 template <typename A>
 class DashboardGoalRun : public DashboardRun {
  public:
-  DashboardGoalRun(DashboardConnection & connection, std::shared_ptr<StopRequest> stop_request,
+  using PublishFeedback = std::function<void(const void * feedback)>;
+
+  DashboardGoalRun(DashboardConnection & connection, std::shared_ptr<const StopRequest> stop_request,
                    PublishFeedback publish)
       : DashboardRun(connection, std::move(stop_request)), publish_(std::move(publish))
   {
@@ -114,14 +113,6 @@ class DashboardGoalRun : public DashboardRun {
   /// Set the fields that are specific to the action. `success`, `error_code`, `message` and `answer` are
   /// filled in by the base class.
   typename A::Result & result() { return result_; }
-
-  void * finish_result() override
-  {
-    if constexpr (requires { result_.answer; }) {
-      result_.answer = answer();
-    }
-    return &result_;
-  }
 
  private:
   void publish_state([[maybe_unused]] const std::string & state) override

@@ -12,7 +12,7 @@ namespace ur_ros_rtde {
 using StopReason = Error;
 
 /// How a goal ended. An Error, and thus a StopReason, converts to an Outcome.
-class Outcome {
+class [[nodiscard]] Outcome {
  public:
   Outcome(Error error) : error_(std::move(error)) {}
   Outcome(const Status & status) : error_(status ? Error{} : status.error()) {}

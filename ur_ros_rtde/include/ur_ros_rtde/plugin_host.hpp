@@ -1,14 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <rcl_cxx/node.hpp>
 #include <string>
 #include <ur_ros_rtde_msgs/msg/goal_refused.hpp>
 
-#include "ur_ros_rtde/detail/goal_threads.hpp"
-#include "ur_ros_rtde_robot/motion/motion.hpp"
+#include "ur_ros_rtde/detail/goals.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
@@ -23,14 +20,18 @@ class PluginHost {
   explicit PluginHost(rcl_cxx::Node & node);
 
   rcl_cxx::Node & node() { return node_; }
-  GoalThreads & goal_threads() { return goal_threads_; }
+  Goals & goals() { return goals_; }
+  /// The callbacks of stops, of cancel requests and of lost clients. Served by a thread of its own, which
+  /// runs no other code of plugins than the check of a stop.
+  const rcl_cxx::CallbackGroup::SharedPtr & stop_group() const { return stop_group_; }
   /// Publishes on goal_refusals why a goal was rejected.
   void publish_refusal(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why);
 
  private:
   rcl_cxx::Node & node_;
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::GoalRefused>::SharedPtr refusals_;
-  GoalThreads goal_threads_;
+  const rcl_cxx::CallbackGroup::SharedPtr stop_group_;
+  Goals goals_;
 };
 
 class CommandHost : public PluginHost {
@@ -50,16 +51,9 @@ class CommandHost : public PluginHost {
   /// The limits of the robot's model; see Robot::limits().
   ArmLimits limits() const;
 
-  /// How a preempted goal has to decelerate, set while a goal with CommandTraits::preempts_all waits for the
-  /// resource. Empty: as the preempted goal says.
-  void set_preemption_stop(std::optional<StopOptions> options);
-  std::optional<StopOptions> preemption_stop() const;
-
  private:
   Robot & robot_;
   Options options_;
-  mutable std::mutex mutex_;
-  std::optional<StopOptions> preemption_stop_;
 };
 
 class DashboardHost : public PluginHost {

@@ -10,8 +10,7 @@
 #include <ur_ros_rtde_msgs/msg/motion_feedback.hpp>
 #include <vector>
 
-#include "ur_ros_rtde/detail/publish_feedback.hpp"
-#include "ur_ros_rtde/detail/stop_request.hpp"
+#include "ur_ros_rtde/detail/run_context.hpp"
 #include "ur_ros_rtde/outcome.hpp"
 #include "ur_ros_rtde/registers.hpp"
 #include "ur_ros_rtde_robot/connection/interfaces.hpp"
@@ -21,25 +20,34 @@ namespace ur_ros_rtde {
 
 /// Gives a command access to the robot while it executes a goal, in the goal's thread.
 ///
-/// Waits return early, with the reason, when the goal has to stop: it was canceled or preempted, or the node
-/// is shut down; for a command that moves the arm, also when the robot has stopped or the connection is lost.
-/// A command then returns that reason, and the base class stops the arm. Feedback is published during the
-/// waits.
+/// Waits return early, with the reason, when the goal has to end: it was canceled or preempted, or the node
+/// is shut down; for a command that moves the arm, also when the robot has stopped, its control program was
+/// started anew, or the connection was lost. By then, the driver is stopping the arm already: return the
+/// reason. From then on, calls through control() are rejected. Feedback is published during the waits.
 class Run {
  public:
-  Run(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves);
+  explicit Run(RunContext context);
   virtual ~Run() = default;
   Run(const Run &) = delete;
   Run & operator=(const Run &) = delete;
 
   /// The interfaces of ur_rtde, shared by all commands. `->` locks the interface for one call. The functions
-  /// throw RobotError if the interface is not connected; an exception that a command does not catch becomes
-  /// the outcome of its goal. Call only what returns soon: start motions asynchronously.
+  /// throw RobotError if the interface is not connected, or the goal must not move the arm any more; an
+  /// exception that a command does not catch becomes the outcome of its goal. Call only what returns soon:
+  /// start motions asynchronously.
   Locked<ur_rtde::RTDEControlInterface> control();
-  Locked<ur_rtde::RTDEReceiveInterface> receive() const { return robot_.receive(); }
-  Locked<ur_rtde::RTDEIOInterface> io() const { return robot_.io(); }
-  Locked<ur_rtde::DashboardClient> dashboard() const { return robot_.dashboard(); }
-  Robot & robot() const { return robot_; }
+  /// For queries, from any thread.
+  Locked<ur_rtde::RTDEControlInterface> control_for_queries() const { return context_.robot.control(); }
+  Locked<ur_rtde::RTDEReceiveInterface> receive() const { return context_.robot.receive(); }
+  Locked<ur_rtde::RTDEIOInterface> io() const { return context_.robot.io(); }
+  Locked<ur_rtde::DashboardClient> dashboard() const { return context_.robot.dashboard(); }
+  /// The state of the robot.
+  const Robot & robot() const { return context_.robot; }
+  /// See Robot::set_watchdog().
+  Status set_watchdog(double frequency) { return context_.robot.set_watchdog(frequency); }
+  /// For commands with CommandTraits::preempts_all: waits until the arm is at rest. The stop has begun before
+  /// run().
+  Expected<StopReport> wait_for_stop();
 
   /// The newest sample. Throws RobotError (link_lost) before the first.
   Sample state() const;
@@ -49,7 +57,7 @@ class Run {
   /// and [2] is the force along the flange's Z axis.
   Vector6 flange_force() const;
 
-  /// Why the goal has to stop now. Empty: it may continue.
+  /// Why the goal has to end now. Empty: it may continue.
   std::optional<StopReason> stop_reason() const;
   /// Empty if the time has passed.
   [[nodiscard]] std::optional<StopReason> sleep_for(std::chrono::nanoseconds duration);
@@ -87,12 +95,11 @@ class Run {
 
   /// For an Extension: the registers that its snippet reads and writes, and a function that runs the snippet
   /// and waits for its end, at most `timeout` s.
-  Registers registers() const { return Registers(robot_); }
+  Registers registers() const { return Registers(context_.robot); }
   [[nodiscard]] Outcome trigger(double timeout);
 
   /// Logs a warning for this goal and appends it to the message of the result.
   void warn(const std::string & text);
-  void on_warning(std::function<void(const std::string &)> log) { log_warning_ = std::move(log); }
   /// `outcome` with the warnings in its message.
   Outcome with_warnings(const Outcome & outcome) const;
 
@@ -102,19 +109,23 @@ class Run {
   std::chrono::nanoseconds elapsed() const { return std::chrono::steady_clock::now() - begin_; }
   /// The goal that this one preempted: "/move_j, goal 3f0c12ab". Empty if there was none. For commands with
   /// CommandTraits::preempts_all.
-  const std::string & preempted_goal() const { return preempted_goal_; }
-  void set_preempted_goal(std::string goal) { preempted_goal_ = std::move(goal); }
-  void set_plugin(std::string name) { plugin_ = std::move(name); }
+  const std::string & preempted_goal() const { return context_.preempted_goal; }
 
   /// Empty before the first sample.
   std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> motion_feedback() const;
 
-  /// Fills in `final_state` and returns the result, an A::Result. Null if this is not the run of a goal.
-  virtual void * finish_result() { return nullptr; }
+  /// While it exists, the command streams setpoints that it can brake by itself, within its own limits: a
+  /// request to end the goal does not stop the arm at once. It has to begin to brake within 10 ms, and report
+  /// each setpoint that does with `sent()`; otherwise the driver stops the arm.
+  using Braking = Robot::Braking;
+  Braking brake_by_itself() const { return Braking(*context_.lease); }
+  /// While it brakes: no stop has taken the arm out of its hands, and the robot can move.
+  bool may_brake() const { return static_cast<bool>(robot().may_continue(*context_.lease)); }
 
  protected:
   /// Called 20 times per second during waits.
   virtual void publish_feedback() {}
+  void publish(const void * feedback) const { context_.publish_feedback(feedback); }
 
  private:
   using Distance = std::function<double(const Sample &)>;
@@ -124,15 +135,9 @@ class Run {
                                  std::chrono::steady_clock::time_point deadline);
   void publish_feedback_if_due();
 
-  Robot & robot_;
-  std::shared_ptr<StopRequest> stop_request_;
-  bool moves_;
-  std::uint32_t link_;  ///< Sample::link at the begin
+  const RunContext context_;
   double progress_ = 0.0;
-  std::string preempted_goal_;
-  std::string plugin_;
   std::string warnings_;
-  std::function<void(const std::string &)> log_warning_ = [](const std::string &) {};
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point next_feedback_ = begin_;
   std::chrono::steady_clock::time_point last_call_ = begin_;
@@ -143,10 +148,7 @@ class Run {
 template <typename A>
 class GoalRun : public Run {
  public:
-  GoalRun(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves, PublishFeedback publish)
-      : Run(robot, std::move(stop_request), moves), publish_(std::move(publish))
-  {
-  }
+  using Run::Run;
 
   /// Set the fields that are specific to the action. `success`, `error_code`, `message` and `final_state` are
   /// filled in by the base class.
@@ -155,15 +157,7 @@ class GoalRun : public Run {
   typename A::Feedback & feedback() { return feedback_; }
   /// Publishes the feedback. Needed only if the feedback has no field `motion`; otherwise it is published
   /// during waits.
-  void publish() { publish_(&feedback_); }
-
-  void * finish_result() override
-  {
-    if constexpr (requires { result_.final_state; }) {
-      result_.final_state = arm_state();
-    }
-    return &result_;
-  }
+  void publish() { Run::publish(&feedback_); }
 
  private:
   void publish_feedback() override
@@ -171,14 +165,16 @@ class GoalRun : public Run {
     if constexpr (requires(typename A::Feedback & feedback) { feedback.motion; }) {
       if (auto motion = motion_feedback()) {
         feedback_.motion = *motion;
-        publish_(&feedback_);
+        publish();
       }
     }
   }
 
   typename A::Result result_;
   typename A::Feedback feedback_;
-  PublishFeedback publish_;
 };
+
+/// The state of an arm in results: NaN without a sample.
+ur_ros_rtde_msgs::msg::ArmState to_arm_state(const std::optional<Sample> & sample);
 
 }  // namespace ur_ros_rtde

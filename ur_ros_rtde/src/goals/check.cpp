@@ -105,7 +105,7 @@ void Check::fail(ErrorCode code, std::string message)
 
 ArmLimits Check::limits() const
 {
-  return preflight_ != nullptr ? preflight_->limits() : widest_arm_limits();
+  return robot_ != nullptr ? robot_->limits() : widest_arm_limits();
 }
 
 Check & Check::that(bool holds, std::string message, ErrorCode code)
@@ -221,8 +221,8 @@ Check & Check::line(std::string_view field, std::string_view text, std::size_t l
 
 Check & Check::ready()
 {
-  if (ok() && preflight_ != nullptr) {
-    if (Status status = preflight_->prepare(); !status) {
+  if (ok() && prepare_) {
+    if (Status status = prepare_(); !status) {
       error_ = status.error();
     }
   }
@@ -236,7 +236,7 @@ Check & Check::reachable(std::string_view field, const geometry_msgs::msg::Pose 
 
 Check & Check::reachable(std::string_view field, const std::vector<double> & target)
 {
-  if (!ready().ok() || preflight_ == nullptr || preflight_->robot().moving()) {
+  if (!ready().ok() || robot_ == nullptr || robot_->is_moving()) {
     return *this;
   }
   return query([pose = target, field_name = std::string(field)](Robot & robot) {
@@ -254,10 +254,10 @@ Check & Check::query(RobotQuery query)
 
 std::optional<Sample> Check::newest()
 {
-  if (!ready().ok() || preflight_ == nullptr) {
+  if (!ready().ok() || robot_ == nullptr) {
     return std::nullopt;
   }
-  auto sample = preflight_->robot().latest();
+  auto sample = robot_->latest();
   that(sample.has_value(), "no data has been received from the controller yet: try again",
        ErrorCode::not_ready);
   return sample;
@@ -266,7 +266,7 @@ std::optional<Sample> Check::newest()
 std::optional<Sample> Check::start()
 {
   const auto sample = newest();
-  return sample && !preflight_->robot().moving() ? sample : std::nullopt;
+  return sample && !robot_->is_moving() ? sample : std::nullopt;
 }
 
 Check & Check::reachable_in(std::string_view field, const std::vector<double> & positions, double time,

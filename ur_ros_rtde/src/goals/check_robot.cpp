@@ -23,10 +23,10 @@ Check & Check::frame(std::string_view field, const geometry_msgs::msg::Pose & fr
 
 Check & Check::polyscope(unsigned minor, std::optional<unsigned> cb3_minor)
 {
-  if (!ready().ok() || preflight_ == nullptr) {
+  if (!ready().ok() || robot_ == nullptr) {
     return *this;
   }
-  const auto version = preflight_->robot().version();
+  const auto version = robot_->version();
   if (!version) {
     return that(false, "the version of PolyScope is not known yet: try again", ErrorCode::not_ready);
   }
@@ -40,18 +40,17 @@ Check & Check::polyscope(unsigned minor, std::optional<unsigned> cb3_minor)
 
 Check & Check::answers_queries()
 {
-  if (!ready().ok() || preflight_ == nullptr) {
+  if (!ready().ok() || robot_ == nullptr) {
     return *this;
   }
-  Robot & robot = preflight_->robot();
-  if (const Status possible = robot.motion_possible(); !possible) {
+  if (const Status possible = robot_->motion_possible(); !possible) {
     return that(false, possible.error().message, possible.error().code);
   }
-  [[maybe_unused]] const auto control = robot.control();  // throws the reason if it is not available
-  const auto holder = robot.arbiter().holder(Resource::motion);
-  constexpr std::string_view every_cycle_action = "direct_torque";
-  return that(!holder || !holder->owner.ends_with(every_cycle_action),
-              "direct_torque occupies every cycle of the control program: try again when it has ended",
+  [[maybe_unused]] const auto control = robot_->control();  // throws the reason if it is not available
+  const auto holder = robot_->holder(Resource::motion);
+  return that(!holder || !holder->blocks_queries,
+              fmt::format("{} occupies every cycle of the control program: try again when it has ended",
+                          holder ? holder->owner : ""),
               ErrorCode::busy);
 }
 

@@ -62,7 +62,19 @@ Status supported(const std::string & action, const DashboardLimits & limits,
                              availability("a CB3", limits.cb3)));
 }
 
-DashboardRun::DashboardRun(DashboardConnection & connection, std::shared_ptr<StopRequest> stop_request)
+Status dashboard_ready(const std::string & action, const DashboardLimits & limits,
+                       const DashboardConnection & connection)
+{
+  const LinkStatus status = connection.link();
+  if (status.connected) {
+    return supported(action, limits, connection);
+  }
+  return failure(ErrorCode::link_lost, status.error.message.empty()
+                                           ? std::string("not yet connected to the dashboard server")
+                                           : status.error.message);
+}
+
+DashboardRun::DashboardRun(DashboardConnection & connection, std::shared_ptr<const StopRequest> stop_request)
     : connection_(connection), stop_request_(std::move(stop_request))
 {
 }

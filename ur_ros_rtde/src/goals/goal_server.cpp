@@ -1,67 +1,163 @@
 #include "ur_ros_rtde/detail/goal_server.hpp"
 
+#include "ur_ros_rtde/detail/goals.hpp"
 #include "ur_ros_rtde/detail/guarded.hpp"
 
 namespace ur_ros_rtde {
+namespace {
 
-void GoalServer::start_server(rcl_cxx::Node & node, const rcl_cxx::ActionType & type,
-                              const std::string & name, ActiveGoals & goals, bool stop_when_client_lost)
+/// The outcome of a goal without a result, or whose result cannot be sent. Always has an error code.
+Outcome missing_result(rcl_cxx::GoalStatus status)
 {
-  goals_ = &goals;
+  if (status == rcl_cxx::GoalStatus::unknown) {
+    return Outcome::failure(ErrorCode::exception,
+                            "this driver has no such goal: it has expired, or another driver with the same "
+                            "names has accepted it");
+  }
+  return Outcome::failure(ErrorCode::exception,
+                          "the goal ended without a result that can be sent: see the log of the driver");
+}
+
+Outcome answer(const std::vector<GoalQuery> & queries, const StopRequest & stop_request)
+{
+  for (const GoalQuery & query : queries) {
+    if (auto why = stop_request.reason()) {
+      return *std::move(why);
+    }
+    if (Status answered = query(); !answered) {
+      return answered;
+    }
+  }
+  return Outcome::success();
+}
+
+}  // namespace
+
+Error client_lost()
+{
+  return Error{
+      ErrorCode::client_lost,
+      "the client that sent this goal has disappeared: keep the action client alive until the result is "
+      "received, or start command_server with on_client_lost:=continue"};
+}
+
+GoalServer::GoalServer(PluginHost & host, const Description & description, MakeGoal make_goal,
+                       WriteOutcome write_outcome)
+    : host_(host), make_goal_(std::move(make_goal))
+{
   rcl_cxx::ActionServerCallbacks callbacks;
-  callbacks.handle_goal = [this](const rcl_cxx::GoalUUID & id, const void * goal) {
-    return accept_goal(id, goal);
+  callbacks.handle_goal = [this](const rcl_cxx::GoalUUID & id, const void * request) {
+    return decide(id, request);
   };
-  callbacks.handle_accepted = [this](const std::shared_ptr<Handle> & handle) { start_goal(handle); };
+  callbacks.handle_accepted = [this](const std::shared_ptr<Handle> & handle) { start(handle); };
   callbacks.handle_cancel = [](Handle &) { return true; };
   callbacks.on_canceling = [this](Handle & handle) {
-    goals_->stop(handle.get_goal_id(), Error{ErrorCode::canceled, "canceled by a client"});
+    stop(handle.get_goal_id(), Error{ErrorCode::canceled, "canceled by a client"});
   };
-  callbacks.on_goal_discarded = [this](const rcl_cxx::GoalUUID & id) { goals_->discard(id); };
-  if (stop_when_client_lost) {
-    callbacks.on_client_lost = [this](Handle & handle) { goals_->stop(handle.get_goal_id(), client_lost()); };
+  callbacks.on_goal_discarded = [this](const rcl_cxx::GoalUUID & id) {
+    if (const auto goal = forget(id)) {
+      goal->release();
+    }
+  };
+  if (description.stops_when_client_lost) {
+    callbacks.on_client_lost = [this](Handle & handle) { stop(handle.get_goal_id(), client_lost()); };
   }
-  callbacks.fill_missing_result = [this](rcl_cxx::GoalStatus status, void * result) {
-    write_outcome_guarded(missing_result(status), result);
+  callbacks.fill_missing_result = [write = std::move(write_outcome)](rcl_cxx::GoalStatus status,
+                                                                     void * result) {
+    write(missing_result(status), result);
   };
-  server_ = node.create_action_server(type, name, std::move(callbacks));
+  rcl_cxx::ActionServerOptions options;
+  options.cancel_callback_group = host.stop_group();
+  options.goal_callback_group = description.is_stop ? host.stop_group() : nullptr;
+  server_ =
+      host.node().create_action_server(description.type, description.name, std::move(callbacks), options);
 }
 
-void GoalServer::start_goal(const std::shared_ptr<Handle> & handle)
+rcl_cxx::GoalDecision GoalServer::decide(const rcl_cxx::GoalUUID & id, const void * request)
 {
-  const Status started = goals_->start(
-      handle->get_goal_id(),
-      [this, handle](const std::shared_ptr<GoalContext> & context) { execute_goal(*handle, *context); });
-  if (!started) {
-    abort_unstarted(*handle, started);
-  }
-}
-
-Outcome GoalServer::write_outcome_guarded(const Outcome & outcome, void * result) const
-{
-  bool written = false;
-  const Outcome actual = guarded([&] {
-    write_outcome(outcome, result);
-    written = true;
-    return outcome;
+  const auto goal = make_goal_(id, request);
+  std::vector<GoalQuery> queries;
+  const Outcome checked = guarded([&]() -> Outcome {
+    const Status can_start = host_.goals().can_start();
+    return can_start ? goal->check(queries) : can_start;
   });
-  if (!written) {
-    write_failure(actual, result);
+  if (!checked) {
+    return reject(*goal, checked.error());
   }
-  return actual;
+  {
+    const std::lock_guard lock(mutex_);
+    goals_[id] = goal;
+  }
+  if (queries.empty()) {
+    return rcl_cxx::GoalResponse();
+  }
+  return rcl_cxx::DeferredGoalResponse{
+      [this, goal, pending = std::move(queries)](const rcl_cxx::SendGoalResponse & respond) {
+        start_queries(goal, pending, respond);
+      }};
 }
 
-void GoalServer::finish(Handle & handle, void * result, const Outcome & outcome)
+void GoalServer::start_queries(const std::shared_ptr<Goal> & goal, std::vector<GoalQuery> queries,
+                               const rcl_cxx::SendGoalResponse & respond)
 {
-  const Outcome actual = write_outcome_guarded(outcome, result);
-  goals_->finish(handle.get_goal_id(), actual);
-  if (actual) {
-    handle.succeed(result);
-  } else if (actual.code() == ErrorCode::canceled && handle.is_canceling()) {
-    handle.canceled(result);
-  } else {
-    handle.abort(result);
+  const auto reject_and_forget = [this, goal](const Error & why) {
+    forget(goal->id());
+    goal->release();
+    return reject(*goal, why);
+  };
+  const Status started =
+      host_.goals().start(goal, [goal, pending = std::move(queries), respond, reject_and_forget] {
+        const Outcome outcome =
+            guarded(goal->stop_request(), [&] { return answer(pending, goal->stop_request()); });
+        respond(outcome ? rcl_cxx::GoalResponse() : reject_and_forget(outcome.error()));
+      });
+  if (!started) {
+    respond(reject_and_forget(started.error()));
   }
+}
+
+void GoalServer::start(const std::shared_ptr<Handle> & handle)
+{
+  const auto goal = find(handle->get_goal_id());
+  if (!goal) {
+    return;  // discarded: without its handle, the goal is aborted
+  }
+  goal->accept(handle);
+  const Status started = host_.goals().start(goal, [this, goal] {
+    goal->run();
+    forget(goal->id());
+  });
+  if (!started) {
+    goal->end(started);
+    forget(goal->id());
+  }
+}
+
+void GoalServer::stop(const rcl_cxx::GoalUUID & id, const Error & why) const
+{
+  if (const auto goal = find(id)) {
+    goal->stop(why);
+  }
+}
+
+rcl_cxx::GoalResponse GoalServer::reject(const Goal & goal, const Error & why)
+{
+  host_.publish_refusal(goal.action(), goal.id(), why);
+  return tl::make_unexpected(with_code(why));
+}
+
+std::shared_ptr<Goal> GoalServer::find(const rcl_cxx::GoalUUID & id) const
+{
+  const std::lock_guard lock(mutex_);
+  const auto found = goals_.find(id);
+  return found == goals_.end() ? nullptr : found->second;
+}
+
+std::shared_ptr<Goal> GoalServer::forget(const rcl_cxx::GoalUUID & id)
+{
+  const std::lock_guard lock(mutex_);
+  auto node = goals_.extract(id);
+  return node ? std::move(node.mapped()) : nullptr;
 }
 
 }  // namespace ur_ros_rtde

@@ -7,8 +7,9 @@ namespace ur_ros_rtde {
 PluginHost::PluginHost(rcl_cxx::Node & node)
     : node_(node),
       // Transient local: a client may be refused before its subscription has been matched.
-      refusals_(node.create_publisher<ur_ros_rtde_msgs::msg::GoalRefused>("goal_refusals",
-                                                                          rcl_cxx::QoS::transient_local(100)))
+      refusals_(node.create_publisher<ur_ros_rtde_msgs::msg::GoalRefused>(
+          "goal_refusals", rcl_cxx::QoS::transient_local(100))),
+      stop_group_(node.create_callback_group())
 {
 }
 
@@ -26,18 +27,6 @@ void PluginHost::publish_refusal(const std::string & action, const rcl_cxx::Goal
 ArmLimits CommandHost::limits() const
 {
   return robot_.limits();
-}
-
-void CommandHost::set_preemption_stop(std::optional<StopOptions> options)
-{
-  const std::lock_guard lock(mutex_);
-  preemption_stop_ = std::move(options);
-}
-
-std::optional<StopOptions> CommandHost::preemption_stop() const
-{
-  const std::lock_guard lock(mutex_);
-  return preemption_stop_;
 }
 
 }  // namespace ur_ros_rtde

@@ -37,14 +37,6 @@ Vector6 nan_vector()
   return values;
 }
 
-ur_ros_rtde_msgs::msg::ArmState to_arm_state(const std::optional<Sample> & sample)
-{
-  ur_ros_rtde_msgs::msg::ArmState state;
-  state.joint_positions = sample ? sample->actual_q : nan_vector();
-  state.tcp_pose = to_ros(sample ? sample->actual_tcp_pose : nan_vector());
-  return state;
-}
-
 /// m, with the rotation weighted by rotation_weight.
 double pose_distance(const Vector6 & a, const Vector6 & b)
 {
@@ -61,6 +53,13 @@ Vector6 to_array(const std::vector<double> & values)
   Vector6 array;
   std::copy(values.begin(), values.end(), array.begin());
   return array;
+}
+
+/// A timeout may be as long as a duration can be.
+Clock::time_point deadline_in(std::chrono::nanoseconds timeout)
+{
+  const auto now = Clock::now();
+  return timeout < Clock::time_point::max() - now ? now + timeout : Clock::time_point::max();
 }
 
 /// rad, largest difference of all joints.
@@ -83,25 +82,33 @@ std::function<double(const Sample &)> distance_to_pose(const std::vector<double>
 }
 }  // namespace
 
-Run::Run(Robot & robot, std::shared_ptr<StopRequest> stop_request, bool moves)
-    : robot_(robot),
-      stop_request_(std::move(stop_request)),
-      moves_(moves),
-      link_(robot.latest().value_or(Sample{}).link),
-      mark_(robot.mark_motion())
+ur_ros_rtde_msgs::msg::ArmState to_arm_state(const std::optional<Sample> & sample)
 {
+  ur_ros_rtde_msgs::msg::ArmState state;
+  state.joint_positions = sample ? sample->actual_q : nan_vector();
+  state.tcp_pose = to_ros(sample ? sample->actual_tcp_pose : nan_vector());
+  return state;
 }
+
+Run::Run(RunContext context) : context_(std::move(context)), mark_(context_.robot.mark_motion()) {}
 
 Locked<ur_rtde::RTDEControlInterface> Run::control()
 {
-  mark_ = robot_.mark_motion();
+  mark_ = robot().mark_motion();
   last_call_ = Clock::now();
-  return robot_.control();
+  return context_.lease != nullptr ? context_.robot.control(*context_.lease) : context_.robot.control();
+}
+
+Expected<StopReport> Run::wait_for_stop()
+{
+  return context_.stopping
+             ? context_.stopping->get()
+             : Expected<StopReport>(failure(ErrorCode::exception, "this command is not a stop"));
 }
 
 Sample Run::state() const
 {
-  if (auto sample = robot_.latest()) {
+  if (auto sample = robot().latest()) {
     return *sample;
   }
   throw RobotError(Error{ErrorCode::link_lost, "no data has been received from the controller yet"});
@@ -109,7 +116,7 @@ Sample Run::state() const
 
 ur_ros_rtde_msgs::msg::ArmState Run::arm_state() const
 {
-  return to_arm_state(robot_.latest());
+  return to_arm_state(robot().latest());
 }
 
 Vector6 Run::flange_force() const
@@ -119,15 +126,12 @@ Vector6 Run::flange_force() const
 
 std::optional<StopReason> Run::stop_reason() const
 {
-  if (auto why = stop_request_->reason()) {
+  if (auto why = context_.stop_request->reason()) {
     return why;
   }
-  if (moves_) {
-    if (Status possible = robot_.motion_possible(); !possible) {
-      return possible.error();
-    }
-    if (state().link != link_) {
-      return Error{ErrorCode::link_lost, connection_replaced};
+  if (context_.lease != nullptr) {
+    if (Status may = robot().may_continue(*context_.lease); !may) {
+      return may.error();
     }
   }
   return std::nullopt;
@@ -135,7 +139,7 @@ std::optional<StopReason> Run::stop_reason() const
 
 std::optional<StopReason> Run::wait(const std::function<bool()> & condition, Clock::time_point deadline)
 {
-  Sample last = robot_.latest().value_or(Sample{});
+  Sample last = robot().latest().value_or(Sample{});
   while (true) {
     if (auto why = stop_reason()) {
       return why;
@@ -148,20 +152,20 @@ std::optional<StopReason> Run::wait(const std::function<bool()> & condition, Clo
     if (left <= milliseconds(0)) {
       return Error{ErrorCode::timeout, "timed out"};
     }
-    robot_.wait_for_next(last, std::min(left, max_sleep), stop_request_->token());
+    robot().wait_for_next(last, std::min(left, max_sleep), context_.stop_request->token());
   }
 }
 
 std::optional<StopReason> Run::sleep_for(std::chrono::nanoseconds duration)
 {
-  auto why = wait([] { return false; }, Clock::now() + duration);
+  auto why = wait([] { return false; }, deadline_in(duration));
   return why && why->code == ErrorCode::timeout ? std::nullopt : why;
 }
 
 std::optional<StopReason> Run::until(const std::function<bool()> & condition,
                                      std::chrono::nanoseconds timeout)
 {
-  auto why = wait(condition, Clock::now() + timeout);
+  auto why = wait(condition, deadline_in(timeout));
   if (why && why->code == ErrorCode::timeout) {
     why->message =
         fmt::format("condition not met within {:.1f} s", std::chrono::duration<double>(timeout).count());
@@ -172,7 +176,7 @@ std::optional<StopReason> Run::until(const std::function<bool()> & condition,
 Outcome Run::expect(const std::function<bool()> & condition, std::chrono::nanoseconds timeout,
                     const std::string & otherwise, ErrorCode code)
 {
-  const auto why = wait(condition, Clock::now() + timeout);
+  const auto why = wait(condition, deadline_in(timeout));
   if (!why) {
     return Outcome::success();
   }
@@ -198,7 +202,7 @@ std::optional<StopReason> Run::next(Sample & sample)
       return why;
     }
     publish_feedback_if_due();
-    if (robot_.wait_for_next(sample, max_sleep, stop_request_->token())) {
+    if (robot().wait_for_next(sample, max_sleep, context_.stop_request->token())) {
       return stop_reason();
     }
     if (Clock::now() >= deadline) {
@@ -209,7 +213,7 @@ std::optional<StopReason> Run::next(Sample & sample)
 
 std::optional<StopReason> Run::until_standstill(std::chrono::nanoseconds limit)
 {
-  auto why = until([this] { return robot_.motion_progress(mark_).at_rest; }, limit);
+  auto why = until([this] { return robot().motion_progress(mark_).at_rest; }, limit);
   if (why && why->code == ErrorCode::timeout) {
     why->message = "the arm did not come to a standstill: " + why->message;
   }
@@ -218,7 +222,7 @@ std::optional<StopReason> Run::until_standstill(std::chrono::nanoseconds limit)
 
 bool Run::motion_ended() const
 {
-  const MotionProgress motion = robot_.motion_progress(mark_);
+  const MotionProgress motion = robot().motion_progress(mark_);
   return motion.finished() || (!motion.started && Clock::now() - last_call_ > motion_start_timeout);
 }
 
@@ -227,7 +231,7 @@ Outcome Run::until_motion_ends(std::chrono::nanoseconds limit)
   if (auto why = until([this] { return motion_ended(); }, limit)) {
     return *why;
   }
-  if (!robot_.motion_progress(mark_).started) {
+  if (!robot().motion_progress(mark_).started) {
     return Outcome::failure(ErrorCode::rejected_by_robot,
                             "the control program did not start the motion: see the log on the teach pendant");
   }
@@ -275,7 +279,7 @@ Outcome Run::until_at(const Distance & distance, double tolerance, const char * 
   const auto update = [&] {
     const double left = distance(state());
     progress(std::max(progress(), std::clamp(1.0 - left / initial, 0.0, 1.0)));
-    const bool at_rest = robot_.motion_progress(mark_).at_rest;
+    const bool at_rest = robot().motion_progress(mark_).at_rest;
     last_moved = at_rest ? last_moved : Clock::now();
     reached = at_rest && left <= tolerance;
     return reached || Clock::now() - last_moved > settling_timeout;
@@ -305,14 +309,15 @@ ScriptReport Run::run_script(const std::string & script, ScriptOptions options)
 {
   options.stop_reason = [this] {
     publish_feedback_if_due();
-    return stop_reason();
+    return context_.stop_request->reason();  // the script replaces the control program, which is no reason
   };
-  return robot_.run_script(script, options);
+  const Lease none;
+  return context_.robot.run_script(context_.lease != nullptr ? *context_.lease : none, script, options);
 }
 
 std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> Run::motion_feedback() const
 {
-  const auto sample = robot_.latest();
+  const auto sample = robot().latest();
   if (!sample) {
     return std::nullopt;
   }
@@ -338,7 +343,7 @@ void Run::publish_feedback_if_due()
 
 void Run::warn(const std::string & text)
 {
-  log_warning_(text);
+  context_.log_warning(text);
   warnings_ += warnings_.empty() ? text : "; " + text;
 }
 
@@ -352,6 +357,16 @@ Outcome Run::with_warnings(const Outcome & outcome) const
 
 Outcome Run::trigger(double timeout)
 {
+  constexpr double max_timeout = 86400.0;  // s
+  if (!(timeout > 0.0 && timeout <= max_timeout)) {
+    return Outcome::failure(
+        ErrorCode::invalid_goal,
+        fmt::format("the timeout of the extension is {} s, it must be above 0 and at most {} s", timeout,
+                    max_timeout));
+  }
+  if (context_.lease == nullptr) {
+    return Outcome::failure(ErrorCode::exception, "an extension needs Resource::motion");
+  }
   ExtensionOptions options;
   options.limit =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
@@ -359,7 +374,7 @@ Outcome Run::trigger(double timeout)
     publish_feedback_if_due();
     return stop_reason();
   };
-  return robot_.run_extension(plugin_, options);
+  return context_.robot.run_extension(*context_.lease, context_.plugin, options);
 }
 
 }  // namespace ur_ros_rtde

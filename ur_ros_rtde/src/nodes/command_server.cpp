@@ -27,7 +27,7 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
 
 CommandServer::~CommandServer()
 {
-  close();
+  exit_without(close(), *node_);
   plugins_.stop();
 }
 
@@ -72,8 +72,11 @@ void CommandServer::add_extensions(const ReportProblem & report)
 
 std::vector<std::string> CommandServer::close()
 {
+  const Error why{ErrorCode::shutdown, "the node is being shut down"};
+  teleoperation_->stop(why);  // nothing waits for the end of a session before the goals are told to end
+  auto left = host_->goals().close(why, close_limit);
   teleoperation_->close();
-  return host_->goal_threads().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
+  return left;
 }
 
 }  // namespace ur_ros_rtde

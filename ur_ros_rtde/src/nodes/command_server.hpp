@@ -21,6 +21,7 @@ class CommandServer : public Server {
   ~CommandServer() override;
 
   rcl_cxx::Node & node() override { return *node_; }
+  const rcl_cxx::CallbackGroup * stop_group() override { return host_->stop_group().get(); }
   Robot & robot() { return *robot_; }
   void load_plugins() override;
   void create_actions() override;

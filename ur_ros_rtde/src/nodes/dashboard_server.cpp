@@ -21,7 +21,7 @@ DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context)
 
 DashboardServer::~DashboardServer()
 {
-  close();
+  exit_without(close(), *node_);
   plugins_.stop();
 }
 
@@ -41,7 +41,7 @@ void DashboardServer::create_actions()
 
 std::vector<std::string> DashboardServer::close()
 {
-  return host_->goal_threads().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
+  return host_->goals().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
 }
 
 }  // namespace ur_ros_rtde

@@ -17,6 +17,7 @@ class DashboardServer : public Server {
   ~DashboardServer() override;
 
   rcl_cxx::Node & node() override { return *node_; }
+  const rcl_cxx::CallbackGroup * stop_group() override { return host_->stop_group().get(); }
   void load_plugins() override;
   void create_actions() override;
   void start() override { connection_->start(); }

@@ -6,8 +6,9 @@
 #include <vector>
 
 namespace rcl_cxx {
+class CallbackGroup;
 class Node;
-}
+}  // namespace rcl_cxx
 
 namespace ur_ros_rtde {
 
@@ -16,6 +17,8 @@ class Server {
  public:
   virtual ~Server() = default;
   virtual rcl_cxx::Node & node() = 0;
+  /// The callbacks that must not wait for those of the node. They get a thread of their own.
+  virtual const rcl_cxx::CallbackGroup * stop_group() { return nullptr; }
   /// Called in this order, the first one before the node has an executor. Neither affects the robot.
   virtual void load_plugins() {}
   virtual void create_actions() {}
@@ -28,6 +31,10 @@ class Server {
 
 /// In the order of their start. Destroyed in reverse order.
 using Servers = std::vector<std::unique_ptr<Server>>;
+
+/// Ends the process if `goals`, the result of Server::close(), is not empty: their threads cannot be joined,
+/// and objects that they use must not be destroyed. The watchdog of the control program stops the arm.
+void exit_without(const std::vector<std::string> & goals, const rcl_cxx::Node & node);
 
 /// Time for the goals to end at shutdown: a stop, including its fallbacks.
 constexpr std::chrono::milliseconds close_limit{5000};

@@ -39,16 +39,7 @@ void close_servers(const Servers & servers)
       left.push_back(std::move(name));
     }
   }
-  if (left.empty()) {
-    return;
-  }
-  for (const std::string & name : left) {
-    RCL_CXX_FATAL(servers.front()->node().get_logger(), "goal {} did not end, the process exits without it",
-                  name);
-  }
-  // The thread cannot be joined, and objects that it uses must not be destroyed. The watchdog of the control
-  // program stops the arm.
-  std::_Exit(1);
+  exit_without(left, servers.front()->node());
 }
 
 using DuplicateChecks = std::vector<std::unique_ptr<DuplicateCheck>>;
@@ -106,12 +97,13 @@ std::optional<std::string> start_if_unique(const rcl_cxx::Context & context, con
   return std::nullopt;
 }
 
-void spin_if_unique(const rcl_cxx::Context::SharedPtr & context, const rcl_cxx::Node & node,
+void spin_if_unique(const rcl_cxx::Context::SharedPtr & context,
+                    const std::function<void(rcl_cxx::Executor &)> & add_callbacks,
                     const std::shared_future<std::optional<std::string>> & duplicate)
 {
   if (!duplicate.get()) {
     rcl_cxx::Executor executor(context);
-    executor.add_node(node);
+    add_callbacks(executor);
     executor.spin();
   }
 }
@@ -127,10 +119,16 @@ std::optional<std::string> run_servers(const rcl_cxx::Context::SharedPtr & conte
                          }).share();
   std::vector<std::future<void>> running;
   try {
+    const auto spin = [&](const std::function<void(rcl_cxx::Executor &)> & add_callbacks) {
+      running.push_back(std::async(std::launch::async, spin_if_unique, std::cref(context), add_callbacks,
+                                   std::cref(duplicate)));
+    };
     for (const auto & server : servers) {
-      // One executor per node, so that nodes do not delay each other.
-      running.push_back(std::async(std::launch::async, spin_if_unique, std::cref(context),
-                                   std::cref(server->node()), std::cref(duplicate)));
+      // One executor per node, so that nodes do not delay each other; and one for what nothing may delay.
+      spin([&server](rcl_cxx::Executor & executor) { executor.add_node(server->node()); });
+      if (const auto * group = server->stop_group()) {
+        spin([group](rcl_cxx::Executor & executor) { executor.add_callback_group(*group); });
+      }
     }
     for (const auto & server : servers) {
       server->create_actions();

@@ -50,9 +50,9 @@ std::uint8_t level(const RobotStatus & status)
   }
 }
 
-std::string holder(const Arbiter & arbiter, Resource resource)
+std::string holder(const Robot & robot, Resource resource)
 {
-  const auto found = arbiter.holder(resource);
+  const auto found = robot.holder(resource);
   return found ? fmt::format("{}, goal {}", found->owner, found->id) : "none";
 }
 }  // namespace
@@ -82,9 +82,9 @@ std::vector<Diagnosis> diagnose_driver(Robot & robot)
       .value("state", name(status.state))
       .value("cause", to_string(status.cause))
       .value("model", robot.model().empty() ? "unknown" : robot.model())
-      .value("motion goal", holder(robot.arbiter(), Resource::motion))
-      .value("io goal", holder(robot.arbiter(), Resource::io))
-      .value("script goal", holder(robot.arbiter(), Resource::script));
+      .value("motion goal", holder(robot, Resource::motion))
+      .value("io goal", holder(robot, Resource::io))
+      .value("script goal", holder(robot, Resource::script));
   const Status control = robot.motion_possible();
   diagnosis.value("control program", control ? "runs" : control.error().message);
   return {std::move(diagnosis)};

@@ -51,18 +51,27 @@ TeleopTopic::~TeleopTopic()
   close();
 }
 
-void TeleopTopic::close()
+void TeleopTopic::stop(const Error & why)
 {
-  std::shared_ptr<StopRequest> stop_request;
   {
     const std::lock_guard lock(mutex_);
     closed_ = true;
-    stop_request = stop_request_;
   }
   thread_.request_stop();
-  if (stop_request) {
-    stop_request->request(Error{ErrorCode::shutdown, "the node is being shut down"});
+  end_session(why);
+}
+
+void TeleopTopic::end_session(const Error & why)
+{
+  const std::lock_guard lock(mutex_);
+  if (stop_request_ && stop_request_->request(why)) {
+    host_.robot().request_stop(lease_, stop_options(), why, {});
   }
+}
+
+void TeleopTopic::close()
+{
+  stop(Error{ErrorCode::shutdown, "the node is being shut down"});
   if (thread_.joinable()) {
     thread_.join();
   }
@@ -115,23 +124,24 @@ Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
     if (const Message first = newest(); !first.target) {
       return first.target.error();
     }
-    if (const Status ready = host_.robot().ready_to_move(); !ready) {
-      return ready;
-    }
-    const auto stop_request = [&] {
-      const std::lock_guard lock(mutex_);
-      return stop_request_;
-    }();
-    const auto lease = host_.robot().arbiter().acquire(
-        {Resource::motion, topic_, "", [stop_request](const std::string & by) {
-           stop_request->request(Error{ErrorCode::preempted, fmt::format("preempted by {}", by)});
-         }});
+    Claim claim;
+    claim.owner = topic_;
+    claim.preempt = [this](const Error & why) { end_session(why); };
+    auto lease = host_.robot().acquire(std::move(claim));
     if (!lease) {
       return lease.error();
     }
+    std::shared_ptr<StopRequest> stop_request;
+    {
+      const std::lock_guard lock(mutex_);
+      lease_ = std::move(*lease);
+      stop_request = stop_request_;
+    }
     log_(LogLevel::info, fmt::format("{}: teleoperation started", topic_));
-    Run run(host_.robot(), stop_request, true);
-    return stop(follow(run, session, latency));
+    Run run(RunContext{host_.robot(), stop_request, &lease_});
+    const Outcome outcome = settle(follow(run, session, latency));
+    lease_.release();
+    return outcome;
   } catch (const RobotError & error) {
     return error.error();
   } catch (const std::exception & error) {
@@ -139,14 +149,14 @@ Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
   }
 }
 
-Outcome TeleopTopic::stop(const Error & why) const
+StopOptions TeleopTopic::stop_options() const
 {
-  StopOptions options{.joint_deceleration = options_.deceleration,
-                      .linear_deceleration = options_.deceleration};
-  if (why.code == ErrorCode::preempted) {
-    options = host_.preemption_stop().value_or(options);
-  }
-  const auto stopped = host_.robot().stop_motion(options);
+  return {.joint_deceleration = options_.deceleration, .linear_deceleration = options_.deceleration};
+}
+
+Outcome TeleopTopic::settle(const Error & why) const
+{
+  const auto stopped = host_.robot().end_motion(lease_, stop_options());
   return stopped ? Outcome(why)
                  : Outcome::failure(why.code, fmt::format("{}; standstill is not confirmed: {}", why.message,
                                                           stopped.error().message));

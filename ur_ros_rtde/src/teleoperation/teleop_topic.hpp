@@ -12,6 +12,7 @@
 #include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
 
@@ -32,7 +33,9 @@ class TeleopTopic {
 
   /// Called with the target of each message, or with the reason why it is invalid. Does not wait.
   void on_message(Expected<TeleopTarget> target);
-  /// Ends the session, if there is one, and starts no other.
+  /// Tells the session to end, if there is one, and starts no other. Returns at once.
+  void stop(const Error & why);
+  /// Calls stop() and joins the thread.
   void close();
 
  private:
@@ -56,12 +59,15 @@ class TeleopTopic {
 
   void serve(const std::stop_token & stop);
   Outcome run_session(std::uint64_t session, Latency & latency);
+  /// Tells the session of `lease` to end; the arm stops without waiting for its thread.
+  void end_session(const Error & why);
+  StopOptions stop_options() const;
   /// Sends commands until there is a reason to end the session, which it returns.
   Error follow(Run & run, std::uint64_t session, Latency & latency);
   Status check_timeout(const Message & message, std::uint64_t session) const;
   Status set_target(const Message & message, std::uint64_t session) const;
   /// Stops the arm. The outcome has the reason, and whether standstill is confirmed.
-  Outcome stop(const Error & why) const;
+  Outcome settle(const Error & why) const;
   Message newest() const;
   void log_end(const Outcome & outcome, const Latency & latency) const;
 
@@ -75,6 +81,7 @@ class TeleopTopic {
   std::condition_variable_any changed_;
   Message newest_;
   std::shared_ptr<StopRequest> stop_request_;  ///< of the current session
+  Lease lease_;                                ///< likewise
   bool closed_ = false;
   std::jthread thread_;
 };

@@ -24,8 +24,16 @@ Teleoperation::Teleoperation(CommandHost & host, const TeleoperationOptions & op
       [this](const geometry_msgs::msg::TwistStamped & m) { twists_.on_message(twist_target(m)); });
 }
 
+void Teleoperation::stop(const Error & why)
+{
+  for (TeleopTopic * topic : {&joints_, &poses_, &twists_}) {
+    topic->stop(why);
+  }
+}
+
 void Teleoperation::close()
 {
+  stop(Error{ErrorCode::shutdown, "the node is being shut down"});
   joints_.close();
   poses_.close();
   twists_.close();

@@ -14,7 +14,9 @@ namespace ur_ros_rtde {
 class Teleoperation {
  public:
   Teleoperation(CommandHost & host, const TeleoperationOptions & options, const LogFunction & log);
-  /// Ends all sessions and starts no other.
+  /// Tells all sessions to end and starts no other. Returns at once.
+  void stop(const Error & why);
+  /// Calls stop() and waits for their end.
   void close();
 
  private:

@@ -18,11 +18,11 @@ Outcome end_mode_after(Run & run, double duration, EndFunction end, const std::s
                        const std::function<void(const Sample &)> & observe)
 {
   const auto stop_reason = wait_for_duration(run, duration, observe);
-  if (stop_reason && stop_reason->code != ErrorCode::canceled) {
-    return *stop_reason;
+  // At a cancel, the driver ends the mode.
+  if (!stop_reason) {
+    end_mode(run, end, mode);
   }
-  end_mode(run, end, mode);
-  return Outcome::success();
+  return stop_reason && stop_reason->code != ErrorCode::canceled ? Outcome(*stop_reason) : Outcome::success();
 }
 
 void check_modes_inactive(Run & run, std::uint32_t modes, const std::string & requested_mode)

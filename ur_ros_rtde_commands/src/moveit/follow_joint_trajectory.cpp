@@ -125,7 +125,6 @@ void FollowJointTrajectory::start_action_server(CommandHost & host, const std::s
       declare("max_tracking_error", 0.3, 0.001, 3.14,
               "rad: above this error the goal is aborted and the arm stops, regardless of "
               "the tolerances of the goal");
-  servo_.preempted_by_stop = [&host] { return host.preemption_stop().has_value(); };
   Command<Action>::start_action_server(host, name);
 }
 

@@ -17,7 +17,7 @@ class PowerDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
   Outcome run(const Goal & goal, Run & run) override
   {
     const Robot & robot = run.robot();
-    const auto stopped = run.robot().stop_motion();
+    const auto stopped = run.wait_for_stop();
     if (!stopped && stopped.error().code != ErrorCode::link_lost) {
       return stopped.error();
     }

@@ -13,7 +13,7 @@ class SetWatchdog : public Command<ur_ros_rtde_msgs::action::SetWatchdog> {
         .answers_queries();
   }
 
-  Outcome run(const Goal & goal, Run & run) override { return run.robot().set_watchdog(goal.min_frequency); }
+  Outcome run(const Goal & goal, Run & run) override { return run.set_watchdog(goal.min_frequency); }
 };
 
 UR_ROS_RTDE_EXPORT(SetWatchdog, "set_watchdog")

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <future>
 #include <limits>
 
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
@@ -135,10 +134,10 @@ bool ServoStream::next_package()
 {
   const double before = state_.sample.controller_time;
   const auto deadline = std::chrono::steady_clock::now() + package_timeout;
-  while (std::chrono::steady_clock::now() < deadline && run_.robot().motion_possible()) {
+  while (std::chrono::steady_clock::now() < deadline && run_.may_brake()) {
     if (run_.robot().wait_for_next(state_.sample, std::chrono::milliseconds(10))) {
       add_elapsed(before);
-      return static_cast<bool>(run_.robot().motion_possible());
+      return run_.may_brake();
     }
   }
   return false;
@@ -159,30 +158,16 @@ bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits,
   return true;
 }
 
-/// The stop is planned in a separate thread while the arm continues along the plan. The stop begins `ahead` s
-/// later. If the planning takes longer, it is repeated with a larger `ahead`.
 void ServoStream::brake(const Trajectory & plan, const Limits & limits, TimeScaling & time_scaling)
 {
-  for (double ahead = 0.02; ahead < 1.0 && time_scaling.rate() > stopped_rate; ahead *= 4.0) {
-    if (settings_.preempted_by_stop() || !run_.robot().motion_possible()) {
-      return;
-    }
-    const double rate = time_scaling.rate();
-    const double from = time_scaling.time() + ahead * rate;
-    auto search = std::async(std::launch::async, [&plan, &limits, rate, from] {
-      return plan.slowed(rate).stop_from(from / rate, limits);
-    });
-    const auto found = [&] { return search.wait_for(std::chrono::seconds(0)) == std::future_status::ready; };
-    if (!continue_until(plan, limits, time_scaling, found)) {
-      return;
-    }
-    const Trajectory stop = search.get();
-    if (time_scaling.time() <= from) {
-      TimeScaling braking = make_time_scaling(1.0, time_scaling.time() / rate);
-      continue_until(stop, limits, braking, settings_.preempted_by_stop);
-      return;
-    }
+  const double rate = time_scaling.rate();
+  if (rate <= stopped_rate) {
+    return;
   }
+  const double from = time_scaling.time() + 0.02 * rate;
+  const Trajectory stop = plan.slowed(rate).stop_from(from / rate, limits);
+  TimeScaling braking = make_time_scaling(1.0, time_scaling.time() / rate);
+  continue_until(stop, limits, braking, [] { return false; });
 }
 
 Outcome ServoStream::settle()

@@ -13,9 +13,6 @@ namespace ur_ros_rtde {
 struct ServoSettings {
   ServoParameters parameters;
   double max_tracking_error = 0.3;  ///< rad
-  /// True if the goal was preempted by a command that determines the deceleration. The arm then does not
-  /// brake along the path.
-  std::function<bool()> preempted_by_stop = [] { return false; };
 };
 
 /// The state of the stream after each setpoint.
@@ -39,8 +36,8 @@ class ServoStream {
 
   ServoStream(Run & run, ServoSettings settings, SetpointCallback on_setpoint);
 
-  /// Streams `plan`, which starts at the position of the arm. If the goal has to stop meanwhile and the arm
-  /// can still move, brakes along the path within `limits` and returns the reason.
+  /// Streams `plan`, which starts at the position of the arm. If the goal has to end before, brakes along the
+  /// path within `limits`, unless a stop takes the arm, and returns the reason.
   Outcome execute(const trajectory::Trajectory & plan, const trajectory::Limits & limits);
   /// Waits until the arm has followed the last setpoint, then ends servo control.
   Outcome settle();

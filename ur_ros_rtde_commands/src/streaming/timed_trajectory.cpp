@@ -25,10 +25,12 @@ Expected<trajectory::Trajectory> plan_timed_trajectory(const trajectory_msgs::ms
                                                        const trajectory::Joints & start,
                                                        const trajectory::Limits & limits)
 {
-  return timed_waypoints(message).and_then([&](trajectory::TimedWaypoints waypoints) {
-    trajectory::prepend_start(waypoints, start);
-    return trajectory::plan_timed(waypoints, limits);
-  });
+  auto waypoints = timed_waypoints(message);
+  if (!waypoints) {
+    return tl::unexpected(waypoints.error());
+  }
+  trajectory::prepend_start(*waypoints, start);
+  return trajectory::plan_timed(*waypoints, limits);
 }
 
 }  // namespace ur_ros_rtde

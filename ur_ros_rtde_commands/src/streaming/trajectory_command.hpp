@@ -55,9 +55,7 @@ Execution TrajectoryCommand<A>::make_execution(const Goal & goal, Run & run) con
     execution.approach = goal.approach;
     execution.speed_fraction = goal.speed_fraction;
   }
-  execution.servo = {{goal.lookahead_time, goal.gain}, goal.max_tracking_error, [this] {
-                       return host_->preemption_stop().has_value();
-                     }};
+  execution.servo = {{goal.lookahead_time, goal.gain}, goal.max_tracking_error};
   execution.on_planned = [&run](const trajectory::Trajectory & plan) {
     run.result().duration = plan.duration();
   };

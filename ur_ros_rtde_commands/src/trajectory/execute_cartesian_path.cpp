@@ -27,11 +27,11 @@ Vector6 to_array(const std::vector<double> & values)
 }
 
 /// The inverse kinematics of the controller, which include the calibration of the arm.
-Expected<Joints> query_inverse_kinematics(Robot & robot, const Pose & pose, const Joints & guess)
+Expected<Joints> query_inverse_kinematics(const Run & run, const Pose & pose, const Joints & guess)
 {
   const Vector6 target = kinematics::to_ur(pose);
-  const auto q =
-      robot.control()->getInverseKinematics({target.begin(), target.end()}, {guess.begin(), guess.end()});
+  const auto q = run.control_for_queries()->getInverseKinematics({target.begin(), target.end()},
+                                                                 {guess.begin(), guess.end()});
   if (q.size() != 6) {
     return failure(ErrorCode::unreachable,
                    fmt::format("the controller finds no joint positions for ({:.3f}, {:.3f}, {:.3f}) m",
@@ -70,15 +70,16 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
     execution.plan = [&](const Joints & start, const std::stop_token & stop) {
       const trajectory::Limits limits = limits_of(goal);
       const auto reference = [&run](const Pose & pose, const Joints & guess) {
-        return query_inverse_kinematics(run.robot(), pose, guess);
+        return query_inverse_kinematics(run, pose, guess);
       };
-      return kinematics::identify_arm(start, poses.front(), tool, run.robot().calibration())
-          .and_then([&](const kinematics::Arm & known) {
-            return kinematics::plan_cartesian(poses, known, start, limits,
-                                              {goal.speed, goal.rotation_speed, goal.blend_radius}, reference,
-                                              stop);
-          })
-          .map([&](trajectory::Trajectory plan) { return PlannedTrajectory{std::move(plan), limits}; });
+      const auto arm = kinematics::identify_arm(start, poses.front(), tool, run.robot().calibration());
+      if (!arm) {
+        return Expected<PlannedTrajectory>(tl::unexpected(arm.error()));
+      }
+      return Expected<PlannedTrajectory>(
+          kinematics::plan_cartesian(poses, *arm, start, limits,
+                                     {goal.speed, goal.rotation_speed, goal.blend_radius}, reference, stop)
+              .map([&](trajectory::Trajectory plan) { return PlannedTrajectory{std::move(plan), limits}; }));
     };
     return finish(execute(run, execution), run);
   }

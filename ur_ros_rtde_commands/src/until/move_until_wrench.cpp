@@ -111,13 +111,7 @@ Outcome MoveUntilWrench::run(const Goal & goal, Run & run)
     return *why;
   }
   run.control()->speedL(to_ur(goal.twist), goal.acceleration, 0.0);
-  const Outcome outcome = wait_for_threshold(goal, run, offset);
-  if (!outcome) {
-    return outcome;  // the base class stops the arm
-  }
-  run.control()->speedStop(goal.deceleration);
-  const auto why = run.until_standstill();
-  return why ? Outcome(*why) : outcome;
+  return wait_for_threshold(goal, run, offset);  // the base class stops the arm
 }
 
 }  // namespace ur_ros_rtde

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -11,7 +12,8 @@
 #include "ur_ros_rtde_robot/connection/link.hpp"
 #include "ur_ros_rtde_robot/connection/locked.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
-#include "ur_ros_rtde_robot/motion/arbiter.hpp"
+#include "ur_ros_rtde_robot/motion/activity.hpp"
+#include "ur_ros_rtde_robot/motion/lease.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_robot/program/extension_options.hpp"
 #include "ur_ros_rtde_robot/program/script.hpp"
@@ -31,6 +33,9 @@ class RTDEReceiveInterface;
 }  // namespace ur_rtde
 
 namespace ur_ros_rtde {
+
+/// The reason for holders that are stopped by Robot::stop_motion().
+Error stopped_by_the_driver();
 
 /// One robot. Connects ur_rtde's four interfaces in the background, in any power-up order, and reconnects
 /// them after a reboot, a pulled cable or a stopped program. Provides the functions that commands share:
@@ -72,9 +77,30 @@ class Robot {
   const std::string & address() const;
   int realtime_priority() const;
 
+  /// Who may use the robot. A claim that moves the arm is granted if the robot is ready, no stop is under
+  /// way, nobody guides the arm by hand, and no other holder is in the way.
+  Expected<Lease> acquire(Claim claim);
+  /// The same, after preempting the holders that are in the way. Waits up to `timeout`, or until `stop`, for
+  /// them.
+  Expected<Lease> acquire_preempting(Claim claim, std::chrono::milliseconds timeout,
+                                     const std::stop_token & stop = {});
+  /// Success if acquire() would grant the claim to a caller that preempts all holders.
+  Status may_use(const Claim & claim) const;
+  /// The claim of the holder that a claim on `resource` conflicts with.
+  std::optional<Claim> holder(Resource resource) const;
+  /// The current run of the control program over the current connection.
+  Generation generation() const;
+  /// Success if `generation` is the current one; otherwise what ended it.
+  Status is_current(const Generation & generation) const;
+  /// Success while the holder of `lease` may go on: no stop has taken the arm out of its hands, the control
+  /// program and the connection are those with which it began, and the robot can move.
+  Status may_continue(const Lease & lease) const;
+
   /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) if the interface is
-  /// unavailable.
-  Locked<ur_rtde::RTDEControlInterface> control() const;
+  /// unavailable. The calls of a holder that may not go on throw RobotError with the reason.
+  Locked<ur_rtde::RTDEControlInterface> control(const Lease & lease);
+  /// For queries.
+  Locked<ur_rtde::RTDEControlInterface> control();
   Locked<ur_rtde::RTDEReceiveInterface> receive() const;
   Locked<ur_rtde::RTDEIOInterface> io() const;
   Locked<ur_rtde::DashboardClient> dashboard() const;
@@ -86,7 +112,7 @@ class Robot {
 
   /// The newest sample; none before the first.
   std::optional<Sample> latest() const;
-  /// See StateReceiver::wait_for_next(). motion_progress() and moving() then include this sample.
+  /// See StateReceiver::wait_for_next(). motion_progress() and is_moving() then include this sample.
   bool wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop = {}) const;
 
   /// Success if a motion can continue now; else the reason why not: a safety stop, a stopped program, a lost
@@ -98,28 +124,60 @@ class Robot {
   /// Progress of the motion since `mark`. Commands without an asynchronous operation (speed_l, servo_j) only
   /// change at_rest.
   MotionProgress motion_progress(const MotionMark & mark) const;
-  /// True if a joint moves or an asynchronous operation is running.
-  bool moving() const;
-  /// True in freedrive or teach mode, in which an operator may move the arm by hand.
-  bool in_freedrive() const;
+  /// A joint moves, or an asynchronous operation is running.
+  bool is_moving() const;
+  /// What has been started and not ended, moving or not.
+  Activities activities() const;
   /// Makes the control program stop the arm if it receives no heartbeat for 1/frequency s (Hz,
   /// min_watchdog_frequency to max_watchdog_frequency). A restarted control program uses
   /// RobotOptions::watchdog_frequency again.
   Status set_watchdog(double frequency);
 
-  /// Decelerates any motion and waits for standstill, determined from the actual joint velocities. If that
-  /// fails, stops the program through the dashboard server. On error, standstill is not confirmed.
-  Expected<StopReport> stop_motion(const StopOptions & options = {});
+  /// Stops the arm, whoever moves it: takes it out of the hands of all holders, who are told `why`,
+  /// decelerates, and waits for standstill, determined from the actual joint velocities. If the control
+  /// program does not do it, the dashboard server stops the program, then its watchdog. On error, standstill
+  /// is not confirmed.
+  Expected<StopReport> stop_motion(const StopOptions & options = {},
+                                   const Error & why = stopped_by_the_driver());
+  /// The same without waiting. Returns at once; the arm decelerates within 20 ms.
+  std::shared_future<Expected<StopReport>> begin_stop(const StopOptions & options, const Error & why);
+  /// Tells the holder of `lease` to end because of `why`: stops what it has started, unless it brakes by
+  /// itself (Braking) within `braking_timeout`. Returns at once.
+  void request_stop(const Lease & lease, const StopOptions & options, const Error & why,
+                    std::chrono::milliseconds braking_timeout);
+  /// For a holder that ends: stops what it has started, or waits for the stop that has taken the arm out of
+  /// its hands.
+  Expected<StopReport> end_motion(const Lease & lease, const StopOptions & options);
+  /// A stop is under way.
+  bool is_stopping() const;
+  /// The holder of `lease` was told to end, and what it had started has been stopped. True without a lease.
+  bool is_stopped(const Lease & lease) const;
+
+  /// While it exists, the holder of the lease streams a motion that it can brake by itself. If it is told to
+  /// end, it has to begin within 10 ms.
+  class Braking {
+   public:
+    explicit Braking(const Lease & lease);
+    ~Braking();
+    Braking(const Braking &) = delete;
+    Braking & operator=(const Braking &) = delete;
+    /// A setpoint was sent that brakes. The arm will be at rest within `remaining`.
+    void sent(std::chrono::duration<double> remaining) const;
+
+   private:
+    std::shared_ptr<Permit> permit_;
+  };
 
   /// Sends `script` to the controller and waits until it has ended. `script` is a complete program
   /// (`def … end`, or `sec … end` for a secondary one) or a function body, which is wrapped in a function. If
   /// ScriptOptions::stop_reason or the limit ends the script, it is stopped and the arm decelerates.
   ///
-  /// A program replaces the control program (with control_urcap: not_supported); the caller must hold
+  /// A program replaces the control program (with control_urcap: not_supported) and needs a lease of
   /// Resource::script. While it runs, status() stays ready, control() throws RobotError (busy), and the
   /// controller ends the program if this process sends no heartbeat (RobotOptions::watchdog_frequency). The
   /// control program runs again on return, unless the robot is stopped or the connection is lost.
-  ScriptReport run_script(const std::string & script, const ScriptOptions & options = {});
+  ScriptReport run_script(const Lease & lease, const std::string & script,
+                          const ScriptOptions & options = {});
 
   /// Adds extensions to the control program. Set before start(). Returns one message per omitted extension,
   /// with the reason. An extension that the controller rejects later (for example because it lacks a
@@ -127,10 +185,10 @@ class Robot {
   std::vector<std::string> set_extensions(const std::vector<ScriptExtension> & extensions);
   /// not_supported, with the reason, if the extension was omitted.
   Status has_extension(const std::string & name) const;
-  /// Runs an extension and waits for its end. If ExtensionOptions::stop_reason or the limit ends it, its
-  /// motion decelerates. The caller must hold Resource::motion. If the snippet fails, the error is
-  /// rejected_by_robot and names the line.
-  Status run_extension(const std::string & name, const ExtensionOptions & options = {});
+  /// Runs an extension and waits for its end. If ExtensionOptions::stop_reason or the limit ends it, the arm
+  /// decelerates. Needs a lease of Resource::motion. If the snippet fails, the error is rejected_by_robot and
+  /// names the line.
+  Status run_extension(const Lease & lease, const std::string & name, const ExtensionOptions & options = {});
   /// Writes a parameter of an extension: general purpose register 19 to 22, without the offset of the upper
   /// range. Sample::output_int_registers and output_double_registers contain the results.
   Status set_input_register(int index, std::int32_t value);
@@ -138,9 +196,10 @@ class Robot {
   /// Number of the first register in use: 24 in the upper range, else 0.
   int register_offset() const;
 
-  Arbiter & arbiter();
-
  private:
+  /// Whether the holder may command the arm.
+  std::function<Status()> permission(const Lease & lease) const;
+
   class Impl;
   std::unique_ptr<Impl> impl_;
 };

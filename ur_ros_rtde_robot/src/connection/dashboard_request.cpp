@@ -74,4 +74,17 @@ Expected<std::string> dashboard_request(const std::string & address, const std::
   return next_line(*socket, received, {begin + limit, stop});
 }
 
+Status stop_program(const std::string & address)
+{
+  constexpr std::chrono::milliseconds timeout{500};
+  const auto answer = dashboard_request(address, "stop", timeout, {});
+  if (!answer) {
+    return tl::unexpected(answer.error());
+  }
+  if (answer->find("Stopped") == std::string::npos) {
+    return failure(ErrorCode::rejected_by_robot, fmt::format("the robot answered `stop` with: {}", *answer));
+  }
+  return {};
+}
+
 }  // namespace ur_ros_rtde

@@ -15,4 +15,7 @@ namespace ur_ros_rtde {
 Expected<std::string> dashboard_request(const std::string & address, const std::string & line,
                                         std::chrono::milliseconds limit, const std::stop_token & stop);
 
+/// Stops the program that runs on the robot. Fails with the robot's answer if it does not.
+Status stop_program(const std::string & address);
+
 }  // namespace ur_ros_rtde

@@ -8,7 +8,7 @@
 
 namespace ur_ros_rtde {
 
-bool InterfaceLock::try_lock_for(std::chrono::milliseconds limit)
+bool InterfaceLock::try_lock_for(std::chrono::milliseconds timeout, Place place)
 {
   const auto self = std::this_thread::get_id();
   std::unique_lock lock(mutex_);
@@ -16,8 +16,9 @@ bool InterfaceLock::try_lock_for(std::chrono::milliseconds limit)
     ++depth_;
     return true;
   }
-  waiting_.push_back(self);
-  const bool mine = released_.wait_for(lock, limit, [&] { return depth_ == 0 && waiting_.front() == self; });
+  waiting_.insert(place == Place::first ? waiting_.begin() : waiting_.end(), self);
+  const bool mine =
+      released_.wait_for(lock, timeout, [&] { return depth_ == 0 && waiting_.front() == self; });
   waiting_.erase(std::find(waiting_.begin(), waiting_.end(), self));
   if (mine) {
     owner_ = self;
@@ -41,17 +42,21 @@ void InterfaceLock::unlock()
   released_.notify_all();
 }
 
-std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> acquire(InterfaceLock & lock, const char * what,
-                                                                  std::chrono::milliseconds limit)
+HeldLock held(InterfaceLock * lock)
 {
-  if (!lock.try_lock_for(limit)) {
+  return {lock, [](InterfaceLock * locked) { locked->unlock(); }};
+}
+
+HeldLock acquire(InterfaceLock & lock, const char * what, std::chrono::milliseconds timeout)
+{
+  if (!lock.try_lock_for(timeout)) {
     throw RobotError(
         {ErrorCode::busy,
          fmt::format("another call of the {} has been running for {} ms: try again when it has ended, or "
                      "use the asynchronous form of that call",
-                     what, limit.count())});
+                     what, timeout.count())});
   }
-  return {&lock, [](InterfaceLock * held) { held->unlock(); }};
+  return held(&lock);
 }
 
 }  // namespace ur_ros_rtde

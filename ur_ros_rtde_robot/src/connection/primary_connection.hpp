@@ -59,6 +59,8 @@ class PrimaryConnection {
   static Expected<PrimaryConnection> connect(const std::string & address, std::chrono::milliseconds limit);
 
   Status send(std::string_view script, std::chrono::milliseconds limit);
+  /// Nothing can be sent afterwards. Does not wait; may be called by another thread.
+  void shut_down_sending() const { socket_.shut_down_writing(); }
   /// The next message; none if none arrives within `wait`.
   Expected<std::optional<PrimaryMessage>> next(std::chrono::milliseconds wait);
   /// Waits for PrimaryReader::arm_data().

@@ -158,6 +158,11 @@ Status TcpSocket::wait_for(short events, Clock::time_point deadline) const
   return failure(ErrorCode::link_lost, fmt::format("{} does not answer", name_));
 }
 
+void TcpSocket::shut_down_writing() const
+{
+  ::shutdown(descriptor_, SHUT_WR);
+}
+
 Status TcpSocket::write(std::span<const std::byte> data, Clock::time_point deadline)
 {
   while (!data.empty()) {

@@ -1,4 +1,4 @@
-#include "ur_ros_rtde_robot/motion/arbiter.hpp"
+#include "motion/arbiter.hpp"
 
 #include <fmt/format.h>
 
@@ -6,44 +6,19 @@
 #include <condition_variable>
 #include <mutex>
 #include <utility>
-#include <vector>
 
 namespace ur_ros_rtde {
-
-struct Arbiter::Table {
-  struct Entry {
-    std::uint64_t key;
-    Claim claim;
-  };
-
-  static bool conflict(Resource a, Resource b)
-  {
-    const auto moves = [](Resource resource) {
-      return resource == Resource::motion || resource == Resource::script;
-    };
-    return a != Resource::none && (a == b || (moves(a) && moves(b)));
-  }
-
-  /// The mutex must be held.
-  const Entry * conflicting_entry(Resource resource) const
-  {
-    const auto found = std::find_if(entries.begin(), entries.end(),
-                                    [&](const Entry & e) { return conflict(resource, e.claim.resource); });
-    return found == entries.end() ? nullptr : &*found;
-  }
-
-  std::mutex mutex;
-  std::condition_variable released;
-  std::vector<Entry> entries;
-  std::uint64_t next_key = 1;
-};
-
-struct Lease::State {
-  std::shared_ptr<Arbiter::Table> table;
-  std::uint64_t key;
-};
-
 namespace {
+
+bool conflicts(Resource a, Resource b)
+{
+  const auto excluded_by_script = [](Resource resource) { return moves_arm(resource); };
+  if (a == Resource::none || b == Resource::none) {
+    return false;
+  }
+  return a == b || (a == Resource::script && excluded_by_script(b)) ||
+         (b == Resource::script && excluded_by_script(a));
+}
 
 std::string name(const Claim & claim)
 {
@@ -52,26 +27,97 @@ std::string name(const Claim & claim)
 
 }  // namespace
 
+struct Lease::Table {
+  std::mutex mutex;
+  std::condition_variable_any released;
+  std::vector<std::shared_ptr<Permit>> permits;
+  std::vector<const Claim *> waiting;
+
+  /// The mutex must be held.
+  std::shared_ptr<Permit> conflicting(Resource resource) const
+  {
+    const auto found = std::find_if(permits.begin(), permits.end(), [&](const auto & permit) {
+      return conflicts(resource, permit->claim().resource);
+    });
+    return found == permits.end() ? nullptr : *found;
+  }
+
+  std::vector<std::function<void(const Error &)>> preempt_functions_of_waiting(Resource resource)
+  {
+    std::vector<std::function<void(const Error &)>> functions;
+    const std::lock_guard lock(mutex);
+    for (const Claim * claim : waiting) {
+      if (claim->preempt && conflicts(resource, claim->resource)) {
+        functions.push_back(claim->preempt);
+      }
+    }
+    return functions;
+  }
+
+  /// A claim that waits for its resource. The mutex must be held at both ends of its lifetime.
+  class Waiting {
+   public:
+    Waiting(Table & table, const Claim & claim) : table_(table), claim_(&claim)
+    {
+      table_.waiting.push_back(claim_);
+    }
+    ~Waiting() { std::erase(table_.waiting, claim_); }
+    Waiting(const Waiting &) = delete;
+    Waiting & operator=(const Waiting &) = delete;
+
+   private:
+    Table & table_;
+    const Claim * const claim_;
+  };
+
+  /// The mutex must be held.
+  static Expected<Lease> grant(const std::shared_ptr<Table> & table, Claim claim,
+                               const Arbiter::Admission & admit)
+  {
+    if (const auto holder = table->conflicting(claim.resource)) {
+      return failure(ErrorCode::busy,
+                     fmt::format("{} is running and holds the resource {}: wait for its end, or cancel it",
+                                 name(holder->claim()), to_string(holder->claim().resource)));
+    }
+    const auto generation = admit();
+    if (!generation) {
+      return tl::unexpected(generation.error());
+    }
+    auto permit = std::make_shared<Permit>(std::move(claim), *generation);
+    table->permits.push_back(permit);
+    return Lease(table, std::move(permit));
+  }
+};
+
 const char * to_string(Resource resource)
 {
   switch (resource) {
     case Resource::none:
       return "none";
-    case Resource::motion:
-      return "motion";
     case Resource::io:
       return "io";
+    case Resource::motion:
+      return "motion";
+    case Resource::mode:
+      return "mode";
     case Resource::script:
       return "script";
   }
   return "unknown";
 }
 
-Lease::Lease(std::shared_ptr<State> state) : state_(std::move(state)) {}
-Lease::Lease(Lease && other) noexcept : state_(std::exchange(other.state_, nullptr)) {}
+Lease::Lease(std::shared_ptr<Table> table, std::shared_ptr<Permit> permit)
+    : table_(std::move(table)), permit_(std::move(permit))
+{
+}
+Lease::Lease(Lease && other) noexcept
+    : table_(std::exchange(other.table_, nullptr)), permit_(std::exchange(other.permit_, nullptr))
+{
+}
 Lease & Lease::operator=(Lease && other) noexcept
 {
-  std::swap(state_, other.state_);
+  std::swap(table_, other.table_);
+  std::swap(permit_, other.permit_);
   other.release();
   return *this;
 }
@@ -80,67 +126,73 @@ Lease::~Lease()
   release();
 }
 
-void Lease::release()
+void Lease::release() const
 {
-  if (!state_) {
+  if (!permit_) {
     return;
   }
-  const auto state = std::exchange(state_, nullptr);
+  permit_->revoke(Error{ErrorCode::canceled, "this goal has ended"});
   {
-    const std::lock_guard lock(state->table->mutex);
-    std::erase_if(state->table->entries, [&](const auto & entry) { return entry.key == state->key; });
+    const std::lock_guard lock(table_->mutex);
+    std::erase(table_->permits, permit_);
   }
-  state->table->released.notify_all();
+  table_->released.notify_all();
 }
 
-Arbiter::Arbiter() : table_(std::make_shared<Table>()) {}
+Arbiter::Arbiter() : table_(std::make_shared<Lease::Table>()) {}
 
-Expected<Lease> Arbiter::acquire(Claim claim)
+Expected<Lease> Arbiter::acquire(Claim claim, const Admission & admit)
 {
   const std::lock_guard lock(table_->mutex);
-  if (const auto * entry = table_->conflicting_entry(claim.resource)) {
-    return failure(ErrorCode::busy,
-                   fmt::format("{} is running and holds the resource {}: wait for its end, or cancel it",
-                               name(entry->claim), to_string(entry->claim.resource)));
-  }
-  const auto key = table_->next_key++;
-  table_->entries.push_back({key, std::move(claim)});
-  return Lease(std::make_shared<Lease::State>(Lease::State{table_, key}));
+  return Lease::Table::grant(table_, std::move(claim), admit);
 }
 
-Expected<Lease> Arbiter::acquire_preempting(Claim claim, std::chrono::milliseconds limit)
+Expected<Lease> Arbiter::acquire_preempting(Claim claim, const Admission & admit,
+                                            std::chrono::milliseconds timeout, const std::stop_token & stop)
 {
-  const auto deadline = std::chrono::steady_clock::now() + limit;
-  std::vector<std::uint64_t> asked;
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  const Error why{ErrorCode::preempted, fmt::format("preempted by {}", name(claim))};
+  std::vector<std::shared_ptr<Permit>> asked;
+  for (const auto & preempt : table_->preempt_functions_of_waiting(claim.resource)) {
+    preempt(why);  // the newest claim wins
+  }
   std::unique_lock lock(table_->mutex);
-  while (const auto * entry = table_->conflicting_entry(claim.resource)) {
-    if (!entry->claim.preempt) {
+  const Lease::Table::Waiting waiting(*table_, claim);
+  while (const auto holder = table_->conflicting(claim.resource)) {
+    if (!holder->claim().preempt) {
       break;
     }
-    const auto key = entry->key;
-    if (std::find(asked.begin(), asked.end(), key) == asked.end()) {
-      asked.push_back(key);
-      const auto preempt = entry->claim.preempt;
+    if (std::find(asked.begin(), asked.end(), holder) == asked.end()) {
+      asked.push_back(holder);
       lock.unlock();
-      preempt(name(claim));
+      holder->claim().preempt(why);
       lock.lock();
       continue;
     }
-    if (table_->released.wait_until(lock, deadline) == std::cv_status::timeout) {
+    const auto is_released = [&] { return table_->conflicting(claim.resource) != holder; };
+    if (!table_->released.wait_until(lock, stop, deadline, is_released)) {
       break;
     }
   }
-  lock.unlock();
-  return acquire(std::move(claim));
+  return Lease::Table::grant(table_, claim, admit);
 }
 
-std::optional<Arbiter::Holder> Arbiter::holder(Resource resource) const
+std::shared_ptr<const Permit> Arbiter::holder(Resource resource) const
 {
   const std::lock_guard lock(table_->mutex);
-  if (const auto * entry = table_->conflicting_entry(resource)) {
-    return Holder{entry->claim.owner, entry->claim.id};
+  return table_->conflicting(resource);
+}
+
+std::vector<std::shared_ptr<Permit>> Arbiter::arm_holders() const
+{
+  std::vector<std::shared_ptr<Permit>> holders;
+  const std::lock_guard lock(table_->mutex);
+  for (const auto & permit : table_->permits) {
+    if (moves_arm(permit->claim().resource)) {
+      holders.push_back(permit);
+    }
   }
-  return std::nullopt;
+  return holders;
 }
 
 }  // namespace ur_ros_rtde

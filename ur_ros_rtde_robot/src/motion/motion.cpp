@@ -16,6 +16,8 @@ const char * to_string(StopMeans means)
       return "program stopped";
     case StopMeans::stopped_by_robot:
       return "stopped by the robot";
+    case StopMeans::watchdog:
+      return "program stopped by its watchdog";
   }
   return "unknown";
 }

@@ -1,199 +1,237 @@
+// The requests of other threads, and the stopper's thread.
 #include "motion/motion_stopper.hpp"
 
-#include <fmt/format.h>
-#include <ur_rtde/rtde_control_interface.h>
+#include <algorithm>
 
-#include <array>
-
-#include "connection/ports.hpp"
-#include "motion/motion_blocker.hpp"
-#include "state/wait_until.hpp"
-#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
+#include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
+#include "ur_ros_rtde_robot/connection/text.hpp"
 
 namespace ur_ros_rtde {
 namespace {
 
-using Control = ur_rtde::RTDEControlInterface;
 using std::chrono::milliseconds;
 
-constexpr std::uint32_t moves = Control::MOTION_MOVE_JOINT | Control::MOTION_MOVE_LINEAR;
+/// For a holder that brakes by itself: to its first braking setpoint, and between two of them.
+constexpr milliseconds braking_begin_timeout(10);
+constexpr milliseconds braking_pause_timeout(25);
+/// A holder is late if it is found to be late twice at this interval: this process may just not have run.
+constexpr milliseconds supervision_interval(5);
 
-/// Limits the time of a stop command, which is minutes by default.
-class CommandLimit {
- public:
-  CommandLimit(Control & control, milliseconds limit) : control_(control)
-  {
-    control_.setCommandTimeout(limit);
-  }
-  ~CommandLimit() { control_.setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT)); }
-  CommandLimit(const CommandLimit &) = delete;
-  CommandLimit & operator=(const CommandLimit &) = delete;
-
- private:
-  Control & control_;
-};
-
-/// Sends the stop command of each kind of motion that was started. Servo and speed motions must end before
-/// another command moves the arm.
-void send_stops(Control & control, const StopOptions & options)
+StopOptions stronger(const StopOptions & a, const StopOptions & b)
 {
-  const auto started = control.getStartedMotions();
-  const auto has = [started](std::uint32_t kind) { return (started & kind) != 0; };
-  if (has(Control::MOTION_SERVO)) {
-    control.servoStop(options.linear_deceleration);
-  }
-  if (has(Control::MOTION_SPEED_JOINT)) {
-    control.speedStop(options.joint_deceleration);
-  }
-  if (has(Control::MOTION_SPEED_LINEAR)) {
-    control.speedStop(options.linear_deceleration);
-  }
-  if (has(Control::MOTION_FORCE)) {
-    control.forceModeStop();
-  }
-  if (has(Control::MOTION_JOG)) {
-    control.jogStop();
-  }
-  if (has(Control::MOTION_FREEDRIVE)) {
-    control.endFreedriveMode();
-  }
-  if (has(Control::MOTION_TEACH)) {
-    control.endTeachMode();
-  }
-  if (has(Control::MOTION_MOVE_JOINT)) {
-    control.stopJ(options.joint_deceleration, true);
-  }
-  if (has(Control::MOTION_MOVE_LINEAR)) {
-    control.stopL(options.linear_deceleration, true);
-  }
-  if (has(Control::MOTION_TORQUE)) {
-    control.stopScript();
-  }
+  StopOptions result = a;
+  result.joint_deceleration = std::max(a.joint_deceleration, b.joint_deceleration);
+  result.linear_deceleration = std::max(a.linear_deceleration, b.linear_deceleration);
+  result.timeout =
+      a.timeout && b.timeout ? std::min(*a.timeout, *b.timeout) : (a.timeout ? a.timeout : b.timeout);
+  result.keep = a.keep & b.keep;
+  return result;
+}
+
+Stopping completed(Expected<StopReport> result)
+{
+  std::promise<Expected<StopReport>> promise;
+  promise.set_value(std::move(result));
+  return promise.get_future().share();
 }
 
 }  // namespace
 
-Status stop_program(const std::string & address, milliseconds limit)
+/// No claim is granted between the revocation of the permits and the beginning of the stop.
+class MotionStopper::Beginning {
+ public:
+  explicit Beginning(MotionStopper & stopper) : stopper_(stopper)
+  {
+    const std::lock_guard lock(stopper_.mutex_);
+    ++stopper_.beginning_;
+    stopper_.supervision_.reset();
+  }
+  ~Beginning()
+  {
+    {
+      const std::lock_guard lock(stopper_.mutex_);
+      --stopper_.beginning_;
+    }
+    stopper_.changed_.notify_all();
+  }
+  Beginning(const Beginning &) = delete;
+  Beginning & operator=(const Beginning &) = delete;
+
+ private:
+  MotionStopper & stopper_;
+};
+
+MotionStopper::MotionStopper(const RobotOptions & options, const StateReceiver & state,
+                             RtdeInterfaces & interfaces, InputRegisters & registers,
+                             const MotionTracker & tracker, const StartedActivities & activities,
+                             const Arbiter & arbiter)
+    : options_(options),
+      state_(state),
+      interfaces_(interfaces),
+      registers_(registers),
+      tracker_(tracker),
+      activities_(activities),
+      arbiter_(arbiter),
+      last_(completed(StopReport{})),
+      thread_([this](const std::stop_token & stop) { serve(stop); })
 {
-  auto socket = TcpSocket::connect(address, dashboard_port, limit);
-  if (!socket) {
-    return tl::unexpected(socket.error());
-  }
-  const auto deadline = TcpSocket::Clock::now() + limit;
-  if (const auto greeting = socket->read_line(deadline); !greeting) {
-    return tl::unexpected(greeting.error());
-  }
-  if (const auto sent = socket->write("stop\n", deadline); !sent) {
-    return sent;
-  }
-  const auto answer = socket->read_line(deadline);
-  if (!answer) {
-    return tl::unexpected(answer.error());
-  }
-  if (answer->find("Stopped") == std::string::npos) {
-    return failure(ErrorCode::rejected_by_robot, fmt::format("the robot answered `stop` with: {}", *answer));
-  }
-  return {};
 }
 
-bool MotionStopper::is_moving() const
+void MotionStopper::close()
 {
-  const auto view = tracker_.view();
-  if (!view.at_rest || view.operating()) {
-    return true;
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
   }
-  const auto control = interfaces_.control_interface();
-  if (!control) {
-    return false;
-  }
-  const auto started = control->getStartedMotions();
-  // Includes a move that was sent but has not been acknowledged. Excludes a move that has ended.
-  const bool move_pending =
-      (started & moves) != 0 &&
-      view.async.word == static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove());
-  return move_pending || (started & ~moves) != 0;
-}
-
-bool MotionStopper::command_stop(const StopOptions & options)
-{
-  const auto control = interfaces_.control_interface();
-  if (!control) {
-    return false;
-  }
-  // A blocking command holds the lock. When abandoned, it releases the lock at once, but the control program
-  // may still be blocked.
-  bool held = interfaces_.control_lock()->try_lock_for(milliseconds(20));
-  for (int attempt = 0; !held && attempt < 10; ++attempt) {
-    control->abandonCommand();
-    held = interfaces_.control_lock()->try_lock_for(milliseconds(20));
-  }
-  if (!held) {
-    return false;
-  }
-  const std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> unlock(
-      interfaces_.control_lock().get(), [](InterfaceLock * lock) { lock->unlock(); });
-  try {
-    const CommandLimit limit(*control, options.limit);
-    send_stops(*control, options);
-    return control->getStartedMotions() == 0;
-  } catch (const std::exception &) {
-    return false;
+  thread_.request_stop();
+  if (thread_.joinable()) {
+    thread_.join();
   }
 }
 
-bool MotionStopper::wait_for_standstill(milliseconds limit) const
-{
-  // The samples reflect commands with a delay of some cycles.
-  constexpr std::uint64_t cycles = 5;
-  const auto begin = tracker_.view().sequence;
-  return wait_until(state_, limit, [&](const Sample &) {
-    const auto view = tracker_.view();
-    return view.sequence >= begin + cycles && view.at_rest && !view.operating();
-  });
-}
-
-Expected<StopReport> MotionStopper::stop(const StopOptions & options)
+bool MotionStopper::is_stopping() const
 {
   const std::lock_guard lock(mutex_);
-  const auto sample = state_.latest();
-  if (!state_.link().connected || !sample) {
-    return link_lost();
-  }
-  const auto begin = tracker_.view().controller_time;
-  const auto report = [&](StopMeans means) {
-    return StopReport{means, tracker_.view().controller_time - begin};
-  };
-  if (!is_moving()) {
-    return report(StopMeans::nothing_moved);
-  }
-  if (motion_blocker(*sample) || !sample->program_running()) {
-    if (wait_for_standstill(options.program_stop_limit)) {
-      return report(StopMeans::stopped_by_robot);
-    }
-  } else if (command_stop(options) && wait_for_standstill(options.limit)) {
-    return report(StopMeans::stop_command);
-  }
-  const auto stopped = state_.link().connected ? stop_program(address_, milliseconds(500)) : Status();
-  if (stopped && wait_for_standstill(options.program_stop_limit)) {
-    return report(StopMeans::program_stopped);
-  }
-  interfaces_.close_control();  // ends the heartbeat, so that the watchdog stops the program
-  if (wait_for_standstill(options.program_stop_limit)) {
-    return report(StopMeans::program_stopped);
-  }
-  if (!state_.link().connected) {
-    return link_lost();
-  }
-  return failure(ErrorCode::timeout,
-                 fmt::format("all attempts to stop the arm have failed{}: use the emergency stop",
-                             stopped ? "" : " (" + stopped.error().message + ")"));
+  return operation_ || beginning_ > 0;
 }
 
-tl::unexpected<Error> MotionStopper::link_lost() const
+bool MotionStopper::wait_until_idle(Clock::time_point deadline, const std::stop_token & stop)
 {
-  return failure(ErrorCode::link_lost,
-                 fmt::format("cannot tell the robot to stop: {}. The watchdog of its program stops it",
-                             state_.link().error.message));
+  std::unique_lock lock(mutex_);
+  return changed_.wait_until(lock, stop, deadline, [this] { return !operation_ && beginning_ == 0; });
+}
+
+Stopping MotionStopper::begin(const StopOptions & options, const Error & why)
+{
+  Stopping stopping;
+  decltype(arbiter_.arm_holders()) holders;
+  {
+    const Beginning beginning(*this);
+    holders = arbiter_.arm_holders();
+    std::erase_if(holders, [&](const auto & holder) { return !holder->revoke(why); });
+    stopping = begin_operation(options);
+  }
+  for (const auto & holder : holders) {
+    if (holder->claim().preempt) {
+      holder->claim().preempt(why);
+    }
+  }
+  return stopping;
+}
+
+Stopping MotionStopper::end(Permit & holder, const StopOptions & options)
+{
+  {
+    const Beginning beginning(*this);
+    if (holder.revoke(Error{ErrorCode::canceled, "this goal has ended"})) {
+      return begin_operation(options);
+    }
+  }
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return beginning_ == 0; });  // by the one that has revoked the permit
+  return operation_ ? operation_->stopping : last_;
+}
+
+void MotionStopper::request(const std::shared_ptr<Permit> & holder, const StopOptions & options,
+                            const Error & why, milliseconds braking_timeout)
+{
+  if (holder->brakes_itself() && !holder->revoked()) {
+    {
+      const std::lock_guard lock(mutex_);
+      const auto now = Clock::now();
+      supervision_ = {holder, options, why, now + braking_begin_timeout, now + braking_timeout};
+    }
+    changed_.notify_all();
+    return;
+  }
+  const Beginning beginning(*this);
+  // The holder of a mode does not own what moves the arm; its goal decides what to do.
+  if (holder->revoke(why) && holder->claim().resource != Resource::mode) {
+    begin_operation(options);
+  }
+}
+
+Stopping MotionStopper::begin_operation(const StopOptions & options)
+{
+  Stopping stopping;
+  {
+    const std::lock_guard lock(mutex_);
+    if (closed_) {
+      return completed(failure(ErrorCode::shutdown, "the driver is shutting down"));
+    }
+    if (!operation_) {
+      operation_ = std::make_unique<Operation>();
+      operation_->options = options;
+    } else {
+      operation_->options = stronger(operation_->options, options);
+    }
+    options_changed_ = true;
+    stopping = operation_->stopping;
+  }
+  changed_.notify_all();
+  return stopping;
+}
+
+void MotionStopper::serve(const std::stop_token & stop)
+{
+  const RealtimePriority priority(options_.realtime_priority);
+  std::unique_lock lock(mutex_);
+  while (true) {
+    const auto has_work = [this] { return operation_ && beginning_ == 0; };
+    if (supervision_) {
+      changed_.wait_for(lock, stop, supervision_interval, has_work);
+    } else {
+      changed_.wait(lock, stop, [&] { return has_work() || supervision_; });
+    }
+    if (has_work()) {
+      execute_operation(lock);
+    } else if (stop.stop_requested()) {
+      return;
+    } else if (supervision_) {
+      supervise();
+    }
+  }
+}
+
+void MotionStopper::execute_operation(std::unique_lock<std::mutex> & lock)
+{
+  Expected<StopReport> result;
+  do {
+    options_changed_ = false;
+    const StopOptions options = operation_->options;
+    lock.unlock();
+    try {
+      result = execute(options);
+    } catch (const std::exception & error) {
+      result = failure(ErrorCode::exception, printable(error.what()));
+    }
+    lock.lock();
+  } while (options_changed_);
+  last_ = operation_->stopping;
+  operation_->promise.set_value(std::move(result));
+  operation_.reset();
+  changed_.notify_all();
+}
+
+void MotionStopper::supervise()
+{
+  const Permit::Braking none{Clock::time_point::min(), Clock::time_point::max()};
+  const auto braking = supervision_->holder->braking();
+  const auto now = Clock::now();
+  const auto due = braking ? braking->last + braking_pause_timeout : supervision_->begin_limit;
+  const bool is_late = now > due || now > std::min(supervision_->end_limit, braking.value_or(none).end);
+  if (!supervision_->holder->brakes_itself() || supervision_->holder->revoked()) {
+    supervision_.reset();  // it has ended, or a stop has taken over
+  } else if (is_late && std::exchange(supervision_->is_late, true)) {
+    const Supervision late = *supervision_;
+    supervision_.reset();
+    if (late.holder->revoke(late.why)) {
+      operation_ = std::make_unique<Operation>();
+      operation_->options = late.options;
+    }
+  } else if (!is_late) {
+    supervision_->is_late = false;
+  }
 }
 
 }  // namespace ur_ros_rtde

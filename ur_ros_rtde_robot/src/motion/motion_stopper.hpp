@@ -1,45 +1,130 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <string>
+#include <thread>
 
+#include "connection/rtde/input_registers.hpp"
 #include "connection/rtde/rtde_interfaces.hpp"
+#include "motion/arbiter.hpp"
 #include "motion/motion_tracker.hpp"
+#include "motion/started_activities.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
 namespace ur_ros_rtde {
 
-/// Stops the arm: with the stop command of each kind of motion, else by stopping the robot program, else by
-/// ending the heartbeat, so that the program's watchdog stops it. Concurrent stops run one after the other.
+/// A stop under way. Ready when standstill is proven, or when every means has failed.
+using Stopping = std::shared_future<Expected<StopReport>>;
+
+/// Stops the arm, on a thread of its own, so that a stop never waits for what it stops. It revokes the
+/// permits of the holders, whose calls are rejected from then on, and takes the means of `means()` in turn
+/// until one of them has brought the arm to rest. A request during a stop joins it; the strongest
+/// deceleration applies. Thread-safe.
 class MotionStopper {
  public:
-  MotionStopper(std::string address, const StateReceiver & state, RtdeInterfaces & interfaces,
-                const MotionTracker & tracker)
-      : address_(std::move(address)), state_(state), interfaces_(interfaces), tracker_(tracker)
-  {
-  }
+  using Clock = Permit::Clock;
 
-  Expected<StopReport> stop(const StopOptions & options);
+  MotionStopper(const RobotOptions & options, const StateReceiver & state, RtdeInterfaces & interfaces,
+                InputRegisters & registers, const MotionTracker & tracker,
+                const StartedActivities & activities, const Arbiter & arbiter);
+  ~MotionStopper() { close(); }
+  MotionStopper(const MotionStopper &) = delete;
+  MotionStopper & operator=(const MotionStopper &) = delete;
+  /// Ends the thread, after the stop under way. No stop begins afterwards.
+  void close();
+
+  /// Begins to stop the arm, and takes it out of the hands of all holders, who are told `why`. Returns at
+  /// once.
+  Stopping begin(const StopOptions & options, const Error & why);
+  /// For a holder that ends: stops what it has started. If a stop has taken the arm out of its hands before,
+  /// that one is returned.
+  Stopping end(Permit & holder, const StopOptions & options);
+  /// For a holder that is told to end because of `why`: begins to stop the arm. A holder that brakes by
+  /// itself may do so under supervision: it has to begin at once, and be at rest within `braking_timeout`.
+  void request(const std::shared_ptr<Permit> & holder, const StopOptions & options, const Error & why,
+               std::chrono::milliseconds braking_timeout);
+  bool is_stopping() const;
+  /// Waits until no stop is under way. False after `deadline` or if `stop` is requested.
+  bool wait_until_idle(Clock::time_point deadline, const std::stop_token & stop);
 
  private:
-  bool is_moving() const;
-  /// True if the control program has executed all stop commands.
-  bool command_stop(const StopOptions & options);
-  /// False after `limit` or if the connection is lost.
-  bool wait_for_standstill(std::chrono::milliseconds limit) const;
-  tl::unexpected<Error> link_lost() const;
+  /// The stop under way.
+  struct Operation {
+    StopOptions options;
+    std::promise<Expected<StopReport>> promise;
+    Stopping stopping = promise.get_future().share();
+  };
+  /// A holder that brakes by itself.
+  struct Supervision {
+    std::shared_ptr<Permit> holder;
+    StopOptions options;
+    Error why;
+    Clock::time_point begin_limit;  ///< by which it has to brake
+    Clock::time_point end_limit;    ///< by which it has to be at rest
+    bool is_late = false;           ///< at the last check
+  };
+  /// One way to stop the arm.
+  struct Means {
+    StopMeans means;
+    /// Success if the arm is at rest; otherwise why this does not work.
+    Status (MotionStopper::*attempt)(const StopOptions & options);
+  };
+  static std::span<const Means> means();
+  /// Until its end, no claim is granted.
+  class Beginning;
 
-  const std::string address_;
+  Stopping begin_operation(const StopOptions & options);
+  void serve(const std::stop_token & stop);
+  void execute_operation(std::unique_lock<std::mutex> & lock);
+  void supervise();
+
+  // What follows runs on the stopper's thread, without the mutex.
+  Expected<StopReport> execute(const StopOptions & options);
+  Expected<StopReport> stop_without_rtde() const;
+  bool is_done(const StopOptions & options) const;
+  Status stop_by_command(const StopOptions & options);
+  Status stop_by_dashboard(const StopOptions & options);
+  Status stop_by_watchdog(const StopOptions & options);
+  Status stop_motions(Activities started, const StopOptions & options);
+  Status end_modes(Activities started);
+  Status send_stop(Activities started, const StopOptions & options);
+  /// Calls `command` with the control interface, which it takes from a call of another thread.
+  Status with_control(double answer_timeout,
+                      const std::function<bool(ur_rtde::RTDEControlInterface &)> & command);
+  double cycle_time() const;  ///< s
+  /// Evaluates `condition` with each sample until it is true. False after `timeout` (s of the controller), if
+  /// the connection is lost, and if the options of the stop have changed.
+  bool wait_for(double timeout, const std::function<bool(const Sample &)> & condition) const;
+  bool wait_for_standstill(double timeout, const StopOptions & options) const;
+
+  const RobotOptions options_;
   const StateReceiver & state_;
   RtdeInterfaces & interfaces_;
+  InputRegisters & registers_;
   const MotionTracker & tracker_;
-  std::mutex mutex_;
-};
+  const StartedActivities & activities_;
+  const Arbiter & arbiter_;
 
-/// Sends the dashboard command `stop` on a separate connection, so that it works while the shared client is
-/// waiting. Fails with the robot's answer.
-Status stop_program(const std::string & address, std::chrono::milliseconds limit);
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::unique_ptr<Operation> operation_;
+  Stopping last_;
+  std::optional<Supervision> supervision_;
+  unsigned beginning_ = 0;
+  bool closed_ = false;
+  std::atomic<bool> options_changed_ = false;  ///< since the operation is being executed
+  bool stops_in_joint_space_ = false;          ///< stopper's thread only
+  std::jthread thread_;
+};
 
 }  // namespace ur_ros_rtde

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <mutex>
 
 #include "motion/arrival_detector.hpp"
+#include "motion/motion_blocker.hpp"
+#include "ur_ros_rtde_robot/connection/link.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 
 namespace ur_ros_rtde {
@@ -22,6 +25,10 @@ class MotionTracker {
     double controller_time = 0.0;
     std::uint32_t link = 0;
 
+    /// s of this host's time: the longest time without a package in the last `gap_memory`.
+    double gap = 0.0;
+    double gap_time = 0.0;  ///< controller time of its end
+
     /// `async` was written by the previous program. The register keeps its value, possibly "running", until
     /// the current program writes it.
     bool async_is_stale = false;
@@ -29,6 +36,8 @@ class MotionTracker {
     /// An asynchronous operation is running.
     bool operating() const { return program_running && !async_is_stale && async.running(); }
   };
+
+  static constexpr double gap_memory = 1.0;  // s
 
   /// Ignores a sample that was added before, so that a thread that has just received the newest sample can
   /// add it without waiting for the receiving thread to do so.
@@ -42,22 +51,43 @@ class MotionTracker {
     const bool same_word = sample.async == view_.async;
     standstill_.add(sample);
     arrival_.add(sample, !ended && operation_ends(sample));
-    view_ = {standstill_.at_rest() || arrival_.arrived(),
-             sample.async,
-             sample.program_running(),
-             view_.program + (ended ? 1U : 0U),
-             sample.sequence,
-             sample.controller_time,
-             sample.link,
-             !sample.program_running() || ended || (view_.async_is_stale && same_word)};
+    if (ended) {
+      end_cause_ = sample.link != view_.link ? Error{ErrorCode::link_lost, connection_replaced}
+                                             : motion_blocker(sample).value_or(Error{});
+    }
+    const double gap = view_.sequence == 0 ? 0.0 : seconds_between(received_, sample.received);
+    const bool keeps_gap = gap <= view_.gap && sample.controller_time - view_.gap_time < gap_memory;
+    received_ = sample.received;
+    view_ = {.at_rest = standstill_.at_rest() || arrival_.arrived(),
+             .async = sample.async,
+             .program_running = sample.program_running(),
+             .program = view_.program + (ended ? 1U : 0U),
+             .sequence = sample.sequence,
+             .controller_time = sample.controller_time,
+             .link = sample.link,
+             .gap = keeps_gap ? view_.gap : gap,
+             .gap_time = keeps_gap ? view_.gap_time : sample.controller_time,
+             .async_is_stale = !sample.program_running() || ended || (view_.async_is_stale && same_word)};
   }
   View view() const
   {
     const std::lock_guard lock(mutex_);
     return view_;
   }
+  /// What ended the newest program: a lost connection, or the state of the robot (ErrorCode::none: neither).
+  Error end_cause() const
+  {
+    const std::lock_guard lock(mutex_);
+    return end_cause_;
+  }
 
  private:
+  static double seconds_between(std::chrono::steady_clock::time_point a,
+                                std::chrono::steady_clock::time_point b)
+  {
+    return std::chrono::duration<double>(b - a).count();
+  }
+
   /// The operation may have begun and ended since the previous sample. The first status of a program is no
   /// end of an operation.
   bool operation_ends(const Sample & sample) const
@@ -70,6 +100,8 @@ class MotionTracker {
   StandstillDetector standstill_;
   ArrivalDetector arrival_;
   View view_;
+  std::chrono::steady_clock::time_point received_{};  ///< of the newest sample
+  Error end_cause_;
 };
 
 }  // namespace ur_ros_rtde

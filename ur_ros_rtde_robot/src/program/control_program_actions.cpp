@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "motion/motion_stopper.hpp"
+#include "connection/dashboard_request.hpp"
 #include "program/control_program_manager.hpp"
 #include "program/program_status.hpp"
 
@@ -167,7 +167,7 @@ Status ControlProgramManager::end_program()
 {
   const auto runtime = receiver_.latest().value_or(Sample{}).runtime_state;
   if (runtime != RuntimeState::stopped) {
-    if (auto sent = stop_program(options_.address, milliseconds(500)); !sent) {
+    if (auto sent = stop_program(options_.address); !sent) {
       return failure(ErrorCode::program_stopped,
                      fmt::format("a program of the robot ({}) cannot be stopped: {}", to_string(runtime),
                                  sent.error().message));

@@ -90,8 +90,7 @@ void ArmModel::report_undetected(const std::string & why)
 void ArmModel::detect(const ControllerVersion & version, std::chrono::milliseconds limit)
 {
   auto primary = PrimaryConnection::connect(address_, limit);
-  const auto arm =
-      primary.and_then([&](PrimaryConnection & connection) { return connection.arm_data(limit); });
+  const auto arm = primary ? primary->arm_data(limit) : Expected<ArmData>(tl::unexpected(primary.error()));
   {
     const std::lock_guard lock(mutex_);
     calibration_ = arm ? arm->dh_rows : std::nullopt;

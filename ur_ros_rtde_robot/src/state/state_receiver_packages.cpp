@@ -1,5 +1,6 @@
 // Receives the packages of one connection.
 #include <fmt/format.h>
+#include <ur_rtde/robot_state.h>
 
 #include <algorithm>
 #include <utility>

@@ -43,9 +43,17 @@ struct Error {
   std::string message;
 };
 
-using Status = tl::expected<void, Error>;
+/// A value or the Error why there is none. A result that is ignored is a compiler warning: a step of a stop
+/// that has failed must lead to the next one.
 template <class T>
-using Expected = tl::expected<T, Error>;
+class [[nodiscard]] Expected : public tl::expected<T, Error> {
+ public:
+  using tl::expected<T, Error>::expected;
+  Expected(const tl::expected<T, Error> & other) : tl::expected<T, Error>(other) {}
+  Expected(tl::expected<T, Error> && other) : tl::expected<T, Error>(std::move(other)) {}
+};
+
+using Status = Expected<void>;
 
 inline tl::unexpected<Error> failure(ErrorCode code, std::string message)
 {

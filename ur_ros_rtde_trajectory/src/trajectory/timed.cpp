@@ -132,8 +132,10 @@ Expected<Knots> read_given(const TimedWaypoints & waypoints)
   };
   Status status = read("positions", waypoints.positions, knots.q);
   if (status && !waypoints.velocities.empty()) {
-    status =
-        read("velocities", waypoints.velocities, knots.v).and_then([&knots] { return check_rest(knots.v); });
+    status = read("velocities", waypoints.velocities, knots.v);
+    if (status) {
+      status = check_rest(knots.v);
+    }
   }
   if (status && !waypoints.accelerations.empty()) {
     status = read("accelerations", waypoints.accelerations, knots.a);

@@ -1,60 +1,59 @@
 #pragma once
 
-#include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <rcl_cxx/node.hpp>
 #include <string>
 
-#include "ur_ros_rtde/detail/active_goals.hpp"
+#include "ur_ros_rtde/detail/goal.hpp"
+#include "ur_ros_rtde/plugin_host.hpp"
 
 namespace ur_ros_rtde {
 
-/// An action server that executes each accepted goal in a thread of its own and sends exactly one result. It
-/// is compiled once for all actions: `goal` and `result` are an A::Goal and an A::Result of the action.
+/// The action server of a command: makes a Goal of each request, passes on what its client and the middleware
+/// say of it, and executes it in a thread of its own.
 class GoalServer {
- protected:
-  using Handle = rcl_cxx::ServerGoalHandle;
+ public:
+  struct Description {
+    const rcl_cxx::ActionType & type;
+    std::string name;  ///< of the action, relative
+    /// Goals are told to end when the client that sent them disappears.
+    bool stops_when_client_lost = false;
+    /// The requests are served by the thread that serves cancel requests and runs no other code of plugins.
+    bool is_stop = false;
+  };
+  /// `request`: an A::Goal of the action, which outlives the goal.
+  using MakeGoal = std::function<std::shared_ptr<Goal>(const rcl_cxx::GoalUUID & id, const void * request)>;
+  /// Writes the outcome of a goal without a result that can be sent into an A::Result. May throw.
+  using WriteOutcome = std::function<void(const Outcome & outcome, void * result)>;
 
-  GoalServer() = default;
-  virtual ~GoalServer() = default;
-
-  /// `goals` outlives the server. If `stop_when_client_lost`, a goal is stopped when the client that sent it
-  /// disappears.
-  void start_server(rcl_cxx::Node & node, const rcl_cxx::ActionType & type, const std::string & name,
-                    ActiveGoals & goals, bool stop_when_client_lost);
-  void stop_server() { server_.reset(); }
-  /// Sends the goal's only result, with the outcome filled in.
-  void finish(Handle & handle, void * result, const Outcome & outcome);
+  GoalServer(PluginHost & host, const Description & description, MakeGoal make_goal,
+             WriteOutcome write_outcome);
+  GoalServer(const GoalServer &) = delete;
+  GoalServer & operator=(const GoalServer &) = delete;
 
  private:
-  /// Runs in the executor's thread and must not wait.
-  virtual rcl_cxx::GoalDecision accept_goal(const rcl_cxx::GoalUUID & id, const void * goal) = 0;
-  /// Runs in the goal's thread and ends with finish().
-  virtual void execute_goal(Handle & handle, GoalContext & context) = 0;
-  /// Called for an accepted goal for which no thread could be started. Ends with finish().
-  virtual void abort_unstarted(Handle & handle, const Outcome & outcome) = 0;
-  /// Writes the outcome into the result. May throw.
-  virtual void write_outcome(const Outcome & outcome, void * result) const = 0;
-  /// Does the same after write_outcome() has thrown, for the fields that every result has.
-  virtual void write_failure(const Outcome & outcome, void * result) const = 0;
+  using Handle = rcl_cxx::ServerGoalHandle;
 
-  void start_goal(const std::shared_ptr<Handle> & handle);
-  /// write_outcome(). If it throws, the exception is the outcome.
-  Outcome write_outcome_guarded(const Outcome & outcome, void * result) const;
+  rcl_cxx::GoalDecision decide(const rcl_cxx::GoalUUID & id, const void * request);
+  void start_queries(const std::shared_ptr<Goal> & goal, std::vector<GoalQuery> queries,
+                     const rcl_cxx::SendGoalResponse & respond);
+  void start(const std::shared_ptr<Handle> & handle);
+  void stop(const rcl_cxx::GoalUUID & id, const Error & why) const;
+  rcl_cxx::GoalResponse reject(const Goal & goal, const Error & why);
+  std::shared_ptr<Goal> find(const rcl_cxx::GoalUUID & id) const;
+  std::shared_ptr<Goal> forget(const rcl_cxx::GoalUUID & id);
 
-  ActiveGoals * goals_ = nullptr;
-  rcl_cxx::ActionServer::SharedPtr server_;
+  PluginHost & host_;
+  const MakeGoal make_goal_;
+  mutable std::mutex mutex_;
+  std::map<rcl_cxx::GoalUUID, std::shared_ptr<Goal>> goals_;
+  rcl_cxx::ActionServer::SharedPtr server_;  ///< last: it calls the rest
 };
 
-/// Writes the outcome into `bool success, uint16 error_code, string message`, if the result begins with them.
-template <typename Result>
-void write_standard_fields(const Outcome & outcome, Result & result)
-{
-  if constexpr (requires { result.success; }) {
-    result.success = static_cast<bool>(outcome);
-    result.error_code = static_cast<std::uint16_t>(outcome.code());
-    result.message = outcome.message();
-  }
-}
+/// The reason for stopping a goal whose client has disappeared.
+Error client_lost();
 
 }  // namespace ur_ros_rtde

@@ -12,16 +12,18 @@ namespace ur_ros_rtde {
 /// reason is kept. Thread-safe.
 class StopRequest {
  public:
-  void request(StopReason reason)
+  /// True for the first request.
+  bool request(StopReason reason)
   {
     {
       const std::lock_guard lock(mutex_);
       if (reason_) {
-        return;
+        return false;
       }
       reason_ = std::move(reason);
     }
     source_.request_stop();
+    return true;
   }
 
   /// Empty: no stop was requested.

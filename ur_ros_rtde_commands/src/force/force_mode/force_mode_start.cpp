@@ -4,7 +4,7 @@ namespace ur_ros_rtde {
 
 class ForceModeStart : public Command<ur_ros_rtde_msgs::action::ForceMode> {
   /// Force mode can be changed while another goal moves the arm.
-  CommandTraits traits() const override { return {.resource = Resource::none}; }
+  CommandTraits traits() const override { return {.resource = Resource::mode, .leaves_mode_active = true}; }
 
   void check(const Goal & goal, Check & check) const override
   {

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <chrono>
 #include <string>
 #include <ur_ros_rtde_msgs/action/decelerate.hpp>
 #include <vector>
@@ -11,18 +12,19 @@
 
 namespace ur_ros_rtde {
 
-/// Stops the arm for a command that preempts all other goals. Sets `time_to_standstill` of the result; the
-/// message names the preempted goal.
+/// Waits for the stop that the goal has begun. Sets `time_to_standstill` of the result; the message names the
+/// preempted goal, and what stopped the arm.
 template <typename Run>
-Outcome decelerate(Run & run, const StopOptions & options)
+Outcome wait_until_stopped(Run & run)
 {
-  const auto report = run.robot().stop_motion(options);
+  const auto report = run.wait_for_stop();
   if (!report) {
     return report.error();
   }
-  run.result().time_to_standstill = std::chrono::duration<double>(run.elapsed()).count();
-  return Outcome::success(run.preempted_goal().empty() ? to_string(report->means)
-                                                       : run.preempted_goal() + " was stopped");
+  run.result().time_to_standstill = report->time_to_standstill;
+  const char * means = to_string(report->means);
+  return Outcome::success(
+      run.preempted_goal().empty() ? means : fmt::format("{} was stopped ({})", run.preempted_goal(), means));
 }
 
 /// Stops all motion. The field `deceleration` of the goal applies to the given kinds of motion; other motion
@@ -54,7 +56,7 @@ class DecelerateCommand : public Command<ur_ros_rtde_msgs::action::Decelerate> {
     return options;
   }
 
-  Outcome run(const Goal & goal, Run & run) override { return decelerate(run, stop_options(goal)); }
+  Outcome run(const Goal &, Run & run) override { return wait_until_stopped(run); }
 
   std::vector<Kind> kinds_;
   double max_;

@@ -24,7 +24,7 @@ class Stop : public Command<ur_ros_rtde_msgs::action::Stop> {
                   "m/s^2");
   }
 
-  Outcome run(const Goal & goal, Run & run) override { return decelerate(run, stop_options(goal)); }
+  Outcome run(const Goal &, Run & run) override { return wait_until_stopped(run); }
 };
 
 UR_ROS_RTDE_EXPORT(Stop, "stop")

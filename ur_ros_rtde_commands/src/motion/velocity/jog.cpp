@@ -21,11 +21,9 @@ class Jog : public Command<ur_ros_rtde_msgs::action::Jog> {
   {
     run.control()->jogStart(to_ur(goal.twist), goal.frame, goal.acceleration, to_ur(goal.custom_frame));
     const auto stop_reason = wait_for_duration(run, goal.time);
-    if (stop_reason && stop_reason->code != ErrorCode::canceled) {  // a cancel is the regular end of jogging
-      return *stop_reason;
-    }
-    const auto stopped = run.robot().stop_motion();
-    return stopped ? Outcome::success() : Outcome(stopped.error());
+    // A cancel is the regular end of jogging.
+    return stop_reason && stop_reason->code != ErrorCode::canceled ? Outcome(*stop_reason)
+                                                                   : Outcome::success();
   }
 };
 

@@ -20,7 +20,7 @@ class SpeedJ : public Command<ur_ros_rtde_msgs::action::SpeedJ> {
   Outcome run(const Goal & goal, Run & run) override
   {
     run.control()->speedJ(goal.joint_velocities, goal.acceleration, 0.0);
-    return finish_velocity_motion(run, goal.time, goal.deceleration);
+    return wait_for_end(run, goal.time);
   }
 };
 

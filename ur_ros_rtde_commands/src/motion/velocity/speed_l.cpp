@@ -19,7 +19,7 @@ class SpeedL : public Command<ur_ros_rtde_msgs::action::SpeedL> {
   Outcome run(const Goal & goal, Run & run) override
   {
     run.control()->speedL(to_ur(goal.twist), goal.acceleration, 0.0);
-    return finish_velocity_motion(run, goal.time, goal.deceleration);
+    return wait_for_end(run, goal.time);
   }
 };
 

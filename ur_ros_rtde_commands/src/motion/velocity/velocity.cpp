@@ -4,13 +4,9 @@
 
 namespace ur_ros_rtde {
 
-Outcome finish_velocity_motion(Run & run, double time, double deceleration)
+Outcome wait_for_end(Run & run, double time)
 {
-  if (auto stop_reason = wait_for_duration(run, time)) {
-    return *stop_reason;
-  }
-  run.control()->speedStop(deceleration);
-  const auto stop_reason = run.until_standstill();
+  const auto stop_reason = wait_for_duration(run, time);
   return stop_reason ? Outcome(*stop_reason) : Outcome::success();
 }
 

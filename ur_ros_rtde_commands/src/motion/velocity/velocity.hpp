@@ -15,7 +15,7 @@ Check & check_velocity_motion(Check & check, const Goal & goal, const SpeedLimit
                 limits.acceleration_unit);
 }
 
-/// After speedJ or speedL: waits for `time` (s), then decelerates to standstill (rad/s^2 or m/s^2).
-[[nodiscard]] Outcome finish_velocity_motion(Run & run, double time, double deceleration);
+/// After speedJ or speedL: waits for `time` (s). When the command returns, the driver decelerates the arm.
+Outcome wait_for_end(Run & run, double time);
 
 }  // namespace ur_ros_rtde

@@ -3,10 +3,13 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
+
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 
@@ -15,8 +18,10 @@ namespace ur_ros_rtde {
 /// ThreadSanitizer of the supported compilers does not know.)
 class InterfaceLock {
  public:
-  /// False if another thread still holds the lock after `limit`.
-  bool try_lock_for(std::chrono::milliseconds limit);
+  enum class Place { last, first };  ///< in the queue of the waiting threads
+
+  /// False if another thread still holds the lock after `timeout`.
+  [[nodiscard]] bool try_lock_for(std::chrono::milliseconds timeout, Place place = Place::last);
   void unlock();
 
  private:
@@ -27,36 +32,56 @@ class InterfaceLock {
   unsigned depth_ = 0;
 };
 
-/// Locks `lock`; throws RobotError (busy), which names `what`, if that takes longer than `limit`.
-std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> acquire(InterfaceLock & lock, const char * what,
-                                                                  std::chrono::milliseconds limit);
+/// An InterfaceLock that is held. Null: it is not.
+using HeldLock = std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)>;
+HeldLock held(InterfaceLock * lock);
+
+/// Locks `lock`; throws RobotError (busy), which names `what`, if that takes longer than `timeout`.
+HeldLock acquire(InterfaceLock & lock, const char * what, std::chrono::milliseconds timeout);
 
 /// Thread-safe access to one of ur_rtde's interfaces, which are not thread-safe themselves. `operator->`
 /// holds the interface's lock for one call (execute-around pointer): `robot.control()->moveL(pose, speed,
 /// acceleration, true);` A call throws RobotError (busy) if the call of another thread is still running after
-/// `limit`. The interface stays alive while a Locked refers to it, but may lose its connection: get a Locked
-/// from the robot for each use instead of storing it.
+/// `timeout`, and with the reason if the caller may not command the robot any more. The interface stays alive
+/// while a Locked refers to it, but may lose its connection: get a Locked from the robot for each use instead
+/// of storing it.
 template <class T>
 class Locked {
  public:
+  /// Evaluated with the lock held, so that no call begins after a stop has taken the lock.
+  using Permission = std::function<Status()>;
+
   class Call {
    public:
     Call(const Locked & locked)
-        : object_(locked.object_), held_(acquire(*locked.lock_, locked.what_, locked.limit_))
+        : object_(locked.object_), held_(acquire(*locked.lock_, locked.what_, locked.timeout_))
     {
+      if (locked.permission_) {
+        if (const Status permitted = locked.permission_(); !permitted) {
+          throw RobotError(permitted.error());
+        }
+      }
     }
     T * operator->() const { return object_.get(); }
     T & operator*() const { return *object_; }
 
    private:
     std::shared_ptr<T> object_;
-    std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)> held_;
+    HeldLock held_;
   };
 
   Locked(std::shared_ptr<T> object, std::shared_ptr<InterfaceLock> lock, const char * what,
-         std::chrono::milliseconds limit = std::chrono::seconds(5))
-      : object_(std::move(object)), lock_(std::move(lock)), what_(what), limit_(limit)
+         std::chrono::milliseconds timeout = std::chrono::seconds(5))
+      : object_(std::move(object)), lock_(std::move(lock)), what_(what), timeout_(timeout)
   {
+  }
+
+  /// The same interface for a caller that may use it as long as `permission` succeeds.
+  Locked permitted_by(Permission permission) const
+  {
+    Locked result = *this;
+    result.permission_ = std::move(permission);
+    return result;
   }
 
   Call operator->() const { return Call(*this); }
@@ -68,7 +93,8 @@ class Locked {
   std::shared_ptr<T> object_;
   std::shared_ptr<InterfaceLock> lock_;
   const char * what_;
-  std::chrono::milliseconds limit_;
+  std::chrono::milliseconds timeout_;
+  Permission permission_;
 };
 
 }  // namespace ur_ros_rtde

@@ -26,6 +26,9 @@ class TcpSocket {
   TcpSocket & operator=(const TcpSocket &) = delete;
   ~TcpSocket();
 
+  /// Nothing can be written afterwards. Does not wait; may be called by another thread.
+  void shut_down_writing() const;
+
   Status write(std::span<const std::byte> data, Clock::time_point deadline);
   Status write(std::string_view text, Clock::time_point deadline);
   /// Reads exactly data.size() bytes.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "ur_ros_rtde_robot/motion/activity.hpp"
 #include "ur_ros_rtde_robot/state/sample.hpp"
 
 namespace ur_ros_rtde {
@@ -25,23 +26,27 @@ struct MotionProgress {
   bool finished() const { return started && !running && at_rest && !program_ended; }
 };
 
+/// What stopped the arm, from the gentlest to the strongest means.
 enum class StopMeans {
-  nothing_moved,     ///< the arm was at rest and no motion was running
-  stop_command,      ///< the control script decelerated the arm
-  program_stopped,   ///< the robot program was stopped; the robot decelerated the arm
-  stopped_by_robot,  ///< a protective, safeguard or emergency stop ended the motion
+  nothing_moved,     ///< the arm was at rest and nothing was started
+  stop_command,      ///< the control program decelerated the arm as requested
+  stopped_by_robot,  ///< a protective, safeguard or emergency stop, or the end of its program
+  program_stopped,   ///< the program was stopped through the dashboard server; the controller decelerated the
+                     ///< arm
+  watchdog,          ///< the heartbeat was ended; the watchdog of the program stopped it
 };
 
 const char * to_string(StopMeans means);
 
 struct StopOptions {
-  /// rad/s^2 for joint motion (stopj), m/s^2 for Cartesian motion (stopl); useful range: 0.5 to 10.
+  /// rad/s^2 for joint motion (stopj), m/s^2 for Cartesian and servo motion (stopl); useful range: 0.5 to 10.
   double joint_deceleration = 2.0;
   double linear_deceleration = 2.0;
-  /// Time allowed for the commanded deceleration. After that, the program is stopped.
-  std::chrono::milliseconds limit{3000};
-  /// Time allowed for standstill after the program was stopped.
-  std::chrono::milliseconds program_stop_limit{1500};
+  /// Time allowed for the commanded deceleration. After that, or if the arm does not decelerate, the program
+  /// is stopped. Empty: as long as the deceleration takes, with a reserve.
+  std::optional<std::chrono::milliseconds> timeout;
+  /// Modes that stay on.
+  Activities keep;
 };
 
 struct StopReport {

@@ -19,6 +19,8 @@ struct RegisterRange {
 /// Registers available to extensions; docs/writing_a_plugin.md lists the users of all others. The float
 /// registers 18 are the trigger and its acknowledgement. ur_rtde's IO interface writes the inputs 18 to 22,
 /// its receive interface reads the outputs 12 to 19.
+inline constexpr int trigger_register = 18;          ///< input float register
+inline constexpr int acknowledgement_register = 18;  ///< output float register
 inline constexpr RegisterRange free_inputs{19, 22};  ///< integer and float
 inline constexpr RegisterRange free_int_outputs{12, 19};
 inline constexpr RegisterRange free_float_outputs{12, 19, 18};

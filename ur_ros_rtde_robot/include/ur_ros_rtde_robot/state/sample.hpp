@@ -129,6 +129,8 @@ struct Sample {
 
   SafetyBits safety() const;
   bool power_on() const { return (robot_status_bits & 1U) != 0; }
+  /// See script_extension.hpp: 0 when no extension runs, its number when it has finished.
+  double extension_acknowledgement() const { return output_double_registers[18 - 12]; }
   bool program_running() const { return runtime_state == RuntimeState::playing; }
 };
 

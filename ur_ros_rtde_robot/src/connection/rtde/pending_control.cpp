@@ -84,7 +84,7 @@ Status RtdeInterfaces::adopt_control()
     return taken;
   }
   const std::lock_guard lock(mutex_);
-  control_ = std::exchange(pending_, nullptr);
+  activate(std::exchange(pending_, nullptr));
   return {};
 }
 

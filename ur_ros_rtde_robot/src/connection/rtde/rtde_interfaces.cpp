@@ -15,6 +15,7 @@
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
 #include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
 #include "ur_ros_rtde_robot/connection/text.hpp"
+#include "ur_ros_rtde_robot/script/extension_registers.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -25,6 +26,8 @@ using ur_rtde::RTDEIOInterface;
 constexpr double controllers_frequency = -1.0;
 /// A running control program answers its first command within some cycles.
 constexpr std::chrono::seconds answer_limit(1);
+constexpr std::chrono::milliseconds suspend_timeout(500);
+constexpr std::chrono::milliseconds close_timeout(1000);
 
 std::uint16_t control_flags(const RobotOptions & options)
 {
@@ -87,6 +90,10 @@ Status RtdeInterfaces::ensure_io()
   try {
     auto io = std::make_shared<RTDEIOInterface>(options_.address, false, options_.upper_range_registers,
                                                 keep_priority);
+    // The controller keeps the values of a previous connection: no extension is to run.
+    if (!io->setInputDoubleRegister(script::trigger_register + register_offset(options_), 0.0)) {
+      return failure(ErrorCode::link_lost, "the IO interface accepts no values");
+    }
     {
       const std::lock_guard lock(mutex_);
       io_.swap(io);
@@ -99,6 +106,8 @@ Status RtdeInterfaces::ensure_io()
 
 Status RtdeInterfaces::start_watchdog(RTDEControlInterface & control) const
 {
+  // Other threads may have the interface already.
+  const HeldLock lock = acquire(*control_lock_, "control interface", answer_limit);
   control.setCommandTimeout(answer_limit);
   const bool started = options_.watchdog_frequency == 0.0 || control.setWatchdog(options_.watchdog_frequency);
   control.setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
@@ -147,9 +156,19 @@ Status RtdeInterfaces::probe_control_ports() const
 
 std::shared_ptr<RTDEControlInterface> RtdeInterfaces::connect_control(const std::string & script) const
 {
-  return std::make_shared<RTDEControlInterface>(options_.address, controllers_frequency,
-                                                control_flags(options_), options_.urcap_port, keep_priority,
-                                                script);
+  auto control =
+      std::make_shared<RTDEControlInterface>(options_.address, controllers_frequency, control_flags(options_),
+                                             options_.urcap_port, keep_priority, script);
+  // The state receiver closes the connection after silence_limit.
+  control->setPackageTimeout(
+      std::max(options_.silence_limit, std::chrono::milliseconds(RTDE_PACKAGE_TIMEOUT_MS)));
+  return control;
+}
+
+std::shared_ptr<RTDEControlInterface> RtdeInterfaces::activate(std::shared_ptr<RTDEControlInterface> control)
+{
+  ++starts_;
+  return std::exchange(control_, std::move(control));
 }
 
 Status RtdeInterfaces::start_control(const ControllerVersion & version, const std::stop_token & stop)
@@ -168,7 +187,7 @@ Status RtdeInterfaces::start_control(const ControllerVersion & version, const st
     {
       // From here on the watchdog is fed. That must have begun before start_watchdog().
       const std::lock_guard lock(mutex_);
-      control_ = control;
+      activate(control);
     }
     auto started = start_watchdog(*control);
     if (!started) {
@@ -182,15 +201,17 @@ Status RtdeInterfaces::start_control(const ControllerVersion & version, const st
   }
 }
 
-bool RtdeInterfaces::take_control_lock(RTDEControlInterface & control, int attempts)
+HeldLock RtdeInterfaces::take_control_lock(RTDEControlInterface & control,
+                                           std::chrono::milliseconds timeout) const
 {
-  for (int attempt = 0; attempt < attempts; ++attempt) {
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  do {
     control.abandonCommand();
-    if (control_lock_->try_lock_for(std::chrono::milliseconds(20))) {
-      return true;
+    if (control_lock_->try_lock_for(std::chrono::milliseconds(2), InterfaceLock::Place::first)) {
+      return held(control_lock_.get());
     }
-  }
-  return false;
+  } while (std::chrono::steady_clock::now() < deadline);
+  return held(nullptr);
 }
 
 void RtdeInterfaces::suspend_control()
@@ -198,19 +219,22 @@ void RtdeInterfaces::suspend_control()
   std::shared_ptr<RTDEControlInterface> control;
   {
     const std::lock_guard lock(mutex_);
-    control = pending_ = std::exchange(control_, nullptr);
+    control = pending_ = activate(nullptr);
   }
-  if (!control || !take_control_lock(*control, 25)) {
+  if (!control) {
+    return;
+  }
+  const HeldLock lock = take_control_lock(*control, suspend_timeout);
+  if (!lock) {
     return;
   }
   try {
-    control->setCommandTimeout(std::chrono::milliseconds(500));
+    control->setCommandTimeout(suspend_timeout);
     control->stopScript();
   } catch (const std::exception &) {
     // The caller stops it by other means.
   }
   control->setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
-  control_lock_->unlock();
 }
 
 bool RtdeInterfaces::has_pending_control() const
@@ -242,7 +266,7 @@ bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
     const std::lock_guard lock(mutex_);
     pending_.reset();
     if (works) {
-      control_ = control;
+      activate(control);
     }
   }
   if (control && !works) {
@@ -256,15 +280,15 @@ void RtdeInterfaces::close_control()
   std::shared_ptr<RTDEControlInterface> control;
   {
     const std::lock_guard lock(mutex_);
-    control = control_ ? control_ : pending_;
-    control_.reset();
+    control = control_ ? activate(nullptr) : pending_;
     pending_.reset();
   }
   // The robot gives each input register to one client: this connection must be closed before the next one is
   // opened, even if another thread still holds the interface.
-  if (control && take_control_lock(*control, 50)) {
-    control->disconnect();
-    control_lock_->unlock();
+  if (control) {
+    if (const HeldLock lock = take_control_lock(*control, close_timeout)) {
+      control->disconnect();
+    }
   }
 }
 

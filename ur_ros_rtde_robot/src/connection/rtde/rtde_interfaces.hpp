@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -68,7 +70,12 @@ class RtdeInterfaces {
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_interface() const;
   std::optional<Locked<ur_rtde::RTDEControlInterface>> control() const;
   std::optional<Locked<ur_rtde::RTDEIOInterface>> io() const;
-  const std::shared_ptr<InterfaceLock> & control_lock() const { return control_lock_; }
+  /// Locks the control interface before all threads that wait for it, abandoning the command that holds the
+  /// lock. Null after `timeout`.
+  HeldLock take_control_lock(ur_rtde::RTDEControlInterface & control,
+                             std::chrono::milliseconds timeout) const;
+  /// Incremented when a control program becomes active, and when it is given up.
+  std::uint32_t starts() const { return starts_; }
   /// The control program of the active connection has missed its heartbeat although no command delays it:
   /// another program runs in its place.
   bool control_heartbeat_lost() const;
@@ -83,8 +90,9 @@ class RtdeInterfaces {
   Status start_watchdog(ur_rtde::RTDEControlInterface & control) const;
   /// Excludes the extensions that the controller does not compile.
   Status check_extensions(const ControllerVersion & version);
-  /// Locks the control interface, abandoning a command that holds the lock. False if that does not help.
-  bool take_control_lock(ur_rtde::RTDEControlInterface & control, int attempts);
+  /// Makes `control` the active interface, or none. Hold mutex_. Returns the previous one.
+  std::shared_ptr<ur_rtde::RTDEControlInterface> activate(
+      std::shared_ptr<ur_rtde::RTDEControlInterface> control);
   bool resume_suspended(const std::stop_token & stop);
 
   const RobotOptions options_;
@@ -96,6 +104,7 @@ class RtdeInterfaces {
   mutable std::mutex mutex_;
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_;  ///< active
   std::shared_ptr<ur_rtde::RTDEControlInterface> pending_;
+  std::atomic<std::uint32_t> starts_ = 0;
   std::shared_ptr<ur_rtde::RTDEIOInterface> io_;
   std::shared_ptr<InterfaceLock> control_lock_ = std::make_shared<InterfaceLock>();
   std::shared_ptr<InterfaceLock> io_lock_ = std::make_shared<InterfaceLock>();

@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t most_lines = 1000;
+constexpr std::size_t max_lines = 1000;
 constexpr milliseconds send_limit(1000);
 constexpr milliseconds begin_limit(3000);  // from sending to the begin marker
 /// Longest delay between the primary interface and RTDE, which are separate connections, for events of the
@@ -104,6 +104,12 @@ void ScriptMonitor::run(const script::Program & program)
   program_ = &program;
   link_ = state_.latest().value_or(Sample{}).link;
   sent_ = Clock::now();
+  if (options_.stop_reason) {
+    if (const auto reason = options_.stop_reason()) {
+      complete(ScriptEnd::refused, reason->code, reason->message);
+      return;
+    }
+  }
   if (const auto sent = primary_.send(program.text.text(), send_limit); !sent) {
     complete(ScriptEnd::link_lost, sent.error().code,
              "the script could not be sent: " + sent.error().message);
@@ -142,10 +148,11 @@ void ScriptMonitor::on_text(const std::string & text)
 {
   if (text == markers_.begin) {
     begin_seen_ = Clock::now();
+    on_begin();
   } else if (text == markers_.end) {
     end_seen_ = Clock::now();
   } else if (begin_seen_ && !end_seen_) {
-    if (report_.text.size() < most_lines) {
+    if (report_.text.size() < max_lines) {
       report_.text.push_back(text);
     }
     if (options_.on_text) {

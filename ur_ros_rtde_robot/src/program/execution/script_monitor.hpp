@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -25,6 +26,10 @@ class ScriptMonitor {
   ScriptMonitor(PrimaryConnection primary, const StateReceiver & state, Markers markers,
                 const ScriptOptions & options);
 
+  /// Called when the controller has begun to execute the script.
+  std::function<void()> on_begin = [] {};
+  /// Makes it impossible to send the script. May be called by another thread.
+  void fence() const { primary_.shut_down_sending(); }
   /// Sends the program and waits until it has ended or has to be stopped; see may_be_running().
   void run(const script::Program & program);
   /// True if the program may still be running on the controller and has to be stopped.

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <random>
+#include <tuple>
 #include <utility>
 
 #include "connection/primary_connection.hpp"
-#include "motion/motion_stopper.hpp"
 #include "program/execution/script_monitor.hpp"
 #include "script/program.hpp"
 #include "state/wait_until.hpp"
@@ -18,7 +18,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds yield_limit(5000);
 constexpr milliseconds resume_limit(5000);
-constexpr milliseconds program_end_limit(2000);
 constexpr milliseconds standstill_limit(500);
 constexpr milliseconds longest_secondary(10'000);
 
@@ -52,6 +51,11 @@ std::optional<Error> check(const ScriptOptions & options)
   return std::nullopt;
 }
 
+Error program_ended()
+{
+  return {ErrorCode::program_stopped, "the control program ended before the script was sent"};
+}
+
 /// Resumes the control program on destruction.
 class ResumeGuard {
  public:
@@ -61,11 +65,9 @@ class ResumeGuard {
   }
   ~ResumeGuard()
   {
-    if (monitor_.replaced()) {
-      manager_.resume_after_replacement(resume_limit);
-    } else {
-      manager_.resume(resume_limit);
-    }
+    // The status of the robot tells why the control program does not run, if it does not.
+    std::ignore =
+        monitor_.replaced() ? manager_.resume_after_replacement(resume_limit) : manager_.resume(resume_limit);
   }
   ResumeGuard(const ResumeGuard &) = delete;
   ResumeGuard & operator=(const ResumeGuard &) = delete;
@@ -78,13 +80,16 @@ class ResumeGuard {
 }  // namespace
 
 ScriptRunner::ScriptRunner(const RobotOptions & options, const StateReceiver & state,
-                           const MotionTracker & tracker, RtdeInterfaces & interfaces,
-                           ControlProgramManager & manager)
+                           const MotionTracker & tracker, StartedActivities & activities,
+                           MotionStopper & stopper, ControlProgramManager & manager,
+                           std::function<Generation()> generation)
     : options_(options),
       state_(state),
       tracker_(tracker),
-      interfaces_(interfaces),
+      activities_(activities),
+      stopper_(stopper),
       manager_(manager),
+      generation_(std::move(generation)),
       next_id_(std::random_device()())
 {
 }
@@ -99,32 +104,15 @@ std::string ScriptRunner::preamble() const
                      register_offset(options_), options_.watchdog_frequency);
 }
 
-bool ScriptRunner::wait_for_program_end() const
-{
-  return wait_until(state_, program_end_limit, [this](const Sample & sample) {
-    return tracker_.view().at_rest && sample.runtime_state == RuntimeState::stopped;
-  });
-}
-
-Status ScriptRunner::stop() const
-{
-  auto stopped = stop_program(options_.address, milliseconds(500));
-  if (stopped && wait_for_program_end()) {
-    return {};
-  }
-  interfaces_.close_control();  // ends the heartbeat, so that the watchdog stops the program
-  if (wait_for_program_end()) {
-    return {};
-  }
-  return stopped ? failure(ErrorCode::timeout, "the program does not end") : stopped;
-}
-
-ScriptReport ScriptRunner::run(const std::string & script, const ScriptOptions & options)
+ScriptReport ScriptRunner::run(Permit * holder, const std::string & script, const ScriptOptions & options)
 {
   if (auto error = check(options)) {
     return refused(std::move(*error));
   }
   const bool secondary = options.kind == ScriptKind::secondary;
+  if (!secondary && holder == nullptr) {
+    return refused(Error{ErrorCode::exception, "a script of kind `program` needs Resource::script"});
+  }
   if (!secondary && options_.control_mode == ControlMode::control_urcap) {
     return refused(Error{ErrorCode::not_supported,
                          "not with control_mode control_urcap: the script would end the program of the "
@@ -148,29 +136,44 @@ ScriptReport ScriptRunner::run(const std::string & script, const ScriptOptions &
     monitor.run(*program);
     return monitor.report();
   }
-  return run_program(*program, monitor);
+  return run_program(*holder, *program, monitor);
 }
 
-ScriptReport ScriptRunner::run_program(const script::Program & program, ScriptMonitor & monitor)
+ScriptReport ScriptRunner::run_program(Permit & holder, const script::Program & program,
+                                       ScriptMonitor & monitor)
 {
   const bool at_rest =
       wait_until(state_, standstill_limit, [this](const Sample &) { return tracker_.view().at_rest; });
   if (!at_rest) {
-    return refused(Error{ErrorCode::busy, "the arm moves: a script begins when it stands still"});
+    return refused(Error{ErrorCode::busy, "the arm moves: a script begins when it is at rest"});
+  }
+  const Generation begin = holder.generation();
+  if (generation_() != begin) {
+    return refused(program_ended());
   }
   if (const auto yielded = manager_.yield(yield_limit); !yielded) {
     return refused(yielded.error());
   }
   const ResumeGuard resume(manager_, monitor);
+  // The goal is that of one control program, which has yielded; not that of another one, which was started in
+  // between.
+  if (const Generation now = generation_(); now.link != begin.link || now.starts != begin.starts + 1) {
+    return refused(program_ended());
+  }
+  StartedActivities::Script activity(activities_, [&monitor] { monitor.fence(); });
+  monitor.on_begin = [&activity] { activity.set_begun(); };
+  if (auto why = holder.revoked()) {  // a later stop finds the activity
+    return refused(*std::move(why));
+  }
   try {
     monitor.run(program);
-  } catch (...) {
-    stop();
+  } catch (...) {  // from a callback
+    stopper_.end(holder, {}).wait();
     throw;
   }
   ScriptReport report = monitor.report();
-  if (monitor.may_be_running() && state_.link().connected) {
-    if (const auto stopped = stop(); !stopped) {
+  if (monitor.may_be_running()) {
+    if (const auto stopped = stopper_.end(holder, {}).get(); !stopped) {
       report.error.message += fmt::format("; standstill is not confirmed: {}", stopped.error().message);
     }
   }

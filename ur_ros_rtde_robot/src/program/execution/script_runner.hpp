@@ -2,8 +2,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 
+#include "motion/motion_stopper.hpp"
 #include "motion/motion_tracker.hpp"
 #include "program/control_program_manager.hpp"
 #include "program/execution/script_monitor.hpp"
@@ -16,22 +18,23 @@ namespace ur_ros_rtde {
 class ScriptRunner {
  public:
   ScriptRunner(const RobotOptions & options, const StateReceiver & state, const MotionTracker & tracker,
-               RtdeInterfaces & interfaces, ControlProgramManager & manager);
+               StartedActivities & activities, MotionStopper & stopper, ControlProgramManager & manager,
+               std::function<Generation()> generation);
 
-  ScriptReport run(const std::string & script, const ScriptOptions & options);
+  /// `holder`: of Resource::script; may be null for a secondary program.
+  ScriptReport run(Permit * holder, const std::string & script, const ScriptOptions & options);
 
  private:
-  ScriptReport run_program(const script::Program & program, ScriptMonitor & monitor);
-  /// Stops the program, which decelerates the arm, and waits until program and arm have stopped.
-  Status stop() const;
-  bool wait_for_program_end() const;
+  ScriptReport run_program(Permit & holder, const script::Program & program, ScriptMonitor & monitor);
   std::string preamble() const;
 
   const RobotOptions options_;
   const StateReceiver & state_;
   const MotionTracker & tracker_;
-  RtdeInterfaces & interfaces_;
+  StartedActivities & activities_;
+  MotionStopper & stopper_;
   ControlProgramManager & manager_;
+  const std::function<Generation()> generation_;
   /// Makes the markers of scripts unique; starts at random to differ from those of other processes.
   std::atomic<std::uint32_t> next_id_;
 };

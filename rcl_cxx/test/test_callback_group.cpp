@@ -1,0 +1,93 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <thread>
+
+#include "action_fixture.hpp"
+
+namespace {
+/// An action server whose cancel requests have a group of their own, in a thread of their own.
+class CallbackGroupTest : public Actions {
+ protected:
+  ~CallbackGroupTest() override
+  {
+    second.cancel();
+    thread.join();
+  }
+
+  void serve_with_group()
+  {
+    rcl_cxx::ActionServerOptions options;
+    options.cancel_callback_group = group;
+    serve(options);
+  }
+
+  rcl_cxx::CallbackGroup::SharedPtr group = node->create_callback_group();
+  rcl_cxx::Executor second{context};
+  std::thread thread{[this] {
+    second.add_callback_group(*group);
+    second.spin();
+  }};
+};
+}  // namespace
+
+TEST_F(CallbackGroupTest, CancelRequestsDoNotWaitForTheCallbackOfAGoalRequest)
+{
+  serve_with_group();
+  std::atomic<bool> canceled{false};
+  on_cancel = [&](Handle &) {
+    canceled = true;
+    return true;
+  };
+  const auto goal = send(1);
+  const auto handle = accepted(0);
+  std::promise<void> blocks;
+  std::promise<void> ends;
+  on_goal = [&](const rcl_cxx::GoalUUID &, const Fibonacci::Goal &) {
+    blocks.set_value();
+    ends.get_future().wait();
+    return rcl_cxx::GoalResponse{};
+  };
+  auto response = client->async_send_goal(goal_of(2), {});
+  ASSERT_EQ(blocks.get_future().wait_for(kLimit), std::future_status::ready);
+  auto cancel = goal->async_cancel();
+  EXPECT_TRUE(eventually([&] { return canceled && handle->is_canceling(); }));
+  ends.set_value();
+  EXPECT_EQ(get(std::move(cancel)).code, CancelCode::none);
+  EXPECT_TRUE(handle->canceled(result_of({1})));
+  EXPECT_TRUE(get(std::move(response)));
+}
+
+TEST_F(CallbackGroupTest, GoalsAreServedFromBeginningToEnd)
+{
+  serve_with_group();
+  for (int i = 0; i < 20; ++i) {
+    const auto goal = send(i);
+    ASSERT_TRUE(goal);
+    EXPECT_TRUE(accepted(static_cast<std::size_t>(i))->succeed(result_of({i})));
+    EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
+  }
+}
+
+TEST_F(CallbackGroupTest, AServerCanBeDestroyedWhileRequestsArrive)
+{
+  serve_with_group();
+  for (int i = 0; i < 10; ++i) {
+    const auto goal = send(i);
+    ASSERT_TRUE(goal);
+    auto cancel = goal->async_cancel();
+    server.reset();
+    handles.clear();
+    serve_with_group();
+  }
+}
+
+TEST_F(CallbackGroupTest, BelongsToOneExecutor)
+{
+  rcl_cxx::Executor third{context};
+  const auto own = node->create_callback_group();
+  third.add_callback_group(*own);
+  EXPECT_THROW(third.add_callback_group(*own), rcl_cxx::Error);
+}

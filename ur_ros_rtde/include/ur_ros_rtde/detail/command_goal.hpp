@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde/command_traits.hpp"
+#include "ur_ros_rtde/detail/goal.hpp"
+#include "ur_ros_rtde/detail/run_context.hpp"
+#include "ur_ros_rtde/plugin_host.hpp"
+
+namespace ur_ros_rtde {
+
+/// How the goals of a command use the robot. The same for all of its goals.
+struct CommandDescription {
+  CommandHost & host;
+  std::string plugin;  ///< "move_l"
+  std::string action;  ///< resolved name: "/left/move_l"
+  CommandTraits traits;
+  bool is_extension = false;
+
+  /// A goal ends when the robot cannot move any more.
+  bool needs_motion() const
+  {
+    return moves_arm(traits.resource) && !traits.allowed_in_any_state && !traits.preempts_all;
+  }
+  bool stops_when_client_lost() const { return host.options().stop_when_client_lost && !traits.preempts_all; }
+};
+
+/// A goal of a robot command: takes the robot, and leaves the arm at rest.
+class CommandGoal : public Goal {
+ public:
+  CommandGoal(std::shared_ptr<const CommandDescription> command, const rcl_cxx::GoalUUID & id)
+      : Goal(command->host, command->action, id), command_(std::move(command))
+  {
+  }
+
+  Status check(std::vector<GoalQuery> & queries) final;
+  void release() final;
+  bool is_stopped() const final;
+
+ protected:
+  virtual void check_fields(Check & check) const = 0;
+  virtual StopOptions stop_options() const = 0;
+  /// The command itself. May throw.
+  virtual Outcome run_command(const RunContext & context) = 0;
+
+  Robot & robot() const { return command_->host.robot(); }
+
+ private:
+  Outcome execute() final;
+  void on_stop(const Error & why) final;
+
+  Claim claim();
+  bool preempts() const;
+  Status prepare();
+  void begin_stop();
+  Status acquire();
+  void hold(Lease lease);
+  RunContext make_context();
+  /// Names the lost connection or the ended program as the cause of a failure that results from it.
+  Outcome explain(Outcome outcome, const Generation & begin) const;
+  /// Stops what the goal has started and does not leave active.
+  Outcome settle(const Outcome & outcome);
+  bool leaves_as_it_is(const StopOptions & options) const;
+  /// Modes are active that were not before.
+  bool started_modes() const;
+
+  const std::shared_ptr<const CommandDescription> command_;
+  StopOptions stop_options_;
+  std::optional<std::shared_future<Expected<StopReport>>> stopping_;  ///< of a stop
+  std::string preempted_goal_;
+  mutable std::mutex lease_mutex_;  ///< guards what follows
+  Lease lease_;
+  Activities active_before_;  ///< modes that previous goals have left active
+};
+
+}  // namespace ur_ros_rtde

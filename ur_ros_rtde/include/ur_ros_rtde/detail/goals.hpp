@@ -1,0 +1,73 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "ur_ros_rtde/detail/goal.hpp"
+
+namespace ur_ros_rtde {
+
+/// The threads of the goals of a node, one per goal, and the end of goals whose command does not return. A
+/// thread whose goal has ended waits for the next goal: waking it takes a fraction of the time that a new
+/// thread needs to run on a busy host. All are joined by the destructor. Thread-safe.
+class Goals {
+ public:
+  /// Largest number of goals that run at the same time, and of threads.
+  static constexpr std::size_t limit = 64;
+  /// From the standstill after Goal::stop() to the result, if the command does not return.
+  static constexpr std::chrono::milliseconds return_timeout{500};
+
+  Goals();
+  /// Calls close() and waits for all threads without a limit.
+  ~Goals();
+  Goals(const Goals &) = delete;
+  Goals & operator=(const Goals &) = delete;
+
+  /// Success if start() can start another goal.
+  Status can_start() const;
+  /// Runs `work`, which must not throw, in a thread for `goal`. Fails after close() and if `limit` goals are
+  /// running.
+  Status start(std::shared_ptr<Goal> goal, std::function<void()> work);
+  /// Abandons `goal`, which was told to end, if it has no result `return_timeout` after the arm is at rest.
+  void supervise(std::shared_ptr<Goal> goal);
+  /// Tells all goals to end, rejects new ones, and waits up to `timeout`. Returns the names of those whose
+  /// thread still runs.
+  std::vector<std::string> close(const Error & why, std::chrono::milliseconds timeout);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Task {
+    std::shared_ptr<Goal> goal;
+    std::function<void()> work;
+  };
+  struct Ending {
+    std::shared_ptr<Goal> goal;
+    std::optional<Clock::time_point> deadline;  ///< once the arm is at rest
+  };
+
+  Status can_start_locked() const;
+  void execute_tasks();
+  void supervise_endings(const std::stop_token & stop);
+
+  mutable std::mutex mutex_;
+  std::condition_variable started_;
+  std::condition_variable ended_;
+  std::condition_variable_any ending_;
+  std::list<Task> waiting_;  // for a thread
+  std::list<Task> running_;
+  std::vector<Ending> endings_;
+  std::size_t idle_ = 0;  // threads that wait for a task
+  bool closed_ = false;
+  std::vector<std::jthread> threads_;
+  std::jthread supervisor_;
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,267 @@
+#include "ur_ros_rtde/detail/command_goal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ur_ros_rtde/detail/guarded.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Time for preempted goals to end: longer than a stop that falls back to the dashboard server.
+constexpr milliseconds preemption_timeout{6000};
+/// For the commanded deceleration during a shutdown.
+constexpr milliseconds shutdown_stop_timeout{1500};
+/// For a holder that brakes along its path within its own limits.
+constexpr std::chrono::minutes braking_timeout{2};
+/// For the dashboard server's answer before a goal is accepted.
+constexpr milliseconds dashboard_timeout{500};
+
+/// Succeeds if the dashboard server answers.
+Status query_dashboard(const Robot & robot)
+{
+  const auto mode = robot.query_dashboard("robotmode", dashboard_timeout);
+  return mode ? Status() : tl::unexpected(mode.error());
+}
+
+/// The failure may be a consequence of a lost connection or of an ended program.
+bool may_be_consequence(ErrorCode code)
+{
+  return code == ErrorCode::rejected_by_robot || code == ErrorCode::exception;
+}
+
+}  // namespace
+
+Claim CommandGoal::claim()
+{
+  Claim result;
+  result.resource = command_->traits.resource;
+  result.owner = action();
+  result.id = id().short_string();
+  result.switches_hand_guiding = command_->traits.leaves_mode_active;
+  result.blocks_queries = command_->traits.blocks_queries;
+  result.preempt = [weak = weak_from_this()](const Error & why) {
+    if (const auto goal = weak.lock()) {
+      goal->stop(why);
+    }
+  };
+  return result;
+}
+
+bool CommandGoal::preempts() const
+{
+  if (command_->traits.preempts_all || command_->host.options().preempt_when_busy) {
+    return true;
+  }
+  const auto holder = robot().holder(command_->traits.resource);
+  return command_->traits.preempts_self && holder && holder->owner == action();
+}
+
+/// Takes the robot, unless other goals have to be preempted first, which takes time.
+Status CommandGoal::prepare()
+{
+  if (command_->traits.allowed_in_any_state || command_->traits.preempts_all) {
+    return {};
+  }
+  if (command_->is_extension) {
+    if (Status available = robot().has_extension(command_->plugin); !available) {
+      return available;
+    }
+  }
+  const Claim wanted = claim();
+  if (wanted.resource == Resource::none || preempts()) {
+    return robot().may_use(wanted);
+  }
+  const std::lock_guard lock(lease_mutex_);
+  if (lease_) {
+    return {};
+  }
+  auto lease = robot().acquire(wanted);
+  if (!lease) {
+    return tl::unexpected(lease.error());
+  }
+  lease_ = std::move(*lease);
+  return {};
+}
+
+Status CommandGoal::check(std::vector<GoalQuery> & queries)
+{
+  Check result(&robot(), [this] { return prepare(); });
+  check_fields(result);
+  result.ready();
+  if (command_->traits.allowed_in_any_state) {
+    result.query(query_dashboard);
+  }
+  if (!result.ok()) {
+    release();
+    return tl::unexpected(*result.error());
+  }
+  stop_options_ = stop_options();
+  for (RobotQuery & query : result.take_queries()) {
+    queries.push_back([this, ask = std::move(query)] { return ask(robot()); });
+  }
+  if (command_->traits.preempts_all) {
+    begin_stop();  // now: the acceptance may have to wait for the discovery of the client
+  }
+  return {};
+}
+
+void CommandGoal::begin_stop()
+{
+  if (const auto holder = robot().holder(Resource::script)) {
+    preempted_goal_ = fmt::format("{}, goal {}", holder->owner, holder->id);
+  }
+  stopping_ = robot().begin_stop(
+      stop_options_,
+      Error{ErrorCode::preempted, fmt::format("preempted by {}, goal {}", action(), id().short_string())});
+}
+
+void CommandGoal::hold(Lease lease)
+{
+  const std::lock_guard lock(lease_mutex_);
+  lease_ = std::move(lease);
+}
+
+void CommandGoal::release()
+{
+  const std::lock_guard lock(lease_mutex_);
+  lease_.release();
+}
+
+void CommandGoal::on_stop(const Error & why)
+{
+  StopOptions options = stop_options_;
+  milliseconds braking = braking_timeout;
+  if (why.code == ErrorCode::shutdown) {
+    options.timeout = shutdown_stop_timeout;
+    braking = shutdown_stop_timeout;
+  }
+  const std::lock_guard lock(lease_mutex_);
+  robot().request_stop(lease_, options, why, braking);
+  if (command_->traits.resource == Resource::mode && started_modes()) {
+    robot().begin_stop(options, why);  // a mode cannot be ended while another goal moves the arm
+  }
+}
+
+bool CommandGoal::started_modes() const
+{
+  return robot().activities().without(active_before_).contains_any(outlasting_modes);
+}
+
+bool CommandGoal::is_stopped() const
+{
+  const std::lock_guard lock(lease_mutex_);
+  return robot().is_stopped(lease_);
+}
+
+Status CommandGoal::acquire()
+{
+  if (lease_ || command_->traits.resource == Resource::none) {
+    return {};
+  }
+  auto lease = robot().acquire_preempting(claim(), preemption_timeout, stop_request().token());
+  if (lease) {
+    hold(std::move(*lease));
+  } else if (!command_->traits.preempts_all) {  // a stop is executed in every state
+    return tl::unexpected(lease.error());
+  }
+  return {};
+}
+
+RunContext CommandGoal::make_context()
+{
+  RunContext context{robot(), shared_stop_request()};
+  context.lease = command_->needs_motion() ? &lease_ : nullptr;
+  context.plugin = command_->plugin;
+  context.stopping = stopping_;
+  context.preempted_goal = preempted_goal_;
+  context.log_warning = [this](const std::string & text) { warn(text); };
+  context.publish_feedback = [this](const void * feedback) { handle().publish_feedback(feedback); };
+  return context;
+}
+
+Outcome CommandGoal::execute()
+{
+  const Generation begin = robot().generation();
+  Outcome outcome = guarded(stop_request(), [&]() -> Outcome {
+    if (auto why = stop_request().reason()) {
+      return *std::move(why);
+    }
+    if (Status acquired = acquire(); !acquired) {
+      return acquired;
+    }
+    {
+      const std::lock_guard lock(lease_mutex_);
+      active_before_ = robot().activities() & outlasting_modes;
+    }
+    if (auto why = stop_request().reason()) {
+      return *std::move(why);
+    }
+    return run_command(make_context());
+  });
+  return settle(explain(std::move(outcome), begin));
+}
+
+Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const
+{
+  const Resource resource = command_->traits.resource;
+  if (outcome || !may_be_consequence(outcome.code()) || resource == Resource::script) {
+    return outcome;  // a script ends the control program by itself, and its report is precise
+  }
+  const bool uses_control_program = resource != Resource::io && !command_->traits.allowed_in_any_state;
+  const Status possible = robot().motion_possible();
+  if (!possible && (uses_control_program || possible.error().code == ErrorCode::link_lost)) {
+    return possible;
+  }
+  const Generation now = robot().generation();
+  if (now.link != begin.link || (uses_control_program && now.ends != begin.ends)) {
+    return robot().is_current(begin);
+  }
+  return outcome;
+}
+
+bool CommandGoal::leaves_as_it_is(const StopOptions & options) const
+{
+  const Activities active = robot().activities();
+  const bool mode_moves_arm = active.contains_any(options.keep);
+  return active.without(options.keep).empty() && (mode_moves_arm || !robot().is_moving());
+}
+
+Outcome CommandGoal::settle(const Outcome & outcome)
+{
+  if (!lease_ || !moves_arm(command_->traits.resource)) {
+    return outcome;
+  }
+  if (command_->traits.resource == Resource::mode && (outcome || !started_modes()) &&
+      !stop_request().reason()) {
+    return outcome;  // other goals move the arm
+  }
+  StopOptions options = stop_options_;
+  if (outcome) {
+    options.keep = active_before_ | (command_->traits.leaves_mode_active ? outlasting_modes : Activities());
+    if (!stop_request().reason() && leaves_as_it_is(options)) {
+      return outcome;
+    }
+  }
+  if (stop_request().reason().value_or(Error{}).code == ErrorCode::shutdown) {
+    options.timeout = shutdown_stop_timeout;
+  }
+  const auto stopped = command_->traits.resource == Resource::mode
+                           ? robot().stop_motion(options, outcome.error())
+                           : robot().end_motion(lease_, options);
+  const auto why = stop_request().reason();
+  // A mode that was to outlast its goal has been ended.
+  const Outcome end = outcome && why && command_->traits.leaves_mode_active ? Outcome(*why) : outcome;
+  if (stopped) {
+    return end;
+  }
+  const std::string warning = fmt::format("standstill is not confirmed: {}", stopped.error().message);
+  return end ? Outcome::failure(stopped.error().code, warning)
+             : Outcome::failure(end.code(), fmt::format("{}; {}", end.message(), warning));
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,133 @@
+#include "ur_ros_rtde/detail/goals.hpp"
+
+namespace ur_ros_rtde {
+
+Goals::Goals() : supervisor_([this](const std::stop_token & stop) { supervise_endings(stop); }) {}
+
+Goals::~Goals()
+{
+  close(Error{ErrorCode::shutdown, "the node is shut down"}, std::chrono::milliseconds(0));
+  threads_.clear();  // waits without a limit: objects that the threads use must outlive them
+}
+
+Status Goals::can_start() const
+{
+  const std::lock_guard lock(mutex_);
+  return can_start_locked();
+}
+
+Status Goals::can_start_locked() const
+{
+  if (closed_) {
+    return failure(ErrorCode::shutdown, "the node is being shut down");
+  }
+  if (waiting_.size() + running_.size() >= limit) {
+    return failure(ErrorCode::busy,
+                   std::to_string(limit) + " goals are running, which is the limit: wait for one to end");
+  }
+  return {};
+}
+
+Status Goals::start(std::shared_ptr<Goal> goal, std::function<void()> work)
+{
+  const std::lock_guard lock(mutex_);
+  if (Status status = can_start_locked(); !status) {
+    return status;
+  }
+  if (idle_ <= waiting_.size()) {
+    try {
+      threads_.emplace_back([this] { execute_tasks(); });
+    } catch (const std::system_error & error) {
+      return failure(ErrorCode::exception,
+                     std::string("cannot start a thread for the goal: ") + error.what());
+    }
+  }
+  waiting_.push_back({std::move(goal), std::move(work)});
+  started_.notify_one();
+  return {};
+}
+
+void Goals::execute_tasks()
+{
+  std::unique_lock lock(mutex_);
+  while (true) {
+    ++idle_;
+    started_.wait(lock, [this] { return closed_ || !waiting_.empty(); });
+    --idle_;
+    if (waiting_.empty()) {
+      return;
+    }
+    running_.splice(running_.end(), waiting_, waiting_.begin());
+    const auto task = std::prev(running_.end());
+    lock.unlock();
+    task->work();
+    task->work = nullptr;  // destroys captured objects before the goal counts as ended
+    lock.lock();
+    std::shared_ptr<Goal> goal = std::move(task->goal);
+    running_.erase(task);
+    ended_.notify_all();
+    lock.unlock();
+    goal.reset();
+    lock.lock();
+  }
+}
+
+void Goals::supervise(std::shared_ptr<Goal> goal)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    endings_.push_back({std::move(goal), std::nullopt});
+  }
+  ending_.notify_one();
+}
+
+void Goals::supervise_endings(const std::stop_token & stop)
+{
+  constexpr std::chrono::milliseconds interval{20};
+  std::unique_lock lock(mutex_);
+  while (ending_.wait(lock, stop, [this] { return !endings_.empty(); })) {
+    auto endings = std::exchange(endings_, {});
+    lock.unlock();
+    std::erase_if(endings, [](const Ending & ending) { return ending.goal->is_finished(); });
+    for (Ending & ending : endings) {
+      if (!ending.deadline && ending.goal->is_stopped()) {
+        ending.deadline = Clock::now() + return_timeout;
+      }
+      if (ending.deadline && Clock::now() > *ending.deadline) {
+        ending.goal->abandon();
+      }
+    }
+    lock.lock();
+    endings_.insert(endings_.end(), endings.begin(), endings.end());
+    ending_.wait_for(lock, stop, interval, [] { return false; });
+  }
+}
+
+std::vector<std::string> Goals::close(const Error & why, std::chrono::milliseconds timeout)
+{
+  std::vector<std::shared_ptr<Goal>> goals;
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    for (const auto * tasks : {&waiting_, &running_}) {
+      for (const Task & task : *tasks) {
+        goals.push_back(task.goal);
+      }
+    }
+  }
+  started_.notify_all();
+  for (const auto & goal : goals) {
+    goal->stop(why);
+  }
+  std::unique_lock lock(mutex_);
+  ended_.wait_for(lock, timeout, [this] { return waiting_.empty() && running_.empty(); });
+  std::vector<std::string> names;
+  for (const auto * tasks : {&waiting_, &running_}) {
+    for (const Task & task : *tasks) {
+      names.push_back(task.goal->name());
+    }
+  }
+  return names;
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "motion/permit.hpp"
+#include "ur_ros_rtde_robot/motion/lease.hpp"
+
+namespace ur_ros_rtde {
+
+/// Grants each resource to one holder at a time. Thread-safe. Leases may outlive the arbiter.
+class Arbiter {
+ public:
+  /// Success if the claim may be granted for reasons beyond other holders. Called under the arbiter's lock:
+  /// must not wait, and not call the arbiter.
+  using Admission = std::function<Expected<Generation>()>;
+
+  Arbiter();
+  /// busy, with the holder's name and id, if a conflicting resource is held.
+  Expected<Lease> acquire(Claim claim, const Admission & admit);
+  /// Preempts the current holders and waits up to `timeout`, or until `stop`, for them; then busy as above.
+  Expected<Lease> acquire_preempting(Claim claim, const Admission & admit, std::chrono::milliseconds timeout,
+                                     const std::stop_token & stop);
+  /// The holder that a claim on `resource` would conflict with.
+  std::shared_ptr<const Permit> holder(Resource resource) const;
+  /// All holders that may move the arm.
+  std::vector<std::shared_ptr<Permit>> arm_holders() const;
+
+ private:
+  std::shared_ptr<Lease::Table> table_;
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,80 @@
+#include "motion/started_activities.hpp"
+
+#include <ur_rtde/rtde_control_interface.h>
+
+#include <array>
+#include <utility>
+
+namespace ur_ros_rtde {
+namespace {
+
+using Control = ur_rtde::RTDEControlInterface;
+
+constexpr std::array<std::pair<std::uint32_t, Activity>, 10> motions_of_ur_rtde{
+    {{Control::MOTION_MOVE_JOINT, Activity::joint_move},
+     {Control::MOTION_MOVE_LINEAR, Activity::linear_move},
+     {Control::MOTION_SPEED_JOINT, Activity::joint_speed},
+     {Control::MOTION_SPEED_LINEAR, Activity::linear_speed},
+     {Control::MOTION_SERVO, Activity::servo},
+     {Control::MOTION_JOG, Activity::jog},
+     {Control::MOTION_TORQUE, Activity::torque},
+     {Control::MOTION_FORCE, Activity::force_mode},
+     {Control::MOTION_FREEDRIVE, Activity::freedrive},
+     {Control::MOTION_TEACH, Activity::teach_mode}}};
+
+constexpr Activities moves = Activity::joint_move | Activity::linear_move;
+
+Activities to_activities(std::uint32_t started)
+{
+  Activities result;
+  for (const auto & [bit, activity] : motions_of_ur_rtde) {
+    result = (started & bit) != 0 ? result | activity : result;
+  }
+  return result;
+}
+
+}  // namespace
+
+Activities StartedActivities::now() const
+{
+  Activities result;
+  const auto view = tracker_.view();
+  if (const auto control = interfaces_.control_interface()) {
+    result = to_activities(control->getStartedMotions());
+    // ur_rtde does not forget a move that has reached its target.
+    const bool is_pending =
+        view.async.word == static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove());
+    if (!is_pending && !view.operating()) {
+      result = result.without(moves);
+    }
+  }
+  if (registers_.extension_started()) {
+    result = result | Activity::extension;
+  }
+  const std::lock_guard lock(mutex_);
+  return fence_ ? result | Activity::script : result;
+}
+
+StartedActivities::Script::Script(StartedActivities & activities, std::function<void()> fence)
+    : activities_(activities)
+{
+  const std::lock_guard lock(activities_.mutex_);
+  activities_.fence_ = std::move(fence);
+  activities_.script_begun_ = false;
+}
+
+StartedActivities::Script::~Script()
+{
+  const std::lock_guard lock(activities_.mutex_);
+  activities_.fence_ = nullptr;
+}
+
+void StartedActivities::fence_script() const
+{
+  const std::lock_guard lock(mutex_);
+  if (fence_) {
+    fence_();
+  }
+}
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+
+#include "connection/rtde/input_registers.hpp"
+#include "connection/rtde/rtde_interfaces.hpp"
+#include "motion/motion_tracker.hpp"
+#include "ur_ros_rtde_robot/motion/activity.hpp"
+
+namespace ur_ros_rtde {
+
+/// What has been started on the robot and not ended: the only definition, for the end of goals and for stops.
+/// Thread-safe.
+class StartedActivities {
+ public:
+  StartedActivities(const RtdeInterfaces & interfaces, const InputRegisters & registers,
+                    const MotionTracker & tracker)
+      : interfaces_(interfaces), registers_(registers), tracker_(tracker)
+  {
+  }
+
+  Activities now() const;
+
+  /// A script that runs, or is about to run, in place of the control program.
+  class Script {
+   public:
+    /// `fence` makes it impossible to send the script: what has not been sent is not executed. Must not wait.
+    Script(StartedActivities & activities, std::function<void()> fence);
+    ~Script();
+    Script(const Script &) = delete;
+    Script & operator=(const Script &) = delete;
+    /// The controller has begun to execute it.
+    void set_begun() { activities_.script_begun_ = true; }
+
+   private:
+    StartedActivities & activities_;
+  };
+  void fence_script() const;
+  bool script_begun() const { return script_begun_; }
+
+ private:
+  const RtdeInterfaces & interfaces_;
+  const InputRegisters & registers_;
+  const MotionTracker & tracker_;
+  mutable std::mutex mutex_;
+  std::function<void()> fence_;  ///< empty: no script
+  std::atomic<bool> script_begun_ = false;
+};
+
+}  // namespace ur_ros_rtde

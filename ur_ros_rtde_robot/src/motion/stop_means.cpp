@@ -1,0 +1,356 @@
+// What a stop does, step by step. Runs on the stopper's thread.
+#include <fmt/format.h>
+#include <ur_rtde/rtde_control_interface.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "connection/dashboard_request.hpp"
+#include "motion/deceleration_check.hpp"
+#include "motion/motion_blocker.hpp"
+#include "motion/motion_stopper.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Control = ur_rtde::RTDEControlInterface;
+using std::chrono::milliseconds;
+
+/// To take the control interface from a call of another thread, which is abandoned.
+constexpr milliseconds lock_timeout(12);
+/// Control cycles in which the control program becomes ready for a command, and then acknowledges it, unless
+/// it executes a blocking one.
+constexpr double ready_cycles = 4;
+constexpr double stop_cycles = 5;
+/// s of the controller. The end of a mode may decelerate the arm.
+constexpr double mode_end_timeout = 0.5;
+/// From the acknowledgement of a stop to the sample that shows its beginning.
+constexpr double begin_timeout = 0.04;
+constexpr double program_stop_timeout = 1.5;
+/// From the arrival of a script at the controller to its beginning.
+constexpr double compile_timeout = 0.5;
+/// The samples reflect commands with a delay of some cycles.
+constexpr std::uint64_t sample_delay = 5;
+
+constexpr Activities joint_motions = Activity::joint_move | Activity::joint_speed;
+constexpr Activities linear_motions =
+    Activity::linear_move | Activity::linear_speed | Activity::servo | Activity::jog;
+constexpr Activities motions = joint_motions | linear_motions;
+
+/// The functions of ur_rtde that end what stopJ and stopL do not end, in the order in which they are called:
+/// the arm is at rest by then, so that ending a mode does not disturb a motion.
+struct ModeEnd {
+  Activity mode;
+  const char * name;
+  bool (Control::*end)();
+};
+constexpr std::array<ModeEnd, 3> mode_ends{{{Activity::force_mode, "force mode", &Control::forceModeStop},
+                                            {Activity::freedrive, "freedrive", &Control::endFreedriveMode},
+                                            {Activity::teach_mode, "teach mode", &Control::endTeachMode}}};
+
+/// Limits the waits of the commands of a stop.
+class CommandTimeouts {
+ public:
+  CommandTimeouts(Control & control, double ready, double answer) : control_(control)
+  {
+    control_.setReadyTimeout(to_milliseconds(ready));
+    control_.setCommandTimeout(to_milliseconds(answer));
+  }
+  ~CommandTimeouts()
+  {
+    control_.setReadyTimeout(std::chrono::seconds(UR_GET_READY_TIMEOUT));
+    control_.setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
+  }
+  CommandTimeouts(const CommandTimeouts &) = delete;
+  CommandTimeouts & operator=(const CommandTimeouts &) = delete;
+
+ private:
+  static milliseconds to_milliseconds(double seconds)
+  {
+    return std::chrono::ceil<milliseconds>(std::chrono::duration<double>(seconds));
+  }
+  Control & control_;
+};
+
+/// s, generously: the check of the deceleration finds a stop that has no effect.
+double deceleration_timeout(const Sample & sample, const StopOptions & options)
+{
+  if (options.timeout) {
+    return std::chrono::duration<double>(*options.timeout).count();
+  }
+  double joint = 0.0;
+  for (const double velocity : sample.target_qd) {
+    joint = std::max(joint, std::abs(velocity));
+  }
+  const auto & v = sample.target_tcp_speed;
+  const double expected = std::max(joint / options.joint_deceleration,
+                                   std::hypot(v[0], v[1], v[2]) / options.linear_deceleration);
+  return std::max(3.0, 1.0 + 1.5 * expected);
+}
+
+/// The robot stops the arm without being told to.
+bool stops_by_itself(const Sample & sample, Activities started)
+{
+  return motion_blocker(sample) || (!sample.program_running() && !started.contains(Activity::script));
+}
+
+}  // namespace
+
+std::span<const MotionStopper::Means> MotionStopper::means()
+{
+  static constexpr std::array<Means, 3> all{{{StopMeans::stop_command, &MotionStopper::stop_by_command},
+                                             {StopMeans::program_stopped, &MotionStopper::stop_by_dashboard},
+                                             {StopMeans::watchdog, &MotionStopper::stop_by_watchdog}}};
+  return all;
+}
+
+Expected<StopReport> MotionStopper::execute(const StopOptions & options)
+{
+  const auto begin = tracker_.view().controller_time;
+  const auto report = [&](StopMeans means) {
+    return StopReport{means, tracker_.view().controller_time - begin};
+  };
+  if (!state_.link().connected) {
+    return stop_without_rtde();
+  }
+  if (is_done(options)) {
+    return report(StopMeans::nothing_moved);
+  }
+  std::string problems;
+  for (const Means & next : means()) {
+    const auto sample = state_.latest();
+    if (!state_.link().connected || !sample) {
+      return stop_without_rtde();
+    }
+    if (stops_by_itself(*sample, activities_.now()) && wait_for_standstill(program_stop_timeout, options)) {
+      return report(StopMeans::stopped_by_robot);
+    }
+    const Status stopped = (this->*next.attempt)(options);
+    if (stopped) {
+      return report(next.means);
+    }
+    if (options_changed_) {
+      break;  // the caller executes the stop with the new options
+    }
+    problems += fmt::format("{}{}", problems.empty() ? "" : "; ", stopped.error().message);
+  }
+  if (!state_.link().connected) {
+    return stop_without_rtde();
+  }
+  return failure(
+      ErrorCode::timeout,
+      fmt::format("all attempts to stop the arm have failed: use the emergency stop ({})", problems));
+}
+
+Expected<StopReport> MotionStopper::stop_without_rtde() const
+{
+  activities_.fence_script();
+  const Status stopped = stop_program(options_.address);
+  const std::string link = state_.link().error.message;
+  if (stopped) {
+    return failure(
+        ErrorCode::link_lost,
+        fmt::format("the program on the robot was stopped through the dashboard server; standstill cannot be "
+                    "confirmed without the RTDE connection: {}",
+                    link));
+  }
+  const std::string watchdog =
+      options_.watchdog_frequency > 0.0
+          ? fmt::format("the watchdog of its program stops the arm within {:.2g} s",
+                        1.0 / options_.watchdog_frequency)
+          : std::string("the program has no watchdog (watchdog_frequency: 0): use the emergency stop");
+  return failure(ErrorCode::link_lost,
+                 fmt::format("cannot tell the robot to stop: {}; dashboard server: {}; {}", link,
+                             stopped.error().message, watchdog));
+}
+
+bool MotionStopper::is_done(const StopOptions & options) const
+{
+  const Activities started = activities_.now();
+  if (!started.without(options.keep).empty()) {
+    return false;
+  }
+  const auto view = tracker_.view();
+  // A mode that stays on may move the arm.
+  return !view.operating() && (view.at_rest || !started.empty());
+}
+
+Status MotionStopper::with_control(double answer_timeout, const std::function<bool(Control &)> & command)
+{
+  const auto control = interfaces_.control_interface();
+  if (!control) {
+    return failure(ErrorCode::not_ready, "the control program does not run");
+  }
+  const auto lock = interfaces_.take_control_lock(*control, lock_timeout);
+  if (!lock) {
+    return failure(ErrorCode::busy, "another call occupies the control interface");
+  }
+  try {
+    const CommandTimeouts timeouts(*control, ready_cycles * cycle_time(), answer_timeout);
+    return command(*control)
+               ? Status()
+               : failure(ErrorCode::rejected_by_robot, "the control program did not take the command");
+  } catch (const std::exception & error) {
+    return failure(ErrorCode::rejected_by_robot, error.what());
+  }
+}
+
+Status MotionStopper::stop_by_command(const StopOptions & options)
+{
+  const Activities started = activities_.now().without(options.keep);
+  if (started.contains(Activity::script)) {
+    return failure(ErrorCode::not_ready, "a script runs in place of the control program");
+  }
+  if (started.contains(Activity::extension)) {
+    if (Status cleared = registers_.clear_trigger(); !cleared) {
+      return cleared;
+    }
+  }
+  if (started.contains(Activity::torque)) {
+    // The program ends, and with it everything that it does.
+    const Status ended = with_control(mode_end_timeout, [](Control & control) {
+      control.stopScript();
+      return true;
+    });
+    return ended ? stop_motions({}, options) : ended;
+  }
+  if (Status stopped = stop_motions(started, options); !stopped) {
+    return stopped;
+  }
+  if (Status ended = end_modes(started); !ended) {
+    return ended;
+  }
+  return wait_for_standstill(program_stop_timeout, options)
+             ? Status()
+             : failure(ErrorCode::timeout, "the arm does not come to rest after the stop command");
+}
+
+Status MotionStopper::send_stop(Activities started, const StopOptions & options)
+{
+  // Without a motion of these kinds, it is a stop that becomes stronger.
+  if (started.contains_any(motions)) {
+    stops_in_joint_space_ = !started.contains_any(linear_motions);
+  }
+  return with_control(stop_cycles * cycle_time(), [&](Control & control) {
+    constexpr std::uint32_t stopped = Control::MOTION_MOVE_JOINT | Control::MOTION_MOVE_LINEAR |
+                                      Control::MOTION_SPEED_JOINT | Control::MOTION_SPEED_LINEAR |
+                                      Control::MOTION_SERVO | Control::MOTION_JOG;
+    if (stops_in_joint_space_) {
+      control.stopJ(options.joint_deceleration, true);
+    } else {
+      control.stopL(options.linear_deceleration, true);
+    }
+    return (control.getStartedMotions() & stopped) == 0;
+  });
+}
+
+/// Sends the stop if there is a motion that the control program executes, and waits until the arm is at rest
+/// or, with a mode that moves it, until the motions have ended.
+Status MotionStopper::stop_motions(Activities started, const StopOptions & options)
+{
+  const auto before = tracker_.view();
+  const bool sends_stop = started.contains_any(motions) || before.operating();
+  if (sends_stop) {
+    if (Status sent = send_stop(started, options); !sent) {
+      return sent;
+    }
+    if (!wait_for(begin_timeout, [&](const Sample &) {
+          return tracker_.view().async.operation() != before.async.operation();
+        })) {
+      return failure(ErrorCode::rejected_by_robot, "the control program has not begun the stop");
+    }
+  }
+  const Sample sample = state_.latest().value_or(Sample{});
+  const auto has_ended = [&](const Sample & now) {
+    const auto view = tracker_.view();
+    const bool extension_ended = !started.contains(Activity::extension) || !view.program_running ||
+                                 now.extension_acknowledgement() == 0.0;
+    const bool rests = view.at_rest || started.contains_any(outlasting_modes);
+    return view.sequence >= before.sequence + sample_delay && !view.operating() && extension_ended && rests;
+  };
+  DecelerationCheck deceleration;
+  bool decelerates = true;
+  const bool ended = wait_for(deceleration_timeout(sample, options), [&](const Sample & now) {
+    decelerates = deceleration.add(now);
+    return has_ended(now) || !decelerates;
+  });
+  if (!decelerates && !has_ended(state_.latest().value_or(Sample{}))) {
+    return failure(ErrorCode::timeout, "the stop command has no effect");
+  }
+  return ended ? Status() : failure(ErrorCode::timeout, "the arm is not at rest after the stop command");
+}
+
+Status MotionStopper::end_modes(Activities started)
+{
+  for (const ModeEnd & mode : mode_ends) {
+    if (!started.contains(mode.mode)) {
+      continue;
+    }
+    if (Status ended =
+            with_control(mode_end_timeout, [&](Control & control) { return (control.*mode.end)(); });
+        !ended) {
+      return failure(ended.error().code,
+                     fmt::format("{} has not ended: {}", mode.name, ended.error().message));
+    }
+  }
+  return {};
+}
+
+Status MotionStopper::stop_by_dashboard(const StopOptions & options)
+{
+  activities_.fence_script();
+  Status stopped = stop_program(options_.address);
+  // The controller may still be compiling a script.
+  while (stopped && activities_.now().contains(Activity::script) && !activities_.script_begun() &&
+         wait_for(compile_timeout, [](const Sample & sample) { return sample.program_running(); })) {
+    stopped = stop_program(options_.address);
+  }
+  if (!stopped) {
+    return stopped;
+  }
+  return wait_for_standstill(program_stop_timeout, options)
+             ? Status()
+             : failure(ErrorCode::timeout, "the arm moves although its program was stopped");
+}
+
+Status MotionStopper::stop_by_watchdog(const StopOptions & options)
+{
+  interfaces_.close_control();
+  if (options_.watchdog_frequency == 0.0) {
+    return failure(ErrorCode::not_supported, "the program has no watchdog (watchdog_frequency: 0)");
+  }
+  return wait_for_standstill(program_stop_timeout, options)
+             ? Status()
+             : failure(ErrorCode::timeout, "the watchdog of the program has not stopped the arm");
+}
+
+double MotionStopper::cycle_time() const
+{
+  return 1.0 / state_.version().value_or(ControllerVersion{.major = 5}).frequency();
+}
+
+bool MotionStopper::wait_for(double timeout, const std::function<bool(const Sample &)> & condition) const
+{
+  Sample sample = state_.latest().value_or(Sample{});
+  const double deadline = sample.controller_time + timeout;
+  while (!condition(sample)) {
+    if (!state_.link().connected || options_changed_ || sample.controller_time > deadline) {
+      return false;
+    }
+    state_.wait_for_next(sample, milliseconds(20));
+  }
+  return true;
+}
+
+bool MotionStopper::wait_for_standstill(double timeout, const StopOptions & options) const
+{
+  const auto begin = tracker_.view().sequence;
+  const bool mode_stays = activities_.now().contains_any(options.keep);
+  return wait_for(timeout, [&](const Sample &) {
+    const auto view = tracker_.view();
+    return view.sequence >= begin + sample_delay && (view.at_rest || mode_stays) && !view.operating();
+  });
+}
+
+}  // namespace ur_ros_rtde

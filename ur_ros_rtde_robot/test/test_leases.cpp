@@ -1,0 +1,350 @@
+// Who may move the arm, and what takes it out of the hands of its holder. Times are those of the simulated
+// robot, which is slow, so that delays of a busy host are short in its time.
+#include <atomic>
+#include <thread>
+
+#include "robot_fixture.hpp"
+
+namespace ur_ros_rtde::test {
+namespace {
+
+constexpr double slowness = 5.0;
+
+struct LeaseTest : RobotFixture {
+  void SetUp() override
+  {
+    auto options = Controller::options();
+    options.real_time_factor /= slowness;
+    controller.start(options);
+    make_robot();
+    ASSERT_TRUE(becomes_ready());
+  }
+
+  /// A joint motion of the holder, well under way.
+  void move(const Lease & lease)
+  {
+    auto q = robot->receive()->getActualQ();
+    q[0] += 3.0;
+    ASSERT_TRUE(robot->control(lease)->moveJ(q, 0.8, 2.0, true)) << log.text();
+    ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.7; })) << log.text();
+  }
+
+  void start_recording()
+  {
+    recording = true;
+    begin_ = robot->latest()->controller_time;
+  }
+  /// s from start_recording() to the first cycle in which joint 0 is slower than before.
+  double time_to_deceleration()
+  {
+    double speed = 0.0;
+    for (const Sample & sample : recorded()) {
+      const double now = std::abs(sample.target_qd[0]);
+      if (now < speed - 1e-6) {
+        return sample.controller_time - begin_;
+      }
+      speed = now;
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+  /// The arm does not move in the next 0.3 s of its time.
+  testing::AssertionResult stays_at_rest()
+  {
+    const double end = robot->latest()->controller_time + 0.3;
+    bool moved = false;
+    const bool passed = eventually([&] {
+      moved = moved || !at_rest();
+      return robot->latest()->controller_time > end;
+    });
+    return passed && !moved ? testing::AssertionSuccess() : testing::AssertionFailure() << "it moves";
+  }
+  void stop_and_start_program()
+  {
+    controller.control({{"command", "stop_program"}});
+    ASSERT_TRUE(becomes_ready_again());
+    ASSERT_TRUE(eventually([&] { return robot->latest()->program_running(); }));
+  }
+
+  double begin_ = 0.0;
+};
+
+constexpr double stop_begins_within = 0.02;  // s, docs/safety.md
+
+TEST_F(LeaseTest, EndsWithItsProgramEvenIfTheNextOneRunsAlready)
+{
+  const Lease lease = acquire();
+  move(lease);
+  stop_and_start_program();
+  ASSERT_TRUE(robot->ready_to_move());
+  const Status may = robot->may_continue(lease);
+  ASSERT_FALSE(may);
+  EXPECT_EQ(may.error().code, ErrorCode::program_stopped) << may.error().message;
+  EXPECT_THROW(robot->control(lease)->moveJ(robot->receive()->getActualQ(), 0.8, 2.0, true), RobotError);
+  EXPECT_TRUE(stays_at_rest());
+}
+
+TEST_F(LeaseTest, EndsWithItsConnection)
+{
+  const Lease lease = acquire();
+  controller.control({{"command", "drop_links"}});
+  ASSERT_TRUE(becomes_ready_again());
+  const Status may = robot->may_continue(lease);
+  ASSERT_FALSE(may);
+  EXPECT_EQ(may.error().code, ErrorCode::link_lost) << may.error().message;
+}
+
+TEST_F(LeaseTest, NamesTheSafetyStopThatEndedItAfterItIsOver)
+{
+  const Lease lease = acquire();
+  move(lease);
+  controller.control({{"command", "safeguard"}, {"open", true}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::safeguard_stop));
+  controller.control({{"command", "safeguard"}, {"open", false}});
+  ASSERT_TRUE(becomes_ready_again());
+  EXPECT_EQ(robot->may_continue(lease).error().code, ErrorCode::safeguard_stop);
+}
+
+TEST_F(LeaseTest, IsNotGrantedDuringHandGuiding)
+{
+  {
+    Claim switching = claim();
+    switching.switches_hand_guiding = true;
+    const auto lease = robot->acquire(switching);
+    ASSERT_TRUE(lease);
+    ASSERT_TRUE(robot->control(*lease)->freedriveMode());
+    EXPECT_TRUE(robot->activities().contains(Activity::freedrive));
+  }
+  for (const Resource resource : {Resource::motion, Resource::mode, Resource::script}) {
+    const auto rejected = robot->acquire(claim(resource));
+    ASSERT_FALSE(rejected);
+    EXPECT_EQ(rejected.error().code, ErrorCode::busy);
+    EXPECT_NE(rejected.error().message.find("freedrive"), std::string::npos);
+  }
+  EXPECT_TRUE(robot->acquire(claim(Resource::io)));
+  ASSERT_TRUE(robot->stop_motion());
+  EXPECT_TRUE(robot->activities().empty());
+  EXPECT_TRUE(robot->acquire(claim()));
+}
+
+TEST_F(LeaseTest, AStopTakesTheArmFromAHolderThatDoesNotLook)
+{
+  Claim holder = claim();
+  std::optional<Error> told;
+  holder.preempt = [&](const Error & why) { told = why; };
+  const auto lease = robot->acquire(holder);
+  ASSERT_TRUE(lease);
+  move(*lease);
+  start_recording();
+  const auto report = robot->stop_motion({}, Error{ErrorCode::preempted, "preempted by /stop"});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_LE(time_to_deceleration(), stop_begins_within);
+  EXPECT_NEAR(highest_deceleration(0), 2.0, 0.3);
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->message, "preempted by /stop");
+  try {
+    robot->control(*lease)->moveJ(robot->receive()->getActualQ(), 0.8, 2.0, true);
+    ADD_FAILURE() << "the holder can still move the arm";
+  } catch (const RobotError & error) {
+    EXPECT_EQ(error.error().message, "preempted by /stop");
+  }
+  EXPECT_TRUE(stays_at_rest());
+}
+
+TEST_F(LeaseTest, AStopDoesNotWaitForAHolderThatKeepsTheInterfaceLocked)
+{
+  const Lease lease = acquire();
+  move(lease);
+  std::atomic<bool> locked{false};
+  std::atomic<bool> release{false};
+  std::jthread holder([&] {
+    const auto held = robot->control(lease).hold();
+    locked = true;
+    eventually([&] { return release.load(); });
+  });
+  ASSERT_TRUE(eventually([&] { return locked.load(); }));
+  start_recording();
+  const auto report = robot->stop_motion();
+  release = true;
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_LE(time_to_deceleration(), stop_begins_within);
+}
+
+TEST_F(LeaseTest, AStopDoesNotWaitForABlockingMotion)
+{
+  const Lease lease = acquire();
+  auto q = robot->receive()->getActualQ();
+  q[0] += 3.0;
+  std::jthread blocked([&, control = robot->control(lease)] { EXPECT_FALSE(control->moveJ(q, 0.8, 2.0)); });
+  ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.7; }));
+  start_recording();
+  const auto report = robot->stop_motion();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::program_stopped)
+      << "the control program reads no command while it moves";
+  EXPECT_LE(time_to_deceleration(), stop_begins_within);
+  EXPECT_TRUE(stays_at_rest());
+}
+
+TEST_F(LeaseTest, AStrongerStopReplacesAGentleOne)
+{
+  const Lease lease = acquire();
+  move(lease);
+  StopOptions gentle;
+  gentle.joint_deceleration = 0.2;
+  const auto first = robot->begin_stop(gentle, stopped_by_the_driver());
+  ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->target_qd[0]) < 0.79; }));
+  EXPECT_TRUE(robot->is_stopping());
+  EXPECT_FALSE(robot->acquire(claim())) << "the arm is being stopped";
+  start_recording();
+  StopOptions strong;
+  strong.joint_deceleration = 4.0;
+  const auto second = robot->stop_motion(strong);
+  ASSERT_TRUE(second) << second.error().message;
+  EXPECT_EQ(second->means, StopMeans::stop_command);
+  EXPECT_NEAR(highest_deceleration(0), 4.0, 0.5);
+  EXPECT_TRUE(first.get());
+  EXPECT_TRUE(stays_at_rest());
+}
+
+TEST_F(LeaseTest, AGentleStopMayTakeItsTime)
+{
+  const Lease lease = acquire();
+  move(lease);
+  StopOptions gentle;
+  gentle.joint_deceleration = 0.2;
+  const double expected = std::abs(robot->latest()->target_qd[0]) / gentle.joint_deceleration;
+  EXPECT_GT(expected, 3.5);
+  const auto report = robot->stop_motion(gentle);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_NEAR(report->time_to_standstill, expected, 0.2);
+}
+
+TEST_F(LeaseTest, AStopEndsAMotionBeforeForceMode)
+{
+  const Lease lease = acquire();
+  ASSERT_TRUE(robot->control(lease)->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, 2,
+                                               {0.1, 0.1, 0.01, 0.1, 0.1, 0.1}));
+  move(lease);
+  const auto generation = robot->generation();
+  start_recording();
+  const auto report = robot->stop_motion();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_LE(time_to_deceleration(), stop_begins_within);
+  EXPECT_NEAR(highest_deceleration(0), 2.0, 0.3);
+  EXPECT_TRUE(robot->activities().empty());
+  EXPECT_TRUE(robot->is_current(generation)) << "the control program goes on";
+}
+
+TEST_F(LeaseTest, TheEndOfAHolderStopsWhatItHasStarted)
+{
+  Lease lease = acquire();
+  ASSERT_TRUE(robot->control(lease)->speedL({0.0, 0.0, 0.05, 0.0, 0.0, 0.0}, 0.5, 0.0));
+  EXPECT_TRUE(robot->activities().contains(Activity::linear_speed)) << "even before the arm moves";
+  const auto report = robot->end_motion(lease, {});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_TRUE(robot->activities().empty());
+  EXPECT_TRUE(stays_at_rest());
+}
+
+TEST_F(LeaseTest, TheEndOfAHolderCanLeaveModesActive)
+{
+  Lease lease = acquire();
+  ASSERT_TRUE(robot->control(lease)->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, 2,
+                                               {0.1, 0.1, 0.01, 0.1, 0.1, 0.1}));
+  move(lease);
+  StopOptions options;
+  options.keep = Activity::force_mode;
+  ASSERT_TRUE(robot->end_motion(lease, options));
+  EXPECT_EQ(robot->activities(), Activities(Activity::force_mode));
+  lease.release();
+  ASSERT_TRUE(robot->stop_motion());
+  EXPECT_TRUE(robot->activities().empty());
+}
+
+TEST_F(LeaseTest, AHolderThatBrakesByItselfMayFinish)
+{
+  const Lease lease = acquire();
+  move(lease);
+  const Robot::Braking braking(lease);
+  robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
+  for (int i = 0; i < 40; ++i) {
+    braking.sent(1s);
+    std::this_thread::sleep_for(2ms);
+  }
+  EXPECT_TRUE(robot->may_continue(lease));
+  EXPECT_FALSE(robot->is_stopping());
+}
+
+TEST_F(LeaseTest, AHolderThatDoesNotBeginToBrakeIsStopped)
+{
+  const Lease lease = acquire();
+  move(lease);
+  const Robot::Braking braking(lease);
+  start_recording();
+  robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
+  EXPECT_LE(time_to_deceleration(), stop_begins_within);
+  EXPECT_EQ(robot->may_continue(lease).error().code, ErrorCode::canceled);
+}
+
+TEST_F(LeaseTest, AHolderThatHangsWhileItBrakesIsStopped)
+{
+  const Lease lease = acquire();
+  move(lease);
+  const Robot::Braking braking(lease);
+  robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
+  braking.sent(1s);
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
+  EXPECT_FALSE(robot->may_continue(lease));
+}
+
+TEST_F(LeaseTest, AHolderThatBrakesForTooLongIsStopped)
+{
+  const Lease lease = acquire();
+  move(lease);
+  const Robot::Braking braking(lease);
+  robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 200ms);
+  ASSERT_TRUE(eventually([&] {
+    braking.sent(10s);
+    return !robot->may_continue(lease);
+  }));
+  EXPECT_TRUE(eventually([&] { return at_rest(); }));
+}
+
+TEST_F(LeaseTest, AStopTakesTheArmFromAHolderThatBrakesByItself)
+{
+  const Lease lease = acquire();
+  move(lease);
+  const Robot::Braking braking(lease);
+  robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
+  braking.sent(10s);
+  start_recording();
+  ASSERT_TRUE(robot->stop_motion());
+  EXPECT_LE(time_to_deceleration(), stop_begins_within);
+}
+
+TEST_F(LeaseTest, IsGrantedAfterTheStopOfThePreviousHolder)
+{
+  std::optional<Lease> held;
+  Claim holder = claim();
+  std::jthread leaving;
+  holder.preempt = [&](const Error & why) {
+    robot->request_stop(*held, {}, why, 1s);
+    leaving = std::jthread([&] {
+      EXPECT_TRUE(robot->end_motion(*held, {}));
+      held.reset();
+    });
+  };
+  held = std::move(*robot->acquire(holder));
+  move(*held);
+  const auto next = robot->acquire_preempting(claim(), 10s);
+  ASSERT_TRUE(next) << next.error().message;
+  EXPECT_TRUE(at_rest());
+  EXPECT_TRUE(robot->may_continue(*next));
+}
+
+}  // namespace
+}  // namespace ur_ros_rtde::test
