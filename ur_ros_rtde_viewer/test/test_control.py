@@ -1,6 +1,7 @@
-"""The control side without a browser: forms of all actions, held buttons, and no way to a motion without --control."""
+"""The control side without a browser: forms of all actions, and no way to a motion without --control."""
 
 import importlib
+from unittest.mock import MagicMock
 
 import pytest
 from running_viewer import RunningViewer, until
@@ -9,7 +10,7 @@ from ur_ros_rtde_cli import interface_files
 from ur_ros_rtde_cli.fields import FieldError
 from ur_ros_rtde_viewer.control import action_forms
 from ur_ros_rtde_viewer.control.action_forms import Kind, Source
-from ur_ros_rtde_viewer.control.jog import HOLD_RATE, Hold
+from ur_ros_rtde_viewer.control.goals import Goals, Phase
 from ur_ros_rtde_viewer.panels.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.panels.twin_panel import TwinPanel
 
@@ -85,20 +86,18 @@ def test_brackets_are_optional():
     assert list(read(MoveJ, ("joint_positions",), "").joint_positions) == []
 
 
-def moves(times):
-    """Returns for each message of a held button, at these times in s, whether it moves the arm."""
-    now = iter(times)
-    hold = Hold(lambda: next(now))
-    return [hold.take() for _ in times]
-
-
-def test_a_held_button_moves_the_arm_from_its_second_message_on():
-    assert moves([number / HOLD_RATE for number in range(4)]) == [False, True, True, True]
-    assert moves([0.0, 0.05, 0.1]) == [False, True, True]  # a slow browser
-
-
-def test_delayed_messages_that_arrive_together_move_nothing():
-    assert not any(moves([0.0, *(1.0 + 0.0005 * number for number in range(60))]))
+def test_after_stop_a_goal_that_is_not_accepted_yet_is_canceled():
+    node, server, changes = MagicMock(), MagicMock(), []
+    node.post = lambda function: function()
+    goals = Goals(node, "")
+    goals.client = lambda name, action: server
+    goal = goals.send("move_j", MoveJ, MoveJ.Goal(), lambda sent: changes.append(sent.phase))
+    goals.cancel_unaccepted()
+    (on_response,), _ = server.send_goal_async.return_value.add_done_callback.call_args
+    response = MagicMock()
+    on_response(response)
+    response.result.return_value.cancel_goal_async.assert_called_once()
+    assert goal.phase == Phase.CANCELING and changes == [Phase.CANCELING]
 
 
 @pytest.fixture

@@ -71,7 +71,6 @@ class Goals:
         self._namespace = namespace
         self._clients: Dict[str, ActionClient] = {}
         self._reasons: Dict[bytes, str] = {}
-        self._unsent: List[SentGoal] = []  # they wait for their server
         self._open: List[SentGoal] = []  # without a result
         control.node.create_subscription(GoalRefused, self.full_name("goal_refusals"), self._on_refusal,
                                          QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
@@ -107,24 +106,21 @@ class Goals:
         for sent in self._open:
             sent.ended.wait(END_LIMIT)
 
-    def cancel_unsent(self) -> None:
-        """Cancels the goals that still wait for their server: after STOP, none of them may start."""
-        self._control.post(lambda: [self._cancel(sent) for sent in self._unsent])
+    def cancel_unaccepted(self) -> None:
+        """Cancels the goals that wait for their server or its response: after STOP, none of them may start."""
+        self._control.post(lambda: [self._cancel(sent) for sent in self._open if sent.handle is None])
 
     def _send_when_ready(self, name: str, action: Any, goal: Any, sent: SentGoal) -> None:
-        self._unsent.append(sent)
         client = self.client(name, action)
         self._when(client.server_is_ready, DISCOVERY_LIMIT,
                    lambda: self._send(client, goal, sent),
                    lambda: self._give_up(sent))
 
     def _give_up(self, sent: SentGoal) -> None:
-        self._unsent.remove(sent)
         sent.change(Phase.REFUSED, f"no server of {sent.action} within {DISCOVERY_LIMIT:g} s. Does the driver run with this "
                                    "ROS_DOMAIN_ID?")
 
     def _send(self, client: ActionClient, goal: Any, sent: SentGoal) -> None:
-        self._unsent.remove(sent)
         if sent.phase != Phase.SENT:  # canceled before it was sent
             sent.change(Phase.CANCELED, "canceled before the goal was sent")
             return

@@ -9,7 +9,7 @@ import threading
 import time
 from dataclasses import dataclass
 from enum import Enum
-from typing import Callable, Hashable, Optional
+from typing import Callable, Hashable, Optional, Set
 
 from geometry_msgs.msg import TwistStamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -57,47 +57,58 @@ class Hold:
 
 
 class Jog:
-    """Only one tab moves the arm at a time. Methods can be called in any thread."""
+    """Only one tab moves the arm at a time. Methods can be called in any thread.
 
-    def __init__(self, control: ControlNode, goals: Goals):
+    STOP ends the hold of every tab until its button is released or the tab is closed. A gap between messages is not a release: a tab
+    in the background and a bad network cause gaps, too. The lock is held while a twist is published, so that none
+    follows a STOP.
+    """
+
+    def __init__(self, control: ControlNode, goals: Goals, clock: Callable[[], float] = time.monotonic):
         self._node = control.node
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._publisher = control.node.create_publisher(TwistStamped, goals.full_name("twist"), qos)
         self._lock = threading.Lock()
-        self._hold = Hold()
-        self._owner: Optional[Hashable] = None
-        self._stopped = False
+        self._hold = Hold(clock)
+        self._owner: Optional[Hashable] = None  # tab of the hold
+        self._held: Set[Hashable] = set()  # tabs that have not released their button
+        self._stopped: Set[Hashable] = set()  # those of them whose hold STOP has ended
 
     def hold(self, tab: Hashable, axis: int, sign: float, frame: Frame, speed: JogSpeed) -> Optional[str]:
         """Handles a message of a held button of `tab`. Returns why the arm does not move, or None."""
         with self._lock:
+            self._held.add(tab)
+            if tab in self._stopped:
+                return "stopped: release the button, then hold it again"
             if self._hold.is_active and self._owner != tab:
                 return "the arm is being moved from another tab"
-            if not self._hold.is_active:
-                self._stopped = False
             self._owner = tab
-            moves = self._hold.take() and not self._stopped
-        if self._stopped:
-            return "stopped: release the button, then hold it again"
-        if self._publisher.get_subscription_count() == 0:
-            return "no server of twist: does the driver run with this ROS_DOMAIN_ID?"
-        if moves:
-            self._publish(frame, axis, sign * (speed.linear if axis < 3 else speed.angular))
+            moves = self._hold.take()
+            if self._publisher.get_subscription_count() == 0:
+                return "no server of twist: does the driver run with this ROS_DOMAIN_ID?"
+            if moves:
+                self._publish(frame, axis, sign * (speed.linear if axis < 3 else speed.angular))
         return None
 
     def release(self, tab: Hashable) -> None:
         """Ends the hold of `tab` at once: the driver would notice it only after `stream_timeout`."""
         with self._lock:
+            self._held.discard(tab)
+            self._stopped.discard(tab)
             if self._owner != tab or not self._hold.is_active:
                 return
-            self._hold.end()
-            self._owner = None
-        self._publish(Frame.BASE, 0, 0.0)
+            self._end_hold()
+            self._publish(Frame.BASE, 0, 0.0)
 
     def stop(self) -> None:
-        """Ignores the button that is held until it is released."""
+        """Ignores each button that is held until it is released."""
         with self._lock:
-            self._stopped = self._hold.is_active
+            self._stopped |= self._held
+            self._end_hold()
+
+    def _end_hold(self) -> None:
+        self._hold.end()
+        self._owner = None
 
     def _publish(self, frame: Frame, axis: int, value: float) -> None:
         message = TwistStamped()

@@ -42,7 +42,7 @@ class RobotControl:
 
     def stop(self, report: Report) -> None:
         self.jog.stop()
-        self.goals.cancel_unsent()
+        self.goals.cancel_unaccepted()
         self._stopper.press(report)
 
     @property
