@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <ur_rtde/rtde_control_interface.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "motion/motion_blocker.hpp"
@@ -299,6 +300,13 @@ bool Robot::is_stopping() const
   return impl_->stopper.is_stopping();
 }
 
+bool Robot::has_stopped_holders() const
+{
+  const auto holders = impl_->arbiter.arm_holders();
+  return std::any_of(holders.begin(), holders.end(),
+                     [](const auto & holder) { return holder->revoked().has_value(); });
+}
+
 bool Robot::is_stopped(const Lease & lease) const
 {
   if (!lease || !moves_arm(lease.permit_->claim().resource)) {
@@ -317,9 +325,9 @@ Robot::Braking::~Braking()
   permit_->set_brakes_itself(false);
 }
 
-void Robot::Braking::sent(std::chrono::duration<double> remaining) const
+void Robot::Braking::sent() const
 {
-  permit_->set_braking(Permit::Clock::now() + std::chrono::duration_cast<Permit::Clock::duration>(remaining));
+  permit_->set_braking();
 }
 
 ScriptReport Robot::run_script(const Lease & lease, const std::string & script, const ScriptOptions & options)

@@ -78,6 +78,35 @@ TEST_F(ExtensionsTest, AnExtensionIsStoppedWhenACallbackThrows)
   EXPECT_TRUE(eventually([&] { return at_rest(); }));
 }
 
+/// A stop whose message to the control program is lost takes the next means, and the next extension runs.
+TEST_F(ExtensionsTest, AreStoppedEvenIfTheMessageIsLost)
+{
+  ScriptExtension turn;
+  turn.name = "turn";
+  turn.snippet = "speedj([0.3, 0, 0, 0, 0, 0], 2.0, 60.0)\n";
+  ScriptExtension wait;
+  wait.name = "wait";
+  wait.snippet = "sync()\n";
+  start_with({turn, wait});
+  double begin = 0.0;
+  ExtensionOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {
+    if (robot->latest()->actual_qd[0] < 0.28) {
+      return std::nullopt;
+    }
+    controller.control({{"command", "lose_commands"}, {"which", "rtde"}, {"clients", "io"}});
+    begin = robot->latest()->controller_time;
+    recording = true;
+    return Error{ErrorCode::canceled, "canceled"};
+  };
+  const Status ended = run_extension("turn", options);
+  EXPECT_EQ(ended.error().code, ErrorCode::canceled) << ended.error().message;
+  EXPECT_TRUE(at_rest());
+  EXPECT_LT(robot->latest()->controller_time - begin, 1.0);
+  ASSERT_TRUE(eventually([&] { return static_cast<bool>(robot->ready_to_move()); })) << log.text();
+  EXPECT_TRUE(run_extension("wait")) << log.text();
+}
+
 TEST_F(ExtensionsTest, OnlyTheirInputRegistersAreWritten)
 {
   robot = std::make_unique<Robot>(robot_options(), log.function());

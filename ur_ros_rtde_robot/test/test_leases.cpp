@@ -271,7 +271,7 @@ TEST_F(LeaseTest, AHolderThatBrakesByItselfMayFinish)
   const Robot::Braking braking(lease);
   robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
   for (int i = 0; i < 40; ++i) {
-    braking.sent(1s);
+    braking.sent();
     std::this_thread::sleep_for(2ms);
   }
   EXPECT_TRUE(robot->may_continue(lease));
@@ -296,7 +296,7 @@ TEST_F(LeaseTest, AHolderThatHangsWhileItBrakesIsStopped)
   move(lease);
   const Robot::Braking braking(lease);
   robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
-  braking.sent(1s);
+  braking.sent();
   ASSERT_TRUE(eventually([&] { return at_rest(); }));
   EXPECT_FALSE(robot->may_continue(lease));
 }
@@ -308,7 +308,7 @@ TEST_F(LeaseTest, AHolderThatBrakesForTooLongIsStopped)
   const Robot::Braking braking(lease);
   robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 200ms);
   ASSERT_TRUE(eventually([&] {
-    braking.sent(10s);
+    braking.sent();
     return !robot->may_continue(lease);
   }));
   EXPECT_TRUE(eventually([&] { return at_rest(); }));
@@ -320,7 +320,7 @@ TEST_F(LeaseTest, AStopTakesTheArmFromAHolderThatBrakesByItself)
   move(lease);
   const Robot::Braking braking(lease);
   robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
-  braking.sent(10s);
+  braking.sent();
   start_recording();
   ASSERT_TRUE(robot->stop_motion());
   EXPECT_LE(time_to_deceleration(), stop_begins_within);

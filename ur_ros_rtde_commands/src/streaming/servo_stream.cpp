@@ -21,6 +21,7 @@ constexpr double lag_reserve = 0.1;  // s, beyond lookahead_time
 /// Longer gaps between setpoints are not bridged by the control program.
 constexpr double bridged_cycles = ur_rtde::RTDEControlInterface::SERVO_EXTRAPOLATION_CYCLES + 1;
 constexpr double stopped_rate = 0.01;  // the rate below which braking is not necessary
+constexpr std::chrono::milliseconds stop_planning_timeout{4};
 constexpr std::chrono::seconds package_timeout{1};
 constexpr double servo_stop_deceleration = 5.0;  // m/s^2; the arm is already at rest
 
@@ -63,6 +64,7 @@ TimeScaling ServoStream::make_time_scaling(double rate, double time) const
 Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
 {
   const RealtimePriority priority(run_.robot().realtime_priority());
+  const Run::Braking braking = run_.brake_by_itself();
   state_.sample = run_.state();
   const Joints end = plan.sample(plan.duration()).position;
   std::copy(end.begin(), end.end(), target_.begin());
@@ -74,7 +76,7 @@ Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
     const auto stop_reason = run_.next(state_.sample);
     add_elapsed(before);
     if (stop_reason) {
-      brake(plan, limits, time_scaling);
+      brake(braking, plan, limits, time_scaling);
       return *stop_reason;
     }
     time_scaling.advance(elapsed_, requested_rate(state_.sample), plan.sample(time_scaling.time()), limits);
@@ -143,31 +145,45 @@ bool ServoStream::next_package()
   return false;
 }
 
-bool ServoStream::continue_until(const Trajectory & plan, const Limits & limits, TimeScaling & time_scaling,
-                                 const std::function<bool()> & done)
-{
-  while (time_scaling.time() < plan.duration() && !done()) {
-    if (!next_package()) {
-      return false;
-    }
-    time_scaling.advance(elapsed_, time_scaling.rate(), plan.sample(time_scaling.time()), limits);
-    if (!send(plan, limits, time_scaling)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-void ServoStream::brake(const Trajectory & plan, const Limits & limits, TimeScaling & time_scaling)
+void ServoStream::brake(const Run::Braking & braking, const Trajectory & plan, const Limits & limits,
+                        const TimeScaling & time_scaling)
 {
   const double rate = time_scaling.rate();
-  if (rate <= stopped_rate) {
+  if (rate <= stopped_rate || !run_.may_brake()) {
     return;
   }
-  const double from = time_scaling.time() + 0.02 * rate;
-  const Trajectory stop = plan.slowed(rate).stop_from(from / rate, limits);
-  TimeScaling braking = make_time_scaling(1.0, time_scaling.time() / rate);
-  continue_until(stop, limits, braking, [] { return false; });
+  const double time = time_scaling.time() / rate;
+  const auto deadline = std::chrono::steady_clock::now() + stop_planning_timeout;
+  if (const auto stop = plan.slowed(rate).stop_from(time, limits, deadline)) {
+    follow(braking, *stop, limits, time);
+  } else {
+    slow_down(braking, plan, limits, time_scaling);
+  }
+}
+
+void ServoStream::follow(const Run::Braking & braking, const Trajectory & stop, const Limits & limits,
+                         double time)
+{
+  TimeScaling time_scaling = make_time_scaling(1.0, time);
+  while (time_scaling.time() < stop.duration() && next_package()) {
+    time_scaling.advance(elapsed_, 1.0, stop.sample(time_scaling.time()), limits);
+    if (!send(stop, limits, time_scaling)) {
+      return;
+    }
+    braking.sent();
+  }
+}
+
+void ServoStream::slow_down(const Run::Braking & braking, const Trajectory & plan, const Limits & limits,
+                            TimeScaling time_scaling)
+{
+  while (time_scaling.rate() > 0.0 && time_scaling.time() < plan.duration() && next_package()) {
+    time_scaling.brake(elapsed_, plan.sample(time_scaling.time()), limits);
+    if (!send(plan, limits, time_scaling)) {
+      return;
+    }
+    braking.sent();
+  }
 }
 
 Outcome ServoStream::settle()

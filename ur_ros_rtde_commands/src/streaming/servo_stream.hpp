@@ -37,7 +37,8 @@ class ServoStream {
   ServoStream(Run & run, ServoSettings settings, SetpointCallback on_setpoint);
 
   /// Streams `plan`, which starts at the position of the arm. If the goal has to end before, brakes along the
-  /// path within `limits`, unless a stop takes the arm, and returns the reason.
+  /// path, unless a stop takes the arm, and returns the reason: within `limits`, or, if no such stop is found
+  /// in 4 ms, by slowing down its time scaling (TimeScaling::brake).
   Outcome execute(const trajectory::Trajectory & plan, const trajectory::Limits & limits);
   /// Waits until the arm has followed the last setpoint, then ends servo control.
   Outcome settle();
@@ -56,11 +57,13 @@ class ServoStream {
   bool next_package();
   void add_elapsed(double before);
   trajectory::TimeScaling make_time_scaling(double rate, double time = 0.0) const;
-  /// Streams the plan until its end or until `done`. False if the arm can no longer be moved.
-  bool continue_until(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
-                      trajectory::TimeScaling & time_scaling, const std::function<bool()> & done);
-  void brake(const trajectory::Trajectory & plan, const trajectory::Limits & limits,
-             trajectory::TimeScaling & time_scaling);
+  void brake(const Run::Braking & braking, const trajectory::Trajectory & plan,
+             const trajectory::Limits & limits, const trajectory::TimeScaling & time_scaling);
+  /// Streams `stop`, a trajectory that ends at rest.
+  void follow(const Run::Braking & braking, const trajectory::Trajectory & stop,
+              const trajectory::Limits & limits, double time);
+  void slow_down(const Run::Braking & braking, const trajectory::Trajectory & plan,
+                 const trajectory::Limits & limits, trajectory::TimeScaling time_scaling);
 
   Run & run_;
   const ServoSettings settings_;

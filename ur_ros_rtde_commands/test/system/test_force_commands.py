@@ -6,7 +6,8 @@ import pytest
 from action_msgs.msg import GoalStatus
 from arm_state import get_joint_state, get_tcp_pose, home_plus, is_at_rest, wait_until_moving
 from geometry_msgs.msg import Pose, Vector3, Wrench
-from support import wait_for
+from sensor_msgs.msg import JointState
+from support import JOINTS, wait_for
 
 from ur_ros_rtde_msgs.action import (DirectTorque, EnableExternalFtSensor, ForceMode, Freedrive, MoveJ, MoveL, SetExternalForceTorque,
                                      SetForceModeParameter, TeachMode, Trigger, ZeroFtSensor)
@@ -94,9 +95,11 @@ def test_canceling_a_motion_ends_force_mode(robot, simulator):
     robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
     motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.0), speed=0.3)
     wait_until_moving(robot)
+    instructions = simulator.state()["program"]["instructions"]
     motion.cancel()
     assert motion.wait_for_result()[0] == GoalStatus.STATUS_CANCELED
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
+    assert simulator.state()["program"]["instructions"] > instructions, "the control program was started again"
 
 
 def test_sets_damping_and_gain_scaling_within_their_ranges(robot):
@@ -130,6 +133,21 @@ def test_motions_are_rejected_in_freedrive(robot, simulator, start, stop, action
     robot.send(Trigger, stop).succeeded()
     assert not simulator.state()["freedrive"]
     robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1)).succeeded()
+
+
+def test_teleoperation_leaves_freedrive_to_the_operator(robot, driver, simulator):
+    robot.send(Freedrive, "freedrive_start").succeeded()
+    publisher = robot.node.create_publisher(JointState, "servo_joint", 1)
+    wait_for(lambda: publisher.get_subscription_count() > 0, 10.0, "a subscription of servo_joint")
+    message = JointState(name=JOINTS, position=home_plus(0.1))
+    wait_for(lambda: publisher.publish(message) or any("servo_joint: messages are ignored" in line for line in list(driver.lines)),
+             10.0, "a rejection in the log")
+    assert any("freedrive or teach mode" in line for line in driver.lines if "servo_joint" in line), driver.output()
+    assert simulator.state()["freedrive"]
+    assert simulator.is_at_rest()
+    robot.node.destroy_publisher(publisher)
+    robot.send(Trigger, "freedrive_stop").succeeded()
+    assert not simulator.state()["freedrive"]
 
 
 def test_direct_torque_moves_a_joint_and_stops(robot):

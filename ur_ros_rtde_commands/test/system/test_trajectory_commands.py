@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 from support import HOME, JOINTS, wait_for
 from trajectories import TargetRecorder, distance_to_line, point, timed, wave, waypoints
 
-from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
+from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 PLUGINS = "plugins:=[move_j,stop,execute_trajectory,execute_parametrized_trajectory]"
@@ -156,6 +156,47 @@ def test_cancel_decelerates_along_the_path(robot, simulator, slider):
     assert 0.0 < result.final_state.joint_positions[0] < 0.95
     assert max(distance_to_line(state.position, HOME, end) for state in robot.messages_until_now(states)) < 0.005
     wait_for(lambda: simulator.state()["at_rest"], 15.0, "standstill")
+
+
+GENTLE = {"max_velocity": [0.5] * 6, "max_acceleration": [0.2] * 6, "max_jerk": [0.05] * 6}
+
+
+def start_gentle_motion(robot, simulator):
+    """Starts a motion of joint 0 that takes 6.3 s to brake within its limits; returns when it is fast."""
+    make_ready(robot, joint_positions=[-2.8, *HOME[1:]])
+    goal = send(robot, [[-2.8, *HOME[1:]], [2.8, *HOME[1:]]], **GENTLE)
+    wait_for(lambda: simulator.state()["target"]["velocity"][0] > 0.45, 30.0, "a fast motion")
+    return goal
+
+
+def test_cancel_brakes_a_gentle_motion_within_its_limits(robot, simulator):
+    goal = start_gentle_motion(robot, simulator)
+    recorder = TargetRecorder(simulator)
+    goal.cancel()
+    begin = simulator.state()
+    recorder.record_until_finished(goal)
+    status, result = goal.wait_for_result(30.0)
+    assert status == GoalStatus.STATUS_CANCELED, result.message
+    ideal = 2.0 * math.sqrt(0.5 / 0.05)  # s, with the jerk limit
+    assert simulator.state()["timestamp"] - begin["timestamp"] < 1.3 * ideal + 0.5
+    travel = result.final_state.joint_positions[0] - begin["target"]["position"][0]
+    assert travel < 0.5 * 1.3 * ideal, "it goes on to its target"
+    assert recorder.max_joint_speed() < 0.5 * 1.03
+
+
+def test_stop_after_cancel_stops_a_gentle_motion_at_once(robot, simulator):
+    goal = start_gentle_motion(robot, simulator)
+    goal.cancel()
+    begin = simulator.state()
+    robot.send(Stop, "stop").succeeded()
+    at_rest = simulator.state()
+    assert at_rest["timestamp"] - begin["timestamp"] < 1.0
+    assert abs(at_rest["target"]["velocity"][0]) == 0.0
+    _, result = goal.wait_for_result(5.0)
+    assert result.error_code in (ErrorCode.CANCELED, ErrorCode.PREEMPTED)
+    cycle = at_rest["cycle"]
+    wait_for(lambda: simulator.state()["cycle"] > cycle + 250, 10.0, "half a second")
+    assert simulator.state()["target"]["position"] == pytest.approx(at_rest["target"]["position"], abs=1e-6), "it creeps on"
 
 
 def test_the_speed_slider_scales_the_duration(robot, simulator):

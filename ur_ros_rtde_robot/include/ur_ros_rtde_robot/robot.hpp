@@ -150,19 +150,21 @@ class Robot {
   Expected<StopReport> end_motion(const Lease & lease, const StopOptions & options);
   /// A stop is under way.
   bool is_stopping() const;
+  /// A holder from whom a stop has taken the arm has not released its lease yet.
+  bool has_stopped_holders() const;
   /// The holder of `lease` was told to end, and what it had started has been stopped. True without a lease.
   bool is_stopped(const Lease & lease) const;
 
   /// While it exists, the holder of the lease streams a motion that it can brake by itself. If it is told to
-  /// end, it has to begin within 10 ms.
+  /// end, it has to begin within 10 ms and to send a setpoint every 25 ms until the arm is at rest.
   class Braking {
    public:
     explicit Braking(const Lease & lease);
     ~Braking();
     Braking(const Braking &) = delete;
     Braking & operator=(const Braking &) = delete;
-    /// A setpoint was sent that brakes. The arm will be at rest within `remaining`.
-    void sent(std::chrono::duration<double> remaining) const;
+    /// A setpoint was sent that brakes.
+    void sent() const;
 
    private:
     std::shared_ptr<Permit> permit_;

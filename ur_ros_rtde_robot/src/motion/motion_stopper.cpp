@@ -159,17 +159,22 @@ Stopping MotionStopper::begin_operation(const StopOptions & options)
     if (closed_) {
       return completed(failure(ErrorCode::shutdown, "the driver is shutting down"));
     }
-    if (!operation_) {
-      operation_ = std::make_unique<Operation>();
-      operation_->options = options;
-    } else {
-      operation_->options = stronger(operation_->options, options);
-    }
-    options_changed_ = true;
+    require(options);
     stopping = operation_->stopping;
   }
   changed_.notify_all();
   return stopping;
+}
+
+void MotionStopper::require(const StopOptions & options)
+{
+  if (!operation_) {
+    operation_ = std::make_unique<Operation>();
+    operation_->options = options;
+  } else {
+    operation_->options = stronger(operation_->options, options);
+  }
+  options_changed_ = true;
 }
 
 void MotionStopper::serve(const std::stop_token & stop)
@@ -215,22 +220,24 @@ void MotionStopper::execute_operation(std::unique_lock<std::mutex> & lock)
 
 void MotionStopper::supervise()
 {
-  const Permit::Braking none{Clock::time_point::min(), Clock::time_point::max()};
-  const auto braking = supervision_->holder->braking();
-  const auto now = Clock::now();
-  const auto due = braking ? braking->last + braking_pause_timeout : supervision_->begin_limit;
-  const bool is_late = now > due || now > std::min(supervision_->end_limit, braking.value_or(none).end);
-  if (!supervision_->holder->brakes_itself() || supervision_->holder->revoked()) {
-    supervision_.reset();  // it has ended, or a stop has taken over
-  } else if (is_late && std::exchange(supervision_->is_late, true)) {
-    const Supervision late = *supervision_;
-    supervision_.reset();
-    if (late.holder->revoke(late.why)) {
-      operation_ = std::make_unique<Operation>();
-      operation_->options = late.options;
-    }
-  } else if (!is_late) {
-    supervision_->is_late = false;
+  Supervision & now = *supervision_;
+  if (now.holder->revoked()) {
+    supervision_.reset();  // a stop has taken over
+    return;
+  }
+  const auto time = Clock::now();
+  const auto last = now.holder->last_braking();
+  const bool is_late =
+      time > now.end_limit || time > (last ? *last + braking_pause_timeout : now.begin_limit);
+  // A holder that has ended to stream what it can brake is stopped like any other.
+  const bool has_to_stop = !now.holder->brakes_itself() || (is_late && now.is_late);
+  now.is_late = is_late;
+  if (!has_to_stop) {
+    return;
+  }
+  const Supervision ended = *std::exchange(supervision_, std::nullopt);
+  if (ended.holder->revoke(ended.why)) {
+    require(ended.options);
   }
 }
 

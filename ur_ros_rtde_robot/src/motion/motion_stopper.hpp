@@ -84,6 +84,8 @@ class MotionStopper {
   class Beginning;
 
   Stopping begin_operation(const StopOptions & options);
+  /// An operation with at least these decelerations. The mutex must be held.
+  void require(const StopOptions & options);
   void serve(const std::stop_token & stop);
   void execute_operation(std::unique_lock<std::mutex> & lock);
   void supervise();

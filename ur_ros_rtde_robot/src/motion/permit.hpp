@@ -53,31 +53,24 @@ class Permit {
   {
     const std::lock_guard lock(mutex_);
     brakes_itself_ = brakes;
-    if (!brakes) {
-      braking_until_.reset();
-    }
+    last_braking_.reset();
   }
   bool brakes_itself() const
   {
     const std::lock_guard lock(mutex_);
     return brakes_itself_;
   }
-  /// The holder has just sent a setpoint that brakes, and will be at rest at `end`.
-  void set_braking(Clock::time_point end)
+  /// The holder has just sent a setpoint that brakes.
+  void set_braking()
   {
     const std::lock_guard lock(mutex_);
     last_braking_ = Clock::now();
-    braking_until_ = end;
   }
-  struct Braking {
-    Clock::time_point last;  ///< newest setpoint
-    Clock::time_point end;
-  };
-  /// Empty: the holder has not begun to brake.
-  std::optional<Braking> braking() const
+  /// When the holder has sent the newest setpoint that brakes. Empty: it has not begun to brake.
+  std::optional<Clock::time_point> last_braking() const
   {
     const std::lock_guard lock(mutex_);
-    return braking_until_ ? std::optional(Braking{last_braking_, *braking_until_}) : std::nullopt;
+    return last_braking_;
   }
 
  private:
@@ -86,8 +79,7 @@ class Permit {
   Generation generation_;
   std::optional<Error> revoked_;
   bool brakes_itself_ = false;
-  Clock::time_point last_braking_{};
-  std::optional<Clock::time_point> braking_until_;
+  std::optional<Clock::time_point> last_braking_;
 };
 
 }  // namespace ur_ros_rtde

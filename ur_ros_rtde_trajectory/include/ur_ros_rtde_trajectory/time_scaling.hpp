@@ -31,6 +31,10 @@ class TimeScaling {
   /// Advances the time of the plan. `elapsed`: time of the controller's clock since the previous setpoint, s.
   /// `target_rate`: requested rate. `point`: the plan at time().
   void advance(double elapsed, double target_rate, const Point & point, const Limits & limits);
+  /// The same with the target rate 0, for a motion that has to end. Always slows down: uses the remaining
+  /// margin of the limits, and as much as the limits themselves if the margin is smaller, so that the sum of
+  /// plan and braking may reach twice the limits. Takes as long as braking from a constant speed.
+  void brake(double elapsed, const Point & point, const Limits & limits);
 
   /// Time of the plan in s.
   double time() const { return time_; }
@@ -39,8 +43,15 @@ class TimeScaling {
   double rate_dot() const { return rate_dot_; }
 
  private:
+  /// Bounds of the changes of the rate.
+  struct Bounds {
+    double rate_dot;   // 1/s
+    double rate_ddot;  // 1/s^2
+  };
+
+  void advance_within(double elapsed, double target_rate, const Bounds & bounds);
   void slow_for_delay(double delay);
-  void update_rate(double duration, double target_rate, double max_rate_dot, double max_rate_ddot);
+  void update_rate(double duration, double target_rate, const Bounds & bounds);
 
   Servo servo_;
   double time_;

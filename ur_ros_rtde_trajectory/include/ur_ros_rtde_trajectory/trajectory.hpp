@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 #include "ur_ros_rtde_trajectory/limits.hpp"
 
@@ -45,9 +47,10 @@ class Trajectory {
   /// Follows this trajectory until `time`, then brakes to rest along the same path as fast as `limits` (those
   /// it was planned with) allow. If the motion already brakes with all that the limits allow, additional
   /// braking starts when there is margin. Both trajectories share their time axis, so it is possible to
-  /// switch at any time up to `time`. The computation takes about a millisecond, in the worst case some tens;
-  /// choose `time` that far ahead. Returns this trajectory if no stop ends earlier than the plan itself.
-  Trajectory stop_from(double time, const Limits & limits) const;
+  /// switch at any time up to `time`. Returns this trajectory if no stop ends earlier than the plan itself,
+  /// and nothing if the search, which takes about a millisecond, has not ended by `deadline`.
+  std::optional<Trajectory> stop_from(double time, const Limits & limits,
+                                      std::chrono::steady_clock::time_point deadline) const;
 
   /// The same motion with velocities scaled by `fraction` and accelerations by its square.
   Trajectory slowed(double fraction) const;

@@ -6,8 +6,9 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double scaling_step = 0.005;   // s
-constexpr int max_recovery_steps = 400;  // steps
+constexpr double shortest_step = 0.005;  // s
+constexpr double steps_per_ramp = 20.0;  // of the deceleration, from zero to its largest value
+constexpr int max_recovery_steps = 400;
 
 struct RateDdotRange {
   double low = -1e9;
@@ -16,28 +17,49 @@ struct RateDdotRange {
 
 class BrakingSearch {
  public:
-  BrakingSearch(const Motion & plan, const Limits & limits, double reserve)
-      : plan_(plan), acceleration_(limits.acceleration), jerk_(limits.jerk), usable_fraction_(1.0 - reserve)
+  using Clock = std::chrono::steady_clock;
+
+  BrakingSearch(const Motion & plan, const Limits & limits, double reserve, Clock::time_point deadline)
+      : plan_(plan),
+        acceleration_(limits.acceleration),
+        jerk_(limits.jerk),
+        usable_fraction_(1.0 - reserve),
+        deadline_(deadline)
   {
   }
 
   std::optional<BrakingTimeScaling> find(double plan_time)
   {
     TimeScalingState state{plan_time, 1.0, 0.0};
+    step_ = step_at(plan_time);
     double time = 0.0;
     double recovery = 0.0;  // first rate_ddot of the recovery to a constant rate
     best_end_ = plan_.duration() - plan_time;
     while (time < best_end_ && state.plan_time < plan_.duration()) {
+      if (Clock::now() > deadline_) {
+        return std::nullopt;
+      }
       try_final_phase(time, state);
       const double rate_ddot = hardest_braking(state, recovery);
       scaling_.phases.push_back({time, rate_ddot, state});
-      state = state.after(scaling_step, rate_ddot);
-      time += scaling_step;
+      state = state.after(step_, rate_ddot);
+      time += step_;
     }
     return best_;
   }
 
  private:
+  // The more gently the limits let the rate change, the longer the steps, so that the number of steps does
+  // not depend on the limits.
+  double step_at(double plan_time) const
+  {
+    const Joints speed = plan_point(plan_time).velocity.abs().max(1e-9);
+    const double rate_dot = (acceleration_ / speed).minCoeff();
+    const double rate_ddot = (jerk_ / speed).minCoeff();
+    const double ramp = std::min(rate_dot / rate_ddot, std::sqrt(1.0 / rate_ddot));
+    return std::max(shortest_step, ramp / steps_per_ramp);
+  }
+
   Point plan_point(double plan_time) const
   {
     const TimingLawPiece & piece = plan_.timing[plan_.piece_at(plan_time)];
@@ -92,22 +114,22 @@ class BrakingSearch {
   bool can_recover(TimeScalingState s, double & first) const
   {
     first = 0.0;
-    for (int k = 0; k < max_recovery_steps; ++k) {
+    for (int k = 0; k < max_recovery_steps && Clock::now() <= deadline_; ++k) {
       if (s.rate_dot >= -1e-9) {
         return true;
       }
       const RateDdotRange allowed = feasible_rate_ddot(s);
-      const double highest = std::min(allowed.high, -s.rate_dot / scaling_step);
+      const double highest = std::min(allowed.high, -s.rate_dot / step_);
       double rate_ddot = highest;
       bool found = false;
       for (const double fraction : {0.98, 0.8, 0.5, 0.2}) {
         rate_ddot = highest * fraction;
-        found = rate_ddot >= allowed.low && keeps_limits(s, rate_ddot, scaling_step);
+        found = rate_ddot >= allowed.low && keeps_limits(s, rate_ddot, step_);
         if (found) {
           break;
         }
       }
-      const TimeScalingState next = s.after(scaling_step, rate_ddot);
+      const TimeScalingState next = s.after(step_, rate_ddot);
       if (!found || next.rate < 0.0) {
         return false;
       }
@@ -129,14 +151,14 @@ class BrakingSearch {
     double next_recovery = 0.0;
     for (const double fraction : {0.98, 0.8, 0.6, 0.4, 0.25, 0.12, 0.05, 0.02}) {
       const double rate_ddot = allowed.low + (1.0 - fraction) * std::max(0.0, recovery - allowed.low);
-      if (rate_ddot < recovery && keeps_limits(s, rate_ddot, scaling_step) &&
-          can_recover(s.after(scaling_step, rate_ddot), next_recovery)) {
+      if (rate_ddot < recovery && keeps_limits(s, rate_ddot, step_) &&
+          can_recover(s.after(step_, rate_ddot), next_recovery)) {
         recovery = next_recovery;
         return rate_ddot;
       }
     }
     const double rate_ddot = recovery;
-    can_recover(s.after(scaling_step, rate_ddot), recovery);
+    can_recover(s.after(step_, rate_ddot), recovery);
     return rate_ddot;
   }
 
@@ -152,7 +174,7 @@ class BrakingSearch {
     if (time + length >= best_end_) {
       return;
     }
-    const int parts = std::max(4, static_cast<int>(std::ceil(length / scaling_step)));
+    const int parts = std::max(4, static_cast<int>(std::ceil(length / step_)));
     for (int k = 0; k < parts; ++k) {
       for (const double offset : {0.01, 0.5, 0.99}) {
         const RateDdotRange allowed = feasible_rate_ddot(s.after(length * (k + offset) / parts, rate_ddot));
@@ -169,6 +191,8 @@ class BrakingSearch {
   const Motion & plan_;
   Joints acceleration_, jerk_;
   double usable_fraction_;
+  Clock::time_point deadline_;
+  double step_ = shortest_step;  // s
   BrakingTimeScaling scaling_;
   std::optional<BrakingTimeScaling> best_;
   double best_end_ = 0.0;
@@ -205,9 +229,10 @@ double BrakingTimeScaling::time_at(double plan_time) const
 }
 
 std::optional<BrakingTimeScaling> find_braking_time_scaling(const Motion & plan, double plan_time,
-                                                            const Limits & limits, double reserve)
+                                                            const Limits & limits, double reserve,
+                                                            std::chrono::steady_clock::time_point deadline)
 {
-  return BrakingSearch(plan, limits, reserve).find(plan_time);
+  return BrakingSearch(plan, limits, reserve, deadline).find(plan_time);
 }
 
 }  // namespace ur_ros_rtde::trajectory

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <vector>
 
@@ -42,9 +43,11 @@ struct BrakingTimeScaling {
 
 /// Finds the time scaling that stops the motion soonest, starting at `plan_time`, among those that at each
 /// moment brake as hard as the limits allow while a recovery to a constant rate remains possible (the plan
-/// keeps its limits at any constant rate). Returns nullopt if the plan comes to rest earlier. `reserve`:
-/// fraction of the limits that braking leaves unused, for violations between the checked moments.
+/// keeps its limits at any constant rate). Returns nullopt if the plan comes to rest earlier, or if the
+/// search has not ended by `deadline`. `reserve`: fraction of the limits that braking leaves unused, for
+/// violations between the checked moments.
 std::optional<BrakingTimeScaling> find_braking_time_scaling(const Motion & plan, double plan_time,
-                                                            const Limits & limits, double reserve);
+                                                            const Limits & limits, double reserve,
+                                                            std::chrono::steady_clock::time_point deadline);
 
 }  // namespace ur_ros_rtde::trajectory

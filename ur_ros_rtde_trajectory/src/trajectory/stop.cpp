@@ -64,10 +64,11 @@ Motion braking_motion(const Motion & plan, const BrakingTimeScaling & scaling)
 
 // Finds the fastest braking that keeps the limits everywhere. A larger reserve reduces violations between the
 // moments that the search checks.
-std::optional<Motion> find_braking(const Motion & plan, double plan_time, const Limits & limits)
+std::optional<Motion> find_braking(const Motion & plan, double plan_time, const Limits & limits,
+                                   std::chrono::steady_clock::time_point deadline)
 {
   for (const double reserve : {0.0, 0.02, 0.06, 0.15, 0.3, 0.5, 0.7, 0.85}) {
-    const auto scaling = find_braking_time_scaling(plan, plan_time, limits, reserve);
+    const auto scaling = find_braking_time_scaling(plan, plan_time, limits, reserve, deadline);
     if (!scaling) {
       continue;
     }
@@ -82,7 +83,8 @@ std::optional<Motion> find_braking(const Motion & plan, double plan_time, const 
 
 }  // namespace
 
-Trajectory Trajectory::stop_from(double time, const Limits & limits) const
+std::optional<Trajectory> Trajectory::stop_from(double time, const Limits & limits,
+                                                std::chrono::steady_clock::time_point deadline) const
 {
   if (!(time < duration())) {
     return *this;
@@ -99,9 +101,12 @@ Trajectory Trajectory::stop_from(double time, const Limits & limits) const
   std::optional<Motion> brake;
   double begin = now;
   for (; begin < duration(); begin += delay) {
-    brake = find_braking(*motion_, begin, with_margin(limits, 5e-5));
+    brake = find_braking(*motion_, begin, with_margin(limits, 5e-5), deadline);
     if (brake) {
       break;
+    }
+    if (std::chrono::steady_clock::now() > deadline) {
+      return std::nullopt;
     }
   }
   if (!brake) {

@@ -13,26 +13,48 @@ constexpr double lowest_rate_ddot_limit = 100.0;  // 1/s^2, of the rate
 constexpr double highest_rate_ddot_limit = 1000.0;
 
 // Margin between `used` and `limit`, relative to the joint velocities.
-double available(const Joints & limit, const Joints & used, const Joints & velocity, double least,
-                 double most)
+double available(const Joints & limit, const Joints & used, const Point & point)
 {
-  return std::clamp(((limit - used) / velocity.max(1e-9)).minCoeff(), least, most);
+  return ((limit - used) / point.velocity.abs().max(1e-9)).minCoeff();
+}
+
+// Margins of the acceleration and the jerk beside those of the plan at rate `r`.
+double acceleration_margin(const Point & point, const Limits & limits, double r)
+{
+  return available(limits.acceleration, point.acceleration.abs() * (r * r), point);
+}
+double jerk_margin(const Point & point, const Limits & limits, double r)
+{
+  return available(limits.jerk, point.jerk.abs() * (r * r * r), point);
 }
 
 }  // namespace
 
 void TimeScaling::advance(double elapsed, double target_rate, const Point & point, const Limits & limits)
 {
+  advance_within(
+      elapsed, std::clamp(target_rate, 0.0, 1.0),
+      {std::clamp(acceleration_margin(point, limits, rate_), lowest_rate_dot_limit, highest_rate_dot_limit),
+       std::clamp(jerk_margin(point, limits, rate_), lowest_rate_ddot_limit, highest_rate_ddot_limit)});
+}
+
+void TimeScaling::brake(double elapsed, const Point & point, const Limits & limits)
+{
+  const double whole_acceleration = acceleration_margin(point, limits, 0.0);
+  const double whole_jerk = jerk_margin(point, limits, 0.0);
+  advance_within(elapsed, 0.0,
+                 {std::clamp(acceleration_margin(point, limits, rate_),
+                             std::min(whole_acceleration, lowest_rate_dot_limit), highest_rate_dot_limit),
+                  std::clamp(jerk_margin(point, limits, rate_), std::min(whole_jerk, lowest_rate_ddot_limit),
+                             highest_rate_ddot_limit)});
+}
+
+void TimeScaling::advance_within(double elapsed, double target_rate, const Bounds & bounds)
+{
   const double duration = std::clamp(elapsed, 0.0, servo_.bridged_cycles * servo_.cycle);
   slow_for_delay(elapsed - duration);
   const double before = rate_;
-  const Joints velocity = point.velocity.abs();
-  const double r = rate_;
-  const double max_rate_dot = available(limits.acceleration, point.acceleration.abs() * (r * r), velocity,
-                                        lowest_rate_dot_limit, highest_rate_dot_limit);
-  const double max_rate_ddot = available(limits.jerk, point.jerk.abs() * (r * r * r), velocity,
-                                         lowest_rate_ddot_limit, highest_rate_ddot_limit);
-  update_rate(duration, std::clamp(target_rate, 0.0, 1.0), max_rate_dot, max_rate_ddot);
+  update_rate(duration, target_rate, bounds);
   time_ += 0.5 * (before + rate_) * duration;
 }
 
@@ -48,13 +70,14 @@ void TimeScaling::slow_for_delay(double delay)
   }
 }
 
-void TimeScaling::update_rate(double duration, double target_rate, double max_rate_dot, double max_rate_ddot)
+void TimeScaling::update_rate(double duration, double target_rate, const Bounds & bounds)
 {
   const double remaining = target_rate - rate_;
   // Limits the rate of change so that it can return to zero when the target rate is reached.
-  const double target_rate_dot =
-      std::copysign(std::min(max_rate_dot, std::sqrt(2.0 * max_rate_ddot * std::abs(remaining))), remaining);
-  rate_dot_ += std::clamp(target_rate_dot - rate_dot_, -max_rate_ddot * duration, max_rate_ddot * duration);
+  const double target_rate_dot = std::copysign(
+      std::min(bounds.rate_dot, std::sqrt(2.0 * bounds.rate_ddot * std::abs(remaining))), remaining);
+  const double max_change = bounds.rate_ddot * duration;
+  rate_dot_ += std::clamp(target_rate_dot - rate_dot_, -max_change, max_change);
   const double step = rate_dot_ * duration;
   const bool arrives = std::abs(remaining) <= std::max(std::abs(step), 1e-4);
   if (arrives) {

@@ -4,6 +4,8 @@
 
 namespace ur_ros_rtde::trajectory::test {
 
+constexpr auto no_deadline = std::chrono::steady_clock::time_point::max();
+
 /// Largest utilization of the limits by finite differences of the sampled *positions*, minus the possible
 /// rounding errors.
 Utilization finite_difference_utilization(const Trajectory & trajectory, const Limits & limits,

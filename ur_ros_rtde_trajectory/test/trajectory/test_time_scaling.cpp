@@ -163,6 +163,52 @@ TEST(TimeScalingTest, ChangesTheRateSmoothly)
   }
 }
 
+// s, until `plan` is at rest if it brakes from `time` on, and the largest accelerations.
+std::pair<double, Joints> brake(const Trajectory & plan, const Limits & bounds, double time)
+{
+  TimeScaling scaling(servo, 1.0, time);
+  double elapsed = 0.0;
+  Joints before = plan.sample(time).velocity;
+  Joints largest = Joints::Zero();
+  for (; scaling.rate() > 0.0 && scaling.time() < plan.duration(); elapsed += cycle) {
+    scaling.brake(cycle, plan.sample(scaling.time()), bounds);
+    const Joints now = plan.sample(scaling.time()).velocity * scaling.rate();
+    largest = largest.max((now - before).abs() / cycle);
+    before = now;
+  }
+  return {elapsed, largest};
+}
+
+TEST(TimeScalingTest, BrakesAsGentlyAsTheLimits)
+{
+  Limits bounds = test_limits();
+  for (const double gentleness : {1.0, 0.3, 0.1}) {
+    bounds.acceleration.setConstant(2.0 * gentleness);
+    bounds.jerk.setConstant(20.0 * gentleness);
+    const auto plan = plan_path(std::vector<Joints>{Joints::Zero(), Joints::Constant(20.0)}, bounds);
+    ASSERT_TRUE(plan);
+    const auto [duration, largest] = brake(*plan, bounds, 0.5 * plan->duration());
+    const double shortest = 1.0 / bounds.acceleration[0] + bounds.acceleration[0] / bounds.jerk[0];
+    EXPECT_LT(duration, 1.1 * shortest);
+    EXPECT_TRUE((largest <= 1.02 * bounds.acceleration).all()) << largest[0];
+  }
+}
+
+TEST(TimeScalingTest, BrakesFromEachMomentWithinTwiceTheLimits)
+{
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const RandomPath path = random_path(seed);
+    const Limits bounds = random_limits(seed, true);
+    const auto plan = plan_path(path.waypoints, bounds, path.options);
+    ASSERT_TRUE(plan) << plan.error().message;
+    for (const double part : {0.05, 0.25, 0.5, 0.75, 0.95}) {
+      const auto [duration, largest] = brake(*plan, bounds, part * plan->duration());
+      EXPECT_LT(duration, 2.0) << "seed " << seed << " part " << part;
+      EXPECT_TRUE((largest <= 2.1 * bounds.acceleration).all()) << "seed " << seed << " part " << part;
+    }
+  }
+}
+
 TEST(TimeScalingTest, StandsStillAtZeroRate)
 {
   const Trajectory plan = line();

@@ -75,7 +75,7 @@ TEST_P(TimedTrajectoryTest, CanBeStoppedAlongItsPath)
 {
   const auto plan = plan_timed(samples(GetParam()), limits());
   ASSERT_TRUE(plan) << plan.error().message;
-  const Trajectory stop = plan->stop_from(0.8, limits());
+  const Trajectory stop = *plan->stop_from(0.8, limits(), no_deadline);
   EXPECT_LT(stop.duration(), plan->duration());
   EXPECT_GT(stop.duration(), 0.8);
   EXPECT_TRUE(stop.verify(limits())) << stop.verify(limits()).error().message;
