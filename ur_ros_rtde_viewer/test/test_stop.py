@@ -1,14 +1,19 @@
-"""STOP when the driver does not answer: the robot program is stopped through dashboard_server."""
+"""STOP: by the driver, and through dashboard_server if the driver does not answer in time."""
+
+import time
 
 import pytest
 from arm_state import AT_REST, home_plus
 from robot_fixtures import addresses, client, make_ready, simulator  # noqa: F401
 from running_viewer import RunningViewer, until
-from support import HOME, start_node
+from support import start_node
+from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_LIMIT, SILENCE_LIMIT
 
 from ur_ros_rtde_msgs.action import MoveJ
 
 MEASURES_TIME = True
+DELAY_OF_THE_HOST = 0.3  # s
+THROUGH_THE_DASHBOARD = ("The robot program is being stopped", "The robot program was stopped")
 
 
 @pytest.fixture
@@ -38,6 +43,13 @@ def press(running):
     return lambda: control._stop_text.content
 
 
+def time_until_fallback(text):
+    """Returns the time in s until the program is being stopped through dashboard_server."""
+    begin = time.monotonic()
+    until(lambda: any(phase in text() for phase in THROUGH_THE_DASHBOARD), "the fallback to dashboard_server")
+    return time.monotonic() - begin
+
+
 def is_moving(simulator):  # noqa: F811
     return max(map(abs, simulator.state()["actual"]["velocity"])) > AT_REST
 
@@ -59,10 +71,12 @@ def test_a_driver_that_does_not_answer_is_stopped_through_the_dashboard(running,
     assert client.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=0.1).accepted
     until(lambda: is_moving(simulator), "the arm to move")
     nodes["command_server"].pause()
+    before = simulator.state()["actual"]["position"][0]
     text = press(running)
+    assert time_until_fallback(text) == pytest.approx(ACCEPTANCE_LIMIT, abs=DELAY_OF_THE_HOST)
     until(lambda: "The robot program was stopped." in text(), "the end of the robot program")
     until(lambda: not is_moving(simulator), "the arm to stop")
-    assert simulator.state()["actual"]["position"][0] < HOME[0] + 2.5
+    assert simulator.state()["actual"]["position"][0] - before < 0.1 * 2.0  # 2 s at the speed of the motion
     nodes["command_server"].resume()
 
 
@@ -74,6 +88,16 @@ def test_a_driver_that_is_silent_after_it_has_accepted_the_stop_is_stopped_throu
     until(lambda: "The arm decelerates." in text(), "the acceptance of the stop")
     nodes["command_server"].pause()
     assert is_moving(simulator)
+    assert time_until_fallback(text) == pytest.approx(SILENCE_LIMIT, abs=DELAY_OF_THE_HOST)
     until(lambda: "The robot program was stopped." in text(), "the end of the robot program")
     until(lambda: not is_moving(simulator), "the arm to stop")
     nodes["command_server"].resume()
+
+
+def test_a_stop_that_takes_a_second_is_left_to_the_driver(running, nodes, simulator, client):  # noqa: F811
+    ready_to_stop(running, client)
+    assert client.send(MoveJ, "move_j", joint_positions=home_plus(-3.0), speed=2.0, acceleration=15.0).accepted
+    until(lambda: simulator.state()["actual"]["velocity"][0] < -1.9, "the speed from which the arm stops in 1 s")
+    text = press(running)
+    until(lambda: any(end in text() for end in ("At rest after", *THROUGH_THE_DASHBOARD)), "the end of the motion")
+    assert "At rest after" in text()

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <rcl_cxx/node.hpp>
 #include <string>
@@ -50,10 +52,15 @@ class CommandHost : public PluginHost {
   const Options & options() const { return options_; }
   /// The limits of the robot's model; see Robot::limits().
   ArmLimits limits() const;
+  /// Number of stops that clients have requested. A goal that was received before the last one does not move
+  /// the arm after it.
+  std::uint32_t stops() const { return stops_; }
+  void count_stop() { ++stops_; }
 
  private:
   Robot & robot_;
   Options options_;
+  std::atomic<std::uint32_t> stops_ = 0;
 };
 
 class DashboardHost : public PluginHost {

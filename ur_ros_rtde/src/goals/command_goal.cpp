@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "ur_ros_rtde/detail/guarded.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
@@ -90,6 +91,7 @@ Status CommandGoal::prepare()
 
 Status CommandGoal::check(std::vector<GoalQuery> & queries)
 {
+  stops_before_ = command_->host.stops();
   Check result(&robot(), [this] { return prepare(); });
   check_fields(result);
   result.ready();
@@ -112,6 +114,7 @@ Status CommandGoal::check(std::vector<GoalQuery> & queries)
 
 void CommandGoal::begin_stop()
 {
+  command_->host.count_stop();
   if (const auto holder = robot().holder(Resource::script)) {
     preempted_goal_ = fmt::format("{}, goal {}", holder->owner, holder->id);
   }
@@ -154,6 +157,9 @@ bool CommandGoal::started_modes() const
 
 bool CommandGoal::is_stopped() const
 {
+  if (command_->only_stops()) {
+    return !robot().is_stopping();
+  }
   const std::lock_guard lock(lease_mutex_);
   return robot().is_stopped(lease_);
 }
@@ -164,12 +170,25 @@ Status CommandGoal::acquire()
     return {};
   }
   auto lease = robot().acquire_preempting(claim(), preemption_timeout, stop_request().token());
+  if (lease && !command_->traits.preempts_all && command_->host.stops() != stops_before_) {
+    return tl::unexpected(stopped_by_the_driver());  // after this goal had been received
+  }
   if (lease) {
     hold(std::move(*lease));
   } else if (!command_->traits.preempts_all) {  // a stop is executed in every state
     return tl::unexpected(lease.error());
   }
   return {};
+}
+
+/// So that the next goal of the client of a stop finds nothing in its way.
+void CommandGoal::wait_for_preempted_goals() const
+{
+  constexpr milliseconds interval{2};
+  const auto deadline = std::chrono::steady_clock::now() + preemption_timeout;
+  while (robot().has_stopped_holders() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(interval);
+  }
 }
 
 RunContext CommandGoal::make_context()
@@ -188,6 +207,11 @@ Outcome CommandGoal::execute()
 {
   const Generation begin = robot().generation();
   Outcome outcome = guarded(stop_request(), [&]() -> Outcome {
+    if (command_->only_stops()) {
+      Outcome stopped = run_command(make_context());
+      wait_for_preempted_goals();
+      return stopped;
+    }
     if (auto why = stop_request().reason()) {
       return *std::move(why);
     }

@@ -55,11 +55,12 @@ Vector6 to_array(const std::vector<double> & values)
   return array;
 }
 
-/// A timeout may be as long as a duration can be.
+/// A timeout may be as long, or as negative, as a duration can be.
 Clock::time_point deadline_in(std::chrono::nanoseconds timeout)
 {
   const auto now = Clock::now();
-  return timeout < Clock::time_point::max() - now ? now + timeout : Clock::time_point::max();
+  const auto left = std::max(timeout, std::chrono::nanoseconds(0));
+  return left < Clock::time_point::max() - now ? now + left : Clock::time_point::max();
 }
 
 /// rad, largest difference of all joints.
@@ -101,9 +102,13 @@ Locked<ur_rtde::RTDEControlInterface> Run::control()
 
 Expected<StopReport> Run::wait_for_stop()
 {
-  return context_.stopping
-             ? context_.stopping->get()
-             : Expected<StopReport>(failure(ErrorCode::exception, "this command is not a stop"));
+  if (!context_.stopping) {
+    return failure(ErrorCode::exception, "this command is not a stop");
+  }
+  while (context_.stopping->wait_for(max_sleep) != std::future_status::ready) {
+    publish_feedback_if_due();
+  }
+  return context_.stopping->get();
 }
 
 Sample Run::state() const

@@ -11,7 +11,7 @@ from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
 from support import FEW_PLUGINS, HOME, Client, Simulator, start_node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ
+from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 NODES = ["robot_state_receiver", "command_server", "dashboard_server", "driver"]
@@ -206,6 +206,35 @@ def test_with_on_busy_preempt_a_new_goal_preempts_the_running_motion(simulator, 
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PREEMPTED
     assert "move_j" in result.message
     second.succeeded()
+
+
+def test_a_goal_that_was_received_before_a_stop_does_not_move_the_arm_after_it(simulator, client, processes):
+    processes(start_node("driver", simulator.address, FEW_PLUGINS, "on_busy:=preempt"))
+    make_ready(client)
+    first = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=2.0, acceleration=10.0)
+    wait_for(lambda: simulator.state()["actual"]["velocity"][0] > 1.9, 10.0, "the speed from which the arm stops in 1 s")
+    waiting = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0)
+    assert waiting.accepted
+    assert client.send(Stop, "stop").wait_for_result()[1].success
+    for goal in (first, waiting):
+        status, result = goal.wait_for_result()
+        assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PREEMPTED, result.message
+    position = simulator.state()["actual"]["position"]
+    time.sleep(0.3)
+    assert simulator.state()["actual"]["position"] == pytest.approx(position, abs=1e-3)
+    client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0).succeeded()
+
+
+def test_a_stop_sends_feedback_until_the_arm_is_at_rest(simulator, client, processes):
+    processes(start_node("driver", simulator.address, FEW_PLUGINS))
+    make_ready(client)
+    goal = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=2.0, acceleration=10.0)
+    wait_for(lambda: simulator.state()["actual"]["velocity"][0] > 1.9, 10.0, "the speed from which the arm stops in 1 s")
+    stop = client.send(Stop, "stop")
+    assert stop.wait_for_result()[1].success
+    assert len(stop.feedback) >= 10  # 20 Hz
+    assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
+    client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0).succeeded()  # not rejected as busy
 
 
 def test_a_silent_controller_aborts_the_motion_within_silence_limit(addresses, processes):

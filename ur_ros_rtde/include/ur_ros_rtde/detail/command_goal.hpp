@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -22,6 +23,8 @@ struct CommandDescription {
   CommandTraits traits;
   bool is_extension = false;
 
+  /// The command stops the arm and does nothing else.
+  bool only_stops() const { return traits.preempts_all && !traits.allowed_in_any_state; }
   /// A goal ends when the robot cannot move any more.
   bool needs_motion() const
   {
@@ -59,6 +62,7 @@ class CommandGoal : public Goal {
   Status prepare();
   void begin_stop();
   Status acquire();
+  void wait_for_preempted_goals() const;
   void hold(Lease lease);
   RunContext make_context();
   /// Names the lost connection or the ended program as the cause of a failure that results from it.
@@ -71,6 +75,7 @@ class CommandGoal : public Goal {
 
   const std::shared_ptr<const CommandDescription> command_;
   StopOptions stop_options_;
+  std::uint32_t stops_before_ = 0;  ///< CommandHost::stops() when the goal was received
   std::optional<std::shared_future<Expected<StopReport>>> stopping_;  ///< of a stop
   std::string preempted_goal_;
   mutable std::mutex lease_mutex_;  ///< guards what follows
