@@ -234,6 +234,24 @@ TEST_F(RobotMotionTest, IsStoppedByTheWatchdogOnAHalfOpenConnection)
   EXPECT_TRUE(becomes_ready());
 }
 
+TEST_F(RobotMotionTest, ACommandOnASilentConnectionIsALostConnection)
+{
+  controller.start();
+  auto options = robot_options();
+  options.watchdog_frequency = 0.0;  // it would end the program first
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
+  const Generation begin = robot->generation();
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"clients", "control"}});
+  EXPECT_FALSE(robot->control()->setPayload(1.0, {0.0, 0.0, 0.0}));
+  const Status possible = robot->motion_possible();
+  EXPECT_TRUE(!possible || robot->generation() != begin) << "the robot has rejected the command";
+  EXPECT_TRUE(possible || possible.error().code == ErrorCode::link_lost) << possible.error().message;
+  controller.control(
+      {{"command", "stall_links"}, {"which", "rtde"}, {"clients", "control"}, {"stalled", false}});
+  EXPECT_TRUE(becomes_ready_again());
+}
+
 TEST_F(RobotMotionTest, BlockingCallReturnsWhenTheConnectionIsLost)
 {
   make_both();
