@@ -14,7 +14,8 @@ target_link_libraries(fuzz_ur_rtde PUBLIC Boost::thread Threads::Threads)
 set(robot ${REPOSITORY}/ur_ros_rtde_robot)
 file(GLOB robot_sources CONFIGURE_DEPENDS ${robot}/src/script/*.cpp)
 add_library(fuzz_robot STATIC ${robot_sources}
-  ${robot}/src/connection/dashboard_request.cpp ${robot}/src/connection/primary_connection.cpp
+  ${robot}/src/connection/dashboard_request.cpp ${robot}/src/connection/dashboard_session.cpp
+  ${robot}/src/connection/primary_connection.cpp
   ${robot}/src/connection/rtde/rtde_probe.cpp
   ${robot}/src/connection/tcp_socket.cpp ${robot}/src/connection/text.cpp)
 target_include_directories(fuzz_robot PUBLIC ${robot}/src ${robot}/include ${REPOSITORY}/ur_ros_rtde_trajectory/include)

@@ -1,5 +1,7 @@
 #include <arpa/inet.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -370,6 +372,66 @@ TEST_F(ScriptServerTest, ClosesTheConnectionAfterAnUnknownRequest)
     EXPECT_EQ(status.error().message.find("does not answer"), std::string::npos) << status.error().message;
   }
   EXPECT_EQ(server.fetched(), 0U);
+}
+
+/// While it exists, this process cannot open files.
+class NoDescriptors {
+ public:
+  NoDescriptors()
+  {
+    ::getrlimit(RLIMIT_NOFILE, &limit_);
+    while (true) {
+      const int descriptor = ::dup(STDIN_FILENO);
+      if (descriptor < 0 || opened_.size() == 4096) {
+        break;
+      }
+      opened_.push_back(descriptor);
+      rlimit lowered = limit_;
+      lowered.rlim_cur = static_cast<rlim_t>(descriptor) + 1;
+      ::setrlimit(RLIMIT_NOFILE, &lowered);
+    }
+  }
+  ~NoDescriptors()
+  {
+    ::setrlimit(RLIMIT_NOFILE, &limit_);
+    for (const int descriptor : opened_) {
+      ::close(descriptor);
+    }
+  }
+  NoDescriptors(const NoDescriptors &) = delete;
+  NoDescriptors & operator=(const NoDescriptors &) = delete;
+
+ private:
+  rlimit limit_{};
+  std::vector<int> opened_;
+};
+
+double processor_time()
+{
+  timespec time{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+TEST_F(ScriptServerTest, WaitsWhenItCannotAcceptAConnection)
+{
+  const int client = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  ::inet_pton(AF_INET, own_address().c_str(), &address.sin_addr);
+  {
+    const NoDescriptors none;
+    ASSERT_EQ(::connect(client, reinterpret_cast<const sockaddr *>(&address), sizeof(address)), 0);
+    const double begin = processor_time();
+    std::this_thread::sleep_for(500ms);
+    EXPECT_LT(processor_time() - begin, 0.1);
+  }
+  const std::string request = "request_program\n";
+  ASSERT_EQ(::send(client, request.data(), request.size(), 0), static_cast<ssize_t>(request.size()));
+  EXPECT_TRUE(eventually([&] { return server.fetched() == 1U; }));
+  EXPECT_EQ(log.count("cannot serve the control program"), 1U) << log.text();
+  ::close(client);
 }
 
 TEST_F(ScriptServerTest, SendsNothingWhileTheControllerIsUnknown)

@@ -156,6 +156,45 @@ TEST_F(StopTest, MayBeRequestedBySeveralThreads)
   EXPECT_TRUE(robot->ready_to_move());
 }
 
+TEST_F(StopTest, UsesTheDashboardServerWithoutRtde)
+{
+  controller.start();
+  auto options = robot_options();
+  options.watchdog_frequency = 0.0;  // only the stop ends the motion
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
+  move_joints();
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+  ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
+  const auto stopped = robot->stop_motion();
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::link_lost);
+  EXPECT_NE(stopped.error().message.find("was stopped through the dashboard server"), std::string::npos)
+      << stopped.error().message;
+  EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
+  EXPECT_TRUE(eventually([&] { return controller.state().at("at_rest").get<bool>(); }));
+}
+
+TEST_F(StopTest, PromisesNoWatchdogThatIsOff)
+{
+  for (const double frequency : {0.0, 4.0}) {
+    controller.start();
+    auto options = robot_options();
+    options.watchdog_frequency = frequency;
+    make_robot(options);
+    ASSERT_TRUE(becomes_ready());
+    controller.stop();
+    ASSERT_TRUE(comes_to(RobotState::disconnected, ErrorCode::link_lost));
+    const auto stopped = robot->stop_motion();
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().code, ErrorCode::link_lost);
+    const char * end = frequency > 0.0 ? "the watchdog of its program stops the arm within 0.25 s"
+                                       : "no watchdog (watchdog_frequency: 0): use the emergency stop";
+    EXPECT_NE(stopped.error().message.find(end), std::string::npos) << stopped.error().message;
+    robot.reset();
+  }
+}
+
 TEST_F(StopTest, IsPartOfTheDriversShutdown)
 {
   make_both();

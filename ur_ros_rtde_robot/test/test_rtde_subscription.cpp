@@ -4,6 +4,7 @@
 
 #include "connection/dashboard_request.hpp"
 #include "support.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_session.hpp"
 #include "ur_ros_rtde_robot/connection/rtde_subscription.hpp"
 #include "ur_ros_rtde_robot/state/rtde_outputs.hpp"
 
@@ -162,6 +163,21 @@ TEST_F(DashboardRequestTest, EndsAtItsLimitAndWhenStopped)
   const auto stopped = dashboard_request(own_address(), "robotmode", 60s, stop.get_token());
   ASSERT_FALSE(stopped);
   EXPECT_EQ(stopped.error().code, ErrorCode::canceled);
+}
+
+TEST_F(DashboardRequestTest, ASessionUsesOneConnection)
+{
+  controller.start();
+  const auto drop_connections = [&] {
+    return controller.control({{"command", "drop_links"}, {"which", "dashboard"}}).at("connections");
+  };
+  DashboardSession session(own_address());
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(session.request("robotmode", limit).value_or("nothing"), "Robotmode: RUNNING");
+  }
+  EXPECT_EQ(drop_connections(), 1);
+  EXPECT_EQ(session.request("robotmode", limit).value_or("nothing"), "Robotmode: RUNNING");
+  EXPECT_EQ(drop_connections(), 1);
 }
 
 TEST_F(DashboardRequestTest, ReportsAMissingServer)

@@ -317,6 +317,21 @@ TEST_F(ScriptTest, LeavesTheRobotUsableWhenACallbackThrows)
   EXPECT_TRUE(is_back());
 }
 
+TEST_F(ScriptTest, IsNotSentForAGoalThatHasToEnd)
+{
+  make_both();
+  for (const bool is_secondary : {false, true}) {
+    ScriptOptions options = is_secondary ? secondary() : ScriptOptions();
+    options.stop_reason = [] { return std::optional(Error{ErrorCode::canceled, "canceled"}); };
+    const std::string output = "  set_standard_digital_out(2, True)\nend\n";
+    const auto report = run_script((is_secondary ? "sec s():\n" : "def s():\n") + output, options);
+    EXPECT_EQ(report.end, ScriptEnd::refused) << report.error.message;
+    EXPECT_EQ(report.error.code, ErrorCode::canceled) << report.error.message;
+  }
+  EXPECT_TRUE(is_back());
+  EXPECT_EQ(robot->latest()->digital_outputs & 4U, 0U);
+}
+
 TEST_F(ScriptTest, RunsDuringAMotionAsSecondaryProgram)
 {
   make_both();

@@ -19,7 +19,7 @@ Waitable::Waitable(std::shared_ptr<NodeImpl> node, std::string label)
 void Waitable::on_ready(const void * source, std::size_t count) noexcept
 {
   // rcl passes on the pointer that set_callback() has given to it.
-  auto & origin = *static_cast<Source *>(const_cast<void *>(source));
+  const auto & origin = *static_cast<const Source *>(source);
   // One event in the queue represents all pending data of a source: this bounds the length of the queue.
   if (count > 0 && origin.pending.fetch_add(count) == 0) {
     origin.waitable->push_event(static_cast<std::size_t>(&origin - origin.waitable->sources_.data()));

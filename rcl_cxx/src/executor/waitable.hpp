@@ -67,8 +67,8 @@ class Waitable : public std::enable_shared_from_this<Waitable> {
  private:
   struct Source {
     Waitable * waitable = nullptr;
-    std::atomic<std::size_t> pending{0};
-    std::recursive_mutex callback;  // held while a callback runs; the callback may call close()
+    mutable std::atomic<std::size_t> pending{0};  // the middleware has a pointer to a constant source
+    std::recursive_mutex callback;                // held while a callback runs; the callback may call close()
   };
 
   static void on_ready(const void * source, std::size_t count) noexcept;

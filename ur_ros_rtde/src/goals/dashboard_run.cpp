@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "ur_ros_rtde/dashboard_command.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_session.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -30,6 +31,13 @@ std::string availability(const char * series, const MinVersion & minimum)
   return minimum.major == never.major
              ? fmt::format("{} does not have it", series)
              : fmt::format("{} has it from PolyScope {}.{} on", series, minimum.major, minimum.minor);
+}
+
+/// "RUNNING" of "Robotmode: RUNNING".
+std::string without_label(const std::string & answer)
+{
+  const auto colon = answer.find(": ");
+  return colon == std::string::npos ? answer : answer.substr(colon + 2);
 }
 
 bool is_one_of(const std::string & state, const std::vector<std::string> & states)
@@ -90,9 +98,7 @@ std::string DashboardRun::send(const std::string & line)
 
 std::string DashboardRun::query_value(const std::string & question)
 {
-  const std::string answer = send(question);
-  const auto colon = answer.find(": ");
-  return colon == std::string::npos ? answer : answer.substr(colon + 2);
+  return without_label(send(question));
 }
 
 Outcome DashboardRun::query(const std::string & question)
@@ -152,8 +158,13 @@ Outcome DashboardRun::rejection(const std::string & line)
 Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point deadline, double timeout)
 {
   std::string shown;
+  DashboardSession session(connection_.address());
   while (true) {
-    const std::string state = query_value(expected.query);
+    const auto answer = session.request(expected.query, answer_limit, stop_request_->token());
+    if (!answer) {
+      throw RobotError(answer.error());
+    }
+    const std::string state = without_label(*answer);
     if (state != shown) {
       shown = state;
       publish_state(state);

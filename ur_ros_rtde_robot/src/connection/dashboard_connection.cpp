@@ -349,4 +349,9 @@ Expected<std::string> DashboardConnection::request(const std::string & line, std
   return dashboard_request(impl_->options_.address, line, limit, stop);
 }
 
+const std::string & DashboardConnection::address() const
+{
+  return impl_->options_.address;
+}
+
 }  // namespace ur_ros_rtde

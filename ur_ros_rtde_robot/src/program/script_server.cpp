@@ -26,6 +26,8 @@ constexpr std::size_t max_request_size = 64;
 constexpr std::size_t max_clients = 16;
 /// The URCap waits 5 s for the first bytes and 0.5 s for more.
 constexpr std::chrono::seconds client_timeout(10);
+/// After a connection that cannot be accepted, for example because the process has too many open files.
+constexpr std::chrono::milliseconds accept_pause(200);
 
 class Descriptor {
  public:
@@ -120,12 +122,14 @@ class ScriptServer::Service {
   /// Waits for events up to `limit` and handles them.
   void poll_once(std::chrono::milliseconds limit)
   {
-    std::vector<pollfd> waiting{{wake_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}};
+    const bool accepts = Clock::now() >= accept_after_;
+    std::vector<pollfd> waiting{{wake_.get(), POLLIN, 0}, {accepts ? listener_.get() : -1, POLLIN, 0}};
     for (const Client & client : clients_) {
       waiting.push_back(
           {client.socket.get(), static_cast<short>(client.to_send.empty() ? POLLIN : POLLIN | POLLOUT), 0});
     }
-    if (::poll(waiting.data(), waiting.size(), static_cast<int>(limit.count())) < 0) {
+    const auto timeout = accepts ? limit : std::min(limit, accept_pause);
+    if (::poll(waiting.data(), waiting.size(), static_cast<int>(timeout.count())) < 0) {
       return;
     }
     const auto now = Clock::now();
@@ -146,7 +150,13 @@ class ScriptServer::Service {
     socklen_t size = sizeof(peer);
     Descriptor socket(
         ::accept4(listener_.get(), reinterpret_cast<sockaddr *>(&peer), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
-    if (!socket || clients_.size() >= max_clients) {
+    if (!socket) {
+      server_.logger_.log_on_change(LogLevel::error, fmt::format("cannot serve the control program: {}",
+                                                                 std::generic_category().message(errno)));
+      accept_after_ = Clock::now() + accept_pause;  // the connection keeps the listener ready
+      return;
+    }
+    if (clients_.size() >= max_clients) {
       return;
     }
     std::array<char, INET_ADDRSTRLEN> text{};
@@ -191,6 +201,7 @@ class ScriptServer::Service {
 
   ScriptServer & server_;
   Descriptor listener_;
+  Clock::time_point accept_after_{};
   std::vector<Client> clients_;
   Descriptor wake_;
   std::stop_callback<std::function<void()>> wake_on_stop_;

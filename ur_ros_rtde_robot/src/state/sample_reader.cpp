@@ -29,7 +29,13 @@ Sample empty_sample()
   }
   sample.actual_tool_accelerometer.fill(nan);
   sample.payload_cog.fill(nan);
-  sample.payload = nan;
+  sample.analog_inputs.fill(nan);
+  sample.analog_outputs.fill(nan);
+  for (double Sample::* field :
+       {&Sample::actual_execution_time, &Sample::actual_momentum, &Sample::actual_main_voltage,
+        &Sample::actual_robot_voltage, &Sample::actual_robot_current, &Sample::payload}) {
+    sample.*field = nan;
+  }
   return sample;
 }
 

@@ -112,10 +112,6 @@ std::optional<LimitViolation> violation_at(const Point & point, const Limits & l
   return excess;
 }
 
-}  // namespace
-
-namespace {
-
 // On a line, the values of all joints are proportional to speed, acceleration and jerk along it.
 PieceUtilization line_utilization(const Motion & motion, const TimingLawPiece & piece, const Limits & limits,
                                   int inner)

@@ -59,9 +59,9 @@ Expected<std::vector<Joints>> read_list(std::string_view field, const std::vecto
   std::vector<Joints> result;
   result.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto values = to_joints(fmt::format("{}[{}]", field, i), list[i]);
-    if (!values) {
-      return tl::unexpected(values.error());
+    auto values = to_joints(field, list[i]);
+    if (!values) {  // the name of the entry takes longer to make than the check
+      return tl::unexpected(to_joints(fmt::format("{}[{}]", field, i), list[i]).error());
     }
     result.push_back(*values);
   }
@@ -202,8 +202,8 @@ Status check_timed(const TimedWaypoints & waypoints, const Limits & limits)
     return tl::unexpected(knots.error());
   }
   for (std::size_t i = 0; i < knots->q.size(); ++i) {
-    if (auto status = check_positions(fmt::format("positions[{}]", i), knots->q[i], limits); !status) {
-      return status;
+    if (!check_positions("positions", knots->q[i], limits)) {
+      return check_positions(fmt::format("positions[{}]", i), knots->q[i], limits);
     }
   }
   return {};

@@ -11,8 +11,12 @@ class ForceMode : public Command<ur_ros_rtde_msgs::action::ForceMode> {
     const auto set_feedback = [&](const Sample & now) {
       const Vector6 & measured = now.actual_tcp_force;
       auto & wrench = run.feedback().wrench;
-      wrench.force.x = measured[0], wrench.force.y = measured[1], wrench.force.z = measured[2];
-      wrench.torque.x = measured[3], wrench.torque.y = measured[4], wrench.torque.z = measured[5];
+      wrench.force.x = measured[0];
+      wrench.force.y = measured[1];
+      wrench.force.z = measured[2];
+      wrench.torque.x = measured[3];
+      wrench.torque.y = measured[4];
+      wrench.torque.z = measured[5];
     };
     return end_mode_after(run, goal.duration, &ur_rtde::RTDEControlInterface::forceModeStop, "force mode",
                           set_feedback);

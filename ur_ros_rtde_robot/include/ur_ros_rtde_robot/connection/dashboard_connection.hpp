@@ -59,6 +59,8 @@ class DashboardConnection {
   /// is requested.
   Expected<std::string> request(const std::string & line, std::chrono::milliseconds limit,
                                 const std::stop_token & stop = {}) const;
+  /// Of the dashboard server.
+  const std::string & address() const;
 
  private:
   class Impl;

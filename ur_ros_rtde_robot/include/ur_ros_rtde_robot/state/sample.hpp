@@ -74,8 +74,9 @@ struct AsyncStatus {
   bool operator==(const AsyncStatus & other) const { return word == other.word; }
 };
 
-/// All fields of one RTDE package, which belong to the same control cycle. Copied without allocation. Fields
-/// that the controller's version does not provide are NaN.
+/// All fields of one RTDE package, which belong to the same control cycle. Copied without allocation. Numbers
+/// that the controller's version does not provide are NaN; modes, bits, registers and the two speed fractions
+/// exist in every version.
 struct Sample {
   /// Number of packages since the receiver was created, across reconnections; 0: no package yet.
   std::uint64_t sequence = 0;

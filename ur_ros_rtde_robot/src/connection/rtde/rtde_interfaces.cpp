@@ -252,7 +252,11 @@ bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
   }
   bool works = false;
   try {
-    works = control && control->isConnected() && control->reuploadScript();
+    if (control && control->isConnected()) {
+      // Other threads may have kept the interface.
+      const HeldLock lock = acquire(*control_lock_, "control interface", answer_limit);
+      works = control->reuploadScript();
+    }
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     while (works && !control->isProgramRunning()) {
       works = !stop.stop_requested() && control->waitForNextState() &&

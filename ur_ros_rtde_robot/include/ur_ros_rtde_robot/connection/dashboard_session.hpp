@@ -1,0 +1,40 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "ur_ros_rtde_robot/connection/tcp_socket.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
+
+namespace ur_ros_rtde {
+
+/// A connection to the dashboard server for one request after the other, such as a query that is repeated.
+/// An e-Series controller applies to each client the control mode, local or remote, at the time of
+/// connecting: a new session has the current mode. Not thread-safe.
+class DashboardSession {
+ public:
+  explicit DashboardSession(std::string address) : address_(std::move(address)) {}
+
+  /// Sends a line and returns the answer without the line end. Connects with the first request, after an
+  /// error, and if the robot has closed the connection. Errors: link_lost; timeout after `limit`; canceled if
+  /// a stop is requested.
+  Expected<std::string> request(const std::string & line, std::chrono::milliseconds limit,
+                                const std::stop_token & stop = {});
+
+ private:
+  struct WaitLimit {
+    TcpSocket::Clock::time_point deadline;
+    std::stop_token stop;
+  };
+  Status connect(const WaitLimit & wait_limit);
+  Expected<std::string> ask(const std::string & line, const WaitLimit & wait_limit);
+  Expected<std::string> next_line(const WaitLimit & wait_limit);
+
+  std::string address_;
+  std::optional<TcpSocket> socket_;
+  std::string received_;
+};
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,92 @@
+#include "ur_ros_rtde_robot/connection/dashboard_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "connection/ports.hpp"
+#include "ur_ros_rtde_robot/connection/text.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Clock = TcpSocket::Clock;
+constexpr std::chrono::milliseconds connect_timeout{5000};
+constexpr std::chrono::milliseconds poll_interval{50};
+constexpr std::size_t max_answer_size = 64 * 1024;
+
+}  // namespace
+
+Expected<std::string> DashboardSession::next_line(const WaitLimit & wait_limit)
+{
+  std::array<std::byte, 512> bytes;
+  for (auto end = received_.find('\n'); true; end = received_.find('\n')) {
+    if (end != std::string::npos) {
+      std::string line = received_.substr(0, end);
+      received_.erase(0, end + 1);
+      line.erase(line.find_last_not_of(" \t\r") + 1);
+      return printable(line);
+    }
+    if (wait_limit.stop.stop_requested()) {
+      return failure(ErrorCode::canceled, "the request to the dashboard server was canceled");
+    }
+    const auto now = Clock::now();
+    if (now >= wait_limit.deadline) {
+      return failure(ErrorCode::timeout, "the dashboard server has not answered");
+    }
+    const auto got = socket_->read_some(bytes, std::min(wait_limit.deadline, now + poll_interval));
+    if (!got) {
+      return tl::unexpected(got.error());
+    }
+    received_.append(reinterpret_cast<const char *>(bytes.data()), *got);
+    if (received_.size() > max_answer_size) {
+      return failure(
+          ErrorCode::link_lost,
+          fmt::format("the dashboard server sent {} bytes without an end of line", received_.size()));
+    }
+  }
+}
+
+Status DashboardSession::connect(const WaitLimit & wait_limit)
+{
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(wait_limit.deadline - Clock::now());
+  auto socket = TcpSocket::connect(address_, dashboard_port, std::min(left, connect_timeout));
+  if (!socket) {
+    return tl::unexpected(socket.error());
+  }
+  socket_ = std::move(*socket);
+  received_.clear();
+  return next_line(wait_limit).map([](const std::string &) {});  // the greeting
+}
+
+Expected<std::string> DashboardSession::ask(const std::string & line, const WaitLimit & wait_limit)
+{
+  Status ready;
+  if (!socket_ || !received_.empty()) {  // what has arrived does not answer this request
+    ready = connect(wait_limit);
+  }
+  if (ready) {
+    ready = socket_->write(line + "\n", wait_limit.deadline);
+  }
+  auto answer = ready ? next_line(wait_limit) : Expected<std::string>(tl::unexpected(ready.error()));
+  if (!answer) {
+    socket_.reset();
+  }
+  return answer;
+}
+
+Expected<std::string> DashboardSession::request(const std::string & line, std::chrono::milliseconds limit,
+                                                const std::stop_token & stop)
+{
+  const WaitLimit wait_limit{Clock::now() + limit, stop};
+  const bool was_connected = socket_.has_value();
+  auto answer = ask(line, wait_limit);
+  if (!answer && was_connected && answer.error().code == ErrorCode::link_lost) {
+    return ask(line, wait_limit);  // the robot has closed the connection since the last request
+  }
+  return answer;
+}
+
+}  // namespace ur_ros_rtde
