@@ -4,13 +4,13 @@
 namespace my_package {
 
 class MyCommand : public ur_ros_rtde::Command<action::MyCommand> {
-  // Refuses an invalid goal with the first violation, before anything moves.
+  // Rejects an invalid goal with the first violation, before anything moves.
   void check(const Goal & goal, ur_ros_rtde::Check & check) const override
   {
     check.in_range("angle", goal.angle, 0.01, 1.0, "rad").above_zero("speed", goal.speed, 3.14, "rad/s");
   }
 
-  // Runs in the goal's own thread. Afterwards the arm is brought to rest before the result is sent.
+  // Runs in the goal's own thread. What it has started is stopped before the result is sent.
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
     const auto start = run.receive()->getActualQ();
