@@ -247,7 +247,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     add_forwarding("bench", command_bench, "measure latency and load")
     add_forwarding("plan", command_plan, "plan a trajectory without a robot and draw it against its limits")
     add_forwarding("view", command_view, "show robots in the browser: 3D scene, plots, state, recordings")
-    add_forwarding("chaos", command_chaos, "send random goals during random faults; with --faults 0 a soak test")
+    add_forwarding("chaos", command_chaos, "send random goals during random faults; with --faults 0 a soak test, with --stops the stop property test")
     add_forwarding("shell", command_shell, "open a shell, or run one command, with the environment of the build")
 
     for name, text in CLI.items():

@@ -1,0 +1,68 @@
+// Commands of the stop property test that do not end soon after they have to.
+#include <chrono>
+#include <thread>
+#include <ur_ros_rtde_msgs/action/speed_j.hpp>
+
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using SpeedJAction = ur_ros_rtde_msgs::action::SpeedJ;
+
+Clock::time_point end_of(const SpeedJAction::Goal & goal)
+{
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(goal.time));
+}
+
+}  // namespace
+
+/// Computes for 200 ms between two looks at the reason to stop, while the arm moves.
+class SlowToLook : public Command<SpeedJAction> {
+  StopOptions stop_options(const Goal & goal) const override
+  {
+    return {.joint_deceleration = goal.deceleration};
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    constexpr std::chrono::milliseconds computing_time{200};
+    const std::vector<double> velocities(goal.joint_velocities.begin(), goal.joint_velocities.end());
+    for (const auto end = end_of(goal); Clock::now() < end;) {
+      if (auto why = run.stop_reason()) {
+        return *why;
+      }
+      run.control()->speedJ(velocities, goal.acceleration, 0.0);
+      std::this_thread::sleep_for(computing_time);
+    }
+    return Outcome::success();
+  }
+};
+
+/// Sends commands until its time has passed, whatever happens.
+class NeverLooks : public Command<SpeedJAction> {
+  StopOptions stop_options(const Goal & goal) const override
+  {
+    return {.joint_deceleration = goal.deceleration};
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    constexpr std::chrono::milliseconds period{20};
+    const std::vector<double> velocities(goal.joint_velocities.begin(), goal.joint_velocities.end());
+    for (const auto end = end_of(goal); Clock::now() < end; std::this_thread::sleep_for(period)) {
+      try {
+        run.control()->speedJ(velocities, goal.acceleration, 0.0);
+      } catch (const std::exception &) {
+        continue;  // this is what it never looks at
+      }
+    }
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(SlowToLook, "slow_to_look")
+UR_ROS_RTDE_EXPORT(NeverLooks, "never_looks")
+
+}  // namespace ur_ros_rtde

@@ -1,0 +1,90 @@
+"""A case of the stop property test: everything that is drawn by chance, from one number."""
+
+from dataclasses import dataclass
+from random import Random
+from typing import Dict, List, Optional, Sequence, Tuple
+
+from .events import EVENTS, Event
+from .goal_kinds import HAND_GUIDED, GoalKind
+
+BLOCK = 30  # consecutive seeds with the same profile: a lane restarts its driver between two profiles
+# Parameters of the driver. "fast" are the defaults: a hold of more than 0.1 s is a lost connection.
+PROFILES: Dict[str, Tuple[str, ...]] = {
+    "patient": ("silence_limit:=2.0", "watchdog_frequency:=2.0"),
+    "fast": ("silence_limit:=0.1", "watchdog_frequency:=10.0"),
+    "preempt": ("silence_limit:=2.0", "watchdog_frequency:=2.0", "on_busy:=preempt"),
+}
+SILENCE_LIMIT = {"patient": 2.0, "fast": 0.1, "preempt": 2.0}  # s, after which a silent connection is found to be dead
+HELD = 0.4  # of all cases
+LONGEST_HOLD = 0.4  # s
+
+
+def profile_of(seed: int) -> str:
+    return list(PROFILES)[seed // BLOCK % len(PROFILES)]
+
+
+@dataclass(frozen=True)
+class HoldPlan:
+    begin: float  # s, relative to the event; negative: before it
+    seconds: float
+    newest: bool  # includes the newest thread, which is that of the goal
+    count: int  # of further threads; -1: all
+    seed: int  # which ones
+
+    def choose(self, threads: Sequence[Tuple[int, str]]) -> List[Tuple[int, str]]:
+        if self.count < 0:
+            return list(threads)
+        chosen = Random(self.seed).sample(list(threads), min(self.count, len(threads)))
+        newest = max(threads)
+        return [*chosen, newest] if self.newest and newest not in chosen else chosen
+
+
+@dataclass(frozen=True)
+class Case:
+    seed: int
+    profile: str
+    kind: GoalKind
+    event: Event
+    waits_for_motion: bool
+    delay: float  # s, from the acceptance of the goal, or the first motion, to the event
+    second_delay: float  # s, between the two requests of "cancel, then stop"
+    stop: Dict[str, float]  # fields of a stop
+    hold: Optional[HoldPlan]
+
+    def text(self) -> str:
+        hold = "" if self.hold is None else (f", hold of {1e3 * self.hold.seconds:.0f} ms from {1e3 * self.hold.begin:+.0f} ms, "
+                                             f"{self.hold.count if self.hold.count >= 0 else 'all'} threads"
+                                             f"{' and the newest' if self.hold.newest else ''}")
+        after = "motion" if self.waits_for_motion else "acceptance"
+        return f"{self.kind.name}, {self.event.name} {1e3 * self.delay:.0f} ms after {after}, {self.profile}{hold}"
+
+
+def is_possible(kind: GoalKind, event: Event, profile: str) -> bool:
+    if event.profile and event.profile != profile:
+        return False
+    if kind.is_topic:  # no goal that could be canceled, preempted or lose its client
+        return not (event.needs_client or event.name in ("preempted", "cancel, then stop"))
+    if event.needs_client and kind.package == "control_msgs":
+        return False  # the client cannot import it
+    return not (event.name == "preempted" and kind.name in HAND_GUIDED)
+
+
+def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
+    """The same seed and kinds give the same case."""
+    random = Random(f"stop/{seed}")
+    profile = profile_of(seed)
+    kind = random.choices(kinds, [kind.weight for kind in kinds])[0]
+    events = [event for event in EVENTS if is_possible(kind, event, profile)]
+    event = random.choices(events, [event.weight for event in events])[0]
+    waits = random.random() < 0.8
+    delay = random.uniform(0.0, 0.9) if waits else random.uniform(0.0, 0.08)
+    second_delay = random.uniform(0.0, 0.3)
+    stop = {"joint_deceleration": random.uniform(1.5, 8.0), "linear_deceleration": random.uniform(1.0, 6.0)}
+    hold = _hold(random)
+    return Case(seed, profile, kind, event, waits, delay, second_delay, stop, hold if holds else None)
+
+
+def _hold(random: Random) -> Optional[HoldPlan]:
+    plan = HoldPlan(begin=random.uniform(-0.1, 0.1), seconds=random.uniform(0.001, LONGEST_HOLD) ** random.choice((1.0, 1.5)),
+                    newest=random.random() < 0.4, count=random.choice((1, 1, 1, 2, 4, 8, -1)), seed=random.randrange(2**32))
+    return plan if random.random() < HELD else None

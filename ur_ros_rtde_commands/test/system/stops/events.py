@@ -1,0 +1,148 @@
+"""What ends a goal: requests of clients, operators and the safety system, lost programs and connections, the end of the driver."""
+
+import signal
+from dataclasses import dataclass
+from typing import Any, Callable, Optional
+
+from support import wait_for
+
+from ur_ros_rtde_msgs.action import DashboardCommand, Stop
+
+BEGIN_LIMIT = 0.02  # s of the robot, from a request to the first decelerating cycle
+RECOVERY_LIMIT = 20.0  # s
+
+
+@dataclass(frozen=True)
+class Event:
+    """`cause` executes the event, and returns when it was sent, ns since the epoch."""
+
+    name: str
+    cause: Callable[[Any], int]  # function of the lane
+    weight: float
+    begin_limit: Optional[float] = None  # s of the robot; None: depends on a connection that has to be found dead, or on a lease
+    rest_limit: float = 1.0  # s of the robot, to the standstill, without the time of the deceleration
+    asks: str = ""  # whose deceleration is asked for: "goal", "stop"
+    keeps_program: bool = False  # the next goal is accepted at once
+    recover: Optional[Callable[[Any], None]] = None
+    needs_client: str = ""  # the goal is sent by a client of its own, which ends so: "exit", "kill"
+    ends_driver: bool = False
+    profile: str = ""  # the only one in which it occurs
+    has_result: bool = True
+    is_silent: bool = False  # is noticed after the silence_limit
+
+
+def _cancel(lane) -> int:
+    return lane.running.cancel()
+
+
+def _stop(lane) -> int:
+    return lane.send_in_executor(Stop, "stop", **lane.case.stop)
+
+
+def _cancel_then_stop(lane) -> int:
+    when = lane.running.cancel()
+    lane.sleep_until(when + lane.case.second_delay)
+    lane.send_in_executor(Stop, "stop", **lane.case.stop)
+    return when
+
+
+def _dashboard_stop(lane) -> int:
+    return lane.send_in_executor(DashboardCommand, "dashboard/stop")
+
+
+def _page_stop(lane) -> int:
+    return lane.press_stop_of_the_page()
+
+
+def _control(command: str, **fields: Any) -> Callable[[Any], int]:
+    def cause(lane) -> int:
+        when = lane.now()
+        lane.simulator.control(command, **fields)
+        return when
+
+    return cause
+
+
+def _play_another_program(lane) -> int:
+    when = lane.now()
+    lane.simulator.control("run_script", script="def another():\n  sleep(0.3)\nend\n")
+    return when
+
+
+def _signal(number: int) -> Callable[[Any], int]:
+    def cause(lane) -> int:
+        when = lane.now()
+        lane.driver.signal(number)
+        return when
+
+    return cause
+
+
+def _end_client(how: str) -> Callable[[Any], int]:
+    def cause(lane) -> int:
+        client = lane.running.client
+        client.signal(signal.SIGKILL if how == "kill" else signal.SIGTERM)
+        client.wait(20.0)
+        return lane.now()
+
+    return cause
+
+
+def _preempt(lane) -> int:
+    return lane.preempt()
+
+
+def _is_normal(lane) -> bool:
+    return lane.simulator.state()["safety_mode"] == "NORMAL"
+
+
+def _unlock(lane) -> None:
+    wait_for(lambda: _is_normal(lane) or lane.simulator.unlock_protective_stop() and False, RECOVERY_LIMIT, "the protective stop to be unlocked")
+
+
+def _release_emergency_stop(lane) -> None:
+    lane.simulator.control("emergency_stop", pressed=False)
+    wait_for(lambda: _is_normal(lane), RECOVERY_LIMIT, "a normal safety mode")
+    lane.simulator.control("power", to="running")
+
+
+def _close_safeguard(lane) -> None:
+    lane.simulator.control("safeguard", open=False)
+    wait_for(lambda: _is_normal(lane), RECOVERY_LIMIT, "a normal safety mode")
+
+
+def _end_stall(lane) -> None:
+    lane.simulator.control("stall_links", stalled=False)
+
+
+def _restart_driver(lane) -> None:
+    lane.restart_driver()
+
+
+def _replace_killed_driver(lane) -> None:
+    """A client sends requests to a killed driver until its lease has expired."""
+    wait_for(lambda: not lane.client.sees_driver(), RECOVERY_LIMIT, "the lease of the killed driver to expire")
+    lane.restart_driver()
+
+
+EVENTS = (
+    Event("cancel", _cancel, 22.0, BEGIN_LIMIT, asks="goal", keeps_program=True),
+    Event("stop", _stop, 20.0, BEGIN_LIMIT, asks="stop", keeps_program=True),
+    Event("cancel, then stop", _cancel_then_stop, 8.0, BEGIN_LIMIT, keeps_program=True),
+    Event("STOP of the page", _page_stop, 5.0, BEGIN_LIMIT, keeps_program=True),
+    Event("dashboard stop", _dashboard_stop, 5.0),
+    Event("preempted", _preempt, 40.0, BEGIN_LIMIT, asks="goal", keeps_program=True, profile="preempt"),
+    Event("protective stop", _control("protective_stop", reason="test"), 5.0, BEGIN_LIMIT, recover=_unlock),
+    Event("safeguard stop", _control("safeguard"), 5.0, BEGIN_LIMIT, recover=_close_safeguard),
+    Event("emergency stop", _control("emergency_stop"), 4.0, BEGIN_LIMIT, recover=_release_emergency_stop),
+    Event("program stopped", _control("stop_program"), 5.0, BEGIN_LIMIT),
+    Event("program replaced", _play_another_program, 3.0, BEGIN_LIMIT),
+    Event("control link dropped", _control("drop_links", which="rtde", clients="control"), 4.0),
+    Event("RTDE links dropped", _control("drop_links", which="rtde"), 3.0),
+    Event("all links dropped", _control("drop_links", which="all"), 2.0),
+    Event("links stalled", _control("stall_links", which="rtde"), 3.0, rest_limit=3.5, recover=_end_stall, is_silent=True),
+    Event("client exits", _end_client("exit"), 1.5, rest_limit=1.5, asks="goal", keeps_program=True, needs_client="exit"),
+    Event("client killed", _end_client("kill"), 0.5, rest_limit=6.0, asks="goal", keeps_program=True, needs_client="kill"),
+    Event("driver interrupted", _signal(signal.SIGINT), 0.8, rest_limit=2.0, recover=_restart_driver, ends_driver=True),
+    Event("driver killed", _signal(signal.SIGKILL), 0.5, rest_limit=1.5, recover=_replace_killed_driver, ends_driver=True, has_result=False),
+)
