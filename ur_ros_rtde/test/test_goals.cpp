@@ -127,6 +127,30 @@ TEST_F(GoalTest, IsEndedIfItsCommandDoesNotReturn)
   returns.set_value();
 }
 
+/// Nobody tells the goal to end, and its command does not look at the robot.
+TEST_F(GoalTest, IsEndedIfTheRobotHasStoppedAndItsCommandDoesNotLook)
+{
+  std::promise<void> returns;
+  std::atomic<bool> stopped{false};
+  behavior_.ended_by_robot = [&] {
+    return stopped ? std::make_optional(Error{ErrorCode::protective_stop, "a protective stop"})
+                   : std::nullopt;
+  };
+  behavior_.execute = [&](const StopRequest &) {
+    returns.get_future().wait();
+    return Outcome::success("too late");
+  };
+  serve();
+  const auto goal = send_and_go_on();
+  ASSERT_TRUE(goal);
+  stopped = true;
+  auto end = goal->async_get_result();
+  EXPECT_EQ(end.wait_for(seconds(10)), std::future_status::ready);
+  returns.set_value();
+  EXPECT_EQ(end.get().status, rcl_cxx::GoalStatus::aborted);
+  EXPECT_EQ(end.get().result.error_code, static_cast<std::uint16_t>(ErrorCode::protective_stop));
+}
+
 TEST_F(GoalTest, CancelDoesNotWaitForTheCheckOfAnotherGoal)
 {
   behavior_.execute = until_told;

@@ -155,6 +155,17 @@ bool CommandGoal::started_modes() const
   return robot().activities().without(active_before_).contains_any(outlasting_modes);
 }
 
+/// A script replaces the control program, and is watched by its runner.
+std::optional<Error> CommandGoal::ended_by_robot() const
+{
+  if (!command_->needs_motion() || command_->traits.resource == Resource::script) {
+    return std::nullopt;
+  }
+  const std::lock_guard lock(lease_mutex_);
+  const Status may = lease_ ? robot().may_continue(lease_) : Status();
+  return may ? std::nullopt : std::make_optional(may.error());
+}
+
 bool CommandGoal::is_stopped() const
 {
   if (command_->only_stops()) {

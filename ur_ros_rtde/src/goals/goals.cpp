@@ -2,7 +2,7 @@
 
 namespace ur_ros_rtde {
 
-Goals::Goals() : supervisor_([this](const std::stop_token & stop) { supervise_endings(stop); }) {}
+Goals::Goals() : supervisor_([this](const std::stop_token & stop) { supervise_goals(stop); }) {}
 
 Goals::~Goals()
 {
@@ -60,6 +60,7 @@ void Goals::execute_tasks()
     running_.splice(running_.end(), waiting_, waiting_.begin());
     const auto task = std::prev(running_.end());
     lock.unlock();
+    ending_.notify_one();
     task->work();
     task->work = nullptr;  // destroys captured objects before the goal counts as ended
     lock.lock();
@@ -81,11 +82,31 @@ void Goals::supervise(std::shared_ptr<Goal> goal)
   ending_.notify_one();
 }
 
-void Goals::supervise_endings(const std::stop_token & stop)
+std::vector<std::shared_ptr<Goal>> Goals::running_goals_locked() const
+{
+  std::vector<std::shared_ptr<Goal>> goals;
+  for (const Task & task : running_) {
+    if (!task.goal->is_finished()) {
+      goals.push_back(task.goal);
+    }
+  }
+  return goals;
+}
+
+void Goals::supervise_goals(const std::stop_token & stop)
 {
   constexpr std::chrono::milliseconds interval{20};
   std::unique_lock lock(mutex_);
-  while (ending_.wait(lock, stop, [this] { return !endings_.empty(); })) {
+  while (ending_.wait(lock, stop, [this] { return !endings_.empty() || !running_.empty(); })) {
+    auto goals = running_goals_locked();
+    lock.unlock();
+    for (const auto & goal : goals) {
+      if (const auto why = goal->ended_by_robot()) {
+        goal->stop(*why);  // once: it remembers the first reason
+      }
+    }
+    goals.clear();  // destroyed without the lock
+    lock.lock();
     auto endings = std::exchange(endings_, {});
     lock.unlock();
     std::erase_if(endings, [](const Ending & ending) { return ending.goal->is_finished(); });

@@ -43,6 +43,7 @@ class CommandGoal : public Goal {
 
   Status check(std::vector<GoalQuery> & queries) final;
   void release() final;
+  std::optional<Error> ended_by_robot() const final;
   bool is_stopped() const final;
 
  protected:

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <rcl_cxx/goal_uuid.hpp>
 #include <rcl_cxx/server_goal_handle.hpp>
 #include <string>
@@ -52,6 +53,8 @@ class Goal : public std::enable_shared_from_this<Goal> {
   void run();
   /// Tells the goal to end because of `why`. Returns at once; may be called by any thread, at any time.
   void stop(const Error & why);
+  /// Why the robot does not let the goal go on. Its command may not look: Goals then tells the goal to end.
+  virtual std::optional<Error> ended_by_robot() const { return std::nullopt; }
   /// What moves the arm has been stopped, if the goal was told to end.
   virtual bool is_stopped() const { return true; }
   /// Sends the result without the goal's thread, which has not ended in time after stop().

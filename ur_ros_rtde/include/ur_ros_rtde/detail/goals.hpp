@@ -15,7 +15,8 @@
 
 namespace ur_ros_rtde {
 
-/// The threads of the goals of a node, one per goal, and the end of goals whose command does not return. A
+/// The threads of the goals of a node, one per goal, and the end of goals that the robot has ended, or whose
+/// command does not return. A
 /// thread whose goal has ended waits for the next goal: waking it takes a fraction of the time that a new
 /// thread needs to run on a busy host. All are joined by the destructor. Thread-safe.
 class Goals {
@@ -55,7 +56,8 @@ class Goals {
 
   Status can_start_locked() const;
   void execute_tasks();
-  void supervise_endings(const std::stop_token & stop);
+  void supervise_goals(const std::stop_token & stop);
+  std::vector<std::shared_ptr<Goal>> running_goals_locked() const;
 
   mutable std::mutex mutex_;
   std::condition_variable started_;
