@@ -219,6 +219,27 @@ TEST_F(ScriptTest, EndsInAProtectiveStopWithoutResuming)
   EXPECT_TRUE(is_back());
 }
 
+TEST_F(ScriptTest, IsEndedInASafeguardStopSoThatItCannotResume)
+{
+  make_both();
+  ScriptOptions options;
+  std::atomic<bool> told{false};
+  options.stop_reason = [&]() -> std::optional<Error> {
+    if (turns() && !told.exchange(true)) {
+      controller.control({{"command", "safeguard"}});
+    }
+    return std::nullopt;
+  };
+  const auto report = run_script(turning(), options);
+  EXPECT_EQ(report.end, ScriptEnd::robot_stopped);
+  EXPECT_EQ(report.error.code, ErrorCode::safeguard_stop);
+  // A paused program resumes when the safeguard closes.
+  EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
+  controller.control({{"command", "safeguard"}, {"open", false}});
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(is_back());
+}
+
 TEST_F(ScriptTest, EndsWithTheLink)
 {
   make_both();

@@ -123,7 +123,14 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
     if (!state_.link().connected || !sample) {
       return stop_without_rtde();
     }
-    if (stops_by_itself(*sample, activities_.now()) && wait_for_standstill(program_stop_timeout, options)) {
+    const Activities started = activities_.now();
+    if (stops_by_itself(*sample, started) && wait_for_standstill(program_stop_timeout, options)) {
+      // A script that the robot has paused would resume at the end of the stop.
+      if (const Status ended = started.contains(Activity::script) ? stop_by_dashboard(options) : Status();
+          !ended) {
+        return failure(ended.error().code,
+                       fmt::format("the paused script has not ended: {}", ended.error().message));
+      }
       return report(StopMeans::stopped_by_robot);
     }
     const Status stopped = (this->*next.attempt)(options);
