@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <ur_rtde/rtde_control_interface.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "motion/motion_blocker.hpp"
@@ -159,6 +158,11 @@ Status Robot::may_continue(const Lease & lease) const
   if (auto why = lease.permit_->revoked()) {
     return tl::unexpected(*std::move(why));
   }
+  return is_valid(lease);
+}
+
+Status Robot::is_valid(const Lease & lease) const
+{
   if (Status possible = motion_possible(); !possible) {
     return possible;  // names the cause better than the change of the generation that follows from it
   }
@@ -300,11 +304,9 @@ bool Robot::is_stopping() const
   return impl_->stopper.is_stopping();
 }
 
-bool Robot::has_stopped_holders() const
+bool Robot::wait_for_stopped_holders(std::chrono::milliseconds timeout) const
 {
-  const auto holders = impl_->arbiter.arm_holders();
-  return std::any_of(holders.begin(), holders.end(),
-                     [](const auto & holder) { return holder->revoked().has_value(); });
+  return impl_->arbiter.wait_for_revoked_holders(timeout);
 }
 
 bool Robot::is_stopped(const Lease & lease) const

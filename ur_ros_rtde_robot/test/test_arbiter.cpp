@@ -151,6 +151,17 @@ TEST(ArbiterTest, TheNewestOfTwoPreemptingClaimsWins)
   held.reset();
 }
 
+TEST(ArbiterTest, WaitsForTheHoldersThatAStopHasRevoked)
+{
+  Arbiter arbiter;
+  const auto lease = arbiter.acquire(claim(Resource::motion), admit);
+  EXPECT_TRUE(arbiter.wait_for_revoked_holders(0ms)) << "its permit is not revoked";
+  arbiter.arm_holders().front()->revoke(Error{ErrorCode::preempted, "a stop"});
+  EXPECT_FALSE(arbiter.wait_for_revoked_holders(1ms));
+  std::jthread leaving([&] { lease->release(); });
+  EXPECT_TRUE(arbiter.wait_for_revoked_holders(20s));
+}
+
 TEST(ArbiterTest, MayBeDestroyedBeforeItsLeases)
 {
   Lease lease;

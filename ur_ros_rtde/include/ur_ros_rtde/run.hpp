@@ -45,8 +45,8 @@ class Run {
   const Robot & robot() const { return context_.robot; }
   /// See Robot::set_watchdog().
   Status set_watchdog(double frequency) { return context_.robot.set_watchdog(frequency); }
-  /// For commands with CommandTraits::preempts_all: waits until the arm is at rest. The stop has begun before
-  /// run().
+  /// For commands with CommandTraits::preempts_all: waits until the arm is at rest and the preempted goals
+  /// have ended. The stop has begun before run().
   Expected<StopReport> wait_for_stop();
 
   /// The newest sample. Throws RobotError (link_lost) before the first.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <thread>
 
 #include "ur_ros_rtde/detail/guarded.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
@@ -17,8 +16,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds preemption_timeout{6000};
 /// For the commanded deceleration during a shutdown.
 constexpr milliseconds shutdown_stop_timeout{1500};
-/// For a holder that brakes along its path within its own limits.
-constexpr std::chrono::minutes braking_timeout{2};
+/// For a holder that brakes along its path within its own limits, which may be as gentle as it likes.
+constexpr std::chrono::seconds braking_timeout{30};
 /// For the dashboard server's answer before a goal is accepted.
 constexpr milliseconds dashboard_timeout{500};
 
@@ -162,8 +161,8 @@ std::optional<Error> CommandGoal::ended_by_robot() const
     return std::nullopt;
   }
   const std::lock_guard lock(lease_mutex_);
-  const Status may = lease_ ? robot().may_continue(lease_) : Status();
-  return may ? std::nullopt : std::make_optional(may.error());
+  const Status valid = lease_ ? robot().is_valid(lease_) : Status();
+  return valid ? std::nullopt : std::make_optional(valid.error());
 }
 
 bool CommandGoal::is_stopped() const
@@ -192,16 +191,6 @@ Status CommandGoal::acquire()
   return {};
 }
 
-/// So that the next goal of the client of a stop finds nothing in its way.
-void CommandGoal::wait_for_preempted_goals() const
-{
-  constexpr milliseconds interval{2};
-  const auto deadline = std::chrono::steady_clock::now() + preemption_timeout;
-  while (robot().has_stopped_holders() && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(interval);
-  }
-}
-
 RunContext CommandGoal::make_context()
 {
   RunContext context{robot(), shared_stop_request()};
@@ -219,9 +208,7 @@ Outcome CommandGoal::execute()
   const Generation begin = robot().generation();
   Outcome outcome = guarded(stop_request(), [&]() -> Outcome {
     if (command_->only_stops()) {
-      Outcome stopped = run_command(make_context());
-      wait_for_preempted_goals();
-      return stopped;
+      return run_command(make_context());
     }
     if (auto why = stop_request().reason()) {
       return *std::move(why);

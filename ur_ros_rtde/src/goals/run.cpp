@@ -19,6 +19,8 @@ constexpr milliseconds max_sleep{10};
 /// The control program starts a motion within this time after its acknowledgement: two cycles and a reserve.
 constexpr std::chrono::seconds motion_start_timeout{1};
 constexpr std::chrono::seconds package_timeout{1};
+/// For the goals that a stop has preempted: they are abandoned before.
+constexpr std::chrono::seconds release_timeout{6};
 /// Without samples for this long, the connection is considered lost.
 constexpr milliseconds max_sample_age{200};
 constexpr double joint_tolerance = 0.005;     // rad
@@ -106,6 +108,11 @@ Expected<StopReport> Run::wait_for_stop()
     return failure(ErrorCode::exception, "this command is not a stop");
   }
   while (context_.stopping->wait_for(max_sleep) != std::future_status::ready) {
+    publish_feedback_if_due();
+  }
+  // The next goal of the client is to find nothing in its way.
+  const auto deadline = Clock::now() + release_timeout;
+  while (!robot().wait_for_stopped_holders(max_sleep) && Clock::now() < deadline) {
     publish_feedback_if_due();
   }
   return context_.stopping->get();

@@ -169,11 +169,11 @@ def test_stop_succeeds_at_standstill(robot):
     robot.send(Stop, "stop").succeeded(5.0)
 
 
-def test_servo_j_arrives_in_the_given_time(robot):
+def test_servo_j_takes_at_least_the_given_time(robot):
     goal = robot.send(ServoJ, "servo_j", joint_positions=home_plus(0.5), time=1.5)
     result = goal.succeeded()
     assert result.final_state.joint_positions == pytest.approx(home_plus(0.5), abs=0.015)
-    assert robot_seconds(goal.feedback[-1].motion.elapsed) == pytest.approx(1.5, abs=1.0)
+    assert robot_seconds(goal.feedback[-1].motion.elapsed) > 1.5 - 0.1  # longer on a busy host, never shorter; feedback comes at 20 Hz
 
 
 def test_servo_j_rejects_a_time_that_is_too_short_for_the_joints(robot):

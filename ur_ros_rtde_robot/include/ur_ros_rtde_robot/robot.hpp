@@ -92,8 +92,10 @@ class Robot {
   Generation generation() const;
   /// Success if `generation` is the current one; otherwise what ended it.
   Status is_current(const Generation & generation) const;
-  /// Success while the holder of `lease` may go on: no stop has taken the arm out of its hands, the control
-  /// program and the connection are those with which it began, and the robot can move.
+  /// Success while the control program and the connection are those with which the holder of `lease` began,
+  /// and the robot can move.
+  Status is_valid(const Lease & lease) const;
+  /// The same, and no stop has taken the arm out of the hands of the holder.
   Status may_continue(const Lease & lease) const;
 
   /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) if the interface is
@@ -150,8 +152,9 @@ class Robot {
   Expected<StopReport> end_motion(const Lease & lease, const StopOptions & options);
   /// A stop is under way.
   bool is_stopping() const;
-  /// A holder from whom a stop has taken the arm has not released its lease yet.
-  bool has_stopped_holders() const;
+  /// Waits until all holders from whom a stop has taken the arm have released their leases. False after
+  /// `timeout`.
+  bool wait_for_stopped_holders(std::chrono::milliseconds timeout) const;
   /// The holder of `lease` was told to end, and what it had started has been stopped. True without a lease.
   bool is_stopped(const Lease & lease) const;
 

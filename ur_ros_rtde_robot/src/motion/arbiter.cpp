@@ -195,4 +195,14 @@ std::vector<std::shared_ptr<Permit>> Arbiter::arm_holders() const
   return holders;
 }
 
+bool Arbiter::wait_for_revoked_holders(std::chrono::milliseconds timeout) const
+{
+  std::unique_lock lock(table_->mutex);
+  return table_->released.wait_for(lock, timeout, [this] {
+    return std::none_of(table_->permits.begin(), table_->permits.end(), [](const auto & permit) {
+      return moves_arm(permit->claim().resource) && permit->revoked();
+    });
+  });
+}
+
 }  // namespace ur_ros_rtde

@@ -29,6 +29,8 @@ class Arbiter {
   std::shared_ptr<const Permit> holder(Resource resource) const;
   /// All holders that may move the arm.
   std::vector<std::shared_ptr<Permit>> arm_holders() const;
+  /// Waits until no holder is left that may move the arm and whose permit is revoked. False after `timeout`.
+  bool wait_for_revoked_holders(std::chrono::milliseconds timeout) const;
 
  private:
   std::shared_ptr<Lease::Table> table_;

@@ -63,7 +63,6 @@ class CommandGoal : public Goal {
   Status prepare();
   void begin_stop();
   Status acquire();
-  void wait_for_preempted_goals() const;
   void hold(Lease lease);
   RunContext make_context();
   /// Names the lost connection or the ended program as the cause of a failure that results from it.

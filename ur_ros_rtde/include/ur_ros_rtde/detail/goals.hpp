@@ -16,9 +16,8 @@
 namespace ur_ros_rtde {
 
 /// The threads of the goals of a node, one per goal, and the end of goals that the robot has ended, or whose
-/// command does not return. A
-/// thread whose goal has ended waits for the next goal: waking it takes a fraction of the time that a new
-/// thread needs to run on a busy host. All are joined by the destructor. Thread-safe.
+/// command does not return. A thread whose goal has ended waits for the next goal: waking it takes a fraction
+/// of the time that a new thread needs to run on a busy host. All are joined by the destructor. Thread-safe.
 class Goals {
  public:
   /// Largest number of goals that run at the same time, and of threads.
