@@ -153,11 +153,11 @@ def table(reports: Sequence[Report]) -> List[str]:
     header = (f"  {'':48} {'cases':>6} {'failed':>7} {'excused':>8} {'begin':>7} {'worst':>7} {'rest':>8} {'result':>8}\n"
               f"  {'':48} {'':>6} {'':>7} {'':>8} {'ms':>7} {'ms':>7} {'s':>8} {'ms':>8}")
     lines = [header]
-    for title, key in (("event", lambda r: r["event"]), ("goal", lambda r: r["kind"]), ("goal, event", lambda r: f"{r['kind']}, {r['event']}")):
+    for keys in (("event",), ("kind",), ("kind", "event")):
         groups: Dict[str, List[Report]] = defaultdict(list)
         for report in reports:
-            groups[key(report)].append(report)
-        lines.append(f"by {title}")
+            groups[", ".join(report[key] for key in keys)].append(report)
+        lines.append(f"by {' and '.join(keys)}")
         lines += [_row(name, groups[name]) for name in sorted(groups)]
     lines.append(_row("all", reports))
     return lines

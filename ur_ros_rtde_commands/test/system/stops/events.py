@@ -97,7 +97,8 @@ def _is_normal(lane) -> bool:
 
 
 def _unlock(lane) -> None:
-    wait_for(lambda: _is_normal(lane) or lane.simulator.unlock_protective_stop() and False, RECOVERY_LIMIT, "the protective stop to be unlocked")
+    wait_for(lane.simulator.unlock_protective_stop, RECOVERY_LIMIT, "the protective stop to be unlocked")
+    wait_for(lambda: _is_normal(lane), RECOVERY_LIMIT, "a normal safety mode")
 
 
 def _release_emergency_stop(lane) -> None:
@@ -144,5 +145,6 @@ EVENTS = (
     Event("client exits", _end_client("exit"), 1.5, rest_limit=1.5, asks="goal", keeps_program=True, needs_client="exit"),
     Event("client killed", _end_client("kill"), 0.5, rest_limit=6.0, asks="goal", keeps_program=True, needs_client="kill"),
     Event("driver interrupted", _signal(signal.SIGINT), 0.8, rest_limit=2.0, recover=_restart_driver, ends_driver=True),
-    Event("driver killed", _signal(signal.SIGKILL), 0.5, rest_limit=1.5, recover=_replace_killed_driver, ends_driver=True, has_result=False),
+    Event("driver killed", _signal(signal.SIGKILL), 0.5, rest_limit=1.5, recover=_replace_killed_driver, ends_driver=True,
+          has_result=False),
 )

@@ -4,7 +4,7 @@ The fields of a goal are mappings for `messages.fill`, so that they can be sent 
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from random import Random
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
@@ -38,8 +38,8 @@ class GoalKind:
     type: str
     fields: Callable[[Random, Scene], Fields]
     space: str = LINEAR  # in which the driver's stop decelerates
-    deceleration: Callable[[Fields], Optional[float]] = lambda _fields: DEFAULT_DECELERATION  # of a cancel; None: that of the controller, because
-    # the driver ends a program
+    # Of a cancel. None: that of the controller, because the driver ends a program.
+    deceleration: Callable[[Fields], Optional[float]] = lambda _fields: DEFAULT_DECELERATION
     weight: float = 1.0
     before: Sequence[Tuple[str, str, Fields]] = ()  # goals that have to succeed first
     scene: Sequence[Mapping[str, Any]] = ()  # commands for the simulator after the goal has been accepted
@@ -150,14 +150,15 @@ def _servo_c(random: Random, scene: Scene) -> Fields:
 
 def _execute_trajectory(random: Random, _scene: Scene) -> Fields:
     side = _sign(random)
-    return {"waypoints": [{"positions": HOME}, {"positions": home_plus(side * 1.0, 0.1)}, {"positions": home_plus(side * FAR)}], "start_tolerance": 0.05}
+    positions = (HOME, home_plus(side * 1.0, 0.1), home_plus(side * FAR))
+    return {"waypoints": [{"positions": values} for values in positions], "start_tolerance": 0.05}
 
 
 def _gently(random: Random, _scene: Scene) -> Fields:
     """From 0.5 rad/s with these limits, the arm needs up to 6 s to stop."""
     velocity, acceleration, jerk = random.choice(((0.5, 0.2, 0.05), (0.5, 0.2, 0.2), (0.3, 0.5, 0.5), (0.5, 1.0, 2.0)))
-    return {"waypoints": [{"positions": HOME}, {"positions": home_plus(_sign(random) * FAR)}], "start_tolerance": 0.05, "max_velocity": [velocity] * 6,
-            "max_acceleration": [acceleration] * 6, "max_jerk": [jerk] * 6}
+    return {"waypoints": [{"positions": HOME}, {"positions": home_plus(_sign(random) * FAR)}], "start_tolerance": 0.05,
+            "max_velocity": [velocity] * 6, "max_acceleration": [acceleration] * 6, "max_jerk": [jerk] * 6}
 
 
 def _cartesian_path(random: Random, scene: Scene) -> Fields:

@@ -163,7 +163,8 @@ class Lane:
 
     def publisher(self, kind, topic: str):
         if topic not in self._publishers:
-            self._publishers[topic] = self.client.call_in_executor(lambda: self.client.node.create_publisher(kind, topic, QoSProfile(depth=1)))
+            create = self.client.node.create_publisher
+            self._publishers[topic] = self.client.call_in_executor(lambda: create(kind, topic, QoSProfile(depth=1)))
         publisher = self._publishers[topic]
         wait_for(lambda: publisher.get_subscription_count() > 0, 20.0, f"a subscription of {topic}")
         return publisher

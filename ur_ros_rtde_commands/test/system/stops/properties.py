@@ -100,7 +100,8 @@ class Checks:
         if limit is None or stopping.latency is None or self._brakes_along_path() or self._case.kind.space == MODE:
             return
         if stopping.latency > limit + 0.5 * CYCLE:
-            self._limit_exceeded(f"the deceleration begins {1e3 * stopping.latency:.0f} ms after the event", stopping.latency - limit, self._stall)
+            self._limit_exceeded(f"the deceleration begins {1e3 * stopping.latency:.0f} ms after the event", stopping.latency - limit,
+                                 self._stall)
 
     def _deceleration(self, trace: motion.Trace, stopping: motion.Stopping) -> None:
         if self._case.event.needs_client:
