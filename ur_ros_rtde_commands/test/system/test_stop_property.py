@@ -4,7 +4,6 @@
 """
 
 import os
-import random
 
 from robot_fixtures import addresses
 from stops import campaign
@@ -12,16 +11,17 @@ from stops import campaign
 LOAD = 2.0  # it uses two cores
 LANES = 3
 CASES = 210
+FIRST_SEED = 26
 SECONDS = 75.0  # no case begins later; on two idle cores, all have ended by then
 
 __all__ = ["addresses"]
 
 
 def test_every_goal_is_stopped_by_every_event(addresses, tmp_path):
-    first = int(os.environ.get("UR_STOP_SEED", random.randrange(10**6)))
+    first = int(os.environ.get("UR_STOP_SEED", FIRST_SEED))
     run = campaign.Campaign(range(first, first + CASES), addresses[:LANES], tmp_path, lambda _report: None, SECONDS)
     run.run()
-    print(f"seeds from {first}; UR_STOP_SEED={first} repeats them")
+    print(f"seeds from {first}; UR_STOP_SEED selects others")
     print("\n".join([*campaign.table(run.reports), *campaign.notes(run.descriptions)]))
     for report in run.failed():
         log = next(tmp_path.glob(f"lane_*/case_{report['seed']}.txt"), None)
