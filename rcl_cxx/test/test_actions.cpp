@@ -211,6 +211,19 @@ TEST_F(ActionServerTest, SendsResultOfJustAcceptedGoalWhenDestroyed)
   }
 }
 
+TEST_F(ActionServerTest, SendsResultOfGoalThatHasJustSucceededWhenDestroyed)
+{
+  for (std::size_t round = 0; round < 10; ++round) {
+    serve();
+    auto response = client->async_send_goal(goal_of(5));
+    EXPECT_TRUE(accepted(round)->succeed(result_of({1})));
+    server.reset();
+    const auto goal = get(std::move(response));
+    ASSERT_TRUE(goal);
+    EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
+  }
+}
+
 TEST_F(ActionServerTest, AbortsItsGoalsAfterPreShutdownCallbacks)
 {
   serve();

@@ -233,6 +233,9 @@ Expected<Generation> Robot::Impl::admit(const Claim & claim) const
   if (moves_arm(claim.resource) && stopper.is_stopping()) {
     return failure(ErrorCode::busy, "the arm is being stopped: wait until it is at rest");
   }
+  if (moves_arm(claim.resource) && manager.control_owner() == ControlOwner::script) {
+    return tl::unexpected(unavailable_error());  // its goal has ended, its thread has not
+  }
   return now;
 }
 

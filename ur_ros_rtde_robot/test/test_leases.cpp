@@ -8,7 +8,7 @@
 namespace ur_ros_rtde::test {
 namespace {
 
-constexpr double slowness = 5.0;
+constexpr double slowness = 10.0;
 
 struct LeaseTest : RobotFixture {
   void SetUp() override
@@ -212,9 +212,9 @@ TEST_F(LeaseTest, AGentleStopMayTakeItsTime)
   const Lease lease = acquire();
   move(lease);
   StopOptions gentle;
-  gentle.joint_deceleration = 0.2;
+  gentle.joint_deceleration = 0.4;
   const double expected = std::abs(robot->latest()->target_qd[0]) / gentle.joint_deceleration;
-  EXPECT_GT(expected, 3.5);
+  EXPECT_GT(expected, 1.75);
   const auto report = robot->stop_motion(gentle);
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->means, StopMeans::stop_command);

@@ -176,18 +176,27 @@ void ActionServerImpl::abort_all(const char * reason, bool take_requests) noexce
     });
     if (!goals.empty()) {
       RCL_CXX_WARN(node()->get_logger(), "{}: {}, {} active goals aborted", name_, reason, goals.size());
-      wait_for_result_requests(goals, take_requests);
     }
+    wait_for_result_requests(take_requests);
   } catch (const std::exception & error) {
     RCL_CXX_WARN(node()->get_logger(), "{}: {}", name_, error.what());
   }
 }
 
-void ActionServerImpl::wait_for_result_requests(const Goals & goals, bool take_requests)
+/// Of goals that have just ended: their clients may not yet know that they were accepted.
+bool ActionServerImpl::expects_result_requests() const
 {
-  const auto deadline = std::chrono::steady_clock::now() + kResultRequestLimit;
-  const auto sent = [](const auto & goal) { return goal->result_sent.load(); };
-  while (!std::all_of(goals.begin(), goals.end(), sent) && std::chrono::steady_clock::now() < deadline) {
+  const auto now = std::chrono::steady_clock::now();
+  const std::lock_guard lock(mutex_);
+  return std::any_of(goals_.begin(), goals_.end(), [&](const auto & entry) {
+    const ServerGoalImpl & goal = *entry.second;
+    return is_terminal(goal.get_status()) && !goal.result_sent && now - goal.ended < kResultRequestLimit;
+  });
+}
+
+void ActionServerImpl::wait_for_result_requests(bool take_requests)
+{
+  while (expects_result_requests()) {
     if (!take_requests || !take_result()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

@@ -112,7 +112,8 @@ class ActionServerImpl : public Waitable {
   /// Aborts the active goals. Clients whose goals have just been accepted have a moment to request
   /// the results. Takes their requests in this thread if `take_requests`.
   void abort_all(const char * reason, bool take_requests) noexcept;
-  void wait_for_result_requests(const Goals & goals, bool take_requests);
+  bool expects_result_requests() const;
+  void wait_for_result_requests(bool take_requests);
   void send_result(const rmw_request_id_t & request, ServerGoalImpl & goal);
   /// The result of a goal that has none, or none that can be sent.
   std::shared_ptr<void> make_missing_result(const GoalUUID & id, GoalStatus status) const;

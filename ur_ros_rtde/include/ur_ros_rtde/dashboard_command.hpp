@@ -19,6 +19,9 @@ namespace ur_ros_rtde {
 Status dashboard_ready(const std::string & action, const DashboardLimits & limits,
                        const DashboardConnection & connection);
 
+/// Why the script of a goal ends if `goal` stops the program.
+Error stopped_through_dashboard(const std::string & goal);
+
 /// Fails unless `text` is one of `texts`. Every text is allowed if `texts` is empty.
 void check_text(const std::string & text, const std::vector<std::string> & texts, Check & check);
 
@@ -47,6 +50,9 @@ class DashboardCommand : public DashboardPlugin {
 
   virtual Limits limits() const { return {}; }
   virtual Request request(const Goal &) const { return {}; }
+  /// The command stops the program of the robot. Its goals are served by the thread that serves stops, and
+  /// end a script of the driver that has not begun yet, which the dashboard server does not know.
+  virtual bool stops_program() const { return false; }
   /// By default checks the fields `timeout` and `text` of the goal, if it has them.
   virtual void check(const Goal & goal, Check & check) const;
   /// By default executes request().
@@ -74,10 +80,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
  public:
   GoalOfCommand(DashboardCommand & command, DashboardHost & host, const std::string & action,
                 const rcl_cxx::GoalUUID & id, const typename A::Goal & message)
-      : ur_ros_rtde::Goal(host, action, id),
-        command_(command),
-        connection_(host.connection()),
-        message_(message)
+      : ur_ros_rtde::Goal(host, action, id), command_(command), host_(host), message_(message)
   {
   }
 
@@ -86,12 +89,16 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   {
     Check check;
     command_.check(message_, check);
-    return check.ok() ? dashboard_ready(action(), command_.limits(), connection_)
-                      : tl::unexpected(*check.error());
+    const Status ready = check.ok() ? dashboard_ready(action(), command_.limits(), host_.connection())
+                                    : tl::unexpected(*check.error());
+    if (ready && command_.stops_program()) {
+      host_.end_script(stopped_through_dashboard(name()));
+    }
+    return ready;
   }
   Outcome execute() override
   {
-    run_.emplace(connection_, shared_stop_request(),
+    run_.emplace(host_.connection(), shared_stop_request(),
                  [this](const void * feedback) { handle().publish_feedback(feedback); });
     return guarded(stop_request(), [this] { return command_.run(message_, *run_); });
   }
@@ -114,7 +121,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   }
 
   DashboardCommand & command_;
-  DashboardConnection & connection_;
+  DashboardHost & host_;
   const typename A::Goal & message_;
   std::optional<Run> run_;
 };
@@ -124,7 +131,8 @@ void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::s
 {
   const std::string action = host.node().resolve_service_name(name);
   server_ = std::make_unique<GoalServer>(
-      host, GoalServer::Description{rcl_cxx::action_type<A>(), name},
+      host,
+      GoalServer::Description{.type = rcl_cxx::action_type<A>(), .name = name, .is_stop = stops_program()},
       [this, &host, action](const rcl_cxx::GoalUUID & id, const void * message) {
         return std::make_shared<GoalOfCommand>(*this, host, action, id,
                                                *static_cast<const typename A::Goal *>(message));

@@ -2,10 +2,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <rcl_cxx/node.hpp>
 #include <string>
 #include <ur_ros_rtde_msgs/msg/goal_refused.hpp>
+#include <utility>
 
 #include "ur_ros_rtde/detail/goals.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
@@ -65,14 +67,19 @@ class CommandHost : public PluginHost {
 
 class DashboardHost : public PluginHost {
  public:
-  DashboardHost(rcl_cxx::Node & node, DashboardConnection & connection)
-      : PluginHost(node), connection_(connection)
+  /// Ends the script that the command server of this process runs or is about to run.
+  using EndScript = std::function<void(const Error & why)>;
+
+  DashboardHost(rcl_cxx::Node & node, DashboardConnection & connection, EndScript end_script)
+      : PluginHost(node), connection_(connection), end_script_(std::move(end_script))
   {
   }
   DashboardConnection & connection() { return connection_; }
+  void end_script(const Error & why) const { end_script_(why); }
 
  private:
   DashboardConnection & connection_;
+  const EndScript end_script_;
 };
 
 }  // namespace ur_ros_rtde

@@ -70,6 +70,11 @@ Status supported(const std::string & action, const DashboardLimits & limits,
                              availability("a CB3", limits.cb3)));
 }
 
+Error stopped_through_dashboard(const std::string & goal)
+{
+  return {ErrorCode::program_stopped, fmt::format("the script was stopped by {}", goal)};
+}
+
 Status dashboard_ready(const std::string & action, const DashboardLimits & limits,
                        const DashboardConnection & connection)
 {

@@ -9,14 +9,15 @@
 
 namespace ur_ros_rtde {
 
-DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context)
+DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context,
+                                 DashboardHost::EndScript end_script)
     : node_(std::make_shared<rcl_cxx::Node>(context, "dashboard_server"))
 {
   DashboardConnectionOptions options;
   options.address = declare_robot_ip(*node_);
   choice_ = declare_plugin_choice(*node_);
   connection_ = std::make_unique<DashboardConnection>(options, log_connection(*node_));
-  host_ = std::make_unique<DashboardHost>(*node_, *connection_);
+  host_ = std::make_unique<DashboardHost>(*node_, *connection_, std::move(end_script));
 }
 
 DashboardServer::~DashboardServer()

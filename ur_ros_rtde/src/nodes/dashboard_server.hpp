@@ -13,7 +13,10 @@ namespace ur_ros_rtde {
 /// The node dashboard_server: the connection to the dashboard server, and the dashboard plugins.
 class DashboardServer : public Server {
  public:
-  explicit DashboardServer(const rcl_cxx::Context::SharedPtr & context);
+  /// `end_script`: of the command server in the same process.
+  explicit DashboardServer(
+      const rcl_cxx::Context::SharedPtr & context,
+      DashboardHost::EndScript end_script = [](const Error &) {});
   ~DashboardServer() override;
 
   rcl_cxx::Node & node() override { return *node_; }

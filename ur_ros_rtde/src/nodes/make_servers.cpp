@@ -15,6 +15,14 @@ Servers make_single(const rcl_cxx::Context::SharedPtr & context)
   return servers;
 }
 
+void end_script(Robot & robot, const Error & why)
+{
+  const auto holder = robot.holder(Resource::mode);  // conflicts with a script
+  if (holder && holder->resource == Resource::script) {
+    robot.begin_stop({}, why);
+  }
+}
+
 }  // namespace
 
 Servers make_robot_state_receiver(const rcl_cxx::Context::SharedPtr & context)
@@ -36,10 +44,12 @@ Servers make_driver(const rcl_cxx::Context::SharedPtr & context)
 {
   auto commands = std::make_unique<CommandServer>(context);
   auto state = std::make_unique<SharedStateServer>(context, commands->robot());
+  auto dashboard = std::make_unique<DashboardServer>(
+      context, [&robot = commands->robot()](const Error & why) { end_script(robot, why); });
   Servers servers;
   servers.push_back(std::move(state));  // outlives the robot, which calls it
   servers.push_back(std::move(commands));
-  servers.push_back(std::make_unique<DashboardServer>(context));
+  servers.push_back(std::move(dashboard));  // is closed and destroyed before the robot, which it calls
   return servers;
 }
 

@@ -16,8 +16,12 @@ EXPORT_DASHBOARD_COMMAND(Play, "dashboard/play", DashboardCommand,
                          {"play", "Starting program", {"programState", {"PLAYING"}}})
 EXPORT_DASHBOARD_COMMAND(Pause, "dashboard/pause", DashboardCommand,
                          {"pause", "Pausing program", {"programState", {"PAUSED"}}})
-EXPORT_DASHBOARD_COMMAND(StopProgram, "dashboard/stop", DashboardCommand,
-                         {"stop", "Stopped", {"programState", {"STOPPED"}}})
+class StopProgram : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
+ public:
+  StopProgram() : SimpleDashboardCommand({"stop", "Stopped", {"programState", {"STOPPED"}}}) {}
+  bool stops_program() const override { return true; }
+};
+UR_ROS_RTDE_EXPORT(StopProgram, "dashboard/stop")
 
 // Safety
 EXPORT_DASHBOARD_COMMAND(UnlockProtectiveStop, "dashboard/unlock_protective_stop", DashboardCommand,

@@ -1,11 +1,13 @@
 """Script commands: output, errors, and the restart of the control program after a script."""
 
+import time
+
 import pytest
 from action_msgs.msg import GoalStatus
 from arm_state import get_joint_state, home_plus, is_at_rest, wait_until_moving
 from support import HOME, wait_for
 
-from ur_ros_rtde_msgs.action import MoveJ, SendScript, Stop, Trigger
+from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ, SendScript, Stop, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 
@@ -14,8 +16,8 @@ def send(robot, script="", name="send_script", **fields):
 
 
 def accepts_motions(robot):
-    robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
-    return True
+    goal = robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0)
+    return goal.accepted and goal.result().success
 
 
 def test_a_script_moves_the_arm_and_its_output_is_returned(robot):
@@ -69,6 +71,18 @@ def test_stop_preempts_a_script(robot):
     wait_until_moving(robot)
     robot.send(Stop, "stop").succeeded()
     assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED and is_at_rest(robot)
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.005, 0.01, 0.015, 0.02, 0.03])
+def test_dashboard_stop_ends_a_script_that_has_not_begun(robot, driver, simulator, delay):
+    """The driver has ended its control program; until the script begins, the dashboard server has nothing to stop."""
+    goal = send(robot, f"movej({home_plus(1.5)}, a=1, v=0.5)")
+    assert goal.accepted
+    time.sleep(delay)
+    robot.send(DashboardCommand, "dashboard/stop").succeeded()
+    assert goal.wait_for_result(5.0)[1].error_code == ErrorCode.PROGRAM_STOPPED
+    assert simulator.state()["target"]["position"][0] < 0.2
+    assert accepts_motions(robot), driver.output()
 
 
 def test_a_motion_is_rejected_while_a_script_runs(robot):

@@ -1,13 +1,15 @@
 """STOP of the page, with the code of the page itself."""
 
+import importlib
 import time
 from typing import List
 
 from rclpy.action import ActionClient
 from support import wait_for
-from ur_ros_rtde_viewer.control.stop import Outcome, Stopper
 
-ENDED = (Outcome.STOPPED, Outcome.FAILED)
+# Not a dependency of this package, which would be a cycle: the viewer is tested with these commands.
+stop = importlib.import_module("ur_ros_rtde_viewer.control.stop")
+ENDED = (stop.Outcome.STOPPED, stop.Outcome.FAILED)
 
 
 class Page:
@@ -34,7 +36,7 @@ class Page:
     def press(self) -> int:
         """Returns when the button was pressed, ns since the epoch."""
         if self._stopper is None:
-            self._stopper = self._client.call_in_executor(lambda: Stopper(self, self))
+            self._stopper = self._client.call_in_executor(lambda: stop.Stopper(self, self))
         wait_for(lambda: all(client.server_is_ready() for client in self._clients), 20.0, "the actions that STOP uses")
         self._pressed = True
         when = time.time_ns()
@@ -42,12 +44,12 @@ class Page:
         return when
 
     def fell_back(self) -> bool:
-        return any(outcome == Outcome.PROGRAM for outcome, _text in self._reports)
+        return any(outcome == stop.Outcome.PROGRAM for outcome, _text in self._reports)
 
     def wait(self, excused: bool) -> List[str]:
         """Waits until the page has reported the end of the stop. Returns the violations."""
         if not self._pressed:
             return []
         wait_for(lambda: any(outcome in ENDED for outcome, _text in list(self._reports)), 10.0, "the page to report the end of the stop")
-        failed = [text for outcome, text in self._reports if outcome == Outcome.FAILED or outcome == Outcome.PROGRAM and not excused]
+        failed = [text for outcome, text in self._reports if outcome == stop.Outcome.FAILED or outcome == stop.Outcome.PROGRAM and not excused]
         return [f"STOP of the page: {text}" for text in failed]
