@@ -67,6 +67,9 @@ function(_ros_wheels_build_python_symbols library)
   execute_process(COMMAND "${ROS_WHEELS_NM}" -D --undefined-only ${users}
     OUTPUT_VARIABLE undefined COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCHALL "U _?Py[A-Za-z0-9_]+" symbols "${undefined}")
+  # Of the interface packages that are built here, if they are compiled without optimization or with a sanitizer.
+  list(APPEND symbols "U PyCapsule_GetPointer" "U PyCapsule_Type" "U PyErr_Clear" "U PyErr_ExceptionMatches" "U PyErr_Format"
+    "U PyExc_ModuleNotFoundError")
   list(REMOVE_DUPLICATES symbols)
   set(code "")
   foreach(symbol IN LISTS symbols)
