@@ -127,7 +127,7 @@ TEST_F(GoalTest, IsEndedIfItsCommandDoesNotReturn)
   returns.set_value();
 }
 
-/// Nobody tells the goal to end, and its command does not look at the robot.
+/// No client tells the goal to end, and its command does not look at the robot.
 TEST_F(GoalTest, IsEndedIfTheRobotHasStoppedAndItsCommandDoesNotLook)
 {
   std::promise<void> returns;

@@ -32,7 +32,7 @@ class Run {
   Run & operator=(const Run &) = delete;
 
   /// The interfaces of ur_rtde, shared by all commands. `->` locks the interface for one call. The functions
-  /// throw RobotError if the interface is not connected, or the goal must not move the arm any more; an
+  /// throw RobotError if the interface is not connected, or the goal must no longer move the arm; an
   /// exception that a command does not catch becomes the outcome of its goal. Call only what returns soon:
   /// start motions asynchronously.
   Locked<ur_rtde::RTDEControlInterface> control();

@@ -53,7 +53,7 @@ void Goal::abandon()
   const Error why = stop_request_->reason().value_or(Error{ErrorCode::timeout, "the goal did not end"});
   end(Error{why.code,
             fmt::format("{}; the command did not return after that: its result was sent without it, and it "
-                        "cannot move the arm any more",
+                        "can no longer move the arm",
                         why.message)});
 }
 

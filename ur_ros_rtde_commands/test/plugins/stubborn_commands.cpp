@@ -40,7 +40,7 @@ class SlowToLook : public Command<SpeedJAction> {
   }
 };
 
-/// Sends commands until its time has passed, whatever happens.
+/// Sends commands until its time has passed, without asking whether it has to end.
 class NeverLooks : public Command<SpeedJAction> {
   StopOptions stop_options(const Goal & goal) const override
   {

@@ -135,7 +135,7 @@ class Robot {
   /// RobotOptions::watchdog_frequency again.
   Status set_watchdog(double frequency);
 
-  /// Stops the arm, whoever moves it: takes it out of the hands of all holders, who are told `why`,
+  /// Stops the arm: takes it out of the hands of all holders, who are told `why`,
   /// decelerates, and waits for standstill, determined from the actual joint velocities. If the control
   /// program does not do it, the dashboard server stops the program, then its watchdog. On error, standstill
   /// is not confirmed.

@@ -41,7 +41,7 @@ class Permit {
     revoked_ = std::move(why);
     return true;
   }
-  /// Why the holder may not command the arm any more. Empty: it may.
+  /// Why the holder may no longer command the arm. Empty: it may.
   std::optional<Error> revoked() const
   {
     const std::lock_guard lock(mutex_);

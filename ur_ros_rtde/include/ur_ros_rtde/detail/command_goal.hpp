@@ -25,7 +25,7 @@ struct CommandDescription {
 
   /// The command stops the arm and does nothing else.
   bool only_stops() const { return traits.preempts_all && !traits.allowed_in_any_state; }
-  /// A goal ends when the robot cannot move any more.
+  /// A goal ends when the robot can no longer move.
   bool needs_motion() const
   {
     return moves_arm(traits.resource) && !traits.allowed_in_any_state && !traits.preempts_all;
