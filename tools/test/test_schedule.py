@@ -40,7 +40,7 @@ def test_the_longest_test_starts_first():
 
 
 def test_tests_with_low_load_run_in_parallel():
-    simulation = Simulation(jobs(*[(10.0, 0.2)] * 8))
+    simulation = Simulation(jobs(*[(10.0, 0.2 * schedule.BUSY)] * 8))
     assert simulation.now == 10.0
 
 
@@ -62,7 +62,8 @@ def test_an_exclusive_test_runs_alone():
 
 def test_short_tests_run_early_only_if_they_do_not_delay_a_long_one():
     # The second test requires the cores of the first. Tests that end before the first may run next to it.
-    simulation = Simulation(jobs((10.0, 1.0), (9.0, 1.2), (4.0, 0.75), (7.0, 0.6)))
+    loads = [schedule.BUSY * load for load in (1.05, 1.26, 0.79, 0.63)]
+    simulation = Simulation(jobs((10.0, loads[0]), (9.0, loads[1]), (4.0, loads[2]), (7.0, loads[3])))
     assert simulation.begins[1] == 10.0
     assert simulation.begins[3] == 0.0 and simulation.begins[2] >= 10.0
 

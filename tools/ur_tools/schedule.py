@@ -9,7 +9,7 @@ from typing import Callable, Dict, Iterable, List, Optional
 from .reference_times import REFERENCE
 
 JOBS_PER_CORE, MOST_JOBS = 4, 16  # tests at a time at most, however little processor time they need
-BUSY = 0.95  # share of the cores that the tests may use together: a late thread looks like a lost link
+BUSY = 0.7  # share of the cores that the tests may use together: a late thread looks like a lost link
 LEAST_LOAD = 0.05  # cores
 
 

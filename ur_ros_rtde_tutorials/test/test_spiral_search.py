@@ -51,4 +51,4 @@ def test_a_protective_stop_aborts_with_its_error_code(robot, simulator):
     wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the arm to move")
     simulator.control("protective_stop", reason="of the test")
     assert goal.result().error_code == ErrorCode.PROTECTIVE_STOP
-    assert simulator.state()["at_rest"]
+    assert simulator.is_at_rest()

@@ -110,6 +110,8 @@ def observer():
 def endpoints(node, names):
     """Returns the publishers and the clients of services and actions of these nodes, as another node sees them."""
     found = {"publishers": node.get_publisher_names_and_types_by_node, "clients": node.get_client_names_and_types_by_node}
+    if not set(names) <= set(node.get_node_names()):
+        return {kind: set() for kind in found}  # not yet discovered
     return {kind: {topic for name in names for topic, _ in query(name, "/")} for kind, query in found.items()}
 
 
