@@ -178,7 +178,7 @@ void ServoStream::slow_down(const Run::Braking & braking, const Trajectory & pla
                             TimeScaling time_scaling)
 {
   while (time_scaling.rate() > 0.0 && time_scaling.time() < plan.duration() && next_package()) {
-    time_scaling.brake(elapsed_, plan.sample(time_scaling.time()), limits);
+    time_scaling.advance(elapsed_, 0.0, plan.sample(time_scaling.time()), limits);
     if (!send(plan, limits, time_scaling)) {
       return;
     }

@@ -38,7 +38,7 @@ class ServoStream {
 
   /// Streams `plan`, which starts at the position of the arm. If the goal has to end before, brakes along the
   /// path, unless a stop takes the arm, and returns the reason: within `limits`, or, if no such stop is found
-  /// in 4 ms, by slowing down its time scaling (TimeScaling::brake).
+  /// in 4 ms, by slowing down its time scaling.
   Outcome execute(const trajectory::Trajectory & plan, const trajectory::Limits & limits);
   /// Waits until the arm has followed the last setpoint, then ends servo control.
   Outcome settle();

@@ -10,7 +10,9 @@ namespace ur_ros_rtde::trajectory {
 /// was, first slowed down by as much as the arm has slowed down meanwhile.
 ///
 /// The plan keeps its limits at any constant rate. A change of the rate r adds q' r' to the accelerations and
-/// q' r'' to the jerks. It uses the remaining margin of the limits, and 2 /s if the margin is smaller.
+/// q' r'' to the jerks. It uses the remaining margin of the limits, and as much as the limits themselves, up
+/// to 2 /s, if the margin is smaller: together with the plan, it may use twice the limits. A target rate of 0
+/// therefore always brakes, and takes as long as braking from a constant speed.
 class TimeScaling {
  public:
   /// What the controller does with setpoints.
@@ -31,10 +33,6 @@ class TimeScaling {
   /// Advances the time of the plan. `elapsed`: time of the controller's clock since the previous setpoint, s.
   /// `target_rate`: requested rate. `point`: the plan at time().
   void advance(double elapsed, double target_rate, const Point & point, const Limits & limits);
-  /// The same with the target rate 0, for a motion that has to end. Always slows down: uses the remaining
-  /// margin of the limits, and as much as the limits themselves if the margin is smaller, so that the sum of
-  /// plan and braking may reach twice the limits. Takes as long as braking from a constant speed.
-  void brake(double elapsed, const Point & point, const Limits & limits);
 
   /// Time of the plan in s.
   double time() const { return time_; }

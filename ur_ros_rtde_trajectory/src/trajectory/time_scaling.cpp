@@ -41,11 +41,6 @@ void TimeScaling::advance(double elapsed, double target_rate, const Point & poin
   advance_within(elapsed, std::clamp(target_rate, 0.0, 1.0), bounds);
 }
 
-void TimeScaling::brake(double elapsed, const Point & point, const Limits & limits)
-{
-  advance(elapsed, 0.0, point, limits);
-}
-
 void TimeScaling::advance_within(double elapsed, double target_rate, const Bounds & bounds)
 {
   const double duration = std::clamp(elapsed, 0.0, servo_.bridged_cycles * servo_.cycle);

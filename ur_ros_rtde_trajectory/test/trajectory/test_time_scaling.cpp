@@ -171,7 +171,7 @@ std::pair<double, Joints> brake(const Trajectory & plan, const Limits & bounds, 
   Joints before = plan.sample(time).velocity;
   Joints largest = Joints::Zero();
   for (; scaling.rate() > 0.0 && scaling.time() < plan.duration(); elapsed += cycle) {
-    scaling.brake(cycle, plan.sample(scaling.time()), bounds);
+    scaling.advance(cycle, 0.0, plan.sample(scaling.time()), bounds);
     const Joints now = plan.sample(scaling.time()).velocity * scaling.rate();
     largest = largest.max((now - before).abs() / cycle);
     before = now;
