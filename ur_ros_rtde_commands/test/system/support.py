@@ -307,7 +307,10 @@ class Client:
             raise AssertionError(f"{error}; found topics {topics} and services {services}") from None
 
     def refusal(self, goal):
-        return wait_for(lambda: next((r for r in list(self.refusals) if bytes(r.goal_id.uuid) == goal.id), None), 10.0,
+        return self.refusal_of(goal.id)
+
+    def refusal_of(self, goal_id: bytes):
+        return wait_for(lambda: next((r for r in list(self.refusals) if bytes(r.goal_id.uuid) == goal_id), None), 10.0,
                         "the message on goal_refusals")
 
     def call(self, service, name, limit=10.0, **fields):

@@ -47,7 +47,6 @@ class TimeScaling {
     double rate_ddot;  // 1/s^2
   };
 
-  void advance_within(double elapsed, double target_rate, const Bounds & bounds);
   void slow_for_delay(double delay);
   void update_rate(double duration, double target_rate, const Bounds & bounds);
 

@@ -32,21 +32,16 @@ double jerk_margin(const Point & point, const Limits & limits, double r)
 
 void TimeScaling::advance(double elapsed, double target_rate, const Point & point, const Limits & limits)
 {
+  const double duration = std::clamp(elapsed, 0.0, servo_.bridged_cycles * servo_.cycle);
+  slow_for_delay(elapsed - duration);
+  const double before = rate_;
   const double whole_acceleration = acceleration_margin(point, limits, 0.0);
   const double whole_jerk = jerk_margin(point, limits, 0.0);
   const Bounds bounds{std::clamp(acceleration_margin(point, limits, rate_),
                                  std::min(whole_acceleration, lowest_rate_dot_limit), highest_rate_dot_limit),
                       std::clamp(jerk_margin(point, limits, rate_),
                                  std::min(whole_jerk, lowest_rate_ddot_limit), highest_rate_ddot_limit)};
-  advance_within(elapsed, std::clamp(target_rate, 0.0, 1.0), bounds);
-}
-
-void TimeScaling::advance_within(double elapsed, double target_rate, const Bounds & bounds)
-{
-  const double duration = std::clamp(elapsed, 0.0, servo_.bridged_cycles * servo_.cycle);
-  slow_for_delay(elapsed - duration);
-  const double before = rate_;
-  update_rate(duration, target_rate, bounds);
+  update_rate(duration, std::clamp(target_rate, 0.0, 1.0), bounds);
   time_ += 0.5 * (before + rate_) * duration;
 }
 

@@ -76,10 +76,6 @@ class LaneClient(StatusTrackingClient):
             self._actions[name] = self.call_in_executor(lambda: ActionClient(self.node, action, name))
         self._wait_for_server(self._actions[name], name)
 
-    def refusal_of(self, goal_id: bytes):
-        return wait_for(lambda: next((r for r in list(self.refusals) if bytes(r.goal_id.uuid) == goal_id), None), 10.0,
-                        "the message on goal_refusals")
-
     def sees_driver(self) -> bool:
         return self._actions["move_j"].server_is_ready()
 
