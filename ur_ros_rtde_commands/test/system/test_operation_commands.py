@@ -96,6 +96,7 @@ def test_make_ready_reports_conditions_that_require_an_operator(robot, simulator
         wait_for(lambda: robot.send(MakeReady, "make_ready").wait_for_result()[1].error_code == code, 10.0, "the reason")
     finally:
         simulator.control(remedy[0], **remedy[1])
+    wait_for(lambda: simulator.state()["safety_mode"] == "NORMAL", 10.0, "the cycle in which the remedy has its effect")
     make_ready(robot)
 
 
