@@ -10,6 +10,8 @@ if(NOT EXISTS "${ROS_WHEELS_PREFIX}/share/rcl/cmake/rclConfig.cmake")
   message(FATAL_ERROR "ROS_WHEELS_PREFIX is `${ROS_WHEELS_PREFIX}`: it must be the virtual environment with the ROS 2 wheels")
 endif()
 set(ROS_WHEELS_PREFIX "${ROS_WHEELS_PREFIX}" CACHE PATH "Virtual environment with the ROS 2 wheels")
+file(STRINGS "${ROS_WHEELS_PREFIX}/share/rcl/cmake/rclConfig-version.cmake" _ros_wheels_rcl_version REGEX "PACKAGE_VERSION \"")
+string(REGEX MATCH "[0-9.]+" _ros_wheels_rcl_version "${_ros_wheels_rcl_version}")
 
 # --- 1. Imported targets with paths of the machine on which the wheels were built -----------------------------------
 
@@ -46,9 +48,11 @@ endif()
 macro(_ros_wheels_find_package _ros_wheels_method _ros_wheels_package)
   find_package(${_ros_wheels_package} ${ARGN} BYPASS_PROVIDER)
   _ros_wheels_repair_targets()
-  # The only middleware among the wheels is Fast DDS. rcl_cxx passes it its own type supports, so it does not ask for the
-  # introspection type supports for C++, which take a sixth of the time to build interfaces.
-  list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "rosidl_typesupport_introspection_cpp")
+  if(_ros_wheels_rcl_version VERSION_GREATER_EQUAL 10)
+    # The only middleware among the wheels is Fast DDS. Since Kilted, rcl_cxx passes it its own type supports, so it does not ask
+    # for the introspection type supports for C++, which take a sixth of the time to build interfaces.
+    list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "rosidl_typesupport_introspection_cpp")
+  endif()
 endmacro()
 
 cmake_policy(POP)

@@ -14,7 +14,7 @@ from .build_times import BuildTimes, Forecast
 from .environment import build_environment
 from .layout import ROOT, STATE, Layout
 from .lock import Lock
-from .packages import Package, discover, state, with_dependencies
+from .packages import Package, discover_for_wheels, state, with_dependencies
 from .processes import end_group
 
 STAMP = "ur_stamp.txt"
@@ -297,7 +297,7 @@ def setup_viewer(layout: Layout) -> None:
 
 
 def _chosen(options: Options) -> Dict[str, Package]:
-    packages = discover()
+    packages = discover_for_wheels()
     if options.packages is not None:
         try:
             packages = with_dependencies(packages, options.packages)

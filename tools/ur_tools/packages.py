@@ -5,7 +5,7 @@ import os
 import pathlib
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass
-from typing import Dict, FrozenSet, List
+from typing import Dict, FrozenSet, Iterable, List
 
 from .layout import ROOT
 
@@ -22,8 +22,17 @@ class Package:
 
 def discover(root: pathlib.Path = ROOT) -> Dict[str, Package]:
     """Returns each folder of the root with a package.xml and a build file, in build order."""
+    return _packages(sorted(root.glob("*/package.xml")))
+
+
+def discover_for_wheels(root: pathlib.Path = ROOT) -> Dict[str, Package]:
+    """Returns discover(root) and the interface packages that the wheels do not contain, in build order."""
+    return _packages([*sorted(root.glob("*/package.xml")), *sorted(root.glob("wheels/interfaces/*/package.xml"))])
+
+
+def _packages(manifests: Iterable[pathlib.Path]) -> Dict[str, Package]:
     found: Dict[str, Package] = {}
-    for manifest in sorted(root.glob("*/package.xml")):
+    for manifest in manifests:
         folder = manifest.parent
         if not any((folder / name).exists() for name in ("CMakeLists.txt", "setup.py")):
             continue

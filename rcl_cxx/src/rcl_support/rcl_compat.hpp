@@ -21,6 +21,13 @@
 #endif
 
 namespace rcl_cxx::detail::compat {
+/// Up to Jazzy, rmw_fastrtps_cpp rejects a type of which it does not find the introspection type support.
+#if RCL_VERSION_MAJOR >= 10
+inline constexpr bool requires_introspection = false;
+#else
+inline constexpr bool requires_introspection = true;
+#endif
+
 /// Initializes a canceled timer.
 inline rcl_ret_t timer_init_canceled(rcl_timer_t * timer, rcl_clock_t * clock, rcl_context_t * context,
                                      std::int64_t period_ns)

@@ -26,7 +26,8 @@ const rosidl_service_type_support_t * find(const rosidl_service_type_support_t *
 template <typename T>
 const T * find_type_support(const T * type)
 {
-  if (std::string_view(rmw_get_implementation_identifier()) != "rmw_fastrtps_cpp") {
+  if (compat::requires_introspection ||
+      std::string_view(rmw_get_implementation_identifier()) != "rmw_fastrtps_cpp") {
     return type;
   }
   const T * const found = find(type, "rosidl_typesupport_fastrtps_cpp");

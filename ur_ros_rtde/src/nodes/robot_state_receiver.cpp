@@ -39,7 +39,7 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
   tcp_speed_ = node_.create_publisher<geometry_msgs::msg::TwistStamped>("tcp_speed", qos);
   target_joint_states_ = node_.create_publisher<sensor_msgs::msg::JointState>("target_joint_states", qos);
   if (options_.publish_tf) {
-    tool_transform_ = make_tool_transform(node_, options_.tf_prefix);
+    tool_transform_.emplace(node_, options_.tf_prefix);
   }
 
   get_joint_state_ = serve<srv::GetJointState>("get_joint_state", &StateMessages::joint_state,

@@ -83,8 +83,7 @@ class RobotStateReceiver {
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::IOState>::SharedPtr io_state_;
   rcl_cxx::Publisher<geometry_msgs::msg::TwistStamped>::SharedPtr tcp_speed_;
   rcl_cxx::Publisher<sensor_msgs::msg::JointState>::SharedPtr target_joint_states_;
-  std::unique_ptr<ToolTransform>
-      tool_transform_;  ///< null if publish_tf is false or tf2_msgs is not available
+  std::optional<ToolTransform> tool_transform_;  ///< if publish_tf is true
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetJointState>::SharedPtr get_joint_state_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetTcpPose>::SharedPtr get_tcp_pose_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetWrench>::SharedPtr get_wrench_;

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <geometry_msgs/msg/pose_stamped.hpp>
-#include <memory>
 #include <rcl_cxx/node.hpp>
 #include <string>
+#include <tf2_msgs/msg/tf_message.hpp>
 
 namespace ur_ros_rtde {
 
@@ -11,12 +11,14 @@ namespace ur_ros_rtde {
 /// `<tf_prefix>tool0_controller`.
 class ToolTransform {
  public:
-  virtual ~ToolTransform() = default;
-  /// Publishes only while /tf has subscribers. Does not allocate.
-  virtual void publish(const geometry_msgs::msg::PoseStamped & tcp_pose) = 0;
-};
+  ToolTransform(rcl_cxx::Node & node, const std::string & tf_prefix);
 
-/// Returns null and logs a message if the package tf2_msgs was not available at build time.
-std::unique_ptr<ToolTransform> make_tool_transform(rcl_cxx::Node & node, const std::string & tf_prefix);
+  /// Publishes only while /tf has subscribers. Does not allocate.
+  void publish(const geometry_msgs::msg::PoseStamped & tcp_pose);
+
+ private:
+  rcl_cxx::Publisher<tf2_msgs::msg::TFMessage>::SharedPtr publisher_;
+  tf2_msgs::msg::TFMessage message_;
+};
 
 }  // namespace ur_ros_rtde

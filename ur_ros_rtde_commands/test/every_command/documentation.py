@@ -1,6 +1,5 @@
 """Reads the documentation of the commands: docs/commands/*.md has a section with an example for each action."""
 
-import importlib.util
 import json
 import pathlib
 import re
@@ -51,11 +50,6 @@ class Section:
         found = re.search(rf"<!--\s*{name}:\s*(.*?)\s*-->", self.text, re.S)
         return found.group(1) if found else None
 
-    def is_available(self):
-        """Returns whether the package that the plugin requires is installed: `<!-- needs: control_msgs -->`."""
-        needed = self._comment("needs")
-        return needed is None or importlib.util.find_spec(needed) is not None
-
     def scene(self):
         return json.loads(self._comment("scene") or "[]")
 
@@ -85,7 +79,7 @@ def sections():
         for title, text in zip(parts[1::2], parts[2::2]):
             # A heading of a higher level ends the section.
             found.append(Section(title.strip().strip("`"), file, re.split(r"^##? ", text, flags=re.M)[0]))
-    return [section for section in found if section.is_available()]
+    return found
 
 
 def section(name):

@@ -68,6 +68,7 @@ def test_nodes_use_the_profile_for_nodes(environment, no_profile, addresses, pro
     assert os.SCHED_BATCH in announcement_threads(driver)
 
 
+@pytest.mark.skipif(not FAST_DDS_3, reason="up to Jazzy, the middleware requires them")
 def test_nodes_load_no_introspection_type_supports(addresses, processes):
     """With them, the middleware also keeps a description of each type. Together they take 9 MB."""
     driver = processes(start_node("driver", addresses[3]))

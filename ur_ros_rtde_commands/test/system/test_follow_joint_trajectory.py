@@ -2,7 +2,6 @@
 
 import pathlib
 
-import control_msgs_fallback
 import pytest
 import yaml
 from action_msgs.msg import GoalStatus
@@ -10,27 +9,16 @@ from arm_state import home_plus
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from control_msgs.msg import JointComponentTolerance, JointTolerance
-from interface_fallback import type_hashes
-from plugin_prefix import create_plugin_prefix, prepend_path
 from support import HOME, JOINTS, start_node, wait_for
 from trajectories import point, timed
 
 Result = FollowJointTrajectory.Result
 CONFIG = pathlib.Path(__file__).parents[3] / "ur_ros_rtde" / "config" / "moveit"
-DESCRIPTION = pathlib.Path(__file__).parents[2] / "src" / "moveit" / "moveit_commands.xml"
-# Computed with rosidl from the published definitions: before 2025-06, and the current one with two more index fields.
-HASHES = {"RIHS01_738ebcb7a2d7cfa42f9f1001cc99ce3a4383d1cfe508015d9be8485e4b1c66f6",
-          "RIHS01_ff29901b2693f5deb847e96084a1c2cdb26e70b7c847be21859b70a55fb29cf0"}
 
 
 @pytest.fixture(scope="module")
 def driver(simulator, tmp_path_factory):
-    env = {}
-    if control_msgs_fallback.PLUGIN:
-        prefix = create_plugin_prefix(tmp_path_factory.mktemp("moveit"), "moveit", DESCRIPTION.read_text(),
-                                      [control_msgs_fallback.PLUGIN])
-        env = {**prepend_path("AMENT_PREFIX_PATH", prefix), **prepend_path("LD_LIBRARY_PATH", control_msgs_fallback.LIBRARIES)}
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", env=env)
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e")
     yield driver
     driver.stop()
     print(driver.output())
@@ -52,14 +40,6 @@ def tolerance(name, position=0.0, velocity=0.0, acceleration=0.0):
 def rejection_message(robot, goal):
     assert not goal.accepted
     return robot.refusal(goal).message
-
-
-@pytest.mark.skipif(control_msgs_fallback.PLUGIN is None, reason="control_msgs is installed")
-def test_type_hashes_match_the_published_interface():
-    hashes = type_hashes("control_msgs")
-    assert hashes["control_msgs/action/FollowJointTrajectory"] in HASHES
-    assert (hashes["control_msgs/msg/JointTolerance"]
-            == "RIHS01_c254f9cece0f3b733017b6990fd46d1326e25242d6b8844398c97d9a88e7d648")
 
 
 def test_executes_a_plan_with_feedback(robot):

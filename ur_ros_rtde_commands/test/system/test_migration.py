@@ -3,7 +3,6 @@
 The goals of the actions are tried by test_good_goals.py, which sends the documented example of each one.
 """
 
-import importlib.util
 import pathlib
 import re
 
@@ -57,8 +56,6 @@ def interfaces(simulator, client):
 
 def missing(interfaces, names, *kinds):
     known = set().union(*(interfaces[kind] for kind in kinds))
-    if importlib.util.find_spec("control_msgs") is None:
-        known.add("follow_joint_trajectory")  # tested by test_follow_joint_trajectory.py
     return {name.split(":=")[0] for name in names} - known
 
 

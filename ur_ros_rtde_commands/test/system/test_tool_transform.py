@@ -1,8 +1,5 @@
 """Tests of the transform base -> tool0_controller on /tf."""
 
-import os
-
-import interface_fallback
 import pytest
 from geometry_msgs.msg import PoseStamped
 from rclpy.node import NodeNameNonExistentError
@@ -10,22 +7,7 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
 from support import seconds, start_node, wait_for
-
-LIBRARIES = interface_fallback.provide("tf2_msgs")
-
-from tf2_msgs.msg import TFMessage  # noqa: E402
-
-# Type hash of the published definition.
-HASH = "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"
-
-
-def start_receiver(address, *parameters, **options):
-    """Starts robot_state_receiver with support for tf2_msgs: the installed program, or the one built with the tests."""
-    if LIBRARIES is None:
-        return start_node("robot_state_receiver", address, *parameters, **options)
-    path = os.pathsep.join([str(LIBRARIES), os.environ.get("LD_LIBRARY_PATH", "")])
-    return start_node("robot_state_receiver", address, *parameters, env={"LD_LIBRARY_PATH": path},
-                      executable=LIBRARIES / "robot_state_receiver", **options)
+from tf2_msgs.msg import TFMessage
 
 
 def transforms(messages, child):
@@ -53,13 +35,8 @@ def get_published_topics(client, namespace):
     return dict(client.node.get_publisher_names_and_types_by_node(*receiver))
 
 
-@pytest.mark.skipif(LIBRARIES is None, reason="tf2_msgs is installed")
-def test_type_hash_matches_the_published_interface():
-    assert interface_fallback.type_hashes("tf2_msgs")["tf2_msgs/msg/TFMessage"] == HASH
-
-
 def test_broadcasts_the_pose_and_the_stamp_of_tcp_pose(simulator, client, processes):
-    processes(start_receiver(simulator.address, "tf_prefix:=left_", namespace="with_tf"))
+    processes(start_node("robot_state_receiver", simulator.address, "tf_prefix:=left_", namespace="with_tf"))
     poses = client.subscribe(PoseStamped, "/with_tf/tcp_pose")
     tf = client.subscribe(TFMessage, "/tf")
     child = "left_tool0_controller"
@@ -77,7 +54,7 @@ def test_broadcasts_the_pose_and_the_stamp_of_tcp_pose(simulator, client, proces
 
 
 def test_qos_is_compatible_with_tf2_listeners(simulator, client, processes):
-    processes(start_receiver(simulator.address, "qos:=best_effort", namespace="best_effort"))
+    processes(start_node("robot_state_receiver", simulator.address, "qos:=best_effort", namespace="best_effort"))
     assert "/tf" in get_published_topics(client, "/best_effort")
     publishers = client.node.get_publishers_info_by_topic("/tf")
     assert [publisher.node_namespace for publisher in publishers] == ["/best_effort"]
@@ -87,7 +64,7 @@ def test_qos_is_compatible_with_tf2_listeners(simulator, client, processes):
 
 
 def test_broadcasts_the_actual_pose_along_with_fake_joint_states(simulator, client, processes):
-    processes(start_receiver(simulator.address, "tf_prefix:=faked_", namespace="faked"))
+    processes(start_node("robot_state_receiver", simulator.address, "tf_prefix:=faked_", namespace="faked"))
     shown = client.subscribe(JointState, "/faked/joint_states")
     tf = client.subscribe(TFMessage, "/tf")
     publisher = client.node.create_publisher(JointState, "/faked/fake_joint_states", 10)
@@ -101,22 +78,11 @@ def test_broadcasts_the_actual_pose_along_with_fake_joint_states(simulator, clie
 
 
 def test_tf_can_be_remapped_into_the_namespace(simulator, client, processes):
-    processes(start_receiver(simulator.address, namespace="own", arguments=["-r", "/tf:=tf"]))
+    processes(start_node("robot_state_receiver", simulator.address, namespace="own", arguments=["-r", "/tf:=tf"]))
     tf = client.subscribe(TFMessage, "/own/tf")
     assert wait_for(lambda: transforms(tf, "tool0_controller"), 15.0, "a transform")
 
 
 def test_publish_tf_false_disables_the_broadcast(simulator, client, processes):
-    processes(start_receiver(simulator.address, "publish_tf:=false", namespace="quiet"))
+    processes(start_node("robot_state_receiver", simulator.address, "publish_tf:=false", namespace="quiet"))
     assert "/tf" not in get_published_topics(client, "/quiet")
-
-
-@pytest.mark.skipif(LIBRARIES is None, reason="tf2_msgs is installed")
-def test_a_build_without_tf2_msgs_is_reported(simulator, client, processes):
-    without = processes(start_node("robot_state_receiver", simulator.address, "tf_prefix:=plain_", namespace="plain"))
-    line = without.wait_for_output("tf2_msgs was not found")
-    assert "[INFO]" in line and "plain_tool0_controller" in line and "publish_tf" in line
-    assert "/tf" not in get_published_topics(client, "/plain")
-    silent = processes(start_node("robot_state_receiver", simulator.address, "publish_tf:=false", namespace="silent"))
-    assert "/tf" not in get_published_topics(client, "/silent")
-    assert "tf2_msgs" not in silent.output()

@@ -64,8 +64,6 @@ def is_possible(kind: GoalKind, event: Event, profile: str) -> bool:
         return False
     if kind.is_topic:  # no goal that could be canceled, preempted or lose its client
         return not (event.needs_client or event.name in ("preempted", "cancel, then stop"))
-    if event.needs_client and kind.package == "control_msgs":
-        return False  # the client cannot import it
     return not (event.name == "preempted" and kind.name in HAND_GUIDED)
 
 

@@ -251,7 +251,7 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("execute_parametrized", "execute_parametrized_trajectory", PACKAGE + "ExecuteParametrizedTrajectory", _parametrized, PATH,
              limits=lambda _fields: (5.0, 100.0), turns=True),
     GoalKind("follow_joint_trajectory", "follow_joint_trajectory", "control_msgs/action/FollowJointTrajectory", _follow, PATH,
-             limits=lambda _fields: (5.0, 100.0), package="control_msgs", turns=True),
+             limits=lambda _fields: (5.0, 100.0), turns=True),
     GoalKind("move_until_force", "move_until_force", PACKAGE + "MoveUntilForce", _until_force, LINEAR, _own),
     GoalKind("move_until_contact", "move_until_contact", PACKAGE + "MoveUntilContact", _until_contact, deceleration=_unspecified),
     GoalKind("move_until_torque", "move_until_torque", PACKAGE + "MoveUntilForce", _until_force, LINEAR, _own),

@@ -32,9 +32,17 @@ def _ptrace(request: int, thread: int, data: int = 0) -> bool:
     if libc.ptrace(request, thread, None, data) == 0:
         return True
     number = ctypes.get_errno()
-    if number == errno.ESRCH:
+    if number == errno.ESRCH or _has_ended(thread):
         return False
     raise OSError(number, os.strerror(number))
+
+
+def _has_ended(thread: int) -> bool:
+    """Also while its process remains: ptrace then reports a lack of permission."""
+    try:
+        return pathlib.Path(f"/proc/{thread}/stat").read_text().rpartition(")")[2].split()[0] in "ZX"
+    except OSError:
+        return True
 
 
 def _wait_for_reports(threads: Iterable[int]) -> Dict[int, int]:

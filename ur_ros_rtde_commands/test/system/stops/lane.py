@@ -4,7 +4,6 @@
 """
 
 import argparse
-import importlib.util
 import json
 import os
 import pathlib
@@ -34,11 +33,11 @@ from .stalls import Stalls
 
 STALL_WINDOW = 60_000_000  # ns after the event, in which the deceleration has to begin
 QUIET = 150_000_000  # ns, after which nothing may have moved again
+LATE_BEGIN = 100_000_000  # ns after the end of a hold, in which what the threads were told before it begins
 MOTION_LIMIT = 0.8  # s, for a goal that may not move at all
 READY_LIMIT = 10.0  # s, from the end of a disturbance to the first accepted motion
 RETRY_INTERVAL = 0.05  # s
 BUILD = pathlib.Path(find_program("ur_ros_rtde", "driver")).parents[3] / "build" / "ur_ros_rtde_commands" / "test"
-MOVEIT = pathlib.Path(__file__).resolve().parents[3] / "src" / "moveit" / "moveit_commands.xml"
 DESCRIPTION = """<library path="stubborn_commands">
   <class name="slow_to_look" type="ur_ros_rtde::SlowToLook" base_class_type="ur_ros_rtde::CommandPlugin"/>
   <class name="never_looks" type="ur_ros_rtde::NeverLooks" base_class_type="ur_ros_rtde::CommandPlugin"/>
@@ -63,10 +62,6 @@ class Report:
     deceleration: Optional[float] = None
     stall: float = 0.0  # s
     seconds: float = 0.0  # of the host, for the whole case
-
-
-def _prepended(variable: str, folders: Sequence[pathlib.Path]) -> Dict[str, str]:
-    return prepend_path(variable, os.pathsep.join(map(str, folders))) if folders else {}
 
 
 class LaneClient(StatusTrackingClient):
@@ -100,22 +95,12 @@ class Lane:
     def _plugins(self) -> Dict[str, str]:
         """Returns the environment in which the driver finds the plugins that are built with the tests."""
         self.packages = ["ur_ros_rtde_tutorials"]
-        prefixes, libraries = [], []
         stubborn = BUILD / "plugins" / "libstubborn_commands.so"
-        if stubborn.is_file():
-            self.packages.append(goal_kinds.STUBBORN)
-            prefixes.append(create_plugin_prefix(self._folder(goal_kinds.STUBBORN), goal_kinds.STUBBORN, DESCRIPTION, [stubborn]))
-        if importlib.util.find_spec("control_msgs") or (BUILD / "control_msgs").is_dir():
-            import control_msgs_fallback as fallback
-
-            self.packages.append("control_msgs")
-            if fallback.PLUGIN:
-                prefixes.append(create_plugin_prefix(self._folder("moveit"), "moveit", MOVEIT.read_text(), [fallback.PLUGIN]))
-                libraries.append(fallback.LIBRARIES)
-        return {**_prepended("AMENT_PREFIX_PATH", prefixes), **_prepended("LD_LIBRARY_PATH", libraries)}
-
-    def _folder(self, name: str) -> pathlib.Path:
-        return self._log / f"prefix_{name}_{os.getpid()}"
+        if not stubborn.is_file():
+            return {}
+        self.packages.append(goal_kinds.STUBBORN)
+        folder = self._log / f"prefix_{goal_kinds.STUBBORN}_{os.getpid()}"
+        return prepend_path("AMENT_PREFIX_PATH", create_plugin_prefix(folder, goal_kinds.STUBBORN, DESCRIPTION, [stubborn]))
 
     def close(self) -> None:
         if self._spare is not None:
@@ -316,6 +301,8 @@ class Lane:
             checks.hold = self.holds.wait()
 
     def _quiet(self, case: Case, checks: "properties.Checks") -> None:
+        if checks.hold is not None:
+            self.sleep_until(checks.hold["end"] + LATE_BEGIN)
         wait_for(lambda: self.simulator.state()["at_rest"], 20.0, "standstill")
         if case.event.ends_driver:
             wait_for(lambda: not self.driver.running(), 10.0, "the end of the driver")

@@ -53,7 +53,7 @@ bool RtdeInterfaces::pending_program_alive(std::chrono::milliseconds limit,
     if (states < ignored_states) {
       continue;
     }
-    if (control->getTimeSinceHeartbeat() < heartbeat_limit) {
+    if (control->isProgramRunning() && control->getTimeSinceHeartbeat() < heartbeat_limit) {
       return true;
     }
     if (stop.stop_requested() || Clock::now() > deadline) {
