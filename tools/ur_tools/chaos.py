@@ -38,7 +38,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--stops", type=int, default=0, metavar="N", help="run N cases of the stop property test")
     parser.add_argument("--lanes", type=int, default=3, metavar="K",
                         help="with --stops: pairs of simulator and driver that run cases at the same time, 1 to 16, on the addresses "
-                             "127.0.0.1, 127.1.0.1, 127.2.0.1, ... if --address is 127.0.0.1 (default: 3; two idle cores serve 5)")
+                             "127.0.0.1, 127.1.0.1, 127.2.0.1, ... if --address is 127.0.0.1 (default: 3; two idle cores serve 7)")
     parser.add_argument("--case", type=int, nargs="+", default=[], metavar="SEED", help="run these cases of the stop property test")
     parser.add_argument("--log", type=pathlib.Path, metavar="FOLDER",
                         help="folder for the logs (default: a folder in .ur, named after the seed)")

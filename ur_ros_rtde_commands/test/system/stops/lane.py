@@ -12,7 +12,7 @@ import time
 import traceback
 from dataclasses import asdict, dataclass, field
 from random import Random
-from typing import Dict, List, Optional, Sequence
+from typing import Dict, List, Optional
 
 import messages
 from cell import Domain, StatusTrackingClient
