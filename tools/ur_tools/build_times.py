@@ -10,6 +10,8 @@ REFERENCE_CORES = 2
 # Seconds of a first build without and with tests, on REFERENCE_CORES, without a compiler cache and with no other package built at the
 # same time. Source: "first" in .ur/<distribution>/build_times.json after a first `./ur build` and `./ur build --tests`.
 REFERENCE: Dict[str, Tuple[float, float]] = {
+    "control_msgs": (14.0, 14.0),
+    "tf2_msgs": (8.0, 8.0),
     "ur_rtde_vendor": (14.0, 14.0),
     "rcl_cxx": (10.0, 50.0),
     "ur_ros_rtde_msgs": (58.0, 58.0),

@@ -60,6 +60,15 @@ TEST(ProgramSequenceTest, EndsAPausedControlProgramBeforeTheRobotIsReady)
   EXPECT_EQ(sequence.process(E::robot_ready), A::start_program);
 }
 
+TEST(ProgramSequenceTest, EndsAPausedProgramOfALostConnectionBeforeTheRobotIsReady)
+{
+  auto sequence = ProgramSequence().running();
+  sequence.process(E::link_lost);
+  sequence.process(E::link_established);
+  EXPECT_EQ(sequence.sample(ProgramActivity::paused), A::none);
+  EXPECT_EQ(sequence.process(E::inspection), A::stop_program);
+}
+
 TEST(ProgramSequenceTest, TakesAProgramThatRunsAfterAFailedRestartForTheControlProgram)
 {
   auto sequence = ProgramSequence().running();

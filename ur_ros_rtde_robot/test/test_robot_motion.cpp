@@ -174,6 +174,21 @@ TEST_F(RobotMotionTest, EndsInASafeguardStopAndIsNotResumed)
   EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3) << "the old motion was resumed";
 }
 
+TEST_F(RobotMotionTest, IsNotResumedAfterASafeguardStopInWhichTheConnectionWasLost)
+{
+  make_both();
+  move_joints();
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+  controller.control({{"command", "safeguard"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::safeguard_stop));
+  // Before the safeguard is closed. The watchdog would end it after a second.
+  EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }, 700ms));
+  const auto q = robot->latest()->actual_q;
+  controller.control({{"command", "safeguard"}, {"open", false}});
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_NEAR(robot->latest()->actual_q[0], q[0], 1e-3);
+}
+
 TEST_F(RobotMotionTest, EndsWhenItsProgramIsStoppedOnThePendant)
 {
   make_both();

@@ -39,6 +39,7 @@ constexpr auto transitions = std::to_array<ProgramTransition>({
     {S::orphaned, E::robot_ready, G::upload | G::remote | G::stopped, S::starting, A::start_program},
     {S::orphaned, E::robot_ready, G::upload | G::remote | G::not_stopped, S::orphaned, A::stop_program},
     {S::orphaned, E::robot_ready, G::urcap | G::playing, S::orphaned, A::stop_program},
+    {S::orphaned, E::inspection, G::paused, S::orphaned, A::stop_program},
     {S::orphaned, E::inputs_in_use, G::upload, S::in_use, A::close_interfaces},
 
     // The start.

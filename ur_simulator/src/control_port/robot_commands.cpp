@@ -169,8 +169,9 @@ Action store_external_control(RequestFields & fields)
 Action stop_program(RequestFields &)
 {
   return [](ControlPortContext & context) -> json {
+    const std::string_view before = to_string(context.state.runtime_state);
     context.pendant.stop();
-    return json::object();
+    return {{"program", before}};
   };
 }
 
@@ -263,7 +264,8 @@ constexpr std::array robot_command_table{
             run_script},
     Command{"play", "", "Presses the play button of the pendant.", play},
     Command{"pause_program", "", "Presses the pause button of the pendant.", call_pendant<&Pendant::pause>},
-    Command{"stop_program", "", "Presses the stop button of the pendant.", stop_program},
+    Command{"stop_program", "",
+            "Presses the stop button of the pendant; returns the state that the program had.", stop_program},
     Command{"kill_program", "", "Ends the program within one control cycle, without a log entry or message.",
             kill_program},
     Command{"speed_slider", "fraction 0..1", "Sets the speed slider of the pendant.", speed_slider},

@@ -63,6 +63,15 @@ def _control(command: str, **fields: Any) -> Callable[[Any], int]:
     return cause
 
 
+def _stop_program(lane) -> int:
+    """Presses the button until it stops a program: between the control program and a script, there is none."""
+    def pressed() -> int:
+        when = lane.now()
+        return when if lane.simulator.control("stop_program")["program"] == "PLAYING" else 0
+
+    return wait_for(pressed, 2.0, "a program to stop")
+
+
 def _play_another_program(lane) -> int:
     when = lane.now()
     lane.simulator.control("run_script", script="def another():\n  sleep(0.3)\nend\n")
@@ -136,7 +145,7 @@ EVENTS = (
     Event("protective stop", _control("protective_stop", reason="test"), 5.0, BEGIN_LIMIT, recover=_unlock),
     Event("safeguard stop", _control("safeguard"), 5.0, BEGIN_LIMIT, recover=_close_safeguard),
     Event("emergency stop", _control("emergency_stop"), 4.0, BEGIN_LIMIT, recover=_release_emergency_stop),
-    Event("program stopped", _control("stop_program"), 5.0, BEGIN_LIMIT),
+    Event("program stopped", _stop_program, 5.0, BEGIN_LIMIT),
     Event("program replaced", _play_another_program, 3.0, BEGIN_LIMIT),
     Event("control link dropped", _control("drop_links", which="rtde", clients="control"), 4.0),
     Event("RTDE links dropped", _control("drop_links", which="rtde"), 3.0),

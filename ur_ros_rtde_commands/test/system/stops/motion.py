@@ -97,10 +97,13 @@ def _slower(trace: Trace, before: int, after: int, column: int) -> bool:
 
 
 def deceleration(trace: Trace, stopping: Stopping, column: int) -> Optional[float]:
-    """Returns the median deceleration of the leading joint or the TCP; None if the arm did not decelerate for long enough."""
-    if stopping.first is None or stopping.rest is None or stopping.rest - stopping.first < MEASURED_CYCLES:
+    """Returns the median deceleration of the leading joint or the TCP; None if the arm did not decelerate for long enough.
+
+    Only of the cycles that decelerate by at least half as much as the steepest one: the motion itself may have slowed down before."""
+    if stopping.first is None or stopping.rest is None:
         return None
     speeds = [trace.speeds[index][column] for index in range(stopping.first, stopping.rest - 1)]
     slopes = sorted((a - b) / CYCLE for a, b in zip(speeds, speeds[1:]))
-    return slopes[len(slopes) // 2] if slopes else None
+    braking = [slope for slope in slopes if slope >= 0.5 * slopes[-1]]
+    return braking[len(braking) // 2] if len(braking) >= MEASURED_CYCLES - 1 else None
 
