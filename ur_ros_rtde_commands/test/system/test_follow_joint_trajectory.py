@@ -17,7 +17,7 @@ CONFIG = pathlib.Path(__file__).parents[3] / "ur_ros_rtde" / "config" / "moveit"
 
 
 @pytest.fixture(scope="module")
-def driver(simulator, tmp_path_factory):
+def driver(simulator):
     driver = start_node("driver", simulator.address, "ur_type:=ur10e")
     yield driver
     driver.stop()
