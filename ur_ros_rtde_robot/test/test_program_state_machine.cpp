@@ -275,8 +275,9 @@ TEST(ProgramStateMachineTest, LeavesAProgramAloneThatReplacedTheControlProgram)
             EXPECT_NE(action, A::start_program) << to_string(state) << ", " << to_string(event);
           }
           const bool connected = event != E::link_lost;
-          const bool noticed = (state == S::running && event == E::heartbeat_lost) ||
-                               (state == S::yielded && event == E::script_replaced);
+          const bool noticed =
+              ((state == S::running || state == S::yielding) && event == E::heartbeat_lost) ||
+              (state == S::yielded && event == E::script_replaced);
           if (connected && on_robot) {
             found.insert({machine.state(), replaced || noticed});
           } else {

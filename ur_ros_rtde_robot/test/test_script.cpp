@@ -27,6 +27,10 @@ struct ScriptTest : RobotFixture {
            "end\n";
   }
 
+  static std::string forever() { return "def other():\n  while True:\n    sync()\n  end\nend\n"; }
+
+  bool plays() { return controller.state().at("program").at("state") == "PLAYING"; }
+
   bool turns() { return std::abs(robot->latest()->actual_qd[0]) > 0.7; }
 
   /// The control program runs again and accepts commands.
@@ -185,6 +189,51 @@ TEST_F(ScriptTest, LeavesAProgramAloneThatReplacesTheScript)
   EXPECT_EQ(controller.state().at("program").at("state"), "PLAYING");
   controller.control({{"command", "stop_program"}});
   EXPECT_TRUE(becomes_ready());
+  EXPECT_TRUE(is_back());
+}
+
+/// Nothing tells yet that the control program is gone: its heartbeat may be missing for 50 ms.
+TEST_F(ScriptTest, IsNotSentAfterAProgramThatHasReplacedTheControlProgram)
+{
+  make_both();
+  controller.control({{"command", "run_script"}, {"script", "def other():\n  sleep(0.3)\nend\n"}});
+  const auto report = run_script(turning());
+  EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
+  EXPECT_TRUE(becomes_ready_again());
+  EXPECT_TRUE(at_rest());
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(ScriptTest, LeavesAProgramAloneThatHasReplacedTheControlProgram)
+{
+  make_both();
+  controller.control({{"command", "run_script"}, {"script", forever()}});
+  const auto report = run_script(turning());
+  EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
+  EXPECT_TRUE(plays()) << log.text();
+  controller.control({{"command", "stop_program"}});
+  EXPECT_TRUE(becomes_ready_again());
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(ScriptTest, IsNotSentAfterAProgramThatBeganInItsPlace)
+{
+  make_both();
+  ScriptOptions options;
+  options.stop_reason = [&, started = false]() mutable -> std::optional<Error> {
+    if (!std::exchange(started, true)) {
+      controller.control({{"command", "run_script"}, {"script", forever()}});
+      EXPECT_TRUE(eventually([&] { return plays(); }));
+    }
+    return std::nullopt;
+  };
+  const auto report = run_script(turning(), options);
+  EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
+  EXPECT_NE(report.error.message.find("another program, `other`"), std::string::npos) << report.error.message;
+  EXPECT_TRUE(at_rest());
+  EXPECT_TRUE(plays()) << log.text();
+  controller.control({{"command", "stop_program"}});
+  EXPECT_TRUE(becomes_ready_again());
   EXPECT_TRUE(is_back());
 }
 

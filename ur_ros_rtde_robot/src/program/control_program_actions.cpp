@@ -208,9 +208,24 @@ bool ControlProgramManager::wait_for_program(ProgramActivity program, millisecon
 
 void ControlProgramManager::suspend_program()
 {
-  interfaces_.suspend_control();
-  const bool ended = wait_for_program(ProgramActivity::stopped, program_stop_limit) || end_program();
-  dispatch(ended ? ProgramEvent::program_yielded : ProgramEvent::yield_failed);
+  if (interfaces_.suspend_control() && wait_for_program(ProgramActivity::stopped, program_stop_limit)) {
+    dispatch(ProgramEvent::program_yielded);
+    return;
+  }
+  switch (snapshot().second.program) {
+    case ProgramActivity::stopped:  // by something else; another program may have run
+      dispatch(ProgramEvent::yield_failed);
+      return;
+    case ProgramActivity::playing:
+      if (interfaces_.control_heartbeat_lost()) {
+        dispatch(ProgramEvent::heartbeat_lost);
+        return;
+      }
+      break;
+    case ProgramActivity::paused:
+      break;
+  }
+  dispatch(end_program() ? ProgramEvent::program_yielded : ProgramEvent::yield_failed);
 }
 
 ControlProgramManager::Outcome ControlProgramManager::connect_control()

@@ -42,7 +42,8 @@ Status ControlProgramManager::yield(milliseconds limit)
   if (status_.state != RobotState::ready) {
     return failure(status_.cause, status_.message);
   }
-  return failure(ErrorCode::not_ready, "the control program does not yield to the script");
+  return failure(ErrorCode::program_stopped,
+                 "something else ended the control program: the script was not sent");
 }
 
 Status ControlProgramManager::resume(milliseconds limit)

@@ -57,7 +57,9 @@ constexpr auto transitions = std::to_array<ProgramTransition>({
     // A script runs in its place.
     {S::running, E::yield_requested, G::upload, S::yielding, A::suspend_program},
     {S::yielding, E::yield_rejected, G::always, S::running, A::none},
-    {S::yielding, E::yield_failed, G::always, S::unclaimed, A::close_control},
+    {S::yielding, E::heartbeat_lost, G::always, S::foreign, A::close_control},
+    {S::yielding, E::yield_failed, G::stopped, S::idle, A::close_control},
+    {S::yielding, E::yield_failed, G::not_stopped, S::unclaimed, A::close_control},
     {S::yielding, E::yield_canceled, G::always, S::unclaimed, A::close_control},
     {S::yielding, E::program_yielded, G::always, S::yielded, A::none},
     {S::yielded, E::resume_requested, G::always, S::resuming, A::none},

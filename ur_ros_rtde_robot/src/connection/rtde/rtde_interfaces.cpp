@@ -214,7 +214,7 @@ HeldLock RtdeInterfaces::take_control_lock(RTDEControlInterface & control,
   return held(nullptr);
 }
 
-void RtdeInterfaces::suspend_control()
+bool RtdeInterfaces::suspend_control()
 {
   std::shared_ptr<RTDEControlInterface> control;
   {
@@ -222,19 +222,21 @@ void RtdeInterfaces::suspend_control()
     control = pending_ = activate(nullptr);
   }
   if (!control) {
-    return;
+    return false;
   }
   const HeldLock lock = take_control_lock(*control, suspend_timeout);
   if (!lock) {
-    return;
+    return false;
   }
+  bool ended = false;
   try {
     control->setCommandTimeout(suspend_timeout);
-    control->stopScript();
+    ended = control->stopScript();
   } catch (const std::exception &) {
     // The caller stops it by other means.
   }
   control->setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
+  return ended;
 }
 
 bool RtdeInterfaces::has_pending_control() const
@@ -310,6 +312,12 @@ std::shared_ptr<RTDEControlInterface> RtdeInterfaces::control_interface() const
   return control_;
 }
 
+std::shared_ptr<RTDEControlInterface> RtdeInterfaces::active_or_pending() const
+{
+  const std::lock_guard lock(mutex_);
+  return control_ ? control_ : pending_;
+}
+
 std::optional<Locked<RTDEControlInterface>> RtdeInterfaces::control() const
 {
   const std::lock_guard lock(mutex_);
@@ -325,18 +333,13 @@ std::optional<Locked<RTDEIOInterface>> RtdeInterfaces::io() const
 bool RtdeInterfaces::control_heartbeat_lost() const
 {
   constexpr std::chrono::milliseconds heartbeat_limit(50);
-  const auto control = control_interface();
+  const auto control = active_or_pending();
   return control && control->getTimeSinceHeartbeat() > heartbeat_limit;
 }
 
 void RtdeInterfaces::kick_watchdog()
 {
-  std::shared_ptr<RTDEControlInterface> control;
-  {
-    const std::lock_guard lock(mutex_);
-    control = control_ ? control_ : pending_;
-  }
-  if (control) {
+  if (const auto control = active_or_pending()) {
     control->kickWatchdog();
   }
 }

@@ -57,8 +57,9 @@ class RtdeInterfaces {
   bool pending_program_alive(std::chrono::milliseconds limit, const std::stop_token & stop) const;
   /// Starts the watchdog of the pending connection's program and makes the connection active.
   Status adopt_control();
-  /// Ends the control program and makes its connection pending, until start_control().
-  void suspend_control();
+  /// Ends the control program and makes its connection pending, until start_control(). False unless the
+  /// program has ended because of this: it hangs, was stopped, or another one runs, or ran, in its place.
+  bool suspend_control();
   /// There is a pending connection.
   bool has_pending_control() const;
   /// Closes the active or pending connection. A command that waits in it returns. When this returns, the
@@ -76,8 +77,8 @@ class RtdeInterfaces {
                              std::chrono::milliseconds timeout) const;
   /// Incremented when a control program becomes active, and when it is given up.
   std::uint32_t starts() const { return starts_; }
-  /// The control program of the active connection has missed its heartbeat although no command delays it:
-  /// another program runs in its place.
+  /// The control program of the active or pending connection has missed its heartbeat although no command
+  /// delays it: a program that runs is another one.
   bool control_heartbeat_lost() const;
   /// Sends a heartbeat to the control program's watchdog. Does not wait for a command under way.
   void kick_watchdog();
@@ -93,6 +94,7 @@ class RtdeInterfaces {
   /// Makes `control` the active interface, or none. Hold mutex_. Returns the previous one.
   std::shared_ptr<ur_rtde::RTDEControlInterface> activate(
       std::shared_ptr<ur_rtde::RTDEControlInterface> control);
+  std::shared_ptr<ur_rtde::RTDEControlInterface> active_or_pending() const;
   bool resume_suspended(const std::stop_token & stop);
 
   const RobotOptions options_;

@@ -21,6 +21,7 @@ constexpr milliseconds begin_limit(3000);  // from sending to the begin marker
 /// same control cycle.
 constexpr milliseconds max_skew(100);
 constexpr milliseconds message_wait(4);
+constexpr std::string_view control_program = "rtde_control";  ///< its name, given by ur_rtde
 
 double seconds(std::chrono::steady_clock::duration duration)
 {
@@ -110,6 +111,9 @@ void ScriptMonitor::run(const script::Program & program)
       return;
     }
   }
+  if (replaced_before_begin()) {
+    return;
+  }
   if (const auto sent = primary_.send(program.text.text(), send_limit); !sent) {
     complete(ScriptEnd::link_lost, sent.error().code,
              "the script could not be sent: " + sent.error().message);
@@ -119,16 +123,29 @@ void ScriptMonitor::run(const script::Program & program)
   }
 }
 
+/// The connection is older than the end of the control program: it has told of a program that began in
+/// between.
+bool ScriptMonitor::replaced_before_begin()
+{
+  do {
+    if (read_messages(milliseconds(0))) {
+      return true;
+    }
+  } while (messages_left_);
+  return replaced() &&
+         complete(ScriptEnd::refused, ErrorCode::program_stopped,
+                  fmt::format("another program, `{}`, began before the script was sent", replaced_by_));
+}
+
 bool ScriptMonitor::update()
 {
-  return read_messages() || (!messages_left_ && (has_failed() || has_ended())) || must_stop();
+  return read_messages(message_wait) || (!messages_left_ && (has_failed() || has_ended())) || must_stop();
 }
 
 /// Bounded in time, so that a script that writes faster than ScriptOptions::on_text returns can be stopped.
-bool ScriptMonitor::read_messages()
+bool ScriptMonitor::read_messages(milliseconds wait)
 {
   const auto deadline = Clock::now() + message_wait;
-  auto wait = message_wait;
   do {
     const auto message = primary_.next(wait);
     if (!message) {
@@ -180,7 +197,9 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
       }
       break;
     case PrimaryMessage::Kind::program_started:
-      if (begin_seen_ && message.text != program_->name) {
+      // The end of the control program may be told late, and with it its begin.
+      if (options_.kind == ScriptKind::program && message.text != program_->name &&
+          message.text != control_program) {
         replaced_by_ = message.text;
       }
       break;
@@ -256,8 +275,9 @@ bool ScriptMonitor::must_stop()
   if (sample->link != link_) {
     return complete(ScriptEnd::link_lost, ErrorCode::link_lost, connection_replaced);
   }
-  if (!replaced_by_.empty()) {
-    return complete(ScriptEnd::stopped, ErrorCode::program_stopped,
+  if (replaced()) {
+    // Before its begin, the script has been sent after that program, and replaces it.
+    return complete(begin_seen_ ? ScriptEnd::stopped : ScriptEnd::interrupted, ErrorCode::program_stopped,
                     fmt::format("another program, `{}`, took the script's place", replaced_by_));
   }
   if (options_.kind == ScriptKind::program) {

@@ -43,7 +43,8 @@ class ScriptMonitor {
 
   /// Each returns true if the report is complete.
   bool update();
-  bool read_messages();
+  bool replaced_before_begin();
+  bool read_messages(std::chrono::milliseconds wait);
   bool has_failed();
   bool has_ended();
   bool must_stop();
