@@ -18,7 +18,9 @@ namespace ur_ros_rtde::test {
 std::string own_address()
 {
   const auto * info = testing::UnitTest::GetInstance()->current_test_info();
-  const auto hash = std::hash<std::string>{}(std::string(info->test_suite_name()) + info->name());
+  // A test may run several times at once.
+  const auto hash = std::hash<std::string>{}(std::string(info->test_suite_name()) + info->name() +
+                                             std::to_string(::getpid()));
   // Not 127.0.x.y, which is common for servers that are started manually.
   return "127." + std::to_string(16 + hash % 200) + "." + std::to_string(hash / 200 % 250) + "." +
          std::to_string(2 + hash / 50000 % 250);

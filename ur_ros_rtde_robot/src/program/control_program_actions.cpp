@@ -17,6 +17,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds program_begin_limit(500);
 constexpr milliseconds program_stop_limit(1000);
 constexpr milliseconds heartbeat_wait_limit(500);
+/// Between the connections, for events of the same control cycle.
+constexpr milliseconds max_skew(100);
 
 bool closes_interface(ProgramAction action)
 {
@@ -212,18 +214,14 @@ void ControlProgramManager::suspend_program()
     dispatch(ProgramEvent::program_yielded);
     return;
   }
-  switch (snapshot().second.program) {
-    case ProgramActivity::stopped:  // by something else; another program may have run
-      dispatch(ProgramEvent::yield_failed);
-      return;
-    case ProgramActivity::playing:
-      if (interfaces_.control_heartbeat_lost()) {
-        dispatch(ProgramEvent::heartbeat_lost);
-        return;
-      }
-      break;
-    case ProgramActivity::paused:
-      break;
+  // The samples come over another connection than what the control interface has seen.
+  if (wait_for_program(ProgramActivity::stopped, max_skew)) {
+    dispatch(ProgramEvent::yield_failed);  // something else has stopped it; another program may have run
+    return;
+  }
+  if (snapshot().second.program == ProgramActivity::playing && interfaces_.control_heartbeat_lost()) {
+    dispatch(ProgramEvent::heartbeat_lost);
+    return;
   }
   dispatch(end_program() ? ProgramEvent::program_yielded : ProgramEvent::yield_failed);
 }

@@ -197,13 +197,15 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
       }
       break;
     case PrimaryMessage::Kind::program_started:
-      // The end of the control program may be told late, and with it its begin.
+      started_ = started_ || message.text == program_->name;
+      // The begin of the control program may be told late.
       if (options_.kind == ScriptKind::program && message.text != program_->name &&
           message.text != control_program) {
         replaced_by_ = message.text;
       }
       break;
     case PrimaryMessage::Kind::program_stopped:
+      ended_before_begin_ = started_ && !begin_seen_ && message.text == program_->name;
       break;
   }
 }
@@ -233,6 +235,11 @@ bool ScriptMonitor::complete_with_error()
 
 bool ScriptMonitor::has_ended()
 {
+  constexpr const char * stopped_message =
+      "the script was stopped: on the pendant, by the dashboard, or by another program";
+  if (ended_before_begin_) {
+    return complete(ScriptEnd::stopped, ErrorCode::program_stopped, stopped_message);
+  }
   const auto now = Clock::now();
   if (options_.kind == ScriptKind::secondary) {
     return end_seen_ && complete(ScriptEnd::finished, ErrorCode::none, {});
@@ -261,8 +268,7 @@ bool ScriptMonitor::has_ended()
     return complete(ScriptEnd::runtime_error, ErrorCode::rejected_by_robot,
                     fmt::format("the controller ended the script: {}", error_code_));
   }
-  return complete(ScriptEnd::stopped, ErrorCode::program_stopped,
-                  "the script was stopped: on the pendant, by the dashboard, or by another program");
+  return complete(ScriptEnd::stopped, ErrorCode::program_stopped, stopped_message);
 }
 
 bool ScriptMonitor::must_stop()

@@ -62,7 +62,9 @@ class ScriptMonitor {
   const script::Program * program_ = nullptr;
   std::uint32_t link_ = 0;  ///< Sample::link when the program was sent
   bool may_be_running_ = false;
-  bool has_played_ = false;     ///< a sample has shown the program running
+  bool has_played_ = false;  ///< a sample has shown the program running
+  bool started_ = false;     ///< the controller has started it, but not executed its first line yet
+  bool ended_before_begin_ = false;
   bool messages_left_ = false;  ///< read_messages() has not reached the newest message
   Clock::time_point sent_{};
   std::optional<Clock::time_point> begin_seen_, end_seen_, error_seen_, stop_seen_;
