@@ -111,7 +111,7 @@ void ScriptMonitor::run(const script::Program & program)
       return;
     }
   }
-  if (replaced_before_begin()) {
+  if (options_.kind == ScriptKind::program && replaced_before_begin()) {
     return;
   }
   if (const auto sent = primary_.send(program.text.text(), send_limit); !sent) {
@@ -131,7 +131,7 @@ bool ScriptMonitor::replaced_before_begin()
     if (read_messages(milliseconds(0))) {
       return true;
     }
-  } while (messages_left_);
+  } while (messages_left_ && !replaced() && Clock::now() - sent_ < send_limit);
   return replaced() &&
          complete(ScriptEnd::refused, ErrorCode::program_stopped,
                   fmt::format("another program, `{}`, began before the script was sent", replaced_by_));
@@ -205,7 +205,7 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
       }
       break;
     case PrimaryMessage::Kind::program_stopped:
-      ended_before_begin_ = started_ && !begin_seen_ && message.text == program_->name;
+      ended_before_begin_ |= started_ && !begin_seen_ && message.text == program_->name;
       break;
   }
 }
