@@ -235,10 +235,8 @@ bool ScriptMonitor::complete_with_error()
 
 bool ScriptMonitor::has_ended()
 {
-  constexpr const char * stopped_message =
-      "the script was stopped: on the pendant, by the dashboard, or by another program";
   if (ended_before_begin_) {
-    return complete(ScriptEnd::stopped, ErrorCode::program_stopped, stopped_message);
+    return complete_as_stopped();
   }
   const auto now = Clock::now();
   if (options_.kind == ScriptKind::secondary) {
@@ -268,7 +266,13 @@ bool ScriptMonitor::has_ended()
     return complete(ScriptEnd::runtime_error, ErrorCode::rejected_by_robot,
                     fmt::format("the controller ended the script: {}", error_code_));
   }
-  return complete(ScriptEnd::stopped, ErrorCode::program_stopped, stopped_message);
+  return complete_as_stopped();
+}
+
+bool ScriptMonitor::complete_as_stopped()
+{
+  return complete(ScriptEnd::stopped, ErrorCode::program_stopped,
+                  "the script was stopped: on the pendant, by the dashboard, or by another program");
 }
 
 bool ScriptMonitor::must_stop()

@@ -54,6 +54,7 @@ class ScriptMonitor {
   void on_text(const std::string & text);
   bool complete(ScriptEnd end, ErrorCode code, std::string message);
   bool complete_with_error();
+  bool complete_as_stopped();
 
   PrimaryConnection primary_;
   const StateReceiver & state_;
