@@ -193,6 +193,7 @@ class Goal:
     def __init__(self, client, future):
         self._client, self._future = client, future
         self.feedback = []
+        self.result_at = 0  # ns since the epoch; 0: there is none yet
         self._result = None
 
     def answered(self):
@@ -217,16 +218,25 @@ class Goal:
         def request_result(future):
             handle = future.result()
             if handle is not None and handle.accepted:
-                self._result = handle.get_result_async()
+                self._request_result(handle)
 
         self._future.add_done_callback(request_result)
+
+    def _request_result(self, handle):
+        def on_result(_future):
+            self.result_at = time.time_ns()
+
+        if self._result is None:
+            self._result = handle.get_result_async()
+            self._result.add_done_callback(on_result)
+        return self._result
 
     def is_finished(self):
         """Returns whether the result has been received."""
         assert self.accepted, self._client.refusal(self)
         if self._result is None:
-            self._result = self._client.call_in_executor(self.handle.get_result_async)
-        return self._result.done()
+            self._client.call_in_executor(lambda: self._request_result(self.handle))
+        return self.result_at > 0
 
     def wait_for_result(self, limit=30.0):
         """Returns the status and the result."""

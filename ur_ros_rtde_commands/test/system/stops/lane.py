@@ -287,8 +287,7 @@ class Lane:
 
     def _wait_for_results(self, case: Case, report: Report, checks: "properties.Checks") -> None:
         if case.event.has_result:
-            checks.code, checks.message = self.running.wait_for_result()
-            checks.result_at = self.now()
+            checks.code, checks.message, checks.result_at = self.running.wait_for_result()
             checks.stall_until_result = self._stalls.seconds()
             problem = self.running.check_single_result()
             report.violations += [problem] if problem else []

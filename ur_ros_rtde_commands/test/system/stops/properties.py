@@ -4,7 +4,8 @@ Always: the arm comes to rest, within the time of the deceleration after the lim
 not move again; the goal has one result, within 1 s of the standstill; the lease is free, and the next goal works.
 
 Without a hold: the deceleration begins within the limit of the event, and is the one that was asked for. These two limits are excused
-if the host did not let the programs run for as long as they are exceeded; excuses are counted and reported.
+if the host did not let the programs run for as long as they are exceeded; excuses are counted and reported. A stream along a path
+that is late slows down and goes on: its decelerations are excused beside any stall.
 """
 
 import math
@@ -20,6 +21,7 @@ HELD_REST_LIMIT = 1.2  # s of the robot, after the end of a hold: the driver may
 MODE_REST_LIMIT = 0.8  # s, more for what the driver does not decelerate along a path: the end of a mode, a braking arm
 TOLERANCE = 0.12  # of a deceleration
 LONG_STALL = 0.01  # s
+WINDOW_CYCLES = 30  # after the event, in which the deceleration has to begin
 STALL_OF_A_STOP = 0.008  # s; the driver stops the program if a step of its stop is late
 # rad/s^2, m/s^2: of the driver for a stream that it finds to be late, of the controller if a program ends, and of the watchdog. The
 # controller ends a speed motion with the acceleration of its goal.
@@ -41,7 +43,7 @@ class Checks:
         """Evaluates the complete trace of a case."""
         end = trace.length()
         event = trace.index(self._lane.when)
-        self._stall = self._report.stall + trace.delay(event, min(end - 1, event + 30))
+        self._stall = self._report.stall + trace.delay(event, min(end - 1, event + WINDOW_CYCLES))
         if self._lane.preempting_goal is None:
             stopping = motion.find_stopping(trace, event, self._may_begin_until(trace, event), end, self._column())
         else:  # its motion follows at once
@@ -100,8 +102,9 @@ class Checks:
         if limit is None or stopping.latency is None or self._brakes_along_path() or self._case.kind.space == MODE:
             return
         if stopping.latency > limit + 0.5 * CYCLE:
+            stall = self._stall if stopping.latency < WINDOW_CYCLES * CYCLE else self._stall_until_rest
             self._limit_exceeded(f"the deceleration begins {1e3 * stopping.latency:.0f} ms after the event", stopping.latency - limit,
-                                 self._stall)
+                                 stall)
 
     def _deceleration(self, trace: motion.Trace, stopping: motion.Stopping) -> None:
         if self._case.event.needs_client:
@@ -116,8 +119,8 @@ class Checks:
         fits = measured < asked * (1.0 + TOLERANCE) if self._brakes_along_path() else abs(measured - asked) <= TOLERANCE * asked
         if not fits:
             unit = "rad/s^2" if self._column() == 0 else "m/s^2"
-            may_be_excused = any(abs(measured - other) <= TOLERANCE * other
-                                 for other in (*OF_OTHER_MEANS, self._lane.fields.get("acceleration", 0.0)))
+            may_be_excused = self._brakes_along_path() or any(
+                abs(measured - other) <= TOLERANCE * other for other in (*OF_OTHER_MEANS, self._lane.fields.get("acceleration", 0.0)))
             self._limit_exceeded(f"the deceleration is {measured:.2f} {unit} instead of {asked:.2f}",
                                  STALL_OF_A_STOP if may_be_excused else math.inf, self._stall_until_rest)
 
