@@ -18,6 +18,9 @@ namespace ur_ros_rtde {
 struct ExpectedState {
   std::string query;
   std::vector<std::string> states;
+  /// The answer to the command is proof enough. The state may have been left again before it is seen, as when
+  /// the driver starts its control program again: it is waited for, but for 1 s at most, and not required.
+  bool is_confirmed_by_answer = false;
 };
 
 /// The oldest version of PolyScope that supports a command.

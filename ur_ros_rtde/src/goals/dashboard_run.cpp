@@ -20,6 +20,7 @@ constexpr std::string_view not_understood = "could not understand";
 /// The dashboard server does not report changes, so the state is polled.
 constexpr std::chrono::milliseconds polling_interval{50};
 constexpr std::chrono::milliseconds answer_limit{5000};
+constexpr std::chrono::milliseconds confirmed_state_limit{1000};
 
 bool begins_with(std::string_view text, std::string_view beginning)
 {
@@ -163,6 +164,9 @@ Outcome DashboardRun::rejection(const std::string & line)
 Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point deadline, double timeout)
 {
   std::string shown;
+  if (expected.is_confirmed_by_answer) {
+    deadline = std::min(deadline, Clock::now() + confirmed_state_limit);
+  }
   DashboardSession session(connection_.address());
   while (true) {
     const auto answer = session.request(expected.query, answer_limit, stop_request_->token());
@@ -178,6 +182,10 @@ Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point de
       return Outcome::success(fmt::format("{} is {}", expected.query, state));
     }
     if (Clock::now() >= deadline) {
+      if (expected.is_confirmed_by_answer) {
+        return Outcome::success(fmt::format("{} was {}, and is {} now", expected.query,
+                                            fmt::join(expected.states, " or "), state));
+      }
       return Outcome::failure(
           ErrorCode::timeout,
           fmt::format("{} is still {} after {:.1f} s, not {} (the command was answered \"{}\")",

@@ -18,7 +18,7 @@ EXPORT_DASHBOARD_COMMAND(Pause, "dashboard/pause", DashboardCommand,
                          {"pause", "Pausing program", {"programState", {"PAUSED"}}})
 class StopProgram : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
  public:
-  StopProgram() : SimpleDashboardCommand({"stop", "Stopped", {"programState", {"STOPPED"}}}) {}
+  StopProgram() : SimpleDashboardCommand({"stop", "Stopped", {"programState", {"STOPPED"}, true}}) {}
   bool stops_program() const override { return true; }
 };
 UR_ROS_RTDE_EXPORT(StopProgram, "dashboard/stop")

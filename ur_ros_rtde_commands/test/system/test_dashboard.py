@@ -1,5 +1,8 @@
 """dashboard_server: commands take effect, queries return the answer, and failures are reported."""
 
+import socketserver
+import threading
+
 import pytest
 from action_msgs.msg import GoalStatus
 from support import Client, Simulator, start_node, wait_for
@@ -111,6 +114,39 @@ def test_plays_pauses_resumes_and_stops_a_program(dashboard, program):
     assert query(dashboard, "running") == "true"
     command(dashboard, "stop").succeeded()
     assert query(dashboard, "program_state") == f"STOPPED {program}"
+
+
+class TcpServer(socketserver.ThreadingTCPServer):
+    allow_reuse_address = True
+    daemon_threads = True
+
+
+class RestartingController(socketserver.StreamRequestHandler):
+    """A dashboard server whose program has been started again, whenever it is asked after a stop."""
+
+    ANSWERS = {"stop": "Stopped", "programState": "PLAYING wait.urp", "PolyscopeVersion": "URSoftware 5.25.0.0 (Jan 01 2026)",
+               "is in remote control": "true"}
+
+    def handle(self):
+        self.wfile.write(b"Connected: Universal Robots Dashboard Server\n")
+        for line in self.rfile:
+            answer = self.ANSWERS.get(line.decode().strip(), "Robotmode: RUNNING")
+            self.wfile.write(f"{answer}\n".encode())
+
+
+def test_a_program_that_runs_again_at_once_was_stopped(addresses, processes):
+    """A late host sees only the program after it."""
+    with TcpServer((addresses[1], 29999), RestartingController) as controller:
+        threading.Thread(target=controller.serve_forever, daemon=True).start()
+        processes(start_node("dashboard_server", addresses[1], namespace="again"))
+        client = Client("again")
+        try:
+            wait_for(lambda: _is_connected(client), 20.0, "the dashboard server to be connected")
+            result = command(client, "stop").succeeded(limit=10.0)
+            assert result.message == "programState was STOPPED, and is PLAYING wait.urp now"
+        finally:
+            client.close()
+            controller.shutdown()
 
 
 def test_loads_a_program_by_name(dashboard, simulator, program):

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "connection/dashboard_request.hpp"
+#include "connection/skew.hpp"
 #include "program/control_program_manager.hpp"
 #include "program/program_status.hpp"
 
@@ -17,8 +18,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds program_begin_limit(500);
 constexpr milliseconds program_stop_limit(1000);
 constexpr milliseconds heartbeat_wait_limit(500);
-/// Between the connections, for events of the same control cycle.
-constexpr milliseconds max_skew(100);
 
 bool closes_interface(ProgramAction action)
 {

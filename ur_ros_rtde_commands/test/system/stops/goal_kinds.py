@@ -48,6 +48,11 @@ class GoalKind:
     package: str = "ur_ros_rtde_commands"
     limits: Callable[[Fields], Tuple[float, float]] = lambda _fields: (1.4, 100.0)  # of PATH: acceleration, jerk
 
+    @property
+    def is_streamed(self) -> bool:
+        """The host sends setpoints. The arm slows down, as its servo loop does, when they are late."""
+        return self.space == PATH or self.is_topic or self.action.startswith("servo_")
+
 
 def home_plus(*angles: float) -> List[float]:
     return [home + angle for home, angle in zip(HOME, [*angles, *[0.0] * (6 - len(angles))])]

@@ -4,8 +4,8 @@ Always: the arm comes to rest, within the time of the deceleration after the lim
 not move again; the goal has one result, within 1 s of the standstill; the lease is free, and the next goal works.
 
 Without a hold: the deceleration begins within the limit of the event, and is the one that was asked for. These two limits are excused
-if the host did not let the programs run for as long as they are exceeded; excuses are counted and reported. A stream along a path
-that is late slows down and goes on: its decelerations are excused beside any stall.
+if the host did not let the programs run for as long as they are exceeded; excuses are counted and reported. A stream of
+setpoints that is late slows down: its decelerations are excused beside STALL_OF_A_STOP.
 """
 
 import math
@@ -119,7 +119,7 @@ class Checks:
         fits = measured < asked * (1.0 + TOLERANCE) if self._brakes_along_path() else abs(measured - asked) <= TOLERANCE * asked
         if not fits:
             unit = "rad/s^2" if self._column() == 0 else "m/s^2"
-            may_be_excused = self._brakes_along_path() or any(
+            may_be_excused = self._case.kind.is_streamed or any(
                 abs(measured - other) <= TOLERANCE * other for other in (*OF_OTHER_MEANS, self._lane.fields.get("acceleration", 0.0)))
             self._limit_exceeded(f"the deceleration is {measured:.2f} {unit} instead of {asked:.2f}",
                                  STALL_OF_A_STOP if may_be_excused else math.inf, self._stall_until_rest)

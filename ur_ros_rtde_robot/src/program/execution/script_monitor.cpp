@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "connection/skew.hpp"
 #include "motion/motion_blocker.hpp"
 
 namespace ur_ros_rtde {
@@ -17,9 +18,6 @@ using std::chrono::milliseconds;
 constexpr std::size_t max_lines = 1000;
 constexpr milliseconds send_limit(1000);
 constexpr milliseconds begin_limit(3000);  // from sending to the begin marker
-/// Longest delay between the primary interface and RTDE, which are separate connections, for events of the
-/// same control cycle.
-constexpr milliseconds max_skew(100);
 constexpr milliseconds message_wait(4);
 constexpr std::string_view control_program = "rtde_control";  ///< its name, given by ur_rtde
 
