@@ -76,7 +76,7 @@ TEST_F(SecondDriverTest, LeavesTheProgramOfTheFirstAlone)
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::robot_in_use));
   controller.control(
       {{"command", "run_script"}, {"script", "def others():\n  while True:\n    sync()\n  end\nend\n"}});
-  ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "PLAYING"; }));
+  ASSERT_TRUE(eventually([&] { return robot->latest() && robot->latest()->program_running(); }));
   controller.control({{"command", "fieldbus"}, {"on", false}});
   ASSERT_TRUE(eventually([&] {
     return robot->status().message.find("but not its program") != std::string::npos;
