@@ -108,6 +108,30 @@ TEST_F(ResponseSenderTest, GivesUpWhenClientIsGone)
   EXPECT_THAT(done, ElementsAre(RCL_RET_TIMEOUT));
 }
 
+TEST_F(ResponseSenderTest, KeepsResultForClientThatReturns)
+{
+  client = ClientDiscovery::gone;
+  auto result = response();
+  result.return_limit = kLimit;
+  sender->send(std::move(result));
+  EXPECT_TRUE(executor.spin_until([&] { return checks > 5; }, kLimit));
+  EXPECT_EQ(attempts, 0) << "the middleware would drop it";
+  client = ClientDiscovery::found;
+  EXPECT_TRUE(executor.spin_until([&] { return !done.empty(); }, kLimit));
+  EXPECT_THAT(done, ElementsAre(RCL_RET_OK));
+}
+
+TEST_F(ResponseSenderTest, GivesUpWhenClientDoesNotReturn)
+{
+  client = ClientDiscovery::gone;
+  auto result = response();
+  result.return_limit = std::chrono::milliseconds(200);
+  sender->send(std::move(result));
+  EXPECT_TRUE(executor.spin_until([&] { return !done.empty(); }, kLimit));
+  EXPECT_EQ(attempts, 0);
+  EXPECT_THAT(done, ElementsAre(RCL_RET_TIMEOUT));
+}
+
 TEST_F(ResponseSenderTest, PausesBetweenAttemptsThatFail)
 {
   sender->send(response(1000));

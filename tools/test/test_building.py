@@ -42,7 +42,7 @@ def test_durations_are_rounded(seconds, text):
 
 
 def test_the_reference_contains_every_package():
-    assert set(build_times.REFERENCE) == set(build.discover_for_wheels())
+    assert set(build_times.REFERENCE) == set(build.discover_with_interfaces())
 
 
 def test_the_first_forecast_is_the_reference(times):
@@ -116,7 +116,7 @@ def test_a_damaged_file_of_times_is_ignored(tmp_path):
 
 
 def test_the_first_run_reports_downloads_packages_and_duration(layout):
-    names = list(build.discover_for_wheels())
+    names = list(build.discover_with_interfaces())
     pending = build.Pending([], True, True, names, False)
     text = pending.text(build.Options(layout, jobs=2))
     megabytes = venv.MEGABYTES + 4

@@ -14,7 +14,7 @@ from .build_times import BuildTimes, Forecast
 from .environment import build_environment
 from .layout import ROOT, STATE, Layout
 from .lock import Lock
-from .packages import Package, discover_for_wheels, state, with_dependencies
+from .packages import Package, discover_with_interfaces, state, with_dependencies
 from .processes import end_group
 
 STAMP = "ur_stamp.txt"
@@ -50,16 +50,16 @@ class Options:
 
 def cmake_arguments(options: Options, tests: bool) -> List[str]:
     layout = options.layout
-    includes = [layout.provider]
+    includes = [] if layout.is_installed else [layout.provider]
     build_type = "Release"
-    arguments = []
+    arguments = [] if layout.is_installed else [f"-DROS_WHEELS_PREFIX={layout.venv}"]
     if layout.variant == "debug":
         build_type = "Debug"
     elif layout.variant:
         build_type = "RelWithDebInfo"
         includes.append(ROOT / "tools" / "cmake" / "sanitize.cmake")
         arguments.append(f"-DUR_SANITIZE={layout.variant}")
-    return ["-GNinja", f"-DCMAKE_BUILD_TYPE={build_type}", f"-DROS_WHEELS_PREFIX={layout.venv}",
+    return ["-GNinja", f"-DCMAKE_BUILD_TYPE={build_type}",
             # CMake's default, -O3, compiles more slowly: g++ needs a quarter of its time for what -O2 adds to -O1. The trajectory
             # library benefits from -O3 and sets it itself.
             "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
@@ -273,6 +273,8 @@ def _pending_setup(layout: Layout) -> Pending:
 def _setup(layout: Layout, pending: Pending) -> None:
     if pending:
         check_path(ROOT)
+        if layout.is_installed:
+            venv.python_of_ros(layout)
         disk.check(STATE, disk.FIRST_RUN if pending.venv else disk.LATER)
     system_packages.ensure()
     venv.ensure(layout)
@@ -297,7 +299,8 @@ def setup_viewer(layout: Layout) -> None:
 
 
 def _chosen(options: Options) -> Dict[str, Package]:
-    packages = discover_for_wheels()
+    prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if options.layout.is_installed else []
+    packages = discover_with_interfaces(prefixes)
     if options.packages is not None:
         try:
             packages = with_dependencies(packages, options.packages)
@@ -332,7 +335,7 @@ def build(options: Options) -> Dict[str, Package]:
 
 
 def _build(options: Options, packages: Dict[str, Package], pending: Pending, stamps: Stamps) -> None:
-    console.step(f"Building {', '.join(pending.outdated)} for ROS 2 {options.layout.ros.capitalize()}"
+    console.step(f"Building {', '.join(pending.outdated)} for {options.layout.title}"
                  + (f" ({options.layout.variant})" if options.layout.variant else ""))
     start = time.monotonic()
     _run_colcon(options, packages, pending.outdated, stamps, pending.tests)

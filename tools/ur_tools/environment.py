@@ -9,11 +9,11 @@ from typing import Dict, Iterable
 from .downloads import ur_rtde_archive
 from .layout import ROOT, Layout
 
+OF_A_WORKSPACE = ("COLCON_DEFAULTS_FILE", "PYTHONHOME", "UR_CHECKOUT")
 # Variables that another ROS installation may have set. The wheels' rcl exits with status 102 if RMW_IMPLEMENTATION names
 # another middleware than the one it is linked with.
-FOREIGN = ("RMW_IMPLEMENTATION", "ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "ROS_LOCALHOST_ONLY", "PYTHONHOME",
-           "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "COLCON_DEFAULTS_FILE", "PYTHONPATH", "LD_LIBRARY_PATH",
-           "_ROS_WHEELS_BOOTSTRAP_COMPLETE", "UR_CHECKOUT")
+FOREIGN = ("RMW_IMPLEMENTATION", "ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "ROS_LOCALHOST_ONLY", "AMENT_PREFIX_PATH",
+           "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE", *OF_A_WORKSPACE)
 
 # The variable that selects a profile, with our profile, for Fast DDS 3 and Fast DDS 2.
 FASTDDS_PROFILES = {"FASTDDS_DEFAULT_PROFILES_FILE": "fastdds.xml", "FASTRTPS_DEFAULT_PROFILES_FILE": "fastrtps.xml"}
@@ -24,19 +24,22 @@ def _path(*parts: object) -> str:
 
 
 def _base(layout: Layout) -> Dict[str, str]:
-    env = {name: value for name, value in os.environ.items() if name not in FOREIGN}
+    foreign = OF_A_WORKSPACE if layout.is_installed else FOREIGN
+    env = {name: value for name, value in os.environ.items() if name not in foreign}
     env["VIRTUAL_ENV"] = str(layout.venv)
     env["PATH"] = _path(layout.venv / "bin", env.get("PATH", os.defpath))
-    env["AMENT_PREFIX_PATH"] = str(layout.venv)
-    env["ROS_WHEELS_PREFIX"] = str(layout.venv)
+    if not layout.is_installed:
+        env["ROS_DISTRO"] = layout.ros
+        env["AMENT_PREFIX_PATH"] = str(layout.venv)
+        env["ROS_WHEELS_PREFIX"] = str(layout.venv)
     return env
 
 
 def build_environment(layout: Layout, jobs: int) -> Dict[str, str]:
-    """Returns the environment for colcon and CMake, with the wheels as the underlay."""
+    """Returns the environment for colcon and CMake, with ROS as the underlay."""
     env = _base(layout)
-    env["ROS_DISTRO"] = layout.ros
-    env["PYTHONPATH"] = str(layout.provider.parent / "generators")  # faster interface generators
+    if not layout.is_installed:
+        env["PYTHONPATH"] = str(layout.provider.parent / "generators")  # faster interface generators
     env["UR_RTDE_ARCHIVE"] = str(ur_rtde_archive())
     env["CMAKE_BUILD_PARALLEL_LEVEL"] = str(jobs)
     env["MAKEFLAGS"] = f"-j{jobs}"  # otherwise colcon passes its own -j and load limit to ninja
@@ -51,18 +54,20 @@ def bundled_libraries(layout: Layout) -> Iterable[pathlib.Path]:
 
 
 def run_environment(layout: Layout) -> Dict[str, str]:
-    """Returns the environment for programs and rclpy, with our installation as an overlay of the wheels.
+    """Returns the environment for programs and rclpy, with our installation as an overlay of ROS.
 
     The wheels would set LD_LIBRARY_PATH, in an undefined order, and start Python again. It is set here instead, and
     _ROS_WHEELS_BOOTSTRAP_COMPLETE disables their bootstrap.
     """
     env = _base(layout)
-    env["ROS_DISTRO"] = layout.ros
     env["PATH"] = _path(layout.install / "bin", env["PATH"])
-    env["AMENT_PREFIX_PATH"] = _path(layout.install, layout.venv)
-    env["PYTHONPATH"] = str(layout.site_packages(layout.install))
-    env["LD_LIBRARY_PATH"] = _path(layout.install / "lib", layout.venv / "lib", *bundled_libraries(layout))
-    env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
+    env["AMENT_PREFIX_PATH"] = _path(layout.install, env["AMENT_PREFIX_PATH"])
+    env["PYTHONPATH"] = _path(layout.site_packages(layout.install), env.get("PYTHONPATH"))
+    if layout.is_installed:
+        env["LD_LIBRARY_PATH"] = _path(layout.install / "lib", env.get("LD_LIBRARY_PATH"))
+    else:
+        env["LD_LIBRARY_PATH"] = _path(layout.install / "lib", layout.venv / "lib", *bundled_libraries(layout))
+        env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     # Participants are announced to the network only if the user asks for it.
     env.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     _set_fastdds_profile(env, layout)
@@ -84,10 +89,12 @@ def workspace_environment(layout: Layout) -> Dict[str, str]:
     # `ur` of ur_ros_rtde_cli passes the commands of the checkout to ./ur, which uses the same build.
     env["UR_CHECKOUT"] = str(ROOT)
     env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
-    env["CMAKE_PREFIX_PATH"] = str(layout.install)
-    env["PYTHONPATH"] = _path(env["PYTHONPATH"], layout.provider.parent / "generators")
+    env["CMAKE_PREFIX_PATH"] = _path(layout.install, env.get("CMAKE_PREFIX_PATH"))
     folders = [layout.install / "lib" / name for name in ("ur_ros_rtde", "ur_ros_rtde_cli")]
     env["PATH"] = _path(*folders, env["PATH"])  # the wheels have no `ros2 run`
+    if layout.is_installed:
+        return env
+    env["PYTHONPATH"] = _path(env["PYTHONPATH"], layout.provider.parent / "generators")
     defaults = layout.base / "colcon_defaults.yaml"
     arguments = ["-GNinja", "-DCMAKE_BUILD_TYPE=Release", f"-DROS_WHEELS_PREFIX={layout.venv}",
                  f"-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES={layout.provider}", "-Wno-unused-cli"]

@@ -8,28 +8,51 @@ from typing import Tuple
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 STATE = ROOT / ".ur"
 DOWNLOADS = STATE / "downloads"
-DISTRIBUTIONS = ("kilted", "jazzy")
+WHEELS = ("kilted", "jazzy")
+INSTALLED = "installed"  # instead of wheels, the distribution whose setup script has been sourced
+DISTRIBUTIONS = (*WHEELS, INSTALLED)
+SUPPORTED = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 # The command that the user types: in `./ur shell` it is `ur`.
 PROGRAM = "ur" if os.environ.get("UR_CHECKOUT") == str(ROOT) else "./ur"
 SANITIZERS = ("address", "undefined", "thread")
 
 
+def sourced() -> str:
+    """Returns the distribution whose setup script has been sourced; empty if there is none, or only that of our own shell."""
+    ours = "ROS_WHEELS_PREFIX" in os.environ or not os.environ.get("AMENT_PREFIX_PATH")
+    return "" if ours else os.environ.get("ROS_DISTRO", "")
+
+
 @dataclass(frozen=True)
 class Layout:
-    """The paths of one build: of a ROS distribution and a variant ("", "debug", or the name of a sanitizer)."""
+    """The paths of one build: of one of DISTRIBUTIONS and a variant ("", "debug", or the name of a sanitizer)."""
 
     ros: str = "kilted"
     variant: str = ""
 
     @staticmethod
     def of_environment() -> "Layout":
-        """Returns the layout in UR_LAYOUT, which our commands set for the programs they start, as in kilted:address."""
-        ros, _, variant = os.environ.get("UR_LAYOUT", "kilted:").partition(":")
+        """Returns the layout in UR_LAYOUT, which our commands set for the programs they start, as in kilted:address; without it that of
+        an installed ROS which has been sourced."""
+        ros, _, variant = os.environ.get("UR_LAYOUT", f"{INSTALLED if sourced() else 'kilted'}:").partition(":")
         return Layout(ros, variant)
 
     @property
+    def is_installed(self) -> bool:
+        return self.ros == INSTALLED
+
+    @property
+    def distribution(self) -> str:
+        """Its name: "humble"."""
+        return sourced() if self.is_installed else self.ros
+
+    @property
+    def title(self) -> str:
+        return f"ROS 2 {self.distribution.capitalize()}" + (" as installed" if self.is_installed else "")
+
+    @property
     def base(self) -> pathlib.Path:
-        return STATE / self.ros
+        return STATE / (f"{INSTALLED}_{self.distribution}" if self.is_installed else self.ros)
 
     @property
     def venv(self) -> pathlib.Path:
@@ -65,7 +88,9 @@ class Layout:
 
     @property
     def requirements(self) -> Tuple[pathlib.Path, ...]:
-        return (ROOT / "wheels" / f"{self.ros}.txt", ROOT / "wheels" / "tools.txt")
+        """Of the virtual environment. An installed ROS has its own libraries."""
+        names = ["tools"] if self.is_installed else [self.ros, "libraries", "tools"]
+        return tuple(ROOT / "wheels" / f"{name}.txt" for name in names)
 
     @property
     def viewer_requirements(self) -> Tuple[pathlib.Path, ...]:
@@ -74,6 +99,7 @@ class Layout:
 
     @property
     def provider(self) -> pathlib.Path:
+        """Adapts a build to the wheels."""
         return ROOT / "wheels" / "provider.cmake"
 
     def site_packages(self, prefix: pathlib.Path) -> pathlib.Path:

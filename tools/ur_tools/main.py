@@ -36,7 +36,7 @@ FORWARDED = ("demo", "bench", "chaos", "plan", "sim", "view", "doctor", *CLI)  #
 
 def _add_build_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--ros", choices=DISTRIBUTIONS, default=Layout.of_environment().ros,
-                        help="ROS 2 distribution (default: %(default)s)")
+                        help="ROS 2 as wheels of this distribution, or the one that is installed and sourced (default: %(default)s)")
     parser.add_argument("-j", "--jobs", type=int, default=0, metavar="N", help="jobs of the build and limit of parallel tests (default: depends on cores and memory)")
     variant = parser.add_mutually_exclusive_group()
     variant.add_argument("--debug", action="store_true", help="use a debug build, which is kept beside the release build")
@@ -81,8 +81,8 @@ def command_shell(options: argparse.Namespace) -> int:
     if command:
         return subprocess.run(command, env=env).returncode
     shell = env.get("SHELL", "/bin/sh")
-    console.line(f"This shell has ROS 2 {layout.ros.capitalize()} and this project's packages; `exit` leaves it. `ur` has the commands of "
-             "./ur; `ur --help` lists them. The wheels do not contain the program `ros2`.")
+    console.line(f"This shell has {layout.title} and this project's packages; `exit` leaves it. `ur` has the commands of "
+             "./ur; `ur --help` lists them." + ("" if layout.is_installed else " The wheels do not contain the program `ros2`."))
     if os.path.basename(shell) == "bash":
         env["PS1"] = "(ur) \\w\\$ "
         return subprocess.run([shell, "--norc"], env=env).returncode
@@ -100,7 +100,8 @@ def _python_command(name: str, options: argparse.Namespace) -> int:
     _build(options, packages=module.packages(parsed) if hasattr(module, "packages") else None)
     if getattr(parsed, "view", False):
         viewer.prepare(layout, options.jobs)
-    env = {**os.environ, "UR_LAYOUT": f"{layout.ros}:{layout.variant}", "PYTHONPATH": str(ROOT / "tools"),
+    modules = [str(ROOT / "tools"), *([os.environ["PYTHONPATH"]] if layout.is_installed and "PYTHONPATH" in os.environ else [])]
+    env = {**os.environ, "UR_LAYOUT": f"{layout.ros}:{layout.variant}", "PYTHONPATH": os.pathsep.join(modules),
            "PYTHONDONTWRITEBYTECODE": "1"}
     os.execve(sys.executable, [sys.executable, "-m", f"ur_tools.{name}", *arguments], env)
 

@@ -25,9 +25,14 @@ def discover(root: pathlib.Path = ROOT) -> Dict[str, Package]:
     return _packages(sorted(root.glob("*/package.xml")))
 
 
-def discover_for_wheels(root: pathlib.Path = ROOT) -> Dict[str, Package]:
-    """Returns discover(root) and the interface packages that the wheels do not contain, in build order."""
-    return _packages([*sorted(root.glob("*/package.xml")), *sorted(root.glob("wheels/interfaces/*/package.xml"))])
+def discover_with_interfaces(prefixes: Iterable[str] = (), root: pathlib.Path = ROOT) -> Dict[str, Package]:
+    """Returns discover(root) and the interface packages that ROS, installed in these prefixes, does not contain, in build order. The
+    wheels contain none of them."""
+    def is_installed(name: str) -> bool:
+        return any(pathlib.Path(prefix, "share", name, "package.xml").is_file() for prefix in prefixes if prefix)
+
+    interfaces = [path for path in sorted(root.glob("wheels/interfaces/*/package.xml")) if not is_installed(path.parent.name)]
+    return _packages([*sorted(root.glob("*/package.xml")), *interfaces])
 
 
 def _packages(manifests: Iterable[pathlib.Path]) -> Dict[str, Package]:

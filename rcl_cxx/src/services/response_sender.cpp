@@ -19,12 +19,25 @@ constexpr std::chrono::seconds kLongestPause{1};
 
 void ResponseSender::send(Response response)
 {
-  Pending pending{std::move(response), kFirstPause, Clock::now()};
-  if (must_not_block() && pending.response.client() == ClientDiscovery::pending) {
+  const auto now = Clock::now();
+  Pending pending{std::move(response), kFirstPause, now};
+  if (must_wait(pending.response)) {
+    pending.give_up_after = now + pending.response.return_limit;
     keep(std::move(pending));
   } else {
     try_to_send(std::move(pending));
   }
+}
+
+bool ResponseSender::must_wait(const Response & response) const
+{
+  const bool may_return = response.return_limit > Clock::duration::zero();
+  if (!may_return && !must_not_block()) {
+    return false;
+  }
+  const ClientDiscovery client = response.client();
+  return client == ClientDiscovery::gone ? may_return
+                                         : client == ClientDiscovery::pending && must_not_block();
 }
 
 bool ResponseSender::must_not_block() const
@@ -84,7 +97,7 @@ void ResponseSender::check_clients()
       return;
     }
     const ClientDiscovery client = one.response.client();
-    if (client == ClientDiscovery::gone) {
+    if (client == ClientDiscovery::gone && Clock::now() >= one.give_up_after) {
       RCL_SET_ERROR_MSG("its client is gone");
       one.response.done(RCL_RET_TIMEOUT);
     } else if (client == ClientDiscovery::found && !sent && Clock::now() >= one.next) {

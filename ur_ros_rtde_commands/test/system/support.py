@@ -302,6 +302,10 @@ class Client:
             message, feedback_callback=lambda message: goal.feedback.append(message.feedback)))
         return goal
 
+    def sees(self, name):
+        """Returns whether the server of an action that was used before is known."""
+        return self._actions[name].server_is_ready()
+
     def destroy_action_client(self, name):
         """Destroys an action client. This saves processor time: the executor checks every action client on each wake-up."""
         client = self._actions.pop(name, None)

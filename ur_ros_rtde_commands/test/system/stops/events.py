@@ -131,7 +131,7 @@ def _restart_driver(lane) -> None:
 
 def _replace_killed_driver(lane) -> None:
     """A client sends requests to a killed driver until its lease has expired."""
-    wait_for(lambda: not lane.client.sees_driver(), RECOVERY_LIMIT, "the lease of the killed driver to expire")
+    wait_for(lambda: not lane.client.sees("move_j"), RECOVERY_LIMIT, "the lease of the killed driver to expire")
     lane.restart_driver()
 
 

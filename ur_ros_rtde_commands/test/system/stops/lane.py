@@ -71,9 +71,6 @@ class LaneClient(StatusTrackingClient):
             self._actions[name] = self.call_in_executor(lambda: ActionClient(self.node, action, name))
         self._wait_for_server(self._actions[name], name)
 
-    def sees_driver(self) -> bool:
-        return self._actions["move_j"].server_is_ready()
-
 
 class Lane:
     def __init__(self, address: str, log: pathlib.Path, holds: bool = True):
@@ -328,7 +325,7 @@ class Lane:
     def _start_over(self) -> None:
         """After a failure that has left the robot or the driver in an unknown state."""
         self.driver.stop()
-        wait_for(lambda: not self.client.sees_driver(), 20.0, "the driver to disappear")
+        wait_for(lambda: not self.client.sees("move_j"), 20.0, "the driver to disappear")
         self.simulator.kill()
         self.simulator.start()
         self.restart_driver()
