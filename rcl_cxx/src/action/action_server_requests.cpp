@@ -73,7 +73,8 @@ void ActionServerImpl::respond(const ServiceOfAction & service, const rmw_reques
                      done(code == RCL_RET_OK);
                    }
                  },
-                 is_result ? kReturnLimit : ResponseSender::Clock::duration::zero()});
+                 is_result ? kReturnLimit : ResponseSender::Clock::duration::zero(),
+                 is_result && was_suspended() ? kReturnLimit : ResponseSender::Clock::duration::zero()});
 }
 
 void ActionServerImpl::take_goal()

@@ -56,12 +56,37 @@ void ResponseSender::try_to_send(Pending pending)
   }
   if (code != RCL_RET_TIMEOUT) {
     response.done(code);
+    if (code == RCL_RET_OK && response.resend_limit > Clock::duration::zero()) {
+      keep_sent(std::move(response));
+    }
     return;
   }
   rcl_reset_error();
   pending.next = Clock::now() + pending.pause;
   pending.pause = std::min<Clock::duration>(2 * pending.pause, kLongestPause);
   keep(std::move(pending));
+}
+
+void ResponseSender::keep_sent(Response response)
+{
+  const auto now = Clock::now();
+  response.done = [](rcl_ret_t) { rcl_reset_error(); };
+  const auto limit = std::exchange(response.resend_limit, {});
+  keep({std::move(response), kFirstPause, now, now + limit, true});
+}
+
+bool ResponseSender::check_sent(Pending one, ClientDiscovery client)
+{
+  one.lost = one.lost || client == ClientDiscovery::gone;
+  if (one.lost && client == ClientDiscovery::found) {
+    one.sent = false;
+    try_to_send(std::move(one));
+    return true;
+  }
+  if (Clock::now() < one.give_up_after) {
+    keep(std::move(one));
+  }
+  return false;
 }
 
 void ResponseSender::keep(Pending pending)
@@ -97,7 +122,9 @@ void ResponseSender::check_clients()
       return;
     }
     const ClientDiscovery client = one.response.client();
-    if (client == ClientDiscovery::gone && Clock::now() >= one.give_up_after) {
+    if (one.sent) {
+      sent = check_sent(std::move(one), client) || sent;
+    } else if (client == ClientDiscovery::gone && Clock::now() >= one.give_up_after) {
       RCL_SET_ERROR_MSG("its client is gone");
       one.response.done(RCL_RET_TIMEOUT);
     } else if (client == ClientDiscovery::found && !sent && Clock::now() >= one.next) {

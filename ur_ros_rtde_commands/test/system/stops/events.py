@@ -129,12 +129,6 @@ def _restart_driver(lane) -> None:
     lane.restart_driver()
 
 
-def _replace_killed_driver(lane) -> None:
-    """A client sends requests to a killed driver until its lease has expired."""
-    wait_for(lambda: not lane.client.sees("move_j"), RECOVERY_LIMIT, "the lease of the killed driver to expire")
-    lane.restart_driver()
-
-
 EVENTS = (
     Event("cancel", _cancel, 22.0, BEGIN_LIMIT, asks="goal", keeps_program=True),
     Event("stop", _stop, 20.0, BEGIN_LIMIT, asks="stop", keeps_program=True),
@@ -154,6 +148,6 @@ EVENTS = (
     Event("client exits", _end_client("exit"), 1.5, rest_limit=1.5, asks="goal", keeps_program=True, needs_client="exit"),
     Event("client killed", _end_client("kill"), 0.5, rest_limit=6.0, asks="goal", keeps_program=True, needs_client="kill"),
     Event("driver interrupted", _signal(signal.SIGINT), 0.8, rest_limit=2.0, recover=_restart_driver, ends_driver=True),
-    Event("driver killed", _signal(signal.SIGKILL), 0.5, rest_limit=1.5, recover=_replace_killed_driver, ends_driver=True,
+    Event("driver killed", _signal(signal.SIGKILL), 0.5, rest_limit=1.5, recover=_restart_driver, ends_driver=True,
           has_result=False),
 )

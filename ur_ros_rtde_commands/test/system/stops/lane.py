@@ -37,6 +37,7 @@ LATE_BEGIN = 100_000_000  # ns after the end of a hold, in which what the thread
 MOTION_LIMIT = 0.8  # s, for a goal that may not move at all
 READY_LIMIT = 10.0  # s, from the end of a disturbance to the first accepted motion
 RETRY_INTERVAL = 0.05  # s
+DISCOVERY_LIMIT = 20.0  # s
 BUILD = pathlib.Path(find_program("ur_ros_rtde", "driver")).parents[3] / "build" / "ur_ros_rtde_commands" / "test"
 DESCRIPTION = """<library path="stubborn_commands">
   <class name="slow_to_look" type="ur_ros_rtde::SlowToLook" base_class_type="ur_ros_rtde::CommandPlugin"/>
@@ -152,6 +153,8 @@ class Lane:
     def restart_driver(self, profile: str = "") -> None:
         if self.driver is not None:
             self.driver.stop()
+            # Until then, the client sends its requests to the driver that has ended.
+            wait_for(lambda: not self.client.sees("move_j"), DISCOVERY_LIMIT, "the driver to disappear")
         self._profile = profile or self._profile
         self.driver = start_node("driver", self._address, "ur_type:=ur10e", *PROFILES[self._profile], env=self._env)
         self._move_home(30.0)
@@ -325,7 +328,6 @@ class Lane:
     def _start_over(self) -> None:
         """After a failure that has left the robot or the driver in an unknown state."""
         self.driver.stop()
-        wait_for(lambda: not self.client.sees("move_j"), 20.0, "the driver to disappear")
         self.simulator.kill()
         self.simulator.start()
         self.restart_driver()
