@@ -108,47 +108,6 @@ TEST_F(ResponseSenderTest, GivesUpWhenClientIsGone)
   EXPECT_THAT(done, ElementsAre(RCL_RET_TIMEOUT));
 }
 
-TEST_F(ResponseSenderTest, KeepsResultForClientThatReturns)
-{
-  client = ClientDiscovery::gone;
-  auto result = response();
-  result.return_limit = kLimit;
-  sender->send(std::move(result));
-  EXPECT_TRUE(executor.spin_until([&] { return checks > 5; }, kLimit));
-  EXPECT_EQ(attempts, 0) << "the middleware would drop it";
-  client = ClientDiscovery::found;
-  EXPECT_TRUE(executor.spin_until([&] { return !done.empty(); }, kLimit));
-  EXPECT_THAT(done, ElementsAre(RCL_RET_OK));
-}
-
-TEST_F(ResponseSenderTest, GivesUpWhenClientDoesNotReturn)
-{
-  client = ClientDiscovery::gone;
-  auto result = response();
-  result.return_limit = std::chrono::milliseconds(200);
-  sender->send(std::move(result));
-  EXPECT_TRUE(executor.spin_until([&] { return !done.empty(); }, kLimit));
-  EXPECT_EQ(attempts, 0);
-  EXPECT_THAT(done, ElementsAre(RCL_RET_TIMEOUT));
-}
-
-TEST_F(ResponseSenderTest, SendsAgainToClientThatDisappearsAndReturns)
-{
-  auto result = response();
-  result.resend_limit = kLimit;
-  sender->send(std::move(result));
-  EXPECT_THAT(done, ElementsAre(RCL_RET_OK));
-  EXPECT_TRUE(executor.spin_until([&] { return checks > 5; }, kLimit));
-  EXPECT_EQ(attempts, 1) << "the client was there all the time";
-  client = ClientDiscovery::gone;
-  checks = 0;
-  EXPECT_TRUE(executor.spin_until([&] { return checks > 5; }, kLimit));
-  EXPECT_EQ(attempts, 1);
-  client = ClientDiscovery::found;
-  EXPECT_TRUE(executor.spin_until([&] { return attempts == 2; }, kLimit));
-  EXPECT_THAT(done, ElementsAre(RCL_RET_OK)) << "called once";
-}
-
 TEST_F(ResponseSenderTest, PausesBetweenAttemptsThatFail)
 {
   sender->send(response(1000));

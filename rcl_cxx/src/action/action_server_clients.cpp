@@ -4,30 +4,6 @@
 
 /// Checks whether the clients of active goals still exist. In the executor's thread.
 namespace rcl_cxx::detail {
-namespace {
-/// Without a check for as long, this process was suspended or starved: the leases of its clients, and theirs of
-/// it, may have expired.
-constexpr std::chrono::seconds kSuspension{1};
-constexpr std::chrono::seconds kRecovery{5};
-}  // namespace
-
-void ActionServerImpl::note_check()
-{
-  const auto now = ClientWatch::Clock::now();
-  const std::lock_guard lock(mutex_);
-  if (last_check_ && now - *last_check_ > kSuspension) {
-    resumed_ = now;
-  }
-  last_check_ = now;
-}
-
-bool ActionServerImpl::was_suspended() const
-{
-  const auto now = ClientWatch::Clock::now();
-  const std::lock_guard lock(mutex_);
-  return (last_check_ && now - *last_check_ > kSuspension) || (resumed_ && now - *resumed_ < kRecovery);
-}
-
 void ActionServerImpl::watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request)
 {
   if (!client_timer_) {
@@ -36,7 +12,6 @@ void ActionServerImpl::watch_client(ServerGoalImpl & goal, const rmw_request_id_
   {
     const std::lock_guard lock(mutex_);
     goal.client.emplace(client_of(request), requests_carry_endpoints(), ClientWatch::Clock::now());
-    last_check_ = last_check_.value_or(ClientWatch::Clock::now());
   }
   if (client_timer_->is_canceled()) {
     client_timer_->reset();
@@ -49,11 +24,8 @@ void ActionServerImpl::check_clients()
     return;
   }
   const Goals goals = get_active_goals();
-  note_check();
   if (goals.empty()) {
     client_timer_->cancel();
-    const std::lock_guard lock(mutex_);
-    last_check_.reset();
     return;
   }
   const auto known = find_clients(*node(), service_name(kSendGoalName));

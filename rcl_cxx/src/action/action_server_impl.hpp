@@ -125,9 +125,6 @@ class ActionServerImpl : public Waitable {
   std::string service_name(const char * service) const { return name_ + "/_action/" + service; }
   void watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request);
   void check_clients();
-  void note_check();
-  /// The process did not run for a while, a moment ago. From any thread.
-  bool was_suspended() const;
 
   const ActionType & type_;
   const ActionTypeSupport type_support_;
@@ -145,8 +142,6 @@ class ActionServerImpl : public Waitable {
   std::map<GoalUUID, DeferredGoal> deferred_goals_;
   std::shared_ptr<TimerImpl> expiry_timer_;
   std::shared_ptr<TimerImpl> client_timer_;  // runs while clients are watched
-  std::optional<ClientWatch::Clock::time_point> last_check_;  // while it runs
-  std::optional<ClientWatch::Clock::time_point> resumed_;
   bool retired_ = false;
   std::size_t shutdown_callback_ = 0;
 };

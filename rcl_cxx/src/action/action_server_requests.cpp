@@ -13,9 +13,6 @@ constexpr ActionServerImpl::ServiceOfAction kGoalService{&rcl_action_send_goal_r
 constexpr ActionServerImpl::ServiceOfAction kCancelService{&rcl_action_send_cancel_response, "cancel_goal"};
 constexpr ActionServerImpl::ServiceOfAction kResultService{&rcl_action_send_result_response, "get_result"};
 
-/// The lease of a client is 3 s, 20 s by default; announcements are repeated more often.
-constexpr std::chrono::seconds kReturnLimit{10};
-
 bool nothing_to_take(rcl_ret_t code)
 {
   if (code == RCL_RET_ACTION_SERVER_TAKE_FAILED) {
@@ -50,7 +47,6 @@ void ActionServerImpl::respond(const ServiceOfAction & service, const rmw_reques
     rmw_request_id_t id = request;
     return send(&self->server_, &id, message);
   };
-  const bool is_result = service.send == kResultService.send;
   ResponseSender::Send send_replacement;
   if (replacement) {
     send_replacement = [send_to, replacement = std::move(replacement)] {
@@ -62,19 +58,15 @@ void ActionServerImpl::respond(const ServiceOfAction & service, const rmw_reques
                  [self, request, name = service.name] {
                    return discovery_of(request, *self->node(), self->service_name(name));
                  },
-                 [self, is_result, done = std::move(done)](rcl_ret_t code) {
-                   if (is_result && code == RCL_RET_TIMEOUT) {
-                     rcl_reset_error();  // that the client has disappeared was told when the goal ended
-                   } else if (code != RCL_RET_OK) {
+                 [self, done = std::move(done)](rcl_ret_t code) {
+                   if (code != RCL_RET_OK) {
                      RCL_CXX_WARN(self->node()->get_logger(), "{}: a response was not delivered: {}",
                                   self->name_, take_rcl_error());
                    }
                    if (done) {
                      done(code == RCL_RET_OK);
                    }
-                 },
-                 is_result ? kReturnLimit : ResponseSender::Clock::duration::zero(),
-                 is_result && was_suspended() ? kReturnLimit : ResponseSender::Clock::duration::zero()});
+                 }});
 }
 
 void ActionServerImpl::take_goal()

@@ -19,25 +19,12 @@ constexpr std::chrono::seconds kLongestPause{1};
 
 void ResponseSender::send(Response response)
 {
-  const auto now = Clock::now();
-  Pending pending{std::move(response), kFirstPause, now};
-  if (must_wait(pending.response)) {
-    pending.give_up_after = now + pending.response.return_limit;
+  Pending pending{std::move(response), kFirstPause, Clock::now()};
+  if (must_not_block() && pending.response.client() == ClientDiscovery::pending) {
     keep(std::move(pending));
   } else {
     try_to_send(std::move(pending));
   }
-}
-
-bool ResponseSender::must_wait(const Response & response) const
-{
-  const bool may_return = response.return_limit > Clock::duration::zero();
-  if (!may_return && !must_not_block()) {
-    return false;
-  }
-  const ClientDiscovery client = response.client();
-  return client == ClientDiscovery::gone ? may_return
-                                         : client == ClientDiscovery::pending && must_not_block();
 }
 
 bool ResponseSender::must_not_block() const
@@ -56,37 +43,12 @@ void ResponseSender::try_to_send(Pending pending)
   }
   if (code != RCL_RET_TIMEOUT) {
     response.done(code);
-    if (code == RCL_RET_OK && response.resend_limit > Clock::duration::zero()) {
-      keep_sent(std::move(response));
-    }
     return;
   }
   rcl_reset_error();
   pending.next = Clock::now() + pending.pause;
   pending.pause = std::min<Clock::duration>(2 * pending.pause, kLongestPause);
   keep(std::move(pending));
-}
-
-void ResponseSender::keep_sent(Response response)
-{
-  const auto now = Clock::now();
-  response.done = [](rcl_ret_t) { rcl_reset_error(); };
-  const auto limit = std::exchange(response.resend_limit, {});
-  keep({std::move(response), kFirstPause, now, now + limit, true});
-}
-
-bool ResponseSender::check_sent(Pending one, ClientDiscovery client)
-{
-  one.lost = one.lost || client == ClientDiscovery::gone;
-  if (one.lost && client == ClientDiscovery::found) {
-    one.sent = false;
-    try_to_send(std::move(one));
-    return true;
-  }
-  if (Clock::now() < one.give_up_after) {
-    keep(std::move(one));
-  }
-  return false;
 }
 
 void ResponseSender::keep(Pending pending)
@@ -122,9 +84,7 @@ void ResponseSender::check_clients()
       return;
     }
     const ClientDiscovery client = one.response.client();
-    if (one.sent) {
-      sent = check_sent(std::move(one), client) || sent;
-    } else if (client == ClientDiscovery::gone && Clock::now() >= one.give_up_after) {
+    if (client == ClientDiscovery::gone) {
       RCL_SET_ERROR_MSG("its client is gone");
       one.response.done(RCL_RET_TIMEOUT);
     } else if (client == ClientDiscovery::found && !sent && Clock::now() >= one.next) {

@@ -33,13 +33,6 @@ class ResponseSender : public std::enable_shared_from_this<ResponseSender> {
     /// Called with the last return code: RCL_RET_TIMEOUT if the client is gone. rcl's error state is set
     /// unless the code is RCL_RET_OK.
     std::function<void(rcl_ret_t)> done;
-    /// For how long the response is kept for a client that is gone before it is sent. To a process that was
-    /// suspended for longer than the lease of its clients, all are gone until they announce themselves again;
-    /// the middleware drops what is sent to them meanwhile. 0: `client` is not called before the first attempt.
-    Clock::duration return_limit{};
-    /// For how long a response that has been sent is kept, to be sent again to a client that disappears and
-    /// returns: what is sent before a lease expires may not arrive. `done` is called once.
-    Clock::duration resend_limit{};
   };
 
   /// `group`: in whose thread responses are sent again.
@@ -62,19 +55,12 @@ class ResponseSender : public std::enable_shared_from_this<ResponseSender> {
     Response response;
     Clock::duration pause;   ///< after the next attempt, which may block the executor for 0.1 s
     Clock::time_point next;  ///< no attempt before
-    Clock::time_point give_up_after{};  ///< if the client is gone
-    bool sent = false;                  ///< kept by `resend_limit`
-    bool lost = false;                  ///< the client has disappeared since
   };
 
   /// This is the thread of a group of its own, whose callbacks are not to be delayed. The check of the client
   /// costs more than most responses.
   bool must_not_block() const;
-  bool must_wait(const Response & response) const;
   void try_to_send(Pending pending);
-  void keep_sent(Response response);
-  /// Returns whether it was sent again.
-  bool check_sent(Pending one, ClientDiscovery client);
   void keep(Pending pending);
   void check_clients();
   bool is_stopped();

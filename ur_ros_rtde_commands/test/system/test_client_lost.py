@@ -78,21 +78,6 @@ def test_stops_the_arm_when_a_running_client_destroys_its_action_client(robot, s
     make_ready(robot)
 
 
-def test_a_client_gets_its_result_from_a_driver_that_was_suspended_for_longer_than_the_lease(robot, simulator, driver):
-    """As a debugger or the lid of a laptop does: then all clients are gone until they announce themselves again."""
-    goal = robot.send(MoveJ, "move_j", joint_positions=[TARGET, *HOME[1:]], speed=0.2, acceleration=0.5)
-    wait_until_moving(simulator)
-    driver.pause()
-    try:
-        wait_for(lambda: not robot.sees("move_j"), 30.0, "the lease of the driver to expire")
-    finally:
-        driver.resume()
-    _status, end = goal.wait_for_result(30.0)
-    assert end.error_code in (ErrorCode.PROGRAM_STOPPED, ErrorCode.LINK_LOST, ErrorCode.CLIENT_LOST), end.message
-    assert simulator.is_at_rest()
-    make_ready(robot)
-
-
 def test_continues_the_goal_when_another_client_exits(robot, simulator, processes):
     idle = processes(Process([sys.executable, "-c", IDLE_CLIENT]))
     idle.wait_for_output("ready")
