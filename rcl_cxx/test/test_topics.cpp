@@ -11,6 +11,7 @@
 #include "failing_publish.hpp"
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "rcl_cxx_test/client.hpp"
+#include "rcl_support/rcl_compat.hpp"
 #include "ros_fixture.hpp"
 
 using std_msgs::msg::String;
@@ -158,6 +159,9 @@ TEST_F(TopicTest, ReportsFailureAndContinues)
 
 TEST_F(TopicTest, ReportsMessageThatCannotBeSerialized)
 {
+  if (rcl_cxx::detail::compat::truncates_at_null_character) {
+    GTEST_SKIP() << "this middleware sends the text before the null character";
+  }
   const auto subscription =
       node->create_subscription<String>("topic", rcl_cxx::QoS::reliable(10), [](const String &) {});
   const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
@@ -261,6 +265,9 @@ TEST_F(ServiceTest, RespondsWhenCallbackThrows)
 
 TEST_F(ServiceTest, SendsEmptyResponseInsteadOfOneThatCannotBeSerialized)
 {
+  if (rcl_cxx::detail::compat::truncates_at_null_character) {
+    GTEST_SKIP() << "this middleware sends the text before the null character";
+  }
   const auto service = node->create_service<SetBool>(
       "set", [](const SetBool::Request &, auto & response) { response.message = std::string("a\0b", 3); });
   const auto client = rcl_cxx::create_client<SetBool>(*node, "set");

@@ -22,11 +22,9 @@
 
 namespace rcl_cxx::detail::compat {
 /// Up to Jazzy, rmw_fastrtps_cpp rejects a type of which it does not find the introspection type support.
-#if RCL_VERSION_MAJOR >= 10
-inline constexpr bool requires_introspection = false;
-#else
-inline constexpr bool requires_introspection = true;
-#endif
+inline constexpr bool requires_introspection = RCL_VERSION_MAJOR < 10;
+/// The same middlewares send the text before a null character, instead of refusing the message.
+inline constexpr bool truncates_at_null_character = RCL_VERSION_MAJOR < 10;
 
 /// Initializes a canceled timer.
 inline rcl_ret_t timer_init_canceled(rcl_timer_t * timer, rcl_clock_t * clock, rcl_context_t * context,
