@@ -13,6 +13,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import sysconfig
 import time
 from dataclasses import dataclass
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
@@ -192,8 +193,14 @@ class Workspace:
         start = time.monotonic()
         if subprocess.run([str(part) for part in command], env=env, cwd=self._folder).returncode != 0:
             raise Failure(f"The build has failed: {self._folder / 'log' / 'latest_build'}")
-        print(f"Built in {time.monotonic() - start:.0f} s. In a shell:\n    . {self._folder / 'tools' / 'bin' / 'activate'}\n"
-              f"    . {self._folder / 'install' / 'setup.sh'}\n    ./ur test --ros installed")
+        print(f"Built in {time.monotonic() - start:.0f} s. In a shell:\n    . {self._write_setup()}\n    ./ur test --ros installed")
+
+    def _write_setup(self) -> pathlib.Path:
+        """Writes a setup script that also provides what the packages of a distribution take from the Python of their system."""
+        setup, modules = self._folder / "setup.sh", sysconfig.get_paths()["purelib"]
+        setup.write_text(f'. "{self._folder / "install" / "setup.sh"}"\nexport PATH="{pathlib.Path(sys.executable).parent}:$PATH"\n'
+                         f'export PYTHONPATH="$PYTHONPATH:{modules}"\n')
+        return setup
 
 
 def enter_tools(options: argparse.Namespace) -> None:
