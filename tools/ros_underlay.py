@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Builds a ROS 2 distribution from its release repositories, as far as this project needs it.
 
-The result is an installation like that of the distribution's packages, for machines where it has none: docs/distributions.md.
+The result is an installation like that of the distribution's packages, for machines where it has none: docs/testing.md.
 What is built are the packages of the distribution on which this project depends, rclpy and a middleware, and what they depend on,
 in the released versions. Only what has changed is built again.
 """
@@ -11,6 +11,7 @@ import hashlib
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -81,7 +82,7 @@ class Sources:
             run(["git", "init", "--quiet", "--bare", repository])
         run(["git", "-C", repository, "fetch", "--quiet", "--depth", "1", self.url(release.url), f"refs/tags/{release.tag}"])
         if folder.exists():
-            run(["rm", "-rf", folder])
+            shutil.rmtree(folder)
         folder.mkdir(parents=True)
         archive = subprocess.Popen(["git", "-C", str(repository), "archive", "FETCH_HEAD"], stdout=subprocess.PIPE)
         run(["tar", "-x", "-C", folder], stdin=archive.stdout)

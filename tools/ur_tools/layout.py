@@ -11,7 +11,7 @@ DOWNLOADS = STATE / "downloads"
 WHEELS = ("kilted", "jazzy")
 INSTALLED = "installed"  # instead of wheels, the distribution whose setup script has been sourced
 DISTRIBUTIONS = (*WHEELS, INSTALLED)
-SUPPORTED = ("humble", "jazzy", "kilted", "lyrical", "rolling")
+SUPPORTED_DISTRIBUTIONS = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 # The command that the user types: in `./ur shell` it is `ur`.
 PROGRAM = "ur" if os.environ.get("UR_CHECKOUT") == str(ROOT) else "./ur"
 SANITIZERS = ("address", "undefined", "thread")

@@ -11,8 +11,7 @@ import time
 from typing import Dict, Iterable, List, Optional, Sequence
 
 from . import console
-from .layout import ROOT, Layout
-from .layout import SUPPORTED as SUPPORTED_DISTRIBUTIONS
+from .layout import ROOT, SUPPORTED_DISTRIBUTIONS, Layout
 
 SUPPORTED = ((3, 10), (3, 12))
 STAMP = "ur_stamp.txt"
@@ -20,7 +19,7 @@ VIEWER_STAMP = "ur_viewer_stamp.txt"
 MEGABYTES = 130  # to download
 SECONDS = 25.0
 RETRY_DELAY = 3.0  # s
-PYTHON_OF_ROS = ("import sys, rclpy, ensurepip, venv; print('%d.%d' % sys.version_info[:2])")
+PYTHON_OF_ROS = "import rclpy, ensurepip, venv"
 _PROBE = ("import sys, os, sysconfig, ensurepip, venv; "
           "header = os.path.join(sysconfig.get_paths()['include'], 'Python.h'); "
           "print('%d.%d' % sys.version_info[:2], int(os.path.exists(header)))")

@@ -23,8 +23,8 @@ inline std::string test_address()
   return address == nullptr ? "127.0.0.1" : address;
 }
 
-/// A TCP server which sends each client the same bytes and then the end of the
-/// stream. It ignores what the client sends.
+/// A TCP server which sends each client the same bytes. Then it sends the end of the stream, and ignores what
+/// the client sends; or, if it has one, its answer to the first bytes of the client.
 class ReplyServer {
  public:
   /// Port 0 selects a free port.
@@ -56,13 +56,20 @@ class ReplyServer {
   ReplyServer & operator=(const ReplyServer &) = delete;
 
   std::uint16_t port() const { return port_; }
-  void set_reply(std::string bytes)
+  void set_reply(std::string bytes, std::string answer = {})
   {
     const std::lock_guard lock(mutex_);
     reply_ = std::move(bytes);
+    answer_ = std::move(answer);
   }
 
  private:
+  static void send(int client, const std::string & bytes)
+  {
+    if (!bytes.empty()) {
+      (void)::send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    }
+  }
   void serve()
   {
     for (int client = ::accept(listener_, nullptr, nullptr); client >= 0;
@@ -70,15 +77,19 @@ class ReplyServer {
       // A reset instead of a close leaves no connection in the state TIME_WAIT.
       const linger reset{1, 0};
       ::setsockopt(client, SOL_SOCKET, SO_LINGER, &reset, sizeof(reset));
-      std::string reply;
+      std::string reply, answer;
       {
         const std::lock_guard lock(mutex_);
         reply = reply_;
+        answer = answer_;
       }
-      (void)::send(client, reply.data(), reply.size(), MSG_NOSIGNAL);
-      ::shutdown(client, SHUT_WR);
+      send(client, reply);
+      if (answer.empty()) {
+        ::shutdown(client, SHUT_WR);
+      }
       std::array<char, 4096> requests;
       while (::recv(client, requests.data(), requests.size(), 0) > 0) {
+        send(client, std::exchange(answer, {}));
       }
       ::close(client);
     }
@@ -88,6 +99,7 @@ class ReplyServer {
   std::uint16_t port_ = 0;
   std::mutex mutex_;
   std::string reply_;
+  std::string answer_;
   std::jthread thread_;
 };
 

@@ -27,11 +27,11 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 from . import goal_kinds, properties, running
 from .cases import PROFILES, Case, draw, profile_of
 from .holds import Holder, threads_of, why_impossible
-from .motion import Trace
+from .motion import CYCLE, Trace
 from .page import Page
 from .stalls import Stalls
 
-STALL_WINDOW = 60_000_000  # ns after the event, in which the deceleration has to begin
+STALL_WINDOW = round(1e9 * properties.WINDOW_CYCLES * CYCLE)  # ns after the event, in which the deceleration has to begin
 QUIET = 150_000_000  # ns, after which nothing may have moved again
 LATE_BEGIN = 100_000_000  # ns after the end of a hold, in which what the threads were told before it begins
 MOTION_LIMIT = 0.8  # s, for a goal that may not move at all
