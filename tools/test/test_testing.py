@@ -66,7 +66,8 @@ def test_a_background_test_has_a_low_priority(tmp_path, monkeypatch):
     program = "import os, time\ntime.sleep(0.5)\nprint(f'niceness {os.nice(0)}')\nraise SystemExit(1)"
     monkeypatch.setattr(runner, "ROOT", tmp_path)
     test = runner.Test("a: test", [sys.executable, "-c", program], tmp_path, 20.0, background=True)
-    output = runner.Runner(Layout.of_environment(), tmp_path).run(test).output
+    with runner.Runner(Layout.of_environment(), tmp_path) as started:
+        output = started.run(test).output
     assert f"niceness {min(19, os.nice(0) + runner.BACKGROUND_NICENESS)}" in output
 
 
@@ -152,7 +153,8 @@ def test_results_without_failures_are_not_repeated():
 def run_program(tmp_path, monkeypatch, program, limit=20.0):
     monkeypatch.setattr(runner, "ROOT", tmp_path)  # log files are named relative to it
     test = runner.Test("a: test", [sys.executable, "-c", program], tmp_path, limit)
-    return runner.Runner(Layout.of_environment(), tmp_path).run(test)
+    with runner.Runner(Layout.of_environment(), tmp_path) as started:
+        return started.run(test)
 
 
 def test_the_processor_time_of_a_test_includes_its_child_processes(tmp_path, monkeypatch):

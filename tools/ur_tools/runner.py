@@ -9,18 +9,22 @@ import tempfile
 import threading
 import time
 import xml.etree.ElementTree as xml
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional, Set, Tuple
 
 from . import isolation
 from .environment import run_environment
 from .layout import ROOT, SANITIZERS, Layout
 from .processes import end_group
+from .stall_watch import StallWatch
 
 BACKGROUND_NICENESS = 10  # of background tests: they get about a tenth of a core that other tests use all the time
 LOWEST_PRIORITY = 19
+TOOLS = pathlib.Path(__file__).resolve().parents[1]
+REPEATS = 3  # of a program that failed while the host stalled, at most; host_stalls.py repeats the tests of pytest files
 SANITIZED_PATIENCE = 4.0  # programs with a sanitizer are slower by about this factor
 SANITIZED_REAL_TIME_FACTOR = 0.5  # lets the simulated robot's time pass at half speed, so that its cycles are not late
+STALLED = re.compile(r"^failed while the host stalled for .*$", re.M)  # a line of host_stalls.py
 
 
 @dataclass
@@ -67,6 +71,7 @@ class Result:
     seconds: float
     processor_seconds: float  # of all its processes
     output: str
+    repeats: List[str] = field(default_factory=list)  # lines about tests that failed while the host stalled, and were repeated
 
 
 def read_cases(report: pathlib.Path, succeeded: bool) -> Tuple[int, List[str]]:
@@ -79,9 +84,10 @@ def read_cases(report: pathlib.Path, succeeded: bool) -> Tuple[int, List[str]]:
     except (OSError, xml.ParseError):
         return (1, []) if succeeded else (0, [""])
     passed, failures = 0, []
-    for case in tree.iter("testcase"):
+    cases = {f"{case.get('classname', '').split('.')[-1]}.{case.get('name')}": case for case in tree.iter("testcase")}
+    for name, case in cases.items():  # the last attempt of each
         if case.find("failure") is not None or case.find("error") is not None:
-            failures.append(f"{case.get('classname', '').split('.')[-1]}.{case.get('name')}")
+            failures.append(name)
         elif case.find("skipped") is None and case.get("status") != "notrun":
             passed += 1
     if not succeeded and not failures:
@@ -159,16 +165,36 @@ class Runner:
         self._env["UR_TEST_PATIENCE"] = str(self._patience)
         self._env["ROS_LOG_DIR"] = str(folder / "ros")
         self._env.pop("PYTHONDONTWRITEBYTECODE", None)
+        self._env["PYTHONPATH"] = os.pathsep.join([self._env["PYTHONPATH"], str(TOOLS)])  # for host_stalls.py
         self._env["PYTHONPYCACHEPREFIX"] = str(_bytecode_folder(layout))
         self._env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
         self._env[isolation.MARK] = str(os.getpid())
+        self._watch = StallWatch()
         self._lock = threading.Lock()
         self._count = 0
         self._running: "Set[subprocess.Popen[bytes]]" = set()
         self._cancelled = False
 
+    def __enter__(self) -> "Runner":
+        return self
+
+    def __exit__(self, *_unused: object) -> None:
+        self._watch.close()
+
     def run(self, test: Test) -> Optional[Result]:
-        """Returns None after cancel()."""
+        """Repeats the test if it failed while the host stalled. Returns None after cancel()."""
+        repeats: List[str] = []
+        while True:
+            begin = time.monotonic()
+            result = self._run_once(test)
+            if result is None:
+                return None
+            stall = 0.0 if test.is_pytest or not result.failures else self._watch.longest_since(begin)
+            if stall == 0.0 or len(repeats) == REPEATS:
+                return replace(result, repeats=[*repeats, *result.repeats])
+            repeats.append(f"failed while the host stalled for {1e3 * stall:.0f} ms: {test.name}")
+
+    def _run_once(self, test: Test) -> Optional[Result]:
         with self._lock:
             if self._cancelled:
                 return None
@@ -204,7 +230,7 @@ class Runner:
         elif process.returncode < 0:
             text += f"\nended by signal {-process.returncode}\n"
         return Result(test, passed, failures, time.monotonic() - start, processor_seconds,
-                      text + f"(log: {log.relative_to(ROOT)})\n")
+                      text + f"(log: {log.relative_to(ROOT)})\n", STALLED.findall(text) if test.is_pytest else [])
 
     def cancel(self) -> None:
         """Stops the running tests; later ones are not started."""

@@ -21,7 +21,7 @@ from .runner import Result, Runner, Test
 from .schedule import Job, Schedule, Times
 
 DEFAULT_LIMIT = 120.0
-PYTEST_LIMIT = 600.0
+PYTEST_LIMIT = 1200.0
 # Lines of a pytest file that set the field of the same name of its Test.
 MARKERS = re.compile(r"^(MEASURES_TIME|BACKGROUND|BROWSER|LOAD|GROUP) = (True|\d+\.\d+|\"\w+\")", re.M)
 BACKGROUND_LABEL = "background"  # of a CTest test: the same as BACKGROUND
@@ -71,7 +71,8 @@ def _ctest(layout: Layout, package: Package) -> List[Test]:
 
 def _pytest(layout: Layout, name: str, folder: pathlib.Path) -> List[Test]:
     # Without the cache provider, which writes into the sources.
-    command = [str(layout.python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "--color=no", "-ra", "--disable-warnings"]
+    command = [str(layout.python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "ur_tools.host_stalls", "--color=no", "-ra",
+               "--disable-warnings"]
     tests = []
     for file in sorted(folder.rglob("test_*.py")):
         markers = {marker.lower(): ast.literal_eval(value) for marker, value in MARKERS.findall(file.read_text())}
@@ -153,6 +154,8 @@ def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result
 
 
 def _report(status: console.Status, result: Result, done: int, total: int) -> None:
+    for text in result.repeats:
+        status.keep(text)
     if result.failures:
         status.keep(f"FAILED  {result.test.name} ({result.seconds:.1f} s)")
         status.keep("\n".join("        " + text for text in console.tail(result.output, SHOWN_LINES).splitlines()))
@@ -208,7 +211,8 @@ def _summary(results: List[Result], checks: List[lint.Check], verdicts: Dict[str
         console.line("Failed:")
         for name in names:
             console.line(f"    {name}" + (f" ({verdicts[name]})" if name in verdicts else ""))
-    console.line(f"{seconds:.0f} s")
+    repeats = sum(len(result.repeats) for result in results)
+    console.line(f"{seconds:.0f} s" + (f"; {repeats} repeated because the host stalled" if repeats else ""))
     console.line(f"{passed} passed, {failed} failed")
     return 1 if failed or passed == 0 else 0
 
@@ -233,7 +237,6 @@ def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[
         tests = _collect(options, packages, chosen)
         if options.names and not tests:
             raise console.Failure(f"no test has {' or '.join(options.names)} in its name")
-        runner = Runner(options.layout, isolation.fresh_folder(options.layout.base / "test"), options.timeout)
         if any(test.browser for test in tests):
             provided = browser.environment(options.layout)
             tests = [replace(test, env={**test.env, **provided}) if test.browser else test for test in tests]
@@ -242,7 +245,8 @@ def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[
             if not check.ok:
                 console.line(f"FAILED  {check.name}\n{check.text}")
         console.step(f"Running {len(tests)} test{'s' * (len(tests) != 1)}")
-        with isolation.CleanUp():
+        folder = isolation.fresh_folder(options.layout.base / "test")
+        with isolation.CleanUp(), Runner(options.layout, folder, options.timeout) as runner:
             results = _run_all(options, runner, tests)
             verdicts = _diagnose(runner, results) if options.repeat == 1 else {}
     if not (options.names or options.changed):

@@ -238,6 +238,14 @@ class Goal:
             self._client.call_in_executor(lambda: self._request_result(self.handle))
         return self.result_at > 0
 
+    def wait_until(self, condition, limit, what):
+        """Waits until `condition()` is true. Fails with the goal's result if the goal ends before."""
+
+        def holds_or_ended():
+            return "holds" if condition() else "ended" if self.is_finished() else ""
+
+        assert wait_for(holds_or_ended, limit, what) == "holds", f"the goal ended before {what}: {self.result().message}"
+
     def wait_for_result(self, limit=30.0):
         """Returns the status and the result."""
         wait_for(self.is_finished, limit, "the result")

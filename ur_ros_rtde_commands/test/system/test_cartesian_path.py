@@ -94,7 +94,7 @@ def test_cancel_decelerates_on_the_line(robot, simulator):
     start = get_tcp_pose(robot)
     seen = robot.subscribe(PoseStamped, "tcp_pose")
     goal = send(robot, translated(start, z=-0.3), speed=0.1, lookahead_time=MIN_LOOKAHEAD)
-    wait_for(lambda: any(f.motion.progress > 0.1 for f in goal.feedback), 20.0, "motion")
+    goal.wait_until(lambda: any(f.motion.progress > 0.1 for f in goal.feedback), 20.0, "a progress of 0.1")
     goal.cancel()
     status, result = goal.wait_for_result(10.0)
     assert status == GoalStatus.STATUS_CANCELED

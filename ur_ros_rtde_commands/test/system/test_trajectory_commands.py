@@ -35,7 +35,7 @@ def min_deviation(states, positions):
 
 
 def wait_for_progress(goal, progress):
-    wait_for(lambda: any(f.motion.progress > progress for f in goal.feedback), 20.0, f"a progress of {progress}")
+    goal.wait_until(lambda: any(f.motion.progress > progress for f in goal.feedback), 20.0, f"a progress of {progress}")
 
 
 def test_passes_through_every_waypoint(robot):
@@ -165,7 +165,7 @@ def start_gentle_motion(robot, simulator):
     """Starts a motion of joint 0 that takes 6.3 s to brake within its limits; returns when it is fast."""
     make_ready(robot, joint_positions=[-2.8, *HOME[1:]])
     goal = send(robot, [[-2.8, *HOME[1:]], [2.8, *HOME[1:]]], **GENTLE)
-    wait_for(lambda: simulator.state()["target"]["velocity"][0] > 0.45, 30.0, "a fast motion")
+    goal.wait_until(lambda: simulator.state()["target"]["velocity"][0] > 0.45, 60.0, "a fast motion")
     return goal
 
 

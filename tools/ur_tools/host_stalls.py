@@ -1,0 +1,56 @@
+"""A pytest plugin that repeats a test that failed while the host stalled: the failure shows nothing about the software.
+
+A failure without a measured stall is never repeated. pytest-rerunfailures does the repetition.
+"""
+
+import time
+
+import pytest
+from ur_tools.stall_watch import StallWatch
+
+REPEATS = 3  # of a test, at most
+
+_watch = pytest.StashKey()
+_begin = pytest.StashKey()
+_stalled = pytest.StashKey()
+
+
+class HostStalled(Exception):
+    """A test failed while the host stalled. The cause is the failure."""
+
+
+def pytest_configure(config):
+    config.stash[_watch], config.stash[_stalled] = StallWatch(), []
+    config.option.reruns, config.option.only_rerun = REPEATS, [HostStalled.__name__]
+
+
+def pytest_unconfigure(config):
+    config.stash[_watch].close()
+
+
+def _blame_host(item):
+    try:
+        return (yield)
+    except (Exception, pytest.fail.Exception) as error:
+        stall = item.config.stash[_watch].longest_since(item.stash[_begin])
+        if stall == 0.0:
+            raise
+        text = f"failed while the host stalled for {1e3 * stall:.0f} ms: {item.nodeid}"
+        item.config.stash[_stalled].append(text)
+        raise HostStalled(text) from error
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup(item):
+    item.stash[_begin] = time.monotonic()
+    return (yield from _blame_host(item))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    return (yield from _blame_host(item))
+
+
+def pytest_terminal_summary(terminalreporter):
+    for text in terminalreporter.config.stash[_stalled]:
+        terminalreporter.write_line(text)
