@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from ur_ros_rtde.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
+from ur_ros_rtde_launch.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
 from ur_tools import main, packages, selection, simulation
 from ur_tools.environment import program
 from ur_tools.layout import Layout
