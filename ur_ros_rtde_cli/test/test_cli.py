@@ -295,6 +295,12 @@ def test_a_description_in_plugins_xml_has_priority(own_plugin):
     assert listed_description() == "Wags"
 
 
+def test_the_fields_of_an_action_with_another_name_are_known_without_a_driver(own_plugin):
+    (own_plugin / "plugins.xml").write_text(
+        '<library path="x"><class name="wag" type="x::Wag" action="ur_ros_rtde_msgs/action/DashboardText"/></library>')
+    assert ur("call", "wag", "--show", domain=EMPTY_DOMAIN) == (0, "text: ''\n")
+
+
 def test_record_reports_the_number_of_rows(running, tmp_path):
     file = tmp_path / "run.csv"
     code, output = ur("record", str(file), "timestamp", "actual_q", "--time", "1")
