@@ -7,22 +7,20 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
-from ur_ros_rtde_cli.errors import CliError
-from ur_ros_rtde_cli.plugins import Plugin, installed
+from ur_ros_rtde_cli import actions, fields, interface_files, plugins
 
-from ur_ros_rtde_cli import actions, fields, interface_files
-
-from .connection import Connection
+from .connection import Connection, load
 from .conversions import kinds_of, plain
-from .errors import Refused, RobotError, UnknownCommand
+from .errors import Refused
 from .goal import Goal, Progress
 
+Plugin = plugins.Plugin
 Method = Callable[..., Any]
 
 
 def names() -> dict[str, Plugin]:
     """Returns the installed plugins by name: "move_j", "dashboard/power_on"."""
-    return {plugin.name: plugin for plugin in installed()}
+    return {plugin.name: plugin for plugin in plugins.installed()}
 
 
 def documentation(kind: str, summary: str = "") -> str:
@@ -63,10 +61,7 @@ class Group:
 
     def _method(self, name: str, plugin: Plugin | None) -> Method:
         kind = actions.type_of_plugin(name) or self._connection.type_of(name)
-        try:
-            action = actions.load(name, kind)
-        except CliError as error:
-            raise RobotError(str(error)) from None
+        action = load(name, kind)
 
         def started(*values: Any, **given: Any) -> Goal:
             return Goal(self._connection, name, _goal_message(name, action, values, given), self._goals.discard)
@@ -133,6 +128,3 @@ class StartedCommands(Group):
 
     def __init__(self, connection: Connection, goals: set[Goal]):
         super().__init__(connection, goals, starts=True)
-
-
-__all__ = ["Commands", "StartedCommands", "UnknownCommand"]

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from ur_ros_rtde_cli import actions, fastdds_profile
+from ur_ros_rtde_cli import actions, errors, fastdds_profile
 
 from .conversions import interface
 from .errors import NoDriver, RobotError, Timeout, UnknownCommand
@@ -17,6 +17,7 @@ T = TypeVar("T")
 
 REQUEST_TIMEOUT = 10.0  # s, to send a request
 REFUSAL_TIMEOUT = 2.0  # s, for the reason of a refused goal
+REFUSALS = 100  # messages to keep: those of all clients are received
 DISCOVERY_TIME = 1.0  # s, after which a name that was not discovered counts as unknown
 POLL_PERIOD = 0.01  # s; changes of the ROS graph do not wake the executor
 
@@ -31,6 +32,14 @@ def until(condition: Callable[[], T], timeout: float, period: float = POLL_PERIO
         if time.monotonic() >= end:
             return None
         time.sleep(period)
+
+
+def load(name: str, kind: str) -> Any:
+    """Returns the class of an action type. Raises RobotError if it is not installed."""
+    try:
+        return actions.load(name, kind)
+    except errors.CliError as error:
+        raise RobotError(str(error)) from None
 
 
 class Connection:
@@ -102,8 +111,8 @@ class Connection:
     def type_of(self, name: str) -> str:
         """Returns the type of an action: that of its server, which may differ from the installed one."""
         known = actions.type_of_plugin(name)
-        limit = self.timeout if known else self._created_at + DISCOVERY_TIME - time.monotonic()
-        found = until(lambda: self.served().get(name), limit)
+        timeout = self.timeout if known else self._created_at + DISCOVERY_TIME - time.monotonic()
+        found = until(lambda: self.served().get(name), timeout)
         if found is None:
             raise self._not_served(name, known)
         return found
@@ -114,7 +123,7 @@ class Connection:
             from rclpy.action import ActionClient
 
             # A client that is created while announcements of the server are still arriving would be discovered only in part.
-            action = actions.load(name, self.type_of(name))
+            action = load(name, self.type_of(name))
             self._clients[name] = self.in_executor(lambda: ActionClient(self.node, action, name))
         client = self._clients[name]
         if not until(client.server_is_ready, self.timeout):
@@ -138,8 +147,12 @@ class Connection:
         return NoDriver(f"no driver serves {self.full_name(name)} within {self.timeout:g} s. {hint}")
 
     def _subscribe_refusals(self) -> None:
-        self.subscribe("ur_ros_rtde_msgs/msg/GoalRefused", "goal_refusals",
-                       lambda message: self._refusals.__setitem__(bytes(message.goal_id.uuid), message), latched=True)
+        def store(message: Any) -> None:
+            self._refusals[bytes(message.goal_id.uuid)] = message
+            while len(self._refusals) > REFUSALS:
+                self._refusals.pop(next(iter(self._refusals)), None)
+
+        self.subscribe("ur_ros_rtde_msgs/msg/GoalRefused", "goal_refusals", store, latched=True)
 
     def refusal(self, goal_id: bytes) -> Any:
         """Returns the message about a refused goal, or None if there is none."""

@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
+from rosidl_parser import definition as idl
+
+from ur_ros_rtde_cli import fields
 
 JOINT_COUNT = 6
 Array = NDArray[numpy.float64]
@@ -71,10 +74,6 @@ def plain(kind: Any, value: Any) -> Any:
     A message that contains only floating-point numbers may be given as their sequence: a pose as 7 numbers or, with a position
     only, as 3; a waypoint as 6.
     """
-    from rosidl_parser import definition as idl
-
-    from ur_ros_rtde_cli import fields
-
     if hasattr(value, "get_fields_and_field_types"):
         return fields.to_plain(value)
     if isinstance(value, (numpy.ndarray, numpy.generic)):
@@ -113,8 +112,6 @@ def _mapping(kind: Any, values: Sequence[Any]) -> dict[str, Any] | None:
 
 def _take(message: Any, rest: deque[Any]) -> dict[str, Any]:
     """Takes the fields of a message from `rest`. Raises IndexError if numbers are missing, TypeError for other fields."""
-    from rosidl_parser import definition as idl
-
     taken: dict[str, Any] = {}
     for name, kind in kinds_of(message).items():
         if isinstance(kind, idl.NamespacedType):

@@ -32,6 +32,7 @@ class Robot(Commands):
         connection = Connection(namespace, timeout, result_timeout)
         goals: set[Goal] = set()
         super().__init__(connection, goals)
+        self._connection, self._goals = connection, goals
         self.start = StartedCommands(connection, goals)
         self.state = State(connection)
         self.modes = Modes(self, self.start)

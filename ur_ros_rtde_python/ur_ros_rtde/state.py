@@ -145,8 +145,8 @@ class State:
         return self._samples(wanted, duration)
 
     def _samples(self, fields: tuple[str, ...], duration: float) -> Iterator[Any]:
-        names: Any = ("time", *fields)
-        sample_type: Any = collections.namedtuple("Sample", names)  # type: ignore[misc]
+        make_type: Any = collections.namedtuple
+        sample_type = make_type("Sample", ("time", *fields))
         topics = {STREAMS[name].topic: STREAMS[name].kind for name in fields}
         complete: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         parts: dict[float, dict[str, Any]] = {}  # messages by topic, by time stamp; used in the executor's thread

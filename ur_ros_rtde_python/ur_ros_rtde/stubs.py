@@ -13,13 +13,9 @@ import sys
 import textwrap
 from collections.abc import Iterator
 
-from ur_ros_rtde_cli.errors import CliError
-from ur_ros_rtde_cli.interface_files import Field
-from ur_ros_rtde_cli.plugins import Plugin
+from ur_ros_rtde_cli import actions, errors, interface_files
 
-from ur_ros_rtde_cli import actions, interface_files
-
-from .commands import documentation, names
+from .commands import Plugin, documentation, names
 
 HEADER = '''\
 # Written by ur_ros_rtde_stubs. Changes are lost when it runs again.
@@ -28,7 +24,7 @@ from typing import Any, TypeAlias
 
 from numpy import floating
 from numpy.typing import NDArray
-from ur_ros_rtde_cli.plugins import Plugin
+from ur_ros_rtde_cli.plugins import Plugin as Plugin
 
 from .connection import Connection
 from .goal import Goal
@@ -112,7 +108,7 @@ def _documentation(text: str, indentation: str) -> list[str]:
     return [f'{indentation}"""{lines[0]}', *(f"{indentation}{line}".rstrip() for line in lines[1:])]
 
 
-def _parameter(field: Field) -> str:
+def _parameter(field: interface_files.Field) -> str:
     base, is_array = _base(field.type)
     name = _scalar(base)
     if name is None:
@@ -154,7 +150,7 @@ def stub(plugins: dict[str, Plugin]) -> tuple[str, list[str]]:
         try:
             interface_files.find(kind or "")
             known[name] = (plugin, kind or "")
-        except (FileNotFoundError, ValueError, CliError):
+        except (FileNotFoundError, ValueError, errors.CliError):
             unknown.append(name)
     types = _Types()
     commands = [*_class("Commands", known, types, starts=False), *_class("StartedCommands", known, types, starts=True)]
