@@ -7,17 +7,20 @@ import tempfile
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "python.md"
 
 
-def test_the_examples_run(arm, capsys, tmp_path, monkeypatch):
+def test_the_examples_run(arm, simulator, capsys, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.S)
     assert len(blocks) >= 9
     scope = {}
     for block in blocks:
         scope["arm"] = arm  # the first example creates a Robot of its own and closes it
+        if "force_mode" in block:
+            simulator.control("place_surface", z=arm.state.tcp_pose[2] - 0.005, stiffness=20000.0)
         exec(compile(block, str(PAGE), "exec"), scope)
     output = capsys.readouterr().out
     assert "speed 9.0 above 0 and at most 3.14 rad/s" in output
     assert "canceled by a client" in output
+    simulator.control("clear_surfaces")
 
 
 def test_the_attributes_exist(arm):

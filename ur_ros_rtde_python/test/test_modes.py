@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from support import HOME
+from support import HOME, wait_for
 
 from ur_ros_rtde import CommandFailed, Refused
 
-PLUGINS = ("plugins:=[move_j,stop,freedrive,teach_mode,force_mode,force_mode_start,force_mode_stop,jog,make_ready,"
+PLUGINS = ("plugins:=[move_j,move_l,stop,freedrive,teach_mode,force_mode,force_mode_start,force_mode_stop,jog,make_ready,zero_ft_sensor,"
            "trigger_protective_stop]")
 AWAY = [0.5, *HOME[1:]]
 COMPLIANT = {"compliant": [False, False, True, False, False, False]}
@@ -37,34 +37,36 @@ def test_hand_guiding_ends_with_an_exception(arm, error):
     assert not is_in_freedrive(arm)
 
 
-def is_compliant(arm, simulator):
-    """Returns whether the arm gives way to a push along Z."""
-    before = arm.state.tcp_pose[2]
-    simulator.control("push", force=[0.0, 0.0, 20.0])
-    try:
-        return arm.state.wait_until(lambda state: abs(state.tcp_pose[2] - before) > 0.005, 1.0)
-    finally:
-        simulator.control("clear_pushes")
+def is_compliant(simulator):
+    return simulator.state()["force_mode"]
 
 
 def test_the_arm_moves_in_force_mode(arm, simulator):
-    with arm.modes.force_mode(**COMPLIANT):
-        arm.move_j(AWAY, speed=1.0)
-        assert is_compliant(arm, simulator)
-    assert np.allclose(arm.state.joint_positions[0], 0.5, atol=0.05) and not is_compliant(arm, simulator)
+    arm.zero_ft_sensor()
+    simulator.control("place_surface", z=arm.state.tcp_pose[2] - 0.005, stiffness=20000.0)
+    try:
+        with arm.modes.force_mode(**COMPLIANT, wrench=[0.0, 0.0, -15.0, 0.0, 0.0, 0.0], limits=[0.1, 0.1, 0.03, 0.5, 0.5, 0.5]):
+            assert arm.state.wait_until(lambda state: abs(state.wrench[2]) > 13.0, 10.0)
+            target = arm.state.tcp_pose + [0.0, 0.05, 0.0, 0.0, 0.0, 0.0, 0.0]
+            arm.move_l(target, speed=0.05)
+            assert arm.state.tcp_pose[1] == pytest.approx(target[1], abs=0.002) and abs(arm.state.wrench[2]) > 10.0
+        assert not is_compliant(simulator) and simulator.is_at_rest()
+    finally:
+        simulator.control("clear_surfaces")
 
 
 @pytest.mark.parametrize("error", [KeyError, KeyboardInterrupt])
 def test_force_mode_ends_with_an_exception(arm, simulator, error):
     with pytest.raises(error), arm.modes.force_mode(**COMPLIANT):
+        wait_for(lambda: is_compliant(simulator), 10.0, "force mode")
         raise error
-    assert not is_compliant(arm, simulator)
+    assert not is_compliant(simulator)
 
 
 def test_force_mode_ends_while_a_motion_is_running(arm, simulator):
     with arm.modes.force_mode(**COMPLIANT):
         goal = arm.start.move_j(AWAY, 0.1)
-    assert goal.is_finished and simulator.is_at_rest() and not is_compliant(arm, simulator)
+    assert goal.is_finished and simulator.is_at_rest() and not is_compliant(simulator)
 
 
 def test_a_mode_that_cannot_begin_raises_the_reason(arm):
