@@ -75,7 +75,11 @@ class Group:
             timeout = self._connection.result_timeout if result_timeout is None else result_timeout
             goal = started(*values, **given)
             self._goals.add(goal)
-            return goal.send().result(timeout, on_progress)
+            try:
+                return goal.send().result(timeout, on_progress)
+            except BaseException:  # Ctrl-C between the two
+                goal.abandon()
+                raise
 
         method: Any = start if self._starts else call
         method.__name__ = method.__qualname__ = name.rpartition("/")[2]

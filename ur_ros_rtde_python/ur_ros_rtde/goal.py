@@ -37,7 +37,7 @@ class Goal:
         self._changed = threading.Condition()
         self._unreported: list[Any] = []  # feedback
         self._feedback: Any = None
-        self._cancel_requested = self._queued = False
+        self._cancel_requested = self._queued = self._abandoned = False
 
     @property
     def feedback(self) -> Any:
@@ -56,10 +56,10 @@ class Goal:
             self._connection.in_executor(self._send)
             handle = self._answered.result(self._connection.timeout)
         except concurrent.futures.TimeoutError:
-            self._abandon()
+            self.abandon()
             raise NoDriver(f"{self.name}: the driver did not answer within {self._connection.timeout:g} s") from None
         except BaseException:
-            self._abandon()
+            self.abandon()
             raise
         if not handle.accepted:
             refusal = self._connection.refusal(bytes(handle.goal_id.uuid))
@@ -77,7 +77,7 @@ class Goal:
             if not self._wait(timeout, on_progress):
                 raise Timeout(f"{self.name} has not ended within {timeout:g} s; it was canceled")
         except BaseException:
-            self._abandon()
+            self.abandon()
             raise
         return self._outcome()
 
@@ -93,6 +93,16 @@ class Goal:
         response = self._finished.result()
         return None if response is None else response.result
 
+    def abandon(self) -> None:
+        """Cancels the goal and waits for its end, at most CANCEL_TIMEOUT. Used while an exception propagates; works once."""
+        try:
+            if self._queued and not self.is_finished and not self._abandoned:
+                self._abandoned = True
+                with contextlib.suppress(RobotError):
+                    self.cancel()
+        finally:
+            self._on_finished(self)
+
     def __await__(self) -> Generator[Any, None, Any]:
         return self._await().__await__()
 
@@ -103,7 +113,7 @@ class Goal:
                 await asyncio.wait([finished], timeout=CHECK_PERIOD)  # a canceled task does not cancel the future
                 lost_since = self._check_driver(lost_since)
         except BaseException:  # the task was canceled, or the driver is gone
-            await asyncio.shield(asyncio.get_running_loop().run_in_executor(None, self._abandon))
+            await asyncio.shield(asyncio.get_running_loop().run_in_executor(None, self.abandon))
             raise
         return self._outcome()
 
@@ -112,7 +122,7 @@ class Goal:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         if kind is not None:
-            self._abandon()
+            self.abandon()
         elif not self.is_finished:
             self.cancel()
         elif not self._cancel_requested:
@@ -153,15 +163,6 @@ class Goal:
         handle = self._handle
         if handle is not None and not self.is_finished:
             self._connection.in_executor(handle.cancel_goal_async)
-
-    def _abandon(self) -> None:
-        """Cancels the goal and waits for its end, at most CANCEL_TIMEOUT. Used while an exception propagates."""
-        try:
-            if self._queued and not self.is_finished:
-                with contextlib.suppress(RobotError):
-                    self.cancel()
-        finally:
-            self._on_finished(self)
 
     def _outcome(self) -> Any:
         response = self._finished.result()
