@@ -18,6 +18,7 @@ ANY = packages.DEPENDENCIES
 KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "gtest", "GTest::gmock": "libgmock-dev",
         "Git": "git", "Python3": "python3", "nlohmann_json": "nlohmann-json-dev", "tl-expected": "libexpected-dev",
         "numpy": "python3-numpy", "pytest": "python3-pytest", "yaml": "python3-yaml"}
+MODULES = {"ur_ros_rtde": "ur_ros_rtde_python", "ur_ros_rtde_launch": "ur_ros_rtde"}  # Python modules and their packages
 NOT_DECLARED = {"Threads",  # part of CMake
                 "copp_py", "toppra",  # solvers that oracle.py compares with
                 # No rosdep key for viser, which requires the others; the viewer says how to install it.
@@ -81,10 +82,11 @@ def test_imported_python_modules_are_declared():
     missing = []
     for name in PACKAGES:
         local = {path.stem for path in files(name, "*.py")} | {path.parent.name for path in files(name, "__init__.py")}
-        local |= {"support", "robot_fixtures", "arm_state"}  # modules of the tests of ur_ros_rtde
+        local |= {"support", "robot_fixtures", "arm_state", "plugin_prefix"}  # modules of the tests of ur_ros_rtde
         for path in files(name, "*.py"):
             known = declared(name, ANY if is_test(path) else RUN)
-            missing += reported(path, undeclared(set(imported(path)) - local - set(sys.stdlib_module_names), known))
+            modules = set(imported(path)) - local - set(sys.stdlib_module_names)
+            missing += reported(path, undeclared({MODULES.get(module, module) for module in modules}, known))
     assert not missing, "\n".join(missing)
 
 

@@ -4,8 +4,8 @@ import re
 import shlex
 import subprocess
 
-from ur_ros_rtde.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, COMMANDS
+from ur_ros_rtde_launch.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
 from ur_tools import main, packages, selection, simulation
 from ur_tools.environment import program
 from ur_tools.layout import ROOT, Layout
