@@ -101,8 +101,8 @@ def test_the_installation_with_ros_is_complete():
 
 
 def test_every_program_that_ros2_run_starts_is_installed():
-    for package, program in re.findall(r"ros2 run (\w+) ([\w.]+)", README):
-        assert program in (ROOT / package / "CMakeLists.txt").read_text(), program
+    for package, name in re.findall(r"ros2 run (\w+) ([\w.]+)", README):
+        assert name in (ROOT / package / "CMakeLists.txt").read_text(), name
 
 
 def test_the_goal_sent_by_ros2_matches_its_action():
