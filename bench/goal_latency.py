@@ -11,6 +11,7 @@ import time
 import rclpy
 from rclpy.action import ActionClient
 from rclpy.node import Node
+
 from ur_ros_rtde_msgs.action import MoveJ, SetPayload
 
 # Between two goals, so that the control program waits for a command again, at any phase of its cycle of 2 ms.

@@ -6,6 +6,7 @@ import rclpy
 from many_goals import finish
 from rclpy.action import ActionClient
 from rclpy.node import Node
+
 from ur_ros_rtde_msgs.action import MoveJ
 
 POSITIONS = ([0.5, -1.57, 1.57, -1.57, -1.57, 0.3], [-0.5, -1.2, 1.2, -1.57, -1.2, -0.3])  # rad

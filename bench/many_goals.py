@@ -9,6 +9,7 @@ import rclpy
 from process_load import resident_megabytes
 from rclpy.action import ActionClient
 from rclpy.node import Node
+
 from ur_ros_rtde_msgs.action import SetPayload
 
 LIMIT = 30.0  # s, of one response

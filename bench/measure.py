@@ -14,7 +14,7 @@ from process_load import LoadTrace, cpu_percent, resident_megabytes
 from servo_stream import servo_stream
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
-from control_port import ControlPort  # noqa: E402
+from control_port import ControlPort
 
 TRACE_SECONDS = 7.0  # the simulator keeps 4096 cycles: 8 s at 500 Hz
 

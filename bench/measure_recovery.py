@@ -19,7 +19,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
-from control_port import ControlPort  # noqa: E402
+from control_port import ControlPort
 
 RTDE_PORT = 30004
 LIMIT = 20.0  # s, for each recovery
@@ -104,7 +104,7 @@ def wait_for_port(address, port):
             return
         except ConnectionRefusedError:
             if time.monotonic() > deadline:
-                raise SystemExit(f"bench: port {port} of {address} did not open within {LIMIT:g} s")
+                raise SystemExit(f"bench: port {port} of {address} did not open within {LIMIT:g} s") from None
             time.sleep(0.0005)
 
 

@@ -11,7 +11,7 @@ from latency import latencies, percentile
 from process_load import cpu_percent, proportional_megabytes, resident_megabytes
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
-from control_port import ControlPort  # noqa: E402
+from control_port import ControlPort
 
 LATENCY_SECONDS, LOAD_SECONDS = 7, 5.0
 

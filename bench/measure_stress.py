@@ -13,7 +13,7 @@ from process_load import cpu_seconds, tree
 from rclpy.node import Node
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
-from control_port import ControlPort  # noqa: E402
+from control_port import ControlPort
 
 SECONDS = 7  # the simulator keeps 4096 cycles: 8 s at 500 Hz
 LIMIT = 30.0  # s, until the other subscribers are found

@@ -14,7 +14,7 @@ from latency import latencies
 from rtde_socket import receive_from_socket
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
-from control_port import ControlPort  # noqa: E402
+from control_port import ControlPort
 
 FLOOR = ("--ros-args", "-r", "__ns:=/floor")  # where the bare publisher publishes
 FLOOR_SECONDS = 600  # it is terminated before, however long subscribers take to find it

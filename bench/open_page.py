@@ -11,7 +11,7 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
-from ur_tools import browser  # noqa: E402
+from ur_tools import browser
 
 LIMIT = 120.0  # s
 WINDOW = {"width": 1280, "height": 880}

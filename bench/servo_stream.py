@@ -11,6 +11,7 @@ import rclpy
 from latency import percentile
 from rclpy.action import ActionClient
 from rclpy.node import Node
+
 from ur_ros_rtde_msgs.action import ExecuteTrajectory
 from ur_ros_rtde_msgs.msg import JointWaypoint
 

@@ -17,10 +17,10 @@ import report  # noqa: E402
 from cell import StatusTrackingClient  # noqa: E402
 from clients import RESULT_LIMIT, Gate, GoalSender  # noqa: E402
 from journal import Journal, Violation  # noqa: E402
+from monitor import ArmMonitor, ResourceMonitor  # noqa: E402
 from robot import Robot  # noqa: E402
 from support import HOME, wait_for  # noqa: E402
 from ur_tools import console  # noqa: E402
-from monitor import ArmMonitor, ResourceMonitor  # noqa: E402
 
 from ur_ros_rtde_msgs.action import MoveJ  # noqa: E402
 from ur_ros_rtde_msgs.msg import ErrorCode  # noqa: E402

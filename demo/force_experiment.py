@@ -10,15 +10,15 @@ import time
 from pathlib import Path
 
 import rclpy
+from control_port import ControlPort
 from force_figure import JOINTS, draw
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from recorder import Recorder, mark_events, write_csv
-from ur_ros_rtde_msgs.msg import ErrorCode, GoalRefused
 from ur_ros_rtde_tutorials.action import MoveDownUntilForce
 
-from control_port import ControlPort
+from ur_ros_rtde_msgs.msg import ErrorCode, GoalRefused
 
 DISCOVERY_LIMIT = 20.0  # s
 READY_LIMIT = 15.0  # s, from the first refusal until the robot is ready

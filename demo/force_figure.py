@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import matplotlib
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
+matplotlib.use("Agg")  # before pyplot is imported
+import matplotlib.pyplot as plt
 
 FORCES = {"force_x": ("X", "#7f7f7f"), "force_y": ("Y", "#2ca02c"), "force_z": ("Z (flange axis)", "#ff7f0e")}
 JOINTS = {

@@ -2,11 +2,10 @@
 
 import csv
 
+from force_figure import FORCES, JOINTS
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
-
-from force_figure import FORCES, JOINTS
 
 QOS = QoSProfile(depth=50, reliability=ReliabilityPolicy.BEST_EFFORT)
 

@@ -12,14 +12,14 @@ import xml.etree.ElementTree as xml
 import matplotlib
 import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
+matplotlib.use("Agg")  # before pyplot is imported
+import matplotlib.pyplot as plt
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "ur_ros_rtde_description"))
-from ur_ros_rtde_description.models import JOINTS, find_model  # noqa: E402
-from ur_ros_rtde_description.options import read_options  # noqa: E402
-from ur_ros_rtde_description.tree import link_poses, origin_of  # noqa: E402
-from ur_ros_rtde_description.urdf import make_urdf  # noqa: E402
+from ur_ros_rtde_description.models import JOINTS, find_model
+from ur_ros_rtde_description.options import read_options
+from ur_ros_rtde_description.tree import link_poses, origin_of
+from ur_ros_rtde_description.urdf import make_urdf
 
 MODELS = ("ur3", "ur5", "ur3e", "ur5e", "ur10e", "ur16e", "ur18", "ur15", "ur20")
 POSITION = (-0.25, -1.9, 2.0, -1.67, -1.57, 0.0)  # rad

@@ -4,7 +4,7 @@ import signal
 import time
 
 import pytest
-from conftest import LIMIT, eventually
+from conftest import eventually
 from rcl_interfaces.msg import Log
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String

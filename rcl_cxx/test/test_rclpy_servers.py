@@ -3,11 +3,11 @@
 import threading
 
 import pytest
+import rclpy
 from conftest import LIMIT, eventually
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
-import rclpy
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 from test_msgs.action import Fibonacci

@@ -122,7 +122,8 @@ def checks(options: argparse.Namespace, version: str) -> List[Check]:
     if options.client_library:
         # Tests with a simulated server of their own do not use the robot.
         tests = ["ctest", "--timeout", "60", "-R", "_headless$|_urcap$|RTDEClientTest|PrimaryClientTest|UrDriverTestDeprecated"]
-        result.append(Check("Universal Robots Client Library", options.client_library, [*tests, "-E", "[Ff]ake|server_stops|connect_non_running"]))
+        result.append(Check("Universal Robots Client Library", options.client_library,
+                            [*tests, "-E", "[Ff]ake|server_stops|connect_non_running"]))
         result += [client_library_example(options.client_library, name, arguments) for name, arguments in CLIENT_LIBRARY_EXAMPLES.items()]
     if options.rtde_python:
         record = [options.python, "record.py", "--host", ADDRESS, "--samples", "300", "--output", "/dev/null"]
@@ -140,7 +141,8 @@ def checks(options: argparse.Namespace, version: str) -> List[Check]:
 
 def run(check: Check, log: pathlib.Path) -> str:
     try:
-        process = subprocess.run(check.command, cwd=check.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=TIMEOUT)
+        process = subprocess.run(check.command, cwd=check.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                 timeout=TIMEOUT)
     except subprocess.TimeoutExpired as expired:
         log.write_text(str(expired.stdout))
         return f"not within {TIMEOUT:g} s"

@@ -20,7 +20,8 @@ LAYOUT = {"PATH": "bin", "LD_LIBRARY_PATH": "lib", "AMENT_PREFIX_PATH": "",
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[], help="an installation that is not sourced; may be repeated")
+    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[],
+                        help="an installation that is not sourced; may be repeated")
     options, for_pytest = parser.parse_known_args()
     for prefix in options.prefix:
         if not prefix.is_dir():

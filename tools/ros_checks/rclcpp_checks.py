@@ -62,8 +62,10 @@ def run(checks: pathlib.Path, arguments: List[str], driver_parameters: List[str]
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[], help="an installation that is not sourced; may be repeated")
-    parser.add_argument("--build", type=pathlib.Path, help="build folder, which is kept and receives the driver's log (default: a temporary folder)")
+    parser.add_argument("--prefix", type=pathlib.Path, action="append", default=[],
+                        help="an installation that is not sourced; may be repeated")
+    parser.add_argument("--build", type=pathlib.Path,
+                        help="build folder, which is kept and receives the driver's log (default: a temporary folder)")
     parser.add_argument("--driver", metavar="PARAMETER:=VALUE", action="append", default=[], help="parameter of the driver")
     parser.add_argument("checks", nargs="*", help="arguments of the checks")
     options = parser.parse_args()

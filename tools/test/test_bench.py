@@ -10,7 +10,7 @@ from ur_tools.layout import ROOT
 
 sys.path.insert(0, str(ROOT / "bench"))
 
-from servo_stream import figures  # noqa: E402
+from servo_stream import figures
 
 MS = 1_000_000
 CYCLES = {number: 2 * MS * number for number in range(1000)}

@@ -11,11 +11,11 @@ from ur_tools.layout import ROOT, Layout
 
 sys.path.insert(0, str(ROOT / "bench"))
 
-from goal_latency import first_commands  # noqa: E402
-from latency import latencies, missing_percent, percentile  # noqa: E402
-from many_goals import growth  # noqa: E402
-from process_load import LoadTrace, cpu_percent, proportional_megabytes, resident_megabytes  # noqa: E402
-from subscribe_everything import is_hidden, message_class  # noqa: E402
+from goal_latency import first_commands
+from latency import latencies, missing_percent, percentile
+from many_goals import growth
+from process_load import LoadTrace, cpu_percent, proportional_megabytes, resident_megabytes
+from subscribe_everything import is_hidden, message_class
 
 LOAD = 2.0  # it runs alone: its drivers have the default limits, for which a late host is a lost connection
 

@@ -14,8 +14,9 @@ DIRECTORIES = {
                     "detail"),
     "ur_ros_rtde_robot": ("program", "motion", "state", "connection", "script"),
     "ur_ros_rtde_trajectory": ("kinematics", "trajectory", "timing", "solver", "motion", "path"),
-    "ur_simulator": ("app", "library", "controller", "world_file", "control_port", "urcap", "primary", "modbus", "robot_api", "dashboard", "polyscope", "rtde", "net",
-                     "client_log", "log", "script_api", "port_map", "urscript", "safety", "world", "motion", "dynamics", "kinematics", "state", "version", "common"),
+    "ur_simulator": ("app", "library", "controller", "world_file", "control_port", "urcap", "primary", "modbus", "robot_api", "dashboard",
+                     "polyscope", "rtde", "net", "client_log", "log", "script_api", "port_map", "urscript", "safety", "world", "motion",
+                     "dynamics", "kinematics", "state", "version", "common"),
 }
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
 

@@ -113,7 +113,8 @@ def test_default_limits_are_slow_and_given_limits_and_times_may_be_faster(tmp_pa
 @pytest.mark.parametrize("text, what", [
     ("waypoints: [{positions: [0, 0, 0]}]", "plan.yaml: waypoint 0 has 3 values"),
     ("waypoint: []", "plan.yaml:1: there is no field waypoint; did you mean waypoints?"),
-    (f"waypoints:\n  - {HOME}", "plan.yaml:2: waypoints[0] is [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]: expected a mapping of fields: positions"),
+    (f"waypoints:\n  - {HOME}",
+     "plan.yaml:2: waypoints[0] is [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]: expected a mapping of fields: positions"),
     ("model: ur10e", "plan.yaml: there is no field model: use the option --model"),
     ("", "plan.yaml: "),
     (PATH + "max_velocity: [1, 1, 0, 1, 1, 1]", "velocity limit of elbow_joint is 0"),

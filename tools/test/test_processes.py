@@ -5,8 +5,8 @@ import sys
 import time
 
 import pytest
-from ur_tools.processes import Programs, group_is_alive
 from ur_tools.console import Failure
+from ur_tools.processes import Programs, group_is_alive
 
 # Ignores SIGINT and SIGTERM, as does its child process.
 IGNORES_SIGNALS = """

@@ -86,8 +86,8 @@ def test_refused_options_are_named(arguments, message):
 @pytest.mark.parametrize("address, reachable", [("0.0.0.0", True), (ADDRESSES[0], False)])
 def test_an_address_that_other_hosts_reach_is_announced(address, reachable):
     free_ports = ",".join(f"{name}=0" for name in (
-        "primary", "secondary", "realtime", "primary_read_only", "secondary_read_only", "realtime_read_only", "interpreter", "rtde", "dashboard",
-        "modbus", "control"))
+        "primary", "secondary", "realtime", "primary_read_only", "secondary_read_only", "realtime_read_only", "interpreter", "rtde",
+        "dashboard", "modbus", "control"))
     with subprocess.Popen([PROGRAM, "--address", address, "--ports", free_ports], env=run_environment(LAYOUT), stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout.readline().startswith(f"ready: ur10e on {address}, ")
@@ -170,7 +170,8 @@ def test_the_documented_client_log_is_that_of_its_session(tmp_path):
             script.shutdown(socket.SHUT_WR)  # closing would reset the connection, because of unread data
             wait_for(lambda: "secondary client 1-x" in file.read_text(), "the end of the script session")
         with socket.create_connection((ADDRESSES[0], 30004)) as rtde:
-            rtde.sendall(rtde_package("V", b"\0\2") + rtde_package("O", struct.pack(">d", 500.0) + b"timestamp,actual_q") + rtde_package("S"))
+            outputs = struct.pack(">d", 500.0) + b"timestamp,actual_q"
+            rtde.sendall(rtde_package("V", b"\0\2") + rtde_package("O", outputs) + rtde_package("S"))
             wait_for(lambda: "data packages of" in file.read_text(), "data packages")
             rtde.shutdown(socket.SHUT_WR)
             wait_for(lambda: "data packages: " in file.read_text(), "the end of the RTDE session")

@@ -5,7 +5,6 @@ fmt and the C++ library inside (ur_simulator/cmake/wheel.cmake).
 """
 
 import os
-import pathlib
 import re
 import shutil
 import subprocess
@@ -125,8 +124,8 @@ def test_the_example_with_ur_rtde_runs(installed, tmp_path):
     prefix = LAYOUT.install
     headers = prefix / "include" / "ur_rtde_vendor"
     (library,) = prefix.rglob("libur_rtde_vendor.so")
-    run("g++", "-std=c++20", "-O0", "-DUR_RTDE_VENDOR", "-I", headers, "example.cpp", library, f"-Wl,-rpath,{library.parent}", "-lboost_system",
-        "-lboost_thread", "-pthread", "-o", "example", cwd=tmp_path, env=installed)
+    run("g++", "-std=c++20", "-O0", "-DUR_RTDE_VENDOR", "-I", headers, "example.cpp", library, f"-Wl,-rpath,{library.parent}",
+        "-lboost_system", "-lboost_thread", "-pthread", "-o", "example", cwd=tmp_path, env=installed)
     with subprocess.Popen(["ur-simulator", "--address", ADDRESS], env=installed, stdout=subprocess.PIPE, text=True) as simulator:
         try:
             assert simulator.stdout.readline().startswith("ready: ")

@@ -139,6 +139,7 @@ def test_stopping_the_program_cancels_a_call(robot):
 
 def test_the_robot_keeps_its_cycle_while_a_call_waits(robot):
     with serving(Camera()) as port:
-        run(f'def p():\n  thread count():\n    i = 0\n    while i < 100:\n      i = i + 1\n      sync()\n    end\n    textmsg("counted")\n  end\n'
+        run('def p():\n'
+            '  thread count():\n    i = 0\n    while i < 100:\n      i = i + 1\n      sync()\n    end\n    textmsg("counted")\n  end\n'
             f'  h = run count()\n  rpc = rpc_factory("xmlrpc", "http://{ADDRESS}:{port}")\n  rpc.wait()\nend\n')
         wait_for_log("counted")

@@ -54,7 +54,8 @@ def test_rosdep_finds_exactly_the_packages(workspace):
 def test_ros2_finds_the_packages_in_an_isolated_installation():
     """A workspace that was built without --merge-install. Each package has a hook that adds it to AMENT_PREFIX_PATH."""
     shares = [pathlib.Path(get_package_share_directory(name)) for name in packages.discover(ROOT)]
-    assert not [share for share in shares if not any((share / folder / "ament_prefix_path.dsv").is_file() for folder in ("environment", "hook"))]
+    hooks = [pathlib.Path("environment", "ament_prefix_path.dsv"), pathlib.Path("hook", "ament_prefix_path.dsv")]
+    assert not [share for share in shares if not any((share / hook).is_file() for hook in hooks)]
 
 
 def test_colcon_finds_packages_made_by_ur_new(tmp_path):

@@ -64,9 +64,10 @@ def test_the_extension_runs_on_the_controller(workspace):
 
 def test_the_new_plugins_are_listed(workspace):
     listed = output(workspace, "ur plugins\n").splitlines()
-    for plugin, package, description in (("wag", "my_commands", "Turns wrist 3 by an angle and back"),
-                                         ("twist", "my_extensions", "Turns wrist 3 by an angle, by a program on the controller"),
-                                         ("dashboard/tell", "my_dashboard", "Shows a text on the teach pendant and asks for the robot mode")):
+    for plugin, package, description in (
+            ("wag", "my_commands", "Turns wrist 3 by an angle and back"),
+            ("twist", "my_extensions", "Turns wrist 3 by an angle, by a program on the controller"),
+            ("dashboard/tell", "my_dashboard", "Shows a text on the teach pendant and asks for the robot mode")):
         assert [plugin, package, *description.split()] in [line.split() for line in listed], listed
 
 

@@ -10,17 +10,34 @@ import sys
 import time
 from typing import List
 
-from . import (bench_compare, bench_discovery, bench_machine, bench_recovery, bench_report, bench_results, bench_rows, bench_scale,
-               bench_session, bench_simulator, bench_stress, bench_trace, bench_trajectory, bench_viewer, boilerplate, console, ports,
-               simulation)
+from . import (
+    bench_compare,
+    bench_discovery,
+    bench_machine,
+    bench_recovery,
+    bench_report,
+    bench_results,
+    bench_rows,
+    bench_scale,
+    bench_session,
+    bench_simulator,
+    bench_stress,
+    bench_trace,
+    bench_trajectory,
+    bench_viewer,
+    boilerplate,
+    console,
+    ports,
+    simulation,
+)
 from .bench_results import Results
 from .layout import PROGRAM, Layout
 
 # Clients that are killed, and clients that then search for the actions.
 KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 # Options that change what is measured, or how.
-SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots", "stress",
-            "simulator", "count", "hours", "recovery", "viewer")
+SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots",
+            "stress", "simulator", "count", "hours", "recovery", "viewer")
 # What is measured instead of the default rows.
 SEPARATE = {"scale": bench_scale, "stress": bench_stress, "simulator": bench_simulator, "recovery": bench_recovery, "viewer": bench_viewer}
 MODES = ("stream", "trajectory", "trace", *SEPARATE)
@@ -60,7 +77,8 @@ def parse(arguments: List[str]) -> argparse.Namespace:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--address", default="127.0.0.1", help="loopback address of the simulator (default: 127.0.0.1)")
     parser.add_argument("--model", default="ur10e", help="arm to simulate (default: ur10e)")
-    parser.add_argument("--repeat", type=int, default=40, metavar="N", help="goals, cancel requests or interruptions to measure (default: 40)")
+    parser.add_argument("--repeat", type=int, default=40, metavar="N",
+                        help="goals, cancel requests or interruptions to measure (default: 40)")
     _add_result_options(parser)
     for add_options in (_add_stream_options, bench_scale.add_options, bench_stress.add_options, bench_trace.add_options,
                         bench_trajectory.add_options, bench_simulator.add_options, bench_recovery.add_options,

@@ -100,7 +100,8 @@ def _cell(values: List[float]) -> str:
 
 
 def show(old: Results, new: Results) -> None:
-    console.line(f"\nBefore: {old.commit}, runs: {len(old.runs)}. Now: {new.commit}, runs: {len(new.runs)}. Medians, and ranges of the runs:")
+    console.line(f"\nBefore: {old.commit}, runs: {len(old.runs)}. Now: {new.commit}, runs: {len(new.runs)}. "
+                 "Medians, and ranges of the runs:")
     console.line(f"{'':50} {'before':>28} {'now':>28}  ratio")
     for line in compare(old, new):
         console.line(f"{line.row.title[:50]:50} {_cell(line.old):>28} {_cell(line.new):>28}  {line.ratio:5}  {line.verdict}".rstrip())

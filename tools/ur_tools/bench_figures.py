@@ -7,8 +7,8 @@ import sys
 
 import matplotlib
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
+matplotlib.use("Agg")  # before pyplot is imported
+import matplotlib.pyplot as plt
 
 BINS = 80
 MOST_POINTS = 4000  # of one curve; more make the page large

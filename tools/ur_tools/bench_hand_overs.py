@@ -11,7 +11,8 @@ CLOCK_TOLERANCE = 20_000  # ns
 # The hand-overs of a package and of a goal, in order: the part that has it from then on, and what it did last.
 PACKAGE_STEPS = ("readable", "received", "publish", "published", "notified", "taken")
 PACKAGE_TEXTS = ("package sent -> receiving thread runs", "package read from the socket", "decoded, sample stored, message filled",
-                 "message serialized and handed to Fast DDS", "Fast DDS thread of the subscriber runs", "subscriber's executor runs, takes it")
+                 "message serialized and handed to Fast DDS", "Fast DDS thread of the subscriber runs",
+                 "subscriber's executor runs, takes it")
 GOAL_STEPS = ("request_notified", "request_taken", "respond", "responded", "send")
 GOAL_TEXTS = ("goal sent -> Fast DDS thread of the driver runs", "driver's executor runs, takes it", "goal checked and accepted",
               "response handed to Fast DDS", "goal's thread runs, sends the command", "command read by the controller")

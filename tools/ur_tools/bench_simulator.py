@@ -29,11 +29,13 @@ MOVING = ("def back_and_forth():\n  q = get_actual_joint_positions()\n  while Tr
 def add_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("simulator")
     group.add_argument("--simulator", action="store_true",
-                       help="only measure the simulator: start-up, load, jitter, scripts, robots in one process, memory (about three minutes)")
+                       help="only measure the simulator: start-up, load, jitter, scripts, robots in one process, memory "
+                            "(about three minutes)")
     group.add_argument("--count", type=int, default=10, metavar="N",
                        help="with --simulator: robots in one process (default: 10)")
     group.add_argument("--hours", type=float, default=1.0, metavar="H",
-                       help="with --simulator: simulated hours over which the growth of the memory is measured; about a minute each (default: 1)")
+                       help="with --simulator: simulated hours over which the growth of the memory is measured; "
+                            "about a minute each (default: 1)")
 
 
 def check(options: argparse.Namespace) -> None:

@@ -306,7 +306,7 @@ def _chosen(options: Options) -> Dict[str, Package]:
         try:
             packages = with_dependencies(packages, options.packages)
         except KeyError as error:
-            raise console.Failure(str(error.args[0]))
+            raise console.Failure(str(error.args[0])) from None
     return packages
 
 

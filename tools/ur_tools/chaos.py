@@ -7,8 +7,8 @@ motions again. The same seed gives the same goals and faults in the same order. 
 --stops N runs N cases of the stop property test instead: a goal of any kind, an event that ends it (cancel, stop, safety stops, lost
 programs, connections and clients, the end of the driver), and in 40 % of the cases threads of the driver that are held for up to 0.4 s.
 Checked: the deceleration begins in time and is the one that was asked for; the arm comes to rest and does not move again; the goal has one
-result within 1 s; the next goal works. Case number n has the seed S + n; --case SEED repeats it. Kinds of goals whose plugins are built with
-the tests need `./ur build --tests` first.
+result within 1 s; the next goal works. Case number n has the seed S + n; --case SEED repeats it. Kinds of goals whose plugins are built
+with the tests need `./ur build --tests` first.
 """
 
 import argparse

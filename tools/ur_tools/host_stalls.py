@@ -6,6 +6,7 @@ A failure without a measured stall is never repeated. pytest-rerunfailures does 
 import time
 
 import pytest
+
 from ur_tools.stall_watch import StallWatch
 
 REPEATS = 3  # of a test, at most

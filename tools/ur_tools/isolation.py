@@ -7,7 +7,7 @@ import shutil
 import signal
 import tempfile
 import threading
-from typing import Dict, IO, Optional, Set
+from typing import IO, Dict, Optional, Set
 
 from .console import Failure
 

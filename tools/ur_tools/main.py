@@ -37,7 +37,8 @@ FORWARDED = ("demo", "bench", "chaos", "plan", "sim", "view", "doctor", *CLI)  #
 def _add_build_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--ros", choices=DISTRIBUTIONS, default=Layout.of_environment().ros,
                         help="ROS 2 as wheels of this distribution, or the one that is installed and sourced (default: %(default)s)")
-    parser.add_argument("-j", "--jobs", type=int, default=0, metavar="N", help="jobs of the build and limit of parallel tests (default: depends on cores and memory)")
+    parser.add_argument("-j", "--jobs", type=int, default=0, metavar="N",
+                        help="jobs of the build and limit of parallel tests (default: depends on cores and memory)")
     variant = parser.add_mutually_exclusive_group()
     variant.add_argument("--debug", action="store_true", help="use a debug build, which is kept beside the release build")
     variant.add_argument("--sanitize", choices=SANITIZERS, help="use a build with a sanitizer, which is kept beside the release build")
@@ -248,7 +249,8 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     add_forwarding("bench", command_bench, "measure latency and load")
     add_forwarding("plan", command_plan, "plan a trajectory without a robot and draw it against its limits")
     add_forwarding("view", command_view, "show robots in the browser: 3D scene, plots, state, recordings")
-    add_forwarding("chaos", command_chaos, "send random goals during random faults; with --faults 0 a soak test, with --stops the stop property test")
+    add_forwarding("chaos", command_chaos,
+                   "send random goals during random faults; with --faults 0 a soak test, with --stops the stop property test")
     add_forwarding("shell", command_shell, "open a shell, or run one command, with the environment of the build")
 
     for name, text in CLI.items():

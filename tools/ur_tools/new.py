@@ -78,6 +78,6 @@ def run(kind: str, name: str, package: str, folder: pathlib.Path, description: s
     width = max(len(str(file.relative_to(folder))) for file in purposes)
     for file in sorted(purposes, key=lambda path: (not purposes[path], path)):
         console.line(f"    {str(file.relative_to(folder)):{width}}  {purposes[file]}".rstrip())
-    console.line("Change the files that have a remark. Then build the package with `colcon build` in the workspace (in `./ur shell` if ROS is not "
-                 "installed); docs/writing_a_plugin.md continues from there.")
+    console.line("Change the files that have a remark. Then build the package with `colcon build` in the workspace (in `./ur shell` if ROS "
+                 "is not installed); docs/writing_a_plugin.md continues from there.")
     return 0

@@ -5,8 +5,8 @@ import sys
 
 import matplotlib
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
+matplotlib.use("Agg")  # before pyplot is imported
+import matplotlib.pyplot as plt
 
 JOINTS = ("shoulder pan", "shoulder lift", "elbow", "wrist 1", "wrist 2", "wrist 3")
 COLORS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")

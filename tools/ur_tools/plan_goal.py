@@ -4,8 +4,8 @@ import json
 import sys
 from typing import Any, Dict, List
 
-from ur_ros_rtde_cli.fields import Document
 from ur_ros_rtde_cli.errors import CliError
+from ur_ros_rtde_cli.fields import Document
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory
 

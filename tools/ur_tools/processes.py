@@ -116,7 +116,7 @@ class Programs:
                                            stderr=subprocess.STDOUT, env=None if env is None else dict(env), cwd=cwd,
                                            start_new_session=True)
         except OSError as error:
-            raise Failure(f"{name} cannot be started: {error}. Command: {' '.join(map(str, command))}")
+            raise Failure(f"{name} cannot be started: {error}. Command: {' '.join(map(str, command))}") from error
         program = Program(name, process, log)
         self._programs.append(program)
         return program

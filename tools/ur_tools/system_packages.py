@@ -49,7 +49,7 @@ def ensure() -> None:
     try:
         prefix = _prefix()
     except PermissionError:
-        raise console.Failure(f"These system packages are missing. Install them, then run ./ur again:\n\n    sudo {command}\n")
+        raise console.Failure(f"These system packages are missing. Install them, then run ./ur again:\n\n    sudo {command}\n") from None
     console.step("Installing system packages: " + " ".join(names))
     env = dict(os.environ, DEBIAN_FRONTEND="noninteractive")
     if prefix:

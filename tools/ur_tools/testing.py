@@ -12,8 +12,8 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from typing import Dict, List
 
-from . import build as building
 from . import boilerplate, browser, console, isolation, lint, selection, summary
+from . import build as building
 from .layout import ROOT, Layout
 from .lock import Lock
 from .packages import Package, discover

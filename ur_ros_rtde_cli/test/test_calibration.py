@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 import yaml
 from support import Simulator, wait_for
-from ur_ros_rtde_description.calibration import read_calibration
-from ur_ros_rtde_description.kinematics import flange_pose, nominal_origins
-from ur_ros_rtde_description.models import find_model
-
 from ur_ros_rtde_cli.main import main
 from ur_ros_rtde_cli.robot_check.checks import Options, RobotCheck
 from ur_ros_rtde_cli.robot_check.finding import State
+from ur_ros_rtde_description.calibration import read_calibration
+from ur_ros_rtde_description.kinematics import flange_pose, nominal_origins
+from ur_ros_rtde_description.models import find_model
 
 ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.203")
 PAGE = (pathlib.Path(__file__).resolve().parents[2] / "docs" / "description.md").read_text()

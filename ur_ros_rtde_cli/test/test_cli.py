@@ -18,10 +18,10 @@ import yaml
 from rclpy.action import ActionServer
 from rclpy.task import Future
 from support import HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
-
 from ur_ros_rtde_cli import view
 from ur_ros_rtde_cli.errors import CliError
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
+
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, MoveJ
 
 DISCOVERY = str(4.0 * TIMEOUT_FACTOR)  # s, time limit for the discovery of all actions
@@ -291,7 +291,8 @@ def test_a_missing_description_is_taken_from_the_action_file_or_the_package(own_
 
 
 def test_a_description_in_plugins_xml_has_priority(own_plugin):
-    (own_plugin / "plugins.xml").write_text('<library path="x"><class name="wag" type="x::Wag"><description>Wags</description></class></library>')
+    (own_plugin / "plugins.xml").write_text(
+        '<library path="x"><class name="wag" type="x::Wag"><description>Wags</description></class></library>')
     assert listed_description() == "Wags"
 
 

@@ -10,7 +10,6 @@ import threading
 
 import pytest
 from support import Process, Simulator, find_program, wait_for
-
 from ur_ros_rtde_cli.main import main
 from ur_ros_rtde_cli.robot_check import host, identity, inputs, link, stream
 from ur_ros_rtde_cli.robot_check.checks import Options, RobotCheck

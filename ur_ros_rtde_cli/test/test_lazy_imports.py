@@ -51,6 +51,7 @@ def test_a_call_imports_its_own_action(modules):
     assert "ur_ros_rtde_msgs.action._move_j" in modules
 
 
-@pytest.mark.parametrize("module", ["ur_ros_rtde_msgs.action._move_l", "ur_ros_rtde_msgs.msg._robot_state", "sensor_msgs.msg", "lark", "em"])
+@pytest.mark.parametrize("module", [
+    "ur_ros_rtde_msgs.action._move_l", "ur_ros_rtde_msgs.msg._robot_state", "sensor_msgs.msg", "lark", "em"])
 def test_a_call_does_not_import_unused_modules(modules, module):
     assert module not in modules

@@ -63,7 +63,8 @@ def _run(options: argparse.Namespace) -> int:
               + ("" if deviation.is_negligible() else "; `ur calibration --output` saves the calibration of this arm"))
         return 0 if deviation.is_negligible() else 1
     model = find_model(name)
-    comment = f"Calibration of the {model.display_name} at {options.robot}, PolyScope {'.'.join(map(str, version[:3]))}, by `ur calibration`"
+    polyscope = ".".join(map(str, version[:3]))
+    comment = f"Calibration of the {model.display_name} at {options.robot}, PolyScope {polyscope}, by `ur calibration`"
     text = controller_calibration.calibration_yaml(data.kinematics, model, comment)
     if options.output is None:
         sys.stdout.write(text)

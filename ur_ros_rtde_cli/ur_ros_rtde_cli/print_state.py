@@ -9,6 +9,7 @@ from geometry_msgs.msg import PoseStamped, WrenchStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
+
 from ur_ros_rtde_msgs.msg import DriverState, RobotMode, SafetyMode
 
 from .errors import CliError

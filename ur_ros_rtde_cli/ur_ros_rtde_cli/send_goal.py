@@ -7,6 +7,7 @@ from typing import Any, Optional, Tuple
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
+
 from ur_ros_rtde_msgs.msg import GoalRefused
 
 from . import actions, fields

@@ -3,7 +3,6 @@
 import xml.etree.ElementTree as xml
 
 import yaml
-
 from ur_ros_rtde_description.calibration import FIELDS, JOINT_KEYS
 from ur_ros_rtde_description.models import JOINTS
 from ur_ros_rtde_description.options import read_options

@@ -8,7 +8,6 @@ import sys
 
 import pytest
 from helpers import calibration, write_calibration
-
 from ur_ros_rtde_description.errors import DescriptionError
 from ur_ros_rtde_description.kinematics import nominal_origins
 from ur_ros_rtde_description.launch_arguments import ARGUMENTS, check_names, description_options, is_true

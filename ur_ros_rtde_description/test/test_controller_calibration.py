@@ -5,7 +5,6 @@ import math
 
 import numpy as np
 import pytest
-
 from ur_ros_rtde_description.calibration import largest_deviation
 from ur_ros_rtde_description.controller_calibration import Deviation, calibration_yaml, deviation, origins_from_dh
 from ur_ros_rtde_description.errors import DescriptionError
@@ -30,7 +29,10 @@ def nominal(model):
 
 def random_calibration(model, seed, deviation_of_length=3e-4, deviation_of_angle=5e-4):
     random = np.random.default_rng(seed)
-    noise = lambda scale, last: np.append(random.normal(0.0, scale, 5), random.normal(0.0, scale) if last else 0.0)  # noqa: E731
+
+    def noise(scale, last):
+        return np.append(random.normal(0.0, scale, 5), random.normal(0.0, scale) if last else 0.0)
+
     return Dh(tuple(noise(deviation_of_angle, True)), tuple(model.a + noise(deviation_of_length, False)),
               tuple(model.d + noise(deviation_of_length, True)), tuple(ALPHA + noise(deviation_of_angle, False)))
 

@@ -7,7 +7,6 @@ import shlex
 
 import pytest
 from helpers import calibration, write_calibration
-
 from ur_ros_rtde_description.arguments import add_arguments
 from ur_ros_rtde_description.kinematics import nominal_origins
 from ur_ros_rtde_description.launch_arguments import ARGUMENTS, check_names

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from helpers import poses, urdf
-
 from ur_ros_rtde_description.models import JOINTS, LINKS, find_model, models
 from ur_ros_rtde_description.shapes import Cylinder, base_height, link_shapes
 from ur_ros_rtde_description.tree import origin_of

@@ -8,7 +8,6 @@ import xml.etree.ElementTree as xml
 import numpy as np
 import pytest
 from helpers import calibration, poses, urdf, write_calibration
-
 from ur_ros_rtde_description.kinematics import Origin, flange_pose, nominal_origins, rotation
 from ur_ros_rtde_description.models import JOINTS, LINKS, find_model, models
 from ur_ros_rtde_description.options import read_options

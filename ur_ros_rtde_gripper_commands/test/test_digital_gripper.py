@@ -2,8 +2,8 @@
 
 import pytest
 from support import wait_for
-
 from ur_ros_rtde_gripper_commands.action import DigitalGripper
+
 from ur_ros_rtde_msgs.action import SetToolVoltage
 from ur_ros_rtde_msgs.msg import ErrorCode
 

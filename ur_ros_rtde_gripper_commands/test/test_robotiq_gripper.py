@@ -3,8 +3,8 @@
 import pytest
 from robot_fixtures import make_ready
 from support import Client, Simulator, start_node, wait_for
-
 from ur_ros_rtde_gripper_commands.action import RobotiqActivate, RobotiqGetStatus, RobotiqGrip, RobotiqMove
+
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 

@@ -5,10 +5,9 @@ import pytest
 
 # These tests use the helpers and fixtures of the system tests of the driver.
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde_commands" / "test" / "system"))
-from robot_fixtures import addresses, driver, simulator  # noqa: E402
-from support import HOME, TIMEOUT_FACTOR, wait_for  # noqa: E402
-
-from ur_ros_rtde import CommandFailed, Refused, Robot  # noqa: E402
+from robot_fixtures import addresses, driver, simulator
+from support import HOME, TIMEOUT_FACTOR, wait_for
+from ur_ros_rtde import CommandFailed, Refused, Robot
 
 __all__ = ["addresses", "driver", "simulator"]
 

@@ -10,7 +10,6 @@ import threading
 import numpy as np
 import pytest
 from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Process, Simulator, start_node, wait_for
-
 from ur_ros_rtde import CommandFailed, NoDriver, Refused, Robot, Timeout, UnknownCommand, pose, trajectory
 
 PLUGINS = ("plugins:=[move_j,move_l,stop,make_ready,trigger_protective_stop,execute_trajectory,execute_parametrized_trajectory,"

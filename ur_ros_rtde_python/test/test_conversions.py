@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
+from ur_ros_rtde import pose, read_recording, trajectory
 from ur_ros_rtde.commands import _goal_message
 from ur_ros_rtde.conversions import interface, numbers
 from ur_ros_rtde.errors import Refused
-
-from ur_ros_rtde import pose, read_recording, trajectory
 
 BACKGROUND = True
 QUARTER = np.sqrt(0.5)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from support import HOME, wait_for
-
 from ur_ros_rtde import CommandFailed, Refused
 
 PLUGINS = ("plugins:=[move_j,move_l,stop,freedrive,teach_mode,force_mode,force_mode_start,force_mode_stop,jog,make_ready,zero_ft_sensor,"

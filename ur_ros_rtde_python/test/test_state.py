@@ -5,7 +5,6 @@ import sys
 import numpy as np
 import pytest
 from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Simulator, start_node
-
 from ur_ros_rtde import NoDriver, Robot, RobotError, read_recording
 
 PLUGINS = "plugins:=[move_j,stop]"

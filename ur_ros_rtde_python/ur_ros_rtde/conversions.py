@@ -8,7 +8,6 @@ from typing import Any
 import numpy
 from numpy.typing import ArrayLike, NDArray
 from rosidl_parser import definition as idl
-
 from ur_ros_rtde_cli import fields
 
 JOINT_COUNT = 6

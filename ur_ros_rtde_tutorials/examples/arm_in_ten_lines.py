@@ -5,7 +5,6 @@ ros2 run ur_ros_rtde_tutorials arm_in_ten_lines.py
 """
 
 import numpy as np
-
 from ur_ros_rtde import CommandFailed, Robot
 
 with Robot() as arm:

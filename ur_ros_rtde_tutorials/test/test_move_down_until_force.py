@@ -4,9 +4,9 @@ import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import WrenchStamped
 from support import wait_for
+from ur_ros_rtde_tutorials.action import MoveDownUntilForce
 
 from ur_ros_rtde_msgs.msg import ErrorCode
-from ur_ros_rtde_tutorials.action import MoveDownUntilForce
 
 
 def height(simulator):

@@ -5,10 +5,10 @@ import math
 import pytest
 from action_msgs.msg import GoalStatus
 from support import HOME, wait_for
+from ur_ros_rtde_tutorials.action import SpiralSearch
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
-from ur_ros_rtde_tutorials.action import SpiralSearch
 
 
 def search(client, **fields):

@@ -6,7 +6,6 @@ import xml.etree.ElementTree as xml
 import numpy as np
 import pytest
 from arm_state import AT_REST, home_plus
-from robot_fixtures import addresses, client, destroy_subscriptions_after_test, driver, robot, simulator  # noqa: F401
 from running_viewer import RunningViewer, Tab, chromium, until
 from support import HOME, start_node
 from ur_ros_rtde_description.models import JOINTS
@@ -26,7 +25,7 @@ STREAM_TIMEOUT = 0.5  # s; allows for the slow rendering of a browser without a 
 
 
 @pytest.fixture(scope="module")
-def driver(simulator):  # noqa: F811
+def driver(simulator):
     driver = start_node("driver", simulator.address, "ur_type:=ur10e", f"stream_timeout:={STREAM_TIMEOUT}")
     yield driver
     driver.stop()

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banner_text
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
 from ur_ros_rtde_viewer.panels.state_panel import StatePanel, state_rows

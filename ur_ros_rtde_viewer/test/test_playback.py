@@ -5,7 +5,6 @@ import time
 
 import numpy as np
 import pytest
-
 from ur_ros_rtde_viewer.arguments import RobotOptions
 from ur_ros_rtde_viewer.errors import ViewerError
 from ur_ros_rtde_viewer.playback.motion import Motion, read_csv, read_plan

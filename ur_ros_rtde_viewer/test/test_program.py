@@ -9,15 +9,14 @@ import msgspec
 import pytest
 import viser
 import zstandard
-from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
-
 from ur_ros_rtde_viewer.arguments import RobotOptions, add_arguments, robots
 from ur_ros_rtde_viewer.errors import ViewerError
 from ur_ros_rtde_viewer.page.origin import is_accepted
 from ur_ros_rtde_viewer.page.server import start_server, stop_server, url
 from ur_ros_rtde_viewer.program import main
 from ur_ros_rtde_viewer.simulator import may_be_simulator, read_surfaces
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
 
 A_DAY = 25_000_000  # messages, at 280 per second
 

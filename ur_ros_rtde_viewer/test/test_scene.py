@@ -8,7 +8,6 @@ import yaml
 from ur_ros_rtde_description.calibration import FIELDS, JOINT_KEYS
 from ur_ros_rtde_description.kinematics import Origin, flange_pose, nominal_origins
 from ur_ros_rtde_description.models import find_model
-
 from ur_ros_rtde_viewer.arguments import RobotOptions
 from ur_ros_rtde_viewer.scene import trail
 from ur_ros_rtde_viewer.scene.robot_scene import STOPPED_COLOR, RobotScene

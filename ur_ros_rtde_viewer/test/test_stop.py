@@ -4,7 +4,7 @@ import time
 
 import pytest
 from arm_state import AT_REST, home_plus
-from robot_fixtures import addresses, client, make_ready, simulator  # noqa: F401
+from robot_fixtures import make_ready
 from running_viewer import RunningViewer, until
 from support import start_node
 from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_LIMIT, SILENCE_LIMIT
@@ -24,7 +24,7 @@ def running():
 
 
 @pytest.fixture(scope="module")
-def nodes(simulator):  # noqa: F811
+def nodes(simulator):
     """The three nodes as processes. Without the watchdog, only STOP can stop the arm."""
     started = {name: start_node(name, simulator.address, *parameters)
                for name, parameters in {"robot_state_receiver": (), "command_server": ("watchdog_frequency:=0.0",),
@@ -50,7 +50,7 @@ def time_until_fallback(text):
     return time.monotonic() - begin
 
 
-def is_moving(simulator):  # noqa: F811
+def is_moving(simulator):
     return max(map(abs, simulator.state()["actual"]["velocity"])) > AT_REST
 
 
@@ -66,7 +66,7 @@ def ready_to_stop(running, client):
     until(lambda: stopper._stop.server_is_ready() and stopper._dashboard.server_is_ready(), "the actions")
 
 
-def test_a_driver_that_does_not_answer_is_stopped_through_the_dashboard(running, nodes, simulator, client):  # noqa: F811
+def test_a_driver_that_does_not_answer_is_stopped_through_the_dashboard(running, nodes, simulator, client):
     ready_to_stop(running, client)
     assert client.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=0.1).accepted
     until(lambda: is_moving(simulator), "the arm to move")
@@ -80,7 +80,7 @@ def test_a_driver_that_does_not_answer_is_stopped_through_the_dashboard(running,
     nodes["command_server"].resume()
 
 
-def test_a_driver_that_is_silent_after_it_has_accepted_the_stop_is_stopped_through_the_dashboard(running, nodes, simulator, client):  # noqa: F811
+def test_a_driver_that_is_silent_after_it_has_accepted_the_stop_is_stopped_through_the_dashboard(running, nodes, simulator, client):
     ready_to_stop(running, client)
     assert client.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=2.0, acceleration=15.0).accepted
     until(lambda: simulator.state()["actual"]["velocity"][0] > 1.9, "the speed from which the arm stops in 1 s")
@@ -94,7 +94,7 @@ def test_a_driver_that_is_silent_after_it_has_accepted_the_stop_is_stopped_throu
     nodes["command_server"].resume()
 
 
-def test_a_stop_that_takes_a_second_is_left_to_the_driver(running, nodes, simulator, client):  # noqa: F811
+def test_a_stop_that_takes_a_second_is_left_to_the_driver(running, nodes, simulator, client):
     ready_to_stop(running, client)
     assert client.send(MoveJ, "move_j", joint_positions=home_plus(-3.0), speed=2.0, acceleration=15.0).accepted
     until(lambda: simulator.state()["actual"]["velocity"][0] < -1.9, "the speed from which the arm stops in 1 s")

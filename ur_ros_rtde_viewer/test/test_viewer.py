@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
 from support import HOME, JOINTS, TIMEOUT_FACTOR, Client, Simulator, start_node
-
-from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, Banner
 from ur_ros_rtde_viewer.panels.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.panels.twin_panel import TwinPanel
 from ur_ros_rtde_viewer.program import parse
 from ur_ros_rtde_viewer.ros.nodes import Nodes
 from ur_ros_rtde_viewer.viewer import Viewer
+
+from ur_ros_rtde_msgs.action import MoveJ
 
 RIGHT = "right"  # a namespace without a driver: the test publishes its topics
 

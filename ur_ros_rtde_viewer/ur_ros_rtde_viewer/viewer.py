@@ -69,7 +69,7 @@ class Viewer:
             function = self._posted.get()
             try:
                 function()
-            except Exception:  # noqa: BLE001: a failing callback must not end the viewer
+            except Exception:  # a failing callback must not end the viewer
                 logger.exception("a callback of the page failed")
 
     def update(self) -> None:

@@ -5,7 +5,7 @@ import sys
 import pytest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from ros2 import Launch, ready  # noqa: E402
+from ros2 import Launch, ready
 
 os.environ.setdefault("ROS_DOMAIN_ID", "87")
 os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")

@@ -15,8 +15,8 @@ def judge(kinematics: Optional[ControllerKinematics], model: str, file: str) -> 
         from ur_ros_rtde_description import controller_calibration  # imported here because it needs numpy and PyYAML
         from ur_ros_rtde_description.errors import DescriptionError
     except ImportError as error:
-        return warning("calibration", f"not compared: the Python module {error.name} is missing", "run it in `./ur shell`, or install numpy "
-                       "and PyYAML")
+        return warning("calibration", f"not compared: the Python module {error.name} is missing",
+                       "run it in `./ur shell`, or install numpy and PyYAML")
     try:
         deviation = controller_calibration.deviation(kinematics, model, pathlib.Path(file) if file else None)
     except DescriptionError as error:
@@ -26,5 +26,5 @@ def judge(kinematics: Optional[ControllerKinematics], model: str, file: str) -> 
     if deviation.is_negligible():
         return ok("calibration", f"the arm agrees with {used}")
     return warning("calibration", f"the flange deviates by up to {text} from {used}",
-                   "`ur calibration --robot ADDRESS --output FILE` saves the calibration of this arm; use FILE as kinematics_params_file of "
-                   "the description")
+                   "`ur calibration --robot ADDRESS --output FILE` saves the calibration of this arm; use FILE as kinematics_params_file "
+                   "of the description")

@@ -22,7 +22,8 @@ def judge_kernel(version: str, root: pathlib.Path = ROOT) -> Finding:
     """`version`: as uname -v prints it."""
     if "PREEMPT_RT" in version or _text(root / "sys/kernel/realtime") == "1":
         return ok("host kernel", "has real-time preemption")
-    return warning("host kernel", "has no real-time preemption, so servo setpoints can be late under load", f"use a PREEMPT_RT kernel, {PAGE}")
+    return warning("host kernel", "has no real-time preemption, so servo setpoints can be late under load",
+                   f"use a PREEMPT_RT kernel, {PAGE}")
 
 
 def judge_priority(limit: int, is_root: bool) -> Finding:
@@ -39,7 +40,8 @@ def judge_governor(root: pathlib.Path = ROOT) -> Finding:
         return ok("host governor", "the kernel does not change the frequency of the cores")
     if governors == {"performance"}:
         return ok("host governor", "performance")
-    return warning("host governor", f"{', '.join(sorted(governors))}: cores slow down between packages", f"cpupower frequency-set -g performance, {PAGE}")
+    return warning("host governor", f"{', '.join(sorted(governors))}: cores slow down between packages",
+                   f"cpupower frequency-set -g performance, {PAGE}")
 
 
 def judge_cores(root: pathlib.Path = ROOT) -> Finding:

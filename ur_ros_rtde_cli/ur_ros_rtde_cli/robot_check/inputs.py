@@ -35,8 +35,9 @@ def judge(types: Dict[str, str]) -> List[Finding]:
     findings = []
     if fieldbus:
         free = "free" if not upper else f"{len(upper)} of them are in use, too"
-        findings.append(fault("input registers", f"all lower input registers (0 to 23) are in use, as a fieldbus adapter ({FIELDBUSES}) holds "
-                              f"them; registers 24 to 47: {free}",
+        findings.append(fault("input registers",
+                              f"all lower input registers (0 to 23) are in use, as a fieldbus adapter ({FIELDBUSES}) holds them; "
+                              f"registers 24 to 47: {free}",
                               "disable the adapter in the installation (Installation > Fieldbus), or start the driver with "
                               "register_range:=upper"))
     if groups or upper or (lower and not fieldbus):

@@ -63,9 +63,11 @@ def judge_packets(counted: Optional[Packets]) -> Finding:
     if counted is None:
         return ok("packet loss", "not counted by this kernel")
     if counted.out_of_order or counted.retransmitted:
-        return warning("packet loss", f"{counted.out_of_order} of {counted.received} packets came out of order and {counted.retransmitted} were "
-                       "repeated, so the network loses packets", "replace cable or switch, avoid Wi-Fi, and look for a duplicate address "
-                       "(`arping -D`) and for a wrong duplex setting (`ethtool`)")
+        return warning("packet loss",
+                       f"{counted.out_of_order} of {counted.received} packets came out of order and {counted.retransmitted} were repeated, "
+                       "so the network loses packets",
+                       "replace cable or switch, avoid Wi-Fi, and look for a duplicate address (`arping -D`) and for a wrong duplex "
+                       "setting (`ethtool`)")
     return ok("packet loss", f"none in {counted.received} packets")
 
 
@@ -94,6 +96,6 @@ def judge_interface(name: str, system: pathlib.Path = SYSTEM) -> Finding:
     except (OSError, ValueError):
         return ok("network card", f"{name}, of unknown speed")
     if 0 < speed < MIN_SPEED or duplex == "half":
-        return warning("network card", f"{name} has negotiated {speed} Mbit/s, {duplex} duplex", "replace the cable or the switch, and leave "
-                       "the negotiation automatic on both sides")
+        return warning("network card", f"{name} has negotiated {speed} Mbit/s, {duplex} duplex",
+                       "replace the cable or the switch, and leave the negotiation automatic on both sides")
     return ok("network card", f"{name}, {speed} Mbit/s, {duplex} duplex" if speed > 0 else f"{name}, of unknown speed")

@@ -128,9 +128,10 @@ def _p99(values: List[float]) -> float:
 
 def judge(stream: Stream) -> List[Finding]:
     if stream.answer_time > SILENCE_LIMIT:
-        return [fault("bandwidth", f"the packages of {1.0 / stream.cycle:.0f} Hz pile up: after {stream.arrived[-1] - stream.arrived[0]:.1f} s, "
-                      f"an answer takes {1e3 * stream.answer_time:.0f} ms", "use a wired connection with at least 100 Mbit/s, or a lower "
-                      "rtde_frequency")]
+        return [fault("bandwidth",
+                      f"the packages of {1.0 / stream.cycle:.0f} Hz pile up: after {stream.arrived[-1] - stream.arrived[0]:.1f} s, "
+                      f"an answer takes {1e3 * stream.answer_time:.0f} ms",
+                      "use a wired connection with at least 100 Mbit/s, or a lower rtde_frequency")]
     return [_rate(stream), _clock(stream), _jitter(stream), _host(stream)]
 
 
@@ -138,8 +139,10 @@ def _rate(stream: Stream) -> Finding:
     received = len(stream.sent)
     text = f"{received} packages in {stream.sent[-1] - stream.sent[0]:.1f} s of the controller's time"
     if stream.lost:
-        return warning("packages", f"{stream.lost} of {received + stream.lost} were not sent by the controller, because the connection or this "
-                       "host is too slow", "use a wired connection with at least 100 Mbit/s, and close programs that load this host")
+        return warning("packages",
+                       f"{stream.lost} of {received + stream.lost} were not sent by the controller, because the connection or this host is "
+                       "too slow",
+                       "use a wired connection with at least 100 Mbit/s, and close programs that load this host")
     return ok("packages", f"{text}, none lost")
 
 
@@ -147,7 +150,8 @@ def _clock(stream: Stream) -> Finding:
     rate = stream.clock_rate()
     if abs(rate - 1.0) > CLOCK_TOLERANCE:
         return warning("clock", f"the controller's clock runs {rate:.4f} times as fast as the one of this host",
-                       "if it is a simulator, its host is too slow (--real-time-factor); otherwise check the time synchronization of this host")
+                       "if it is a simulator, its host is too slow (--real-time-factor); otherwise check the time synchronization of this "
+                       "host")
     return ok("clock", f"runs like the one of this host; the controller has run for {stream.sent[-1] / 3600:.1f} h")
 
 
@@ -155,7 +159,8 @@ def _jitter(stream: Stream) -> Finding:
     delays, silence = stream.delays(), stream.longest_silence()
     text = f"packages are delayed by {1e3 * _p99(delays):.2f} ms (p99), {1e3 * max(delays):.2f} ms (max)"
     if silence > SILENCE_LIMIT:
-        return fault("jitter", f"no package arrived for {1e3 * silence:.0f} ms, so the driver regards the connection as lost (silence_limit)",
+        return fault("jitter",
+                     f"no package arrived for {1e3 * silence:.0f} ms, so the driver regards the connection as lost (silence_limit)",
                      "use a direct cable without Wi-Fi or loaded switches, and check the findings about the link")
     if _p99(delays) > stream.cycle:
         return warning("jitter", text, "servo motions may be uneven: use a direct cable, or a switch without other load")

@@ -8,7 +8,6 @@ import time
 
 import messages
 from action_msgs.msg import GoalStatus, GoalStatusArray
-from documentation import Setup
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from support import HOME, Client, Simulator, start_node, wait_for
 
@@ -91,7 +90,7 @@ class StatusTrackingClient(Client):
 
 
 class Cell:
-    def __init__(self, number, setup=Setup()):
+    def __init__(self, number, setup):
         self.number, self.setup = number, setup
         self._domain = Domain()
         self._env = {"ROS_DOMAIN_ID": str(self._domain.number)}

@@ -7,10 +7,10 @@ import pytest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "system"))
 
-import documentation  # noqa: E402
-import messages  # noqa: E402
-import plugins  # noqa: E402
-from cell_pool import CellPool, Outcomes  # noqa: E402
+import documentation
+import messages
+import plugins
+from cell_pool import CellPool, Outcomes
 
 
 def pytest_addoption(parser):

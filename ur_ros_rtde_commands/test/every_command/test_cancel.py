@@ -3,9 +3,8 @@
 import pytest
 from action_msgs.msg import GoalStatus
 from cell import describe_result
-from scenarios import RESULT_LIMIT, cancel_counts_as_success
+from scenarios import RESULT_LIMIT, cancel_counts_as_success, moves_arm, start_goal
 from scenarios import has_feedback as applies_to  # noqa: F401
-from scenarios import moves_arm, start_goal
 
 from ur_ros_rtde_msgs.msg import ErrorCode
 

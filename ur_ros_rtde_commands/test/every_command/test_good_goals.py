@@ -1,7 +1,7 @@
 """The documented example of each command succeeds on the simulator."""
 
-from cell import CODES, EXAMPLE_LIMIT, describe_result
 from action_msgs.msg import GoalStatus
+from cell import CODES, EXAMPLE_LIMIT, describe_result
 
 GROUP = "goals"
 

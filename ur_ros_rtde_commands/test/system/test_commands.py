@@ -9,8 +9,7 @@ from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Twist, Vecto
 from sensor_msgs.msg import JointState
 from support import HOME, robot_seconds, seconds, wait_for
 
-from ur_ros_rtde_msgs.action import (MoveJ, MoveL, ServoJ, SetDigitalOutput, SetPayload, SetSpeedSlider, SpeedL, Stop,
-                                     ZeroFtSensor)
+from ur_ros_rtde_msgs.action import MoveJ, MoveL, ServoJ, SetDigitalOutput, SetPayload, SetSpeedSlider, SpeedL, Stop, ZeroFtSensor
 from ur_ros_rtde_msgs.msg import ErrorCode, IOState
 
 NAN = math.nan

@@ -9,8 +9,19 @@ from geometry_msgs.msg import Pose, Vector3, Wrench
 from sensor_msgs.msg import JointState
 from support import JOINTS, wait_for
 
-from ur_ros_rtde_msgs.action import (DirectTorque, EnableExternalFtSensor, ForceMode, Freedrive, MoveJ, MoveL, SetExternalForceTorque,
-                                     SetForceModeParameter, TeachMode, Trigger, ZeroFtSensor)
+from ur_ros_rtde_msgs.action import (
+    DirectTorque,
+    EnableExternalFtSensor,
+    ForceMode,
+    Freedrive,
+    MoveJ,
+    MoveL,
+    SetExternalForceTorque,
+    SetForceModeParameter,
+    TeachMode,
+    Trigger,
+    ZeroFtSensor,
+)
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 ALONG_Z = [False, False, True, False, False, False]

@@ -10,8 +10,24 @@ from sensor_msgs.msg import JointState
 from support import HOME, REAL_TIME_FACTOR, wait_for
 from trajectories import TargetRecorder
 
-from ur_ros_rtde_msgs.action import (Decelerate, Jog, MakeReady, MoveC, MoveJ, MoveJIK, MoveJRelative, MoveLFK, MoveLRelative, MoveP,
-                                     MovePath, ServoC, ServoJ, ServoL, SpeedJ, SpeedL)
+from ur_ros_rtde_msgs.action import (
+    Decelerate,
+    Jog,
+    MakeReady,
+    MoveC,
+    MoveJ,
+    MoveJIK,
+    MoveJRelative,
+    MoveLFK,
+    MoveLRelative,
+    MoveP,
+    MovePath,
+    ServoC,
+    ServoJ,
+    ServoL,
+    SpeedJ,
+    SpeedL,
+)
 from ur_ros_rtde_msgs.msg import ErrorCode, PathWaypoint
 
 DOWN = Quaternion(x=math.sqrt(0.5), y=math.sqrt(0.5), z=0.0, w=0.0)  # the tool looks down
@@ -300,7 +316,7 @@ def test_stop_j_applies_the_deceleration(robot):
     for deceleration in (0.5, 4.0):
         robot.send(SpeedJ, "speed_j", joint_velocities=[0.6, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=4.0, time=10.0)
         states = robot.subscribe(JointState, "joint_states")
-        wait_for(lambda: states and states[-1].velocity[0] > 0.59, 10.0, "the speed")
+        wait_for(lambda states=states: states and states[-1].velocity[0] > 0.59, 10.0, "the speed")
         stopped = robot.send(Decelerate, "stop_j", deceleration=deceleration).succeeded()
         times[deceleration] = REAL_TIME_FACTOR * stopped.time_to_standstill
     assert times[0.5] == pytest.approx(1.2, abs=0.3) and times[4.0] == pytest.approx(0.15, abs=0.15)

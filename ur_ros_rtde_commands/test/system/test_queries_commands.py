@@ -8,9 +8,26 @@ from arm_state import get_joint_state, home_plus, wait_until_moving
 from geometry_msgs.msg import Point, Pose, Quaternion
 from support import HOME, wait_for
 
-from ur_ros_rtde_msgs.action import (CheckJoints, CheckPose, GetCoriolisTorques, GetFlag, GetForwardKinematics, GetInteger,
-                                     GetInverseKinematics, GetJacobian, GetJointPositionsHistory, GetJointValues, GetMassMatrix,
-                                     GetNumber, GetPose, GetRegister, MakeReady, MoveJ, PoseTrans, SendScript)
+from ur_ros_rtde_msgs.action import (
+    CheckJoints,
+    CheckPose,
+    GetCoriolisTorques,
+    GetFlag,
+    GetForwardKinematics,
+    GetInteger,
+    GetInverseKinematics,
+    GetJacobian,
+    GetJointPositionsHistory,
+    GetJointValues,
+    GetMassMatrix,
+    GetNumber,
+    GetPose,
+    GetRegister,
+    MakeReady,
+    MoveJ,
+    PoseTrans,
+    SendScript,
+)
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 OTHER_POSITIONS = [0.3, -1.2, 1.4, -1.1, -1.3, 0.5]

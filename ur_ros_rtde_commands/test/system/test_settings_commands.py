@@ -7,9 +7,24 @@ from arm_state import get_tcp_pose
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from support import wait_for
 
-from ur_ros_rtde_msgs.action import (GetPose, MoveJ, SendScript, SetAnalogOutput, SetDigitalOutput, SetGravity, SetPayload, SetRegister,
-                                     SetTargetPayload, SetTcp, SetToolAnalogInputDomain, SetToolCommunication,
-                                     SetToolDigitalOutputMode, SetToolOutputMode, SetToolVoltage, SetWatchdog)
+from ur_ros_rtde_msgs.action import (
+    GetPose,
+    MoveJ,
+    SendScript,
+    SetAnalogOutput,
+    SetDigitalOutput,
+    SetGravity,
+    SetPayload,
+    SetRegister,
+    SetTargetPayload,
+    SetTcp,
+    SetToolAnalogInputDomain,
+    SetToolCommunication,
+    SetToolDigitalOutputMode,
+    SetToolOutputMode,
+    SetToolVoltage,
+    SetWatchdog,
+)
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 

@@ -140,7 +140,10 @@ def test_servo_joint_accepts_any_order_and_ignores_other_joints(robot):
     names = [*reversed(JOINTS), "finger_joint"]
     target = home_plus(0.0, 0.0, 0.0, 0.0, 0.0, 0.1)
     values = [*reversed(target), 0.3]
-    ramp = lambda t: [h + min(t / 0.5, 1.0) * (v - h) for h, v in zip([*reversed(HOME), 0.3], values)]
+
+    def ramp(t):
+        return [h + min(t / 0.5, 1.0) * (v - h) for h, v in zip([*reversed(HOME), 0.3], values)]
+
     with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(ramp(t), names)):
         wait_for(lambda: list(get_joint_state(robot).position) == pytest.approx(target, abs=0.005), 15.0, "the arm to reach the target")
 

@@ -214,7 +214,7 @@ def test_a_delayed_host_skips_no_part_of_the_trajectory(robot, simulator, driver
         wait_for_progress(goal, progress)
         cycle = simulator.state()["cycle"]
         driver.pause()
-        wait_for(lambda: simulator.state()["cycle"] > cycle + 30, 10.0, "30 cycles without the host")
+        wait_for(lambda cycle=cycle: simulator.state()["cycle"] > cycle + 30, 10.0, "30 cycles without the host")
         driver.resume()
         recorder.update()
     recorder.record_until_finished(goal)

@@ -2,7 +2,7 @@
 
 import pytest
 from action_msgs.msg import GoalStatus
-from arm_state import get_joint_speed, get_tcp_pose
+from arm_state import get_joint_speed
 from geometry_msgs.msg import Twist, Vector3
 from support import HOME, wait_for
 

@@ -34,8 +34,9 @@ def matrix(pose):
     return frame
 
 
-def jacobian(q, tcp=np.eye(4), step=1e-6):
-    """Returns the Jacobian of the TCP in the base frame, by central differences."""
+def jacobian(q, tcp=None, step=1e-6):
+    """Returns the Jacobian of the TCP (default: the flange) in the base frame, by central differences."""
+    tcp = np.eye(4) if tcp is None else tcp
     columns = []
     for joint in range(6):
         forward, backward = (flange(np.array(q) + sign * step * np.eye(6)[joint]) @ tcp for sign in (1, -1))

@@ -37,7 +37,7 @@ class ControlNode:
                 self._executor.spin_once(timeout_sec=WAIT_LIMIT)
             except (ExternalShutdownException, ShutdownException):
                 return
-            except Exception:  # noqa: BLE001: STOP has to work after a failed callback
+            except Exception:  # STOP has to work after a failed callback
                 logger.exception("a callback of a command failed")
 
     def post(self, function: Callable[[], Any]) -> None:

@@ -9,6 +9,7 @@ from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ur_ros_rtde_cli import actions
+
 from ur_ros_rtde_msgs.msg import GoalRefused
 
 from .control_node import ControlNode

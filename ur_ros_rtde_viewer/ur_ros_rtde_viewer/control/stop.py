@@ -9,6 +9,7 @@ from enum import Enum
 from typing import Any, Callable
 
 from rclpy.action import ActionClient
+
 from ur_ros_rtde_msgs.action import DashboardCommand, Stop
 
 from .control_node import ControlNode

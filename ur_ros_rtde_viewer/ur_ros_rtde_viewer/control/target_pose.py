@@ -9,6 +9,7 @@ from enum import Enum
 from typing import Any, Callable, List, Optional, Sequence
 
 import numpy as np
+
 from ur_ros_rtde_msgs.action import GetInverseKinematics, MoveJ, MoveL
 
 from .goals import Goals, Phase, SentGoal

@@ -9,6 +9,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
 from ur_ros_rtde_description.models import JOINTS
+
 from ur_ros_rtde_msgs.msg import DriverState, GoalRefused, RobotMode, SafetyMode
 
 from ..state.robot_state import DriverStatus, Joints, Pose, Refusal, RobotState

@@ -10,7 +10,7 @@ from rclpy.action import ActionClient
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "every_command"))
 
-import messages  # noqa: E402
+import messages
 
 
 def main():

@@ -198,7 +198,7 @@ class Lane:
             begin = time.monotonic()
             first_line = len(self.driver.lines)
             self._execute(case, report)
-        except Exception as error:  # noqa: BLE001: what a case meets is a result, and the next cases run
+        except Exception as error:  # what a case meets is a result, and the next cases run
             report.violations.append(f"{type(error).__name__}: {error}")
             self._write_log(case, report, first_line, traceback.format_exc())
             self._start_over()

@@ -51,5 +51,6 @@ class Page:
         if not self._pressed:
             return []
         wait_for(lambda: any(outcome in ENDED for outcome, _text in list(self._reports)), 10.0, "the page to report the end of the stop")
-        failed = [text for outcome, text in self._reports if outcome == stop.Outcome.FAILED or outcome == stop.Outcome.PROGRAM and not excused]
+        failed = [text for outcome, text in self._reports
+                  if outcome == stop.Outcome.FAILED or outcome == stop.Outcome.PROGRAM and not excused]
         return [f"STOP of the page: {text}" for text in failed]
