@@ -33,7 +33,7 @@ class ArmMonitor:
         port = None
         while not self._stop.wait(PERIOD):
             if not self._robot.driver.running():
-                self._journal.violate("driver", "the process has exited")
+                self._journal.violate("driver", f"the process has exited: {''.join(self._robot.driver.lines[-1:])}")
                 return
             try:
                 port = port or ControlPort(self._robot.simulator.address, timeout=2.0)

@@ -17,7 +17,7 @@ import random
 import sys
 from typing import List
 
-from . import console, ports, simulation
+from . import console, isolation, ports, simulation
 from .environment import run_environment
 from .layout import PROGRAM, ROOT, SANITIZERS, Layout
 from .processes import Programs
@@ -100,8 +100,8 @@ def _run_faults(options: argparse.Namespace, layout: Layout) -> int:
     if layout.variant in SANITIZERS:
         command.append("--sanitizer")
     limit = 120.0 + max(FAULT_SECONDS * options.faults, 120.0 * options.minutes)
-    env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
-    with Programs(log) as programs:
+    with isolation.Domain() as domain, Programs(log) as programs:  # several runs, and a driver of the user, may run beside it
+        env = {**run_environment(layout), **domain.environment(), "PYTHONDONTWRITEBYTECODE": "1"}
         code = programs.run(command, env, limit)
     if code != 0:
         console.line(f"To repeat these goals and faults: ./ur chaos --faults {options.faults} --seed {options.seed} "
