@@ -83,8 +83,8 @@ def _databases(layout: Layout) -> List[pathlib.Path]:
         if not (package.folder / "src").is_dir():
             continue  # interfaces or Python
         folder = layout.base / "tidy" / name
-        command = ["cmake", "-S", package.folder, "-B", folder, *cmake_arguments(Options(layout), True), "-DCMAKE_UNITY_BUILD=OFF",
-                   f"-DCMAKE_PREFIX_PATH={layout.install}"]
+        command = ["cmake", "-S", str(package.folder), "-B", str(folder), *cmake_arguments(Options(layout), True),
+                   "-DCMAKE_UNITY_BUILD=OFF", f"-DCMAKE_PREFIX_PATH={layout.install}"]
         subprocess.run(command, check=True, env=build_environment(layout, 1), stdout=subprocess.DEVNULL)
         databases.append(folder / "compile_commands.json")
     return databases

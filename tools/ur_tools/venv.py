@@ -36,8 +36,8 @@ def _candidates() -> Iterable[str]:
         if found:
             yield found
     for minor in (11, 12, 10):
-        for found in sorted(pathlib.Path.home().glob(f".pyenv/versions/3.{minor}.*/bin/python3"), reverse=True):
-            yield str(found)
+        for python in sorted(pathlib.Path.home().glob(f".pyenv/versions/3.{minor}.*/bin/python3"), reverse=True):
+            yield str(python)
     yield "/usr/bin/python3"
 
 

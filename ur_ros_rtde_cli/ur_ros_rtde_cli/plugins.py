@@ -29,7 +29,7 @@ def installed() -> Iterator[Tuple[str, str, str]]:
                 yield "?", package, f"{file} cannot be read: {error}"
                 continue
             for entry in tree.iter("class"):
-                yield entry.get("name") or entry.get("type", "?"), package, (entry.findtext("description") or "").strip()
+                yield entry.get("name", "") or entry.get("type", "?"), package, (entry.findtext("description") or "").strip()
 
 
 def action_type(name: str, package: str) -> Optional[Tuple[str, str]]:
