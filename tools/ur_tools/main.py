@@ -266,7 +266,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
                      help="folder in which the package is created (default: the current folder)")
 
     for name, function, text in (("format", command_format, "format all C++ files"),
-                                 ("lint", command_lint, "check formatting and paths; with --tidy also run clang-tidy")):
+                                 ("lint", command_lint, "check formatting, Python and paths; with --tidy also run clang-tidy")):
         sub = add(name, function, text)
         sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
         if name == "lint":

@@ -16,7 +16,7 @@ from .layout import ROOT, SUPPORTED_DISTRIBUTIONS, Layout
 SUPPORTED = ((3, 10), (3, 12))
 STAMP = "ur_stamp.txt"
 VIEWER_STAMP = "ur_viewer_stamp.txt"
-MEGABYTES = 130  # to download
+MEGABYTES = 160  # to download
 SECONDS = 25.0
 RETRY_DELAY = 3.0  # s
 PYTHON_OF_ROS = "import rclpy, ensurepip, venv"
