@@ -15,6 +15,13 @@ PAUSE = 0.02  # s, between two goals
 PAUSE_AFTER_REFUSAL = 0.2  # s
 
 
+def describe(result):
+    """Returns whether a goal has succeeded, and a text that begins with the name of the error code and a colon."""
+    if hasattr(result, "error_string"):  # control_msgs/action/FollowJointTrajectory
+        return result.error_code == result.SUCCESSFUL, f"{result.error_code}: {result.error_string}"
+    return result.success, f"{CODES[result.error_code]}: {result.message}"
+
+
 class Gate:
     """Allows or blocks new goals, and counts the active ones."""
 
@@ -97,8 +104,8 @@ class GoalSender:
             outcome = "refused"
             try:
                 outcome = self._execute(self._mix.next())
-            except AssertionError as error:
-                self._journal.violate(self._name, str(error))
+            except Exception as error:  # also a wrong assumption of this test, which must not go on with fewer clients
+                self._journal.violate(self._name, f"{type(error).__name__}: {error}")
                 return
             finally:
                 self._gate.leave()
@@ -124,9 +131,9 @@ class GoalSender:
 
     def _result(self, plan, goal):
         status, result = goal.wait_for_result(RESULT_LIMIT)
-        code = CODES[result.error_code]
-        self._journal.write(self._name, f"  {plan.name} {goal.id.hex()[:8]}: {code}: {result.message}")
+        succeeded, text = describe(result)
+        self._journal.write(self._name, f"  {plan.name} {goal.id.hex()[:8]}: {text}")
         states = self._client.get_terminal_states(goal)
         assert states == {status}, f"{plan.name}, goal {goal.id.hex()}, has several final states: {states}, result {status}"
         self._client.forget(goal)
-        return "succeeded" if result.success else f"failed, {code}"
+        return "succeeded" if succeeded else f"failed, {text.partition(':')[0]}"

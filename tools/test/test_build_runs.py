@@ -133,3 +133,25 @@ def test_an_interrupted_installation_of_the_wheels_continues_in_the_same_environ
     assert not venv.is_current(layout)
     venv.ensure(layout)
     assert installed == [layout] and venv.is_current(layout)
+
+
+def test_packages_are_built_again_in_a_new_environment(layout):
+    names = list(build.build(build.Options(layout)))
+    layout.venv.mkdir(parents=True, exist_ok=True)
+    (layout.venv / venv.IDENTITY).write_text("another one")
+    build.build(build.Options(layout))
+    build.build(build.Options(layout))
+    assert calls(layout) == [names, names]
+
+
+def test_a_new_environment_has_another_identity(state, monkeypatch):
+    layout = Layout("kilted")
+    monkeypatch.setattr(venv, "ROOT", state.parent)
+    monkeypatch.setattr(venv, "find_python", lambda: sys.executable)
+    monkeypatch.setattr(venv, "_pip_install", lambda _layout, _requirements: None)
+    venv.ensure(layout)
+    first = venv.identity(layout)
+    (layout.venv / "pyvenv.cfg").unlink()
+    (layout.venv / venv.STAMP).unlink()
+    venv.ensure(layout)
+    assert first and venv.identity(layout) not in ("", first)

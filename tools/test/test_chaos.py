@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+import types
 
 import pytest
 
@@ -114,3 +115,27 @@ def test_a_motion_without_a_goal_is_a_violation(tmp_path, monkeypatch, speed, ac
     arm_monitor._check_state({"actual": {"velocity": [0.0, -speed, 0.0, 0.0, 0.0, 0.0]}})
     assert bool(log.violation) == violated
     log.close()
+
+
+def test_a_client_that_ends_early_is_a_violation(tmp_path, monkeypatch):
+    class WrongMix:
+        def next(self):
+            raise KeyError(-1)
+
+    monkeypatch.setattr(clients, "StatusTrackingClient", lambda name: types.SimpleNamespace(close=lambda: None))
+    monkeypatch.setattr(clients, "Mix", lambda random: WrongMix())
+    log = journal.Journal(tmp_path / "journal.log")
+    sender = clients.GoalSender("client 0", None, clients.Gate(), log)
+    sender.start()
+    sender.join()
+    assert "client 0: KeyError: -1" in log.violation
+    log.close()
+
+
+@pytest.mark.parametrize("result, succeeded, text", [
+    (types.SimpleNamespace(success=False, error_code=0, message="no"), False, "NONE: no"),
+    (types.SimpleNamespace(error_code=-1, error_string="late", SUCCESSFUL=0), False, "-1: late"),
+    (types.SimpleNamespace(error_code=0, error_string="", SUCCESSFUL=0), True, "0: "),
+])
+def test_results_of_all_types_are_described(result, succeeded, text):
+    assert clients.describe(result) == (succeeded, text)

@@ -93,7 +93,7 @@ def test_the_packages_that_the_demo_imports_are_built():
         used.update(re.findall(r"^from (\w+)\.(?:action|msg|srv) import", file.read_text(), re.M))
     assert "ur_ros_rtde_tutorials" in used
     assert used & set(packages.discover()) <= set(built)
-    assert not {"ur_ros_rtde_gripper_commands", "ur_ros_rtde_commands", "ur_ros_rtde_cli"} & set(built)
+    assert not {"ur_ros_rtde_gripper_commands", "ur_ros_rtde_commands"} & set(built)
     assert "ur_ros_rtde_commands" in packages_of_demo(parse(["--keep-running"]))
 
 

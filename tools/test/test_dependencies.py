@@ -5,7 +5,6 @@ import re
 import sys
 import xml.etree.ElementTree as xml
 
-import pytest
 from ur_tools import packages
 from ur_tools.layout import ROOT
 
@@ -19,6 +18,7 @@ ANY = packages.DEPENDENCIES
 KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "gtest", "GTest::gmock": "libgmock-dev",
         "Git": "git", "Python3": "python3", "nlohmann_json": "nlohmann-json-dev", "tl-expected": "libexpected-dev",
         "numpy": "python3-numpy", "pytest": "python3-pytest", "yaml": "python3-yaml"}
+MODULES = {"ur_ros_rtde": "ur_ros_rtde_python", "ur_ros_rtde_launch": "ur_ros_rtde"}  # Python modules and their packages
 NOT_DECLARED = {"Threads",  # part of CMake
                 "copp_py", "toppra",  # solvers that oracle.py compares with
                 # No rosdep key for viser, which requires the others; the viewer says how to install it.
@@ -61,32 +61,44 @@ def imported(path):
 
 
 def undeclared(names, known):
-    return sorted({KEYS.get(name, name) for name in set(names) - NOT_DECLARED} - known)
+    return {KEYS.get(name, name) for name in set(names) - NOT_DECLARED} - known
 
 
-@pytest.mark.parametrize("name", PACKAGES)
-def test_cmake_packages_are_declared(name):
-    for path in files(name, "CMakeLists.txt", "*.cmake"):
-        known = declared(name, ANY if is_test(path) else BUILD)
-        assert not undeclared(found_packages(path.read_text()), known), path
+def reported(path, names):
+    """Returns a line for each name that package.xml of this file does not declare."""
+    return [f"{path.relative_to(ROOT)}: {name}" for name in sorted(names)]
 
 
-@pytest.mark.parametrize("name", PACKAGES)
-def test_imported_python_modules_are_declared(name):
-    local = {path.stem for path in files(name, "*.py")} | {path.parent.name for path in files(name, "__init__.py")}
-    local |= {"support", "robot_fixtures", "arm_state"}  # modules of the tests of ur_ros_rtde
-    for path in files(name, "*.py"):
-        known = declared(name, ANY if is_test(path) else RUN)
-        assert not undeclared(set(imported(path)) - local - set(sys.stdlib_module_names), known), path
+def test_cmake_packages_are_declared():
+    missing = []
+    for name in PACKAGES:
+        for path in files(name, "CMakeLists.txt", "*.cmake"):
+            known = declared(name, ANY if is_test(path) else BUILD)
+            missing += reported(path, undeclared(found_packages(path.read_text()), known))
+    assert not missing, "\n".join(missing)
 
 
-@pytest.mark.parametrize("name", PACKAGES)
-def test_executables_that_launch_files_start_are_declared(name):
-    for path in files(name, "*.launch.py"):
-        text = path.read_text()
-        required = re.search(r"^PACKAGES = \((.*?)\)", text, re.M | re.S)  # whether they are installed
-        known = declared(name, RUN) | set(re.findall(r'"(\w+)"', required.group(1) if required else ""))
-        assert set(re.findall(r'package="(\w+)"', text)) <= known, path
+def test_imported_python_modules_are_declared():
+    missing = []
+    for name in PACKAGES:
+        local = {path.stem for path in files(name, "*.py")} | {path.parent.name for path in files(name, "__init__.py")}
+        local |= {"support", "robot_fixtures", "arm_state", "plugin_prefix"}  # modules of the tests of ur_ros_rtde
+        for path in files(name, "*.py"):
+            known = declared(name, ANY if is_test(path) else RUN)
+            modules = set(imported(path)) - local - set(sys.stdlib_module_names)
+            missing += reported(path, undeclared({MODULES.get(module, module) for module in modules}, known))
+    assert not missing, "\n".join(missing)
+
+
+def test_executables_that_launch_files_start_are_declared():
+    missing = []
+    for name in PACKAGES:
+        for path in files(name, "*.launch.py"):
+            text = path.read_text()
+            required = re.search(r"^PACKAGES = \((.*?)\)", text, re.M | re.S)  # whether they are installed
+            known = declared(name, RUN) | set(re.findall(r'"(\w+)"', required.group(1) if required else ""))
+            missing += reported(path, set(re.findall(r'package="(\w+)"', text)) - known)
+    assert not missing, "\n".join(missing)
 
 
 def test_the_build_tool_of_each_package_is_declared():

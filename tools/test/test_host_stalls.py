@@ -58,7 +58,7 @@ def run(tmp_path, monkeypatch, code):
 
 def test_a_test_that_failed_while_the_host_stalled_is_repeated(tmp_path, monkeypatch):
     found, attempts = run(tmp_path, monkeypatch, "def test_late():\n    if attempt() == 1:\n        stall_host()\n        assert False\n")
-    assert (found.passed, found.failures, attempts) == (2, [], 2), found.output
+    assert (found.cases, attempts) == (runner.Cases(2, []), 2), found.output
     line, = found.repeats
     assert line.startswith("failed while the host stalled for ") and line.endswith("::test_late")
     milliseconds = float(line.split()[6])
@@ -84,12 +84,12 @@ def test_late(started):
 def test_later(started):
     assert started == "started"
 """)
-    assert (found.passed, found.failures, attempts) == (3, [], 2), found.output
+    assert (found.cases, attempts) == (runner.Cases(3, []), 2), found.output
 
 
 def test_a_test_that_always_stalls_fails(tmp_path, monkeypatch):
     found, attempts = run(tmp_path, monkeypatch, "def test_late():\n    attempt()\n    stall_host()\n    assert False\n")
-    assert (found.passed, found.failures, attempts) == (1, ["test_stalls.test_late"], 4), found.output
+    assert (found.cases, attempts) == (runner.Cases(1, ["test_stalls.test_late"]), 4), found.output
     assert len(found.repeats) == 4
 
 
@@ -97,7 +97,7 @@ def test_a_failure_without_a_stall_is_not_repeated(tmp_path, monkeypatch):
     # The stall of the test before does not excuse it.
     found, attempts = run(tmp_path, monkeypatch, "def test_before():\n    stall_host()\n\n\n"
                                                  "def test_wrong():\n    attempt()\n    assert False\n")
-    assert (found.passed, found.failures, attempts, found.repeats) == (2, ["test_stalls.test_wrong"], 1, []), found.output
+    assert (found.cases, attempts, found.repeats) == (runner.Cases(2, ["test_stalls.test_wrong"]), 1, []), found.output
 
 
 @pytest.mark.parametrize("stalls, attempts", [([0.3, 0.0], 2), ([0.0], 1), ([0.2] * 9, 4)])
@@ -109,7 +109,7 @@ def test_a_program_that_failed_while_the_host_stalled_is_repeated(tmp_path, monk
         monkeypatch.setattr(started._watch, "longest_since", lambda begin: next(measured))
         found = started.run(runner.Test("a: program", [sys.executable, "-c", program], tmp_path, 20.0))
     assert len((tmp_path / "count").read_text()) == attempts
-    assert found.failures == [""] and len(found.repeats) == attempts - 1
+    assert found.cases.failures == [""] and len(found.repeats) == attempts - 1
 
 
 def test_a_repeated_case_counts_once(tmp_path):
@@ -120,4 +120,4 @@ def test_a_repeated_case_counts_once(tmp_path):
         if failed:
             xml.SubElement(case, "failure")
     xml.ElementTree(root).write(report)
-    assert runner.read_cases(report, True) == (1, [])
+    assert runner.read_cases(report, True) == runner.Cases(1, [])

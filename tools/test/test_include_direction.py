@@ -3,7 +3,6 @@
 import pathlib
 import re
 
-import pytest
 from ur_tools.layout import ROOT
 
 BACKGROUND = True
@@ -38,13 +37,15 @@ def upward_includes(package, order):
                 yield f"{file.relative_to(ROOT)} includes {header}"
 
 
-@pytest.mark.parametrize("package, order", DIRECTORIES.items())
-def test_directories_include_only_those_below_them(package, order):
-    assert not list(upward_includes(package, order))
+def test_directories_include_only_those_below_them():
+    upward = [line for package, order in DIRECTORIES.items() for line in upward_includes(package, order)]
+    assert not upward, "\n".join(upward)
 
 
-@pytest.mark.parametrize("package, order", DIRECTORIES.items())
-def test_each_directory_has_a_place(package, order):
-    folders = {path.name for root in (ROOT / package / "src", ROOT / package / "include" / package) for path in root.iterdir()
-               if any(path.rglob("*.[ch]pp"))}
-    assert folders == set(order)
+def test_each_directory_has_a_place():
+    def folders(package):
+        return {path.name for root in (ROOT / package / "src", ROOT / package / "include" / package) for path in root.iterdir()
+                if any(path.rglob("*.[ch]pp"))}
+
+    misplaced = {package: folders(package) ^ set(order) for package, order in DIRECTORIES.items() if folders(package) != set(order)}
+    assert not misplaced

@@ -2,7 +2,6 @@
 
 import re
 
-import pytest
 from catkin_pkg.package import parse_package
 from ur_tools.layout import ROOT
 
@@ -11,12 +10,19 @@ CHANGELOG = r"\^+\nChangelog for package (\S+)\n\^+\n\n(.+?)\n-+\n(.*)"
 FOLDERS = sorted(path.parent for path in ROOT.glob("*/package.xml"))
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
-def test_each_package_has_its_license_and_changes(folder):
+def problem(folder):
+    """Returns what a package lacks."""
     package = parse_package(str(folder / "package.xml"))
-    assert package.licenses[0].file == "LICENSE" and (folder / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
-    title, newest, changes = re.fullmatch(CHANGELOG, (folder / "CHANGELOG.rst").read_text(), re.S).groups()
-    assert title == package.name and newest.split()[0] in ("Forthcoming", package.version) and changes.startswith("* ")
+    if package.licenses[0].file != "LICENSE" or (folder / "LICENSE").read_text() != (ROOT / "LICENSE").read_text():
+        return "LICENSE"
+    changes = re.fullmatch(CHANGELOG, (folder / "CHANGELOG.rst").read_text(), re.S)
+    if changes is None or changes[1] != package.name or changes[2].split()[0] not in ("Forthcoming", package.version):
+        return "title of CHANGELOG.rst"
+    return "" if changes[3].startswith("* ") else "changes in CHANGELOG.rst"
+
+
+def test_each_package_has_its_license_and_changes():
+    assert {folder.name: problem(folder) for folder in FOLDERS if problem(folder)} == {}
 
 
 def test_the_packages_are_released_together():

@@ -5,14 +5,10 @@ from ur_tools.layout import Layout
 BACKGROUND = True
 
 
-@pytest.mark.parametrize("text", ["see /" + "work/main", "cd /" + "root/x", "/" + "home/anna/ws"])
-def test_a_machine_specific_path_is_found(text):
-    assert lint._MACHINE_SPECIFIC.search(text)
-
-
-@pytest.mark.parametrize("text", ["/usr/bin/env", "the /tmp folder", "ROOT/tools", "frame/work/piece"])
-def test_other_paths_are_ignored(text):
-    assert not lint._MACHINE_SPECIFIC.search(text)
+def test_machine_specific_paths_are_found_and_others_ignored():
+    specific = ["see /" + "work/main", "cd /" + "root/x", "/" + "home/anna/ws"]
+    others = ["/usr/bin/env", "the /tmp folder", "ROOT/tools", "frame/work/piece"]
+    assert [text for text in (*specific, *others) if lint._MACHINE_SPECIFIC.search(text)] == specific
 
 
 def test_the_list_of_system_packages_has_one_name_per_line(tmp_path):

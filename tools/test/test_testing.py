@@ -5,23 +5,23 @@ import pathlib
 import sys
 
 import pytest
-from ur_tools import main, runner, schedule, testing
+from ur_tools import main, runner, schedule, summary, testing
 from ur_tools.layout import Layout
 
 REPORT = """<testsuites><testsuite>
 <testcase name="good"/><testcase name="good_too" status="run"/>
 <testcase classname="Suite" name="bad"><failure/></testcase><testcase classname="a.Suite" name="broken"><error/></testcase>
-<testcase name="left_out"><skipped/></testcase>
+<testcase classname="Suite" name="left_out"><skipped message="file.cpp:7&#10;no device"/></testcase>
 </testsuite></testsuites>"""
 
 
 def test_passed_cases_of_a_report_are_counted_without_skipped_ones(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text(REPORT)
-    assert runner.read_cases(report, False) == (2, ["Suite.bad", "Suite.broken"])
+    assert runner.read_cases(report, False) == runner.Cases(2, ["Suite.bad", "Suite.broken"], {"Suite.left_out": "no device"})
 
 
-@pytest.mark.parametrize("succeeded, expected", [(True, (1, [])), (False, (0, [""]))])
+@pytest.mark.parametrize("succeeded, expected", [(True, runner.Cases(1, [])), (False, runner.Cases(0, [""]))])
 def test_a_program_without_a_report_is_one_case(tmp_path, succeeded, expected):
     assert runner.read_cases(tmp_path / "none.xml", succeeded) == expected
 
@@ -29,7 +29,7 @@ def test_a_program_without_a_report_is_one_case(tmp_path, succeeded, expected):
 def test_a_crash_after_passed_cases_is_a_failure(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text("<testsuite><testcase name='good'/></testsuite>")
-    assert runner.read_cases(report, False) == (1, ["failed after its last case"])
+    assert runner.read_cases(report, False) == runner.Cases(1, ["failed after its last case"])
 
 
 def test_files_of_the_same_name_have_different_test_names(tmp_path):
@@ -76,7 +76,7 @@ def test_the_durations_of_an_interrupted_run_are_kept(tmp_path, monkeypatch):
         def run(self, test):
             if test.name == "a: second":
                 raise KeyboardInterrupt
-            return runner.Result(test, 1, [], 7.0, 1.4, "")
+            return runner.Result(test, runner.Cases(1, []), 7.0, 1.4, "")
 
         def cancel(self):
             pass
@@ -88,8 +88,8 @@ def test_the_durations_of_an_interrupted_run_are_kept(tmp_path, monkeypatch):
     assert schedule.Times(tmp_path / "durations.json").cost("a: first", False) == schedule.Cost(7.0, 0.2)
 
 
-def result(command, failures):
-    return runner.Result(runner.Test("a: test", command, pathlib.Path(), 1.0), 3, failures, 1.0, 0.1, "")
+def result(command, failures, skipped=None):
+    return runner.Result(runner.Test("a: test", command, pathlib.Path(), 1.0), runner.Cases(3, failures, skipped or {}), 1.0, 0.1, "")
 
 
 def test_only_the_failed_cases_of_a_file_are_repeated():
@@ -105,7 +105,7 @@ def test_the_files_of_a_group_run_in_one_process(tmp_path):
     group, alone = testing._in_groups(testing._pytest(Layout.of_environment(), "driver", tmp_path))
     assert (group.name, alone.name) == ("driver: typed/stops", "driver: typed/test_y")
     assert [file.name for file in group.files] == ["test_x.py", "test_z.py"] and group.limit == 2.0 * testing.PYTEST_LIMIT
-    failed = testing._only_failed_cases(runner.Result(group, 0, ["test_z.test_a[b.c]", "test_x.test_d"], 1.0, 0.1, ""))
+    failed = testing._only_failed_cases(result(group.command, ["test_z.test_a[b.c]", "test_x.test_d"]))
     folder = tmp_path / "typed"
     assert failed.command == [*alone.command[:-1], f"{folder}/test_z.py::test_a[b.c]", f"{folder}/test_x.py::test_d"]
 
@@ -132,7 +132,7 @@ class FakeRunner:
         self._failures = ["Suite.bad"] if fails_alone else []
 
     def run(self, test):
-        return runner.Result(test, 1 - len(self._failures), self._failures, 1.0, 0.1, "")
+        return runner.Result(test, runner.Cases(1 - len(self._failures), self._failures), 1.0, 0.1, "")
 
 
 @pytest.mark.parametrize("fails_alone, verdict", [(True, "fails alone too"),
@@ -140,10 +140,21 @@ class FakeRunner:
 def test_a_failed_case_fails_the_run_even_if_it_passes_alone(capsys, fails_alone, verdict):
     results = [result(["a/program"], ["Suite.bad"])]
     verdicts = testing._diagnose(FakeRunner(fails_alone), results)
-    assert testing._summary(results, [], verdicts, 1.0) == 1
+    assert summary.report(results, [], verdicts, 1.0) == 1
     lines = capsys.readouterr().out.splitlines()
     assert f"    a: test Suite.bad ({verdict})" in lines
     assert lines[-1] == "3 passed, 1 failed"
+
+
+@pytest.mark.parametrize("ci, reason, status", [("true", "no device", 1), ("", "no device", 0), ("true", summary.EXPECTED_SKIPS[0], 0)])
+def test_skipped_cases_are_named_with_their_reason_and_fail_in_continuous_integration(capsys, monkeypatch, ci, reason, status):
+    monkeypatch.setenv("CI", ci)
+    results = [result(["a/program"], [], {f"Suite.part{number}": reason for number in range(5)}), result(["b"], [])]
+    assert summary.report(results, [], {}, 1.0) == status
+    text = capsys.readouterr().out
+    assert f"Skipped: 5\n    5: {reason}" in text and "        a: test Suite.part0\n" in text and "        and 2 more\n" in text
+    assert ("not expected with CI=true" in text) == (status == 1)
+    assert text.splitlines()[-1] == "6 passed, 0 failed"
 
 
 def test_results_without_failures_are_not_repeated():
@@ -160,7 +171,7 @@ def run_program(tmp_path, monkeypatch, program, limit=20.0):
 def test_the_processor_time_of_a_test_includes_its_child_processes(tmp_path, monkeypatch):
     busy = "import time\nwhile time.process_time() < 0.3: pass"
     found = run_program(tmp_path, monkeypatch, f"import subprocess, sys; subprocess.run([sys.executable, '-c', {busy!r}])")
-    assert (found.passed, found.failures) == (1, [])
+    assert found.cases == runner.Cases(1, [])
     assert 0.25 < found.processor_seconds < found.seconds + 0.1
 
 
@@ -171,7 +182,7 @@ def test_the_processor_time_of_a_test_includes_its_child_processes(tmp_path, mon
 ])
 def test_a_program_that_fails_is_reported_with_the_reason(tmp_path, monkeypatch, program, limit, explanation):
     found = run_program(tmp_path, monkeypatch, program, limit)
-    assert (found.passed, found.failures) == (0, [""]) and explanation in found.output
+    assert found.cases == runner.Cases(0, [""]) and explanation in found.output
 
 
 @pytest.mark.parametrize("arguments, ros, debug, forwarded", [

@@ -2,7 +2,6 @@
 
 import re
 
-import pytest
 from ur_tools.layout import ROOT
 
 PATCHES = sorted((ROOT / "ur_rtde_vendor" / "patches").glob("*.patch"))
@@ -18,21 +17,21 @@ def test_the_patches_are_numbered_without_gaps():
     assert [patch.name[:5] for patch in PATCHES] == [f"{number:04d}-" for number in range(1, len(PATCHES) + 1)]
 
 
-@pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.stem)
-def test_each_patch_states_defect_evidence_fix_and_upstream_candidate(patch):
-    title, *paragraphs = preface(patch).split("\n\n")
-    assert title and "\n" not in title
-    fields = re.findall(r"^(Defect|Evidence|Fix|Upstream candidate):\s", "\n\n".join(paragraphs), re.M)
-    assert fields == ["Defect", "Evidence", "Fix", "Upstream candidate"]
+def test_each_patch_states_defect_evidence_fix_and_upstream_candidate():
+    incomplete = []
+    for patch in PATCHES:
+        title, *paragraphs = preface(patch).split("\n\n")
+        fields = re.findall(r"^(Defect|Evidence|Fix|Upstream candidate):\s", "\n\n".join(paragraphs), re.M)
+        if not title or "\n" in title or fields != ["Defect", "Evidence", "Fix", "Upstream candidate"]:
+            incomplete.append(f"{patch.name}: {title}: {fields}")
+    assert not incomplete, "\n".join(incomplete)
 
 
-def test_the_page_lists_the_patches_in_order():
-    assert [row[1] for row in ROW.findall(PAGE)] == [patch.name for patch in PATCHES]
+def test_the_page_has_number_title_and_upstream_candidate_of_each_patch_in_order():
+    def row(patch):
+        candidate = re.search(r"^Upstream candidate: (.*)", preface(patch), re.M | re.S).group(1)
+        return patch.name[:4], patch.name, preface(patch).split("\n")[0], " ".join(candidate.split()).rstrip(".")
 
-
-@pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.stem)
-def test_the_page_has_the_number_title_and_upstream_candidate_of_the_patch(patch):
-    row, = (row for row in ROW.findall(PAGE) if row[1] == patch.name)
-    text = preface(patch)
-    candidate = " ".join(re.search(r"^Upstream candidate: (.*)", text, re.M | re.S).group(1).split())
-    assert (row[0], row[2], row[6]) == (patch.name[:4], text.split("\n")[0], candidate.rstrip("."))
+    listed = [(number, file, title, candidate) for number, file, title, *_, candidate in ROW.findall(PAGE)]
+    expected = [row(patch) for patch in PATCHES]
+    assert listed == expected, [row for row in (*listed, *expected) if (row in listed) != (row in expected)]

@@ -75,6 +75,7 @@ class Stamps:
         options_digest = hashlib.sha256("\0".join(cmake_arguments(options, False)[:-1]).encode())
         for file in (*options.layout.requirements, options.layout.provider):
             options_digest.update(file.read_bytes())
+        options_digest.update(venv.identity(options.layout).encode())
         self._states: Dict[str, str] = {}
         for name, package in packages.items():
             digest = options_digest.copy()

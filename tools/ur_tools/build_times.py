@@ -23,6 +23,7 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_ros_rtde_cli": (1.0, 1.0),
     "ur_ros_rtde_description": (1.0, 9.0),
     "ur_ros_rtde_gripper_commands": (14.0, 17.0),
+    "ur_ros_rtde_python": (1.0, 1.0),
     "ur_ros_rtde_tutorials": (15.0, 15.0),
     "ur_ros_rtde_viewer": (2.0, 2.0),
 }

@@ -90,7 +90,7 @@ def workspace_environment(layout: Layout) -> Dict[str, str]:
     env["UR_CHECKOUT"] = str(ROOT)
     env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
     env["CMAKE_PREFIX_PATH"] = _path(layout.install, env.get("CMAKE_PREFIX_PATH"))
-    folders = [layout.install / "lib" / name for name in ("ur_ros_rtde", "ur_ros_rtde_cli")]
+    folders = [layout.install / "lib" / name for name in ("ur_ros_rtde", "ur_ros_rtde_cli", "ur_ros_rtde_python")]
     env["PATH"] = _path(*folders, env["PATH"])  # the wheels have no `ros2 run`
     if layout.is_installed:
         return env

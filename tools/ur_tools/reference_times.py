@@ -34,6 +34,8 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_ros_rtde_commands: system/test_trajectory_commands": (70.0, 0.3),
     "ur_ros_rtde_commands: system/test_until_commands": (41.0, 0.25),
     "ur_ros_rtde_gripper_commands: fuzz.robotiq_replies": (30.0, 1.0),
+    "ur_ros_rtde_python: test_commands": (33.0, 0.4),
+    "ur_ros_rtde_python: test_documentation": (30.0, 0.3),
     "ur_ros_rtde_robot: fuzz.composed_script": (30.0, 1.0),
     "ur_ros_rtde_robot: fuzz.dashboard_client": (30.0, 1.0),
     "ur_ros_rtde_robot: fuzz.dashboard_replies": (30.0, 1.0),

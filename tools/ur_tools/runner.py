@@ -10,7 +10,7 @@ import threading
 import time
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass, field, replace
-from typing import Dict, List, Optional, Set, Tuple
+from typing import Dict, List, Optional, Set
 
 from . import isolation
 from .environment import run_environment
@@ -64,35 +64,43 @@ class Test:
 
 
 @dataclass
+class Cases:
+    """What became of the cases of a test."""
+
+    passed: int
+    failures: List[str]  # names
+    skipped: Dict[str, str] = field(default_factory=dict)  # reasons by name
+
+
+@dataclass
 class Result:
     test: Test
-    passed: int  # cases
-    failures: List[str]  # names of cases
+    cases: Cases
     seconds: float
     processor_seconds: float  # of all its processes
     output: str
     repeats: List[str] = field(default_factory=list)  # lines about tests that failed while the host stalled, and were repeated
 
 
-def read_cases(report: pathlib.Path, succeeded: bool) -> Tuple[int, List[str]]:
-    """Returns the number of passed cases in a JUnit report (GoogleTest's or pytest's), and the names of the failed ones.
-
-    A program without a report counts as one case, without a name.
-    """
+def read_cases(report: pathlib.Path, succeeded: bool) -> Cases:
+    """Reads a JUnit report (GoogleTest's or pytest's). A program without a report counts as one case, without a name."""
     try:
         tree = xml.parse(report).getroot()
     except (OSError, xml.ParseError):
-        return (1, []) if succeeded else (0, [""])
-    passed, failures = 0, []
+        return Cases(1, []) if succeeded else Cases(0, [""])
+    found = Cases(0, [])
     cases = {f"{case.get('classname', '').split('.')[-1]}.{case.get('name')}": case for case in tree.iter("testcase")}
     for name, case in cases.items():  # the last attempt of each
+        skipped = case.find("skipped")
         if case.find("failure") is not None or case.find("error") is not None:
-            failures.append(name)
-        elif case.find("skipped") is None and case.get("status") != "notrun":
-            passed += 1
-    if not succeeded and not failures:
-        failures.append("failed after its last case")
-    return passed, failures
+            found.failures.append(name)
+        elif skipped is not None:
+            found.skipped[name] = skipped.get("message", "").rpartition("\n")[2] or "no reason"  # GoogleTest's begins with its place
+        elif case.get("status") != "notrun":
+            found.passed += 1
+    if not succeeded and not found.failures:
+        found.failures.append("failed after its last case")
+    return found
 
 
 def _report_of(test: Test, base: pathlib.Path) -> pathlib.Path:
@@ -189,7 +197,7 @@ class Runner:
             result = self._run_once(test)
             if result is None:
                 return None
-            stall = 0.0 if test.is_pytest or not result.failures else self._watch.longest_since(begin)
+            stall = 0.0 if test.is_pytest or not result.cases.failures else self._watch.longest_since(begin)
             if stall == 0.0 or len(repeats) == REPEATS:
                 return replace(result, repeats=[*repeats, *result.repeats])
             repeats.append(f"failed while the host stalled for {1e3 * stall:.0f} ms: {test.name}")
@@ -223,13 +231,13 @@ class Runner:
         end_group(process)
         with self._lock:
             self._running.discard(process)
-        passed, failures = read_cases(report, process.returncode == 0 and in_time)
+        cases = read_cases(report, process.returncode == 0 and in_time)
         text = log.read_text(errors="replace")
         if not in_time:
             text += f"\nstopped at its time limit of {limit:g} s\n"
         elif process.returncode < 0:
             text += f"\nended by signal {-process.returncode}\n"
-        return Result(test, passed, failures, time.monotonic() - start, processor_seconds,
+        return Result(test, cases, time.monotonic() - start, processor_seconds,
                       text + f"(log: {log.relative_to(ROOT)})\n", STALLED.findall(text) if test.is_pytest else [])
 
     def cancel(self) -> None:

@@ -10,8 +10,8 @@ import threading
 import time
 from typing import List, Tuple
 
-PERIOD = 0.02  # s
-LEAST_STALL = 0.1  # s; with shorter ones, the driver and the tests must work
+PERIOD = 0.005  # s
+LEAST_STALL = 0.03  # s; with shorter ones, the driver and the tests must work
 
 
 class StallWatch:

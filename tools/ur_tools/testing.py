@@ -12,13 +12,14 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from typing import Dict, List
 
-from . import boilerplate, browser, console, isolation, lint, selection
+from . import boilerplate, browser, console, isolation, lint, selection, summary
 from . import build as building
 from .layout import ROOT, Layout
 from .lock import Lock
 from .packages import Package, discover
 from .runner import Result, Runner, Test
 from .schedule import Job, Schedule, Times
+from .summary import case_name
 
 DEFAULT_LIMIT = 120.0
 PYTEST_LIMIT = 1200.0
@@ -55,7 +56,7 @@ def _ctest(layout: Layout, package: Package) -> List[Test]:
         command = entry.get("command")
         if not command:
             raise console.Failure(f"{package.name}: the test {entry['name']} has no program; was it built?")
-        if any("pytest" in part for part in command):
+        if "pytest" in command:
             continue  # _pytest() collects these files
         properties = {item["name"]: item["value"] for item in entry.get("properties", [])}
         if properties.get("DISABLED"):
@@ -156,7 +157,7 @@ def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result
 def _report(status: console.Status, result: Result, done: int, total: int) -> None:
     for text in result.repeats:
         status.keep(text)
-    if result.failures:
+    if result.cases.failures:
         status.keep(f"FAILED  {result.test.name} ({result.seconds:.1f} s)")
         status.keep("\n".join("        " + text for text in console.tail(result.output, SHOWN_LINES).splitlines()))
     status.show(f"{done}/{total} {result.test.name}")
@@ -169,7 +170,7 @@ def _only_failed_cases(result: Result) -> Test:
     """Returns the test reduced to the failed cases if it consists of pytest files, otherwise the whole test."""
     test = result.test
     files = {file.stem: file for file in test.files}
-    cases = [case.partition(".") for case in result.failures]
+    cases = [case.partition(".") for case in result.cases.failures]
     if not all(file in files and name for file, _, name in cases):
         return test
     return replace(test, command=[*test.command[:-len(files)], *(f"{files[file]}::{name}" for file, _, name in cases)])
@@ -178,43 +179,14 @@ def _only_failed_cases(result: Result) -> Test:
 def _diagnose(runner: Runner, results: List[Result]) -> Dict[str, str]:
     """Repeats failed tests alone. Returns, for each failed case, whether it fails then; the results remain as they are."""
     verdicts: Dict[str, str] = {}
-    for result in (result for result in results if result.failures):
+    for result in (result for result in results if result.cases.failures):
         console.line(f"repeating alone, as a diagnosis: {result.test.name}")
         alone = runner.run(_only_failed_cases(result))
         if alone is None:
             break
-        for case in result.failures:
-            verdicts[_case_name(result, case)] = FAILS_ALONE if case in alone.failures else PASSES_ALONE
+        for case in result.cases.failures:
+            verdicts[case_name(result, case)] = FAILS_ALONE if case in alone.cases.failures else PASSES_ALONE
     return verdicts
-
-
-def _case_name(result: Result, case: str) -> str:
-    return f"{result.test.name} {case}".rstrip()
-
-
-# --- Summary ----------------------------------------------------------------------------------------------------------
-
-
-def _summary(results: List[Result], checks: List[lint.Check], verdicts: Dict[str, str], seconds: float) -> int:
-    """Prints the counts and the failures. Returns the exit status, to which `verdicts` contribute nothing."""
-    passed = sum(result.passed for result in results) + sum(1 for check in checks if check.ok)
-    failed = sum(len(result.failures) for result in results) + sum(1 for check in checks if not check.ok)
-    console.line("")
-    by_package: Dict[str, List[Result]] = {}
-    for result in results:
-        by_package.setdefault(result.test.package, []).append(result)
-    for name, group in sorted(by_package.items()):
-        console.line(f"    {name:28} {sum(r.passed for r in group):5} passed {sum(len(r.failures) for r in group):4} failed")
-    names = sorted({_case_name(result, case) for result in results for case in result.failures}
-                   | {check.name for check in checks if not check.ok})
-    if names:
-        console.line("Failed:")
-        for name in names:
-            console.line(f"    {name}" + (f" ({verdicts[name]})" if name in verdicts else ""))
-    repeats = sum(len(result.repeats) for result in results)
-    console.line(f"{seconds:.0f} s" + (f"; {repeats} repeated because the host stalled" if repeats else ""))
-    console.line(f"{passed} passed, {failed} failed")
-    return 1 if failed or passed == 0 else 0
 
 
 def run(options: Options) -> int:
@@ -251,4 +223,4 @@ def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[
             verdicts = _diagnose(runner, results) if options.repeat == 1 else {}
     if not (options.names or options.changed):
         console.line("\n" + boilerplate.table())
-    return _summary(results, checks, verdicts, time.monotonic() - start)
+    return summary.report(results, checks, verdicts, time.monotonic() - start)

@@ -16,6 +16,7 @@ from .layout import ROOT, SUPPORTED_DISTRIBUTIONS, Layout
 SUPPORTED = ((3, 10), (3, 12))
 STAMP = "ur_stamp.txt"
 VIEWER_STAMP = "ur_viewer_stamp.txt"
+IDENTITY = "ur_identity.txt"
 MEGABYTES = 160  # to download
 SECONDS = 25.0
 RETRY_DELAY = 3.0  # s
@@ -172,6 +173,12 @@ def is_current(layout: Layout) -> bool:
     return stamp_file.is_file() and stamp_file.read_text() == _stamp(layout, layout.requirements)
 
 
+def identity(layout: Layout) -> str:
+    """Returns a text that is different after the environment has been created again: builds put files into it, and use its headers."""
+    file = layout.venv / IDENTITY
+    return file.read_text() if file.is_file() else ""
+
+
 def ensure(layout: Layout) -> None:
     if is_current(layout):
         return
@@ -186,6 +193,7 @@ def ensure(layout: Layout) -> None:
         if result.returncode != 0:
             raise console.Failure(f"`{python} -m venv` failed:\n{console.tail(result.stdout, 10)}\n"
                                   "On Debian and Ubuntu, install the package python3-venv.")
+        (layout.venv / IDENTITY).write_text(str(time.time_ns()))
     console.step("Installing the build tools" if layout.is_installed else f"Installing {layout.title} and the build tools as wheels")
     _pip_install(layout, layout.requirements)
     (layout.venv / STAMP).write_text(_stamp(layout, layout.requirements))

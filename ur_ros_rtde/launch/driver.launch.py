@@ -9,8 +9,8 @@ from launch.events import matches_action
 from launch.events.process import ShutdownProcess
 from launch_ros.actions import Node
 from launch_ros.substitutions import ExecutableInPackage
-from ur_ros_rtde.launch_arguments import DEFAULT_SIMULATED_MODEL, DRIVER, NODES, PARAMETERS, ArgumentError, write_parameters
-from ur_ros_rtde.launch_support import make_launch_description
+from ur_ros_rtde_launch.launch_arguments import DEFAULT_SIMULATED_MODEL, DRIVER, NODES, PARAMETERS, ArgumentError, write_parameters
+from ur_ros_rtde_launch.launch_support import make_launch_description
 
 DEFAULTS = {argument.name: argument.default for argument in DRIVER}
 

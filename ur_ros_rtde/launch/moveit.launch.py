@@ -13,8 +13,8 @@ from launch.substitutions import Command, PathJoinSubstitution
 from launch_ros.actions import Node, SetRemap
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
-from ur_ros_rtde.launch_arguments import MOVEIT, UNSUPPORTED_BY_MOVEIT, ArgumentError
-from ur_ros_rtde.launch_support import make_launch_description
+from ur_ros_rtde_launch.launch_arguments import MOVEIT, UNSUPPORTED_BY_MOVEIT, ArgumentError
+from ur_ros_rtde_launch.launch_support import make_launch_description
 
 # Packages that the launch files of ur_moveit_config need besides RViz. xacro generates the robot_description.
 PACKAGES = ("moveit_ros_move_group", "moveit_simple_controller_manager", "robot_state_publisher", "ur_description",

@@ -4,8 +4,8 @@ from launch.actions import GroupAction, IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
-from ur_ros_rtde.launch_arguments import PER_ROBOT, SIDES, TWO_ROBOTS, UNIQUE, ArgumentError
-from ur_ros_rtde.launch_support import make_launch_description
+from ur_ros_rtde_launch.launch_arguments import PER_ROBOT, SIDES, TWO_ROBOTS, UNIQUE, ArgumentError
+from ur_ros_rtde_launch.launch_support import make_launch_description
 
 
 def generate_launch_description():

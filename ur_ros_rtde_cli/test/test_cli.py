@@ -77,7 +77,7 @@ def test_an_invalid_field_is_reported_without_a_server(text, mentions):
     assert code == 2 and all(part in output for part in mentions), output
 
 
-def test_checks_a_goal_of_a_shared_type_when_the_server_is_discovered(running):
+def test_checks_a_goal_of_a_shared_type(running):
     code, output = ur("call", "set_standard_digital_output", "{pim: 1}")
     assert code == 2 and "there is no field pim; did you mean pin?" in output, output
 
@@ -294,6 +294,12 @@ def test_a_description_in_plugins_xml_has_priority(own_plugin):
     (own_plugin / "plugins.xml").write_text(
         '<library path="x"><class name="wag" type="x::Wag"><description>Wags</description></class></library>')
     assert listed_description() == "Wags"
+
+
+def test_the_fields_of_an_action_with_another_name_are_known_without_a_driver(own_plugin):
+    (own_plugin / "plugins.xml").write_text(
+        '<library path="x"><class name="wag" type="x::Wag" action="ur_ros_rtde_msgs/action/DashboardText"/></library>')
+    assert ur("call", "wag", "--show", domain=EMPTY_DOMAIN) == (0, "{text: ''}")
 
 
 def test_record_reports_the_number_of_rows(running, tmp_path):

@@ -4,8 +4,6 @@ import difflib
 import importlib
 from typing import Any, Dict, Iterable, List, Optional
 
-from rclpy.action.graph import get_action_names_and_types
-
 from .errors import CliError
 from .plugins import action_type, installed
 
@@ -24,13 +22,15 @@ def load(name: str, kind: str) -> Any:
 
 def type_of_plugin(name: str) -> Optional[str]:
     """Returns the action type of an installed plugin, which is known without a server, or None."""
-    package = next((package for plugin, package, _ in installed() if plugin == name), None)
-    found = None if package is None else action_type(name, package)
+    plugin = next((plugin for plugin in installed() if plugin.name == name), None)
+    if plugin is None or plugin.action:
+        return None if plugin is None else plugin.action
+    found = action_type(name, plugin.package)
     return None if found is None else "/action/".join(found)
 
 
 def plugin_names() -> List[str]:
-    return sorted(name for name, _, _ in installed())
+    return sorted(plugin.name for plugin in installed())
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
@@ -41,4 +41,5 @@ def suggestion(name: str, known: Iterable[str]) -> str:
 
 def served(node: Any) -> Dict[str, str]:
     """Returns the types of all actions in the ROS graph by action name."""
+    from rclpy.action.graph import get_action_names_and_types  # imported here because the installed plugins are known without ROS
     return {name: types[0] for name, types in get_action_names_and_types(node)}

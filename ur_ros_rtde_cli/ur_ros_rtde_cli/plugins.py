@@ -8,17 +8,25 @@ import argparse
 import pathlib
 import re
 import xml.etree.ElementTree as xml
-from typing import Iterator, List, Optional, Tuple
+from typing import Iterator, List, NamedTuple, Optional, Tuple
 
 RESOURCE = "ur_ros_rtde__pluginlib__plugin"
+
+
+class Plugin(NamedTuple):
+    """A <class> element in plugins.xml."""
+
+    name: str
+    package: str
+    description: str
+    action: str  # type of its action if that does not have the name of the plugin: "ur_ros_rtde_msgs/action/Trigger"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("pattern", nargs="?", default="", help="list only plugins whose name contains this text")
 
 
-def installed() -> Iterator[Tuple[str, str, str]]:
-    """Yields name, package and description of each plugin in plugins.xml."""
+def installed() -> Iterator[Plugin]:
     from ament_index_python import get_resource, get_resources  # imported here because --help does not need ROS
     for package in get_resources(RESOURCE):
         content, prefix = get_resource(RESOURCE, package)
@@ -26,10 +34,11 @@ def installed() -> Iterator[Tuple[str, str, str]]:
             try:
                 tree = xml.parse(pathlib.Path(prefix, file)).getroot()
             except (OSError, xml.ParseError) as error:
-                yield "?", package, f"{file} cannot be read: {error}"
+                yield Plugin("?", package, f"{file} cannot be read: {error}", "")
                 continue
             for entry in tree.iter("class"):
-                yield entry.get("name", "") or entry.get("type", "?"), package, (entry.findtext("description") or "").strip()
+                yield Plugin(entry.get("name", "") or entry.get("type", "?"), package, (entry.findtext("description") or "").strip(),
+                             entry.get("action", ""))
 
 
 def action_type(name: str, package: str) -> Optional[Tuple[str, str]]:
@@ -73,8 +82,8 @@ def _description(name: str, package: str) -> str:
 
 
 def run(options: argparse.Namespace) -> int:
-    found = sorted((name, package, description or _description(name, package)) for name, package, description in installed()
-                   if options.pattern in name)
+    found = sorted((plugin.name, plugin.package, plugin.description or _description(plugin.name, plugin.package))
+                   for plugin in installed() if options.pattern in plugin.name)
     width = max((len(name) for name, _, _ in found), default=0)
     package_width = max((len(package) for _, package, _ in found), default=0)
     for name, package, description in found:

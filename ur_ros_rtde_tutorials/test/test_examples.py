@@ -1,8 +1,11 @@
 """Runs the examples."""
 
+import json
 import os
+import pathlib
 import signal
 import subprocess
+import sys
 
 import pytest
 from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
@@ -17,6 +20,7 @@ def has_program(name):
         return False
 
 
+NOTEBOOKS = pathlib.Path(__file__).resolve().parents[1] / "notebooks"
 needs_rclcpp = pytest.mark.skipif(not has_program("c01_send_a_goal"), reason="rclcpp is not installed: no examples in C++")
 
 
@@ -38,11 +42,26 @@ def running():
     ("t01_send_a_goal.py", 60.0, "done, error_code 0"),
     ("t02_read_the_state.py", 60.0, "force along the tool"),
     ("t03_cancel_a_goal.py", 60.0, "canceled: "),
+    ("arm_in_ten_lines.py", 60.0, "s left"),
 ])
 def test_the_example_succeeds(running, name, limit, text):
     example = Process([find_program("ur_ros_rtde_tutorials", name)])
     assert example.wait(limit) == 0, example.output()
     assert text in example.output()
+
+
+def test_the_notebook_runs(running, tmp_path):
+    notebook = json.loads((NOTEBOOKS / "arm_in_python.ipynb").read_text())
+    cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    (tmp_path / "cells.py").write_text("\n".join("".join(cell["source"]) for cell in cells))
+    cells = Process([sys.executable, tmp_path / "cells.py"], {"MPLBACKEND": "Agg", "TMPDIR": str(tmp_path)})
+    assert cells.wait(90.0) == 0, cells.output()
+    assert "speed | 10.0 | above 0 and at most 3.14 rad/s" in cells.output() and "largest tracking error" in cells.output()
+
+
+def test_the_notebook_has_no_outputs():
+    notebook = json.loads((NOTEBOOKS / "arm_in_python.ipynb").read_text())
+    assert not any(cell.get("outputs") or cell.get("execution_count") for cell in notebook["cells"])
 
 
 @pytest.mark.parametrize("name", ["t01_send_a_goal.py", "t03_cancel_a_goal.py",

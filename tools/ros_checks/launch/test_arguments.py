@@ -2,7 +2,7 @@
 
 import pytest
 from ros2 import ROOT, parameter, ready, ros2
-from ur_ros_rtde.launch_arguments import DRIVER, MOVEIT, PER_ROBOT, TWO_ROBOTS
+from ur_ros_rtde_launch.launch_arguments import DRIVER, MOVEIT, PER_ROBOT, TWO_ROBOTS
 
 DRIVER_FILE = ("launch", "ur_ros_rtde", "driver.launch.py")
 INCLUDING_LAUNCH_FILE = '''

@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 from ros2 import ROOT, ros2
-from ur_ros_rtde.launch_arguments import NODES
+from ur_ros_rtde_launch.launch_arguments import NODES
 
 README = ROOT / "README.md"
 # Dashboard commands power the robot off, so they come last.

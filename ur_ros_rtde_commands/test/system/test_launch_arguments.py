@@ -9,8 +9,8 @@ import yaml
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.parameter import parameter_value_to_python
 from support import Process, find_program, wait_for
-from ur_ros_rtde import launch_arguments
-from ur_ros_rtde.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_name, to_values
+from ur_ros_rtde_launch import launch_arguments
+from ur_ros_rtde_launch.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_name, to_values
 
 CONFIG = pathlib.Path(__file__).resolve().parents[3] / "ur_ros_rtde" / "config" / "driver.yaml"
 ROS_PARAMETERS = {"use_sim_time"}

@@ -10,7 +10,7 @@ import pytest
 import rclpy.action
 from rcl_interfaces.srv import ListParameters
 from support import start_node, wait_for
-from ur_ros_rtde.launch_arguments import DRIVER, MOVEIT
+from ur_ros_rtde_launch.launch_arguments import DRIVER, MOVEIT
 
 from ur_ros_rtde_msgs.action import ServoJ
 

@@ -1,0 +1,35 @@
+import pathlib
+import sys
+
+import pytest
+
+# These tests use the helpers and fixtures of the system tests of the driver.
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde_commands" / "test" / "system"))
+from robot_fixtures import addresses, driver, simulator
+from support import HOME, TIMEOUT_FACTOR, wait_for
+from ur_ros_rtde import CommandFailed, Refused, Robot
+
+__all__ = ["addresses", "driver", "simulator"]
+
+
+@pytest.fixture(scope="module")
+def connected(driver):
+    with Robot(timeout=TIMEOUT_FACTOR * 20.0) as robot:
+        yield robot
+
+
+@pytest.fixture
+def arm(connected, driver):
+    """A Robot that is ready, with the arm at home."""
+
+    def is_at_home():
+        try:
+            return connected.move_j(HOME, speed=3.0, acceleration=15.0)
+        except (Refused, CommandFailed) as error:  # the control program may be starting
+            errors.append(error)
+            return None
+
+    errors = []
+    assert driver.running(), driver.output()
+    wait_for(is_at_home, 30.0, f"the driver to accept a motion: {errors}")
+    return connected

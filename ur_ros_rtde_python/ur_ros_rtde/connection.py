@@ -1,0 +1,192 @@
+"""The ROS node of a Robot. One thread executes its callbacks and sends its requests."""
+
+import concurrent.futures
+import contextlib
+import os
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from ur_ros_rtde_cli import actions, errors, fastdds_profile
+
+from .conversions import interface
+from .errors import NoDriver, RobotError, Timeout, UnknownCommand
+
+T = TypeVar("T")
+
+REQUEST_TIMEOUT = 10.0  # s, to send a request
+REFUSAL_TIMEOUT = 2.0  # s, for the reason of a refused goal
+REFUSALS = 100  # messages to keep: those of all clients are received
+DISCOVERY_TIME = 1.0  # s, after which a name that was not discovered counts as unknown
+POLL_PERIOD = 0.01  # s; changes of the ROS graph do not wake the executor
+
+
+def until(condition: Callable[[], T], timeout: float, period: float = POLL_PERIOD) -> T | None:
+    """Returns the first true value of `condition`, or None after `timeout` s."""
+    end = time.monotonic() + timeout
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() >= end:
+            return None
+        time.sleep(period)
+
+
+def load(name: str, kind: str) -> Any:
+    """Returns the class of an action type. Raises RobotError if it is not installed."""
+    try:
+        return actions.load(name, kind)
+    except errors.CliError as error:
+        raise RobotError(str(error)) from None
+
+
+class Connection:
+    """`timeout` limits the waits for the driver and for its responses, `result_timeout` those for results, in s."""
+
+    def __init__(self, namespace: str, timeout: float, result_timeout: float):
+        fastdds_profile.use()
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.signals import SignalHandlerOptions
+
+        self.timeout, self.result_timeout = timeout, result_timeout
+        self._context = rclpy.Context()
+        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        self.node: Any = rclpy.create_node("ur_ros_rtde_python", namespace=namespace.strip("/") or None, context=self._context,
+                                           enable_rosout=False, start_parameter_services=False)
+        self.namespace: str = self.node.get_namespace().rstrip("/")
+        self._created_at = time.monotonic()
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self._clients: dict[str, Any] = {}  # of actions and services, by full name
+        self._refusals: dict[bytes, Any] = {}
+        self._subscribe_refusals()
+        self._thread = threading.Thread(target=self._executor.spin, name="ur_ros_rtde", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        self._executor.shutdown()
+        self._thread.join(REQUEST_TIMEOUT)
+        self.node.destroy_node()
+        self._context.try_shutdown()
+
+    @property
+    def is_open(self) -> bool:
+        return bool(self._context.ok()) and self._thread.is_alive()
+
+    def in_executor(self, function: Callable[[], T]) -> T:
+        """Calls `function` in the executor's thread and returns its result.
+
+        rclpy loses a response that arrives while another thread is still sending the request."""
+        if not self.is_open:
+            raise RobotError("the Robot is closed")
+        if threading.current_thread() is self._thread:
+            return function()
+        done: concurrent.futures.Future[T] = concurrent.futures.Future()
+
+        def call() -> None:
+            try:
+                done.set_result(function())
+            except BaseException as error:
+                done.set_exception(error)
+
+        self._executor.create_task(call)
+        try:
+            return done.result(REQUEST_TIMEOUT)
+        except concurrent.futures.TimeoutError:
+            raise Timeout(f"the node could not send a request within {REQUEST_TIMEOUT:g} s") from None
+
+    # Actions
+
+    def full_name(self, name: str) -> str:
+        return f"{self.namespace}/{name}"
+
+    def served(self) -> dict[str, str]:
+        """Returns the types of the driver's actions by their name in the namespace."""
+        start = self.namespace + "/"
+        return {name[len(start):]: kind for name, kind in actions.served(self.node).items() if name.startswith(start)}
+
+    def type_of(self, name: str) -> str:
+        """Returns the type of an action: that of its server, which may differ from the installed one."""
+        known = actions.type_of_plugin(name)
+        timeout = self.timeout if known else self._created_at + DISCOVERY_TIME - time.monotonic()
+        found = until(lambda: self.served().get(name), timeout)
+        if found is None:
+            raise self._not_served(name, known)
+        return found
+
+    def action_client(self, name: str) -> Any:
+        """Returns the client of an action whose server is known. Raises NoDriver or UnknownCommand."""
+        if name not in self._clients:
+            from rclpy.action import ActionClient
+
+            # A client that is created while announcements of the server are still arriving would be discovered only in part.
+            action = load(name, self.type_of(name))
+            self._clients[name] = self.in_executor(lambda: ActionClient(self.node, action, name))
+        client = self._clients[name]
+        if not until(client.server_is_ready, self.timeout):
+            raise self._not_served(name, name)
+        return client
+
+    def _not_served(self, name: str, is_installed: str | None) -> RobotError:
+        served = self.served()
+        if not is_installed:
+            known = {*served, *actions.plugin_names()}
+            hint = actions.suggestion(name, known) or f"; the commands are: {', '.join(sorted(known))}"
+            return UnknownCommand(f"there is no command {name}{hint}")
+        domain = os.environ.get("ROS_DOMAIN_ID", "0")
+        others = sorted(full for full in actions.served(self.node) if full.endswith("/" + name))
+        if others:
+            hint = f"It is served as {', '.join(others)}: check the namespace of the Robot."
+        elif served:
+            hint = "The driver runs without this plugin: check its parameter `plugins`, and its log for plugins that failed."
+        else:
+            hint = f"Start the driver, or check the namespace and ROS_DOMAIN_ID ({domain}): ros2 launch ur_ros_rtde driver.launch.py"
+        return NoDriver(f"no driver serves {self.full_name(name)} within {self.timeout:g} s. {hint}")
+
+    def _subscribe_refusals(self) -> None:
+        def store(message: Any) -> None:
+            self._refusals[bytes(message.goal_id.uuid)] = message
+            while len(self._refusals) > REFUSALS:
+                self._refusals.pop(next(iter(self._refusals)), None)
+
+        self.subscribe("ur_ros_rtde_msgs/msg/GoalRefused", "goal_refusals", store, latched=True)
+
+    def refusal(self, goal_id: bytes) -> Any:
+        """Returns the message about a refused goal, or None if there is none."""
+        return until(lambda: self._refusals.pop(goal_id, None), REFUSAL_TIMEOUT, 0.001)
+
+    # Services and topics
+
+    def call(self, kind: str, name: str, **request: Any) -> Any:
+        """Returns the response of a service. Raises NoDriver, or RobotError with the reason if it fails."""
+        service = interface(kind)
+        if name not in self._clients:
+            self._clients[name] = self.in_executor(lambda: self.node.create_client(service, name))
+        client = self._clients[name]
+        if not until(client.service_is_ready, self.timeout):
+            raise NoDriver(f"no driver offers the service {self.full_name(name)} within {self.timeout:g} s: start the driver, or check "
+                           f"the namespace and ROS_DOMAIN_ID ({os.environ.get('ROS_DOMAIN_ID', '0')})")
+        done: concurrent.futures.Future[Any] = concurrent.futures.Future()
+        self.in_executor(lambda: client.call_async(service.Request(**request)).add_done_callback(
+            lambda future: done.set_result(future.result())))
+        try:
+            response = done.result(self.timeout)
+        except concurrent.futures.TimeoutError:
+            raise NoDriver(f"the service {self.full_name(name)} did not respond within {self.timeout:g} s") from None
+        if not response.success:
+            raise RobotError(response.message)
+        return response
+
+    def subscribe(self, kind: str, topic: str, callback: Callable[[Any], None], latched: bool = False) -> Any:
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+
+        durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+        qos = QoSProfile(depth=100 if latched else 2000, durability=durability)
+        return self.node.create_subscription(interface(kind), topic, callback, qos)
+
+    def unsubscribe(self, subscription: Any) -> None:
+        with contextlib.suppress(RobotError):
+            self.in_executor(lambda: self.node.destroy_subscription(subscription))

@@ -1,0 +1,208 @@
+"""A running goal."""
+
+import asyncio
+import concurrent.futures
+import contextlib
+import threading
+import time
+from collections.abc import Callable, Generator
+from types import TracebackType
+from typing import Any
+
+from .connection import Connection
+from .conversions import interface
+from .errors import CommandFailed, NoDriver, Refused, RobotError, Timeout
+
+CANCEL_TIMEOUT = 10.0  # s, for the result of a canceled goal
+LOSS_TIME = 2.0  # s without a server, after which the driver counts as gone
+CHECK_PERIOD = 0.5  # s, between two checks of whether the driver is alive
+
+Progress = Callable[[Any], object]
+
+
+class Goal:
+    """A goal that the driver executes. `arm.start.…` creates it.
+
+    `await goal` and `goal.result()` return the result. As a context manager, a goal is canceled at the end of the block; if
+    it has failed before, CommandFailed is raised there.
+    """
+
+    def __init__(self, connection: Connection, name: str, message: Any, on_finished: Callable[["Goal"], None]):
+        self.name = name
+        self._connection, self._message, self._on_finished = connection, message, on_finished
+        self._client: Any = None
+        self._handle: Any = None
+        self._answered: concurrent.futures.Future[Any] = concurrent.futures.Future()
+        self._finished: concurrent.futures.Future[Any] = concurrent.futures.Future()
+        self._changed = threading.Condition()
+        self._unreported: list[Any] = []  # feedback
+        self._feedback: Any = None
+        self._cancel_requested = self._queued = self._abandoned = False
+
+    @property
+    def feedback(self) -> Any:
+        """The newest feedback, or None."""
+        return self._feedback
+
+    @property
+    def is_finished(self) -> bool:
+        return self._finished.done()
+
+    def send(self) -> "Goal":
+        """Sends the goal and returns when it is accepted. Raises Refused or NoDriver."""
+        try:
+            self._client = self._connection.action_client(self.name)
+            self._queued = True
+            self._connection.in_executor(self._send)
+            handle = self._answered.result(self._connection.timeout)
+        except concurrent.futures.TimeoutError:
+            self.abandon()
+            raise NoDriver(f"{self.name}: the driver did not answer within {self._connection.timeout:g} s") from None
+        except BaseException:
+            self.abandon()
+            raise
+        if not handle.accepted:
+            refusal = self._connection.refusal(bytes(handle.goal_id.uuid))
+            raise Refused(self.name, getattr(refusal, "error_code", 1),
+                          getattr(refusal, "message", "refused; see the log of the driver for the reason"))
+        return self
+
+    def result(self, timeout: float | None = None, on_progress: Progress | None = None) -> Any:
+        """Waits and returns the result message. Raises CommandFailed, NoDriver or Timeout.
+
+        `on_progress` is called with each feedback message. Any exception, also one of `on_progress`, and Ctrl-C cancel the goal; it
+        propagates when the arm is at standstill. The same applies after `timeout` s.
+        """
+        try:
+            if not self._wait(timeout, on_progress):
+                raise Timeout(f"{self.name} has not ended within {timeout:g} s; it was canceled")
+        except BaseException:
+            self.abandon()
+            raise
+        return self._outcome()
+
+    def wait(self, timeout: float) -> bool:
+        """Waits at most `timeout` s. Returns whether the goal has ended. Does not cancel it."""
+        return self._wait(timeout, None)
+
+    def cancel(self, timeout: float = CANCEL_TIMEOUT) -> Any:
+        """Cancels the goal, waits until the arm is at standstill, and returns the result message."""
+        self.request_cancel()
+        if not self._wait(timeout, None):
+            raise Timeout(f"{self.name} has not ended within {timeout:g} s after it was canceled")
+        response = self._finished.result()
+        return None if response is None else response.result
+
+    def abandon(self) -> None:
+        """Cancels the goal and waits for its end, at most CANCEL_TIMEOUT. Used while an exception propagates; works once."""
+        try:
+            if self._queued and not self.is_finished and not self._abandoned:
+                self._abandoned = True
+                with contextlib.suppress(RobotError):
+                    self.cancel()
+        finally:
+            self._on_finished(self)
+
+    def __await__(self) -> Generator[Any, None, Any]:
+        return self._await().__await__()
+
+    async def _await(self) -> Any:
+        try:
+            finished, lost_since = asyncio.wrap_future(self._finished), None
+            while not self.is_finished:
+                await asyncio.wait([finished], timeout=CHECK_PERIOD)  # a canceled task does not cancel the future
+                lost_since = self._check_driver(lost_since)
+        except BaseException:  # the task was canceled, or the driver is gone
+            await asyncio.shield(asyncio.get_running_loop().run_in_executor(None, self.abandon))
+            raise
+        return self._outcome()
+
+    def __enter__(self) -> "Goal":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if kind is not None:
+            self.abandon()
+        elif not self.is_finished:
+            self.cancel()
+        elif not self._cancel_requested:
+            self._outcome()
+
+    # In the thread of the caller
+
+    def _wait(self, timeout: float | None, on_progress: Progress | None) -> bool:
+        """Returns whether the goal has ended within `timeout` s. Raises NoDriver."""
+        end = None if timeout is None else time.monotonic() + timeout
+        lost_since: float | None = None
+        while True:
+            with self._changed:
+                rest = CHECK_PERIOD if end is None else min(CHECK_PERIOD, end - time.monotonic())
+                self._changed.wait_for(lambda: self.is_finished or (on_progress and self._unreported), max(0.0, rest))
+                feedback, self._unreported = self._unreported, []
+            for message in feedback if on_progress else ():
+                on_progress(message)  # type: ignore[misc]
+            if self.is_finished:
+                return True
+            if end is not None and time.monotonic() >= end:
+                return False
+            lost_since = self._check_driver(lost_since)
+
+    def _check_driver(self, lost_since: float | None) -> float | None:
+        """Returns since when the driver is missing, or None. Raises NoDriver if that is too long."""
+        if self.is_finished or (self._connection.is_open and self._client.server_is_ready()):
+            return None
+        since = time.monotonic() if lost_since is None else lost_since
+        if not self._connection.is_open or time.monotonic() - since > LOSS_TIME:
+            raise NoDriver(f"the driver has ended or is out of reach while {self.name} was running: its result is unknown. "
+                           "A driver that ends stops the arm. Start it again, and look at its log")
+        return since
+
+    def request_cancel(self) -> None:
+        """Cancels the goal without waiting for its end."""
+        self._cancel_requested = True
+        handle = self._handle
+        if handle is not None and not self.is_finished:
+            self._connection.in_executor(handle.cancel_goal_async)
+
+    def _outcome(self) -> Any:
+        response = self._finished.result()
+        succeeded = interface("action_msgs/msg/GoalStatus").STATUS_SUCCEEDED
+        if response.status != succeeded or not getattr(response.result, "success", True):
+            raise CommandFailed(self.name, response.result)
+        return response.result
+
+    # In the executor's thread
+
+    def _send(self) -> None:
+        if self._cancel_requested:
+            self._finish(None)
+            return
+        self._client.send_goal_async(self._message, feedback_callback=self._on_feedback).add_done_callback(self._on_answer)
+
+    def _on_answer(self, future: Any) -> None:
+        handle = future.result()
+        if handle.accepted:
+            self._handle = handle
+            handle.get_result_async().add_done_callback(self._on_result)
+            if self._cancel_requested:
+                handle.cancel_goal_async()
+        else:
+            self._finish(None)
+        self._answered.set_result(handle)
+
+    def _on_feedback(self, message: Any) -> None:
+        with self._changed:
+            self._feedback = message.feedback
+            self._unreported.append(message.feedback)
+            del self._unreported[:-1000]
+            self._changed.notify_all()
+
+    def _on_result(self, future: Any) -> None:
+        self._finish(future.result())
+
+    def _finish(self, response: Any) -> None:
+        """`response` is None if the goal was not accepted."""
+        with self._changed:
+            self._finished.set_result(response)
+            self._changed.notify_all()
+        self._on_finished(self)

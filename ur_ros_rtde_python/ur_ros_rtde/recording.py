@@ -1,0 +1,68 @@
+"""Recordings of RTDE outputs as numpy arrays and pandas tables."""
+
+import importlib
+import os
+import pathlib
+import re
+from collections.abc import Sequence
+from types import TracebackType
+from typing import Any
+
+import numpy
+
+from .connection import Connection
+from .errors import RobotError
+
+
+def read_recording(file: str | os.PathLike[str]) -> Any:
+    """Returns a recording as structured array with a field for each RTDE output: `actual_q` has the shape (rows, 6)."""
+    with open(file, encoding="utf-8") as lines:
+        columns = lines.readline().strip().split(",")
+        rows = lines.readlines()
+    values = numpy.loadtxt(rows, delimiter=",", ndmin=2) if rows else numpy.empty((0, len(columns)))
+    groups: dict[str, list[int]] = {}
+    for index, column in enumerate(columns):
+        groups.setdefault(_output(column, columns), []).append(index)
+    kinds = [(name, float) if len(indices) == 1 else (name, float, (len(indices),)) for name, indices in groups.items()]
+    recording = numpy.empty(len(values), kinds)
+    for name, indices in groups.items():
+        recording[name] = values[:, indices[0]] if len(indices) == 1 else values[:, indices]
+    return recording
+
+
+def _output(column: str, columns: Sequence[str]) -> str:
+    """Returns the name of the RTDE output of a column: actual_q for actual_q_0."""
+    match = re.fullmatch(r"(.+)_\d+", column)
+    return match[1] if match and f"{match[1]}_0" in columns and f"{match[1]}_1" in columns else column
+
+
+class Recording:
+    """A recording that runs during a `with` block. `arm.record(...)` creates it."""
+
+    def __init__(self, connection: Connection, file: str | os.PathLike[str], fields: Sequence[str], frequency: float):
+        self._connection, self._fields, self._frequency = connection, list(fields), frequency
+        self.file = pathlib.Path(file).absolute()
+        self.rows = 0  # number of rows, known at the end
+        self.lost = 0  # number of packages that are missing in the file
+
+    def __enter__(self) -> "Recording":
+        self._connection.call("ur_ros_rtde_msgs/srv/StartRecording", "start_recording", filename=str(self.file), fields=self._fields,
+                              frequency=float(self._frequency))
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        try:
+            response = self._connection.call("ur_ros_rtde_msgs/srv/StopRecording", "stop_recording")
+        except RobotError:
+            if kind is None:
+                raise
+            return
+        self.rows, self.lost = response.rows, response.lost
+
+    def read(self) -> Any:
+        """Returns the recording as structured numpy array. The file must be on this host."""
+        return read_recording(self.file)
+
+    def to_pandas(self) -> Any:
+        """Returns the recording as pandas.DataFrame with the columns of the file. The file must be on this host."""
+        return importlib.import_module("pandas").read_csv(self.file)

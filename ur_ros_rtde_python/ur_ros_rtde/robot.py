@@ -1,0 +1,93 @@
+"""The robot of one driver."""
+
+import atexit
+import contextlib
+import os
+import signal
+import threading
+from collections.abc import Sequence
+from types import FrameType, TracebackType
+from typing import Any
+
+from .commands import Commands, StartedCommands
+from .connection import Connection
+from .errors import RobotError
+from .goal import Goal
+from .modes import Modes
+from .recording import Recording
+from .state import State
+
+
+class Robot(Commands):
+    """The robot of one driver. Every command is a method: `arm.move_j([...], speed=0.5)`, `arm.dashboard.power_on()`.
+
+    `namespace` is that of the driver. `timeout` (s) limits the waits for the driver and its responses. A goal that takes longer than
+    `result_timeout` (s) is canceled.
+
+    Use it in a `with` statement. At the end, running goals are canceled and the arm is at standstill. In the main thread, SIGTERM and
+    SIGHUP end the program like Ctrl-C, unless it has handlers of its own.
+    """
+
+    def __init__(self, namespace: str = "", *, timeout: float = 5.0, result_timeout: float = 600.0):
+        connection = Connection(namespace, timeout, result_timeout)
+        goals: set[Goal] = set()
+        super().__init__(connection, goals)
+        self._connection, self._goals = connection, goals
+        self.start = StartedCommands(connection, goals)
+        self.state = State(connection)
+        self.modes = Modes(self, self.start)
+        self._signals = _EndBySignal()
+        atexit.register(self.close)
+
+    def record(self, file: str | os.PathLike[str], fields: Sequence[str] = (), frequency: float = 0.0) -> Recording:
+        """Records RTDE outputs to a CSV file while the returned context manager is active.
+
+        `file` is a path on the host of the driver and must not exist. `fields` are names of RTDE outputs; by default timestamp, actual_q,
+        actual_qd and actual_TCP_pose. `frequency` is in Hz; 0: every package.
+        """
+        return Recording(self._connection, file, fields, frequency)
+
+    def close(self) -> None:
+        """Cancels the running goals, waits until they have ended, and removes the node."""
+        atexit.unregister(self.close)
+        self._signals.restore()
+        if not self._connection.is_open:
+            return
+        running = list(self._goals)
+        for goal in running:
+            with contextlib.suppress(RobotError):
+                goal.request_cancel()
+        for goal in running:
+            with contextlib.suppress(RobotError):
+                goal.cancel()
+        self._connection.close()
+
+    def __enter__(self) -> "Robot":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"Robot(namespace={self._connection.namespace!r})"
+
+
+class _EndBySignal:
+    """Raises SystemExit at SIGTERM and SIGHUP, so that `finally` and `with` are executed. Python would end without them."""
+
+    def __init__(self) -> None:
+        self._handled: list[int] = []
+        if threading.current_thread() is threading.main_thread():
+            self._handled = [number for number in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(number) == signal.SIG_DFL]
+        for number in self._handled:
+            signal.signal(number, self._exit)
+
+    @staticmethod
+    def _exit(number: int, frame: FrameType | None) -> Any:
+        raise SystemExit(128 + number)
+
+    def restore(self) -> None:
+        if threading.current_thread() is threading.main_thread():
+            for number in self._handled:
+                signal.signal(number, signal.SIG_DFL)
+            self._handled = []
