@@ -19,7 +19,7 @@ def _parent(pid):
 
 def tree(pid):
     """Returns a process and all its descendants."""
-    children = {}
+    children: dict[int, list[int]] = {}
     for entry in Path("/proc").glob("[0-9]*"):
         try:
             children.setdefault(_parent(entry.name), []).append(int(entry.name))
@@ -60,7 +60,7 @@ class LoadTrace:
         self._pids = pids
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._record)
-        self.points = {name: [] for name in pids}
+        self.points: dict[str, list[tuple[float, float, float]]] = {name: [] for name in pids}
 
     def __enter__(self):
         self._thread.start()

@@ -30,7 +30,9 @@ def _path(start, seconds):
 
 def _trace(control, node, outcome):
     """Waits for the result. Returns (cycle, host time in ns) of the arrival of each target, and the host time in ns of each cycle."""
-    arrivals, cycles, last = [], {}, control.request("state")["state"]["cycle"]
+    arrivals = []
+    cycles: dict[int, int] = {}
+    last = control.request("state")["state"]["cycle"]
     while not outcome.done():
         end = time.monotonic() + POLL
         while time.monotonic() < end and not outcome.done():

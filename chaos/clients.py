@@ -83,7 +83,7 @@ class GoalSender:
         self._name, self._mix, self._gate, self._journal = name, Mix(random), gate, journal
         self._stop = threading.Event()
         self._client = StatusTrackingClient(name=name.replace(" ", "_"))
-        self.outcomes = Counter()
+        self.outcomes: Counter[str] = Counter()
         self._thread = threading.Thread(target=self._run, name=name)
 
     def start(self):

@@ -21,7 +21,7 @@ def faults(recoveries):
 
 
 def goals(outcomes):
-    total = Counter()
+    total: Counter[str] = Counter()
     for outcome in outcomes:
         total += outcome
     return [f"    {'goals':32} {sum(total.values()):6}"] + [f"      {name:30} {count:6}" for name, count in total.most_common()]

@@ -8,6 +8,7 @@ import math
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import rclpy
 from control_port import ControlPort
@@ -36,7 +37,8 @@ class Experiment:
         self.client = ActionClient(node, MoveDownUntilForce, "move_down_until_force")
         node.create_subscription(GoalRefused, "goal_refusals", self.on_refusal, TRANSIENT_LOCAL)
         self.refusals = {}
-        self.goal_handle = self.result = None
+        self.goal_handle: Any = None
+        self.result: Any = None
         self.pushes = []
 
     def wait(self, condition, limit, what):

@@ -1,6 +1,7 @@
 """Joins samples of joint_states, wrench and tcp_pose into rows. Messages of one cycle have the same stamp."""
 
 import csv
+import math
 
 from force_figure import FORCES, JOINTS
 from geometry_msgs.msg import PoseStamped, WrenchStamped
@@ -17,7 +18,7 @@ def _nanoseconds(stamp):
 class Recorder:
     def __init__(self, node):
         self.rows = []
-        self.height = None
+        self.height = math.nan  # m; unknown until the first message
         self._latest_force = None
         self._stamp = None
         self._origin = None
@@ -30,7 +31,7 @@ class Recorder:
 
     def complete(self):
         """Returns whether a message of each topic has been received."""
-        return None not in (self.height, self._latest_force, self._stamp)
+        return not math.isnan(self.height) and None not in (self._latest_force, self._stamp)
 
     def start(self):
         self.rows.clear()
@@ -39,6 +40,7 @@ class Recorder:
 
     def now(self):
         """Returns the time since start() according to the stamps, s."""
+        assert self._stamp is not None and self._origin is not None
         return (self._stamp - self._origin) * 1e-9
 
     def force(self):

@@ -37,7 +37,7 @@ class Package:
 def find_packages(folder):
     """Returns {name: package}; packages with interfaces come after those whose interfaces they use."""
     found = {package.name: package for package in map(Package, sorted(path.parent for path in folder.glob("*/package.xml")))}
-    ordered = {}
+    ordered: dict[str, Package] = {}
 
     def add(package):
         for name in sorted(package.depends & found.keys() - ordered.keys()):

@@ -61,7 +61,8 @@ def picture(page):
 
 def film(page, control, options):
     """Returns pictures at about equal intervals of the robot's time, until the arm has been at rest on the table for a second."""
-    frames, pushes = [], list(PUSHES)
+    frames: list = []
+    pushes = list(PUSHES)
     started = moved = drawn = None  # robot's time of the first and the last motion, and of the last picture
     while len(frames) < options.frames:
         state = control.request("state")["state"]
@@ -107,7 +108,7 @@ def run(options):
         with ControlPort(ADDRESS) as control:
             table = control.request("state")["state"]["actual_tcp_pose"][2] - DROP
             control.request("place_surface", point=[0.0, 0.0, table], normal=[0.0, 0.0, 1.0], stiffness=15000.0, damping=80.0)
-            programs.start("goal", [program(layout, "ur_ros_rtde_cli", "ur"), "call", "move_down_until_force", "{force: 20.0}",
+            programs.start("goal", [str(program(layout, "ur_ros_rtde_cli", "ur")), "call", "move_down_until_force", "{force: 20.0}",
                                     "--wait", "60"], env)
             write(film(page, control, options), options)
     return 0

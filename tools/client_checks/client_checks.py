@@ -90,6 +90,7 @@ class Simulator:
         command = [program, "--address", ADDRESS, "--model", MODELS[version[0]], "--polyscope", version,
                    "--ports", f"modbus={MODBUS_PORT}", "--log"]
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        assert self._process.stdout is not None
         line = self._process.stdout.readline()
         if not line.startswith("ready: "):
             raise RuntimeError(f"the simulator did not start: {line}{self._process.stdout.read()}")
@@ -113,7 +114,7 @@ class Simulator:
 
 
 def client_library_example(build: pathlib.Path, name: str, arguments: List[str]) -> Check:
-    source = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", (build / "CMakeCache.txt").read_text(), re.MULTILINE)[1]
+    source, = re.findall(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", (build / "CMakeCache.txt").read_text(), re.MULTILINE)
     return Check(f"example {name}", pathlib.Path(source), [str(build / "examples" / name), ADDRESS, *arguments])
 
 

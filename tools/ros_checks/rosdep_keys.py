@@ -23,7 +23,7 @@ def dependencies(file, distribution):
     for node in xml.parse(file).getroot():
         condition = node.get("condition", "").replace("$ROS_DISTRO != ", "")
         if node.tag.endswith("depend") and condition != distribution:
-            yield node.text.strip()
+            yield (node.text or "").strip()
 
 
 def rosdep_keys(rosdistro):

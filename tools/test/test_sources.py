@@ -1,4 +1,6 @@
+import pytest
 from ur_tools import lint, system_packages
+from ur_tools.layout import Layout
 
 BACKGROUND = True
 
@@ -17,3 +19,41 @@ def test_the_list_of_system_packages_has_one_name_per_line(tmp_path):
 
 def test_a_package_that_is_not_installed_is_reported_as_missing():
     assert system_packages.missing(["no-such-package-anywhere"]) == ["no-such-package-anywhere"]
+
+
+@pytest.fixture
+def layout(tmp_path, monkeypatch):
+    monkeypatch.setattr("ur_tools.layout.STATE", tmp_path)
+    layout = Layout("kilted")
+    (layout.venv / "bin").mkdir(parents=True)
+    return layout
+
+
+def install_program(layout, name, text, status):
+    """Installs a program that writes its arguments to a file, prints a text and exits with this status."""
+    file = layout.venv / "bin" / name
+    file.write_text(f"#!/bin/sh\necho \"$@\" > '{file}.arguments'\ncat << 'END'\n{text}\nEND\nexit {status}\n")
+    file.chmod(0o755)
+    return file.with_name(f"{name}.arguments")
+
+
+@pytest.mark.parametrize("name, check", [("ruff", lint.check_ruff), ("mypy", lint.check_mypy)])
+def test_the_findings_in_python_are_shown(layout, name, check):
+    install_program(layout, name, "a.py:1:2: first\nb.py:3: second", 1)
+    result = check(layout)
+    assert (result.name, result.ok) == (f"sources: {name}", False)
+    assert result.text.splitlines()[:2] == ["    a.py:1:2: first", "    b.py:3: second"]
+
+
+@pytest.mark.parametrize("name, check", [("ruff", lint.check_ruff), ("mypy", lint.check_mypy)])
+def test_python_without_findings_passes_and_the_cache_is_not_in_the_sources(layout, name, check):
+    arguments = install_program(layout, name, "no issues", 0)
+    assert check(layout).ok
+    assert f"--cache-dir {layout.base / f'{name}_cache'}" in arguments.read_text()
+
+
+def test_the_sources_are_checked_by_each_program(layout):
+    for name in ("clang-format", "ruff", "mypy"):
+        install_program(layout, name, "finding", 1)
+    failed = [check.name for check in lint.checks(layout) if not check.ok]
+    assert failed == ["sources: formatting", "sources: ruff", "sources: mypy"]

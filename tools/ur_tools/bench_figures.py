@@ -1,6 +1,7 @@
 """Draws the figures of a report: reads {name: samples} on stdin, writes [[title, SVG], ...] as JSON to stdout."""
 
 import io
+import itertools
 import json
 import re
 import sys
@@ -13,6 +14,7 @@ import matplotlib.pyplot as plt
 BINS = 80
 MOST_POINTS = 4000  # of one curve; more make the page large
 COLOURS = ("#1f77b4", "#d95f02", "#2ca02c", "#7570b3", "#8c564b", "#e7298a", "#17becf", "#666666")
+_figure_numbers = itertools.count(1)
 
 
 def _axes(count, height=2.6):
@@ -22,18 +24,14 @@ def _axes(count, height=2.6):
 
 def _svg(figure):
     """Returns the figure as an SVG element that can be part of an HTML page: its ids are unique among all figures."""
-    _svg.count += 1
     figure.tight_layout()
     text = io.StringIO()
     figure.savefig(text, format="svg", metadata={"Date": None})
     plt.close(figure)
     svg = text.getvalue()
     svg = svg[svg.index("<svg"):]
-    prefix = f"f{_svg.count}-"
+    prefix = f"f{next(_figure_numbers)}-"
     return re.sub(r'(\bid="|href="#|url\(#)', lambda match: match[1] + prefix, svg)
-
-
-_svg.count = 0
 
 
 def percentile(values, fraction):

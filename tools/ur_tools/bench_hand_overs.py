@@ -69,8 +69,9 @@ def package_times(sent: Sequence[int], driver: Sequence[Event], subscriber: Sequ
         read = received[event.thread].last(event.time)
         times = [sent[package], None if read is None else readable[event.thread].last(read), read, event.time,
                  published[event.stamp], notified.last(taken[event.stamp]), taken[event.stamp]]
-        if None not in times:
-            result.append(times)
+        known = [time for time in times if time is not None]
+        if len(known) == len(times):
+            result.append(known)
     return result
 
 
@@ -79,12 +80,14 @@ def goal_times(goals: Sequence[Tuple[int, int]], driver: Sequence[Event]) -> Lis
     found = {step: _Times(driver, step) for step in GOAL_STEPS}
     result = []
     for sent, arrived in goals:
-        times: List[Optional[int]] = [sent]
+        times = [sent]
         for step in GOAL_STEPS:
-            times.append(None if times[-1] is None else found[step].first(times[-1]))
-        times.append(arrived)
-        if None not in times and times[-2] <= arrived:
-            result.append(times)
+            moment = found[step].first(times[-1])
+            if moment is None:
+                break
+            times.append(moment)
+        if len(times) == 1 + len(GOAL_STEPS) and times[-1] <= arrived:
+            result.append([*times, arrived])
     return result
 
 

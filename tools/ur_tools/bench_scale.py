@@ -53,14 +53,14 @@ def check(options: argparse.Namespace) -> None:
 def _start_robot(programs: Programs, layout: Layout, options: argparse.Namespace, address: str, number: int,
                  nodes: "tuple[str, ...]") -> Dict[str, Program]:
     env = bench_session.environment(layout)
-    simulator = [program(layout, "ur_simulator", "ur_simulator"), "--address", address, "--model", options.model]
+    simulator = [str(program(layout, "ur_simulator", "ur_simulator")), "--address", address, "--model", options.model]
     started = programs.start(f"simulator_{number}", simulator, env)
     programs.wait_until(lambda: "ready: " in started.output, 10.0, "the simulator's ports")
     found = {}
     for node in nodes:
         # With many robots on few cores, a delay must appear in the figures instead of ending a connection.
         parameters = () if node == "dashboard_server" else ("silence_limit:=2.0",)
-        command = [program(layout, "ur_ros_rtde", node), "--ros-args", "-p", f"robot_ip:={address}",
+        command = [str(program(layout, "ur_ros_rtde", node)), "--ros-args", "-p", f"robot_ip:={address}",
                    *(part for parameter in parameters for part in ("-p", parameter)), "-r", f"__ns:=/robot_{number}"]
         found[node] = programs.start(f"{node}_{number}", command, env)
     return found

@@ -53,8 +53,10 @@ class _Simulator:
         command = [str(program(layout, "ur_simulator", "ur_simulator")), "--address", options.address, "--model", options.model]
         begin = time.monotonic()
         self.process = subprocess.Popen([*command, *arguments], env=bench_session.environment(layout), stdout=subprocess.PIPE, text=True)
+        assert self.process.stdout is not None
+        self._output = self.process.stdout
         for _ in range(lines):
-            if not self.process.stdout.readline().startswith("ready: "):
+            if not self._output.readline().startswith("ready: "):
                 self.process.kill()
                 raise console.Failure("the simulator did not start")
         self.start_up = time.monotonic() - begin
@@ -65,7 +67,7 @@ class _Simulator:
     def __exit__(self, *_unused: object) -> None:
         self.process.terminate()
         self.process.wait()
-        self.process.stdout.close()
+        self._output.close()
 
 
 def _control(address: str, **request: object) -> dict:
@@ -163,7 +165,8 @@ def _memory(layout: Layout, options: argparse.Namespace) -> "tuple[Dict[str, flo
 
     Returns the figures, and the memory in KiB for each of these seconds.
     """
-    status, samples = console.Status(), []
+    status = console.Status()
+    samples: List[float] = []
     with _Simulator(layout, options, "--real-time-factor", str(FASTEST)) as simulator:
         def work(hours: float) -> None:
             start, begin = _robot_time(options.address), time.monotonic()

@@ -6,7 +6,7 @@ import argparse
 import pathlib
 import subprocess
 import sys
-from typing import List
+from typing import List, Mapping
 
 from . import build as building
 from . import console
@@ -45,7 +45,7 @@ def _oracle_python(layout: Layout) -> pathlib.Path:
     return python
 
 
-def _run(command: List[str], env) -> None:
+def _run(command: List[str], env: Mapping[str, str]) -> None:
     if subprocess.run(command, env=env).returncode != 0:
         raise console.Failure(f"{pathlib.Path(command[0]).name} failed, see above")
 

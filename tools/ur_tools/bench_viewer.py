@@ -31,8 +31,8 @@ def _start(programs: Programs, layout: Layout, beside: Sequence[str]) -> List[st
     measured = ["--load", f"viewer={page.process.pid}"]
     found = browser.environment(layout) if "browser" in beside else {}
     if browser.VARIABLE in found:
-        address = viewer.READY.search(page.output).group(1)
-        shown = programs.start("browser", [str(layout.python), str(ROOT / "bench" / "open_page.py"), address], {**env, **found})
+        command = [str(layout.python), str(ROOT / "bench" / "open_page.py"), viewer.address(page)]
+        shown = programs.start("browser", command, {**env, **found})
         programs.wait_until(lambda: "The page is open." in shown.output, PAGE_LIMIT, "the page")
         measured += ["--load", f"browser={shown.process.pid}"]
     return measured

@@ -4,7 +4,7 @@ import json
 import math
 import pathlib
 import time
-from typing import Dict, Iterable, List, Optional, Tuple
+from typing import Callable, Dict, Iterable, List, Optional, Tuple
 
 REFERENCE_CORES = 2
 # Seconds of a first build without and with tests, on REFERENCE_CORES, without a compiler cache and with no other package built at the
@@ -108,7 +108,8 @@ class _Work:
 class Forecast:
     """Estimates files and remaining time of a build over all its packages."""
 
-    def __init__(self, times: BuildTimes, firsts: Dict[str, bool], tests: bool, clock=time.monotonic):
+    def __init__(self, times: BuildTimes, firsts: Dict[str, bool], tests: bool,
+                 clock: Callable[[], float] = time.monotonic):
         self._times, self._tests, self._clock = times, tests, clock
         self._work = {name: _Work(times, name, tests, is_first) for name, is_first in firsts.items()}
         self._updated = clock()

@@ -16,7 +16,7 @@ PIN = ROOT / "wheels" / "ur_rtde.txt"
 
 def _pinned() -> Tuple[str, str]:
     """Returns name and SHA-256 of the archive that is pinned in wheels/ur_rtde.txt."""
-    name, version, digest = re.search(r"^([a-z-]+)==([0-9.]+) --hash=sha256:([0-9a-f]+)$", PIN.read_text(), re.M).groups()
+    (name, version, digest), = re.findall(r"^([a-z-]+)==([0-9.]+) --hash=sha256:([0-9a-f]+)$", PIN.read_text(), re.M)
     return f"{name.replace('-', '_')}-{version}.tar.gz", digest
 
 

@@ -1,4 +1,4 @@
-"""Checks the sources: formatting, machine-specific paths, clang-tidy."""
+"""Checks the sources: formatting of C++, Python with ruff and mypy, machine-specific paths, clang-tidy."""
 
 import pathlib
 import re
@@ -35,9 +35,13 @@ def cpp_files() -> List[pathlib.Path]:
     return [path for path in tracked_files() if path.suffix in CPP]
 
 
+def _run_tool(layout: Layout, program: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    return subprocess.run([str(layout.venv / "bin" / program), *arguments], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          universal_newlines=True)
+
+
 def _clang_format(layout: Layout, *arguments: str) -> "subprocess.CompletedProcess[str]":
-    command = [str(layout.venv / "bin" / "clang-format"), *arguments, *map(str, cpp_files())]
-    return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+    return _run_tool(layout, "clang-format", *arguments, *map(str, cpp_files()))
 
 
 def check_format(layout: Layout) -> Check:
@@ -47,6 +51,23 @@ def check_format(layout: Layout) -> Check:
     wrong = sorted({line.split(":")[0] for line in result.stdout.splitlines() if "clang-format-violations" in line})
     text = "\n".join("    " + name for name in wrong) or console.tail(result.stdout, 10)
     return Check("sources: formatting", result.returncode == 0, f"{text}\n    Run `./ur format`.")
+
+
+def _findings(result: "subprocess.CompletedProcess[str]") -> str:
+    return "\n".join("    " + line for line in result.stdout.splitlines())
+
+
+def check_ruff(layout: Layout) -> Check:
+    """Style, imports and likely bugs of all Python, as ruff.toml selects."""
+    result = _run_tool(layout, "ruff", "check", "--color", "never", "--output-format", "concise",
+                       "--cache-dir", str(layout.base / "ruff_cache"))
+    return Check("sources: ruff", result.returncode == 0, f"{_findings(result)}\n    In `./ur shell`, `ruff check --fix` corrects some.")
+
+
+def check_mypy(layout: Layout) -> Check:
+    """Types of all Python except tests, as mypy.ini selects."""
+    result = _run_tool(layout, "mypy", "--no-color-output", "--no-pretty", "--cache-dir", str(layout.base / "mypy_cache"))
+    return Check("sources: mypy", result.returncode == 0, _findings(result))
 
 
 def check_paths() -> Check:
@@ -65,7 +86,7 @@ def check_paths() -> Check:
 
 
 def checks(layout: Layout) -> List[Check]:
-    return [check_format(layout), check_paths()]
+    return [check_format(layout), check_ruff(layout), check_mypy(layout), check_paths()]
 
 
 def format_sources(layout: Layout) -> int:
@@ -83,8 +104,8 @@ def _databases(layout: Layout) -> List[pathlib.Path]:
         if not (package.folder / "src").is_dir():
             continue  # interfaces or Python
         folder = layout.base / "tidy" / name
-        command = ["cmake", "-S", package.folder, "-B", folder, *cmake_arguments(Options(layout), True), "-DCMAKE_UNITY_BUILD=OFF",
-                   f"-DCMAKE_PREFIX_PATH={layout.install}"]
+        command = ["cmake", "-S", str(package.folder), "-B", str(folder), *cmake_arguments(Options(layout), True),
+                   "-DCMAKE_UNITY_BUILD=OFF", f"-DCMAKE_PREFIX_PATH={layout.install}"]
         subprocess.run(command, check=True, env=build_environment(layout, 1), stdout=subprocess.DEVNULL)
         databases.append(folder / "compile_commands.json")
     return databases

@@ -10,13 +10,15 @@ import shutil
 import signal
 import subprocess
 import sys
-from typing import List, Optional, Tuple
+from typing import Any, Callable, List, Optional, Tuple
 
 from . import build as building
 from . import console, disk, doctor, fuzz, lint, new, simulation, testing, viewer
 from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
+
+Command = Callable[[argparse.Namespace], int]
 
 DESCRIPTION = """\
 Builds, tests and demonstrates the ROS 2 driver for Universal Robots arms and its simulated controller. ROS 2 need not
@@ -214,12 +216,12 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", metavar="command")
 
-    def add(name: str, function, text: str, **more) -> argparse.ArgumentParser:
+    def add(name: str, function: Command, text: str, **more: Any) -> argparse.ArgumentParser:
         sub = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", **more)
         sub.set_defaults(function=function)
         return sub
 
-    def add_forwarding(name: str, function, text: str) -> None:
+    def add_forwarding(name: str, function: Command, text: str) -> None:
         # The program's options follow ours.
         sub = add(name, function, text, add_help=name in ("sim", "shell"))
         _add_build_options(sub)
@@ -264,7 +266,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
                      help="folder in which the package is created (default: the current folder)")
 
     for name, function, text in (("format", command_format, "format all C++ files"),
-                                 ("lint", command_lint, "check formatting and paths; with --tidy also run clang-tidy")):
+                                 ("lint", command_lint, "check formatting, Python and paths; with --tidy also run clang-tidy")):
         sub = add(name, function, text)
         sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
         if name == "lint":

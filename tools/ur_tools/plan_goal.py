@@ -28,11 +28,12 @@ def _joint_order(names: List[str]) -> List[int]:
     if not names:
         return list(range(len(JOINTS)))
     order = [next((index for index, name in enumerate(names) if name.endswith(joint)), None) for joint in JOINTS]
+    found = [index for index in order if index is not None]
     prefixes = {names[index][:-len(joint)] for index, joint in zip(order, JOINTS) if index is not None}
-    if len(names) != len(JOINTS) or None in order or len(prefixes) != 1:
+    if len(names) != len(JOINTS) or len(found) != len(JOINTS) or len(prefixes) != 1:
         raise CliError(f"trajectory.joint_names is {', '.join(names)}: expected {', '.join(JOINTS)} in any order, with one common "
                       "prefix or none")
-    return order  # type: ignore[return-value]
+    return found
 
 
 def _seconds(duration: Any) -> float:

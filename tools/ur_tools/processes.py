@@ -15,7 +15,7 @@ import pathlib
 import signal
 import subprocess
 import time
-from typing import Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from .console import Failure, tail
 
@@ -88,7 +88,7 @@ class Programs:
     def __init__(self, log_folder: pathlib.Path):
         self._folder = log_folder
         self._programs: List[Program] = []
-        self._handlers: Dict[int, object] = {}
+        self._handlers: Dict[int, Any] = {}
 
     def __enter__(self) -> "Programs":
         # A closing terminal and `kill` stop the programs like Ctrl-C.
@@ -104,7 +104,7 @@ class Programs:
         finally:
             signal.signal(signal.SIGINT, previous)
             for number, handler in self._handlers.items():
-                signal.signal(number, handler)  # type: ignore[arg-type]
+                signal.signal(number, handler)
 
     def start(self, name: str, command: Sequence[str], env: Optional[Mapping[str, str]] = None,
               cwd: Optional[pathlib.Path] = None) -> Program:

@@ -4,7 +4,7 @@ import json
 import pathlib
 import time
 from dataclasses import dataclass
-from typing import Callable, Dict, Iterable, List, Optional
+from typing import Any, Callable, Dict, Iterable, List, Optional
 
 from .reference_times import REFERENCE
 
@@ -55,7 +55,7 @@ class Times:
 class Job:
     """A test that waits or runs. `what` is the caller's."""
 
-    what: object
+    what: Any
     cost: Cost
     exclusive: bool = False  # runs alone
     background: bool = False  # has low priority: uses the processor time that the other jobs leave

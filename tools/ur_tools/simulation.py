@@ -25,7 +25,7 @@ def with_status(arguments: List[str], terminal: bool) -> List[str]:
 def start_simulator(programs: Programs, layout: Layout, env: Dict[str, str], address: str, model: str,
                     *arguments: str) -> Program:
     """Returns when the simulator reports that its ports listen. A connection attempt could reach another simulator."""
-    simulator = programs.start("simulator", [program(layout, "ur_simulator", "ur_simulator"), "--address", address,
+    simulator = programs.start("simulator", [str(program(layout, "ur_simulator", "ur_simulator")), "--address", address,
                                              "--model", model, *arguments], env)
     programs.wait_until(lambda: "ready: " in simulator.output, 10.0, "the simulator's ports")
     return simulator
@@ -33,7 +33,7 @@ def start_simulator(programs: Programs, layout: Layout, env: Dict[str, str], add
 
 def start_node(programs: Programs, layout: Layout, env: Dict[str, str], node: str, address: str, *parameters: str) -> Program:
     arguments = [argument for parameter in (f"robot_ip:={address}", *parameters) for argument in ("-p", parameter)]
-    return programs.start(node, [program(layout, "ur_ros_rtde", node), "--ros-args", *arguments], env)
+    return programs.start(node, [str(program(layout, "ur_ros_rtde", node)), "--ros-args", *arguments], env)
 
 
 def main(parse: Callable[[List[str]], argparse.Namespace], run: Callable[[argparse.Namespace, Layout], int],

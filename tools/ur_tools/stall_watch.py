@@ -27,7 +27,7 @@ class StallWatch:
         with self._lock:
             self._process.stdin.write(b"?")
             self._process.stdin.flush()
-            return json.loads(self._process.stdout.readline())  # type: ignore[no-any-return]
+            return json.loads(self._process.stdout.readline())
 
     def longest_since(self, begin: float) -> float:
         """Returns the longest stall since a time of time.monotonic(), s; 0 if there was none of LEAST_STALL."""

@@ -17,7 +17,7 @@ SUPPORTED = ((3, 10), (3, 12))
 STAMP = "ur_stamp.txt"
 VIEWER_STAMP = "ur_viewer_stamp.txt"
 IDENTITY = "ur_identity.txt"
-MEGABYTES = 130  # to download
+MEGABYTES = 160  # to download
 SECONDS = 25.0
 RETRY_DELAY = 3.0  # s
 PYTHON_OF_ROS = "import rclpy, ensurepip, venv"
@@ -37,8 +37,8 @@ def _candidates() -> Iterable[str]:
         if found:
             yield found
     for minor in (11, 12, 10):
-        for found in sorted(pathlib.Path.home().glob(f".pyenv/versions/3.{minor}.*/bin/python3"), reverse=True):
-            yield str(found)
+        for python in sorted(pathlib.Path.home().glob(f".pyenv/versions/3.{minor}.*/bin/python3"), reverse=True):
+            yield str(python)
     yield "/usr/bin/python3"
 
 

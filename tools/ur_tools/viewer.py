@@ -40,14 +40,21 @@ def start(programs: Programs, layout: Layout, env: Mapping[str, str], *arguments
     """Returns when the page is served, and prints its address."""
     viewer = programs.start("viewer", [str(program(layout, PACKAGE, "view")), *arguments], env)
     programs.wait_until(lambda: READY.search(viewer.output) is not None, START_LIMIT, "the viewer")
-    console.line(READY.search(viewer.output).group())
+    console.line(f"The viewer runs at {address(viewer)} until Ctrl-C.")
     return viewer
+
+
+def address(viewer: Program) -> str:
+    """Returns the address of the page of a viewer that has started."""
+    found = READY.search(viewer.output)
+    assert found is not None
+    return found.group(1)
 
 
 def show_page(programs: Programs, viewer: Program, limit: float) -> None:
     """Opens the page if this machine has a display, and waits up to `limit` s until a browser shows it."""
     if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
-        webbrowser.open(READY.search(viewer.output).group(1))
+        webbrowser.open(address(viewer))
     console.line(f"Open the page in a browser. The demo continues when it is open, or in {limit:g} s.")
     end = time.monotonic() + limit
     while CONNECTED not in viewer.output and time.monotonic() < end:

@@ -62,6 +62,7 @@ class Argument:
 
     def _number(self, text: str) -> float:
         kind = type(self.default)
+        assert self.limits is not None  # every number has limits
         low, high = self.limits
         allowed = f"{'an integer' if kind is int else 'a number'} from {low:g} to {high:g}"
         try:

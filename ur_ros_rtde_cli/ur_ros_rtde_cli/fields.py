@@ -10,7 +10,7 @@ import difflib
 import importlib
 import pathlib
 import re
-from typing import Any, Tuple
+from typing import Any, Tuple, Union
 
 import numpy
 import yaml
@@ -53,7 +53,7 @@ class Document:
             raise CliError(f"{self._location(())}{_not_a_mapping((), values)}, as in {{speed: 0.5}}")
 
     @classmethod
-    def of_file(cls, file: pathlib.Path) -> "Document":
+    def of_file(cls, file: Union[str, pathlib.Path]) -> "Document":
         try:
             return cls(pathlib.Path(file).read_text(encoding="utf-8"), str(file))
         except OSError as error:
@@ -78,7 +78,7 @@ class Document:
         return f"{self._source}:{_line(self._node, path)}: " if self._source else ""
 
 
-def read_file(file: pathlib.Path, message: Any) -> Any:
+def read_file(file: Union[str, pathlib.Path], message: Any) -> Any:
     """Sets the fields of `message` that a YAML file contains."""
     return Document.of_file(file).fill(message)
 

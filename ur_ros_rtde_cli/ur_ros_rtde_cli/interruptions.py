@@ -4,7 +4,7 @@ import select
 import signal
 import sys
 import time
-from typing import Dict, Optional
+from typing import Any, Dict, Optional
 
 # `timeout` signals both the process and its process group. Signals within this time count as one.
 SECOND_SIGNAL_AFTER = 1.0  # s
@@ -28,7 +28,7 @@ class PendingInterruption:
     def __init__(self) -> None:
         self._pending: Optional[int] = None
         self._last: Optional[float] = None
-        self._previous: Dict[int, object] = {}
+        self._previous: Dict[int, Any] = {}
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores SIGHUP
                 self._previous[number] = signal.signal(number, lambda number, _: self._add(number))
@@ -43,7 +43,7 @@ class PendingInterruption:
 
     def restore_handlers(self) -> None:
         for number, handler in self._previous.items():
-            signal.signal(number, handler)  # type: ignore[arg-type]
+            signal.signal(number, handler)
 
     def take(self) -> Optional[Interrupted]:
         """Returns the stored interruption and clears it."""

@@ -37,7 +37,7 @@ def installed() -> Iterator[Plugin]:
                 yield Plugin("?", package, f"{file} cannot be read: {error}", "")
                 continue
             for entry in tree.iter("class"):
-                yield Plugin(entry.get("name") or entry.get("type", "?"), package, (entry.findtext("description") or "").strip(),
+                yield Plugin(entry.get("name", "") or entry.get("type", "?"), package, (entry.findtext("description") or "").strip(),
                              entry.get("action", ""))
 
 

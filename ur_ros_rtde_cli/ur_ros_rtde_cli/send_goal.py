@@ -102,6 +102,7 @@ class _CancelOnInterruption:
                 write(f"canceling ({interrupted}), interrupt again to quit without the result\n")
                 self._cancel()
             else:
+                assert self.reason is not None  # before an interruption, there is no limit
                 write(f"no result within {CANCEL_LIMIT:g} s after the goal was canceled\n")
                 raise self.reason
 

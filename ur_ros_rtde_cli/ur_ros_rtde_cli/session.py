@@ -69,7 +69,7 @@ class Session:
             if interrupted:
                 raise interrupted
 
-    def result(self, future, limit: Optional[float] = None):
+    def result(self, future: Any, limit: Optional[float] = None) -> Any:
         """Returns the result of a future, or None after `limit` s. Raises Interrupted."""
         return future.result() if self.wait(future.done, limit) else None
 

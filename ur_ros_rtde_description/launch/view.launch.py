@@ -1,6 +1,7 @@
 """Shows an arm in RViz: robot_state_publisher with the URDF and the joint states of the driver, and RViz."""
 
 import pathlib
+from typing import Dict
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 from launch import LaunchDescription
@@ -47,7 +48,7 @@ def start(context):
     return nodes
 
 
-def ur_description(values, options: Options):
+def ur_description(values: Dict[str, str], options: Options) -> Command:
     """Returns the command that prints the URDF of ur_description, which has meshes and the same links and joints."""
     for package in ("ur_description", "xacro"):
         try:

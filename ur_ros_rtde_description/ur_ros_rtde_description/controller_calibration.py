@@ -22,10 +22,17 @@ NEGLIGIBLE_ANGLE = 5e-5  # rad
 class DhParameters(Protocol):
     """Rows of six joints: Rz(q + theta) Tz(d) Tx(a) Rx(alpha), in m and rad."""
 
-    theta: Sequence[float]
-    a: Sequence[float]
-    d: Sequence[float]
-    alpha: Sequence[float]
+    @property
+    def theta(self) -> Sequence[float]: ...
+
+    @property
+    def a(self) -> Sequence[float]: ...
+
+    @property
+    def d(self) -> Sequence[float]: ...
+
+    @property
+    def alpha(self) -> Sequence[float]: ...
 
 
 @dataclass(frozen=True)

@@ -65,7 +65,8 @@ def along(axis: str, begin: float, end: float, radius: float, at: Tuple[float, f
 
 def _joint(begin: float, end: float, radius: float, x: float = 0.0) -> Shapes:
     """Returns the housing of a joint along z, with a lid at `end`."""
-    shapes, direction = [along("z", begin, end, radius, (x, 0.0))], 1.0 if end > begin else -1.0
+    shapes: Shapes = [along("z", begin, end, radius, (x, 0.0))]
+    direction = 1.0 if end > begin else -1.0
     for step_radius, height in LID:
         top = end + direction * height * radius
         shapes.append(along("z", end, top, step_radius * radius, (x, 0.0), Part.LID))

@@ -1,12 +1,17 @@
 """Evaluates a URDF."""
 
 import xml.etree.ElementTree as xml
-from typing import Dict, Mapping, Sequence
+from typing import Dict, Mapping, Sequence, Tuple
 
 import numpy as np
 
 from .errors import DescriptionError
-from .kinematics import Origin, rotation
+from .kinematics import Origin, Vector3, rotation
+
+
+def _vector(text: str) -> Vector3:
+    x, y, z = map(float, text.split())
+    return x, y, z
 
 
 def origin_of(element: xml.Element) -> Origin:
@@ -14,8 +19,13 @@ def origin_of(element: xml.Element) -> Origin:
     origin = element.find("origin")
     if origin is None:
         return Origin()
-    xyz, rpy = (tuple(map(float, origin.get(name, "0 0 0").split())) for name in ("xyz", "rpy"))
-    return Origin(xyz, rpy)
+    return Origin(_vector(origin.get("xyz", "0 0 0")), _vector(origin.get("rpy", "0 0 0")))
+
+
+def joined_links(joint: xml.Element) -> Tuple[str, str]:
+    """Returns the names of the parent and the child of a joint; empty where there is none."""
+    parent, child = joint.find("parent"), joint.find("child")
+    return "" if parent is None else parent.get("link", ""), "" if child is None else child.get("link", "")
 
 
 def root_link(robot: xml.Element) -> str:
@@ -41,8 +51,7 @@ def _parents(robot: xml.Element, links: Sequence[str]) -> Dict[str, str]:
     """Returns the parent of each link that has one."""
     parents: Dict[str, str] = {}
     for joint in robot.findall("joint"):
-        ends = [joint.find(end) for end in ("parent", "child")]
-        parent, child = ("" if end is None else end.get("link", "") for end in ends)
+        parent, child = joined_links(joint)
         for link in (parent, child):
             if link not in links:
                 raise DescriptionError(f"joint {joint.get('name')} connects the link \"{link}\", which does not exist")
@@ -57,10 +66,11 @@ def link_poses(robot: xml.Element, positions: Mapping[str, float]) -> Dict[str, 
     poses = {root_link(robot): np.eye(4)}
     waiting = list(robot.findall("joint"))
     while waiting:
-        joint = next(joint for joint in waiting if joint.find("parent").get("link") in poses)
+        joint = next(joint for joint in waiting if joined_links(joint)[0] in poses)
         waiting.remove(joint)
-        pose = poses[joint.find("parent").get("link")] @ origin_of(joint).transform()
+        parent, child = joined_links(joint)
+        pose = poses[parent] @ origin_of(joint).transform()
         if joint.get("type") != "fixed":  # all movable joints of the arms turn about z
-            pose[:3, :3] = pose[:3, :3] @ rotation(2, positions.get(joint.get("name"), 0.0))
-        poses[joint.find("child").get("link")] = pose
+            pose[:3, :3] = pose[:3, :3] @ rotation(2, positions.get(joint.get("name", ""), 0.0))
+        poses[child] = pose
     return poses

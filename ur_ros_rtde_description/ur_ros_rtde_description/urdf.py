@@ -82,8 +82,8 @@ def _add_frames(robot: xml.Element, prefix: str) -> None:
     for name in FRAMES:
         xml.SubElement(robot, "link", name=prefix + name)
 
-    def fix(name: str, parent: str, child: str, *rpy: float) -> None:
-        add_fixed_joint(robot, prefix + name, prefix + parent, prefix + child, Origin(rpy=rpy))
+    def fix(name: str, parent: str, child: str, roll: float, pitch: float, yaw: float) -> None:
+        add_fixed_joint(robot, prefix + name, prefix + parent, prefix + child, Origin(rpy=(roll, pitch, yaw)))
 
     quarter = math.pi / 2.0
     # base_link follows REP 103: x points forward. The x axis of the controller's frame points backward.

@@ -3,7 +3,7 @@
 import importlib
 from collections import deque
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +11,7 @@ from rosidl_parser import definition as idl
 from ur_ros_rtde_cli import fields
 
 JOINT_COUNT = 6
-Array = NDArray[numpy.float64]
+Array: TypeAlias = NDArray[numpy.float64]
 
 
 def interface(name: str) -> Any:

@@ -5,7 +5,7 @@ import time
 
 import rclpy
 
-received_signals = []  # signals that end the example
+received_signals: list[int] = []  # signals that end the example
 
 
 def wait_for(node, future, seconds, what):

@@ -46,9 +46,9 @@ def parse_robot(text: str) -> RobotOptions:
             raise argparse.ArgumentTypeError(f"\"{field}\" in \"{text}\": expected {', '.join(name + '=TEXT' for name in _TEXT_FIELDS)}"
                                              f" or {', '.join(name + '=NUMBER' for name in _NUMBER_FIELDS)}")
         values[key] = value
-    pose = [_number(text, key, values.get(key, "0")) for key in _POSE_FIELDS]
+    x, y, z, roll, pitch, yaw = (_number(text, key, values.get(key, "0")) for key in _POSE_FIELDS)
     length = _number(text, "tool_length", values["tool_length"]) if "tool_length" in values else None
-    return RobotOptions(namespace.strip("/"), values.get("model", ""), tuple(pose[:3]), tuple(pose[3:]),
+    return RobotOptions(namespace.strip("/"), values.get("model", ""), (x, y, z), (roll, pitch, yaw),
                         values.get("kinematics_params_file", ""), values.get("tool", ""), length)
 
 

@@ -53,7 +53,7 @@ def _cache_parsed_interfaces():
 def _cache_scanned_templates():
     import em
 
-    scanned = {}
+    scanned: dict[str, list] = {}
 
     def parse(interpreter, scanner, locals=None):
         text = scanner.rest()

@@ -29,6 +29,7 @@ class Launch:
         self._reader.start()
 
     def _read(self):
+        assert self._process.stdout is not None
         for line in self._process.stdout:
             self.lines.append(line.rstrip("\n"))
 

@@ -71,5 +71,5 @@ def _arm_data(packages: Dict[int, bytes]) -> ArmData:
     if len(kinematics) < _KINEMATICS_FORMAT.size:
         return ArmData(type_number, None)
     numbers = _KINEMATICS_FORMAT.unpack_from(kinematics)
-    parts = [numbers[first:first + 6] for first in range(0, 30, 6)]
-    return ArmData(type_number, ControllerKinematics(*parts, numbers[30]))
+    checksums, theta, a, d, alpha = (numbers[first:first + 6] for first in range(0, 30, 6))
+    return ArmData(type_number, ControllerKinematics(checksums, theta, a, d, alpha, numbers[30]))

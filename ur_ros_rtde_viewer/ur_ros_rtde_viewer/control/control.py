@@ -1,5 +1,6 @@
 """The control side of the page: STOP for all robots, and for each browser tab forms, jog buttons and a target pose."""
 
+import functools
 import threading
 import time
 from typing import Any, Dict, List
@@ -66,7 +67,7 @@ class Control:
         """Stops all robots."""
         for robot in self._robots:
             name = f"{robot.view.options.name}: " if len(self._robots) > 1 else ""
-            robot.stop(lambda outcome, text, name=name: self._show_outcome(name, outcome, text))
+            robot.stop(functools.partial(self._show_outcome, name))
 
     def _show_outcome(self, name: str, outcome: Outcome, text: str) -> None:
         self._stop_text.content = f"{name}{outcome.value} {text}"

@@ -74,4 +74,4 @@ def bound_backlog(server: Any) -> None:
     def window_generator(client_id: int, backlog_done_message: Optional[Any] = None) -> Any:
         return _ConnectionView(buffer).window_generator(client_id, backlog_done_message)
 
-    buffer.window_generator = window_generator  # type: ignore[method-assign]
+    buffer.window_generator = window_generator

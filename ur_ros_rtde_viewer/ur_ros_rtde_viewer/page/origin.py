@@ -44,8 +44,8 @@ def only_own_pages() -> Iterator[None]:
 
         return serve(*arguments, process_request=check, **options)
 
-    websockets.asyncio.server.serve = serve_checked  # type: ignore[misc,assignment]
+    websockets.asyncio.server.serve = serve_checked
     try:
         yield
     finally:
-        websockets.asyncio.server.serve = serve  # type: ignore[misc]
+        websockets.asyncio.server.serve = serve

@@ -42,7 +42,7 @@ def start_server(address: str, port: int) -> viser.ViserServer:
         server.stop()
         raise ViewerError(f"{address}:{port} was taken by another program during the start: start again, or choose another --port")
     bound_backlog(server)
-    server.request_share_url = _refuse_to_share  # type: ignore[method-assign]
+    server.request_share_url = _refuse_to_share
     server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large", dark_mode=False)
     server.scene.set_up_direction("+z")
     return server

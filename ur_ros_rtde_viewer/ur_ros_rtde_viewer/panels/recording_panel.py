@@ -45,12 +45,15 @@ class RecordingPanel:
 
     def _started(self, response: Optional[Any], reason: str) -> None:
         self._show_state(response is not None and response.success)
-        self._message.content = f"Recording to `{self._file}`" if self.is_recording else reason or response.message
+        if response is None or not response.success:
+            self._message.content = reason if response is None else response.message
+            return
+        self._message.content = f"Recording to `{self._file}`"
 
     def _stopped(self, response: Optional[Any], reason: str) -> None:
         self._show_state(False)
         if response is None or not response.success:
-            self._message.content = reason or response.message
+            self._message.content = reason if response is None else response.message
             return
         lost = f", {response.lost} lost" if response.lost else ""
         self._message.content = f"`{response.filename}`: {response.rows} rows{lost}"
@@ -66,13 +69,16 @@ class RecordingPanel:
 
     def _send(self, client: Any) -> None:
         """Runs in a thread of the server, because the file may be large."""
+        file = self._file
+        if file is None:
+            return
         try:
-            content = self._file.read_bytes() if self._file is not None else b""
+            content = file.read_bytes()
         except OSError as error:
-            text = f"{self._file}: {error.strerror}"
+            text = f"{file}: {error.strerror}"
             self._post(lambda: setattr(self._message, "content", text))
             return
-        client.send_file_download(self._file.name, content)
+        client.send_file_download(file.name, content)
 
     def _replay_upload(self) -> None:
         self.replay(self._upload.value.name, self._upload.value.content)

@@ -42,7 +42,7 @@ class TwinPanel:
 
     def _switched(self, on: bool, response: Optional[Any], reason: str) -> None:
         if response is None or not response.success:
-            self._show(self._on, reason or response.message)
+            self._show(self._on, reason if response is None else response.message)
             return
         self._show(on, "")
         joints = self._topics.state.joints

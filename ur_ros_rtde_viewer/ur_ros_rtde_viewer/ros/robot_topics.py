@@ -12,7 +12,7 @@ from ur_ros_rtde_description.models import JOINTS
 
 from ur_ros_rtde_msgs.msg import DriverState, GoalRefused, RobotMode, SafetyMode
 
-from ..state.robot_state import DriverStatus, Joints, Pose, Refusal, RobotState
+from ..state.robot_state import MAX_REFUSALS, DriverStatus, Joints, Pose, Refusal, RobotState
 from .latest_topic import LatestTopic
 from .nodes import Nodes
 
@@ -74,7 +74,7 @@ class RobotTopics:
         subscribe(DriverState, "driver_state", lambda message: setattr(
             state, "driver", DriverStatus(message.name, message.cause, message.message)))
         subscribe(GoalRefused, "goal_refusals", lambda message: state.refusals.append(
-            Refusal(seconds(message.stamp), message.action, message.message)), depth=state.refusals.maxlen)
+            Refusal(seconds(message.stamp), message.action, message.message)), depth=MAX_REFUSALS)
 
     def show_actual_joints(self, on: bool) -> None:
         """Subscribes to actual_joint_states, which the driver publishes only while there is a subscriber."""

@@ -46,10 +46,12 @@ class ServiceCaller:
         for call in list(self._calls):
             if call.future is None and call.client.service_is_ready():
                 call.future = call.client.call_async(call.request)
-            done = call.future is not None and call.future.done()
-            if done or time.monotonic() > call.deadline:
+            if call.future is not None and call.future.done():
                 self._calls.remove(call)
-                call.on_end(call.future.result() if done else None, "" if done else call.reason)
+                call.on_end(call.future.result(), "")
+            elif time.monotonic() > call.deadline:
+                self._calls.remove(call)
+                call.on_end(None, call.reason)
 
     @property
     def is_idle(self) -> bool:

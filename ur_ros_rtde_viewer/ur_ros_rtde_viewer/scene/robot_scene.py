@@ -62,19 +62,20 @@ class RobotScene:
         if state.joints is not None:
             self.arm.set_positions(state.joints.positions)
             self.arm.set_visible(True)
-        self._update_ghost(state)
+        self._update_ghost(self.ghost, state)
         self.tcp.update(state)
         if state.is_stopped != self._stopped:
             self._stopped = state.is_stopped
             self.arm.set_color(STOPPED_COLOR if self._stopped else None)
 
-    def _update_ghost(self, state: RobotState) -> None:
+    def _update_ghost(self, ghost: Arm, state: RobotState) -> None:
         """Shows the target, or the real joints while fake joint states are shown, where they differ from the arm."""
         shown, other = state.joints, state.actual_joints or state.target_joints
-        differs = shown is not None and other is not None and bool(abs(shown.positions - other.positions).max() > SAME_POSITION)
-        if differs:
-            self.ghost.set_positions(other.positions)
-        self.ghost.set_visible(differs)
+        if shown is None or other is None or not abs(shown.positions - other.positions).max() > SAME_POSITION:
+            ghost.set_visible(False)
+            return
+        ghost.set_positions(other.positions)
+        ghost.set_visible(True)
 
     def show_surfaces(self, surfaces: Sequence[Surface], state: RobotState) -> None:
         """Shows the surfaces of a simulated world, in the base frame of the controller."""

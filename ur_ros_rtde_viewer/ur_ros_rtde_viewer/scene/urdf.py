@@ -8,7 +8,7 @@ from typing import List, Optional, Tuple, Union
 import numpy as np
 from ur_ros_rtde_description.errors import DescriptionError
 from ur_ros_rtde_description.kinematics import Origin
-from ur_ros_rtde_description.tree import origin_of
+from ur_ros_rtde_description.tree import joined_links, origin_of
 
 Color = Tuple[int, int, int]
 GRAY = (190, 190, 190)
@@ -88,7 +88,7 @@ def _shapes(link: xml.Element) -> List[Shape]:
     for visual in link.findall("visual"):
         try:
             geometry, origin, color = _geometry(visual.find("geometry")), origin_of(visual), _color(visual)
-        except (AttributeError, TypeError, ValueError):
+        except ValueError:
             raise DescriptionError(f"link {link.get('name')}: a visual element has a value that is missing or no number") from None
         if geometry is not None:
             found.append(Shape(geometry, np.array(origin.xyz), quaternion(origin), color))
@@ -98,11 +98,11 @@ def _shapes(link: xml.Element) -> List[Shape]:
 def _geometry(element: Optional[xml.Element]) -> Union[Cylinder, Sphere, Box, None]:
     for shape in element if element is not None else ():
         if shape.tag == "cylinder":
-            return Cylinder(float(shape.get("radius")), float(shape.get("length")))
+            return Cylinder(float(shape.get("radius", "")), float(shape.get("length", "")))
         if shape.tag == "sphere":
-            return Sphere(float(shape.get("radius")))
+            return Sphere(float(shape.get("radius", "")))
         if shape.tag == "box":
-            x, y, z = map(float, shape.get("size").split())
+            x, y, z = map(float, shape.get("size", "").split())
             return Box((x, y, z))
     return None
 
@@ -111,18 +111,19 @@ def _color(visual: xml.Element) -> Color:
     color = visual.find("material/color")
     if color is None:
         return GRAY
-    red, green, blue = (round(255 * float(part)) for part in color.get("rgba").split()[:3])
+    red, green, blue = (round(255 * float(part)) for part in color.get("rgba", "").split()[:3])
     return red, green, blue
 
 
 def _joint(element: xml.Element) -> Joint:
     origin = origin_of(element)
-    return Joint(element.get("name", ""), element.find("parent").get("link"), element.find("child").get("link"), np.array(origin.xyz),
-                 quaternion(origin), element.get("type") == "fixed")
+    parent, child = joined_links(element)
+    return Joint(element.get("name", ""), parent, child, np.array(origin.xyz), quaternion(origin), element.get("type") == "fixed")
 
 
 def _from_root(root: str, joints: List[Joint]) -> List[Joint]:
-    ordered, reached = [], {root}
+    ordered: List[Joint] = []
+    reached = {root}
     while len(ordered) < len(joints):
         step = [joint for joint in joints if joint.parent in reached and joint.child not in reached]
         ordered += step

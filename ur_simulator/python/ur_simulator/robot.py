@@ -10,7 +10,7 @@ import socket
 import subprocess
 import threading
 import time
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 CONTROL_PORT = 30099
 _START_TIMEOUT = 30.0  # s; the program takes 0.1 s on an idle machine
@@ -98,7 +98,7 @@ class SimulatedRobot:
         return state
 
 
-def _start(arguments: List[str], address: Optional[str]):
+def _start(arguments: List[str], address: Optional[str]) -> "Tuple[str, subprocess.Popen[str], threading.Thread]":
     """Returns address, process and the thread that reads its output."""
     attempts = 1 if address is not None else 10
     for attempt in range(1, attempts + 1):
@@ -119,14 +119,15 @@ def _start(arguments: List[str], address: Optional[str]):
     raise AssertionError("unreachable")
 
 
-def _read(process: subprocess.Popen, lines: "queue.Queue[str]") -> None:
+def _read(process: "subprocess.Popen[str]", lines: "queue.Queue[str]") -> None:
+    assert process.stdout is not None
     with process.stdout:
         for line in process.stdout:
             lines.put(line.strip())
     lines.put("")  # the program has ended
 
 
-def _wait_until_ready(process: subprocess.Popen, lines: "queue.Queue[str]") -> Optional[str]:
+def _wait_until_ready(process: "subprocess.Popen[str]", lines: "queue.Queue[str]") -> Optional[str]:
     """Returns why the program is not ready, or None."""
     end = time.monotonic() + _START_TIMEOUT
     output: List[str] = []
