@@ -62,7 +62,7 @@ def test_the_first_motions_of_the_readme_work_while_the_demo_keeps_running(tmp_p
     try:
         running.wait_for_output("run until Ctrl-C", 120.0)
         lines = first_motions()
-        assert len(lines) == 5
+        assert len(lines) == 6
         for line in lines:
             done = subprocess.run(["bash", "-c", line], cwd=ROOT, env=shell, capture_output=True, text=True, timeout=60)
             assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}\n{robot_log(address)}"
