@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 import yaml
 from ur_ros_rtde_description.calibration import FIELDS, JOINT_KEYS
+from ur_ros_rtde_description.errors import DescriptionError
 from ur_ros_rtde_description.kinematics import Origin, flange_pose, nominal_origins
 from ur_ros_rtde_description.models import find_model
 from ur_ros_rtde_viewer.arguments import RobotOptions
 from ur_ros_rtde_viewer.scene import trail
 from ur_ros_rtde_viewer.scene.robot_scene import STOPPED_COLOR, RobotScene
 from ur_ros_rtde_viewer.scene.surfaces import LARGEST_OFFSET, THICKNESS, turn_z_to
+from ur_ros_rtde_viewer.scene.urdf import read_description
 from ur_ros_rtde_viewer.state.robot_state import Joints, Pose, RobotState
 
 POSITIONS = np.array((0.3, -1.2, 1.4, -0.7, -1.5, 0.9))
@@ -186,3 +188,19 @@ def test_calibration_and_tool_are_part_of_the_scene(server, tmp_path):
     expected = flange_pose(origins, POSITIONS) @ Origin((0.0, 0.0, 0.2)).transform()
     assert np.linalg.inv(base) @ tip == pytest.approx(expected, abs=1e-6)
     scene.remove()
+
+
+def joint(name, parent, child, xyz="0 0 0"):
+    return f'<joint name="{name}" type="fixed"><parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}"/></joint>'
+
+
+@pytest.mark.parametrize("joints, message", [
+    (joint("a", "base", "palm", "0 0"), "joint a: its origin has a value"),
+    (joint("a", "base", "palm", "0 0 high"), "joint a: its origin has a value"),
+    (joint("a", "base", "palm") + joint("b", "thumb", "finger"), "joint b: thumb is not connected to base"),
+    (joint("a", "base", "palm") + joint("b", "base", "finger") + joint("c", "finger", "palm"), "joint c: .* palm has two parents"),
+])
+def test_joints_that_are_no_tree_are_refused(joints, message):
+    links = "".join(f'<link name="{name}"/>' for name in ("base", "palm", "finger"))
+    with pytest.raises(DescriptionError, match=message):
+        read_description(f"<robot name='g'>{links}{joints}</robot>")

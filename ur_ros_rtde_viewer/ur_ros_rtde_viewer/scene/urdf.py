@@ -74,7 +74,8 @@ def quaternion(origin: Origin) -> np.ndarray:
 
 
 def read_description(text: str) -> Description:
-    """Reads a URDF of ur_ros_rtde_description. Meshes of tools are left out. Raises DescriptionError if a shape of a tool is invalid."""
+    """Reads a URDF of ur_ros_rtde_description. Meshes of tools are left out. Raises DescriptionError if a shape or a joint of a tool is
+    invalid."""
     robot = xml.fromstring(text)
     links = tuple(Link(link.get("name", ""), tuple(_shapes(link))) for link in robot.findall("link"))
     joints = [_joint(element) for element in robot.findall("joint")]
@@ -116,9 +117,13 @@ def _color(visual: xml.Element) -> Color:
 
 
 def _joint(element: xml.Element) -> Joint:
-    origin = origin_of(element)
+    name = element.get("name", "")
+    try:
+        origin = origin_of(element)
+    except ValueError:
+        raise DescriptionError(f"joint {name}: its origin has a value that is missing or no number") from None
     parent, child = joined_links(element)
-    return Joint(element.get("name", ""), parent, child, np.array(origin.xyz), quaternion(origin), element.get("type") == "fixed")
+    return Joint(name, parent, child, np.array(origin.xyz), quaternion(origin), element.get("type") == "fixed")
 
 
 def _from_root(root: str, joints: List[Joint]) -> List[Joint]:
@@ -126,6 +131,9 @@ def _from_root(root: str, joints: List[Joint]) -> List[Joint]:
     reached = {root}
     while len(ordered) < len(joints):
         step = [joint for joint in joints if joint.parent in reached and joint.child not in reached]
+        if not step:
+            lost = next(joint for joint in joints if not any(joint is other for other in ordered))
+            raise DescriptionError(f"joint {lost.name}: {lost.parent} is not connected to {root}, or {lost.child} has two parents")
         ordered += step
         reached |= {joint.child for joint in step}
     return ordered
