@@ -5,7 +5,7 @@ import math
 import pytest
 from action_msgs.msg import GoalStatus
 from arm_state import get_joint_state, get_tcp_pose, home_plus, is_at_rest, wait_until_moving
-from geometry_msgs.msg import Pose, Vector3, Wrench
+from geometry_msgs.msg import Pose, Twist, Vector3, Wrench
 from sensor_msgs.msg import JointState
 from support import JOINTS, wait_for
 
@@ -18,6 +18,7 @@ from ur_ros_rtde_msgs.action import (
     MoveL,
     SetExternalForceTorque,
     SetForceModeParameter,
+    SpeedL,
     TeachMode,
     Trigger,
     ZeroFtSensor,
@@ -98,6 +99,20 @@ def test_force_mode_can_be_changed_during_a_motion_along_a_surface(robot, simula
     motion.succeeded()
     assert get_tcp_pose(robot).position.y == pytest.approx(target.position.y, abs=0.002)
     assert simulator.state()["force_mode"] and pressing(30.0), "a successful motion leaves force mode active"
+    robot.send(Trigger, "force_mode_stop").succeeded()
+    assert not simulator.state()["force_mode"] and is_at_rest(robot)
+
+
+def test_a_velocity_ends_while_force_mode_goes_on_moving_the_arm(robot, driver, simulator):
+    robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
+    robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=down(2.0), limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
+    wait_until_moving(robot, 0.005)
+    log, before, begin = len(driver.lines), get_tcp_pose(robot).position, simulator.state()["timestamp"]
+    robot.send(SpeedL, "speed_l", twist=Twist(linear=Vector3(y=0.05)), time=0.5).succeeded()
+    assert simulator.state()["timestamp"] - begin < 1.5
+    assert simulator.state()["force_mode"] and not is_at_rest(robot), "in the air, the force moves the arm"
+    assert get_tcp_pose(robot).position.y - before.y == pytest.approx(0.025, abs=0.01)
+    assert not any("program" in line for line in driver.lines[log:]), "the control program was started again"
     robot.send(Trigger, "force_mode_stop").succeeded()
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
 

@@ -269,17 +269,18 @@ Status MotionStopper::stop_motions(Activities started, const StopOptions & optio
     }
   }
   const Sample sample = state_.latest().value_or(Sample{});
+  const bool mode_stays = activities_.now().contains_any(options.keep);  // and may go on moving the arm
   const auto has_ended = [&](const Sample & now) {
     const auto view = tracker_.view();
     const bool extension_ended = !started.contains(Activity::extension) || !view.program_running ||
                                  now.extension_acknowledgement() == 0.0;
-    const bool rests = view.at_rest || started.contains_any(outlasting_modes);
+    const bool rests = view.at_rest || mode_stays || started.contains_any(outlasting_modes);
     return view.sequence >= before.sequence + sample_delay && !view.operating() && extension_ended && rests;
   };
   DecelerationCheck deceleration;
   bool decelerates = true;
   const bool ended = wait_for(deceleration_timeout(sample, options), [&](const Sample & now) {
-    decelerates = deceleration.add(now);
+    decelerates = mode_stays || deceleration.add(now);
     return has_ended(now) || !decelerates;
   });
   if (!decelerates && !has_ended(state_.latest().value_or(Sample{}))) {
