@@ -7,9 +7,7 @@ import time
 
 import pytest
 
-from ur_tools.stall_watch import StallWatch
-
-REPEATS = 3  # of a test, at most
+from ur_tools.stall_watch import REPEATS, StallWatch, failure
 
 _watch = pytest.StashKey()
 _begin = pytest.StashKey()
@@ -36,7 +34,7 @@ def _blame_host(item):
         stall = item.config.stash[_watch].longest_since(item.stash[_begin])
         if stall == 0.0:
             raise
-        text = f"failed while the host stalled for {1e3 * stall:.0f} ms: {item.nodeid}"
+        text = failure(stall, item.nodeid)
         item.config.stash[_stalled].append(text)
         raise HostStalled(text) from error
 

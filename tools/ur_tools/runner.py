@@ -16,15 +16,14 @@ from . import isolation
 from .environment import run_environment
 from .layout import ROOT, SANITIZERS, Layout
 from .processes import end_group
-from .stall_watch import StallWatch
+from .stall_watch import REPEATS, StallWatch, failure
 
 BACKGROUND_NICENESS = 10  # of background tests: they get about a tenth of a core that other tests use all the time
 LOWEST_PRIORITY = 19
 TOOLS = pathlib.Path(__file__).resolve().parents[1]
-REPEATS = 3  # of a program that failed while the host stalled, at most; host_stalls.py repeats the tests of pytest files
 SANITIZED_PATIENCE = 4.0  # programs with a sanitizer are slower by about this factor
 SANITIZED_REAL_TIME_FACTOR = 0.5  # lets the simulated robot's time pass at half speed, so that its cycles are not late
-STALLED = re.compile(r"^failed while the host stalled for .*$", re.M)  # a line of host_stalls.py
+STALLED = re.compile(r"^failed while the host stalled for .*$", re.M)  # stall_watch.failure()
 
 
 @dataclass
@@ -200,7 +199,7 @@ class Runner:
             stall = 0.0 if test.is_pytest or not result.cases.failures else self._watch.longest_since(begin)
             if stall == 0.0 or len(repeats) == REPEATS:
                 return replace(result, repeats=[*repeats, *result.repeats])
-            repeats.append(f"failed while the host stalled for {1e3 * stall:.0f} ms: {test.name}")
+            repeats.append(failure(stall, test.name))
 
     def _run_once(self, test: Test) -> Optional[Result]:
         with self._lock:

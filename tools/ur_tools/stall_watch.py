@@ -1,4 +1,4 @@
-"""Measures for how long the host stalled: did not run a process that is ready to run every PERIOD."""
+"""Measures for how long the host stalled: did not run a process that is ready to run every PERIOD. What follows for a failed test."""
 
 import json
 import os
@@ -11,7 +11,13 @@ import time
 from typing import List, Tuple
 
 PERIOD = 0.005  # s
+REPEATS = 3  # of a test that failed while the host stalled, at most
 LEAST_STALL = 0.03  # s; with shorter ones, the driver and the tests must work
+
+
+def failure(stall: float, name: str) -> str:
+    """Returns the line about a test that failed during a stall of this duration, s."""
+    return f"failed while the host stalled for {1e3 * stall:.0f} ms: {name}"
 
 
 class StallWatch:

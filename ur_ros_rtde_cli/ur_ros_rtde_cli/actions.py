@@ -5,7 +5,7 @@ import importlib
 from typing import Any, Dict, Iterable, List, Optional
 
 from .errors import CliError
-from .plugins import action_type, installed
+from .plugins import Plugin, action_type, installed
 
 
 def load(name: str, kind: str) -> Any:
@@ -23,9 +23,14 @@ def load(name: str, kind: str) -> Any:
 def type_of_plugin(name: str) -> Optional[str]:
     """Returns the action type of an installed plugin, which is known without a server, or None."""
     plugin = next((plugin for plugin in installed() if plugin.name == name), None)
-    if plugin is None or plugin.action:
-        return None if plugin is None else plugin.action
-    found = action_type(name, plugin.package)
+    return None if plugin is None else type_of(plugin)
+
+
+def type_of(plugin: Plugin) -> Optional[str]:
+    """Returns the action type of a plugin: the one that plugins.xml names, or that with the name of the plugin; otherwise None."""
+    if plugin.action:
+        return plugin.action
+    found = action_type(plugin.name, plugin.package)
     return None if found is None else "/action/".join(found)
 
 

@@ -60,21 +60,20 @@ class Group:
         return [*super().__dir__(), *(name.partition("/")[0] for name in own)]
 
     def _method(self, name: str, plugin: Plugin | None) -> Method:
-        kind = actions.type_of_plugin(name) or self._connection.type_of(name)
+        kind = (actions.type_of(plugin) if plugin else None) or self._connection.type_of(name)
         action = load(name, kind)
 
-        def started(*values: Any, **given: Any) -> Goal:
-            return Goal(self._connection, name, _goal_message(name, action, values, given), self._goals.discard)
+        def created(*values: Any, **given: Any) -> Goal:
+            goal = Goal(self._connection, name, _goal_message(name, action, values, given), self._goals.discard)
+            self._goals.add(goal)
+            return goal
 
         def start(*values: Any, **given: Any) -> Goal:
-            goal = started(*values, **given)
-            self._goals.add(goal)
-            return goal.send()
+            return created(*values, **given).send()
 
         def call(*values: Any, on_progress: Progress | None = None, result_timeout: float | None = None, **given: Any) -> Any:
             timeout = self._connection.result_timeout if result_timeout is None else result_timeout
-            goal = started(*values, **given)
-            self._goals.add(goal)
+            goal = created(*values, **given)
             try:
                 return goal.send().result(timeout, on_progress)
             except BaseException:  # Ctrl-C between the two

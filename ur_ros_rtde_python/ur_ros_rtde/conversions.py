@@ -89,7 +89,7 @@ def plain(kind: Any, value: Any) -> Any:
 
 
 def _message_type(kind: Any) -> Any:
-    return getattr(importlib.import_module(".".join(kind.namespaces)), kind.name)
+    return interface("/".join((*kind.namespaces, kind.name)))
 
 
 def kinds_of(message: Any) -> dict[str, Any]:

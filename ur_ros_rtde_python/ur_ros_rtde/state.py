@@ -51,7 +51,6 @@ class State:
     def __init__(self, connection: Connection):
         self._connection = connection
         self._latest: dict[str, Any] = {}  # of transient local topics
-        self._subscriptions: list[Any] = []
 
     @property
     def joint_positions(self) -> Array:
@@ -198,8 +197,7 @@ class State:
         """Returns the newest message of a topic whose last value late subscribers receive."""
         if topic not in self._latest:
             self._latest[topic] = None
-            self._subscriptions.append(self._connection.subscribe(
-                kind, topic, lambda message: self._latest.__setitem__(topic, message), latched=True))
+            self._connection.subscribe(kind, topic, lambda message: self._latest.__setitem__(topic, message), latched=True)
         if until(lambda: self._latest[topic], self._connection.timeout) is None:
             raise NoDriver(f"no message on {self._connection.full_name(topic)} within {self._connection.timeout:g} s: start the driver")
         return self._latest[topic]

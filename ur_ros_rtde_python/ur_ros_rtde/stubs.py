@@ -146,7 +146,7 @@ def stub(plugins: dict[str, Plugin]) -> tuple[str, list[str]]:
     """Returns the text of the stub file, and the names of the commands whose type is unknown without a driver."""
     known, unknown = {}, []
     for name, plugin in sorted(plugins.items()):
-        kind = actions.type_of_plugin(name)
+        kind = actions.type_of(plugin)
         try:
             interface_files.find(kind or "")
             known[name] = (plugin, kind or "")
