@@ -1,3 +1,5 @@
+import contextlib
+import functools
 import pathlib
 import sys
 
@@ -6,10 +8,30 @@ import pytest
 # These tests use the helpers and fixtures of the system tests of the driver.
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde_commands" / "test" / "system"))
 from robot_fixtures import addresses, driver, simulator
-from support import HOME, TIMEOUT_FACTOR, wait_for
+from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Simulator, start_node, wait_for
 from ur_ros_rtde import CommandFailed, Refused, Robot
 
 __all__ = ["addresses", "driver", "simulator"]
+
+
+@contextlib.contextmanager
+def connected_robot(address, namespace):
+    """A simulator, a driver that is ready and its Robot, for a test in which the driver or the controller is lost."""
+    simulator = Simulator(address)
+    driver = start_node("driver", address, FEW_PLUGINS, namespace=namespace)
+    try:
+        with Robot(namespace, timeout=TIMEOUT_FACTOR * 20.0) as robot:
+            assert robot.state.wait_until(lambda state: state.driver_state == "READY", TIMEOUT_FACTOR * 30.0), driver.output()
+            yield robot, driver, simulator
+    finally:
+        driver.stop()
+        simulator.stop()
+
+
+@pytest.fixture
+def lost_robot(addresses):
+    """Returns a context manager of a Robot with a driver and a simulator of its own."""
+    return functools.partial(connected_robot, addresses[1])
 
 
 @pytest.fixture(scope="module")

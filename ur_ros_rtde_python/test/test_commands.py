@@ -9,7 +9,7 @@ import threading
 
 import numpy as np
 import pytest
-from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Process, Simulator, start_node, wait_for
+from support import HOME, TIMEOUT_FACTOR, Process, wait_for
 from ur_ros_rtde import CommandFailed, NoDriver, Refused, Robot, Timeout, UnknownCommand, pose, trajectory
 
 PLUGINS = ("plugins:=[move_j,move_l,stop,make_ready,trigger_protective_stop,execute_trajectory,execute_parametrized_trajectory,"
@@ -212,17 +212,10 @@ def test_a_missing_driver_is_reported_with_the_remedy():
             nobody.movej(HOME)
 
 
-def test_a_driver_that_is_killed_ends_the_wait(addresses):
-    simulator = Simulator(addresses[1])
-    driver = start_node("driver", simulator.address, FEW_PLUGINS, namespace="killed")
-    try:
-        with Robot("killed", timeout=TIMEOUT_FACTOR * 20.0) as robot:
-            assert robot.state.wait_until(lambda state: state.driver_state == "READY", TIMEOUT_FACTOR * 30.0), driver.output()
-            goal = robot.start.move_j(AWAY, SLOW)
-            driver.kill()
-            with pytest.raises(NoDriver, match="while move_j was running"):
-                goal.result(TIMEOUT_FACTOR * 60.0)
+def test_a_driver_that_is_killed_ends_the_wait(lost_robot):
+    with lost_robot("killed") as (robot, driver, simulator):
+        goal = robot.start.move_j(AWAY, SLOW)
+        driver.kill()
+        with pytest.raises(NoDriver, match="while move_j was running"):
+            goal.result(TIMEOUT_FACTOR * 60.0)
         wait_for(simulator.is_at_rest, 10.0, "the watchdog to stop the arm")
-    finally:
-        driver.stop()
-        simulator.stop()

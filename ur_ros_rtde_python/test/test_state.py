@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 import pytest
-from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Simulator, start_node
+from support import HOME, TIMEOUT_FACTOR
 from ur_ros_rtde import NoDriver, Robot, RobotError, read_recording
 
 PLUGINS = "plugins:=[move_j,stop]"
@@ -104,17 +104,10 @@ def test_the_mode_follows_the_robot(arm, simulator):
         simulator.control("power", to="running")
 
 
-def test_a_lost_controller_is_reported_with_the_reason(addresses):
-    simulator = Simulator(addresses[1])
-    driver = start_node("driver", simulator.address, FEW_PLUGINS, namespace="lost")
-    try:
-        with Robot("lost", timeout=TIMEOUT_FACTOR * 20.0) as robot:
-            assert robot.state.wait_until(lambda state: state.driver_state == "READY", TIMEOUT_FACTOR * 30.0), driver.output()
-            assert robot.state.joint_positions.shape == (6,)
-            simulator.kill()
-            assert robot.state.wait_until(lambda state: state.robot_mode == "NO_CONTROLLER", TIMEOUT_FACTOR * 20.0)
-            with pytest.raises(RobotError, match="connection"):
-                _ = robot.state.joint_positions
-    finally:
-        driver.stop()
-        simulator.process.stop()
+def test_a_lost_controller_is_reported_with_the_reason(lost_robot):
+    with lost_robot("lost") as (robot, _driver, simulator):
+        assert robot.state.joint_positions.shape == (6,)
+        simulator.kill()
+        assert robot.state.wait_until(lambda state: state.robot_mode == "NO_CONTROLLER", TIMEOUT_FACTOR * 20.0)
+        with pytest.raises(RobotError, match="connection"):
+            _ = robot.state.joint_positions
