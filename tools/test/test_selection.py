@@ -89,39 +89,38 @@ def affected(root, *names):
 # --- By name ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("word, expected", [
-    ("test_cancel", ["driver: test_cancel"]),
-    ("CANCEL", ["driver: test_cancel"]),
-    ("driver/test/typed/test_cancel.py", ["driver: test_cancel"]),
-    ("driver_cli", ["driver_cli: test_cli"]),
-    ("driver", ["driver: Each/Angles.AreRead/0", "driver: goals", "driver: robot.StopTest.KeepsItsLine", "driver: test_cancel",
-                "driver: test_node"]),
-    ("StopTest", ["driver: robot.StopTest.KeepsItsLine"]),
-    ("robot.StopTest.Keeps", ["driver: robot.StopTest.KeepsItsLine"]),
-    ("Each/Angles.AreRead/0", ["driver: Each/Angles.AreRead/0"]),
-    ("test_stop", ["driver: Each/Angles.AreRead/0", "driver: robot.StopTest.KeepsItsLine"]),
-    ("goal_test", ["driver: goals"]),
-    ("tools", ["tools: test_console", "tools: test_demo", "tools: test_readme"]),
-])
-def test_a_name_selects_packages_files_and_cases(root, word, expected):
-    assert select(root, named(root, word)) == expected
+NAMES = {
+    "test_cancel": ["driver: test_cancel"],
+    "CANCEL": ["driver: test_cancel"],
+    "driver/test/typed/test_cancel.py": ["driver: test_cancel"],
+    "driver_cli": ["driver_cli: test_cli"],
+    "driver": ["driver: Each/Angles.AreRead/0", "driver: goals", "driver: robot.StopTest.KeepsItsLine", "driver: test_cancel",
+               "driver: test_node"],
+    "StopTest": ["driver: robot.StopTest.KeepsItsLine"],
+    "robot.StopTest.Keeps": ["driver: robot.StopTest.KeepsItsLine"],
+    "Each/Angles.AreRead/0": ["driver: Each/Angles.AreRead/0"],
+    "test_stop": ["driver: Each/Angles.AreRead/0", "driver: robot.StopTest.KeepsItsLine"],
+    "goal_test": ["driver: goals"],
+    "tools": ["tools: test_console", "tools: test_demo", "tools: test_readme"],
+    "test_node StopTest": ["driver: robot.StopTest.KeepsItsLine", "driver: test_node"],
+}
 
 
-def test_several_names_select_the_union(root):
-    assert select(root, named(root, "test_node", "StopTest")) == ["driver: robot.StopTest.KeepsItsLine", "driver: test_node"]
+def test_names_select_packages_files_and_cases(root):
+    assert {words: select(root, named(root, *words.split())) for words in NAMES} == NAMES
 
 
-@pytest.mark.parametrize("word, needed", [("test_cli", ["driver_cli"]), ("test_cancel", ["driver"]), ("test_console", None)])
-def test_only_the_packages_of_the_tests_are_built(root, word, needed):
-    assert named(root, word).packages == needed
+def test_only_the_packages_of_the_tests_are_built(root):
+    needed = {"test_cli": ["driver_cli"], "test_cancel": ["driver"], "test_console": None}
+    assert {word: named(root, word).packages for word in needed} == needed
 
 
-@pytest.mark.parametrize("word, near", [("test_cansel", "test_cancel"), ("drivr", "driver"), ("StopTestt", "StopTest"),
-                                        ("xyzzy", "Packages: messages, driver, driver_cli, tools")])
-def test_an_unknown_name_is_rejected_with_similar_ones(root, word, near):
-    with pytest.raises(console.Failure) as failure:
-        named(root, "test_console", word)
-    assert f'"{word}"' in str(failure.value) and near in str(failure.value)
+def test_an_unknown_name_is_rejected_with_similar_ones(root):
+    for word, near in (("test_cansel", "test_cancel"), ("drivr", "driver"), ("StopTestt", "StopTest"),
+                       ("xyzzy", "Packages: messages, driver, driver_cli, tools")):
+        with pytest.raises(console.Failure) as failure:
+            named(root, "test_console", word)
+        assert f'"{word}"' in str(failure.value) and near in str(failure.value)
 
 
 def test_the_tests_of_this_checkout_have_names():
@@ -134,31 +133,32 @@ def test_the_tests_of_this_checkout_have_names():
 # --- By change ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("changed, expected", [
-    ("driver/test/typed/test_cancel.py", ["driver: test_cancel"]),
-    ("driver/test/test_stop.cpp", sorted(ALL)),
-    ("driver/test/nodes/support.py", [*sorted(ALL), "driver: test_cancel", "driver: test_node", "tools: test_demo"]),
-    ("driver/src/stop.cpp", [*sorted(ALL), "driver: test_cancel", "driver: test_node", "driver_cli: test_cli", "tools: test_console",
-                             "tools: test_demo", "tools: test_readme"]),
-    ("driver_cli/CMakeLists.txt", ["driver_cli: test_cli", "tools: test_console", "tools: test_demo", "tools: test_readme"]),
-    ("docs/commands/io.md", ["driver: test_cancel"]),
-    ("docs/simulator.md", []),
-    ("README.md", ["tools: test_readme"]),
-    ("tools/ur_tools/demo.py", ["tools: test_demo"]),
-    ("tools/ur_tools/console.py", ["tools: test_console", "tools: test_demo"]),
-    ("tools/test/test_console.py", ["tools: test_console"]),
-    ("demo/figure.py", ["tools: test_demo"]),
-    ("LICENSE", []),
-    (".gitignore", []),
-])
-def test_a_changed_file_selects_the_tests_that_it_can_affect(root, changed, expected):
-    assert select(root, affected(root, changed)) == expected
+CHANGES = {
+    "driver/test/typed/test_cancel.py": ["driver: test_cancel"],
+    "driver/test/test_stop.cpp": sorted(ALL),
+    "driver/test/nodes/support.py": [*sorted(ALL), "driver: test_cancel", "driver: test_node", "tools: test_demo"],
+    "driver/src/stop.cpp": [*sorted(ALL), "driver: test_cancel", "driver: test_node", "driver_cli: test_cli", "tools: test_console",
+                            "tools: test_demo", "tools: test_readme"],
+    "driver_cli/CMakeLists.txt": ["driver_cli: test_cli", "tools: test_console", "tools: test_demo", "tools: test_readme"],
+    "docs/commands/io.md": ["driver: test_cancel"],
+    "docs/simulator.md": [],
+    "README.md": ["tools: test_readme"],
+    "tools/ur_tools/demo.py": ["tools: test_demo"],
+    "tools/ur_tools/console.py": ["tools: test_console", "tools: test_demo"],
+    "tools/test/test_console.py": ["tools: test_console"],
+    "demo/figure.py": ["tools: test_demo"],
+    "LICENSE": [],
+    ".gitignore": [],
+}
 
 
-@pytest.mark.parametrize("changed", ["messages/action/Move.action", "wheels/kilted.txt", "tools/cmake/sanitize.cmake",
-                                     "a_new_folder/file"])
-def test_a_file_that_everything_depends_on_selects_all_tests(root, changed):
-    assert select(root, affected(root, changed)) == sorted(collected(root))
+def test_a_changed_file_selects_the_tests_that_it_can_affect(root):
+    assert {changed: select(root, affected(root, changed)) for changed in CHANGES} == CHANGES
+
+
+def test_a_file_that_everything_depends_on_selects_all_tests(root):
+    for changed in ("messages/action/Move.action", "wheels/kilted.txt", "tools/cmake/sanitize.cmake", "a_new_folder/file"):
+        assert select(root, affected(root, changed)) == sorted(collected(root)), changed
 
 
 def test_a_removed_test_is_not_run(root):
@@ -211,15 +211,12 @@ def test_without_changes_no_packages_are_built_and_no_tests_run(repository, caps
 # --- The command ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("arguments, names, changed, base", [
-    (["test"], [], False, ""), (["test", "move_j", "StopTest", "--repeat", "2"], ["move_j", "StopTest"], False, ""),
-    (["test", "--changed"], [], True, ""), (["test", "--base", "main"], [], True, "main"),
-])
-def test_the_options_of_the_command(monkeypatch, arguments, names, changed, base):
+def test_the_options_of_the_command(monkeypatch):
     given = []
-    monkeypatch.setattr(testing, "run", lambda options: given.append(options) or 0)
-    assert main.main(arguments) == 0
-    assert (given[0].names, given[0].changed, given[0].base) == (names, changed, base)
+    monkeypatch.setattr(testing, "run", lambda options: given.append((options.names, options.changed, options.base)) or 0)
+    for arguments in ("", "move_j StopTest --repeat 2", "--changed", "--base main"):
+        assert main.main(["test", *arguments.split()]) == 0
+    assert given == [([], False, ""), (["move_j", "StopTest"], False, ""), ([], True, ""), ([], True, "main")]
 
 
 def test_names_and_changed_exclude_each_other(capsys):
