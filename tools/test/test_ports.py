@@ -82,10 +82,10 @@ def test_a_connection_in_time_wait_is_ignored():
     assert ports.in_use(ADDRESS, [30001]) == []
 
 
-@pytest.mark.parametrize("address, text", [("robot", "not an IPv4 address"), ("192.0.2.1", "no network interface")])
-def test_an_address_of_another_machine_is_rejected(address, text):
-    with pytest.raises(console.Failure, match=text):
-        ports.check(address)
+def test_an_address_of_another_machine_is_rejected():
+    for address, text in (("robot", "not an IPv4 address"), ("192.0.2.1", "no network interface")):
+        with pytest.raises(console.Failure, match=text):
+            ports.check(address)
 
 
 def test_a_process_of_another_user_is_reported_without_its_name(monkeypatch):
@@ -107,32 +107,18 @@ def test_a_simulator_that_fails_to_start_is_reported_despite_another_on_the_addr
 # --- Checks before the build -----------------------------------------------------------------------------------------------
 
 
-def run_without_build(*arguments):
-    """Runs `./ur` with a build that fails the test. Returns its status and stderr."""
-    code = (f"import sys; sys.path.insert(0, {str(ROOT / 'tools')!r})\n"
-            "from ur_tools import build, main\n"
-            "build.build = lambda *_: sys.exit('it builds')\n"
-            f"sys.exit(main.main({list(arguments)!r}))")
-    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
-    assert "it builds" not in result.stderr, result.stderr
-    return result.returncode, result.stderr
-
-
-@pytest.mark.parametrize("command", ["demo", "bench", "chaos"])
-def test_ports_in_use_are_reported_before_the_build(listening, command):
+def test_ports_in_use_are_reported_before_the_build(listening, run_without_build):
     pid = listening(ADDRESS, 29999)
-    arguments = ["--output", str(ROOT)] if command == "demo" else []
-    code, text = run_without_build(command, "--address", ADDRESS, *arguments)
-    assert code == 1 and f"in use by process {pid}" in text and "--address" in text
+    for command in (["demo", "--output", ROOT], ["bench"], ["chaos"]):
+        code, text = run_without_build(*command, "--address", ADDRESS)
+        assert code == 1 and f"in use by process {pid}" in text and "--address" in text, text
 
 
-@pytest.mark.parametrize("arguments, expected, text", [
-    (["--output", "/no/such/folder"], 1, "--output /no/such/folder: there is no such folder"),
-    (["--output", "/proc"], 1, "cannot be written"),
-    (["--speed", "1"], 2, "--speed 1: must be from 0.01 to 0.25"),
-    (["--model", "ur99"], 2, "invalid choice: 'ur99'"),
-    (["--address", "192.0.2.1"], 1, "no network interface"),
-])
-def test_invalid_arguments_of_the_demo_are_rejected_before_the_build(arguments, expected, text):
-    code, printed = run_without_build("demo", "--address", ADDRESS, *arguments)
-    assert code == expected and text in printed
+def test_invalid_arguments_of_the_demo_are_rejected_before_the_build(run_without_build):
+    for arguments, expected, text in ((["--output", "/no/such/folder"], 1, "--output /no/such/folder: there is no such folder"),
+                                      (["--output", "/proc"], 1, "cannot be written"),
+                                      (["--speed", "1"], 2, "--speed 1: must be from 0.01 to 0.25"),
+                                      (["--model", "ur99"], 2, "invalid choice: 'ur99'"),
+                                      (["--address", "192.0.2.1"], 1, "no network interface")):
+        code, printed = run_without_build("demo", "--address", ADDRESS, *arguments)
+        assert code == expected and text in printed, (arguments, printed)
