@@ -1,6 +1,7 @@
 """./ur build: forecast, progress, locks, and a disk that is full or not writable."""
 
 import errno
+import os
 import subprocess
 import sys
 from collections import namedtuple
@@ -33,9 +34,8 @@ def times(tmp_path, monkeypatch):
     return build_times.BuildTimes(tmp_path / "times.json", 2)
 
 
-@pytest.mark.parametrize("seconds, text", [(0, "5 s"), (12, "15 s"), (55, "55 s"), (56, "1 min"), (89, "1 min"), (200, "3 min")])
-def test_durations_are_rounded(seconds, text):
-    assert build_times.rounded(seconds) == text
+def test_durations_are_rounded():
+    assert [build_times.rounded(seconds) for seconds in (0, 12, 55, 56, 89, 200)] == ["5 s", "15 s", "55 s", "1 min", "1 min", "3 min"]
 
 
 # --- Forecast ---------------------------------------------------------------------------------------------------------
@@ -45,14 +45,11 @@ def test_the_reference_contains_every_package():
     assert set(build_times.REFERENCE) == set(build.discover_with_interfaces())
 
 
-def test_the_first_forecast_is_the_reference(times):
-    forecast = build_times.Forecast(times, {"messages": True, "driver": True}, False, Clock())
-    assert forecast.remaining() == pytest.approx(400.0)
-
-
-def test_half_the_cores_take_twice_as_long(tmp_path, times):
-    alone = build_times.BuildTimes(tmp_path / "times.json", 1)
-    assert alone.first("messages", False)[0] == 2 * times.first("messages", False)[0]
+def test_the_first_forecast_is_the_reference_for_the_number_of_cores(tmp_path, times):
+    for cores, seconds in ((2, 400.0), (1, 800.0)):
+        forecast = build_times.Forecast(build_times.BuildTimes(tmp_path / "times.json", cores), {"messages": True, "driver": True}, False,
+                                        Clock())
+        assert forecast.remaining() == pytest.approx(seconds)
 
 
 def test_the_remaining_time_follows_the_measured_speed(times):
@@ -149,11 +146,12 @@ def test_an_unknown_package_is_rejected_before_the_setup(layout, monkeypatch):
         build.build(build.Options(layout, ["ur_simulater"]))
 
 
-@pytest.mark.parametrize("cores, gigabytes, jobs", [(2, 8, 2), (8, 4, 4), (1, 2, 1), (4, 0.5, 1)])
-def test_the_memory_limits_the_number_of_jobs(monkeypatch, cores, gigabytes, jobs):
-    monkeypatch.setattr(build.os, "sched_getaffinity", lambda _: set(range(cores)))
-    monkeypatch.setattr(build.os, "sysconf", lambda name: 4096 if name == "SC_PAGE_SIZE" else int(gigabytes * 1e9 / 4096) + 1)
-    assert build.default_jobs() == jobs
+def test_the_memory_limits_the_number_of_jobs(monkeypatch):
+    for cores, gigabytes, jobs in ((2, 8, 2), (8, 4, 4), (1, 2, 1), (4, 0.5, 1)):
+        pages = int(gigabytes * 1e9 / 4096) + 1
+        monkeypatch.setattr(build.os, "sched_getaffinity", lambda _, cores=cores: set(range(cores)))
+        monkeypatch.setattr(build.os, "sysconf", lambda name, pages=pages: 4096 if name == "SC_PAGE_SIZE" else pages)
+        assert build.default_jobs() == jobs, (cores, gigabytes)
 
 
 # --- Progress -----------------------------------------------------------------------------------------------------------
@@ -203,15 +201,14 @@ def test_free_space_of_a_missing_folder_is_that_of_its_parent(tmp_path):
     assert disk.free(tmp_path / "not" / "there") == pytest.approx(disk.free(tmp_path), rel=0.5)
 
 
-@pytest.mark.parametrize("number, text", [(errno.ENOSPC, "is full"), (errno.EROFS, "./ur writes its files to"),
-                                          (errno.ENOENT, "No such file")])
-def test_errors_of_the_file_system_are_explained(monkeypatch, capsys, number, text):
-    def fail(_options):
-        raise OSError(number, errno.errorcode[number] if number != errno.ENOENT else "No such file", "a_file")
+def test_errors_of_the_file_system_are_explained(monkeypatch, capsys):
+    for number, text in ((errno.ENOSPC, "is full"), (errno.EROFS, "./ur writes its files to"), (errno.ENOENT, os.strerror(errno.ENOENT))):
+        def fail(_options, number=number):
+            raise OSError(number, os.strerror(number), "a_file")
 
-    monkeypatch.setattr(main, "command_clean", fail)
-    assert main.main(["clean"]) == 1
-    assert text in capsys.readouterr().err
+        monkeypatch.setattr(main, "command_clean", fail)
+        assert main.main(["clean"]) == 1
+        assert text in capsys.readouterr().err
 
 
 # --- Locks ------------------------------------------------------------------------------------------------------------

@@ -21,9 +21,9 @@ def test_passed_cases_of_a_report_are_counted_without_skipped_ones(tmp_path):
     assert runner.read_cases(report, False) == runner.Cases(2, ["Suite.bad", "Suite.broken"], {"Suite.left_out": "no device"})
 
 
-@pytest.mark.parametrize("succeeded, expected", [(True, runner.Cases(1, [])), (False, runner.Cases(0, [""]))])
-def test_a_program_without_a_report_is_one_case(tmp_path, succeeded, expected):
-    assert runner.read_cases(tmp_path / "none.xml", succeeded) == expected
+def test_a_program_without_a_report_is_one_case(tmp_path):
+    assert runner.read_cases(tmp_path / "none.xml", True) == runner.Cases(1, [])
+    assert runner.read_cases(tmp_path / "none.xml", False) == runner.Cases(0, [""])
 
 
 def test_a_crash_after_passed_cases_is_a_failure(tmp_path):
@@ -116,13 +116,9 @@ def test_a_single_selected_file_of_a_group_keeps_its_name(tmp_path):
     assert test.name == "driver: test_x"
 
 
-@pytest.mark.parametrize("command, failures", [
-    (["python", "-m", "pytest", "a/test_x.py"], ["failed after its last case"]),
-    (["a/program"], ["Suite.bad"]),
-])
-def test_a_test_whose_failed_cases_have_no_names_is_repeated_as_a_whole(command, failures):
-    whole = result(command, failures)
-    assert testing._only_failed_cases(whole) is whole.test
+def test_a_test_whose_failed_cases_have_no_names_is_repeated_as_a_whole():
+    for whole in (result(["python", "-m", "pytest", "a/test_x.py"], ["failed after its last case"]), result(["a/program"], ["Suite.bad"])):
+        assert testing._only_failed_cases(whole) is whole.test
 
 
 class FakeRunner:
@@ -135,26 +131,25 @@ class FakeRunner:
         return runner.Result(test, runner.Cases(1 - len(self._failures), self._failures), 1.0, 0.1, "")
 
 
-@pytest.mark.parametrize("fails_alone, verdict", [(True, "fails alone too"),
-                                                  (False, "passes alone: depends on load or on other tests")])
-def test_a_failed_case_fails_the_run_even_if_it_passes_alone(capsys, fails_alone, verdict):
+def test_a_failed_case_fails_the_run_even_if_it_passes_alone(capsys):
     results = [result(["a/program"], ["Suite.bad"])]
-    verdicts = testing._diagnose(FakeRunner(fails_alone), results)
-    assert summary.report(results, [], verdicts, 1.0) == 1
-    lines = capsys.readouterr().out.splitlines()
-    assert f"    a: test Suite.bad ({verdict})" in lines
-    assert lines[-1] == "3 passed, 1 failed"
+    for fails_alone, verdict in ((True, "fails alone too"), (False, "passes alone: depends on load or on other tests")):
+        verdicts = testing._diagnose(FakeRunner(fails_alone), results)
+        assert summary.report(results, [], verdicts, 1.0) == 1
+        lines = capsys.readouterr().out.splitlines()
+        assert f"    a: test Suite.bad ({verdict})" in lines
+        assert lines[-1] == "3 passed, 1 failed"
 
 
-@pytest.mark.parametrize("ci, reason, status", [("true", "no device", 1), ("", "no device", 0), ("true", summary.EXPECTED_SKIPS[0], 0)])
-def test_skipped_cases_are_named_with_their_reason_and_fail_in_continuous_integration(capsys, monkeypatch, ci, reason, status):
-    monkeypatch.setenv("CI", ci)
-    results = [result(["a/program"], [], {f"Suite.part{number}": reason for number in range(5)}), result(["b"], [])]
-    assert summary.report(results, [], {}, 1.0) == status
-    text = capsys.readouterr().out
-    assert f"Skipped: 5\n    5: {reason}" in text and "        a: test Suite.part0\n" in text and "        and 2 more\n" in text
-    assert ("not expected with CI=true" in text) == (status == 1)
-    assert text.splitlines()[-1] == "6 passed, 0 failed"
+def test_skipped_cases_are_named_with_their_reason_and_fail_in_continuous_integration(capsys, monkeypatch):
+    for ci, reason, status in (("true", "no device", 1), ("", "no device", 0), ("true", summary.EXPECTED_SKIPS[0], 0)):
+        monkeypatch.setenv("CI", ci)
+        results = [result(["a/program"], [], {f"Suite.part{number}": reason for number in range(5)}), result(["b"], [])]
+        assert summary.report(results, [], {}, 1.0) == status, (ci, reason)
+        text = capsys.readouterr().out
+        assert f"Skipped: 5\n    5: {reason}" in text and "        a: test Suite.part0\n" in text and "        and 2 more\n" in text
+        assert ("not expected with CI=true" in text) == (status == 1)
+        assert text.splitlines()[-1] == "6 passed, 0 failed"
 
 
 def test_results_without_failures_are_not_repeated():
@@ -175,24 +170,19 @@ def test_the_processor_time_of_a_test_includes_its_child_processes(tmp_path, mon
     assert 0.25 < found.processor_seconds < found.seconds + 0.1
 
 
-@pytest.mark.parametrize("program, limit, explanation", [
-    ("import time; time.sleep(60)", 0.3, "stopped at its time limit of 0.3 s"),
-    ("import os, signal; os.kill(os.getpid(), signal.SIGABRT)", 20.0, "ended by signal 6"),
-    ("print('the reason'); raise SystemExit(3)", 20.0, "the reason"),
-])
-def test_a_program_that_fails_is_reported_with_the_reason(tmp_path, monkeypatch, program, limit, explanation):
-    found = run_program(tmp_path, monkeypatch, program, limit)
-    assert found.cases == runner.Cases(0, [""]) and explanation in found.output
+def test_a_program_that_fails_is_reported_with_the_reason(tmp_path, monkeypatch):
+    for program, limit, explanation in (
+            ("import time; time.sleep(60)", 0.3, "stopped at its time limit of 0.3 s"),
+            ("import os, signal; os.kill(os.getpid(), signal.SIGABRT)", 20.0, "ended by signal 6"),
+            ("print('the reason'); raise SystemExit(3)", 20.0, "the reason")):
+        found = run_program(tmp_path, monkeypatch, program, limit)
+        assert found.cases == runner.Cases(0, [""]) and explanation in found.output, found.output
 
 
-@pytest.mark.parametrize("arguments, ros, debug, forwarded", [
-    (["demo"], "kilted", False, []),
-    (["demo", "--model", "ur5e", "--ros", "jazzy"], "jazzy", False, ["--model", "ur5e"]),
-    (["demo", "--debug", "--speed", "0.1"], "kilted", True, ["--speed", "0.1"]),
-    (["demo", "--help"], "kilted", False, ["--help"]),
-    (["sim", "--", "--help"], "kilted", False, ["--help"]),
-    (["sim", "--model", "ur3e"], "kilted", False, ["--model", "ur3e"]),
-])
-def test_unknown_options_of_a_command_are_forwarded_to_its_program(arguments, ros, debug, forwarded):
-    options = main._parse(arguments)
-    assert (options.ros, options.debug, main._forwarded(options)) == (ros, debug, forwarded)
+def test_unknown_options_of_a_command_are_forwarded_to_its_program():
+    for arguments, ros, debug, forwarded in (("demo --model ur5e --ros jazzy", "jazzy", False, ["--model", "ur5e"]),
+                                             ("demo --debug --speed 0.1", "kilted", True, ["--speed", "0.1"]),
+                                             ("demo --help", "kilted", False, ["--help"]),
+                                             ("sim -- --help", "kilted", False, ["--help"])):
+        options = main._parse(arguments.split())
+        assert (options.ros, options.debug, main._forwarded(options)) == (ros, debug, forwarded), arguments
