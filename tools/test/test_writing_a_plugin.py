@@ -1,7 +1,6 @@
 """Follows docs/writing_a_plugin.md step by step in a temporary workspace."""
 
 import os
-import pathlib
 import re
 import shutil
 import subprocess
@@ -9,7 +8,6 @@ import subprocess
 import pytest
 from ur_tools.environment import workspace_environment
 from ur_tools.layout import ROOT, Layout
-from ur_tools.new import KINDS
 
 PAGE = (ROOT / "docs" / "writing_a_plugin.md").read_text()
 BLOCKS = re.findall(r"```bash\n(.*?)```", PAGE, re.S)
@@ -71,54 +69,6 @@ def test_the_new_plugins_are_listed(workspace):
         assert [plugin, package, *description.split()] in [line.split() for line in listed], listed
 
 
-@pytest.mark.parametrize("file", re.findall(r"<!-- file: (\S+) -->", PAGE))
-def test_the_code_on_the_page_matches_the_written_files(workspace, file):
-    code = re.search(rf"<!-- file: {re.escape(file)} -->\n```cpp\n(.*?)```", PAGE, re.S).group(1)
-    assert code in pathlib.Path(workspace[0].parent, "my_workspace", file).read_text()
-
-
-def test_every_kind_of_plugin_is_on_the_page():
-    for kind in KINDS:
-        assert f"ur new {kind} " in PAGE
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_description_is_in_one_file(tmp_path, kind):
-    result = subprocess.run([str(ROOT / "ur"), "new", kind, "wag"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    shown, = re.findall(r"^    (\S+)  .*`ur plugins` shows", result.stdout, re.M)
-    text = (tmp_path / shown).read_text()
-    description = re.search(r"^# (.*?)\.|<description>(.*?)\.?</description>", text)
-    words = description.group(1) or description.group(2)
-    assert [file for file in tmp_path.rglob("*") if file.is_file() and words in file.read_text()] == [tmp_path / shown]
-
-
-@pytest.mark.parametrize("kind, to_change", [("command", {".action", ".cpp"}), ("dashboard", {".cpp"}),
-                                             ("extension", {".action", ".cpp"})])
-def test_a_given_description_requires_no_edit(tmp_path, kind, to_change):
-    result = subprocess.run([str(ROOT / "ur"), "new", kind, "wag", "--description", "Wags & more."], cwd=tmp_path, capture_output=True,
-                            text=True, timeout=60)
-    assert result.returncode == 0, result.stderr
-    assert {pathlib.Path(name).suffix for name in re.findall(r"^    (\S+)  +\S", result.stdout, re.M)} == to_change
-    assert "`ur plugins` shows" not in result.stdout
-    written = "".join(file.read_text() for file in tmp_path.rglob("*") if file.suffix in (".xml", ".action"))
-    assert ("<description>Wags &amp; more.</description>" if kind == "dashboard" else "# Wags & more.") in written
-
-
-@pytest.mark.parametrize("name, mentions", [("Bad", "lower case"), ("a__b", "single underscores"), ("part_2", "part2")])
-def test_an_invalid_name_is_rejected_with_the_reason(tmp_path, name, mentions):
-    result = subprocess.run([str(ROOT / "ur"), "new", "command", name], cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    assert result.returncode == 1 and mentions in result.stderr and not list(tmp_path.iterdir())
-
-
-def test_an_existing_package_is_not_overwritten(tmp_path):
-    for expected in (0, 1):
-        result = subprocess.run([str(ROOT / "ur"), "new", "command", "wag"], cwd=tmp_path, capture_output=True, text=True,
-                                timeout=60)
-        assert result.returncode == expected, result.stderr
-    assert "exists already" in result.stderr
-
-
-def test_a_folder_that_cannot_be_written_is_reported(tmp_path):
-    result = subprocess.run([str(ROOT / "ur"), "new", "command", "wag", "--directory", "/proc"], cwd=tmp_path, capture_output=True,
-                            text=True, timeout=60)
-    assert result.returncode == 1 and "/proc/wag_command cannot be written" in result.stderr and "--directory" in result.stderr
+def test_the_code_on_the_page_matches_the_written_files(workspace):
+    codes = re.findall(r"<!-- file: (\S+) -->\n```cpp\n(.*?)```", PAGE, re.S)
+    assert codes and [file for file, code in codes if code not in (workspace[0] / file).read_text()] == []
