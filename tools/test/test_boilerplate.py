@@ -2,7 +2,6 @@
 
 import statistics
 
-import pytest
 from ur_tools import boilerplate
 
 LONG = {
@@ -26,35 +25,29 @@ class A : public Command<X> {
 };
 UR_ROS_RTDE_EXPORT(A, "a")
 """
+TABLE = """
+EXPORT_DASHBOARD_COMMAND(A, "a", Query, {"a"})
+EXPORT_DASHBOARD_COMMAND(
+  B, "b", Query, {"b"}, {5, 0})
+"""
 
 
-def test_lines_are_counted_from_class_to_export_without_comments():
+def test_lines_are_counted_from_class_to_export_without_comments_and_divided_among_the_commands_of_a_file():
     assert boilerplate.measure(SOURCE) == {"a": 4}
-
-
-def test_the_lines_of_a_file_are_divided_among_its_commands():
     assert boilerplate.measure(SOURCE + 'UR_ROS_RTDE_EXPORT(B, "b")\n') == {"a": 2.5, "b": 2.5}
+    assert boilerplate.measure(TABLE) == {"a": 1.5, "b": 1.5}
 
 
-@pytest.mark.parametrize("dashboard, target", [(False, boilerplate.COMMAND_TARGET), (True, boilerplate.DASHBOARD_TARGET)])
-def test_the_typical_command_is_short(dashboard, target):
-    lines = [command.lines for command in COMMANDS if (command.group == "dashboard") == dashboard]
-    assert statistics.median(lines) <= target
+def test_the_typical_command_is_short():
+    for dashboard, target in ((False, boilerplate.COMMAND_TARGET), (True, boilerplate.DASHBOARD_TARGET)):
+        lines = [command.lines for command in COMMANDS if (command.group == "dashboard") == dashboard]
+        assert statistics.median(lines) <= target
 
 
 def test_only_known_commands_are_long():
     too_long = [f"{command.name}: {command.lines:g} lines, {LONG.get(command.name, command.target)} at most"
                 for command in COMMANDS if command.lines > LONG.get(command.name, command.target)]
     assert not too_long, "\n".join(too_long)
-
-
-def test_a_line_of_a_table_is_a_command():
-    table = """
-EXPORT_DASHBOARD_COMMAND(A, "a", Query, {"a"})
-EXPORT_DASHBOARD_COMMAND(
-  B, "b", Query, {"b"}, {5, 0})
-"""
-    assert boilerplate.measure(table) == {"a": 1.5, "b": 1.5}
 
 
 def test_every_exported_plugin_is_found():

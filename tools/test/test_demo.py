@@ -103,14 +103,3 @@ def test_only_a_demo_with_the_page_builds_the_viewer_and_it_keeps_running():
     assert options.keep_running and {"ur_ros_rtde_viewer", "ur_ros_rtde_commands"} <= set(packages_of_demo(options))
 
 
-def test_options_out_of_range_are_rejected_with_their_limits():
-    result = demo("--threshold", "1000")
-    assert result.returncode == 2
-    assert "--threshold 1000: must be from 5 to 100" in result.stderr
-
-
-def test_help_explains_the_options():
-    result = demo("--help")
-    assert result.returncode == 0
-    for option in ("--model", "--threshold", "--speed", "--keep-running"):
-        assert option in result.stdout

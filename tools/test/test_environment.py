@@ -39,8 +39,9 @@ def test_sets_a_valid_fast_dds_profile(layout, tmp_path):
     assert "XML" in output_with(variable, wrong)
 
 
-@pytest.mark.parametrize("variable", VARIABLES)
-def test_keeps_the_profile_of_the_user(layout, monkeypatch, variable):
-    monkeypatch.setenv(variable, "mine.xml")
-    env = run_environment(layout)
-    assert {name: env.get(name) for name in VARIABLES} == {**dict.fromkeys(VARIABLES), variable: "mine.xml"}
+def test_keeps_the_profile_of_the_user(layout, monkeypatch):
+    for variable in VARIABLES:
+        with monkeypatch.context() as user:
+            user.setenv(variable, "mine.xml")
+            env = run_environment(layout)
+        assert {name: env.get(name) for name in VARIABLES} == {**dict.fromkeys(VARIABLES), variable: "mine.xml"}

@@ -118,6 +118,7 @@ def test_invalid_arguments_of_the_demo_are_rejected_before_the_build(run_without
     for arguments, expected, text in ((["--output", "/no/such/folder"], 1, "--output /no/such/folder: there is no such folder"),
                                       (["--output", "/proc"], 1, "cannot be written"),
                                       (["--speed", "1"], 2, "--speed 1: must be from 0.01 to 0.25"),
+                                      (["--threshold", "1000"], 2, "--threshold 1000: must be from 5 to 100"),
                                       (["--model", "ur99"], 2, "invalid choice: 'ur99'"),
                                       (["--address", "192.0.2.1"], 1, "no network interface")):
         code, printed = run_without_build("demo", "--address", ADDRESS, *arguments)

@@ -108,11 +108,11 @@ def test_measured_times_are_stored_and_reference_times_are_the_default(tmp_path,
     assert Times(file).cost("known", True) == Cost(4.0, 0.5)
 
 
-@pytest.mark.parametrize("text", ["", "{", json.dumps({"known": 3.0})])
-def test_an_unreadable_file_of_times_is_ignored(tmp_path, monkeypatch, text):
+def test_an_unreadable_file_of_times_is_ignored(tmp_path, monkeypatch):
     monkeypatch.setattr(schedule, "REFERENCE", {"known": (7.0, 0.3)})
-    (tmp_path / "durations.json").write_text(text)
-    assert Times(tmp_path / "durations.json").cost("known", True) == Cost(7.0, 0.3)
+    for text in ("", "{", json.dumps({"known": 3.0})):
+        (tmp_path / "durations.json").write_text(text)
+        assert Times(tmp_path / "durations.json").cost("known", True) == Cost(7.0, 0.3), text
 
 
 def test_every_reference_time_belongs_to_a_test_file_a_group_or_a_fuzz_target():

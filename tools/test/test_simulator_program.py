@@ -68,7 +68,7 @@ def test_ten_robots_run_on_consecutive_addresses(ten_robots):
     assert process.wait(10.0) == 0
 
 
-@pytest.mark.parametrize("arguments, message", [
+REFUSED = [
     (["--count", "2", "--address", "255.255.255.255"], "there are not 2 addresses"),
     (["--count", "2", "--address", "::1"], "needs an IPv4 address"),
     (["--count", "0"], "--count"),
@@ -76,24 +76,26 @@ def test_ten_robots_run_on_consecutive_addresses(ten_robots):
     (["--client-log", "/nonexistent/log.mmd"], "client log '/nonexistent/log.mmd' cannot be written (--client-log): No such file"),
     (["--status", "--log"], "give --status alone or with --client-log FILE"),
     (["--status", "--client-log"], "give --status alone or with --client-log FILE"),
-])
-def test_refused_options_are_named(arguments, message):
-    result = subprocess.run([PROGRAM, *arguments], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
-    assert result.returncode != 0
-    assert message in result.stdout + result.stderr
+]
 
 
-@pytest.mark.parametrize("address, reachable", [("0.0.0.0", True), (ADDRESSES[0], False)])
-def test_an_address_that_other_hosts_reach_is_announced(address, reachable):
+def test_refused_options_are_named():
+    for arguments, message in REFUSED:
+        result = subprocess.run([PROGRAM, *arguments], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
+        assert result.returncode != 0 and message in result.stdout + result.stderr, arguments
+
+
+def test_an_address_that_other_hosts_reach_is_announced():
     free_ports = ",".join(f"{name}=0" for name in (
         "primary", "secondary", "realtime", "primary_read_only", "secondary_read_only", "realtime_read_only", "interpreter", "rtde",
         "dashboard", "modbus", "control"))
-    with subprocess.Popen([PROGRAM, "--address", address, "--ports", free_ports], env=run_environment(LAYOUT), stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True) as process:
-        assert process.stdout.readline().startswith(f"ready: ur10e on {address}, ")
-        process.terminate()
-        warning = process.stderr.read()
-    assert ("every client can run programs" in warning) == reachable
+    for address, reachable in (("0.0.0.0", True), (ADDRESSES[0], False)):
+        with subprocess.Popen([PROGRAM, "--address", address, "--ports", free_ports], env=run_environment(LAYOUT),
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            assert process.stdout.readline().startswith(f"ready: ur10e on {address}, ")
+            process.terminate()
+            warning = process.stderr.read()
+        assert ("every client can run programs" in warning) == reachable, address
 
 
 def documented_world_file():
@@ -274,11 +276,7 @@ def test_ten_robots_have_a_status_of_one_line_each():
         assert len(re.sub(r"^\x1b\[\d+A", "", line)) == 59
 
 
-@pytest.mark.parametrize("arguments, terminal, expected", [
-    (["--model", "ur5e"], True, ["--model", "ur5e", "--status"]),
-    (["--model", "ur5e"], False, ["--model", "ur5e"]),
-    (["--log"], True, ["--log"]),
-    (["--client-log=log.mmd"], True, ["--client-log=log.mmd"]),
-])
-def test_ur_sim_shows_the_status_on_a_terminal(arguments, terminal, expected):
-    assert simulation.with_status(arguments, terminal) == expected
+def test_ur_sim_shows_the_status_on_a_terminal():
+    assert simulation.with_status(["--model", "ur5e"], True) == ["--model", "ur5e", "--status"]
+    for arguments, terminal in ((["--model", "ur5e"], False), (["--log"], True), (["--client-log=log.mmd"], True)):
+        assert simulation.with_status(arguments, terminal) == arguments

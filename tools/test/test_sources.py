@@ -37,19 +37,15 @@ def install_program(layout, name, text, status):
     return file.with_name(f"{name}.arguments")
 
 
-@pytest.mark.parametrize("name, check", [("ruff", lint.check_ruff), ("mypy", lint.check_mypy)])
-def test_the_findings_in_python_are_shown(layout, name, check):
-    install_program(layout, name, "a.py:1:2: first\nb.py:3: second", 1)
-    result = check(layout)
-    assert (result.name, result.ok) == (f"sources: {name}", False)
-    assert result.text.splitlines()[:2] == ["    a.py:1:2: first", "    b.py:3: second"]
-
-
-@pytest.mark.parametrize("name, check", [("ruff", lint.check_ruff), ("mypy", lint.check_mypy)])
-def test_python_without_findings_passes_and_the_cache_is_not_in_the_sources(layout, name, check):
-    arguments = install_program(layout, name, "no issues", 0)
-    assert check(layout).ok
-    assert f"--cache-dir {layout.base / f'{name}_cache'}" in arguments.read_text()
+def test_the_findings_in_python_are_shown_and_the_cache_is_not_in_the_sources(layout):
+    for name, check in (("ruff", lint.check_ruff), ("mypy", lint.check_mypy)):
+        install_program(layout, name, "a.py:1:2: first\nb.py:3: second", 1)
+        result = check(layout)
+        assert (result.name, result.ok) == (f"sources: {name}", False)
+        assert result.text.splitlines()[:2] == ["    a.py:1:2: first", "    b.py:3: second"]
+        arguments = install_program(layout, name, "no issues", 0)
+        assert check(layout).ok
+        assert f"--cache-dir {layout.base / f'{name}_cache'}" in arguments.read_text()
 
 
 def test_the_sources_are_checked_by_each_program(layout):
