@@ -38,6 +38,13 @@ def test_every_link_refers_to_an_existing_file_and_heading():
     assert not broken, "\n".join(broken)
 
 
+def test_every_patch_of_ur_rtde_is_listed_with_its_title():
+    page = (ROOT / "docs" / "ur_rtde_patches.md").read_text()
+    patches = sorted((ROOT / "ur_rtde_vendor" / "patches").glob("*.patch"))
+    listed = re.findall(r"^\| \[\d{4}\]\(\.\./ur_rtde_vendor/patches/([\w.-]+)\) (.+?) \|", page, re.M)
+    assert listed == [(patch.name, patch.read_text().split("\n")[0]) for patch in patches]
+
+
 def test_every_program_in_a_command_exists():
     missing = [path for block in blocks() for path in re.findall(r"python3 (\S+)", block) if not (ROOT / path).is_file()]
     missing += [program for package, program in re.findall(r"ros2 run (\w+) ([\w.]+)", README)
