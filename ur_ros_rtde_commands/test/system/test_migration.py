@@ -59,29 +59,21 @@ def missing(interfaces, names, *kinds):
     return {name.split(":=")[0] for name in names} - known
 
 
-@pytest.mark.parametrize("old, new", ACTIONS, ids=lambda names: " ".join(names))
-def test_an_action_of_the_published_package_has_its_counterpart(interfaces, old, new):
-    assert new and not missing(interfaces, new, "actions")
+def test_everything_of_the_published_package_has_its_counterpart(interfaces):
+    assert len(ACTIONS) == 47 and len(PUBLISHED) > 10
+    for old, new in ACTIONS:
+        assert new and not missing(interfaces, new, "actions"), old
+    for old, new in PUBLISHED:
+        kinds = ("topics",) if old and old[0].startswith("/") else ("services", "parameters", "launch arguments", "fields")
+        assert new and not missing(interfaces, new, *kinds), old
 
 
-@pytest.mark.parametrize("old, new", PUBLISHED, ids=lambda names: " ".join(names))
-def test_a_topic_service_or_parameter_of_the_published_package_has_its_counterpart(interfaces, old, new):
-    kinds = ("topics",) if old and old[0].startswith("/") else ("services", "parameters", "launch arguments", "fields")
-    assert new and not missing(interfaces, new, *kinds)
-
-
-@pytest.mark.parametrize("old, new", LAUNCH, ids=lambda names: " ".join(names))
-def test_a_launch_argument_of_ur_robot_driver_has_its_counterpart(interfaces, old, new):
-    assert old and not missing(interfaces, new, "launch arguments", "launch files", "actions")
-
-
-@pytest.mark.parametrize("old, new", UR_ROBOT_DRIVER, ids=lambda names: " ".join(names))
-def test_an_interface_of_ur_robot_driver_has_its_counterpart(interfaces, old, new):
-    assert old and not missing(interfaces, new, "actions", "topics", "services")
-
-
-def test_the_tables_are_complete():
-    assert (len(ACTIONS), len(PUBLISHED) > 10, len(LAUNCH) > 15, len(UR_ROBOT_DRIVER) > 25) == (47, True, True, True)
+def test_the_counterparts_in_ur_robot_driver_exist(interfaces):
+    assert len(LAUNCH) > 15 and len(UR_ROBOT_DRIVER) > 25
+    for old, new in LAUNCH:
+        assert old and not missing(interfaces, new, "launch arguments", "launch files", "actions"), old
+    for old, new in UR_ROBOT_DRIVER:
+        assert old and not missing(interfaces, new, "actions", "topics", "services"), old
 
 
 def test_the_servo_gains_are_fields_of_the_goals():
