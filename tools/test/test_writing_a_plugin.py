@@ -1,4 +1,4 @@
-"""Follows docs/writing_a_plugin.md step by step in a temporary workspace."""
+"""Follows docs/writing_a_plugin.md step by step in a temporary workspace. ur_tools.new writes the packages."""
 
 import os
 import re
