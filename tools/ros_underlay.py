@@ -185,8 +185,8 @@ class Workspace:
         env = {**os.environ, "MAKEFLAGS": f"-j{jobs}", "CMAKE_BUILD_PARALLEL_LEVEL": str(jobs), "ROS_DISTRO": self._distro,
                "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
         command = ["colcon", "--log-base", self._folder / "log", "build", "--merge-install", "--executor", "sequential",
-                   "--base-paths", self._folder / "src", "--build-base", self._folder / "build",
-                   "--install-base", self._folder / "install", "--packages-select", *names,
+                   "--base-paths", *(self._folder / "src" / name for name in names), "--build-base", self._folder / "build",
+                   "--install-base", self._folder / "install",
                    "--event-handlers", "console_direct-", "console_cohesion-", "console_start_end+",
                    "--cmake-args", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DBUILD_TESTING=OFF",
                    "-DTRACETOOLS_DISABLED=ON", "-DINSTALL_EXAMPLES=OFF", "-DSECURITY=OFF", f"-DPython3_EXECUTABLE={sys.executable}",
