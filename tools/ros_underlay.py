@@ -31,6 +31,9 @@ OPTIONAL = ("launch", "launch_ros", "rclcpp", "rclcpp_action", "robot_state_publ
 DEPENDS = ("build_depends", "buildtool_depends", "build_export_depends", "buildtool_export_depends", "exec_depends")
 # rmw_implementation names all of them, but takes those that it finds.
 OTHER_MIDDLEWARES = ("rmw_connextdds", "rmw_fastrtps_dynamic_cpp", "rmw_gurumdds_cpp", *MIDDLEWARES.values())
+# Run-time dependencies of build tools since Lyrical, which only the tests of ROS itself and programs in Rust use.
+OTHER_USES = ("rmw_test_fixture_implementation", "rosidl_generator_rs",
+              *(f"ament_cmake_{linter}" for linter in ("cppcheck", "cpplint", "flake8", "mypy", "pep257", "uncrustify")))
 # Python packages of the build. The generators of the newer distributions need the newer empy.
 TOOLS = ("colcon-common-extensions", "catkin_pkg", "pyyaml", "lark", "numpy<2", "setuptools<80", "packaging", "pytest", "typing_extensions")
 EMPY = {"humble": "empy<4", "jazzy": "empy<4", "kilted": "empy<4"}
@@ -56,6 +59,11 @@ def run(command: Sequence[object], **options: Any) -> str:
     return result.stdout
 
 
+def version(tag: str) -> List[int]:
+    """Returns the version of a release, and, as the last number, the revision of its packaging."""
+    return [int(part) for part in re.findall(r"\d+", tag.rpartition("/")[2])]
+
+
 class Sources:
     """Fetches single tags of release repositories."""
 
@@ -66,14 +74,17 @@ class Sources:
         match = re.fullmatch(r"https://github\.com/([^/]+)/(.+?)(?:\.git)?", url)
         return self._pattern.format(owner=match[1], name=match[2]) if match else url
 
-    def newest(self, release: Release) -> str:
-        """Returns the tag, or, if the repository does not have it yet, its newest one of the same package and distribution."""
-        base = release.tag.rpartition("/")[0]
-        listing = run(["git", "ls-remote", "--tags", "--refs", self.url(release.url), f"refs/tags/{base}/*"])
-        tags = [line.split("refs/tags/")[1] for line in listing.splitlines() if "refs/tags/" in line]
-        if release.tag in tags or not tags:
-            return release.tag if tags else ""
-        return max(tags, key=lambda tag: [int(part) for part in re.findall(r"\d+", tag.rpartition("/")[2])])
+    def nearest(self, release: Release) -> str:
+        """Returns the tag. If the repository does not have it, returns the newest tag of the same or an earlier version of the package:
+        of the distribution, otherwise of Rolling, from which each distribution starts. Returns "" if there is none."""
+        _, distro, package, _ = release.tag.split("/")
+        for origin in dict.fromkeys((distro, "rolling")):
+            listing = run(["git", "ls-remote", "--tags", "--refs", self.url(release.url), f"refs/tags/release/{origin}/{package}/*"])
+            tags = [line.split("refs/tags/")[1] for line in listing.splitlines() if "refs/tags/" in line]
+            candidates = [tag for tag in tags if version(tag)[:-1] <= version(release.tag)[:-1]]
+            if candidates:
+                return release.tag if release.tag in tags else max(candidates, key=version)
+        return ""
 
     def extract(self, release: Release, folder: pathlib.Path) -> None:
         """Replaces the content of the folder by that of the tag."""
@@ -146,7 +157,7 @@ class Workspace:
                 failures.append(str(error))
                 continue
             for dependency in dependencies:
-                if dependency in OTHER_MIDDLEWARES:
+                if dependency in (*OTHER_MIDDLEWARES, *OTHER_USES):
                     continue
                 if dependency in self._releases:
                     waiting.append(dependency)
@@ -156,7 +167,7 @@ class Workspace:
         if failures:
             raise Failure("\n".join(failures))
         if self._older:
-            print("Older than released, because the repository does not have the newest release: " + ", ".join(self._older))
+            print("Older than released, because the repository does not have the release in parentheses: " + ", ".join(self._older))
         print("From the system: " + ", ".join(sorted(self._system)))
         return list(done)
 
@@ -172,21 +183,23 @@ class Workspace:
         stamp = self._folder / "src" / f"{name}.tag"
         wanted, _, tag = (stamp.read_text() if stamp.is_file() else "").partition(" ")
         if wanted != release.tag or not folder.is_dir():
-            tag = self._sources.newest(release)
+            tag = self._sources.nearest(release)
             if not tag:
-                raise Failure(f"{self._sources.url(release.url)} has no release of {name} for {self._distro}")
+                raise Failure(f"{self._sources.url(release.url)} has no release of {name} for {self._distro}, and none of Rolling")
             self._sources.extract(Release(release.url, tag), folder)
             stamp.write_text(f"{release.tag} {tag}")
         if tag != release.tag:
-            self._older.append(f"{name} {tag.rpartition('/')[2]} ({release.tag.rpartition('/')[2]})")
+            _, origin, _, found = tag.split("/")
+            branch = "" if origin == self._distro else f" of {origin}"
+            self._older.append(f"{name} {found}{branch} ({release.tag.rpartition('/')[2]})")
         return folder
 
     def build(self, names: Sequence[str], jobs: int) -> None:
         env = {**os.environ, "MAKEFLAGS": f"-j{jobs}", "CMAKE_BUILD_PARALLEL_LEVEL": str(jobs), "ROS_DISTRO": self._distro,
                "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
         command = ["colcon", "--log-base", self._folder / "log", "build", "--merge-install", "--executor", "sequential",
-                   "--base-paths", self._folder / "src", "--build-base", self._folder / "build",
-                   "--install-base", self._folder / "install", "--packages-select", *names,
+                   "--base-paths", *(self._folder / "src" / name for name in names), "--build-base", self._folder / "build",
+                   "--install-base", self._folder / "install",
                    "--event-handlers", "console_direct-", "console_cohesion-", "console_start_end+",
                    "--cmake-args", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DBUILD_TESTING=OFF",
                    "-DTRACETOOLS_DISABLED=ON", "-DINSTALL_EXAMPLES=OFF", "-DSECURITY=OFF", f"-DPython3_EXECUTABLE={sys.executable}",
