@@ -13,10 +13,11 @@ import zipfile
 
 import pytest
 from ur_tools.environment import program, run_environment
-from ur_tools.layout import ROOT, Layout
+from ur_tools.layout import ROOT, SANITIZERS, Layout
 
 BACKGROUND = True
 LAYOUT = Layout.of_environment()
+pytestmark = pytest.mark.skipif(LAYOUT.variant in SANITIZERS, reason="programs of others do not load the sanitizer")
 SOURCE = ROOT / "ur_simulator"
 README = (SOURCE / "README.md").read_text()
 ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.204")
