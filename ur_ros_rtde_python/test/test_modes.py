@@ -65,7 +65,7 @@ def test_force_mode_ends_with_an_exception(arm, simulator, error):
 def test_force_mode_ends_while_a_motion_is_running(arm, simulator):
     with arm.modes.force_mode(**COMPLIANT):
         goal = arm.start.move_j(AWAY, 0.1)
-    assert goal.is_finished and simulator.is_at_rest() and not is_compliant(simulator)
+    assert goal.wait(10.0) and simulator.is_at_rest() and not is_compliant(simulator)
 
 
 def test_a_mode_that_cannot_begin_raises_the_reason(arm):

@@ -7,7 +7,7 @@ from action_msgs.msg import GoalStatus
 from arm_state import get_joint_positions, get_joint_speed, get_tcp_pose, translated
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from sensor_msgs.msg import JointState
-from support import HOME, REAL_TIME_FACTOR, wait_for
+from support import HOME, wait_for
 from trajectories import TargetRecorder
 
 from ur_ros_rtde_msgs.action import (
@@ -318,5 +318,5 @@ def test_stop_j_applies_the_deceleration(robot):
         states = robot.subscribe(JointState, "joint_states")
         wait_for(lambda states=states: states and states[-1].velocity[0] > 0.59, 10.0, "the speed")
         stopped = robot.send(Decelerate, "stop_j", deceleration=deceleration).succeeded()
-        times[deceleration] = REAL_TIME_FACTOR * stopped.time_to_standstill
+        times[deceleration] = stopped.time_to_standstill
     assert times[0.5] == pytest.approx(1.2, abs=0.3) and times[4.0] == pytest.approx(0.15, abs=0.15)
