@@ -210,9 +210,12 @@ class Workspace:
         print(f"Built in {time.monotonic() - start:.0f} s. In a shell:\n    . {self._write_setup()}\n    ./ur test --ros installed")
 
     def _write_setup(self) -> pathlib.Path:
-        """Writes a setup script that also provides what the packages of a distribution take from the Python of their system."""
+        """Writes a setup script that also provides what the packages of a distribution take from the Python of their system, and the
+        variables of the package ros_environment."""
         setup, modules = self._folder / "setup.sh", sysconfig.get_paths()["purelib"]
-        setup.write_text(f'. "{self._folder / "install" / "setup.sh"}"\nexport PATH="{pathlib.Path(sys.executable).parent}:$PATH"\n'
+        setup.write_text(f'. "{self._folder / "install" / "setup.sh"}"\n'
+                         f'export ROS_DISTRO={self._distro} ROS_VERSION=2 ROS_PYTHON_VERSION=3\n'
+                         f'export PATH="{pathlib.Path(sys.executable).parent}:$PATH"\n'
                          f'export PYTHONPATH="$PYTHONPATH:{modules}"\n')
         return setup
 
