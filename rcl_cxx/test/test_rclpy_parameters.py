@@ -5,10 +5,11 @@ from conftest import LIMIT, eventually, result_of
 from rcl_interfaces.msg import ParameterEvent, ParameterType
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 from rclpy.parameter import Parameter
-from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import qos_profile_parameter_events
 from std_srvs.srv import Trigger
 
+NO_CLIENT = "rclpy of Humble has no client of parameters"
+AsyncParameterClient = pytest.importorskip("rclpy.parameter_client", reason=NO_CLIENT).AsyncParameterClient
 NAMES = ["bytes", "count", "flags", "home", "integers", "limit", "model", "names", "robot.host", "robot.tool.mass",
          "speed", "switch", "use_sim_time"]
 

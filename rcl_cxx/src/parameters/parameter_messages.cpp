@@ -30,10 +30,11 @@ template <typename Range, typename Messages>
 void add_range(const std::optional<Range> & range, Messages & messages)
 {
   if (range) {
-    auto & message = messages.emplace_back();
+    typename Messages::value_type message;  // emplace_back of Humble's bounded vectors returns a copy
     message.from_value = range->from_value;
     message.to_value = range->to_value;
     message.step = range->step;
+    messages.push_back(message);
   }
 }
 }  // namespace
