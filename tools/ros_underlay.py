@@ -31,7 +31,7 @@ OPTIONAL = ("launch", "launch_ros", "rclcpp", "rclcpp_action", "robot_state_publ
 DEPENDS = ("build_depends", "buildtool_depends", "build_export_depends", "buildtool_export_depends", "exec_depends")
 # rmw_implementation names all of them, but takes those that it finds.
 OTHER_MIDDLEWARES = ("rmw_connextdds", "rmw_fastrtps_dynamic_cpp", "rmw_gurumdds_cpp", *MIDDLEWARES.values())
-# Run-time dependencies of build tools since Lyrical, which only the tests of ROS itself and programs in Rust use.
+# Build tools name these from Lyrical on, but only the tests of ROS itself and programs in Rust use them.
 OTHER_USES = ("rmw_test_fixture_implementation", "rosidl_generator_rs",
               *(f"ament_cmake_{linter}" for linter in ("cppcheck", "cpplint", "flake8", "mypy", "pep257", "uncrustify")))
 # Python packages of the build. The generators of the newer distributions need the newer empy.
