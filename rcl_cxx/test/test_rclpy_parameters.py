@@ -8,8 +8,12 @@ from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_parameter_events
 from std_srvs.srv import Trigger
 
-NO_CLIENT = "rclpy of Humble has no client of parameters"
-AsyncParameterClient = pytest.importorskip("rclpy.parameter_client", reason=NO_CLIENT).AsyncParameterClient
+try:
+    from rclpy.parameter_client import AsyncParameterClient
+except ImportError:
+    AsyncParameterClient = None
+
+pytestmark = pytest.mark.skipif(AsyncParameterClient is None, reason="rclpy of Humble has no client of parameters")
 NAMES = ["bytes", "count", "flags", "home", "integers", "limit", "model", "names", "robot.host", "robot.tool.mass",
          "speed", "switch", "use_sim_time"]
 
