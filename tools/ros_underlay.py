@@ -134,6 +134,8 @@ def project_dependencies() -> Iterable[str]:
 class Workspace:
     def __init__(self, options: argparse.Namespace):
         self._distro, self._folder = options.distribution, options.into.resolve()
+        # Those of the package ros_environment.
+        self._variables = {"ROS_DISTRO": self._distro, "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
         self._sources = Sources(options.releases, self._folder / "repositories")
         (self._folder / "repositories").mkdir(parents=True, exist_ok=True)
         self._releases = distribution(self._distro, self._sources, self._folder / "repositories")
@@ -175,7 +177,7 @@ class Workspace:
         from catkin_pkg.package import parse_package
 
         package = parse_package(str(self._source(name) / "package.xml"))
-        package.evaluate_conditions({"ROS_VERSION": "2", "ROS_DISTRO": self._distro, "ROS_PYTHON_VERSION": "3"})
+        package.evaluate_conditions(self._variables)
         return [dependency.name for kind in DEPENDS for dependency in getattr(package, kind) if dependency.evaluated_condition]
 
     def _source(self, name: str) -> pathlib.Path:
@@ -195,8 +197,7 @@ class Workspace:
         return folder
 
     def build(self, names: Sequence[str], jobs: int) -> None:
-        env = {**os.environ, "MAKEFLAGS": f"-j{jobs}", "CMAKE_BUILD_PARALLEL_LEVEL": str(jobs), "ROS_DISTRO": self._distro,
-               "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
+        env = {**os.environ, "MAKEFLAGS": f"-j{jobs}", "CMAKE_BUILD_PARALLEL_LEVEL": str(jobs), **self._variables}
         command = ["colcon", "--log-base", self._folder / "log", "build", "--merge-install", "--executor", "sequential",
                    "--base-paths", *(self._folder / "src" / name for name in names), "--build-base", self._folder / "build",
                    "--install-base", self._folder / "install",
@@ -210,11 +211,10 @@ class Workspace:
         print(f"Built in {time.monotonic() - start:.0f} s. In a shell:\n    . {self._write_setup()}\n    ./ur test --ros installed")
 
     def _write_setup(self) -> pathlib.Path:
-        """Writes a setup script that also provides what the packages of a distribution take from the Python of their system, and the
-        variables of the package ros_environment."""
+        """Writes a setup script that also provides what the packages of a distribution take from the Python of their system."""
         setup, modules = self._folder / "setup.sh", sysconfig.get_paths()["purelib"]
         setup.write_text(f'. "{self._folder / "install" / "setup.sh"}"\n'
-                         f'export ROS_DISTRO={self._distro} ROS_VERSION=2 ROS_PYTHON_VERSION=3\n'
+                         f'export {" ".join(f"{name}={value}" for name, value in self._variables.items())}\n'
                          f'export PATH="{pathlib.Path(sys.executable).parent}:$PATH"\n'
                          f'export PYTHONPATH="$PYTHONPATH:{modules}"\n')
         return setup

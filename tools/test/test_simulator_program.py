@@ -68,7 +68,7 @@ def test_ten_robots_run_on_consecutive_addresses(ten_robots):
     assert process.wait(10.0) == 0
 
 
-REFUSED = [
+REJECTED = [
     (["--count", "2", "--address", "255.255.255.255"], "there are not 2 addresses"),
     (["--count", "2", "--address", "::1"], "needs an IPv4 address"),
     (["--count", "0"], "--count"),
@@ -80,7 +80,7 @@ REFUSED = [
 
 
 def test_refused_options_are_named():
-    for arguments, message in REFUSED:
+    for arguments, message in REJECTED:
         result = subprocess.run([PROGRAM, *arguments], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
         assert result.returncode != 0 and message in result.stdout + result.stderr, arguments
 
