@@ -101,3 +101,11 @@ def test_a_stop_that_takes_a_second_is_left_to_the_driver(running, nodes, simula
     text = press(running)
     until(lambda: any(end in text() for end in ("At rest after", *THROUGH_THE_DASHBOARD)), "the end of the motion")
     assert "At rest after" in text()
+
+
+def test_an_answer_that_waits_for_a_late_viewer_is_no_silence_of_the_driver(running, nodes, simulator, client):
+    ready_to_stop(running, client)
+    text = press(running)
+    running.viewer.control._robots[0]._stopper._control.post(lambda: time.sleep(2.0 * ACCEPTANCE_LIMIT))  # occupies the thread
+    until(lambda: any(end in text() for end in ("At rest after", *THROUGH_THE_DASHBOARD)), "the end of the stop")
+    assert "At rest after" in text()

@@ -6,7 +6,7 @@ dashboard_server stops the program.
 """
 
 from enum import Enum
-from typing import Any, Callable
+from typing import Any, Callable, Optional
 
 from rclpy.action import ActionClient
 
@@ -18,6 +18,7 @@ from .goals import Goals
 ACCEPTANCE_LIMIT = 0.3  # s; the driver needs 2 ms
 SILENCE_LIMIT = 0.5  # s, until the next feedback or the result; the driver sends feedback at 20 Hz
 DASHBOARD_LIMIT = 3.0  # s; a controller needs up to 1 s
+CHECKS = 5  # for an answer, within a limit
 
 
 class Outcome(Enum):
@@ -41,13 +42,34 @@ class Stopper:
         self._control.post(lambda: _Press(self._control, self._stop, self._dashboard, report).start())
 
 
+class _Silence:
+    """Calls `on_silence` once if nothing is heard for `limit` s. Lives in the thread of the node, and counts only time in which
+    this thread could have taken an answer: a thread that was late by more than the limit finds the answer and its own timer together."""
+
+    def __init__(self, node: Any, limit: float, on_silence: Callable[[], None]):
+        self._node, self._on_silence = node, on_silence
+        self._missed = 0  # checks since an answer
+        self._timer = node.create_timer(limit / CHECKS, self._check)
+
+    def _check(self) -> None:
+        self._missed += 1
+        if self._missed == CHECKS:
+            self._on_silence()
+
+    def heard(self) -> None:
+        self._missed = 0
+
+    def end(self) -> None:
+        self._node.destroy_timer(self._timer)
+
+
 class _Press:
     """One press of the button. All methods run in the thread of the node."""
 
     def __init__(self, control: ControlNode, stop: ActionClient, dashboard: ActionClient, report: Report):
         self._node = control.node
         self._stop, self._dashboard, self._report = stop, dashboard, report
-        self._timer: Any = None  # of the answer that is expected
+        self._silence: Optional[_Silence] = None  # while an answer is expected
         self._fell_back = False  # to dashboard_server
 
     def start(self) -> None:
@@ -68,30 +90,30 @@ class _Press:
             self._expect_answer(SILENCE_LIMIT, lambda: self._stop_program("command_server has not answered since it accepted the stop"))
 
     def _on_feedback(self) -> None:
-        if self._timer is not None and not self._fell_back:
-            self._timer.reset()
+        if self._silence is not None and not self._fell_back:
+            self._silence.heard()
 
     def _on_result(self, result: Any) -> None:
         if not result.success:
             self._stop_program(result.message)
             return
-        self._cancel_timer()
+        self._expect_nothing()
         self._report(Outcome.STOPPED, f"At rest after {result.time_to_standstill:.2f} s")
 
     def _expect_answer(self, limit: float, on_silence: Callable[[], None]) -> None:
-        """Calls `on_silence`, which cancels the timer, after `limit` s, unless the answer comes."""
-        self._cancel_timer()
-        self._timer = self._node.create_timer(limit, on_silence)
+        """`on_silence` ends the expectation."""
+        self._expect_nothing()
+        self._silence = _Silence(self._node, limit, on_silence)
 
-    def _cancel_timer(self) -> None:
-        if self._timer is not None:
-            self._node.destroy_timer(self._timer)
-            self._timer = None
+    def _expect_nothing(self) -> None:
+        if self._silence is not None:
+            self._silence.end()
+            self._silence = None
 
     def _stop_program(self, reason: str) -> None:
         if self._fell_back:
             return
-        self._cancel_timer()
+        self._expect_nothing()
         self._fell_back = True
         if not self._dashboard.server_is_ready():
             self._report(Outcome.FAILED, "neither command_server nor dashboard_server answers. Use the emergency stop button, then check "
@@ -112,9 +134,9 @@ class _Press:
         if not result.success:
             self._report_failure(result.message)
             return
-        self._cancel_timer()
+        self._expect_nothing()
         self._report(Outcome.STOPPED, "The robot program was stopped.")
 
     def _report_failure(self, reason: str) -> None:
-        self._cancel_timer()
+        self._expect_nothing()
         self._report(Outcome.FAILED, f"dashboard/stop: {reason}. Use the emergency stop button")
