@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <future>
 #include <mutex>
 #include <stdexcept>
@@ -189,6 +190,20 @@ TEST_F(StateReceiverConnectionTest, DoesNotMistakeADelayOfThisHostForSilence)
   go_on.set_value();
   EXPECT_TRUE(receiver.wait_for_next(sample, 5s)) << log.text();
   EXPECT_EQ(sample.link, 1U) << log.text();
+}
+
+TEST_F(StateReceiverConnectionTest, GivesTheControllerTheWholeLimitAfterASuspensionOfThisProcess)
+{
+  controller.start();
+  auto options = receiver_options();
+  options.silence_limit = 500ms;
+  const auto receiver = this->receiver(options);
+  ASSERT_TRUE(connected(*receiver));
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+  ASSERT_EQ(std::system("kill -STOP $PPID; sleep 0.8; kill -CONT $PPID"), 0);
+  const auto resumed = Clock::now();
+  ASSERT_TRUE(eventually([&] { return !receiver->link().connected; }));
+  EXPECT_GT(Clock::now() - resumed, options.silence_limit / 2);
 }
 
 TEST_F(StateReceiverConnectionTest, ReconnectsAfterAnExceptionInACallback)

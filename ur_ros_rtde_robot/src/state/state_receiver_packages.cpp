@@ -59,11 +59,18 @@ Error StateReceiver::Impl::monitor(const std::stop_token & stop, ur_rtde::RTDERe
       std::max(options_.silence_limit,
                std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
   // If this host was busy, packages may be waiting in the socket: the last part of the limit is reserved for
-  // ur_rtde's thread to read them.
+  // ur_rtde's thread to read them. After a longer delay of this host, the limit begins anew, once.
   const auto last_wait = std::min(reading_time, silence_limit / 2);
-  const auto left = [&] { return last_activity(*state) + silence_limit - last_wait - Clock::now(); };
+  Clock::time_point resumed;
+  const auto left = [&] {
+    return std::max(last_activity(*state), resumed) + silence_limit - last_wait - Clock::now();
+  };
   while (!stop.stop_requested()) {
-    pause(stop, std::max<Clock::duration>(left(), std::chrono::milliseconds(1)));
+    const auto due = Clock::now() + std::max<Clock::duration>(left(), std::chrono::milliseconds(1));
+    pause(stop, due - Clock::now());
+    if (const auto now = Clock::now(); now - due > last_wait && last_activity(*state) > resumed) {
+      resumed = now;
+    }
     if (const auto failed = take_failure()) {
       return {ErrorCode::exception, fmt::format("a callback could not process a package: {}", *failed)};
     }
