@@ -52,7 +52,7 @@ class GoalLatency:
     def _accepted(self, client, goal):
         handle = self._finish(client.send_goal_async(goal))
         if not handle.accepted:
-            raise SystemExit("bench: a goal was refused; see the topic goal_refusals")
+            raise SystemExit("bench: a goal was rejected; see the topic goal_rejections")
         return handle
 
     def _cycle(self):

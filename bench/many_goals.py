@@ -28,7 +28,7 @@ def send_goals(node, client, count, on_goal):
     for number in range(count):
         handle = finish(node, client.send_goal_async(SetPayload.Goal(mass=0.5 + 0.01 * (number % 10))))
         if not handle.accepted:
-            raise SystemExit("bench: a goal was refused; see the topic goal_refusals")
+            raise SystemExit("bench: a goal was rejected; see the topic goal_rejections")
         answer = finish(node, handle.get_result_async())
         if not answer.result.success:
             raise SystemExit(f"bench: a goal failed: {answer.result.message}")

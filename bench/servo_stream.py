@@ -98,7 +98,7 @@ def servo_stream(control, seconds, factor):
     sending = client.send_goal_async(goal)
     rclpy.spin_until_future_complete(node, sending, timeout_sec=10.0)
     if not sending.done() or not sending.result().accepted:
-        raise SystemExit("bench: the trajectory was refused; see the topic goal_refusals")
+        raise SystemExit("bench: the trajectory was rejected; see the topic goal_rejections")
     outcome = sending.result().get_result_async()
     arrivals, cycles = _trace(control, node, outcome)
     result = outcome.result().result

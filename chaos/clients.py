@@ -9,10 +9,10 @@ import messages
 from cell import CODES, StatusTrackingClient
 from goals import Mix
 
-ANSWER_LIMIT = 15.0  # s, from sending a goal to its acceptance or refusal
+ANSWER_LIMIT = 15.0  # s, from sending a goal to its acceptance or rejection
 RESULT_LIMIT = 45.0  # s, from acceptance to the result, for the longest example with the longest fault
 PAUSE = 0.02  # s, between two goals
-PAUSE_AFTER_REFUSAL = 0.2  # s
+PAUSE_AFTER_REJECTION = 0.2  # s
 
 
 def describe(result):
@@ -101,7 +101,7 @@ class GoalSender:
 
     def _run(self):
         while self._gate.enter(self._stop):
-            outcome = "refused"
+            outcome = "rejected"
             try:
                 outcome = self._execute(self._mix.next())
             except Exception as error:  # also a wrong assumption of this test, which must not go on with fewer clients
@@ -110,15 +110,15 @@ class GoalSender:
             finally:
                 self._gate.leave()
             self.outcomes[outcome] += 1
-            self._stop.wait(PAUSE_AFTER_REFUSAL if outcome.startswith("refused") else PAUSE)
+            self._stop.wait(PAUSE_AFTER_REJECTION if outcome.startswith("rejected") else PAUSE)
 
     def _execute(self, plan):
         self._journal.write(self._name, plan.text())
         goal = self._client.send_goal(messages.load(plan.type), plan.name, plan.message())
         if not goal.accepted:
-            refusal = self._client.refusal(goal)
-            self._journal.write(self._name, f"  refused, {CODES[refusal.error_code]}: {refusal.message}")
-            return f"refused, {CODES[refusal.error_code]}"
+            rejection = self._client.rejection(goal)
+            self._journal.write(self._name, f"  rejected, {CODES[rejection.error_code]}: {rejection.message}")
+            return f"rejected, {CODES[rejection.error_code]}"
         if plan.cancel_after is not None:
             self._cancel(goal, plan.cancel_after)
         return self._result(plan, goal)

@@ -114,9 +114,9 @@ class Chaos:
         self._resources.sample()
 
     def _wait_until_ready(self, limit=READY_LIMIT):
-        """Waits until a motion is accepted, or refused because another one runs.
+        """Waits until a motion is accepted, or rejected because another one runs.
 
-        Returns the time of the answer; None if the first attempt was refused because of another motion.
+        Returns the time of the answer; None if the first attempt was rejected because of another motion.
         """
         reasons = []
 
@@ -125,10 +125,10 @@ class Chaos:
             goal = self._probe.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
             if goal.accepted:
                 return goal, time.monotonic()
-            refusal = self._probe.refusal(goal)
-            reasons.append(refusal.message)
+            rejection = self._probe.rejection(goal)
+            reasons.append(rejection.message)
             self._robot.power_up()  # an earlier stand_down may have powered the arm off in the meantime
-            return (None, time.monotonic()) if refusal.error_code == ErrorCode.BUSY else None
+            return (None, time.monotonic()) if rejection.error_code == ErrorCode.BUSY else None
 
         try:
             goal, when = wait_for(answered, limit, "a motion to be accepted again")

@@ -35,7 +35,7 @@ class Robot:
         wait_for(self._in_normal_operation, CLEARING_LIMIT, "the simulator to be in normal operation")
 
     def _try(self, action):
-        """Returns the answer to a step; None if the controller refuses it or a reboot has closed the connection."""
+        """Returns the answer to a step; None if the controller rejects it or a reboot has closed the connection."""
         try:
             return action()
         except AssertionError:

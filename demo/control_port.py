@@ -25,7 +25,7 @@ class ControlPort:
             raise ControlPortError(f"the simulator at {self._where} closed the connection after '{command}'")
         answer = json.loads(answer)
         if not answer.get("ok"):
-            raise ControlPortError(f"the simulator refused '{command}': {answer.get('error', answer)}")
+            raise ControlPortError(f"the simulator rejected '{command}': {answer.get('error', answer)}")
         return answer
 
     def close(self):

@@ -19,10 +19,10 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from recorder import Recorder, mark_events, write_csv
 from ur_ros_rtde_tutorials.action import MoveDownUntilForce
 
-from ur_ros_rtde_msgs.msg import ErrorCode, GoalRefused
+from ur_ros_rtde_msgs.msg import ErrorCode, GoalRejected
 
-DISCOVERY_LIMIT = 20.0  # s
-READY_LIMIT = 15.0  # s, from the first refusal until the robot is ready
+DISCOVERY_TIMEOUT = 20.0  # s
+READY_TIMEOUT = 15.0  # s, from the first rejection until the robot is ready
 TRANSIENT_LOCAL = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 CONNECTING = (ErrorCode.NOT_READY, ErrorCode.LINK_LOST)  # the driver may still be connecting
 STANDSTILL = 0.002  # rad/s
@@ -35,8 +35,8 @@ class Experiment:
         self.node, self.control, self.options = node, control, options
         self.recorder = Recorder(node)
         self.client = ActionClient(node, MoveDownUntilForce, "move_down_until_force")
-        node.create_subscription(GoalRefused, "goal_refusals", self.on_refusal, TRANSIENT_LOCAL)
-        self.refusals = {}
+        node.create_subscription(GoalRejected, "goal_rejections", self.on_rejection, TRANSIENT_LOCAL)
+        self.rejections = {}
         self.goal_handle: Any = None
         self.result: Any = None
         self.pushes = []
@@ -50,8 +50,8 @@ class Experiment:
             rclpy.spin_once(self.node, timeout_sec=0.02)
 
     def prepare(self):
-        self.wait(self.client.server_is_ready, DISCOVERY_LIMIT, "the action move_down_until_force")
-        self.wait(self.recorder.complete, DISCOVERY_LIMIT, "joint_states, wrench and tcp_pose")
+        self.wait(self.client.server_is_ready, DISCOVERY_TIMEOUT, "the action move_down_until_force")
+        self.wait(self.recorder.complete, DISCOVERY_TIMEOUT, "joint_states, wrench and tcp_pose")
         self.start_height = self.recorder.height
         table = self.start_height - self.options.drop
         self.control.request("clear_surfaces")
@@ -63,11 +63,11 @@ class Experiment:
             force=self.options.threshold, distance=min(1.0, self.options.drop + 0.1), speed=self.options.speed
         )
         print(f"goal: down {goal.distance:.2f} m at {goal.speed:g} m/s until {goal.force:g} N along the flange Z axis")
-        deadline = time.monotonic() + READY_LIMIT
+        deadline = time.monotonic() + READY_TIMEOUT
         while not self.accepted(goal):
-            refusal = self.refusals.get(bytes(self.goal_handle.goal_id.uuid))
-            if refusal is None or refusal.error_code not in CONNECTING or time.monotonic() > deadline:
-                raise SystemExit(f"goal refused: {refusal.message if refusal else 'see the log of command_server'}")
+            rejection = self.rejections.get(bytes(self.goal_handle.goal_id.uuid))
+            if rejection is None or rejection.error_code not in CONNECTING or time.monotonic() > deadline:
+                raise SystemExit(f"goal rejected: {rejection.message if rejection else 'see the log of command_server'}")
         self.recorder.start()
         print("goal accepted")
         self.result = self.goal_handle.get_result_async()
@@ -77,11 +77,11 @@ class Experiment:
         self.wait(sent.done, 10.0, "the goal response")
         self.goal_handle = sent.result()
         goal_id = bytes(self.goal_handle.goal_id.uuid)
-        self.wait(lambda: self.goal_handle.accepted or goal_id in self.refusals, 10.0, "the reason for the refusal")
+        self.wait(lambda: self.goal_handle.accepted or goal_id in self.rejections, 10.0, "the reason for the rejection")
         return self.goal_handle.accepted
 
-    def on_refusal(self, refusal):
-        self.refusals[bytes(refusal.goal_id.uuid)] = refusal
+    def on_rejection(self, rejection):
+        self.rejections[bytes(rejection.goal_id.uuid)] = rejection
 
     def on_feedback(self, _message):
         if not sys.stdout.isatty():

@@ -95,7 +95,7 @@ TEST_F(ActionGoalTest, IsAbortedWhenHandleAcceptedThrows)
   EXPECT_EQ(result(send(5)).status, GoalStatus::aborted);
 }
 
-TEST_F(ActionGoalTest, IsRefusedByReasonOrException)
+TEST_F(ActionGoalTest, IsRejectedByReasonOrException)
 {
   serve();
   on_goal = [](const rcl_cxx::GoalUUID &, const Fibonacci::Goal & goal) -> tl::expected<void, std::string> {
@@ -109,7 +109,7 @@ TEST_F(ActionGoalTest, IsRefusedByReasonOrException)
   EXPECT_THAT(handles, IsEmpty());
 }
 
-TEST_F(GoalIdTest, IsRefusedWithoutCallingHandleGoalWhileInUse)
+TEST_F(GoalIdTest, IsRejectedWithoutCallingHandleGoalWhileInUse)
 {
   serve();
   std::atomic<int> checked{0};
@@ -128,7 +128,7 @@ TEST_F(GoalIdTest, IsRefusedWithoutCallingHandleGoalWhileInUse)
   EXPECT_EQ(result(goal).status, GoalStatus::succeeded);
 }
 
-TEST_F(GoalIdTest, CancelReachesTheFirstGoalAfterASecondOneWithItsIdWasRefused)
+TEST_F(GoalIdTest, CancelReachesTheFirstGoalAfterASecondOneWithItsIdWasRejected)
 {
   serve();
   const auto goal = send(5);
@@ -238,13 +238,13 @@ TEST_F(ActionServerTest, AbortsItsGoalsAfterPreShutdownCallbacks)
   EXPECT_FALSE(left->abort());
 }
 
-TEST_F(ActionServerTest, RefusesGoalsDuringShutdown)
+TEST_F(ActionServerTest, RejectsGoalsDuringShutdown)
 {
   serve();
-  std::optional<bool> refused;
-  context->add_pre_shutdown_callback([&] { refused = send(5) == nullptr; });
+  std::optional<bool> rejected;
+  context->add_pre_shutdown_callback([&] { rejected = send(5) == nullptr; });
   context->shutdown("test");
-  EXPECT_EQ(refused, true);
+  EXPECT_EQ(rejected, true);
 }
 
 TEST_F(ActionServerTest, ForgetsResultsAfterTimeout)
@@ -289,7 +289,7 @@ TEST_F(SendGoalTest, ReportsWhatWentWrong)
   on_goal = [](const rcl_cxx::GoalUUID &, const Fibonacci::Goal & goal) -> tl::expected<void, std::string> {
     return goal.order == 0 ? tl::make_unexpected(std::string("no")) : tl::expected<void, std::string>{};
   };
-  EXPECT_THAT(client->send_goal(goal_of(0), kLimit).error(), HasSubstr("refused"));
+  EXPECT_THAT(client->send_goal(goal_of(0), kLimit).error(), HasSubstr("rejected"));
   EXPECT_THAT(client->send_goal(goal_of(1), std::chrono::seconds(2)).error(), HasSubstr("cancel requested"));
   const auto other = rcl_cxx::create_action_client<Fibonacci>(*node, "nobody");
   EXPECT_THAT(other->send_goal(goal_of(1), std::chrono::milliseconds(20)).error(),

@@ -302,7 +302,7 @@ TEST_F(SpinningExecutorTest, ServesTimersThatOutliveTheirNode)
   EXPECT_TRUE(eventually([&] { return calls > before; }));
 }
 
-TEST_F(SpinningExecutorTest, RefusesSecondSpinningThread)
+TEST_F(SpinningExecutorTest, RejectsSecondSpinningThread)
 {
   std::promise<void> spins;
   executor->post([&] { spins.set_value(); });

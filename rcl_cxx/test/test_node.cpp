@@ -25,7 +25,7 @@ using String = std_msgs::msg::String;
 
 // Orders with a special meaning instead of a number of elements.
 constexpr int kRunUntilCanceled = 1000;
-constexpr int kRefuseCancel = 1001;
+constexpr int kRejectCancel = 1001;
 constexpr int kSucceedOnCancel = 1002;
 constexpr int kAbort = 1003;
 constexpr int kDropHandle = 1004;
@@ -86,7 +86,7 @@ class Counting {
     if (handle.get_goal().order == kCancelInHandler) {
       handle.canceled();
     }
-    return handle.get_goal().order != kRefuseCancel;
+    return handle.get_goal().order != kRejectCancel;
   }
 
   void start(std::shared_ptr<Handle> handle)
@@ -125,7 +125,7 @@ class Counting {
       return order == kSucceedOnCancel ? handle.succeed(result_of(progress))
                                        : handle.canceled(result_of(progress));
     }
-    if (order == kRefuseCancel && progress.sequence.size() == kLongest) {
+    if (order == kRejectCancel && progress.sequence.size() == kLongest) {
       return handle.succeed(result_of(progress));
     }
     switch (order) {

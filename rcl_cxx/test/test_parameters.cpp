@@ -65,7 +65,7 @@ TEST(ParameterOverrideTest, OfIntegerIsConvertedToDouble)
   EXPECT_THAT(node.declare_parameter<std::vector<double>>("home", {}), ElementsAre(1.0, 2.0));
 }
 
-TEST(ParameterOverrideTest, IsRefusedWithWrongTypeOrOutOfRange)
+TEST(ParameterOverrideTest, IsRejectedWithWrongTypeOrOutOfRange)
 {
   const auto context = make_context({"--ros-args", "-p", "host:=1", "-p", "speed:=9.0"});
   Node node(context, "node");

@@ -11,7 +11,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from test_msgs.action import Fibonacci
 from unique_identifier_msgs.msg import UUID
 
-RUN_UNTIL_CANCELED, REFUSE_CANCEL, SUCCEED_ON_CANCEL, ABORT, DROP_HANDLE, THROW, THROW_IN_GOAL, FINISH_TWICE, \
+RUN_UNTIL_CANCELED, REJECT_CANCEL, SUCCEED_ON_CANCEL, ABORT, DROP_HANDLE, THROW, THROW_IN_GOAL, FINISH_TWICE, \
     CANCELED_UNASKED, CANCEL_IN_HANDLER = range(1000, 1010)
 
 
@@ -95,7 +95,7 @@ def test_a_result_can_be_requested_before_and_after_the_end_and_repeatedly(clien
 
 def test_a_rejected_goal_is_logged_with_the_reason(client, test_node):
     assert not client.send(-3).accepted
-    eventually(lambda: any("/fibonacci: goal" in line and "refused: order is -3, it must not be negative" in line
+    eventually(lambda: any("/fibonacci: goal" in line and "rejected: order is -3, it must not be negative" in line
                            for line in test_node.errors))
 
 
@@ -123,7 +123,7 @@ def test_cancels_a_goal(client):
 
 
 def test_a_server_may_reject_a_cancel_request(client):
-    goal = client.send(REFUSE_CANCEL)
+    goal = client.send(REJECT_CANCEL)
     answer = client.cancel_goal(goal)
     assert answer.return_code == CancelGoal.Response.ERROR_REJECTED
     assert not answer.goals_canceling

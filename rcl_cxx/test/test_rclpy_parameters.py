@@ -119,9 +119,9 @@ def test_sets_several_parameters_independently(client):
 
 def test_sets_several_parameters_atomically(client):
     count = get(client, "count")[0].integer_value
-    refused = result_of(client.set_parameters_atomically([Parameter("count", value=count + 1),
+    rejected = result_of(client.set_parameters_atomically([Parameter("count", value=count + 1),
                                                           Parameter("speed", value=99.0)])).result
-    assert not refused.successful and "'speed'" in refused.reason
+    assert not rejected.successful and "'speed'" in rejected.reason
     assert get(client, "count")[0].integer_value == count
     assert result_of(client.set_parameters_atomically([Parameter("count", value=count + 1),
                                                        Parameter("speed", value=2.0)])).result.successful

@@ -100,7 +100,7 @@ def test_reports_an_aborted_goal(servers, outcome):
 
 
 def test_reports_a_rejected_goal(servers, outcome):
-    assert "goal refused" in outcome("action", -1)
+    assert "goal rejected" in outcome("action", -1)
 
 
 def test_cancels_a_goal_after_the_timeout(servers, outcome):

@@ -193,7 +193,7 @@ TEST_F(TopicTest, TakesMessagesFromManyThreads)
   EXPECT_TRUE(eventually([&] { return heard == 400; })) << heard;
 }
 
-TEST_F(TopicTest, RefusesInvalidName)
+TEST_F(TopicTest, RejectsInvalidName)
 {
   EXPECT_THROW(node->create_publisher<String>("not valid", rcl_cxx::QoS::reliable(1)), rcl_cxx::Error);
   try {
@@ -291,7 +291,7 @@ TEST_F(ServiceTest, ReportsMissingServiceAndMissingResponse)
   EXPECT_EQ(client->pending_count(), 0U);
 }
 
-TEST_F(ServiceTest, RefusesBlockingCallInCallback)
+TEST_F(ServiceTest, RejectsBlockingCallInCallback)
 {
   const auto client = rcl_cxx::create_client<SetBool>(*node, "set");
   std::promise<std::string> error;

@@ -77,7 +77,7 @@ TEST(ParameterValueTest, CannotBeReadAsAnotherType)
   EXPECT_THROW(ParameterValue(3).get<double>(), rcl_cxx::Error);
 }
 
-TEST(ParameterValueTest, RefusesIntegersThatDoNotFit)
+TEST(ParameterValueTest, RejectsIntegersThatDoNotFit)
 {
   EXPECT_EQ(ParameterValue(255).get<std::uint8_t>(), 255);
   EXPECT_THROW(ParameterValue(256).get<std::uint8_t>(), rcl_cxx::Error);
@@ -136,7 +136,7 @@ TEST(ParameterRangeTest, IncludesItsLimits)
   EXPECT_EQ(check(options, 1.6).error(), "parameter 'p' is limited to the range 0 to 1.5, it cannot be 1.6");
 }
 
-TEST(ParameterRangeTest, RefusesNanAndInfinity)
+TEST(ParameterRangeTest, RejectsNanAndInfinity)
 {
   const ParameterDescriptor options{.floating_point_range = rcl_cxx::FloatingPointRange{0.0, 1.0}};
   EXPECT_FALSE(check(options, std::nan("")));

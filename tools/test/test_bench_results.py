@@ -118,7 +118,7 @@ UNUSABLE = [
 ]
 
 
-def test_unusable_files_are_refused(tmp_path):
+def test_unusable_files_are_rejected(tmp_path):
     file = tmp_path / "old.json"
     for text, message in UNUSABLE:
         file.write_bytes(text)

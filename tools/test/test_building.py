@@ -268,10 +268,10 @@ def test_a_lock_is_acquired_again_if_its_file_was_removed_in_the_meantime(tmp_pa
 
 
 def test_a_read_only_checkout_is_reported(tmp_path, monkeypatch):
-    def refuse(*_unused, **_more):
+    def reject(*_unused, **_more):
         raise OSError(errno.EROFS, "Read-only file system")
 
-    monkeypatch.setattr(lock.pathlib.Path, "open", refuse)
+    monkeypatch.setattr(lock.pathlib.Path, "open", reject)
     with pytest.raises(console.Failure, match="cannot be written: Read-only file system"):
         with lock.Lock("build", tmp_path):
             pass

@@ -19,7 +19,7 @@ def test_every_corpus_has_a_target():
     assert corpora == set(fuzz.targets())
 
 
-def test_an_unknown_target_is_refused_with_the_known_ones():
+def test_an_unknown_target_is_rejected_with_the_known_ones():
     with pytest.raises(console.Failure, match="no fuzz target nonsense; the targets are .*urscript"):
         fuzz.selected(["urscript", "nonsense"])
     assert fuzz.selected([]) == fuzz.targets()

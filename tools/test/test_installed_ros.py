@@ -64,7 +64,7 @@ def test_interfaces_that_it_has_are_not_built(setup_script):
     assert "control_msgs" in found and "tf2_msgs" not in found and "tf2_msgs" in discover_with_interfaces()
 
 
-def test_another_distribution_is_refused(setup_script):
+def test_another_distribution_is_rejected(setup_script):
     for distribution, found in (("foxy", "ROS 2 foxy is sourced"), ("", "No ROS 2 is sourced")):
         setup_script(distribution)
         with pytest.raises(console.Failure) as failure:
@@ -73,7 +73,7 @@ def test_another_distribution_is_refused(setup_script):
         assert found in text and "humble, jazzy, kilted, lyrical, rolling" in text and "--ros kilted" in text, text
 
 
-def test_a_python_without_its_rclpy_is_refused(setup_script, monkeypatch, tmp_path):
+def test_a_python_without_its_rclpy_is_rejected(setup_script, monkeypatch, tmp_path):
     setup_script("humble")
     python = tmp_path / "python3"
     python.write_text("#!/bin/sh\necho 'No module named rclpy'; exit 1\n")

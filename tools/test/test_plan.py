@@ -51,7 +51,7 @@ def plan(tmp_path, text, *options):
 
 
 @pytest.fixture
-def refusal(tmp_path, monkeypatch):
+def rejection(tmp_path, monkeypatch):
     """Returns a function that plans in this process, which saves the start of two Pythons, and returns the printed error."""
 
     def convert(_layout, options, _env):
@@ -131,9 +131,9 @@ INVALID = [
 ]
 
 
-def test_an_invalid_goal_is_rejected_with_the_reason(refusal):
+def test_an_invalid_goal_is_rejected_with_the_reason(rejection):
     for text, what in INVALID:
-        found = refusal(text)
+        found = rejection(text)
         assert what in found and "json" not in found.lower() and found.count("plan.yaml") == 1, (text, found)
 
 

@@ -1,4 +1,4 @@
-"""The program ur_simulator: several robots in one process, refused options, client log and status."""
+"""The program ur_simulator: several robots in one process, rejected options, client log and status."""
 
 import contextlib
 import fcntl
@@ -79,7 +79,7 @@ REJECTED = [
 ]
 
 
-def test_refused_options_are_named():
+def test_rejected_options_are_named():
     for arguments, message in REJECTED:
         result = subprocess.run([PROGRAM, *arguments], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
         assert result.returncode != 0 and message in result.stdout + result.stderr, arguments
@@ -119,7 +119,7 @@ def test_the_documented_world_file_runs(tmp_path):
     assert times == pytest.approx({"push": 0.2, "set_digital_input": 0.5, "run_script": 1.0, "drop_links": 1.5, "protective_stop": 2.0})
 
 
-def test_an_invalid_world_file_is_refused(tmp_path):
+def test_an_invalid_world_file_is_rejected(tmp_path):
     file = tmp_path / "cell.yaml"
     file.write_text("boxes:\n  - center: [0, 0, 0]\n    size: [0.4, 0.3, -0.3]\n")
     result = subprocess.run([PROGRAM, "--world", str(file)], env=run_environment(LAYOUT), capture_output=True, text=True, timeout=30)
@@ -166,7 +166,7 @@ def test_the_documented_client_log_is_that_of_its_session(tmp_path):
             assert lines.readlines()[-1] == "Disconnected\n"
         with socket.create_connection((ADDRESSES[0], 30002)) as script:
             script.sendall(b"def greet():\n  textmessage(\"hello\")\nend\n")
-            wait_for(lambda: "refused" in file.read_text(), "the first script")
+            wait_for(lambda: "rejected" in file.read_text(), "the first script")
             script.sendall(b"def greet():\n  textmsg(\"hello\")\nend\n")
             wait_for(lambda: "ended" in file.read_text(), "the second script")
             script.shutdown(socket.SHUT_WR)  # closing would reset the connection, because of unread data

@@ -48,7 +48,7 @@ def output(workspace, command):
 
 def test_the_command_moves_the_arm_and_rejects_an_invalid_goal(workspace):
     assert "success: true" in output(workspace, '"{angle: 0.2}"')
-    assert "refused: angle is 7 rad" in output(workspace, '"{angle: 7}"')
+    assert "rejected: angle is 7 rad" in output(workspace, '"{angle: 7}"')
 
 
 def test_the_dashboard_command_shows_a_text_and_queries_the_mode(workspace):

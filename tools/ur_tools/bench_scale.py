@@ -14,7 +14,7 @@ from .environment import program
 from .layout import Layout
 from .processes import Program, Programs
 
-READY_LIMIT = 120.0  # s; each driver discovers the actions of all others
+READY_TIMEOUT = 120.0  # s; each driver discovers the actions of all others
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -73,7 +73,7 @@ def _measure_robots(layout: Layout, options: argparse.Namespace, count: int, nod
                   for number, address in enumerate(addresses(options, count))]
         for robot in robots:
             server = robot.get("driver") or robot["command_server"]
-            bench_session.wait_until_ready(programs, server, READY_LIMIT)
+            bench_session.wait_until_ready(programs, server, READY_TIMEOUT)
         ready = time.monotonic() - begin
         pids = [node.process.pid for robot in robots for node in robot.values()]
         arguments = ["--address", options.address, "--subscriber", bench_session.subscriber(layout), "--namespace", "/robot_0",

@@ -12,7 +12,7 @@ from .bench_rows import QOS, VIEWER_CONDITIONS, stress_name
 from .layout import ROOT, Layout
 from .processes import Programs
 
-PAGE_LIMIT = 120.0  # s
+PAGE_TIMEOUT = 120.0  # s
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +33,7 @@ def _start(programs: Programs, layout: Layout, beside: Sequence[str]) -> List[st
     if browser.VARIABLE in found:
         command = [str(layout.python), str(ROOT / "bench" / "open_page.py"), viewer.address(page)]
         shown = programs.start("browser", command, {**env, **found})
-        programs.wait_until(lambda: "The page is open." in shown.output, PAGE_LIMIT, "the page")
+        programs.wait_until(lambda: "The page is open." in shown.output, PAGE_TIMEOUT, "the page")
         measured += ["--load", f"browser={shown.process.pid}"]
     return measured
 

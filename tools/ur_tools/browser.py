@@ -24,7 +24,7 @@ REQUIREMENTS = ROOT / "wheels" / "browser.txt"
 FOLDER = STATE / "browser"
 SYSTEM_LISTS = pathlib.Path("/var/lib/apt/lists")
 LISTS = STATE / "apt"
-LIMIT = 300.0  # s, for each program that is run
+TIMEOUT = 300.0  # s, for each program that is run
 TOOLS = ("apt-get", "dpkg-deb")
 
 # Read by the tests: the program, the folders of its libraries, or why there is none.
@@ -45,9 +45,9 @@ def _run(command: List[str], folder: pathlib.Path = ROOT) -> str:
     env = {name: value for name, value in os.environ.items() if name not in FOREIGN}
     try:
         result = subprocess.run(command, cwd=folder, env={**env, "LC_ALL": "C"}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                stderr=subprocess.STDOUT, universal_newlines=True, timeout=LIMIT)
+                                stderr=subprocess.STDOUT, universal_newlines=True, timeout=TIMEOUT)
     except subprocess.TimeoutExpired:
-        raise console.Failure(f"`{' '.join(command[:3])} …` took longer than {LIMIT:g} s: check the network connection.") from None
+        raise console.Failure(f"`{' '.join(command[:3])} …` took longer than {TIMEOUT:g} s: check the network connection.") from None
     if result.returncode != 0:
         raise console.Failure(f"`{' '.join(command[:3])} …`: {console.tail(result.stdout, 3)}")
     return result.stdout

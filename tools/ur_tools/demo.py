@@ -19,7 +19,7 @@ from .processes import Programs
 # Distance of the tool above the table, m: how far each size of arm can move down from its start pose.
 DROP = {"ur3": 0.15, "ur3e": 0.15}
 DEFAULT_DROP = 0.3
-PAGE_LIMIT = 20.0  # s, to open the page of the viewer
+PAGE_TIMEOUT = 20.0  # s, to open the page of the viewer
 # On a busy machine the simulator may be silent for longer than a robot ever is, and Python cannot receive three topics at 500 Hz:
 # 125 Hz is sufficient for the figure.
 PARAMETERS = {"robot_state_receiver": ("rtde_frequency:=125.0", "silence_limit:=1.0"),
@@ -85,7 +85,7 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> N
     if options.view:
         console.step("Starting the viewer")
         page = viewer.start(programs, layout, env, "--control", "--recordings", str(options.output))
-        viewer.show_page(programs, page, PAGE_LIMIT)
+        viewer.show_page(programs, page, PAGE_TIMEOUT)
 
 
 def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace) -> int:

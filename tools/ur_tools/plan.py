@@ -11,7 +11,7 @@ gain, ...) are ignored.
                                                                 |        - positions: [1.0, -1.20, 1.30, -1.57, -1.57, 0.0]
                                                                 |          time_from_start: {sec: 2, nanosec: 500000000}
 
-If the trajectory would exceed limits, it is refused, and the first exceeded limit is printed.
+If the trajectory would exceed limits, it is rejected, and the first exceeded limit is printed.
 """
 
 import argparse

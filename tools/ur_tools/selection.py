@@ -89,7 +89,7 @@ def _matches(word: str, source: Source, packages: Iterable[str]) -> bool:
     if word in packages:
         return source.package == word
     suites = {case.split(".")[0] for case in source.cases}
-    # CTest adds prefixes and parameters: robot.StopTest.KeepsItsLine, Each/UnreachablePathTest.is_refused/2.
+    # CTest adds prefixes and parameters: robot.StopTest.KeepsItsLine, Each/UnreachablePathTest.is_rejected/2.
     if suites & set(re.split(r"[./]", word)):
         return True
     return word.lower() in source.package or any(word.lower() in name.lower() for name in _names(source))

@@ -59,13 +59,13 @@ def _why_unusable(python: str) -> Optional[str]:
 
 def find_python() -> str:
     """Returns a Python 3.10 to 3.12 with venv, pip and headers. ROS 2 wheels exist for these versions."""
-    refused: List[str] = []
+    rejected: List[str] = []
     for python in _candidates():
         why = _why_unusable(python)
         if why is None:
             return os.path.realpath(python)
-        refused.append(f"    {python} {why}")
-    raise console.Failure("The ROS 2 wheels need Python 3.10, 3.11 or 3.12. Found:\n" + "\n".join(dict.fromkeys(refused)) +
+        rejected.append(f"    {python} {why}")
+    raise console.Failure("The ROS 2 wheels need Python 3.10, 3.11 or 3.12. Found:\n" + "\n".join(dict.fromkeys(rejected)) +
                           "\nInstall one with its venv module and headers, or select it: UR_PYTHON=/path/to/python3.11 ./ur ...")
 
 

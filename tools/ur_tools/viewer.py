@@ -14,7 +14,7 @@ from .layout import Layout
 from .processes import Program, Programs
 
 PACKAGE = "ur_ros_rtde_viewer"
-START_LIMIT = 60.0  # s
+START_TIMEOUT = 60.0  # s
 READY = re.compile(r"The viewer runs at (\S+) until Ctrl-C\.")
 CONNECTED = "A browser shows the page."
 
@@ -39,7 +39,7 @@ def execute(layout: Layout, arguments: Sequence[str], jobs: int = 0) -> None:
 def start(programs: Programs, layout: Layout, env: Mapping[str, str], *arguments: str) -> Program:
     """Returns when the page is served, and prints its address."""
     viewer = programs.start("viewer", [str(program(layout, PACKAGE, "view")), *arguments], env)
-    programs.wait_until(lambda: READY.search(viewer.output) is not None, START_LIMIT, "the viewer")
+    programs.wait_until(lambda: READY.search(viewer.output) is not None, START_TIMEOUT, "the viewer")
     console.line(f"The viewer runs at {address(viewer)} until Ctrl-C.")
     return viewer
 

@@ -116,7 +116,7 @@ void send_goals(bench::BareNode & node, int count)
     const std::int64_t sent = now();
     goals.send(request);
     if (!goals.receive().accepted) {
-      fail("a goal was refused; see the topic goal_refusals");
+      fail("a goal was rejected; see the topic goal_rejections");
     }
     GetResult::Request result;
     result.goal_id = request.goal_id;

@@ -37,7 +37,7 @@ TEST(CheckTest, KeepsTheFirstError)
   EXPECT_NE(message(check).find("speed"), std::string::npos);
 }
 
-TEST(CheckTest, RefusesNanAndInfinity)
+TEST(CheckTest, RejectsNanAndInfinity)
 {
   for (const double value : {nan, infinity, -infinity}) {
     EXPECT_FALSE(Check().in_range("x", value, -1e300, 1e300).ok());
@@ -75,7 +75,7 @@ TEST(CheckTest, NamesTheJointOutsideItsLimits)
       << message(check);
 }
 
-TEST(CheckTest, RefusesAZeroQuaternionButNotAnUnnormalizedOne)
+TEST(CheckTest, RejectsAZeroQuaternionButNotAnUnnormalizedOne)
 {
   geometry_msgs::msg::Pose pose;
   pose.orientation.w = 0.0;
@@ -84,7 +84,7 @@ TEST(CheckTest, RefusesAZeroQuaternionButNotAnUnnormalizedOne)
   EXPECT_TRUE(Check().pose("pose", pose).ok());
 }
 
-TEST(CheckTest, RefusesAPoseOutOfReachOfAllModels)
+TEST(CheckTest, RejectsAPoseOutOfReachOfAllModels)
 {
   geometry_msgs::msg::Pose pose;
   pose.position.x = 5.0;
@@ -94,7 +94,7 @@ TEST(CheckTest, RefusesAPoseOutOfReachOfAllModels)
   EXPECT_EQ(check.error()->code, ErrorCode::unreachable);
 }
 
-TEST(CheckTest, RefusesAZeroTwist)
+TEST(CheckTest, RejectsAZeroTwist)
 {
   EXPECT_FALSE(Check().twist("twist", geometry_msgs::msg::Twist()).ok());
 }

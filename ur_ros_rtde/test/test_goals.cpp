@@ -186,7 +186,7 @@ TEST_F(GoalTest, IsToldToEndAtTheShutdown)
   ASSERT_TRUE(goal);
   EXPECT_TRUE(host_.goals().close(Error{ErrorCode::shutdown, "the end"}, seconds(10)).empty());
   EXPECT_EQ(result(goal).result.error_code, static_cast<std::uint16_t>(ErrorCode::shutdown));
-  EXPECT_FALSE(send()) << "no goal is accepted any more";
+  EXPECT_FALSE(send()) << "no goal is accepted anymore";
 }
 
 TEST_F(GoalTest, ShutdownNamesAGoalWhoseThreadDoesNotEnd)

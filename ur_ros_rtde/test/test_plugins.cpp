@@ -199,8 +199,8 @@ TEST_F(PluginSelectionTest, IgnoresPluginsOfTheOtherServer)
   EXPECT_EQ(select({}, {}), (Names{"a", "c"}));
 }
 
-/// Why a plugin of the test's libraries is refused; "" if it is not.
-std::string refusal(const std::string & name, const std::string & type)
+/// Why a plugin of the test's libraries is rejected; "" if it is not.
+std::string rejection(const std::string & name, const std::string & type)
 {
   PluginLibraries libraries;
   const auto descriptor = libraries.describe(entry(name, type));
@@ -217,31 +217,31 @@ TEST(PluginLibraryTest, CreatesItsPlugin)
   EXPECT_NE(plugin, nullptr);
 }
 
-TEST(PluginLibraryTest, RefusesAnotherAbiVersionAndNamesBoth)
+TEST(PluginLibraryTest, RejectsAnotherAbiVersionAndNamesBoth)
 {
-  EXPECT_TRUE(mentions(refusal("wrong_abi", "WrongAbi"),
+  EXPECT_TRUE(mentions(rejection("wrong_abi", "WrongAbi"),
                        {"libplugin_wrong_abi.so", "version " + std::to_string(plugin_abi_version + 1),
                         "version " + std::to_string(plugin_abi_version)}));
 }
 
-TEST(PluginLibraryTest, RefusesAMissingExportAndNamesIt)
+TEST(PluginLibraryTest, RejectsAMissingExportAndNamesIt)
 {
-  EXPECT_TRUE(mentions(refusal("no_symbol", "NoSymbol"), {"UR_ROS_RTDE_EXPORT(NoSymbol, \"no_symbol\")"}));
+  EXPECT_TRUE(mentions(rejection("no_symbol", "NoSymbol"), {"UR_ROS_RTDE_EXPORT(NoSymbol, \"no_symbol\")"}));
 }
 
-TEST(PluginLibraryTest, RefusesAnotherNameThanInTheDescription)
+TEST(PluginLibraryTest, RejectsAnotherNameThanInTheDescription)
 {
-  EXPECT_TRUE(mentions(refusal("wrong_name", "WrongName"), {"\"another_name\"", "\"wrong_name\""}));
+  EXPECT_TRUE(mentions(rejection("wrong_name", "WrongName"), {"\"another_name\"", "\"wrong_name\""}));
 }
 
-TEST(PluginLibraryTest, RefusesAnotherBaseClassThanInTheDescription)
+TEST(PluginLibraryTest, RejectsAnotherBaseClassThanInTheDescription)
 {
-  EXPECT_TRUE(mentions(refusal("wrong_base", "WrongBase"), {"test::WrongBase", command_base}));
+  EXPECT_TRUE(mentions(rejection("wrong_base", "WrongBase"), {"test::WrongBase", command_base}));
 }
 
-TEST(PluginLibraryTest, RefusesAMissingOrInvalidFile)
+TEST(PluginLibraryTest, RejectsAMissingOrInvalidFile)
 {
-  EXPECT_TRUE(mentions(refusal("nowhere", "Nowhere"), {"libplugin_nowhere.so"}));
+  EXPECT_TRUE(mentions(rejection("nowhere", "Nowhere"), {"libplugin_nowhere.so"}));
   PluginEntry text = entry("good", "Good");
   text.library = __FILE__;
   PluginLibraries libraries;
@@ -250,10 +250,10 @@ TEST(PluginLibraryTest, RefusesAMissingOrInvalidFile)
   EXPECT_TRUE(mentions(descriptor.error().message, {"cannot be loaded"})) << descriptor.error().message;
 }
 
-TEST(PluginLibraryTest, RefusesAnUndefinedSymbolAndNamesIt)
+TEST(PluginLibraryTest, RejectsAnUndefinedSymbolAndNamesIt)
 {
-  EXPECT_TRUE(mentions(refusal("undefined_symbol", "UndefinedSymbol"), {"data_defined_nowhere"}))
-      << refusal("undefined_symbol", "UndefinedSymbol");
+  EXPECT_TRUE(mentions(rejection("undefined_symbol", "UndefinedSymbol"), {"data_defined_nowhere"}))
+      << rejection("undefined_symbol", "UndefinedSymbol");
 }
 
 TEST(PluginLibraryTest, RemovesAPluginThatThrowsLater)

@@ -78,7 +78,7 @@ TEST_F(CsvFileTest, RequiresANewFileWithAnAbsolutePath)
   }
 }
 
-TEST(RowQueueTest, KeepsTheOrderAndRefusesRowsWhenFull)
+TEST(RowQueueTest, KeepsTheOrderAndRejectsRowsWhenFull)
 {
   RowQueue queue(2, 3);
   for (int i = 0; i < 3; ++i) {

@@ -39,7 +39,7 @@ TEST(JointTargetTest, IsReadByNameInAnyOrderWithPrefixAndOtherJoints)
   EXPECT_EQ(target->values, (Vector6{0.7, 0.1, 0.2, 0.3, 0.4, 0.5}));
 }
 
-TEST(JointTargetTest, RefusalNamesTheField)
+TEST(JointTargetTest, RejectionNamesTheField)
 {
   auto missing = joints(0.0);
   missing.name.pop_back();
@@ -91,7 +91,7 @@ TEST(TwistTargetTest, HasTwoFramesAndMayBeZero)
   EXPECT_NE(why_not(twist_target(message)).find("camera"), std::string::npos);
 }
 
-TEST(TargetFollowerTest, RefusesTargetFarFromTheArm)
+TEST(TargetFollowerTest, RejectsTargetFarFromTheArm)
 {
   TeleoperationOptions options;
   Sample sample{};
@@ -99,9 +99,9 @@ TEST(TargetFollowerTest, RefusesTargetFarFromTheArm)
   const auto follower = follow_joints(options);
   follower->begin(sample, 0.002, widest_arm_limits());
   EXPECT_TRUE(follower->set_target({{0.15, 0.1, 0.2, 0.3, 0.4, 0.5}}, 0.02));
-  const auto refused = follower->set_target({{0.0, 0.1, 0.45, 0.3, 0.4, 0.5}}, 0.02);
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("elbow_joint"), std::string::npos);
+  const auto rejected = follower->set_target({{0.0, 0.1, 0.45, 0.3, 0.4, 0.5}}, 0.02);
+  ASSERT_FALSE(rejected);
+  EXPECT_NE(rejected.error().message.find("elbow_joint"), std::string::npos);
   EXPECT_FALSE(follower->set_target({{nan, 0.1, 0.2, 0.3, 0.4, 0.5}}, 0.02));
 }
 
@@ -125,10 +125,10 @@ TEST(TargetFollowerTest, NamesAMissingOrientation)
   sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
   const auto follower = follow_poses({});
   follower->begin(sample, 0.002, widest_arm_limits());
-  const auto refused = follower->set_target({{0.4, 0.1, 0.31, 0.0, 0.0, 0.0}}, 0.02);
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("set the orientation in each message"), std::string::npos)
-      << refused.error().message;
+  const auto rejected = follower->set_target({{0.4, 0.1, 0.31, 0.0, 0.0, 0.0}}, 0.02);
+  ASSERT_FALSE(rejected);
+  EXPECT_NE(rejected.error().message.find("set the orientation in each message"), std::string::npos)
+      << rejected.error().message;
   const auto turned = follower->set_target({{0.4, 0.1, 0.31, 0.0, 1.0, 0.0}}, 0.02);
   ASSERT_FALSE(turned);
   EXPECT_EQ(turned.error().message.find("only its position"), std::string::npos) << turned.error().message;

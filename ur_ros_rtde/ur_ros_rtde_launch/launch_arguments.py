@@ -109,8 +109,8 @@ PARAMETERS = (
     Argument("watchdog_frequency", 10.0, "Minimum rate in Hz of the driver's heartbeats. The robot stops the arm after "
              "1/watchdog_frequency s without one. 0 disables the watchdog.", limits=(0.0, 50.0)),
     Argument("restart_program", True, "Restarts the control program after it was stopped. The interrupted motion is not resumed."),
-    Argument("on_busy", "refuse", "What happens to a motion goal while another motion runs. refuse: it is refused. preempt: it "
-             "stops the running motion.", ("refuse", "preempt")),
+    Argument("on_busy", "reject", "What happens to a motion goal while another motion runs. reject: it is rejected. preempt: it "
+             "stops the running motion.", ("reject", "preempt")),
     Argument("on_client_lost", "stop", "What happens to a motion whose client has disappeared.", ("stop", "continue")),
     Argument("stream_timeout", 0.1, "Time in s without a message after which teleoperation by a topic ends.", limits=(0.02, 1.0)),
     Argument("stream_max_joint_jump", 0.2, "Largest distance in rad of a teleoperation target from the current setpoint.",

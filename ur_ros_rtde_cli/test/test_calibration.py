@@ -91,7 +91,7 @@ def test_the_doctor_warns_of_nominal_kinematics(simulator, file):
     assert finding(kinematics_params_file=str(file)).state is State.OK
 
 
-def test_the_doctor_refuses_the_calibration_of_another_model(simulator, tmp_path):
+def test_the_doctor_rejects_the_calibration_of_another_model(simulator, tmp_path):
     first, second, third, last = ADDRESS.split(".")
     other = Simulator(".".join([first, str(int(second) + 1), third, last]), model="ur10e")
     try:
@@ -105,7 +105,7 @@ def test_the_doctor_refuses_the_calibration_of_another_model(simulator, tmp_path
 @pytest.mark.parametrize("arguments, code, mentions", [
     (["--ur-type", "ur6"], 2, 'model is "ur6"'), (["--ur-type", "ur10e"], 2, "does not belong to the model ur10e"),
     (["--compare", "/none"], 2, 'kinematics_params_file is "/none"'), (["--output", "/"], 2, 'output is "/"')])
-def test_wrong_arguments_are_refused(simulator, arguments, code, mentions, capsys):
+def test_wrong_arguments_are_rejected(simulator, arguments, code, mentions, capsys):
     assert main(["calibration", "--robot", ADDRESS, *arguments]) == code
     assert mentions in capsys.readouterr().err
 

@@ -85,7 +85,7 @@ def test_checks_a_goal_of_a_shared_type(running):
 @pytest.mark.parametrize("number", ["nan", ".nan", "inf", "-.inf"])
 def test_nan_and_infinity_are_sent_and_rejected_by_the_driver(running, number):
     code, output = ur("call", "move_j", f"{{joint_positions: {HOME}, speed: {number}}}")
-    assert code == 2 and "refused: speed is" in output, output
+    assert code == 2 and "rejected: speed is" in output, output
 
 
 def test_suggests_similar_names(running):

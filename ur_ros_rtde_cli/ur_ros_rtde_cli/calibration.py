@@ -13,7 +13,7 @@ import argparse
 import pathlib
 import sys
 
-LIMIT = 5.0  # s, for each answer of the controller
+TIMEOUT = 5.0  # s, for each answer of the controller
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -48,11 +48,11 @@ def _run(options: argparse.Namespace) -> int:
     from .robot_check.primary import read_arm_data
     from .robot_check.rtde import Rtde
     if options.ur_type:
-        find_model(options.ur_type)  # an unknown model is refused before the robot is asked
-    data = read_arm_data(options.robot, LIMIT)
+        find_model(options.ur_type)  # an unknown model is rejected before the robot is asked
+    data = read_arm_data(options.robot, TIMEOUT)
     if data.kinematics is None:
         raise ConnectionFailure("port 30001: the controller does not report its kinematics")
-    with Rtde(options.robot, LIMIT) as rtde:
+    with Rtde(options.robot, TIMEOUT) as rtde:
         version = rtde.version()
     name = options.ur_type or identity.model_of_type(data.type_number, version[0] == 3)
     if not name:

@@ -33,5 +33,5 @@ def run(options: argparse.Namespace) -> int:
         raise CliError("give the goal as an argument or with --file, not both")
     from .session import session  # imported here because --help does not need ROS
     with session(options.namespace) as created:
-        from .send_goal import send_goal  # imported here because the node discovers the servers meanwhile
+        from .send_goal import send_goal  # imported here because the node discovers the servers in the meantime
         return send_goal(created, options)

@@ -33,7 +33,7 @@ DESCRIPTION = """\
 Calls actions of ur_ros_rtde, shows and records the state of the robot, lists the plugins, prints URDFs,
 checks robots and reads their calibration.
 
-Exit code: 0 success, 1 failure, 2 goal refused or wrong arguments, 128 plus the signal number after a signal.
+Exit code: 0 success, 1 failure, 2 goal rejected or wrong arguments, 128 plus the signal number after a signal.
 """
 EPILOG = f"""\
 {', '.join(CHECKOUT_COMMANDS)} need the sources. Run them with `./ur` in a checkout of

@@ -11,7 +11,7 @@ from typing import Any
 from .errors import CliError
 from .interruptions import Interrupted
 
-RESPONSE_LIMIT = 10.0  # s, of a service
+RESPONSE_TIMEOUT = 10.0  # s, of a service
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,9 +26,9 @@ def _call(session: Any, kind: Any, name: str, **request: Any) -> Any:
     client = session.node.create_client(kind, name)
     if not session.wait(client.service_is_ready, 5.0):
         raise CliError(f"the service {name} is not available. Does robot_state_receiver run with this ROS_DOMAIN_ID?")
-    response = session.result(client.call_async(kind.Request(**request)), RESPONSE_LIMIT)
+    response = session.result(client.call_async(kind.Request(**request)), RESPONSE_TIMEOUT)
     if response is None:
-        raise CliError(f"the service {name} did not respond within {RESPONSE_LIMIT:g} s")
+        raise CliError(f"the service {name} did not respond within {RESPONSE_TIMEOUT:g} s")
     if not response.success:
         raise CliError(response.message)
     return response

@@ -8,7 +8,7 @@ from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from ur_ros_rtde_msgs.msg import GoalRefused
+from ur_ros_rtde_msgs.msg import GoalRejected
 
 from . import actions, fields
 from .errors import CliError
@@ -16,7 +16,7 @@ from .feedback import FeedbackDisplay, write
 from .interruptions import Interrupted
 from .session import GRAPH_POLL_PERIOD, Session
 
-CANCEL_LIMIT = 10.0  # s, to wait for the result of a canceled goal
+CANCEL_TIMEOUT = 10.0  # s, to wait for the result of a canceled goal
 
 
 def _read_goal(options: argparse.Namespace) -> fields.Document:
@@ -92,7 +92,7 @@ class _CancelOnInterruption:
     def wait(self, future: Any) -> Any:
         while True:
             try:
-                if self._session.wait(future.done, CANCEL_LIMIT if self.reason else None):
+                if self._session.wait(future.done, CANCEL_TIMEOUT if self.reason else None):
                     return future.result()
             except Interrupted as interrupted:
                 if self.reason:
@@ -103,7 +103,7 @@ class _CancelOnInterruption:
                 self._cancel()
             else:
                 assert self.reason is not None  # before an interruption, there is no limit
-                write(f"no result within {CANCEL_LIMIT:g} s after the goal was canceled\n")
+                write(f"no result within {CANCEL_TIMEOUT:g} s after the goal was canceled\n")
                 raise self.reason
 
     def accepted(self, handle: Any) -> None:
@@ -116,18 +116,18 @@ class _CancelOnInterruption:
             self._handle.cancel_goal_async()
 
 
-class _Refusals:
-    """Receives the reasons of refused goals on the topic goal_refusals."""
+class _Rejections:
+    """Receives the reasons of rejected goals on the topic goal_rejections."""
 
     def __init__(self, session: Session):
         self._session = session
         self._received: list = []
-        session.node.create_subscription(GoalRefused, "goal_refusals", self._received.append,
+        session.node.create_subscription(GoalRejected, "goal_rejections", self._received.append,
                                          QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
 
     def reason(self, goal_id: bytes) -> str:
         own = self._session.wait(lambda: next((r for r in self._received if bytes(r.goal_id.uuid) == goal_id), None), 2.0)
-        return own.message if own else "no reason was received on goal_refusals"
+        return own.message if own else "no reason was received on goal_rejections"
 
 
 def send_goal(session: Session, options: argparse.Namespace) -> int:
@@ -135,12 +135,12 @@ def send_goal(session: Session, options: argparse.Namespace) -> int:
     if client is None:
         print(fields.to_yaml(goal))
         return 0
-    refusals = _Refusals(session)
+    rejections = _Rejections(session)
     display = FeedbackDisplay(options.quiet)
     canceling = _CancelOnInterruption(session, display)
     handle = canceling.wait(client.send_goal_async(goal, feedback_callback=display))
     if not handle.accepted:
-        raise CliError(f"refused: {refusals.reason(bytes(handle.goal_id.uuid))}")
+        raise CliError(f"rejected: {rejections.reason(bytes(handle.goal_id.uuid))}")
     canceling.accepted(handle)
     response = canceling.wait(handle.get_result_async())
     display.clear()

@@ -39,7 +39,7 @@ class Session:
         self._interruption = PendingInterruption()
         rclpy.init(context=self.context, signal_handler_options=SignalHandlerOptions.NO)
         bare_node = _start_discovery(self.context)
-        from rclpy.executors import SingleThreadedExecutor  # imported here because the discovery runs meanwhile
+        from rclpy.executors import SingleThreadedExecutor  # imported here because the discovery runs in the meantime
 
         # Omitting unneeded endpoints shortens the start and the discovery.
         self.node: Any = rclpy.create_node("ur_cli", namespace=namespace or None, context=self.context, enable_rosout=False,

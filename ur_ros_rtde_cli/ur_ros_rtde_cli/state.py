@@ -11,5 +11,5 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     from .session import session  # imported here because --help does not need ROS
     with session(options.namespace) as created:
-        from .print_state import print_state  # imported here because the node discovers the publishers meanwhile
+        from .print_state import print_state  # imported here because the node discovers the publishers in the meantime
         return print_state(created, options)

@@ -1,4 +1,4 @@
-"""Invalid input is refused with the field, the value and the remedy, and nothing is written."""
+"""Invalid input is rejected with the field, the value and the remedy, and nothing is written."""
 
 import math
 import os
@@ -18,7 +18,7 @@ from ur_ros_rtde_description.program import main
 BACKGROUND = True
 
 
-def refusal(model="ur10e", **options):
+def rejection(model="ur10e", **options):
     with pytest.raises(DescriptionError) as error:
         read_options(model, **options)
     return str(error.value)
@@ -29,8 +29,8 @@ def nominal(model="ur10e"):
 
 
 @pytest.mark.parametrize("name, hint", [("ur5f", "did you mean ur5"), ("kuka", "The models are: ur3, ur5"), ("", "The models")])
-def test_an_unknown_model_is_refused_with_the_most_similar_one(name, hint):
-    text = refusal(name)
+def test_an_unknown_model_is_rejected_with_the_most_similar_one(name, hint):
+    text = rejection(name)
     assert f'model is "{name}"' in text and hint in text
 
 
@@ -41,19 +41,19 @@ def test_the_name_of_a_model_may_have_any_spelling(name):
 
 @pytest.mark.parametrize("field", ["tf_prefix", "parent"])
 @pytest.mark.parametrize("value", ["left arm", "left-", "${x}", "ä", "a\nb", '"'])
-def test_a_name_with_other_characters_is_refused(field, value):
-    assert f'{field} is "{value}", it may contain letters' in refusal(**{field: value})
+def test_a_name_with_other_characters_is_rejected(field, value):
+    assert f'{field} is "{value}", it may contain letters' in rejection(**{field: value})
 
 
 def test_the_parent_is_no_link_of_the_arm():
-    assert 'parent is "left_tool0"' in refusal(parent="left_tool0", tf_prefix="left_")
-    assert 'parent is "tool_tip"' in refusal(parent="tool_tip", tool_length=0.1)
+    assert 'parent is "left_tool0"' in rejection(parent="left_tool0", tf_prefix="left_")
+    assert 'parent is "tool_tip"' in rejection(parent="tool_tip", tool_length=0.1)
     read_options("ur10e", parent="tool0", tf_prefix="left_")  # a link of another arm
 
 
 @pytest.mark.parametrize("field", ["xyz", "rpy"])
 def test_a_mounting_pose_is_finite(field):
-    assert f"{field} is [0.0, nan, 0.0]" in refusal(**{field: (0.0, math.nan, 0.0)})
+    assert f"{field} is [0.0, nan, 0.0]" in rejection(**{field: (0.0, math.nan, 0.0)})
 
 
 @pytest.mark.parametrize("options, mentions", [
@@ -61,8 +61,8 @@ def test_a_mounting_pose_is_finite(field):
     ({"tool_length": 0.1, "tool_radius": -1.0}, "tool_radius is -1"), ({"tool_length": 0.1, "tool_mass": math.nan}, "tool_mass is nan"),
     ({"tool_mass": 1.0}, "tool_length is missing"), ({"tool": "a.urdf", "tool_length": 0.1}, "either a file or a cylinder"),
 ])
-def test_an_invalid_cylinder_is_refused(options, mentions):
-    assert mentions in refusal(**options)
+def test_an_invalid_cylinder_is_rejected(options, mentions):
+    assert mentions in rejection(**options)
 
 
 @pytest.mark.parametrize("text, mentions", [
@@ -75,17 +75,17 @@ def test_an_invalid_cylinder_is_refused(options, mentions):
     ('<robot><link name="flange"/></robot>', 'a link has the name "flange"'),
     ('<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/></robot>', "convert it first: xacro"),
 ])
-def test_an_invalid_tool_is_refused(text, mentions, tmp_path):
+def test_an_invalid_tool_is_rejected(text, mentions, tmp_path):
     file = tmp_path / "tool.urdf"
     file.write_text(text)
-    found = refusal(tool=str(file))
+    found = rejection(tool=str(file))
     assert mentions in found and str(file) in found
 
 
-def test_a_missing_file_is_refused(tmp_path):
+def test_a_missing_file_is_rejected(tmp_path):
     for field in ("tool", "kinematics_params_file"):
-        assert f'{field} is "{tmp_path}/none": No such file' in refusal(**{field: f"{tmp_path}/none"})
-        assert "Is a directory" in refusal(**{field: str(tmp_path)})
+        assert f'{field} is "{tmp_path}/none": No such file' in rejection(**{field: f"{tmp_path}/none"})
+        assert "Is a directory" in rejection(**{field: str(tmp_path)})
 
 
 @pytest.mark.parametrize("change, mentions", [
@@ -100,30 +100,30 @@ def test_a_missing_file_is_refused(tmp_path):
     (lambda content: content["kinematics"].update(fore_arm={}), "the unknown field fore_arm; did you mean forearm?"),
     (lambda content: content.update(kinematics=[1]), "kinematics is [1], it must be a mapping"),
 ])
-def test_an_invalid_calibration_is_refused(change, mentions, tmp_path):
+def test_an_invalid_calibration_is_rejected(change, mentions, tmp_path):
     content = nominal()
     change(content)
     file = write_calibration(tmp_path, content)
-    text = refusal(kinematics_params_file=file)
+    text = rejection(kinematics_params_file=file)
     assert mentions in text and file in text
 
 
 @pytest.mark.parametrize("text, mentions", [("", "the content is None"), ("[", ":1: not YAML"), ("7", "the content is 7"),
                                             ("{kinematics: }", "the field kinematics is missing")])
-def test_a_file_that_is_no_calibration_is_refused(text, mentions, tmp_path):
+def test_a_file_that_is_no_calibration_is_rejected(text, mentions, tmp_path):
     file = tmp_path / "calibration.yaml"
     file.write_text(text)
-    assert mentions in refusal(kinematics_params_file=str(file))
+    assert mentions in rejection(kinematics_params_file=str(file))
 
 
 @pytest.mark.parametrize("owner", models())
 @pytest.mark.parametrize("model", models())
-def test_the_calibration_of_another_model_is_refused(owner, model, tmp_path):
+def test_the_calibration_of_another_model_is_rejected(owner, model, tmp_path):
     file = write_calibration(tmp_path, nominal(owner))
     if nominal_origins(find_model(owner)) == nominal_origins(find_model(model)):
         read_options(model, kinematics_params_file=file)
         return
-    text = refusal(model, kinematics_params_file=file)
+    text = rejection(model, kinematics_params_file=file)
     assert f"does not belong to the model {model}" in text and owner in text.split("It fits")[1]
 
 
@@ -143,7 +143,7 @@ def test_the_program_writes_a_file(tmp_path):
 
 @pytest.mark.parametrize("output, mentions", [("none/arm.urdf", "No such file or directory"), (os.devnull, "not a file"),
                                               (".", "not a file")])
-def test_an_output_that_cannot_be_written_is_refused(output, mentions, tmp_path, capsys, monkeypatch):
+def test_an_output_that_cannot_be_written_is_rejected(output, mentions, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["--model", "ur5e", "--output", output]) == 2
     assert f'output is "{pathlib.Path(output)}": ' in (text := capsys.readouterr().err) and mentions in text
@@ -171,13 +171,13 @@ def test_launch_arguments_become_options():
 
 
 @pytest.mark.parametrize("name, value", [("xyz", "0 0"), ("rpy", "0 0 x"), ("meshes", "yes"), ("ur_type", "ur6"), ("tf_prefix", "a b")])
-def test_an_invalid_launch_argument_is_refused(name, value):
+def test_an_invalid_launch_argument_is_rejected(name, value):
     with pytest.raises(DescriptionError, match=f'(model|{name}) is "{value}"'):
         values = launch_values(**{name: value})
         description_options(values), is_true("meshes", values)
 
 
-def test_an_unknown_launch_argument_is_refused():
+def test_an_unknown_launch_argument_is_rejected():
     check_names(["ur_type", "launch-prefix"])
     with pytest.raises(DescriptionError, match="no launch argument prefix; did you mean tf_prefix"):
         check_names(["prefix"])

@@ -114,7 +114,7 @@ def test_std_hash_is_that_of_libstdcxx(text, expected):
 @pytest.mark.parametrize("change, mentions", [({"a": (0.0, math.nan, 0.0, 0.0, 0.0, 0.0)}, "no finite numbers"),
                                               ({"alpha": (*ALPHA[:5], 0.01)}, "of joint 6"),
                                               ({"d": (0.0,) * 6}, "the controller: the calibration does not belong to the model ur5e")])
-def test_invalid_parameters_are_refused(change, mentions):
+def test_invalid_parameters_are_rejected(change, mentions):
     model = find_model("ur5e")
     with pytest.raises(DescriptionError, match=mentions):
         origins_from_dh(dataclasses.replace(nominal(model), **change), model)

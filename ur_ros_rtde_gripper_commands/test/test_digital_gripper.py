@@ -82,5 +82,5 @@ def test_cancel_keeps_the_outputs(gripper, simulator):
 def test_a_value_out_of_range_is_rejected_with_the_limit(gripper, fields, mentions):
     goal = gripper.send(DigitalGripper, "digital_gripper", **fields)
     assert not goal.accepted
-    refusal = gripper.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and all(part in refusal.message for part in mentions), refusal.message
+    rejection = gripper.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and all(part in rejection.message for part in mentions), rejection.message

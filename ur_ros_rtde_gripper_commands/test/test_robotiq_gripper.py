@@ -83,8 +83,8 @@ def test_gripper_and_arm_move_together_but_not_two_gripper_goals(gripper, simula
     assert arm.accepted and closing.accepted
     second = gripper.send(RobotiqGrip, "robotiq_open")
     assert not second.accepted
-    refusal = gripper.refusal(second)
-    assert refusal.error_code == ErrorCode.BUSY and "robotiq_close" in refusal.message, refusal.message
+    rejection = gripper.rejection(second)
+    assert rejection.error_code == ErrorCode.BUSY and "robotiq_close" in rejection.message, rejection.message
     assert gripper.send(RobotiqGetStatus, "robotiq_get_status").succeeded().active
     closing.succeeded()
     arm.succeeded()
@@ -149,8 +149,8 @@ def test_an_activation_that_is_blocked_times_out(gripper, simulator):
 def test_a_value_out_of_range_is_rejected_with_the_limit(gripper, fields, mentions):
     goal = gripper.send(RobotiqMove, "robotiq_move", **fields)
     assert not goal.accepted
-    refusal = gripper.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and all(part in refusal.message for part in mentions), refusal.message
+    rejection = gripper.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and all(part in rejection.message for part in mentions), rejection.message
 
 
 def test_a_lost_connection_ends_the_goal(gripper, simulator):
@@ -169,9 +169,9 @@ def test_a_robot_without_the_urcap_rejects_the_commands(client, addresses):
         make_ready(other)
         goal = other.send(RobotiqGrip, "robotiq_close")
         assert not goal.accepted
-        refusal = other.refusal(goal)
-        assert refusal.error_code == ErrorCode.NOT_SUPPORTED, refusal.message
-        assert "63352" in refusal.message and "install Robotiq's URCap" in refusal.message, refusal.message
+        rejection = other.rejection(goal)
+        assert rejection.error_code == ErrorCode.NOT_SUPPORTED, rejection.message
+        assert "63352" in rejection.message and "install Robotiq's URCap" in rejection.message, rejection.message
     finally:
         other.close()
         driver.stop()

@@ -47,8 +47,8 @@ def test_opens_and_reports_the_width(gripper):
 def test_a_value_out_of_range_is_rejected_with_the_limit(gripper, fields, mentions):
     goal = gripper.send(SgGrip, "sg_grip", **fields)
     assert not goal.accepted
-    refusal = gripper.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and all(part in refusal.message for part in mentions), refusal.message
+    rejection = gripper.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and all(part in rejection.message for part in mentions), rejection.message
 
 
 def test_a_stuck_gripper_times_out_and_the_driver_stays_ready(gripper, simulator):
@@ -79,14 +79,14 @@ def test_a_robot_without_the_urcap_rejects_gripper_commands_and_stays_ready(clie
         start = list(driver.lines)
         goal = other.send(SgGetWidth, "sg_get_width")
         assert not goal.accepted
-        refusal = other.refusal(goal)
-        assert refusal.error_code == ErrorCode.NOT_SUPPORTED, refusal.message
-        assert "get_sg_Width" in refusal.message and "install the OnRobot URCap" in refusal.message, refusal.message
+        rejection = other.rejection(goal)
+        assert rejection.error_code == ErrorCode.NOT_SUPPORTED, rejection.message
+        assert "get_sg_Width" in rejection.message and "install the OnRobot URCap" in rejection.message, rejection.message
         reported = [line for line in start if "OnRobot" in line]
         assert len(reported) == 1 and "INFO" in reported[0], driver.output()
         assert all(name in reported[0] for name in ("sg_get_width", "sg_grip", "sg_release")), reported
         # Goals of make_ready() may be rejected because the driver is not connected, or the robot not ready, yet.
-        early = ("refused: connecting", "refused: not yet connected", "refused: starting")
+        early = ("rejected: connecting", "rejected: not yet connected", "rejected: starting")
         assert not [line for line in start if "ERROR" in line or ("WARN" in line and not any(text in line for text in early))], start
     finally:
         other.close()

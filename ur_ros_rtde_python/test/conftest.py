@@ -9,7 +9,7 @@ import pytest
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde_commands" / "test" / "system"))
 from robot_fixtures import addresses, driver, simulator
 from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Simulator, start_node, wait_for
-from ur_ros_rtde import CommandFailed, Refused, Robot
+from ur_ros_rtde import CommandFailed, Rejected, Robot
 
 __all__ = ["addresses", "driver", "simulator"]
 
@@ -47,7 +47,7 @@ def arm(connected, driver):
     def is_at_home():
         try:
             return connected.move_j(HOME, speed=3.0, acceleration=15.0)
-        except (Refused, CommandFailed) as error:  # the control program may be starting
+        except (Rejected, CommandFailed) as error:  # the control program may be starting
             errors.append(error)
             return None
 

@@ -10,7 +10,7 @@ import threading
 import numpy as np
 import pytest
 from support import HOME, TIMEOUT_FACTOR, Process, wait_for
-from ur_ros_rtde import CommandFailed, NoDriver, Refused, Robot, Timeout, UnknownCommand, pose, trajectory
+from ur_ros_rtde import CommandFailed, NoDriver, Rejected, Robot, Timeout, UnknownCommand, pose, trajectory
 
 PLUGINS = ("plugins:=[move_j,move_l,stop,make_ready,trigger_protective_stop,execute_trajectory,execute_parametrized_trajectory,"
            "execute_cartesian_path,set_digital_output,dashboard/robot_mode]")
@@ -39,10 +39,10 @@ def test_the_documentation_comes_from_the_interface(arm):
     assert {"move_j", "dashboard", "spiral_search", "state"} <= set(dir(arm)) and "robot_mode" in dir(arm.dashboard)
 
 
-def test_a_refusal_has_field_value_and_limit(arm):
-    with pytest.raises(Refused, match="speed is 9 rad/s") as refused:
+def test_a_rejection_has_field_value_and_limit(arm):
+    with pytest.raises(Rejected, match="speed is 9 rad/s") as rejected:
         arm.move_j(AWAY, speed=9)
-    error = refused.value
+    error = rejected.value
     assert (error.field, error.value, error.limit, error.name) == ("speed", 9.0, "above 0 and at most 3.14 rad/s", "INVALID_GOAL")
 
 
@@ -52,10 +52,10 @@ def test_a_refusal_has_field_value_and_limit(arm):
     ((HOME,), {"joint_positions": HOME}, "joint_positions", "given twice"),
     ((HOME, 1.0, 1.0, 1.0), {}, None, "the fields are: joint_positions, speed, acceleration"),
     (([[0.0] * 6],), {}, "joint_positions[0]", "expected a number")])
-def test_a_wrong_field_is_refused_before_it_is_sent(arm, values, fields, field, text):
-    with pytest.raises(Refused, match=text) as refused:
+def test_a_wrong_field_is_rejected_before_it_is_sent(arm, values, fields, field, text):
+    with pytest.raises(Rejected, match=text) as rejected:
         arm.move_j(*values, **fields)
-    assert refused.value.field == field
+    assert rejected.value.field == field
 
 
 def test_an_unknown_command_raises_an_error_with_a_similar_name(arm):
@@ -71,10 +71,10 @@ def test_a_plugin_that_the_driver_has_not_loaded(arm):
         other.spiral_search()
 
 
-def test_busy_is_refused_with_its_remedy(arm):
-    with arm.start.move_j(AWAY, SLOW), pytest.raises(Refused) as refused:
+def test_busy_is_rejected_with_its_remedy(arm):
+    with arm.start.move_j(AWAY, SLOW), pytest.raises(Rejected) as rejected:
         arm.move_j(HOME)
-    assert refused.value.name == "BUSY" and "stop()" in refused.value.remedy
+    assert rejected.value.name == "BUSY" and "stop()" in rejected.value.remedy
 
 
 def test_a_failure_has_code_remedy_and_final_state(arm):

@@ -5,7 +5,7 @@ import pytest
 from ur_ros_rtde import pose, read_recording, trajectory
 from ur_ros_rtde.commands import _goal_message
 from ur_ros_rtde.conversions import interface, numbers
-from ur_ros_rtde.errors import Refused
+from ur_ros_rtde.errors import Rejected
 
 BACKGROUND = True
 QUARTER = np.sqrt(0.5)
@@ -42,10 +42,10 @@ def test_a_message_is_taken_as_it_is():
 
 
 @pytest.mark.parametrize("given", [np.arange(5.0), np.arange(8.0), ["a"] * 7, [True] * 7, 3.0])
-def test_numbers_that_are_no_pose_are_refused(given):
-    with pytest.raises(Refused, match="pose is .*expected a mapping of fields") as refused:
+def test_numbers_that_are_no_pose_are_rejected(given):
+    with pytest.raises(Rejected, match="pose is .*expected a mapping of fields") as rejected:
         goal("MoveL", pose=given)
-    assert refused.value.field == "pose"
+    assert rejected.value.field == "pose"
 
 
 def test_rows_become_waypoints():
@@ -54,7 +54,7 @@ def test_rows_become_waypoints():
 
 
 def test_a_message_with_other_fields_is_not_made_of_numbers():
-    with pytest.raises(Refused, match=r"waypoints\[0\]"):
+    with pytest.raises(Rejected, match=r"waypoints\[0\]"):
         goal("MovePath", waypoints=np.arange(12.0).reshape(2, 6))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support import HOME, wait_for
-from ur_ros_rtde import CommandFailed, Refused
+from ur_ros_rtde import CommandFailed, Rejected
 
 PLUGINS = ("plugins:=[move_j,move_l,stop,freedrive,teach_mode,force_mode,force_mode_start,force_mode_stop,jog,make_ready,zero_ft_sensor,"
            "trigger_protective_stop]")
@@ -12,11 +12,11 @@ COMPLIANT = {"compliant": [False, False, True, False, False, False]}
 
 
 def is_in_freedrive(arm):
-    """Returns whether motions are refused because the arm may be moved by hand."""
+    """Returns whether motions are rejected because the arm may be moved by hand."""
     try:
         arm.move_j(HOME, speed=3.0)
-    except Refused as refused:
-        assert refused.name == "BUSY"
+    except Rejected as rejected:
+        assert rejected.name == "BUSY"
         return True
     return False
 
@@ -69,7 +69,7 @@ def test_force_mode_ends_while_a_motion_is_running(arm, simulator):
 
 
 def test_a_mode_that_cannot_begin_raises_the_reason(arm):
-    with pytest.raises(Refused, match="compliant"), arm.modes.force_mode(compliant=[False] * 6):
+    with pytest.raises(Rejected, match="compliant"), arm.modes.force_mode(compliant=[False] * 6):
         pytest.fail("the block was executed")
 
 

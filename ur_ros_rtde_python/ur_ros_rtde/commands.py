@@ -11,7 +11,7 @@ from ur_ros_rtde_cli import actions, fields, interface_files, plugins
 
 from .connection import Connection, load
 from .conversions import kinds_of, plain
-from .errors import Refused
+from .errors import Rejected
 from .goal import Goal, Progress
 
 Plugin = plugins.Plugin
@@ -101,15 +101,15 @@ def _goal_message(name: str, action: Any, values: tuple[Any, ...], given: dict[s
     kinds = kinds_of(goal)
     known = list(kinds)
     if len(values) > len(known):
-        raise Refused(name, 1, f"{len(values)} values were given, the fields are: {', '.join(known) or 'none'}")
+        raise Rejected(name, 1, f"{len(values)} values were given, the fields are: {', '.join(known) or 'none'}")
     twice = next((field for field in known[:len(values)] if field in given), None)
     if twice:
-        raise Refused(name, 1, f"{twice} was given twice", twice)
+        raise Rejected(name, 1, f"{twice} was given twice", twice)
     everything = {**dict(zip(known, values, strict=False)), **given}
     try:
         fields.fill(goal, {field: plain(kinds.get(field), value) for field, value in everything.items()})
     except fields.FieldError as error:
-        raise Refused(name, 1, str(error), fields.field_name(error.path)) from None
+        raise Rejected(name, 1, str(error), fields.field_name(error.path)) from None
     return goal
 
 
@@ -119,7 +119,7 @@ class Commands(Group):
     Fields of the goal are given in their order or by name, as numbers, lists, numpy arrays, mappings or messages. Further arguments:
     `on_progress` is called with each feedback message; `result_timeout` (s) replaces that of the Robot.
 
-    Raises Refused if the goal is not accepted, CommandFailed if it fails, NoDriver, and Timeout.
+    Raises Rejected if the goal is not accepted, CommandFailed if it fails, NoDriver, and Timeout.
     """
 
     def __init__(self, connection: Connection, goals: set[Goal]):

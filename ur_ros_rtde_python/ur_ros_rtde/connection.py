@@ -16,8 +16,8 @@ from .errors import NoDriver, RobotError, Timeout, UnknownCommand
 T = TypeVar("T")
 
 REQUEST_TIMEOUT = 10.0  # s, to send a request
-REFUSAL_TIMEOUT = 2.0  # s, for the reason of a refused goal
-REFUSALS = 100  # messages to keep: those of all clients are received
+REJECTION_TIMEOUT = 2.0  # s, for the reason of a rejected goal
+REJECTIONS = 100  # messages to keep: those of all clients are received
 DISCOVERY_TIME = 1.0  # s, after which a name that was not discovered counts as unknown
 POLL_PERIOD = 0.01  # s; changes of the ROS graph do not wake the executor
 
@@ -61,8 +61,8 @@ class Connection:
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._clients: dict[str, Any] = {}  # of actions and services, by full name
-        self._refusals: dict[bytes, Any] = {}
-        self._subscribe_refusals()
+        self._rejections: dict[bytes, Any] = {}
+        self._subscribe_rejections()
         self._thread = threading.Thread(target=self._executor.spin, name="ur_ros_rtde", daemon=True)
         self._thread.start()
 
@@ -146,17 +146,17 @@ class Connection:
             hint = f"Start the driver, or check the namespace and ROS_DOMAIN_ID ({domain}): ros2 launch ur_ros_rtde driver.launch.py"
         return NoDriver(f"no driver serves {self.full_name(name)} within {self.timeout:g} s. {hint}")
 
-    def _subscribe_refusals(self) -> None:
+    def _subscribe_rejections(self) -> None:
         def store(message: Any) -> None:
-            self._refusals[bytes(message.goal_id.uuid)] = message
-            while len(self._refusals) > REFUSALS:
-                self._refusals.pop(next(iter(self._refusals)), None)
+            self._rejections[bytes(message.goal_id.uuid)] = message
+            while len(self._rejections) > REJECTIONS:
+                self._rejections.pop(next(iter(self._rejections)), None)
 
-        self.subscribe("ur_ros_rtde_msgs/msg/GoalRefused", "goal_refusals", store, latched=True)
+        self.subscribe("ur_ros_rtde_msgs/msg/GoalRejected", "goal_rejections", store, latched=True)
 
-    def refusal(self, goal_id: bytes) -> Any:
-        """Returns the message about a refused goal, or None if there is none."""
-        return until(lambda: self._refusals.pop(goal_id, None), REFUSAL_TIMEOUT, 0.001)
+    def rejection(self, goal_id: bytes) -> Any:
+        """Returns the message about a rejected goal, or None if there is none."""
+        return until(lambda: self._rejections.pop(goal_id, None), REJECTION_TIMEOUT, 0.001)
 
     # Services and topics
 

@@ -15,7 +15,7 @@ Array: TypeAlias = NDArray[numpy.float64]
 
 
 def interface(name: str) -> Any:
-    """Returns the class of an interface such as "ur_ros_rtde_msgs/msg/GoalRefused". Imported on use, because that takes time."""
+    """Returns the class of an interface such as "ur_ros_rtde_msgs/msg/GoalRejected". Imported on use, because that takes time."""
     package, folder, kind = name.split("/")
     return getattr(importlib.import_module(f"{package}.{folder}"), kind)
 

@@ -40,7 +40,7 @@ class _Coded(RobotError):
         super().__init__(f"{command}: {message} ({self.name})")
 
 
-class Refused(_Coded):
+class Rejected(_Coded):
     """A goal that was not accepted. Nothing has moved.
 
     `field`, `value` and `limit` are None if the message names none.

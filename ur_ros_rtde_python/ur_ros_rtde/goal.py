@@ -11,7 +11,7 @@ from typing import Any
 
 from .connection import Connection
 from .conversions import interface
-from .errors import CommandFailed, NoDriver, Refused, RobotError, Timeout
+from .errors import CommandFailed, NoDriver, Rejected, RobotError, Timeout
 
 CANCEL_TIMEOUT = 10.0  # s, for the result of a canceled goal
 LOSS_TIME = 2.0  # s without a server, after which the driver counts as gone
@@ -49,7 +49,7 @@ class Goal:
         return self._finished.done()
 
     def send(self) -> "Goal":
-        """Sends the goal and returns when it is accepted. Raises Refused or NoDriver."""
+        """Sends the goal and returns when it is accepted. Raises Rejected or NoDriver."""
         try:
             self._client = self._connection.action_client(self.name)
             self._queued = True
@@ -62,9 +62,9 @@ class Goal:
             self.abandon()
             raise
         if not handle.accepted:
-            refusal = self._connection.refusal(bytes(handle.goal_id.uuid))
-            raise Refused(self.name, getattr(refusal, "error_code", 1),
-                          getattr(refusal, "message", "refused; see the log of the driver for the reason"))
+            rejection = self._connection.rejection(bytes(handle.goal_id.uuid))
+            raise Rejected(self.name, getattr(rejection, "error_code", 1),
+                          getattr(rejection, "message", "rejected; see the log of the driver for the reason"))
         return self
 
     def result(self, timeout: float | None = None, on_progress: Progress | None = None) -> Any:

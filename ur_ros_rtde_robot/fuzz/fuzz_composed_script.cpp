@@ -68,7 +68,7 @@ void add_extensions(std::string_view text, unsigned major, unsigned minor)
 void make_program(std::string_view text, bool secondary)
 {
   const auto program = script::make_program(std::string(text), {secondary, "begin", "end", "a = 1"});
-  // What is sent is one program, also if the script tries to end it early.
+  // What is sent is one program, even if the script tries to end it early.
   if (program) {
     const auto scanned = script::scan(program->text.text());
     require(scanned && !scanned->tokens.empty());

@@ -9,13 +9,13 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds limit{2000};
+constexpr std::chrono::milliseconds timeout{2000};
 
 void probe()
 {
-  auto socket = ur_ros_rtde::TcpSocket::connect(ur_fuzz::address, ur_ros_rtde::dashboard_port, limit);
+  auto socket = ur_ros_rtde::TcpSocket::connect(ur_fuzz::address, ur_ros_rtde::dashboard_port, timeout);
   if (socket) {
-    (void)ur_ros_rtde::probe_dashboard(std::move(*socket), ur_fuzz::address, limit);
+    (void)ur_ros_rtde::probe_dashboard(std::move(*socket), ur_fuzz::address, timeout);
   }
 }
 
@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t * data, std::size_t siz
   if (probes) {
     probe();
   } else {
-    (void)ur_ros_rtde::dashboard_request(ur_fuzz::address, "running", limit, {});
+    (void)ur_ros_rtde::dashboard_request(ur_fuzz::address, "running", timeout, {});
   }
   return 0;
 }

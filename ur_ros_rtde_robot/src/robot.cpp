@@ -57,9 +57,9 @@ Status Robot::ready_to_move() const
   return impl_->ready_to_move();
 }
 
-Status Robot::wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop) const
+Status Robot::wait_until_ready(std::chrono::milliseconds timeout, std::stop_token stop) const
 {
-  return impl_->manager.wait_until_ready(limit, std::move(stop));
+  return impl_->manager.wait_until_ready(timeout, std::move(stop));
 }
 
 std::optional<ControllerVersion> Robot::version() const
@@ -213,10 +213,10 @@ Locked<ur_rtde::DashboardClient> Robot::dashboard() const
   return impl_->dashboard.dashboard();
 }
 
-Expected<std::string> Robot::query_dashboard(const std::string & line, std::chrono::milliseconds limit,
+Expected<std::string> Robot::query_dashboard(const std::string & line, std::chrono::milliseconds timeout,
                                              const std::stop_token & stop) const
 {
-  return impl_->dashboard.request(line, limit, stop);
+  return impl_->dashboard.request(line, timeout, stop);
 }
 
 std::optional<Sample> Robot::latest() const
@@ -224,9 +224,9 @@ std::optional<Sample> Robot::latest() const
   return impl_->state.latest();
 }
 
-bool Robot::wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop) const
+bool Robot::wait_for_next(Sample & last, std::chrono::milliseconds timeout, std::stop_token stop) const
 {
-  if (!impl_->state.wait_for_next(last, limit, std::move(stop))) {
+  if (!impl_->state.wait_for_next(last, timeout, std::move(stop))) {
     return false;
   }
   // The receiving thread may not have done so yet, and the caller asks for motion_progress() next.
@@ -342,7 +342,7 @@ ScriptReport Robot::run_script(const Lease & lease, const std::string & script, 
     return options.stop_reason ? options.stop_reason() : std::nullopt;
   };
   ScriptReport report = impl_->scripts.run(lease.permit_.get(), script, options_of_holder);
-  const bool nothing_is_left = report.end == ScriptEnd::finished || report.end == ScriptEnd::refused ||
+  const bool nothing_is_left = report.end == ScriptEnd::finished || report.end == ScriptEnd::rejected ||
                                report.end == ScriptEnd::compile_error;
   if (lease && nothing_is_left) {
     lease.permit_->renew(impl_->generation());  // the script has replaced the control program

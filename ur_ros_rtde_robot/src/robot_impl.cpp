@@ -170,7 +170,7 @@ Status Robot::Impl::motion_possible() const
   if (manager.control_owner() == ControlOwner::script) {
     return {};
   }
-  if (!sample->program_running()) {
+  if (!sample->is_program_running()) {
     return tl::unexpected(program_ended_error());
   }
   const auto control = interfaces.control_interface();

@@ -30,13 +30,13 @@ void RobotFixture::make_both()
 }
 
 testing::AssertionResult RobotFixture::comes_to(RobotState state, ErrorCode cause,
-                                                std::chrono::milliseconds limit)
+                                                std::chrono::milliseconds timeout)
 {
   const auto there = [&] {
     const auto now = robot->status();
     return now.state == state && (cause == ErrorCode::none || now.cause == cause);
   };
-  if (eventually(there, limit)) {
+  if (eventually(there, timeout)) {
     return testing::AssertionSuccess();
   }
   const auto now = robot->status();

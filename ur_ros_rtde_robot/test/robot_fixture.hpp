@@ -27,10 +27,10 @@ struct RobotFixture : testing::Test {
   void make_both();
   /// Waits for the state; the failure message is the log.
   testing::AssertionResult comes_to(RobotState state, ErrorCode cause = ErrorCode::none,
-                                    std::chrono::milliseconds limit = 20s);
-  testing::AssertionResult becomes_ready(std::chrono::milliseconds limit = 20s)
+                                    std::chrono::milliseconds timeout = 20s);
+  testing::AssertionResult becomes_ready(std::chrono::milliseconds timeout = 20s)
   {
-    return comes_to(RobotState::ready, {}, limit);
+    return comes_to(RobotState::ready, {}, timeout);
   }
 
   /// Has become ready for the n-th time.

@@ -21,9 +21,9 @@ struct StateReceiverTest : testing::Test {
     result->start();
     return result;
   }
-  static bool connected(const StateReceiver & receiver, std::chrono::milliseconds limit = 15s)
+  static bool connected(const StateReceiver & receiver, std::chrono::milliseconds timeout = 15s)
   {
-    return eventually([&] { return receiver.link().connected && receiver.latest(); }, limit);
+    return eventually([&] { return receiver.link().connected && receiver.latest(); }, timeout);
   }
 };
 

@@ -27,9 +27,9 @@ std::string own_address()
          std::to_string(2 + hash / 50000 % 250);
 }
 
-bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds limit)
+bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds timeout)
 {
-  const auto deadline = std::chrono::steady_clock::now() + limit;
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > deadline) {
       return false;

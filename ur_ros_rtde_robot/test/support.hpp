@@ -23,8 +23,8 @@ using namespace std::chrono_literals;
 /// An address in 127.0.0.0/8 that is unique to the running test, so that tests can run in parallel.
 std::string own_address();
 
-/// Waits for a condition; false if it does not hold within `limit`.
-bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds limit = 15s);
+/// Waits for a condition; false if it does not hold within `timeout`.
+bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds timeout = 15s);
 
 /// A simulated controller at the test's address; initially none.
 class Controller {
@@ -35,7 +35,7 @@ class Controller {
 
   void start(const ur_simulator::SimulatorOptions & options = Controller::options());
   void stop() { controller_.reset(); }
-  /// Sends a request to the control port; the test fails if the simulator refuses it.
+  /// Sends a request to the control port; the test fails if the simulator rejects it.
   nlohmann::json control(const nlohmann::json & request);
   nlohmann::json state() { return controller_->state(); }
 

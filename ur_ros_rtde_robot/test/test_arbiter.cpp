@@ -82,7 +82,7 @@ TEST(ArbiterTest, PreemptsTheHolderAndWaits)
   EXPECT_EQ(reason, "preempted by move_j, goal 77");
 }
 
-TEST(ArbiterTest, RefusesWhenTheHolderDoesNotReleaseInTime)
+TEST(ArbiterTest, RejectsWhenTheHolderDoesNotReleaseInTime)
 {
   Arbiter arbiter;
   int asked = 0;

@@ -94,7 +94,7 @@ struct StatedModelTest : RobotFixture {
   }
 };
 
-TEST_F(StatedModelTest, RefusesAnUnknownModelAndListsTheKnownOnes)
+TEST_F(StatedModelTest, RejectsAnUnknownModelAndListsTheKnownOnes)
 {
   auto options = robot_options();
   options.model = "ur99";

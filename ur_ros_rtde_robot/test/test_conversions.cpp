@@ -69,7 +69,7 @@ TEST(RotationVectorTest, AcceptsQuaternionsOfAnyNorm)
   EXPECT_NEAR((*scaled)[2], 0.5, 1e-15);
 }
 
-TEST(RotationVectorTest, RefusesAZeroQuaternionWithTheRemedy)
+TEST(RotationVectorTest, RejectsAZeroQuaternionWithTheRemedy)
 {
   const auto found = rotation_vector({0.0, 0.0, 0.0, 0.0});
   ASSERT_FALSE(found);
@@ -77,7 +77,7 @@ TEST(RotationVectorTest, RefusesAZeroQuaternionWithTheRemedy)
   EXPECT_NE(found.error().message.find("w = 1"), std::string::npos);
 }
 
-TEST(RotationVectorTest, RefusesNonFiniteValues)
+TEST(RotationVectorTest, RejectsNonFiniteValues)
 {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

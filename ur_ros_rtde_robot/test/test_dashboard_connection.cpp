@@ -46,7 +46,7 @@ TEST(DashboardReplyTest, VersionsInLongRepliesAreRead)
   EXPECT_THROW(client.isInRemoteControl(), std::runtime_error);
 }
 
-TEST(DashboardReplyTest, RepliesWithoutEndAreRefused)
+TEST(DashboardReplyTest, RepliesWithoutEndAreRejected)
 {
   ur_fuzz::ReplyServer server(own_address(), dashboard_port);
   server.set_reply("Connected\n" + std::string(70000, 'x') + "\n");
@@ -74,7 +74,7 @@ TEST_F(DashboardConnectionTest, ConnectsSoonAfterTheControllerHasStarted)
   EXPECT_TRUE(connected()) << log.text();
 }
 
-TEST_F(DashboardConnectionTest, ReturnsTheRobotsRefusalAsAnError)
+TEST_F(DashboardConnectionTest, ReturnsTheRobotsRejectionAsAnError)
 {
   controller.start();
   connect();

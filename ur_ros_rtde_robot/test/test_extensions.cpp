@@ -37,12 +37,12 @@ TEST_F(ExtensionsTest, AMissingUrcapIsOneLineOfInformationForAllCommandsThatNeed
   EXPECT_EQ(log.count("[info] not installed on this robot"), 1U) << log.text();
   EXPECT_EQ(log.count("[error]"), 0U) << log.text();
   EXPECT_TRUE(robot->has_extension("wait"));
-  const auto refused = robot->has_extension("open");
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, ErrorCode::not_supported);
-  EXPECT_NE(refused.error().message.find("feeder_open"), std::string::npos) << refused.error().message;
-  EXPECT_NE(refused.error().message.find("install the Feeder URCap"), std::string::npos)
-      << refused.error().message;
+  const auto rejected = robot->has_extension("open");
+  ASSERT_FALSE(rejected);
+  EXPECT_EQ(rejected.error().code, ErrorCode::not_supported);
+  EXPECT_NE(rejected.error().message.find("feeder_open"), std::string::npos) << rejected.error().message;
+  EXPECT_NE(rejected.error().message.find("install the Feeder URCap"), std::string::npos)
+      << rejected.error().message;
 }
 
 TEST_F(ExtensionsTest, AFaultInASnippetStaysAnError)

@@ -91,10 +91,10 @@ TEST_F(ExternalControlTest, BecomesReadyWhenTheProgramIsPlayed)
   EXPECT_NE(robot->status().message.find(std::to_string(port)), std::string::npos) << robot->status().message;
   EXPECT_THROW(robot->control(), RobotError);
   EXPECT_FALSE(robot->ready_to_move());
-  EXPECT_FALSE(eventually([&] { return robot->latest()->program_running(); }, 400ms))
+  EXPECT_FALSE(eventually([&] { return robot->latest()->is_program_running(); }, 400ms))
       << "nobody has played it";
   play();
-  ASSERT_TRUE(eventually([&] { return robot->latest()->program_running(); })) << log.text();
+  ASSERT_TRUE(eventually([&] { return robot->latest()->is_program_running(); })) << log.text();
   const double begin = robot->latest()->controller_time;
   ASSERT_TRUE(becomes_ready());
   const double after = robot->latest()->controller_time - begin;
@@ -114,7 +114,7 @@ TEST_F(ExternalControlTest, EndsTheMotionAndWaitsForPlayWhenStoppedOnThePendant)
   ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
   EXPECT_EQ(robot->motion_possible().error().code, ErrorCode::program_stopped);
   ASSERT_TRUE(waits_for_play());
-  EXPECT_FALSE(eventually([&] { return robot->latest()->program_running(); }, 700ms))
+  EXPECT_FALSE(eventually([&] { return robot->latest()->is_program_running(); }, 700ms))
       << "it was the operator";
   EXPECT_TRUE(at_rest());
   play();
@@ -160,7 +160,7 @@ TEST_F(ExternalControlTest, WaitsForPlayAfterLostLinksWithoutResumingTheMotion)
     controller.control({{"command", "drop_links"}, {"reset", reset}});
     ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
     ASSERT_TRUE(waits_for_play());
-    EXPECT_FALSE(robot->latest()->program_running());
+    EXPECT_FALSE(robot->latest()->is_program_running());
     play();
     ASSERT_TRUE(becomes_ready_again(++times));
     EXPECT_TRUE(keeps_still());
@@ -191,7 +191,7 @@ TEST_F(ExternalControlTest, DoesNotResumeTheMotionAfterAProtectiveStop)
   ASSERT_TRUE(eventually(
       [&] {
         try {
-          robot->dashboard()->unlockProtectiveStop();  // refused for 5 s
+          robot->dashboard()->unlockProtectiveStop();  // rejected for 5 s
           return true;
         } catch (const std::exception &) {
           return false;
@@ -230,7 +230,7 @@ TEST_F(ExternalControlTest, DistinguishesTheControlProgramFromAnotherOne)
     return robot->status().message.find("not the control program") != std::string::npos;
   })) << robot->status().message;
   EXPECT_NE(robot->status().message.find("the External Control URCap has not fetched it"), std::string::npos);
-  EXPECT_TRUE(robot->latest()->program_running()) << "it is left alone";
+  EXPECT_TRUE(robot->latest()->is_program_running()) << "it is left alone";
   controller.control({{"command", "stop_program"}});
   ASSERT_TRUE(waits_for_play());
   play();
@@ -280,19 +280,19 @@ TEST_F(ExternalControlTest, DoesNotAdoptAProgramInTheMiddleOfAMotion)
   EXPECT_TRUE(keeps_still());
 }
 
-TEST_F(ExternalControlTest, RefusesScriptsThatWouldReplaceTheProgram)
+TEST_F(ExternalControlTest, RejectsScriptsThatWouldReplaceTheProgram)
 {
   start(options());
   play();
   ASSERT_TRUE(becomes_ready());
   const auto report = run_script("textmsg(\"no\")");
-  EXPECT_EQ(report.end, ScriptEnd::refused);
+  EXPECT_EQ(report.end, ScriptEnd::rejected);
   EXPECT_EQ(report.error.code, ErrorCode::not_supported);
   EXPECT_NE(report.error.message.find("control_urcap"), std::string::npos) << report.error.message;
   EXPECT_TRUE(works()) << "nothing has happened";
   ScriptOptions beside;
   beside.kind = ScriptKind::secondary;
-  beside.limit = 5s;
+  beside.timeout = 5s;
   EXPECT_TRUE(run_script("sec f():\n  textmsg(\"yes\")\nend\n", beside));
   EXPECT_TRUE(robot->ready_to_move());
 }

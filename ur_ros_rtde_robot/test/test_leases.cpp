@@ -62,7 +62,7 @@ struct LeaseTest : RobotFixture {
   {
     controller.control({{"command", "stop_program"}});
     ASSERT_TRUE(becomes_ready_again());
-    ASSERT_TRUE(eventually([&] { return robot->latest()->program_running(); }));
+    ASSERT_TRUE(eventually([&] { return robot->latest()->is_program_running(); }));
   }
 
   double begin_ = 0.0;

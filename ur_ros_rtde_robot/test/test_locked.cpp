@@ -28,7 +28,10 @@ struct Counter {
 struct LockedTest : testing::Test {
   std::shared_ptr<Counter> counter = std::make_shared<Counter>();
   std::shared_ptr<InterfaceLock> lock = std::make_shared<InterfaceLock>();
-  Locked<Counter> locked(std::chrono::milliseconds limit = 5s) { return {counter, lock, "counter", limit}; }
+  Locked<Counter> locked(std::chrono::milliseconds timeout = 5s)
+  {
+    return {counter, lock, "counter", timeout};
+  }
 };
 
 TEST_F(LockedTest, SerializesCalls)
@@ -66,7 +69,7 @@ TEST_F(LockedTest, IsRecursive)
   EXPECT_EQ(locked()->add(locked()->add(2)), 4);
 }
 
-TEST_F(LockedTest, RefusesAfterTheLimitWhileAnotherThreadHoldsTheLock)
+TEST_F(LockedTest, RejectsAfterTheLimitWhileAnotherThreadHoldsTheLock)
 {
   const auto held = locked().hold();
   std::jthread([this] {

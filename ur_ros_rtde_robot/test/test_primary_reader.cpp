@@ -77,7 +77,7 @@ TEST(PrimaryReaderTest, SkipsMessagesThatAreTooShort)
   EXPECT_EQ(reader.next()->text, "still there");
 }
 
-TEST(PrimaryReaderTest, RefusesOtherStreams)
+TEST(PrimaryReaderTest, RejectsOtherStreams)
 {
   for (const std::uint32_t size : {0U, 4U, 2'000'000U, 0xFFFFFFFFU}) {
     PrimaryReader reader;

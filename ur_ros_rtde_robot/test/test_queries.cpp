@@ -120,7 +120,7 @@ TEST_F(QueryTest, DoesNotWriteOtherRegisters)
   make_both();
   ScriptOptions secondary;
   secondary.kind = ScriptKind::secondary;
-  secondary.limit = 5s;
+  secondary.timeout = 5s;
   ASSERT_TRUE(
       run_script("write_output_float_register(13, 7.5)\nwrite_output_float_register(19, 8.5)\n", secondary));
   control()->getMassMatrix();

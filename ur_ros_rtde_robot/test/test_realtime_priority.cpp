@@ -86,16 +86,16 @@ TEST(RealtimePriorityTest, ZeroChangesNothing)
   });
 }
 
-TEST(RealtimePriorityTest, IsRefusedWithTheRemedyIfNotPermitted)
+TEST(RealtimePriorityTest, IsRejectedWithTheRemedyIfNotPermitted)
 {
   const rlimit none{0, 0};
   ASSERT_EQ(setrlimit(RLIMIT_RTPRIO, &none), 0);
   in_a_thread([] {
     give_up_all_capabilities();
-    const Status refused = set_realtime_priority(priority);
-    ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("realtime_priority 20"), std::string::npos);
-    EXPECT_NE(refused.error().message.find("limits.conf"), std::string::npos);
+    const Status rejected = set_realtime_priority(priority);
+    ASSERT_FALSE(rejected);
+    EXPECT_NE(rejected.error().message.find("realtime_priority 20"), std::string::npos);
+    EXPECT_NE(rejected.error().message.find("limits.conf"), std::string::npos);
     const RealtimePriority lives(priority);
     EXPECT_EQ(policy_and_priority(), ordinary);
   });

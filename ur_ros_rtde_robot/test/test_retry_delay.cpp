@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 struct RetryDelayTest : testing::Test {
   RetryDelay::Clock::time_point begin{1h};
 
-  /// Number of attempts during an outage of this duration, if the controller refuses each of them at once.
+  /// Number of attempts during an outage of this duration, if the controller rejects each of them at once.
   int attempts(std::chrono::milliseconds outage) const
   {
     const RetryDelay delay(250ms, begin);

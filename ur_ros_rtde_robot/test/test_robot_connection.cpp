@@ -258,7 +258,7 @@ TEST_F(RobotConnectionTest, EndsAtAnyMomentOfItsStart)
   }
 }
 
-TEST_F(RobotConnectionTest, RefusesOptionsOutOfRange)
+TEST_F(RobotConnectionTest, RejectsOptionsOutOfRange)
 {
   auto options = robot_options();
   options.watchdog_frequency = 0.5;

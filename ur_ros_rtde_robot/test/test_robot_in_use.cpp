@@ -23,7 +23,7 @@ struct SecondDriverTest : RobotFixture {
   std::string told() const { return second->status().message + "\n" + log_of_second.text(); }
 };
 
-TEST_F(SecondDriverTest, IsRefusedWithTheInputsInUseUntilTheFirstEnds)
+TEST_F(SecondDriverTest, IsRejectedWithTheInputsInUseUntilTheFirstEnds)
 {
   make_both();
   move_joints();
@@ -44,7 +44,7 @@ TEST_F(SecondDriverTest, IsRefusedWithTheInputsInUseUntilTheFirstEnds)
   EXPECT_TRUE(second_is(RobotState::ready)) << told();
 }
 
-TEST_F(SecondDriverTest, IsRefusedInTheOtherRegisterRange)
+TEST_F(SecondDriverTest, IsRejectedInTheOtherRegisterRange)
 {
   make_both();
   make_second(true);
@@ -76,7 +76,7 @@ TEST_F(SecondDriverTest, LeavesTheProgramOfTheFirstAlone)
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::robot_in_use));
   controller.control(
       {{"command", "run_script"}, {"script", "def others():\n  while True:\n    sync()\n  end\nend\n"}});
-  ASSERT_TRUE(eventually([&] { return robot->latest() && robot->latest()->program_running(); }));
+  ASSERT_TRUE(eventually([&] { return robot->latest() && robot->latest()->is_program_running(); }));
   controller.control({{"command", "fieldbus"}, {"on", false}});
   ASSERT_TRUE(eventually([&] {
     return robot->status().message.find("but not its program") != std::string::npos;

@@ -134,7 +134,7 @@ TEST_F(RobotMotionTest, IsNotResumedAfterAProtectiveStop)
   ASSERT_TRUE(eventually(
       [&] {
         try {
-          robot->dashboard()->unlockProtectiveStop();  // refused for 5 s
+          robot->dashboard()->unlockProtectiveStop();  // rejected for 5 s
           return true;
         } catch (const std::exception &) {
           return false;

@@ -17,7 +17,8 @@ TEST_F(RobotProgramTest, RetriesAFailedStartAtTheRetryInterval)
   const std::jthread killer([this](const std::stop_token & stop) {
     while (!stop.stop_requested()) {
       const auto sample = robot->latest();  // the driver has to see the program first
-      if (sample && sample->program_running() && controller.state().at("program").at("state") == "PLAYING") {
+      if (sample && sample->is_program_running() &&
+          controller.state().at("program").at("state") == "PLAYING") {
         controller.control({{"command", "kill_program"}});
       }
       std::this_thread::sleep_for(1ms);

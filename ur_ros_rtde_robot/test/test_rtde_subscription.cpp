@@ -12,14 +12,14 @@ namespace ur_ros_rtde::test {
 namespace {
 
 using Clock = RtdeSubscription::Clock;
-constexpr std::chrono::milliseconds limit{2000};
+constexpr std::chrono::milliseconds timeout{2000};
 
 struct RtdeSubscriptionTest : testing::Test {
   Controller controller;
 
   Expected<RtdeSubscription> open(const std::vector<std::string> & fields, double frequency = 0.0)
   {
-    return RtdeSubscription::open(own_address(), fields, frequency, limit);
+    return RtdeSubscription::open(own_address(), fields, frequency, timeout);
   }
 };
 
@@ -35,7 +35,7 @@ TEST_F(RtdeSubscriptionTest, ReturnsFieldsOfEveryTypeInTheRequestedOrder)
   EXPECT_EQ(subscription->fields()[4].name, "actual_tool_accelerometer");
   EXPECT_EQ(subscription->fields()[4].size, 3U);
   std::vector<double> numbers(subscription->width());
-  ASSERT_TRUE(subscription->next(numbers, Clock::now() + limit).value_or(false));
+  ASSERT_TRUE(subscription->next(numbers, Clock::now() + timeout).value_or(false));
   EXPECT_EQ(numbers[0], 7.0);  // RUNNING
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(numbers[1 + i], q[i], 1e-3);
@@ -53,9 +53,9 @@ TEST_F(RtdeSubscriptionTest, ReturnsOnePackagePerCycle)
   EXPECT_EQ(subscription->frequency(), 125.0);
   std::vector<double> now(1);
   std::vector<double> before(1);
-  ASSERT_TRUE(subscription->next(before, Clock::now() + limit).value_or(false));
+  ASSERT_TRUE(subscription->next(before, Clock::now() + timeout).value_or(false));
   for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(subscription->next(now, Clock::now() + limit).value_or(false));
+    ASSERT_TRUE(subscription->next(now, Clock::now() + timeout).value_or(false));
     EXPECT_NEAR(now[0] - before[0], 0.008, 1e-6);
     before = now;
   }
@@ -85,14 +85,14 @@ TEST_F(RtdeSubscriptionTest, ReportsALostConnectionAndSilence)
   auto subscription = open({"timestamp"});
   ASSERT_TRUE(subscription);
   std::vector<double> numbers(1);
-  ASSERT_TRUE(subscription->next(numbers, Clock::now() + limit).value_or(false));
+  ASSERT_TRUE(subscription->next(numbers, Clock::now() + timeout).value_or(false));
   controller.control({{"command", "stall_links"}, {"which", "rtde"}});
   EXPECT_TRUE(eventually([&] { return !subscription->next(numbers, Clock::now() + 100ms).value_or(true); }));
   controller.control({{"command", "drop_links"}, {"which", "rtde"}});
   EXPECT_TRUE(eventually([&] { return !subscription->next(numbers, Clock::now() + 100ms); }));
 }
 
-TEST_F(RtdeSubscriptionTest, RefusesAnotherService)
+TEST_F(RtdeSubscriptionTest, RejectsAnotherService)
 {
   const OtherService other(30004, "220 mail.example.org ESMTP\r\n");
   const auto subscription = open({"timestamp"});
@@ -131,7 +131,7 @@ TEST(RtdeOutputsTest, AreKnownByName)
 
 struct DashboardRequestTest : testing::Test {
   Controller controller;
-  Expected<std::string> send(const std::string & line, std::chrono::milliseconds patience = limit)
+  Expected<std::string> send(const std::string & line, std::chrono::milliseconds patience = timeout)
   {
     return dashboard_request(own_address(), line, patience, {});
   }
@@ -173,10 +173,10 @@ TEST_F(DashboardRequestTest, ASessionUsesOneConnection)
   };
   DashboardSession session(own_address());
   for (int i = 0; i < 5; ++i) {
-    EXPECT_EQ(session.request("robotmode", limit).value_or("nothing"), "Robotmode: RUNNING");
+    EXPECT_EQ(session.request("robotmode", timeout).value_or("nothing"), "Robotmode: RUNNING");
   }
   EXPECT_EQ(drop_connections(), 1);
-  EXPECT_EQ(session.request("robotmode", limit).value_or("nothing"), "Robotmode: RUNNING");
+  EXPECT_EQ(session.request("robotmode", timeout).value_or("nothing"), "Robotmode: RUNNING");
   EXPECT_EQ(drop_connections(), 1);
 }
 

@@ -13,7 +13,7 @@ struct ScriptTest : RobotFixture {
   {
     ScriptOptions options;
     options.kind = ScriptKind::secondary;
-    options.limit = 5s;
+    options.timeout = 5s;
     return options;
   }
 
@@ -113,11 +113,11 @@ TEST_F(ScriptTest, ReportsTheLineOfARuntimeError)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(ScriptTest, RefusesUnbalancedBlocksWithoutSending)
+TEST_F(ScriptTest, RejectsUnbalancedBlocksWithoutSending)
 {
   make_both();
   const auto report = run_script("def f():\n  while True:\n  sync()\nend\n");
-  EXPECT_EQ(report.end, ScriptEnd::refused);
+  EXPECT_EQ(report.end, ScriptEnd::rejected);
   EXPECT_EQ(report.error.code, ErrorCode::invalid_goal);
   EXPECT_EQ(report.line, 1) << report.error.message;
   EXPECT_TRUE(robot->control()->isProgramRunning()) << "the control program was not disturbed";
@@ -145,7 +145,7 @@ TEST_F(ScriptTest, StopsTheArmAtItsTimeLimit)
 {
   make_both();
   ScriptOptions options;
-  options.limit = 700ms;
+  options.timeout = 700ms;
   const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::timeout);
   EXPECT_EQ(report.error.code, ErrorCode::timeout);
@@ -345,13 +345,13 @@ TEST_F(ScriptTest, KeepsTheControlInterfaceToItself)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(ScriptTest, IsRefusedWhileTheRobotIsNotReady)
+TEST_F(ScriptTest, IsRejectedWhileTheRobotIsNotReady)
 {
   make_both();
   controller.control({{"command", "protective_stop"}, {"reason", "test"}});
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::protective_stop));
   const auto report = run_script("sync()");
-  EXPECT_EQ(report.end, ScriptEnd::refused);
+  EXPECT_EQ(report.end, ScriptEnd::rejected);
   EXPECT_EQ(report.error.code, ErrorCode::protective_stop);
 }
 
@@ -359,7 +359,7 @@ TEST_F(ScriptTest, StopsAtItsTimeLimitWhileItWritesFasterThanTheCallbackReturns)
 {
   make_both();
   ScriptOptions options;
-  options.limit = 1s;
+  options.timeout = 1s;
   const auto begin = Clock::now();
   options.on_text = [&](const std::string &) {
     if (Clock::now() - begin < 20s) {
@@ -395,7 +395,7 @@ TEST_F(ScriptTest, IsNotSentForAGoalThatHasToEnd)
     options.stop_reason = [] { return std::optional(Error{ErrorCode::canceled, "canceled"}); };
     const std::string output = "  set_standard_digital_out(2, True)\nend\n";
     const auto report = run_script((is_secondary ? "sec s():\n" : "def s():\n") + output, options);
-    EXPECT_EQ(report.end, ScriptEnd::refused) << report.error.message;
+    EXPECT_EQ(report.end, ScriptEnd::rejected) << report.error.message;
     EXPECT_EQ(report.error.code, ErrorCode::canceled) << report.error.message;
   }
   EXPECT_TRUE(is_back());

@@ -55,7 +55,7 @@ TEST_F(StateReceiverTest, FillsASampleWithTheRobotsState)
   EXPECT_EQ(sample.robot_mode, RobotMode::running);
   EXPECT_EQ(sample.safety_mode, SafetyMode::normal);
   EXPECT_TRUE(sample.safety().normal_mode);
-  EXPECT_TRUE(sample.power_on());
+  EXPECT_TRUE(sample.is_powered_on());
   EXPECT_TRUE(std::isfinite(sample.payload));
   const auto age = std::chrono::system_clock::now() - sample.stamp;
   EXPECT_LT(std::abs(std::chrono::duration<double>(age).count()), 1.0);
@@ -108,7 +108,7 @@ TEST_F(StateReceiverTest, ReducesAFrequencyAboveThatOfACb3WithOneWarning)
   EXPECT_TRUE(std::isnan(receiver->latest()->ft_raw_wrench[0])) << "a CB3 has no force/torque sensor";
 }
 
-TEST_F(StateReceiverTest, RefusesInvalidOptions)
+TEST_F(StateReceiverTest, RejectsInvalidOptions)
 {
   for (const int priority : {-1, 100}) {
     auto options = receiver_options();
@@ -135,7 +135,7 @@ TEST_F(StateReceiverTest, EndsAWaitWhenStopped)
   EXPECT_LT(Clock::now() - begin, 10s);
 }
 
-TEST_F(StateReceiverTest, RefusesAccessToTheInterfaceWithTheCauseWhileDisconnected)
+TEST_F(StateReceiverTest, RejectsAccessToTheInterfaceWithTheCauseWhileDisconnected)
 {
   const auto receiver = this->receiver();
   ASSERT_TRUE(eventually([&] { return log.count("no connection") > 0; }));

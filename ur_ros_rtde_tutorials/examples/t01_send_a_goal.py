@@ -50,7 +50,7 @@ def main():
     cancel_on_signals()
     handle = wait_for(node, client.send_goal_async(goal, feedback_callback=show_progress), 10.0, "response to the goal")
     if not handle.accepted:
-        raise SystemExit("refused: see the log of command_server or the topic goal_refusals for the reason")
+        raise SystemExit("rejected: see the log of command_server or the topic goal_rejections for the reason")
     result = wait_for_result(node, handle, 60.0).result
     print(f"\n{'done' if result.success else 'failed'}, error_code {result.error_code}, {result.message or 'no message'}")
 

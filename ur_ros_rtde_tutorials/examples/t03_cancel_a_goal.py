@@ -30,7 +30,7 @@ def main():
     cancel_on_signals()
     handle = wait_for(node, client.send_goal_async(goal), 10.0, "response to the goal")
     if not handle.accepted:
-        raise SystemExit("refused: see the log of command_server or the topic goal_refusals for the reason")
+        raise SystemExit("rejected: see the log of command_server or the topic goal_rejections for the reason")
     response = wait_for_result(node, handle, 0.5)
     canceled = response.status == GoalStatus.STATUS_CANCELED
     height = response.result.final_state.tcp_pose.position.z

@@ -110,10 +110,10 @@ def test_the_cpp_example_powers_the_arm_on(running):
 
 
 @needs_rclcpp
-def test_the_cpp_example_reports_a_refused_goal(running):
+def test_the_cpp_example_reports_a_rejected_goal(running):
     example = Process([find_program("ur_ros_rtde_tutorials", "c01_send_a_goal"), "--ros-args", "-p", "speed:=-1.0"])
     assert example.wait(30.0) == 1
-    assert "refused: see the log of command_server" in example.output()
+    assert "rejected: see the log of command_server" in example.output()
     assert running.is_at_rest()
 
 

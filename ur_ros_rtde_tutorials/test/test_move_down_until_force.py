@@ -87,5 +87,5 @@ def test_cancel_decelerates_to_standstill(robot, simulator):
 def test_an_invalid_goal_is_rejected(robot, field, value):
     goal = down(robot, **{field: value})
     assert not goal.accepted
-    refusal = robot.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and refusal.message.startswith(f"{field} is")
+    rejection = robot.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and rejection.message.startswith(f"{field} is")

@@ -118,11 +118,11 @@ def test_text_where_a_number_belongs_is_reported_and_nothing_is_sent(tab, simula
     assert not is_moving(simulator)
 
 
-def test_a_refusal_of_the_driver_is_shown(tab):
+def test_a_rejection_of_the_driver_is_shown(tab):
     tab.select_action("move_j")
     tab.field("speed [rad/s]").fill("99")
     tab.button("Send").click()
-    tab.wait_for_text("/move_j: refused")
+    tab.wait_for_text("/move_j: rejected")
     tab.wait_for_text("speed is 99")
 
 

@@ -6,7 +6,7 @@ from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banner_text
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
 from ur_ros_rtde_viewer.panels.state_panel import StatePanel, state_rows
 from ur_ros_rtde_viewer.state.history import History
-from ur_ros_rtde_viewer.state.robot_state import MAX_REFUSALS, ActiveGoal, DriverStatus, Joints, Refusal, RobotState
+from ur_ros_rtde_viewer.state.robot_state import MAX_REJECTIONS, ActiveGoal, DriverStatus, Joints, Rejection, RobotState
 
 
 def moving(stamp=0.0, position=0.0):
@@ -57,24 +57,24 @@ def test_the_state_names_modes_driver_and_goal():
     assert dict(state_rows(RobotState()))["Robot mode"] == "unknown"
 
 
-def test_the_state_panel_shows_progress_and_refusals_without_interpreting_them(server):
+def test_the_state_panel_shows_progress_and_rejections_without_interpreting_them(server):
     panel = StatePanel(server.gui.add_folder("state"), server.gui)
     state = moving()
     state.goal = ActiveGoal("move_j", 0.25, 1.5)
-    state.refusals.append(Refusal(0.0, "/move_l", "speed is <b>9</b>"))
+    state.rejections.append(Rejection(0.0, "/move_l", "speed is <b>9</b>"))
     panel.update(state)
     assert panel._progress.visible and panel._progress.value == 25
-    assert "&lt;b&gt;9" in panel._refusals.content and "<b>" not in panel._refusals.content
+    assert "&lt;b&gt;9" in panel._rejections.content and "<b>" not in panel._rejections.content
     state.goal = None
     panel.update(state)
     assert not panel._progress.visible
 
 
-def test_refusals_are_bounded():
+def test_rejections_are_bounded():
     state = RobotState()
-    for index in range(3 * MAX_REFUSALS):
-        state.refusals.append(Refusal(index, "/move_l", ""))
-    assert len(state.refusals) == MAX_REFUSALS
+    for index in range(3 * MAX_REJECTIONS):
+        state.rejections.append(Rejection(index, "/move_l", ""))
+    assert len(state.rejections) == MAX_REJECTIONS
 
 
 def test_the_history_keeps_the_newest_rows_in_order():

@@ -45,10 +45,10 @@ def test_a_recording_without_time_has_the_rate_of_the_controller():
     (table(row(0.0, 0.0), row(0.1, "nan")), "no finite number"),
     (table(row(1.0, 0.0), row(0.5, 0.0)), "the time of row 2 is earlier"),
 ])
-def test_a_wrong_file_is_refused_with_the_reason(content, message):
-    with pytest.raises(ViewerError) as refusal:
+def test_a_wrong_file_is_rejected_with_the_reason(content, message):
+    with pytest.raises(ViewerError) as rejection:
         read_csv("run.csv", content)
-    assert message in str(refusal.value)
+    assert message in str(rejection.value)
 
 
 def test_reads_a_plan():
@@ -57,7 +57,7 @@ def test_reads_a_plan():
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"samples": {"time": [0, 1], "position": [[0, 1], [2, 3]]}}'])
-def test_a_file_that_is_no_plan_is_refused(text):
+def test_a_file_that_is_no_plan_is_rejected(text):
     with pytest.raises(ViewerError, match="plan.json"):
         read_plan("plan.json", text)
 
@@ -120,7 +120,7 @@ def test_a_replay_stands_where_the_robot_is_mounted(server):
     scene.remove()
 
 
-def test_without_a_model_a_replay_is_refused(server):
+def test_without_a_model_a_replay_is_rejected(server):
     scene = RobotScene(server.scene, RobotOptions("unknown"))
     with pytest.raises(ViewerError, match="--model"):
         Player(server.gui.add_folder("unknown"), server, scene, lambda function: function()).load(MOTION)

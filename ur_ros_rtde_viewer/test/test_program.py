@@ -41,7 +41,7 @@ def test_robots_have_models_and_poses():
     assert robots(parse("--tool", "gripper.urdf"))[0].tool == "gripper.urdf"
 
 
-def test_a_tool_with_an_invalid_shape_is_refused(tmp_path, capfd):
+def test_a_tool_with_an_invalid_shape_is_rejected(tmp_path, capfd):
     tool = tmp_path / "gripper.urdf"
     tool.write_text('<robot name="g"><link name="palm"><visual><geometry><sphere radius="big"/></geometry></visual></link></robot>')
     assert main(["--port", "0", "--model", "ur5e", "--tool", str(tool)]) == 2
@@ -56,7 +56,7 @@ def test_a_tool_with_an_invalid_shape_is_refused(tmp_path, capfd):
     (["--port", "70000"], "expected a port"),
     (["--rate", "0"], "1 to 60"),
 ])
-def test_wrong_arguments_are_refused_with_the_value(arguments, message, capsys):
+def test_wrong_arguments_are_rejected_with_the_value(arguments, message, capsys):
     with pytest.raises(SystemExit):
         parse(*arguments)
     assert message in capsys.readouterr().err
@@ -112,9 +112,9 @@ def test_another_web_site_cannot_connect(server):
     own = {"subprotocols": [f"viser-v{viser.__version__}"], "open_timeout": 60, "max_size": None}
     with connect(address, origin=url(server), **own) as connection:
         assert connection.recv(timeout=60)
-    with pytest.raises(InvalidStatus) as refusal:
+    with pytest.raises(InvalidStatus) as rejection:
         connect(address, origin="http://example.com", **own)
-    assert refusal.value.response.status_code == 403
+    assert rejection.value.response.status_code == 403
 
 
 def names(window):

@@ -200,7 +200,7 @@ def joint(name, parent, child, xyz="0 0 0"):
     (joint("a", "base", "palm") + joint("b", "thumb", "finger"), "joint b: thumb is not connected to base"),
     (joint("a", "base", "palm") + joint("b", "base", "finger") + joint("c", "finger", "palm"), "joint c: .* palm has two parents"),
 ])
-def test_joints_that_are_no_tree_are_refused(joints, message):
+def test_joints_that_are_no_tree_are_rejected(joints, message):
     links = "".join(f'<link name="{name}"/>' for name in ("base", "palm", "finger"))
     with pytest.raises(DescriptionError, match=message):
         read_description(f"<robot name='g'>{links}{joints}</robot>")

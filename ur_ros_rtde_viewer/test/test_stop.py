@@ -7,7 +7,7 @@ from arm_state import AT_REST, home_plus
 from robot_fixtures import make_ready
 from running_viewer import RunningViewer, until
 from support import start_node
-from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_LIMIT, SILENCE_LIMIT
+from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_TIMEOUT, SILENCE_TIMEOUT
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -73,7 +73,7 @@ def test_a_driver_that_does_not_answer_is_stopped_through_the_dashboard(running,
     nodes["command_server"].pause()
     before = simulator.state()["actual"]["position"][0]
     text = press(running)
-    assert time_until_fallback(text) == pytest.approx(ACCEPTANCE_LIMIT, abs=DELAY_OF_THE_HOST)
+    assert time_until_fallback(text) == pytest.approx(ACCEPTANCE_TIMEOUT, abs=DELAY_OF_THE_HOST)
     until(lambda: "The robot program was stopped." in text(), "the end of the robot program")
     until(lambda: not is_moving(simulator), "the arm to stop")
     assert simulator.state()["actual"]["position"][0] - before < 0.1 * 2.0  # 2 s at the speed of the motion
@@ -88,7 +88,7 @@ def test_a_driver_that_is_silent_after_it_has_accepted_the_stop_is_stopped_throu
     until(lambda: "The arm decelerates." in text(), "the acceptance of the stop")
     nodes["command_server"].pause()
     assert is_moving(simulator)
-    assert time_until_fallback(text) == pytest.approx(SILENCE_LIMIT, abs=DELAY_OF_THE_HOST)
+    assert time_until_fallback(text) == pytest.approx(SILENCE_TIMEOUT, abs=DELAY_OF_THE_HOST)
     until(lambda: "The robot program was stopped." in text(), "the end of the robot program")
     until(lambda: not is_moving(simulator), "the arm to stop")
     nodes["command_server"].resume()
@@ -106,6 +106,6 @@ def test_a_stop_that_takes_a_second_is_left_to_the_driver(running, nodes, simula
 def test_an_answer_that_waits_for_a_late_viewer_is_no_silence_of_the_driver(running, nodes, simulator, client):
     ready_to_stop(running, client)
     text = press(running)
-    running.viewer.control._robots[0]._stopper._control.post(lambda: time.sleep(2.0 * ACCEPTANCE_LIMIT))  # occupies the thread
+    running.viewer.control._robots[0]._stopper._control.post(lambda: time.sleep(2.0 * ACCEPTANCE_TIMEOUT))  # occupies the thread
     until(lambda: any(end in text() for end in ("At rest after", *THROUGH_THE_DASHBOARD)), "the end of the stop")
     assert "At rest after" in text()

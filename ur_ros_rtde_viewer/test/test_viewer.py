@@ -91,10 +91,10 @@ def test_follows_a_motion_with_its_goal_and_the_trail(viewer, robot, client):
     update_until(viewer, lambda: robot.state.goal is None, "the end of the goal")
 
 
-def test_shows_a_refusal(viewer, robot, client):
+def test_shows_a_rejection(viewer, robot, client):
     assert not client.send(MoveJ, "move_j", joint_positions=[0.0, 1.0]).accepted
-    update_until(viewer, lambda: robot.state.refusals, "the refusal")
-    assert "joint_positions has 2 values" in robot.state.refusals[-1].message
+    update_until(viewer, lambda: robot.state.rejections, "the rejection")
+    assert "joint_positions has 2 values" in robot.state.rejections[-1].message
 
 
 def test_a_protective_stop_has_a_red_banner_and_ends(viewer, robot, simulator):

@@ -10,7 +10,7 @@ from .scene.surfaces import Surface
 
 CONTROL_PORT = 30099
 PERIOD = 1.0  # s
-LIMIT = 1.0  # s, for connecting and for each answer
+TIMEOUT = 1.0  # s, for connecting and for each answer
 
 
 def may_be_simulator(address: str) -> bool:
@@ -44,7 +44,7 @@ class SimulatorWatcher:
             self._ended.wait(PERIOD)
 
     def _follow(self) -> None:
-        with socket.create_connection((self.address, CONTROL_PORT), LIMIT) as connection, connection.makefile("r") as lines:
+        with socket.create_connection((self.address, CONTROL_PORT), TIMEOUT) as connection, connection.makefile("r") as lines:
             while not self._ended.is_set():
                 connection.sendall(b'{"command": "state"}\n')
                 self._surfaces = read_surfaces(lines.readline())
@@ -52,7 +52,7 @@ class SimulatorWatcher:
 
     def close(self) -> None:
         self._ended.set()
-        self._thread.join(2.0 * LIMIT + PERIOD)
+        self._thread.join(2.0 * TIMEOUT + PERIOD)
 
 
 def read_surfaces(answer: str) -> Tuple[Surface, ...]:

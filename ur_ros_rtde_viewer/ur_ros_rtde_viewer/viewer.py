@@ -14,7 +14,7 @@ from .ros.diagnostics import Diagnostics
 from .ros.nodes import Nodes
 
 logger = logging.getLogger(__name__)
-CLOSE_LIMIT = 2.0  # s
+CLOSE_TIMEOUT = 2.0  # s
 CAMERA = (-1.35, -1.6, 1.05), (-0.35, 0.0, 0.42)  # m, position and the point that it looks at
 
 
@@ -85,7 +85,7 @@ class Viewer:
             robot.close()
         if self.control is not None:
             self.control.close()
-        end = time.monotonic() + CLOSE_LIMIT
+        end = time.monotonic() + CLOSE_TIMEOUT
         while time.monotonic() < end and not all(robot.services.is_idle for robot in self.robots):
             for robot in self.robots:
                 robot.services.update()

@@ -32,7 +32,7 @@ struct Replies {
 };
 
 inline Replies replies{};  ///< of the next connection
-inline Replies unread{};   ///< of the present connection
+inline Replies unread{};   ///< of the current connection
 
 /// `bytes` must remain valid. Piece 0: any size.
 inline void set_replies(std::string_view bytes, std::size_t piece)

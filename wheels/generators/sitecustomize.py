@@ -62,7 +62,7 @@ def _cache_scanned_templates():
             if text not in scanned:
                 tokens.extend(iter(scanner.one, None))
                 scanned[text] = tokens
-        finally:  # also if the last token is incomplete: the interpreter then calls again with a terminator
+        finally:  # even if the last token is incomplete: the interpreter then calls again with a terminator
             for token in tokens:
                 interpreter.run(token, locals)
         return True

@@ -100,7 +100,7 @@ bool ActionServerImpl::is_known(const GoalUUID & id) const
 void ActionServerImpl::reject(const GoalUUID & id, const rmw_request_id_t & request_id,
                               const std::string & reason)
 {
-  RCL_CXX_WARN(node()->get_logger(), "{}: goal {} refused: {}", name_, id.short_string(), reason);
+  RCL_CXX_WARN(node()->get_logger(), "{}: goal {} rejected: {}", name_, id.short_string(), reason);
   respond(kGoalService, request_id, make_message(type_.goal_response));
 }
 
@@ -269,7 +269,7 @@ bool ActionServerImpl::try_to_cancel(ServerGoalImpl & goal)
     const std::lock_guard lock(mutex_);
     goal.in_handle_cancel = false;
     if (goal.get_status() == GoalStatus::canceled) {
-      return true;  // the goal's thread has finished it meanwhile
+      return true;  // the goal's thread has finished it in the meantime
     }
     if (!accepted || !goal.update(GOAL_EVENT_CANCEL_GOAL)) {
       return false;

@@ -46,7 +46,7 @@ class ContextImpl : public std::enable_shared_from_this<ContextImpl> {
   void remove_callback(std::size_t id);
 
   rcl_context_t * handle() noexcept { return &context_; }
-  /// To hold while an entity is created: rcl is not shut down meanwhile.
+  /// To hold while an entity is created: rcl is not shut down in the meantime.
   std::shared_mutex & creation_mutex() noexcept { return creation_mutex_; }
   const std::vector<std::string> & non_ros_arguments() const noexcept { return non_ros_arguments_; }
 

@@ -47,7 +47,7 @@ class EventQueue {
   /// Cancels the current spin, or the next one if no thread spins. Reset by take_cancel().
   void cancel();
   bool take_cancel();
-  /// The context is shut down: no thread spins any more.
+  /// The context is shut down: no thread spins anymore.
   void end();
   bool is_canceled_or_ended() const;
 

@@ -38,7 +38,7 @@ void execute(const detail::Event & event) noexcept
 }
 }  // namespace
 
-/// Marks the thread that spins. Refuses a second one, and a nested spin in a callback.
+/// Marks the thread that spins. Rejects a second one, and a nested spin in a callback.
 class Executor::Spinning {
  public:
   explicit Spinning(Executor & executor) : executor_(executor), outer_(detail::EventQueue::current())

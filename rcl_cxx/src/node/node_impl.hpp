@@ -32,7 +32,8 @@ class NodeImpl {
     std::unique_lock<std::mutex> node;
     std::shared_lock<std::shared_mutex> context;
   };
-  /// To hold while the entity `label` is initialized: locks mutex(), and rcl is not shut down meanwhile.
+  /// To hold while the entity `label` is initialized: locks mutex(), and rcl is not shut down in the
+  /// meantime.
   /// @throws Error during and after a shutdown
   CreationLock lock_to_create(const std::string & label);
   const CallbackGroup::SharedPtr & default_group() const noexcept { return default_group_; }

@@ -20,7 +20,7 @@ bool within(double value, const FloatingPointRange & range)
   if (nearly_equal(value, range.from_value) || nearly_equal(value, range.to_value)) {
     return true;
   }
-  if (!(value >= range.from_value && value <= range.to_value)) {  // refuses NaN, too
+  if (!(value >= range.from_value && value <= range.to_value)) {  // rejects NaN, too
     return false;
   }
   return range.step == 0.0 ||

@@ -23,7 +23,7 @@
 namespace rcl_cxx::detail::compat {
 /// Up to Jazzy, rmw_fastrtps_cpp rejects a type of which it does not find the introspection type support.
 inline constexpr bool requires_introspection = RCL_VERSION_MAJOR < 10;
-/// The same middlewares send the text before a null character, instead of refusing the message.
+/// The same middlewares send the text before a null character, instead of rejecting the message.
 inline constexpr bool truncates_at_null_character = RCL_VERSION_MAJOR < 10;
 
 /// Initializes a canceled timer.

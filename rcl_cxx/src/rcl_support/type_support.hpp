@@ -13,7 +13,7 @@ namespace rcl_cxx::detail {
 /// (docs/discovery.md).
 ///
 /// The copy is kept until the process ends, like the generated one: a participant of Fast DDS refers to the
-/// type support of a type that was registered once, also when the entity is gone and another one is created.
+/// type support of a type that was registered once, even when the entity is gone and another one is created.
 /// `T` is a type support of messages or of services.
 template <typename T>
 class TypeSupport {

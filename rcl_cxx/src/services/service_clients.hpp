@@ -39,7 +39,7 @@ bool requests_carry_endpoints() noexcept;
 
 /// What discovery knows about the client that waits for a response.
 enum class ClientDiscovery {
-  gone,     ///< No endpoint of its process is known any more: it has ended, or its lease has.
+  gone,     ///< No endpoint of its process is known anymore: it has ended, or its lease has.
   pending,  ///< It exists, but the endpoint that receives the response has not been discovered yet.
   found     ///< The response can be sent, as far as is known.
 };

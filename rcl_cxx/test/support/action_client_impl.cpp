@@ -193,7 +193,7 @@ void ActionClientImpl::take_goal_response()
   if (ops_.accepted(response.get())) {
     on_accepted(goal);
   } else {
-    on_refused(goal);
+    on_rejected(goal);
   }
 }
 
@@ -220,7 +220,7 @@ void ActionClientImpl::on_accepted(const Goal & goal)
   }
 }
 
-void ActionClientImpl::on_refused(const Goal & goal)
+void ActionClientImpl::on_rejected(const Goal & goal)
 {
   ErasedGoalCallbacks callbacks;
   {

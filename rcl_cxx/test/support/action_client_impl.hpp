@@ -67,7 +67,7 @@ class ActionClientImpl : public Waitable {
   void take_feedback();
   void take_status();
   void on_accepted(const Goal & goal);
-  void on_refused(const Goal & goal);
+  void on_rejected(const Goal & goal);
   Goal find(const GoalUUID & id) const;
 
   const ActionClientOps & ops_;

@@ -41,11 +41,11 @@ def test_show_args_lists_all_with_description_and_default(launch_file, arguments
     ("tf_prefx:=left_", "driver.launch.py has no launch argument tf_prefx; did you mean tf_prefix?"),
     ("realtime_prio:=40", "did you mean realtime_priority?"),
     ("ur_type:=ur11", 'launch argument ur_type is "ur11", it must be one of: '),
-    ("on_busy:=maybe", 'launch argument on_busy is "maybe", it must be one of: refuse, preempt'),
+    ("on_busy:=maybe", 'launch argument on_busy is "maybe", it must be one of: reject, preempt'),
     ("rtde_frequency:=1000", 'launch argument rtde_frequency is "1000", it must be a number from 1 to 500'),
     ("plugins:=move_j", 'launch argument plugins is "move_j", it must be a list of names'),
     ("params_file:=/nowhere.yaml", 'params_file is "/nowhere.yaml": the file does not exist'),
-    ("on_busy:=refuse", "the address of the robot is missing: set robot_ip:=<address>, or sim:=true"),
+    ("on_busy:=reject", "the address of the robot is missing: set robot_ip:=<address>, or sim:=true"),
 ])
 def test_an_invalid_argument_is_rejected_with_one_message_before_any_process_starts(given, message):
     code, printed = ros2(*DRIVER_FILE, given)
@@ -99,7 +99,7 @@ def test_an_invalid_argument_passed_by_an_including_launch_file_is_rejected(tmp_
 @pytest.mark.parametrize("one_process", ["true", "false"])
 def test_arguments_reach_the_nodes_and_have_priority_over_a_file(launch, tmp_path, one_process):
     file = tmp_path / "mine.yaml"
-    file.write_text("/**/command_server:\n  ros__parameters: {on_busy: refuse, stream_gain: 500.0}\n"
+    file.write_text("/**/command_server:\n  ros__parameters: {on_busy: reject, stream_gain: 500.0}\n"
                     "/**/robot_state_receiver:\n  ros__parameters: {rtde_frequency: 250.0, tf_prefix: mine_}\n")
     started = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.42", f"one_process:={one_process}", f"params_file:={file}",
                      "tf_prefix:=left_", "on_busy:=preempt", "rtde_frequency:=100.0", "namespace:=left", "realtime_priority:=0")

@@ -70,7 +70,7 @@ def test_services_answer(driver, line, tmp_path):
 
 
 @pytest.mark.parametrize("line", cases("action send_goal"))
-def test_goals_are_accepted_or_refused_by_their_server(driver, line, tmp_path):
+def test_goals_are_accepted_or_rejected_by_their_server(driver, line, tmp_path):
     """Checks types and fields of the goals. The tests in ur_ros_rtde_commands/test/every_command check that they succeed."""
     try:
         printed = ros2(*arguments(line, tmp_path), limit=20.0)[1]

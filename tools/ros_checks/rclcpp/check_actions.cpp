@@ -4,7 +4,7 @@
 #include <ur_ros_rtde_msgs/action/stop.hpp>
 #include <ur_ros_rtde_msgs/action/trigger.hpp>
 #include <ur_ros_rtde_msgs/msg/error_code.hpp>
-#include <ur_ros_rtde_msgs/msg/goal_refused.hpp>
+#include <ur_ros_rtde_msgs/msg/goal_rejected.hpp>
 
 #include "motion_test.hpp"
 
@@ -14,19 +14,19 @@ using testing::HasSubstr;
 using ur_ros_rtde_msgs::action::Stop;
 using ur_ros_rtde_msgs::action::Trigger;
 using ur_ros_rtde_msgs::msg::ErrorCode;
-using ur_ros_rtde_msgs::msg::GoalRefused;
+using ur_ros_rtde_msgs::msg::GoalRejected;
 
 namespace {
 
 class ActionCheck : public MotionTest {
  protected:
-  /// Returns the message of the newest refusal of an action, from the latched topic.
-  std::string refusal(const std::string & action)
+  /// Returns the message of the newest rejection of an action, from the latched topic.
+  std::string rejection(const std::string & action)
   {
     std::string message;
     eventually([&] {
-      for (const auto & refused : refusals_.messages()) {
-        message = refused->action == action ? refused->message : message;
+      for (const auto & rejected : rejections_.messages()) {
+        message = rejected->action == action ? rejected->message : message;
       }
       return !message.empty();
     });
@@ -34,7 +34,7 @@ class ActionCheck : public MotionTest {
   }
 
  private:
-  MessageCollector<GoalRefused> refusals_{*node, "goal_refusals", rclcpp::QoS(100).transient_local()};
+  MessageCollector<GoalRejected> rejections_{*node, "goal_rejections", rclcpp::QoS(100).transient_local()};
 };
 
 TEST_F(ActionCheck, GoalSucceedsWithFeedback)
@@ -77,7 +77,7 @@ TEST_F(ActionCheck, AllGoalsAreCanceledAtOnce)
   EXPECT_EQ(goal.result().code, ResultCode::CANCELED);
 }
 
-TEST_F(ActionCheck, CancelOfAnEndedGoalIsRefused)
+TEST_F(ActionCheck, CancelOfAnEndedGoalIsRejected)
 {
   SentGoal<MoveJ> goal(move_j, move_to(home, 0.5));
   ASSERT_TRUE(goal.accepted());
@@ -87,21 +87,21 @@ TEST_F(ActionCheck, CancelOfAnEndedGoalIsRefused)
   EXPECT_TRUE(response->goals_canceling.empty());
 }
 
-TEST_F(ActionCheck, WrongGoalIsRefusedWithReason)
+TEST_F(ActionCheck, WrongGoalIsRejectedWithReason)
 {
   SentGoal<MoveJ> goal(move_j, move_to(home, -1.0));
   EXPECT_FALSE(goal.accepted());
-  EXPECT_THAT(refusal("/move_j"), HasSubstr("speed"));
+  EXPECT_THAT(rejection("/move_j"), HasSubstr("speed"));
 }
 
-TEST_F(ActionCheck, SecondMotionIsRefusedAsBusy)
+TEST_F(ActionCheck, SecondMotionIsRejectedAsBusy)
 {
   SentGoal<MoveJ> goal(move_j, move_to(base_turned_by(2.0), 0.5));
   ASSERT_TRUE(goal.accepted());
   ASSERT_TRUE(moves());
   SentGoal<MoveJ> second(move_j, move_to(home, 0.5));
   EXPECT_FALSE(second.accepted());
-  EXPECT_TRUE(eventually([&] { return refusal("/move_j").find("move_j") != std::string::npos; }));
+  EXPECT_TRUE(eventually([&] { return rejection("/move_j").find("move_j") != std::string::npos; }));
   value_of(move_j->async_cancel_goal(goal.handle()));
   EXPECT_EQ(goal.result().code, ResultCode::CANCELED);
 }

@@ -74,7 +74,7 @@ TEST_F(FollowJointTrajectoryCheck, PathToleranceAborts)
   EXPECT_THAT(result.result->error_string, testing::HasSubstr("shoulder_pan_joint"));
 }
 
-TEST_F(FollowJointTrajectoryCheck, WrongJointNamesAreRefused)
+TEST_F(FollowJointTrajectoryCheck, WrongJointNamesAreRejected)
 {
   auto request = turn(0.5, 2);
   request.trajectory.joint_names[0] = "finger_joint";

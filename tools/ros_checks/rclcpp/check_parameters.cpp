@@ -51,7 +51,7 @@ TEST_F(ParameterCheck, AreDescribed)
   EXPECT_EQ(descriptors[0].floating_point_range[0].to_value, 50.0);
 }
 
-TEST_F(ParameterCheck, ReadOnlyOneIsRefusedWithReason)
+TEST_F(ParameterCheck, ReadOnlyOneIsRejectedWithReason)
 {
   const auto result = set({"watchdog_frequency", 5.0});
   EXPECT_FALSE(result.successful);
@@ -62,14 +62,14 @@ TEST_F(ParameterCheck, ReadOnlyOneIsRefusedWithReason)
   EXPECT_THAT(atomically.reason, HasSubstr("read-only"));
 }
 
-TEST_F(ParameterCheck, UnknownOneIsRefusedWithReason)
+TEST_F(ParameterCheck, UnknownOneIsRejectedWithReason)
 {
   const auto result = set({"speed_of_light", 3e8});
   EXPECT_FALSE(result.successful);
   EXPECT_THAT(result.reason, HasSubstr("speed_of_light"));
 }
 
-TEST_F(ParameterCheck, WrongTypeIsRefusedWithReason)
+TEST_F(ParameterCheck, WrongTypeIsRejectedWithReason)
 {
   const auto result = set({"use_sim_time", 1.5});
   EXPECT_FALSE(result.successful);

@@ -12,7 +12,7 @@ namespace ur_ros_rtde {
 class CommandHost;
 class DashboardHost;
 
-/// Incremented when plugins that were built against older headers cannot work any more.
+/// Incremented when plugins that were built against older headers cannot work anymore.
 constexpr std::uint32_t plugin_abi_version = 4;
 
 /// The interface of a plugin of command_server. Derive from Command<A> (command.hpp) unless the plugin needs

@@ -6,7 +6,7 @@
 #include <memory>
 #include <rcl_cxx/node.hpp>
 #include <string>
-#include <ur_ros_rtde_msgs/msg/goal_refused.hpp>
+#include <ur_ros_rtde_msgs/msg/goal_rejected.hpp>
 #include <utility>
 
 #include "ur_ros_rtde/detail/goals.hpp"
@@ -28,12 +28,12 @@ class PluginHost {
   /// The callbacks of stops, of cancel requests and of lost clients. Served by a thread of its own, which
   /// runs no other code of plugins than the check of a stop.
   const rcl_cxx::CallbackGroup::SharedPtr & stop_group() const { return stop_group_; }
-  /// Publishes on goal_refusals why a goal was rejected.
-  void publish_refusal(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why);
+  /// Publishes on goal_rejections why a goal was rejected.
+  void publish_rejection(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why);
 
  private:
   rcl_cxx::Node & node_;
-  rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::GoalRefused>::SharedPtr refusals_;
+  rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::GoalRejected>::SharedPtr rejections_;
   const rcl_cxx::CallbackGroup::SharedPtr stop_group_;
   Goals goals_;
 };

@@ -21,7 +21,7 @@ namespace ur_ros_rtde {
 /// Gives a command access to the robot while it executes a goal, in the goal's thread.
 ///
 /// Waits return early, with the reason, when the goal has to end: it was canceled or preempted, or the node
-/// is shut down; for a command that moves the arm, also when the robot has stopped, its control program was
+/// is shut down; for a command that moves the arm, even when the robot has stopped, its control program was
 /// started anew, or the connection was lost. By then, the driver is stopping the arm already: return the
 /// reason. From then on, calls through control() are rejected. Feedback is published during the waits.
 class Run {
@@ -73,8 +73,8 @@ class Run {
   [[nodiscard]] std::optional<StopReason> next(Sample & sample);
 
   /// Waits until the asynchronous motion that the last call through control() has started has ended and the
-  /// arm stands still. Fails if the control program did not start it, or after `limit`.
-  [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds limit = std::chrono::minutes(10));
+  /// arm stands still. Fails if the control program did not start it, or after `timeout`.
+  [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds timeout = std::chrono::minutes(10));
   /// The same with progress, for a known target: fails (not_reached) if the motion ended elsewhere. Joint
   /// positions in rad; a UR pose: position (m) and rotation vector (rad).
   [[nodiscard]] Outcome until_joints_reached(const std::vector<double> & positions);
@@ -87,10 +87,10 @@ class Run {
   bool motion_ended() const;
   /// Waits for standstill, judged by actual joint velocities. Empty at standstill; otherwise `timeout`.
   [[nodiscard]] std::optional<StopReason> until_standstill(
-      std::chrono::nanoseconds limit = std::chrono::seconds(5));
+      std::chrono::nanoseconds timeout = std::chrono::seconds(5));
 
-  /// Calls Robot::run_script, publishes feedback meanwhile, and stops the script when the goal has to stop.
-  /// Requires Resource::script.
+  /// Calls Robot::run_script, publishes feedback in the meantime, and stops the script when the goal has to
+  /// stop. Requires Resource::script.
   ScriptReport run_script(const std::string & script, ScriptOptions options = {});
 
   /// For an Extension: the registers that its snippet reads and writes, and a function that runs the snippet

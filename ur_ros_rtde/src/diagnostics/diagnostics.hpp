@@ -52,7 +52,7 @@ class Diagnostics {
   const std::string hardware_id_;
   const Examine examine_;
   rcl_cxx::Publisher<diagnostic_msgs::msg::DiagnosticArray>::SharedPtr publisher_;
-  rcl_cxx::Timer::SharedPtr timer_;  ///< destroyed first, so that `examine` is not called any more
+  rcl_cxx::Timer::SharedPtr timer_;  ///< destroyed first, so that `examine` is not called anymore
 };
 
 }  // namespace ur_ros_rtde

@@ -19,8 +19,8 @@ constexpr std::string_view not_understood = "could not understand";
 
 /// The dashboard server does not report changes, so the state is polled.
 constexpr std::chrono::milliseconds polling_interval{50};
-constexpr std::chrono::milliseconds answer_limit{5000};
-constexpr std::chrono::milliseconds confirmed_state_limit{1000};
+constexpr std::chrono::milliseconds answer_timeout{5000};
+constexpr std::chrono::milliseconds confirmed_state_timeout{1000};
 
 bool begins_with(std::string_view text, std::string_view beginning)
 {
@@ -95,7 +95,7 @@ DashboardRun::DashboardRun(DashboardConnection & connection, std::shared_ptr<con
 
 std::string DashboardRun::send(const std::string & line)
 {
-  auto answer = connection_.request(line, answer_limit, stop_request_->token());
+  auto answer = connection_.request(line, answer_timeout, stop_request_->token());
   if (!answer) {
     throw RobotError(answer.error());
   }
@@ -165,11 +165,11 @@ Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point de
 {
   std::string shown;
   if (expected.is_confirmed_by_answer) {
-    deadline = std::min(deadline, Clock::now() + confirmed_state_limit);
+    deadline = std::min(deadline, Clock::now() + confirmed_state_timeout);
   }
   DashboardSession session(connection_.address());
   while (true) {
-    const auto answer = session.request(expected.query, answer_limit, stop_request_->token());
+    const auto answer = session.request(expected.query, answer_timeout, stop_request_->token());
     if (!answer) {
       throw RobotError(answer.error());
     }

@@ -142,7 +142,7 @@ void GoalServer::stop(const rcl_cxx::GoalUUID & id, const Error & why) const
 
 rcl_cxx::GoalResponse GoalServer::reject(const Goal & goal, const Error & why)
 {
-  host_.publish_refusal(goal.action(), goal.id(), why);
+  host_.publish_rejection(goal.action(), goal.id(), why);
   return tl::make_unexpected(with_code(why));
 }
 

@@ -223,9 +223,9 @@ std::optional<StopReason> Run::next(Sample & sample)
   }
 }
 
-std::optional<StopReason> Run::until_standstill(std::chrono::nanoseconds limit)
+std::optional<StopReason> Run::until_standstill(std::chrono::nanoseconds timeout)
 {
-  auto why = until([this] { return robot().motion_progress(mark_).at_rest; }, limit);
+  auto why = until([this] { return robot().motion_progress(mark_).at_rest; }, timeout);
   if (why && why->code == ErrorCode::timeout) {
     why->message = "the arm did not come to a standstill: " + why->message;
   }
@@ -238,9 +238,9 @@ bool Run::motion_ended() const
   return motion.finished() || (!motion.started && Clock::now() - last_call_ > motion_start_timeout);
 }
 
-Outcome Run::until_motion_ends(std::chrono::nanoseconds limit)
+Outcome Run::until_motion_ends(std::chrono::nanoseconds timeout)
 {
-  if (auto why = until([this] { return motion_ended(); }, limit)) {
+  if (auto why = until([this] { return motion_ended(); }, timeout)) {
     return *why;
   }
   if (!robot().motion_progress(mark_).started) {
@@ -380,7 +380,7 @@ Outcome Run::trigger(double timeout)
     return Outcome::failure(ErrorCode::exception, "an extension needs Resource::motion");
   }
   ExtensionOptions options;
-  options.limit =
+  options.timeout =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
   options.stop_reason = [this] {
     publish_feedback_if_due();

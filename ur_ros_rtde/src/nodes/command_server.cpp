@@ -74,7 +74,7 @@ std::vector<std::string> CommandServer::close()
 {
   const Error why{ErrorCode::shutdown, "the node is being shut down"};
   teleoperation_->stop(why);  // nothing waits for the end of a session before the goals are told to end
-  auto left = host_->goals().close(why, close_limit);
+  auto left = host_->goals().close(why, close_timeout);
   teleoperation_->close();
   return left;
 }

@@ -42,7 +42,7 @@ void DashboardServer::create_actions()
 
 std::vector<std::string> DashboardServer::close()
 {
-  return host_->goals().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_limit);
+  return host_->goals().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_timeout);
 }
 
 }  // namespace ur_ros_rtde

@@ -78,7 +78,7 @@ std::string declare_model(rcl_cxx::Node & node)
 {
   auto options = read_only_descriptor(
       "Model of the arm, which determines joint speed limits and reach. If it contradicts the controller, "
-      "motions are refused. Empty: as reported by the controller");
+      "motions are rejected. Empty: as reported by the controller");
   options.additional_constraints = fmt::format("empty, or one of: {}", arm_models());
   const auto model = node.declare_parameter("ur_type", "", options);
   if (model.empty() || arm_limits(model)) {
@@ -199,8 +199,8 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
                            "resumed"));
   parameters.goals.preempt_when_busy =
       declare_choice(
-          node, "on_busy", "refuse", {"refuse", "preempt"},
-          "What happens to a motion goal while another motion is active: it is refused, or it preempts "
+          node, "on_busy", "reject", {"reject", "preempt"},
+          "What happens to a motion goal while another motion is active: it is rejected, or it preempts "
           "the active one") == "preempt";
   parameters.goals.stop_when_client_lost =
       declare_choice(node, "on_client_lost", "stop", {"stop", "continue"},

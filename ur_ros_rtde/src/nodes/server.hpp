@@ -24,7 +24,7 @@ class Server {
   virtual void create_actions() {}
   /// Connects to the robot. Runs after load_plugins(), concurrently with create_actions().
   virtual void start() = 0;
-  /// Called at shutdown while communication still works. Stops all goals within close_limit. Returns the
+  /// Called at shutdown while communication still works. Stops all goals within close_timeout. Returns the
   /// names of those that did not end.
   virtual std::vector<std::string> close() { return {}; }
 };
@@ -37,6 +37,6 @@ using Servers = std::vector<std::unique_ptr<Server>>;
 void exit_without(const std::vector<std::string> & goals, const rcl_cxx::Node & node);
 
 /// Time for the goals to end at shutdown: a stop, including its fallbacks.
-constexpr std::chrono::milliseconds close_limit{5000};
+constexpr std::chrono::milliseconds close_timeout{5000};
 
 }  // namespace ur_ros_rtde

@@ -4,7 +4,7 @@
 
 namespace ur_ros_rtde {
 
-/// Reserves a name among the processes of this host while it exists, also if the process is killed.
+/// Reserves a name among the processes of this host while it exists, even if the process is killed.
 /// Containers with a network of their own count as other hosts.
 class HostNameLock {
  public:

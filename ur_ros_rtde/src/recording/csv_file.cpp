@@ -106,7 +106,7 @@ Status CsvFile::flush()
 
 Status CsvFile::failed(int error)
 {
-  std::string message = fmt::format("{} cannot be written any more: {}", path_, system_text(error));
+  std::string message = fmt::format("{} cannot be written anymore: {}", path_, system_text(error));
   if (::ftruncate(descriptor_, size_) != 0) {
     message += "; its last line may be incomplete";
   }

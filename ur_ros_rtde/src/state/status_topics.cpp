@@ -37,7 +37,7 @@ void StatusTopics::publish(const Sample & sample)
   update([&sample](Values & newest) {
     newest.robot_mode = sample.robot_mode;
     newest.safety_mode = sample.safety_mode;
-    newest.program_running = sample.program_running();
+    newest.program_running = sample.is_program_running();
     if (!newest.speed_scaling || differs(*newest.speed_scaling, sample.speed_scaling)) {
       newest.speed_scaling = sample.speed_scaling;
     }

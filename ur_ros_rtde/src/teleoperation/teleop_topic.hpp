@@ -17,7 +17,7 @@
 namespace ur_ros_rtde {
 
 /// A topic that moves the arm, with a thread of its own. A session starts with the first message after a
-/// pause of `timeout` and acquires Resource::motion; it is refused if another goal or topic holds it. The
+/// pause of `timeout` and acquires Resource::motion; it is rejected if another goal or topic holds it. The
 /// session ends without messages for `timeout`, with an invalid message, when it is preempted, and when the
 /// robot stops. Then the arm decelerates to standstill, and messages are ignored until there has been a pause
 /// of `timeout`. The start and the end of each session are logged once.

@@ -21,7 +21,7 @@ class Rtde:
         self._sizes: List[int] = []
         self._format = struct.Struct(">")
         if self._request("V", struct.pack(">H", 2)) != b"\x01":
-            raise ConnectionFailure(f"port {PORT}: refuses version 2 of the protocol, which PolyScope has had since 3.3")
+            raise ConnectionFailure(f"port {PORT}: rejects version 2 of the protocol, which PolyScope has had since 3.3")
 
     def __enter__(self) -> "Rtde":
         return self

@@ -13,7 +13,7 @@ class TriggerProtectiveStop : public Command<ur_ros_rtde_msgs::action::Trigger> 
     // A secondary program runs in parallel to the control program and to scripts.
     ScriptOptions options;
     options.kind = ScriptKind::secondary;
-    options.limit = std::chrono::seconds(1);
+    options.timeout = std::chrono::seconds(1);
     const ScriptReport report = run.run_script("protective_stop()", options);
     const auto stopped = [&] { return run.state().safety().protective_stopped; };
     return run.expect(stopped, std::chrono::seconds(1),

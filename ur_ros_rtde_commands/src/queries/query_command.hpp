@@ -35,8 +35,8 @@ class AnswerTimeout {
 };
 
 /// Calls `function` with ur_rtde's control interface and returns its result. The control program answers
-/// between two of its cycles, also during a motion. The interface is locked meanwhile. Without an answer,
-/// throws RobotError with the reason why the robot cannot answer, or rejected_by_robot.
+/// between two of its cycles, also during a motion. The interface is locked in the meantime. Without an
+/// answer, throws RobotError with the reason why the robot cannot answer, or rejected_by_robot.
 template <typename Function>
 auto query(Run & run, Function && function)
 {

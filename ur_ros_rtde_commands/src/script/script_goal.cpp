@@ -65,7 +65,7 @@ Outcome run_script_goal(const SendScriptAction::Goal & goal, GoalRun<SendScriptA
 {
   ScriptOptions options;
   options.kind = kind;
-  options.limit = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
+  options.timeout = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
   options.on_text = [&run](const std::string & text) {
     const auto elapsed = run.elapsed();
     const auto whole = std::chrono::floor<std::chrono::seconds>(elapsed);

@@ -23,7 +23,7 @@ Outcome run_statement(Run & run, const std::string & statement)
 {
   ScriptOptions options;
   options.kind = ScriptKind::secondary;
-  options.limit = std::chrono::seconds(2);
+  options.timeout = std::chrono::seconds(2);
   const ScriptReport report = run.run_script(statement, options);
   return report ? Outcome::success() : Outcome(report.error);
 }

@@ -15,7 +15,7 @@ using trajectory::Trajectory;
 constexpr std::chrono::minutes planning_timeout{2};
 constexpr double same_position_tolerance = 1e-6;  // rad
 
-/// Plans in a separate thread, so that feedback is published and the goal can be stopped meanwhile.
+/// Plans in a separate thread, so that feedback is published and the goal can be stopped in the meantime.
 Expected<PlannedTrajectory> plan_in_background(Run & run, const Execution & execution, const Joints & start)
 {
   std::stop_source stop;

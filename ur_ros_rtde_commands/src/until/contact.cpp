@@ -104,8 +104,8 @@ Outcome move_until_contact(Run & run, const ContactMotion & motion,
   bool timed_out = false;
   const Vector6 start = run.state().actual_tcp_pose;
   ScriptOptions options;
-  options.limit = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(motion.timeout) +
-                                                               script_reserve);
+  options.timeout = std::chrono::ceil<std::chrono::milliseconds>(
+      std::chrono::duration<double>(motion.timeout) + script_reserve);
   options.on_text = [&](const std::string & text) {
     joints = joints ? joints : parse_vector6(joints_marker, text);
     pose = pose ? pose : parse_vector6(pose_marker, text);

@@ -138,8 +138,8 @@ class Cell:
         kind, message = self.good_goal(example)
         return self.client.send_goal(kind, example.action, message)
 
-    def refusal(self, goal):
-        return self.client.refusal(goal).message
+    def rejection(self, goal):
+        return self.client.rejection(goal).message
 
     # --- Initial state of an example ---
 
@@ -200,7 +200,7 @@ class Cell:
             goal = self.client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
             if goal.accepted and goal.result().success:
                 return True
-            reasons.append(goal.result().message if goal.accepted else self.refusal(goal))
+            reasons.append(goal.result().message if goal.accepted else self.rejection(goal))
             time.sleep(RETRY_INTERVAL)
             return False
 
@@ -234,10 +234,10 @@ class Cell:
             self._repeat_until_success("dashboard/unlock_protective_stop", timeout=10.0)
 
     def power_up(self):
-        """Powers the arm on with the dashboard, which refuses while the safety system restarts."""
+        """Powers the arm on with the dashboard, which rejects while the safety system restarts."""
         self._repeat_until_success("dashboard/power_on", timeout=20.0)
         goal = self.client.send(DashboardCommand, "dashboard/brake_release", timeout=20.0)
-        assert goal.accepted, self.refusal(goal)
+        assert goal.accepted, self.rejection(goal)
         goal.succeeded()
 
     def _repeat_until_success(self, name, **fields):

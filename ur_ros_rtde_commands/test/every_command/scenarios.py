@@ -54,7 +54,7 @@ def start_goal(cell, example):
     """Returns the example's goal during its execution. None if the command ends immediately, which is an error for motions."""
     cell.prepare(example)
     goal = cell.send(example)
-    assert goal.accepted, f"refused: {cell.refusal(goal)}"
+    assert goal.accepted, f"rejected: {cell.rejection(goal)}"
     moves, begin = moves_arm(example), time.monotonic()
     while not goal.is_finished():
         elapsed = time.monotonic() - begin

@@ -33,11 +33,11 @@ def _find_errors(cell, case, goal):
         goal.cancel()
         goal.wait_for_result()
         return [f"{case.what}: accepted"]
-    refusal = cell.client.refusal(goal)
-    if refusal.error_code not in CODES:
-        return [f"{case.what}: refused with {refusal.error_code} instead of INVALID_GOAL: {refusal.message}"]
-    if not re.search(case.named, refusal.message):
-        return [f"{case.what}: the message does not match {case.named}: {refusal.message}"]
+    rejection = cell.client.rejection(goal)
+    if rejection.error_code not in CODES:
+        return [f"{case.what}: rejected with {rejection.error_code} instead of INVALID_GOAL: {rejection.message}"]
+    if not re.search(case.named, rejection.message):
+        return [f"{case.what}: the message does not match {case.named}: {rejection.message}"]
     return []
 
 

@@ -13,7 +13,7 @@ def scenario(cell, example):
     cell.prepare(example)
     before = cell.settings()
     goal = cell.send(example)
-    assert goal.accepted, f"refused: {cell.refusal(goal)}"
+    assert goal.accepted, f"rejected: {cell.rejection(goal)}"
     status, result = goal.wait_for_result(EXAMPLE_LIMIT)
     assert status == GoalStatus.STATUS_SUCCEEDED and result.success and CODES[result.error_code] == "NONE", \
         describe_result(status, result)

@@ -43,7 +43,7 @@ def _check_response(cell, example, goal):
     if not goal.answered():
         return  # the node exited before it handled the goal
     if not goal.accepted:
-        assert cell.refusal(goal), f"{example.action}: rejected without a message"
+        assert cell.rejection(goal), f"{example.action}: rejected without a message"
         return
     status, result = goal.wait_for_result(RESULT_LIMIT)
     text = f"{example.action}: {describe_result(status, result)}"

@@ -74,7 +74,7 @@ def make_ready(client, limit=30.0, joint_positions=HOME):
         goal = client.send(MoveJ, "move_j", joint_positions=joint_positions, speed=3.0, acceleration=15.0)
         if goal.accepted and goal.result().success:
             return True
-        reasons.append(client.refusal(goal).message if not goal.accepted else goal.result().message)
+        reasons.append(client.rejection(goal).message if not goal.accepted else goal.result().message)
         time.sleep(RETRY_INTERVAL)
         return False
 

@@ -15,7 +15,7 @@ from rclpy.action import ActionClient
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from ur_ros_rtde_msgs.msg import GoalRefused
+from ur_ros_rtde_msgs.msg import GoalRejected
 from ur_ros_rtde_msgs.srv import GetJointState
 
 TRANSIENT_LOCAL = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -157,7 +157,7 @@ class Simulator:
         return self.control("state")["state"]
 
     def unlock_protective_stop(self):
-        """Returns whether the controller unlocks it. The controller refuses in the first seconds of a protective stop."""
+        """Returns whether the controller unlocks it. The controller rejects in the first seconds of a protective stop."""
         try:
             self.control("unlock_protective_stop")
             return True
@@ -233,7 +233,7 @@ class Goal:
 
     def is_finished(self):
         """Returns whether the result has been received."""
-        assert self.accepted, self._client.refusal(self)
+        assert self.accepted, self._client.rejection(self)
         if self._result is None:
             self._client.call_in_executor(lambda: self._request_result(self.handle))
         return self.result_at > 0
@@ -279,8 +279,8 @@ class Client:
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
         self._actions, self._services, self._subscriptions = {}, {}, []
-        self.refusals = []
-        self.node.create_subscription(GoalRefused, "goal_refusals", self.refusals.append, TRANSIENT_LOCAL)
+        self.rejections = []
+        self.node.create_subscription(GoalRejected, "goal_rejections", self.rejections.append, TRANSIENT_LOCAL)
         self._thread = threading.Thread(target=self._executor.spin, daemon=True)
         self._thread.start()
 
@@ -328,12 +328,12 @@ class Client:
             services = sorted(service for service, _ in self.node.get_service_names_and_types() if f"/{name}/_action/" in service)
             raise AssertionError(f"{error}; found topics {topics} and services {services}") from None
 
-    def refusal(self, goal):
-        return self.refusal_of(goal.id)
+    def rejection(self, goal):
+        return self.rejection_of(goal.id)
 
-    def refusal_of(self, goal_id: bytes):
-        return wait_for(lambda: next((r for r in list(self.refusals) if bytes(r.goal_id.uuid) == goal_id), None), 10.0,
-                        "the message on goal_refusals")
+    def rejection_of(self, goal_id: bytes):
+        return wait_for(lambda: next((r for r in list(self.rejections) if bytes(r.goal_id.uuid) == goal_id), None), 10.0,
+                        "the message on goal_rejections")
 
     def call(self, service, name, limit=10.0, **fields):
         if name not in self._services:

@@ -86,7 +86,7 @@ def test_an_unreachable_point_on_the_path_aborts_the_goal_before_the_arm_moves(r
         assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.UNREACHABLE, result.message
         assert "poses[0]" in result.message
     else:
-        assert robot.refusal(goal).error_code == ErrorCode.UNREACHABLE
+        assert robot.rejection(goal).error_code == ErrorCode.UNREACHABLE
     assert simulator.state()["target"]["position"] == before
 
 
@@ -104,7 +104,7 @@ def test_cancel_decelerates_on_the_line(robot, simulator):
 
 
 GOOD = Pose(position=Point(x=-0.69, y=-0.17, z=0.6), orientation=Quaternion(x=0.7071, y=0.7071))
-REFUSED = [
+REJECTED = [
     ({"poses": []}, ErrorCode.INVALID_GOAL, "poses has 0 entries"),
     ({"poses": [GOOD] * 10001}, ErrorCode.INVALID_GOAL, "poses has 10001 entries"),
     ({"poses": [GOOD, Pose(position=Point(x=NAN))]}, ErrorCode.INVALID_GOAL, "poses[1].position"),
@@ -117,9 +117,9 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize("fields, code, what", REFUSED, ids=[what for _, _, what in REFUSED])
+@pytest.mark.parametrize("fields, code, what", REJECTED, ids=[what for _, _, what in REJECTED])
 def test_an_invalid_path_is_rejected_with_the_reason(driver, client, fields, code, what):
     goal = client.send(ExecuteCartesianPath, "execute_cartesian_path", **{"poses": [GOOD], **fields})
     assert not goal.accepted
-    refusal = client.refusal(goal)
-    assert refusal.error_code == code and what in refusal.message, refusal.message
+    rejection = client.rejection(goal)
+    assert rejection.error_code == code and what in rejection.message, rejection.message

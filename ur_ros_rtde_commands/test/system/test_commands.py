@@ -88,10 +88,10 @@ BAD_GOALS = [
 def test_an_invalid_goal_is_rejected_with_field_value_and_limit(driver, simulator, client, action, name, fields, what, limit):
     goal = client.send(action, name, **fields)
     assert not goal.accepted
-    refusal = client.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL
-    assert refusal.action == f"/{name}"
-    assert what in refusal.message and limit in refusal.message, refusal.message
+    rejection = client.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL
+    assert rejection.action == f"/{name}"
+    assert what in rejection.message and limit in rejection.message, rejection.message
     driver.wait_for_output(what)
 
 
@@ -106,9 +106,9 @@ def test_an_unreachable_pose_is_rejected(robot, x):
     pose.position.x, pose.position.y, pose.position.z = x, 0.0, 0.5
     goal = robot.send(MoveL, "move_l", pose=pose)
     assert not goal.accepted
-    refusal = robot.refusal(goal)
-    assert refusal.error_code == ErrorCode.UNREACHABLE, refusal.message
-    assert "pose" in refusal.message
+    rejection = robot.rejection(goal)
+    assert rejection.error_code == ErrorCode.UNREACHABLE, rejection.message
+    assert "pose" in rejection.message
 
 
 def test_a_second_motion_is_rejected_with_the_id_of_the_running_goal(robot):
@@ -116,9 +116,9 @@ def test_a_second_motion_is_rejected_with_the_id_of_the_running_goal(robot):
     wait_until_moving(robot)
     second = robot.send(SpeedL, "speed_l", twist=Twist(linear=Vector3(z=0.05)))
     assert not second.accepted
-    refusal = robot.refusal(second)
-    assert refusal.error_code == ErrorCode.BUSY
-    assert "move_j" in refusal.message and first.id.hex()[:8] in refusal.message
+    rejection = robot.rejection(second)
+    assert rejection.error_code == ErrorCode.BUSY
+    assert "move_j" in rejection.message and first.id.hex()[:8] in rejection.message
     first.succeeded()
 
 
@@ -178,9 +178,9 @@ def test_servo_j_takes_at_least_the_given_time(robot):
 def test_servo_j_rejects_a_time_that_is_too_short_for_the_joints(robot):
     goal = robot.send(ServoJ, "servo_j", joint_positions=home_plus(1.0), time=0.5)
     assert not goal.accepted
-    refusal = robot.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL
-    assert "shoulder_pan_joint" in refusal.message and "use a time of at least" in refusal.message
+    rejection = robot.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL
+    assert "shoulder_pan_joint" in rejection.message and "use a time of at least" in rejection.message
 
 
 def test_speed_l_moves_for_the_given_time_and_stops(robot):
@@ -230,8 +230,8 @@ def test_a_protective_stop_aborts_the_goal_and_the_next_goal_succeeds_after_unlo
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PROTECTIVE_STOP, result.message
     assert "not known" not in result.message
-    refused = robot.send(MoveJ, "move_j", joint_positions=HOME)
-    assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.PROTECTIVE_STOP
+    rejected = robot.send(MoveJ, "move_j", joint_positions=HOME)
+    assert not rejected.accepted and robot.rejection(rejected).error_code == ErrorCode.PROTECTIVE_STOP
     wait_for(simulator.unlock_protective_stop, 10.0, "the protective stop to be unlocked")
     home = wait_for(lambda: _send_accepted_goal(robot), 20.0, "a motion to be accepted again")
     home.succeeded()
@@ -287,4 +287,4 @@ def test_each_of_many_concurrent_goals_gets_one_result(robot):
         if goal.accepted:
             goal.succeeded()
         else:
-            assert robot.refusal(goal).error_code == ErrorCode.BUSY
+            assert robot.rejection(goal).error_code == ErrorCode.BUSY

@@ -200,8 +200,8 @@ def test_queries_model_version_and_remote_control(dashboard):
 def test_an_argument_unknown_to_the_controller_is_rejected(dashboard, name, words):
     goal = send_text(dashboard, name, "nonsense")
     assert not goal.accepted
-    refusal = dashboard.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and "nonsense" in refusal.message and words in refusal.message
+    rejection = dashboard.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and "nonsense" in rejection.message and words in rejection.message
 
 
 def test_queries_are_answered_while_a_report_is_generated(dashboard):
@@ -237,9 +237,9 @@ def test_raw_sends_any_line_unchanged(dashboard):
 def test_a_command_missing_in_this_polyscope_version_is_rejected_with_the_version(dashboard, action, name, fields):
     goal = dashboard.send(action, f"dashboard/{name}", **fields)
     assert not goal.accepted
-    refusal = dashboard.refusal(goal)
-    assert refusal.error_code == ErrorCode.NOT_SUPPORTED
-    assert "PolyScope 5.25" in refusal.message and "a CB3 has it from PolyScope 3.1 on" in refusal.message
+    rejection = dashboard.rejection(goal)
+    assert rejection.error_code == ErrorCode.NOT_SUPPORTED
+    assert "PolyScope 5.25" in rejection.message and "a CB3 has it from PolyScope 3.1 on" in rejection.message
 
 
 def test_a_cb3_has_user_roles_and_no_operational_modes(addresses, processes):
@@ -251,7 +251,7 @@ def test_a_cb3_has_user_roles_and_no_operational_modes(addresses, processes):
         send_text(client, "set_user_role", "operator").succeeded()
         assert query(client, "get_user_role") == "OPERATOR"
         goal = command(client, "clear_operational_mode")
-        assert not goal.accepted and client.refusal(goal).error_code == ErrorCode.NOT_SUPPORTED
+        assert not goal.accepted and client.rejection(goal).error_code == ErrorCode.NOT_SUPPORTED
     finally:
         client.close()
 
@@ -277,15 +277,15 @@ def test_opens_and_closes_a_popup(dashboard):
 def test_a_text_that_is_not_one_line_is_rejected(dashboard, text, what):
     goal = dashboard.send(DashboardText, "dashboard/popup", text=text)
     assert not goal.accepted
-    refusal = dashboard.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and what in refusal.message
+    rejection = dashboard.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and what in rejection.message
 
 
 @pytest.mark.parametrize("timeout", [0.0, -1.0, float("nan"), 1e6])
 def test_an_invalid_timeout_is_rejected(dashboard, timeout):
     goal = command(dashboard, "power_on", timeout=timeout)
     assert not goal.accepted
-    assert "timeout" in dashboard.refusal(goal).message
+    assert "timeout" in dashboard.rejection(goal).message
 
 
 def test_local_control_is_reported_as_the_reason(dashboard, simulator):
@@ -305,9 +305,9 @@ def test_starts_without_the_controller_and_reconnects(addresses, processes):
     server = processes(start_node("dashboard_server", address, namespace="early"))
     client = Client("early")
     try:
-        refused = client.send(DashboardQuery, "dashboard/robot_mode")
-        assert not refused.accepted
-        assert client.refusal(refused).error_code == ErrorCode.LINK_LOST
+        rejected = client.send(DashboardQuery, "dashboard/robot_mode")
+        assert not rejected.accepted
+        assert client.rejection(rejected).error_code == ErrorCode.LINK_LOST
         simulator = processes(Simulator(address))
         wait_for(lambda: _is_connected(client), 15.0, "the connection")
         simulator.kill()

@@ -48,7 +48,7 @@ def test_new_clients_find_all_actions_after_others_were_killed(no_profile, addre
 def flow_controllers(process):
     """Yields the threads of the flow controllers, as folders in /proc."""
     for thread in pathlib.Path(f"/proc/{process.pid}/task").iterdir():
-        with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # other threads may end meanwhile
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # other threads may end in the meantime
             if (thread / "comm").read_text().startswith("dds.asyn"):
                 yield thread
 
@@ -62,7 +62,7 @@ def announcement_threads(process):
 @pytest.mark.parametrize("environment", [{}, {"FASTDDS_DEFAULT_PROFILES_FILE": os.environ.get("FASTDDS_DEFAULT_PROFILES_FILE", "")}],
                          ids=["none", "clients"])
 def test_nodes_use_the_profile_for_nodes(environment, no_profile, addresses, processes):
-    """Also if the profile for clients is in the environment."""
+    """Even if the profile for clients is in the environment."""
     driver = processes(start_node("driver", addresses[3], env=environment))
     driver.wait_for_output("]: commands: ")
     assert os.SCHED_BATCH in announcement_threads(driver)

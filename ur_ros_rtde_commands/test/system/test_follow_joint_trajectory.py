@@ -39,7 +39,7 @@ def tolerance(name, position=0.0, velocity=0.0, acceleration=0.0):
 
 def rejection_message(robot, goal):
     assert not goal.accepted
-    return robot.refusal(goal).message
+    return robot.rejection(goal).message
 
 
 def test_executes_a_plan_with_feedback(robot):
@@ -126,7 +126,7 @@ def test_a_header_stamp_in_the_past_is_rejected(robot):
     assert "header.stamp" in message and "s ago" in message
 
 
-REFUSED = [
+REJECTED = [
     ({"names": JOINTS[:5]}, "5 names"),
     ({"names": []}, "joint_names is empty"),
     ({"names": [*JOINTS[:5], "finger"]}, "wrist_3_joint"),
@@ -137,7 +137,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize("fields, what", REFUSED, ids=[what for _, what in REFUSED])
+@pytest.mark.parametrize("fields, what", REJECTED, ids=[what for _, what in REJECTED])
 def test_unsupported_goals_are_rejected(robot, fields, what):
     assert what in rejection_message(robot, send(robot, *planned_points(home_plus(0.1)), **fields))
 

@@ -42,7 +42,7 @@ def press(robot, simulator, force, **fields):
     def force_is_reached():
         return goal.feedback and goal.feedback[-1].wrench.force.z == pytest.approx(force, abs=0.15 * force)
 
-    assert goal.accepted, robot.refusal(goal).message
+    assert goal.accepted, robot.rejection(goal).message
     wait_for(force_is_reached, 15.0, f"{force} N, now {[round(f.wrench.force.z, 1) for f in goal.feedback[-5:]]}")
     return goal
 
@@ -93,8 +93,8 @@ def test_force_mode_can_be_changed_during_a_motion_along_a_surface(robot, simula
     target.position.y += 0.1
     motion = robot.send(MoveL, "move_l", pose=target, speed=0.02)
     wait_until_moving(robot, 0.01)
-    refused = robot.send(Trigger, "force_mode_stop")
-    assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
+    rejected = robot.send(Trigger, "force_mode_stop")
+    assert not rejected.accepted and robot.rejection(rejected).error_code == ErrorCode.BUSY
     robot.send(ForceMode, "force_mode_start", wrench=down(30.0), **fields).succeeded()
     motion.succeeded()
     assert get_tcp_pose(robot).position.y == pytest.approx(target.position.y, abs=0.002)
@@ -133,8 +133,8 @@ def test_sets_damping_and_gain_scaling_within_their_ranges(robot):
     robot.send(SetForceModeParameter, "force_mode_set_damping", value=0.5).succeeded()
     robot.send(SetForceModeParameter, "force_mode_set_gain_scaling", value=1.5).succeeded()
     for name, value in (("force_mode_set_damping", 1.5), ("force_mode_set_gain_scaling", 2.5)):
-        refused = robot.send(SetForceModeParameter, name, value=value)
-        assert not refused.accepted and "value" in robot.refusal(refused).message
+        rejected = robot.send(SetForceModeParameter, name, value=value)
+        assert not rejected.accepted and "value" in robot.rejection(rejected).message
 
 
 @pytest.mark.parametrize("action,name", [(Freedrive, "freedrive"), (TeachMode, "teach_mode")])
@@ -155,8 +155,8 @@ def test_the_arm_yields_to_a_push_in_freedrive_and_is_at_rest_afterwards(robot, 
 def test_motions_are_rejected_in_freedrive(robot, simulator, start, stop, action):
     robot.send(action, start).succeeded()
     assert simulator.state()["freedrive"]
-    refused = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1))
-    assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
+    rejected = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1))
+    assert not rejected.accepted and robot.rejection(rejected).error_code == ErrorCode.BUSY
     robot.send(Trigger, stop).succeeded()
     assert not simulator.state()["freedrive"]
     robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1)).succeeded()

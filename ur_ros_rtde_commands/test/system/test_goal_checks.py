@@ -28,7 +28,7 @@ def test_executes_another_goal_while_a_check_is_pending(robot, silent_controller
     robot.send(SetDigitalOutput, "set_standard_digital_output", pin=1, state=True).succeeded()
     assert not waiting.answered()
     assert not waiting.accepted
-    assert robot.refusal(waiting).error_code != ErrorCode.NONE
+    assert robot.rejection(waiting).error_code != ErrorCode.NONE
 
 
 def test_stop_preempts_a_goal_whose_check_is_pending(robot, silent_controller):
@@ -38,7 +38,7 @@ def test_stop_preempts_a_goal_whose_check_is_pending(robot, silent_controller):
     assert not waiting.answered()
     assert stop.accepted
     assert not waiting.accepted
-    assert robot.refusal(waiting).error_code == ErrorCode.PREEMPTED
+    assert robot.rejection(waiting).error_code == ErrorCode.PREEMPTED
 
 
 def test_a_goal_canceled_during_its_check_does_not_move_the_arm(robot, simulator):
@@ -57,4 +57,4 @@ def test_an_unreachable_pose_is_rejected_after_the_check(robot):
     pose.position.z += 1.1
     goal = robot.send(MoveL, "move_l", pose=pose)
     assert not goal.accepted
-    assert robot.refusal(goal).error_code in (ErrorCode.UNREACHABLE, ErrorCode.SAFETY_VIOLATION)
+    assert robot.rejection(goal).error_code in (ErrorCode.UNREACHABLE, ErrorCode.SAFETY_VIOLATION)

@@ -119,7 +119,7 @@ ARGUMENTS = {"tf_prefix": "left_", "on_busy": "preempt", "rtde_frequency": 100.0
 @pytest.mark.parametrize("executable", ["driver", "command_server"])
 def test_launch_arguments_have_priority_over_a_file(start, tmp_path, names, executable):
     file = tmp_path / "mine.yaml"
-    file.write_text("".join(f"{name}:\n  ros__parameters: {{on_busy: refuse, urcap_port: 50009, stream_gain: 500.0}}\n"
+    file.write_text("".join(f"{name}:\n  ros__parameters: {{on_busy: reject, urcap_port: 50009, stream_gain: 500.0}}\n"
                             for name in names))
     written = launch_arguments.write_parameters(ARGUMENTS)
     try:
@@ -151,7 +151,7 @@ def test_every_default_and_every_choice_is_a_valid_value():
 
 @pytest.mark.parametrize("name, text, message", [
     ("ur_type", "ur11", 'ur_type is "ur11", it must be one of: '),
-    ("on_busy", "maybe", 'on_busy is "maybe", it must be one of: refuse, preempt'),
+    ("on_busy", "maybe", 'on_busy is "maybe", it must be one of: reject, preempt'),
     ("rtde_frequency", "fast", 'rtde_frequency is "fast", it must be a number from 1 to 500'),
     ("rtde_frequency", "nan", 'rtde_frequency is "nan", it must be a number from 1 to 500'),
     ("urcap_port", "70000", 'urcap_port is "70000", it must be an integer from 1 to 65535'),

@@ -48,7 +48,7 @@ def test_an_invalid_parameter_is_reported_with_its_limits(name, parameter, what)
 def threads_with_priority(pid, priority):
     found = []
     for thread in map(int, os.listdir(f"/proc/{pid}/task")):
-        with contextlib.suppress(ProcessLookupError):  # other threads may end meanwhile
+        with contextlib.suppress(ProcessLookupError):  # other threads may end in the meantime
             if (os.sched_getparam(thread).sched_priority == priority
                     and os.sched_getscheduler(thread) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO):
                 found.append(thread)
@@ -90,10 +90,10 @@ def test_a_missing_controller_is_reported_and_goals_are_rejected(name, addresses
     try:
         goal = client.send(MoveJ, "move_j", joint_positions=HOME)
         assert not goal.accepted
-        assert client.refusal(goal).error_code in (ErrorCode.NOT_READY, ErrorCode.LINK_LOST)
+        assert client.rejection(goal).error_code in (ErrorCode.NOT_READY, ErrorCode.LINK_LOST)
         assert server.wait_for_output(addresses[3])
-        wait_for(lambda: addresses[3] in client.refusal(client.send(MoveJ, "move_j", joint_positions=HOME)).message, 10.0,
-                 "a refusal that names the address")
+        wait_for(lambda: addresses[3] in client.rejection(client.send(MoveJ, "move_j", joint_positions=HOME)).message, 10.0,
+                 "a rejection that names the address")
     finally:
         client.close()
 
@@ -131,7 +131,7 @@ def test_another_server_at_the_address_does_not_crash_the_driver(addresses, proc
         try:
             server.wait_for_output(addresses[2])
             goal = client.send(MoveJ, "move_j", joint_positions=HOME)
-            assert not goal.accepted and client.refusal(goal).message
+            assert not goal.accepted and client.rejection(goal).message
             assert server.running(), server.output()
             server.interrupt()
             assert server.wait(15.0) == 0
@@ -181,8 +181,8 @@ def test_loss_of_the_controller_aborts_the_motion_and_the_driver_reconnects(addr
         simulator.kill()
         status, result = goal.wait_for_result(10.0)
         assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.LINK_LOST, result.message
-        refused = client.send(MoveJ, "move_j", joint_positions=HOME)
-        assert not refused.accepted and client.refusal(refused).message
+        rejected = client.send(MoveJ, "move_j", joint_positions=HOME)
+        assert not rejected.accepted and client.rejection(rejected).message
         simulator.start()
         make_ready(client)
         assert driver.running()

@@ -88,8 +88,8 @@ def test_move_j_relative_adds_to_the_current_joint_positions(robot):
 def test_move_j_relative_rejects_targets_outside_the_joint_limits(robot):
     goal = robot.send(MoveJRelative, "move_j_relative", joint_offsets=[0.0, 0.0, 0.0, 0.0, 0.0, 6.5])
     assert not goal.accepted
-    refusal = robot.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and "wrist_3_joint" in refusal.message
+    rejection = robot.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and "wrist_3_joint" in rejection.message
 
 
 def test_move_l_fk_moves_in_a_straight_line(robot, simulator):
@@ -184,7 +184,7 @@ def test_move_path_rejects_invalid_waypoints(robot):
                             ([PathWaypoint(type=1, pose=good.pose, blend_radius=0.1)], "blend_radius"),
                             ([PathWaypoint(type=2, joint_positions=HOME)], "MOVE_P")):
         goal = robot.send(MovePath, "move_path", waypoints=waypoints)
-        assert not goal.accepted and text in robot.refusal(goal).message, robot.refusal(goal).message
+        assert not goal.accepted and text in robot.rejection(goal).message, robot.rejection(goal).message
 
 
 @pytest.mark.parametrize("field, value, limit", [("speed", 3.2, "m/s"), ("acceleration", 151.0, "m/s^2")])
@@ -197,7 +197,7 @@ def test_move_path_rejects_invalid_waypoints(robot):
 def test_the_speed_and_acceleration_of_a_goal_are_limited(robot, action, name, fields, field, value, limit):
     goal = robot.send(action, name, **fields, **{field: value})
     unit = limit.replace("m/", "rad/") if action is MoveJRelative else limit
-    message = robot.refusal(goal).message
+    message = robot.rejection(goal).message
     assert not goal.accepted and field in message and message.endswith(f" {unit}"), message
 
 
@@ -207,7 +207,7 @@ def test_the_speed_and_acceleration_of_a_goal_are_limited(robot, action, name, f
     (ServoC, "servo_c", {"pose": FORWARD}),
     (Decelerate, "servo_stop", {})])
 def test_the_deceleration_of_servo_motion_is_that_of_the_tcp(robot, action, name, fields):
-    message = robot.refusal(robot.send(action, name, **fields, deceleration=41.0)).message
+    message = robot.rejection(robot.send(action, name, **fields, deceleration=41.0)).message
     assert "deceleration" in message and message.endswith(" m/s^2"), message
 
 
@@ -222,7 +222,7 @@ def test_speed_j_moves_for_the_given_time(robot):
 def test_speed_j_rejects_velocities_above_the_joint_limit(robot):
     goal = robot.send(SpeedJ, "speed_j", joint_velocities=[2.5, 0.0, 0.0, 0.0, 0.0, 0.0])  # UR10e: 120 degrees/s
     assert not goal.accepted
-    assert "shoulder_pan_joint" in robot.refusal(goal).message and "2.094" in robot.refusal(goal).message
+    assert "shoulder_pan_joint" in robot.rejection(goal).message and "2.094" in robot.rejection(goal).message
 
 
 @pytest.mark.parametrize("frame, expected", [(Jog.Goal.BASE, 0.1), (Jog.Goal.TOOL, -0.1)])
@@ -261,7 +261,7 @@ def test_servo_l_moves_in_a_straight_line(robot, simulator):
 
 def test_servo_l_rejects_a_time_that_is_too_short_for_the_tcp(robot):
     goal = robot.send(ServoL, "servo_l", pose=translated(get_tcp_pose(robot), z=-0.2), time=0.05)
-    assert not goal.accepted and "use a time of at least" in robot.refusal(goal).message
+    assert not goal.accepted and "use a time of at least" in robot.rejection(goal).message
 
 
 def planned_cycles(distance, speed):

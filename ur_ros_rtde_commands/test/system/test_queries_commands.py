@@ -170,8 +170,8 @@ def test_queries_do_not_change_output_registers(robot):
 def test_queries_are_rejected_while_a_script_replaces_the_control_program(robot, simulator):
     goal = robot.send(SendScript, "send_script", script='while True:\n  textmsg("here")\n  sleep(0.1)\nend', timeout=60.0)
     wait_for(lambda: goal.feedback, 10.0, "the script to run")
-    refused = robot.send(GetFlag, "is_steady")
-    assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
+    rejected = robot.send(GetFlag, "is_steady")
+    assert not rejected.accepted and robot.rejection(rejected).error_code == ErrorCode.BUSY
     assert query(robot, GetFlag, "is_program_running").value
     goal.cancel()
     assert goal.wait_for_result()[0] == GoalStatus.STATUS_CANCELED
@@ -184,7 +184,7 @@ def test_queries_are_rejected_in_a_protective_stop(robot, simulator):
 
     def rejection_code():
         goal = robot.send(GetPose, "get_tcp_offset")
-        return None if goal.accepted else robot.refusal(goal).error_code
+        return None if goal.accepted else robot.rejection(goal).error_code
 
     wait_for(lambda: rejection_code() == ErrorCode.PROTECTIVE_STOP, 15.0, "the rejection")
     robot.send(MakeReady, "make_ready").succeeded()

@@ -188,10 +188,10 @@ def test_a_full_disk_is_reported_and_leaves_complete_rows(simulator, processes, 
         file = tmp_path / "full.csv"
         columns = start_when_connected(client, file)
         unlimited = resource.prlimit(receiver.pid, resource.RLIMIT_FSIZE, (65536, resource.RLIM_INFINITY))
-        receiver.wait_for_output("cannot be written any more", 30.0)
+        receiver.wait_for_output("cannot be written anymore", 30.0)
         wait_for_simulated_time(simulator, 0.2)
         answer = stop(client)
-        assert not answer.success and "cannot be written any more" in answer.message
+        assert not answer.success and "cannot be written anymore" in answer.message
         header, rows = read_csv(file)
         assert len(rows) == answer.rows > 10 and all(len(row) == len(columns) for row in rows) and answer.lost > 0
         resource.prlimit(receiver.pid, resource.RLIMIT_FSIZE, unlimited)

@@ -88,9 +88,9 @@ def test_dashboard_stop_ends_a_script_that_has_not_begun(robot, driver, simulato
 def test_a_motion_is_rejected_while_a_script_runs(robot):
     goal = send(robot, 'while True:\n  textmsg("on")\n  sleep(0.05)\nend')
     wait_for(lambda: goal.feedback, 10.0, "the script to run")
-    refused = robot.send(MoveJ, "move_j", joint_positions=HOME)
-    assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.BUSY
-    assert "send_script" in robot.refusal(refused).message
+    rejected = robot.send(MoveJ, "move_j", joint_positions=HOME)
+    assert not rejected.accepted and robot.rejection(rejected).error_code == ErrorCode.BUSY
+    assert "send_script" in robot.rejection(rejected).message
     goal.cancel()
     goal.wait_for_result()
 
@@ -111,8 +111,8 @@ def test_a_secondary_script_does_not_interrupt_a_motion(robot, simulator):
 def test_a_goal_without_exactly_one_script_is_rejected(robot, fields, field):
     goal = robot.send(SendScript, "send_script", **fields)
     assert not goal.accepted
-    refusal = robot.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and field in refusal.message
+    rejection = robot.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and field in rejection.message
 
 
 def test_reupload_script_restarts_the_control_program(robot, simulator):

@@ -55,9 +55,9 @@ def test_a_second_driver_with_the_same_names_does_not_start_and_the_first_contin
     assert goal.accepted
     second = start_node("driver", simulator.address, FEW_PLUGINS, namespace="first")
     assert second.wait(30.0) == 2
-    refusal = [line for line in second.lines if "is already running" in line]
-    assert len(refusal) == 1, second.output()
-    assert "/first/" in refusal[0] and f"process {first.pid} on " in refusal[0] and "__ns" in refusal[0]
+    rejection = [line for line in second.lines if "is already running" in line]
+    assert len(rejection) == 1, second.output()
+    assert "/first/" in rejection[0] and f"process {first.pid} on " in rejection[0] and "__ns" in rejection[0]
     assert goal.succeeded().final_state.joint_positions[0] == pytest.approx(TARGET[0], abs=0.01)
 
 
@@ -84,9 +84,9 @@ def test_a_driver_in_another_namespace_reports_the_conflict_and_takes_over_a_rel
     second.wait_for_output("are in use")
     assert sum("are in use" in line for line in second.lines) == 1, second.output()
     goal = first_client.send(MoveJ, "move_j", joint_positions=TARGET, speed=0.5)
-    refused = other_client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.5)
-    assert not refused.accepted
-    assert other_client.refusal(refused).error_code == ErrorCode.ROBOT_IN_USE
+    rejected = other_client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.5)
+    assert not rejected.accepted
+    assert other_client.rejection(rejected).error_code == ErrorCode.ROBOT_IN_USE
     goal.succeeded()
     first.stop()
     wait_for_state(states, DriverState.READY, ErrorCode.NONE)
@@ -109,16 +109,16 @@ def test_a_wrong_ur_type_prevents_motion(start_other, other_client, states):
     start_other("ur_type:=ur5e")
     state = wait_for_state(states, DriverState.STOPPED, ErrorCode.MODEL_MISMATCH)
     assert "ur5e" in state.message and "ur_type:=ur10e" in state.message
-    refused = other_client.send(MoveJ, "move_j", joint_positions=HOME)
-    assert not refused.accepted and other_client.refusal(refused).error_code == ErrorCode.MODEL_MISMATCH
+    rejected = other_client.send(MoveJ, "move_j", joint_positions=HOME)
+    assert not rejected.accepted and other_client.rejection(rejected).error_code == ErrorCode.MODEL_MISMATCH
 
 
 def test_without_ur_type_the_limits_of_the_connected_arm_apply(start_other, other_client):
     start_other().wait_for_output("is a ur10e")
     make_ready(other_client)
-    refused = other_client.send(SpeedJ, "speed_j", joint_velocities=[3.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-    assert not refused.accepted
-    assert "2.0944" in other_client.refusal(refused).message
+    rejected = other_client.send(SpeedJ, "speed_j", joint_velocities=[3.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    assert not rejected.accepted
+    assert "2.0944" in other_client.rejection(rejected).message
 
 
 def test_the_result_of_an_unknown_goal_is_an_error(first, first_client):

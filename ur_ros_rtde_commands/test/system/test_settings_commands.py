@@ -63,8 +63,8 @@ def test_sets_standard_configurable_and_tool_digital_outputs(robot, simulator, n
         for state in (True, False):
             robot.send(SetDigitalOutput, name, pin=pin, state=state).succeeded()
             assert bool(simulator.state()["io"]["digital_outputs"] >> (first + pin) & 1) == state
-    refused = robot.send(SetDigitalOutput, name, pin=count)
-    assert not refused.accepted and "pin" in robot.refusal(refused).message
+    rejected = robot.send(SetDigitalOutput, name, pin=count)
+    assert not rejected.accepted and "pin" in robot.rejection(rejected).message
 
 
 def test_sets_analog_outputs_as_voltage_and_current(robot, simulator):
@@ -81,15 +81,15 @@ def test_programs_read_the_input_registers(robot, simulator):
     wait_for(lambda: robot.send(SendScript, "send_secondary_script", script=script).succeeded().output == ["-7", "0.125"],
              5.0, "the registers")
     for value in (0.5, 2.0**31):
-        refused = robot.send(SetRegister, "set_input_int_register", index=19, value=value)
-        assert not refused.accepted and robot.refusal(refused).error_code == ErrorCode.INVALID_GOAL
+        rejected = robot.send(SetRegister, "set_input_int_register", index=19, value=value)
+        assert not rejected.accepted and robot.rejection(rejected).error_code == ErrorCode.INVALID_GOAL
 
 
 def test_gravity_has_to_be_about_9_82(robot):
     robot.send(SetGravity, "set_gravity", direction=Vector3(y=9.82 * math.sin(0.5), z=9.82 * math.cos(0.5))).succeeded()
     robot.send(SetGravity, "set_gravity", direction=Vector3(z=9.82)).succeeded()
-    refused = robot.send(SetGravity, "set_gravity", direction=Vector3(z=1.0))
-    assert not refused.accepted and "direction" in robot.refusal(refused).message
+    rejected = robot.send(SetGravity, "set_gravity", direction=Vector3(z=1.0))
+    assert not rejected.accepted and "direction" in robot.rejection(rejected).message
 
 
 def test_a_faster_watchdog_stops_the_program_only_if_the_driver_is_silent(robot, driver, simulator):
@@ -105,9 +105,9 @@ def test_a_faster_watchdog_stops_the_program_only_if_the_driver_is_silent(robot,
 
 
 def test_a_watchdog_faster_than_the_heartbeat_is_rejected(robot):
-    refused = robot.send(SetWatchdog, "set_watchdog", min_frequency=60.0)
-    assert not refused.accepted
-    message = robot.refusal(refused).message
+    rejected = robot.send(SetWatchdog, "set_watchdog", min_frequency=60.0)
+    assert not rejected.accepted
+    message = robot.rejection(rejected).message
     assert "min_frequency" in message and "50" in message
 
 
@@ -115,7 +115,7 @@ def test_set_output_without_received_packages_fails_with_link_lost(robot, simula
     simulator.control("stall_links", which="rtde")
     try:
         goal = robot.send(SetDigitalOutput, "set_standard_digital_output", pin=2, state=True)
-        outcome = goal.wait_for_result(10.0)[1] if goal.accepted else robot.refusal(goal)  # rejected if the loss was detected first
+        outcome = goal.wait_for_result(10.0)[1] if goal.accepted else robot.rejection(goal)  # rejected if the loss was detected first
         assert outcome.error_code == ErrorCode.LINK_LOST, outcome.message
     finally:
         simulator.control("drop_links", which="rtde")
@@ -154,5 +154,5 @@ def test_the_tool_voltage_can_be_set_during_a_motion(robot, simulator):
     ("set_tool_communication", SetToolCommunication, {"baud_rate": 14400}, "baud_rate is 14400, it must be one of 9600"),
 ])
 def test_invalid_settings_of_the_tool_connector_are_rejected(robot, name, kind, fields, mentions):
-    refused = robot.send(kind, name, **fields)
-    assert not refused.accepted and mentions in robot.refusal(refused).message
+    rejected = robot.send(kind, name, **fields)
+    assert not rejected.accepted and mentions in robot.rejection(rejected).message

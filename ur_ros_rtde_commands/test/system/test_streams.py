@@ -156,7 +156,7 @@ def test_the_arm_decelerates_after_the_timeout_of_a_topic(robot, simulator):
     last = simulator.state()["cycle"]
     wait_for(lambda: recorder.update() and simulator.is_at_rest(), 10.0, "standstill")
     recorder.update()
-    # Each cycle has at most one setpoint, also if the host is late.
+    # Each cycle has at most one setpoint, even if the host is late.
     assert recorder.cycles_with_setpoint(last) < 500.0 * (TIMEOUT + 0.25), "the motion continued after the timeout"
     full = max(cycle for cycle, speed in recorder.tcp_speeds.items() if speed > 0.09)
     rest = next(cycle for cycle, speed in recorder.tcp_speeds.items() if cycle > full and speed < 0.01)
@@ -198,8 +198,8 @@ def test_a_goal_is_rejected_while_a_topic_controls_the_arm_and_accepted_afterwar
         wait_for(lambda: abs(get_tcp_pose(robot).position.z - start.z) > 0.005, 15.0, "the topic to move the arm")
         goal = robot.send(MoveJ, "move_j", joint_positions=HOME)
         assert not goal.accepted
-        refusal = robot.refusal(goal)
-        assert refusal.error_code == ErrorCode.BUSY and "/twist" in refusal.message, refusal
+        rejection = robot.rejection(goal)
+        assert rejection.error_code == ErrorCode.BUSY and "/twist" in rejection.message, rejection
     pause()
     robot.send(MoveJ, "move_j", joint_positions=HOME).succeeded()
 

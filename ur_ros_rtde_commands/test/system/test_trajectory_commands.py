@@ -119,9 +119,9 @@ def test_blends_corners_within_the_tolerance(robot):
 
 def test_a_distant_start_requires_approach(robot):
     distant = [home_plus(0.2), home_plus(0.3)]
-    refused = send(robot, distant)
-    assert not refused.accepted
-    message = robot.refusal(refused).message
+    rejected = send(robot, distant)
+    assert not rejected.accepted
+    message = robot.rejection(rejected).message
     assert "shoulder_pan_joint" in message and "0.2000 rad away" in message and "start_tolerance is 0.0100" in message
     send(robot, distant, approach=True).succeeded()
     send(robot, [home_plus(0.3003), home_plus(0.25)]).succeeded()  # within start_tolerance
@@ -266,8 +266,8 @@ INVALID_PATHS = [
 def test_an_invalid_path_is_rejected_with_the_reason(driver, client, fields, what):
     goal = client.send(ExecuteTrajectory, "execute_trajectory", **{"waypoints": waypoints(HOME), **fields})
     assert not goal.accepted
-    refusal = client.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and what in refusal.message, refusal.message
+    rejection = client.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and what in rejection.message, rejection.message
 
 
 def arc(times, size=0.3):
@@ -336,5 +336,5 @@ INVALID_TIMINGS = [
 def test_an_invalid_timing_is_rejected_with_the_reason(driver, client, trajectory, what):
     goal = client.send(ExecuteParametrizedTrajectory, "execute_parametrized_trajectory", trajectory=trajectory)
     assert not goal.accepted
-    refusal = client.refusal(goal)
-    assert refusal.error_code == ErrorCode.INVALID_GOAL and what in refusal.message, refusal.message
+    rejection = client.rejection(goal)
+    assert rejection.error_code == ErrorCode.INVALID_GOAL and what in rejection.message, rejection.message

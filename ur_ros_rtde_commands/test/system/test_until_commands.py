@@ -117,7 +117,7 @@ def test_move_until_force_measures_relative_to_the_initial_force(robot, simulato
                                     {"frame": 2}])
 def test_move_until_force_rejects_goals_that_could_not_end(robot, fields):
     goal = robot.send(MoveUntilForce, "move_until_force", twist=DOWN, **fields)
-    assert not goal.accepted and next(iter(fields)) in robot.refusal(goal).message
+    assert not goal.accepted and next(iter(fields)) in robot.rejection(goal).message
 
 
 def test_tool_contact_reports_a_contact_in_its_direction(robot, simulator):

@@ -99,10 +99,10 @@ TEST(RobotiqClientTest, WritesRegistersAndWaitsForTheAcknowledgement)
     EXPECT_TRUE(client.set("POS 255 GTO 1"));
     EXPECT_TRUE(client.set("GTO 0"));
     EXPECT_TRUE(client.set("ACT 1"));
-    const auto refused = client.set("XYZ 1");
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ErrorCode::rejected_by_robot);
-    EXPECT_NE(refused.error().message.find("`?` to `SET XYZ 1`"), std::string::npos);
+    const auto rejected = client.set("XYZ 1");
+    ASSERT_FALSE(rejected);
+    EXPECT_EQ(rejected.error().code, ErrorCode::rejected_by_robot);
+    EXPECT_NE(rejected.error().message.find("`?` to `SET XYZ 1`"), std::string::npos);
   }
   server.join();
   EXPECT_EQ(server.requests,

@@ -62,7 +62,7 @@ class Robot {
   RobotStatus status() const;
   /// Success if the robot accepts motion commands; else cause and message of the status.
   Status ready_to_move() const;
-  Status wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop = {}) const;
+  Status wait_until_ready(std::chrono::milliseconds timeout, std::stop_token stop = {}) const;
   std::optional<ControllerVersion> version() const;
   /// s, of the control cycle. 0.002 while the version is unknown.
   double cycle_time() const;
@@ -109,13 +109,13 @@ class Robot {
 
   /// Sends a line to the dashboard server and returns its answer without the line end. Uses a separate
   /// connection, since the robot may have closed a persistent one.
-  Expected<std::string> query_dashboard(const std::string & line, std::chrono::milliseconds limit,
+  Expected<std::string> query_dashboard(const std::string & line, std::chrono::milliseconds timeout,
                                         const std::stop_token & stop = {}) const;
 
   /// The newest sample; none before the first.
   std::optional<Sample> latest() const;
   /// See StateReceiver::wait_for_next(). motion_progress() and is_moving() then include this sample.
-  bool wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop = {}) const;
+  bool wait_for_next(Sample & last, std::chrono::milliseconds timeout, std::stop_token stop = {}) const;
 
   /// Success if a motion can continue now; else the reason why not: a safety stop, a stopped program, a lost
   /// connection. Evaluates the newest package, so it may be ahead of status().
@@ -175,7 +175,7 @@ class Robot {
 
   /// Sends `script` to the controller and waits until it has ended. `script` is a complete program
   /// (`def … end`, or `sec … end` for a secondary one) or a function body, which is wrapped in a function. If
-  /// ScriptOptions::stop_reason or the limit ends the script, it is stopped and the arm decelerates.
+  /// ScriptOptions::stop_reason or the timeout ends the script, it is stopped and the arm decelerates.
   ///
   /// A program replaces the control program (with control_urcap: not_supported) and needs a lease of
   /// Resource::script. While it runs, status() stays ready, control() throws RobotError (busy), and the
@@ -190,9 +190,9 @@ class Robot {
   std::vector<std::string> set_extensions(const std::vector<ScriptExtension> & extensions);
   /// not_supported, with the reason, if the extension was omitted.
   Status has_extension(const std::string & name) const;
-  /// Runs an extension and waits for its end. If ExtensionOptions::stop_reason or the limit ends it, the arm
-  /// decelerates. Needs a lease of Resource::motion. If the snippet fails, the error is rejected_by_robot and
-  /// names the line.
+  /// Runs an extension and waits for its end. If ExtensionOptions::stop_reason or the timeout ends it, the
+  /// arm decelerates. Needs a lease of Resource::motion. If the snippet fails, the error is rejected_by_robot
+  /// and names the line.
   Status run_extension(const Lease & lease, const std::string & name, const ExtensionOptions & options = {});
   /// Writes a parameter of an extension: general purpose register 19 to 22, without the offset of the upper
   /// range. Sample::output_int_registers and output_double_registers contain the results.

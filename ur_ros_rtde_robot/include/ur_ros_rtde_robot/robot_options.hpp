@@ -26,7 +26,7 @@ struct RobotOptions {
   /// available then.
   bool upper_range_registers = false;
   /// Model of the arm, see arm_limits(); empty: as reported by the controller. If it contradicts the
-  /// controller, motions are refused.
+  /// controller, motions are rejected.
   std::string model;
   std::chrono::milliseconds connect_timeout{500};
   std::chrono::milliseconds retry_interval{250};

@@ -343,10 +343,11 @@ Status DashboardConnection::call(const std::function<void(DashboardClient &)> & 
   return impl_->call(function);
 }
 
-Expected<std::string> DashboardConnection::request(const std::string & line, std::chrono::milliseconds limit,
+Expected<std::string> DashboardConnection::request(const std::string & line,
+                                                   std::chrono::milliseconds timeout,
                                                    const std::stop_token & stop) const
 {
-  return dashboard_request(impl_->options_.address, line, limit, stop);
+  return dashboard_request(impl_->options_.address, line, timeout, stop);
 }
 
 const std::string & DashboardConnection::address() const

@@ -7,9 +7,9 @@
 namespace ur_ros_rtde {
 
 Expected<std::string> dashboard_request(const std::string & address, const std::string & line,
-                                        std::chrono::milliseconds limit, const std::stop_token & stop)
+                                        std::chrono::milliseconds timeout, const std::stop_token & stop)
 {
-  return DashboardSession(address).request(line, limit, stop);
+  return DashboardSession(address).request(line, timeout, stop);
 }
 
 Status stop_program(const std::string & address)

@@ -10,10 +10,10 @@ namespace ur_ros_rtde {
 
 /// Sends a line to the dashboard server at `address` on a separate connection and returns the answer without
 /// the line end. An e-Series controller applies to each client the control mode, local or remote, at the time
-/// of connecting; a new connection therefore has the current mode. Errors: link_lost; timeout after `limit`;
-/// canceled if a stop is requested.
+/// of connecting; a new connection therefore has the current mode. Errors: link_lost; timeout after
+/// `timeout`; canceled if a stop is requested.
 Expected<std::string> dashboard_request(const std::string & address, const std::string & line,
-                                        std::chrono::milliseconds limit, const std::stop_token & stop);
+                                        std::chrono::milliseconds timeout, const std::stop_token & stop);
 
 /// Stops the program that runs on the robot. Fails with the robot's answer if it does not.
 Status stop_program(const std::string & address);

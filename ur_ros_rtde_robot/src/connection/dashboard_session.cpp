@@ -77,10 +77,10 @@ Expected<std::string> DashboardSession::ask(const std::string & line, const Wait
   return answer;
 }
 
-Expected<std::string> DashboardSession::request(const std::string & line, std::chrono::milliseconds limit,
+Expected<std::string> DashboardSession::request(const std::string & line, std::chrono::milliseconds timeout,
                                                 const std::stop_token & stop)
 {
-  const WaitLimit wait_limit{Clock::now() + limit, stop};
+  const WaitLimit wait_limit{Clock::now() + timeout, stop};
   const bool was_connected = socket_.has_value();
   auto answer = ask(line, wait_limit);
   if (!answer && was_connected && answer.error().code == ErrorCode::link_lost) {

@@ -242,14 +242,14 @@ std::optional<PrimaryMessage> PrimaryReader::next()
 }
 
 Expected<PrimaryConnection> PrimaryConnection::connect(const std::string & address,
-                                                       std::chrono::milliseconds limit)
+                                                       std::chrono::milliseconds timeout)
 {
-  auto socket = TcpSocket::connect(address, primary_port, limit);
+  auto socket = TcpSocket::connect(address, primary_port, timeout);
   if (!socket) {
     return tl::unexpected(socket.error());
   }
   PrimaryConnection connection(std::move(*socket));
-  const auto greeting = connection.read(limit);
+  const auto greeting = connection.read(timeout);
   if (!greeting) {
     return tl::unexpected(greeting.error());
   }
@@ -259,9 +259,9 @@ Expected<PrimaryConnection> PrimaryConnection::connect(const std::string & addre
   return connection;
 }
 
-Status PrimaryConnection::send(std::string_view script, std::chrono::milliseconds limit)
+Status PrimaryConnection::send(std::string_view script, std::chrono::milliseconds timeout)
 {
-  return socket_.write(script, TcpSocket::Clock::now() + limit);
+  return socket_.write(script, TcpSocket::Clock::now() + timeout);
 }
 
 Expected<std::size_t> PrimaryConnection::read(std::chrono::milliseconds wait)
@@ -274,9 +274,9 @@ Expected<std::size_t> PrimaryConnection::read(std::chrono::milliseconds wait)
   return got;
 }
 
-Expected<ArmData> PrimaryConnection::arm_data(std::chrono::milliseconds limit)
+Expected<ArmData> PrimaryConnection::arm_data(std::chrono::milliseconds timeout)
 {
-  const auto deadline = TcpSocket::Clock::now() + limit;
+  const auto deadline = TcpSocket::Clock::now() + timeout;
   while (!reader_.arm_data()) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - TcpSocket::Clock::now());
     if (left <= std::chrono::milliseconds(0)) {

@@ -56,15 +56,15 @@ class PrimaryReader {
 class PrimaryConnection {
  public:
   /// Returns after the first data from the controller, so that all later messages are received.
-  static Expected<PrimaryConnection> connect(const std::string & address, std::chrono::milliseconds limit);
+  static Expected<PrimaryConnection> connect(const std::string & address, std::chrono::milliseconds timeout);
 
-  Status send(std::string_view script, std::chrono::milliseconds limit);
+  Status send(std::string_view script, std::chrono::milliseconds timeout);
   /// Nothing can be sent afterwards. Does not wait; may be called by another thread.
   void shut_down_sending() const { socket_.shut_down_writing(); }
   /// The next message; none if none arrives within `wait`.
   Expected<std::optional<PrimaryMessage>> next(std::chrono::milliseconds wait);
   /// Waits for PrimaryReader::arm_data().
-  Expected<ArmData> arm_data(std::chrono::milliseconds limit);
+  Expected<ArmData> arm_data(std::chrono::milliseconds timeout);
 
  private:
   explicit PrimaryConnection(TcpSocket socket) : socket_(std::move(socket)) {}

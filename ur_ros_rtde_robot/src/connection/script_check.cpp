@@ -15,18 +15,18 @@ constexpr int lines_before = 1;
 }  // namespace
 
 Expected<std::optional<PrimaryMessage>> check_definitions(const std::string & address,
-                                                          const std::string & text, milliseconds limit)
+                                                          const std::string & text, milliseconds timeout)
 {
-  auto primary = PrimaryConnection::connect(address, limit);
+  auto primary = PrimaryConnection::connect(address, timeout);
   if (!primary) {
     return tl::unexpected(primary.error());
   }
   const std::string program =
       std::string("def ") + program_name + "():\n" + text.substr(0, text.find(end_of_definitions)) + "end\n";
-  if (const auto sent = primary->send(program, limit); !sent) {
+  if (const auto sent = primary->send(program, timeout); !sent) {
     return tl::unexpected(sent.error());
   }
-  for (const auto deadline = Clock::now() + limit; Clock::now() < deadline;) {
+  for (const auto deadline = Clock::now() + timeout; Clock::now() < deadline;) {
     auto message = primary->next(milliseconds(20));
     if (!message) {
       return tl::unexpected(message.error());

@@ -13,6 +13,6 @@ namespace ur_ros_rtde {
 /// current program must have been stopped before.
 Expected<std::optional<PrimaryMessage>> check_definitions(const std::string & address,
                                                           const std::string & text,
-                                                          std::chrono::milliseconds limit);
+                                                          std::chrono::milliseconds timeout);
 
 }  // namespace ur_ros_rtde

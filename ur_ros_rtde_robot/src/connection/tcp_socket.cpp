@@ -99,7 +99,7 @@ TcpSocket::~TcpSocket()
 }
 
 Expected<TcpSocket> TcpSocket::connect(const std::string & address, std::uint16_t port,
-                                       std::chrono::milliseconds limit)
+                                       std::chrono::milliseconds timeout)
 {
   const auto ip = resolve(address);
   if (!ip) {
@@ -109,7 +109,7 @@ Expected<TcpSocket> TcpSocket::connect(const std::string & address, std::uint16_
   target.sin_family = AF_INET;
   target.sin_addr = *ip;
   target.sin_port = htons(port);
-  const auto deadline = Clock::now() + limit;
+  const auto deadline = Clock::now() + timeout;
   TcpSocket socket(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
                    fmt::format("{}:{}", address, port));
   const auto refused = [&](int error) {
@@ -133,7 +133,7 @@ Expected<TcpSocket> TcpSocket::connect(const std::string & address, std::uint16_
     if (!socket.wait_for(POLLOUT, deadline)) {
       return failure(ErrorCode::link_lost, fmt::format("no connection to {}: no answer within {} ms: check "
                                                        "the address, and that the robot is on",
-                                                       socket.name_, limit.count()));
+                                                       socket.name_, timeout.count()));
     }
     int error = 0;
     socklen_t size = sizeof(error);

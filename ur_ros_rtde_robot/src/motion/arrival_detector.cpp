@@ -10,8 +10,8 @@ namespace {
 
 bool holds_target(const Sample & sample)
 {
-  return sample.program_running() && std::all_of(sample.target_qd.begin(), sample.target_qd.end(),
-                                                 [](double velocity) { return velocity == 0.0; });
+  return sample.is_program_running() && std::all_of(sample.target_qd.begin(), sample.target_qd.end(),
+                                                    [](double velocity) { return velocity == 0.0; });
 }
 
 /// False if a value is NaN.

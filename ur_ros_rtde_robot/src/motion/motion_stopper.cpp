@@ -228,7 +228,7 @@ void MotionStopper::supervise()
   const auto time = Clock::now();
   const auto last = now.holder->last_braking();
   const bool is_late =
-      time > now.end_limit || time > (last ? *last + braking_pause_timeout : now.begin_limit);
+      time > now.end_limit || time > (last ? *last + braking_pause_timeout : now.begin_timeout);
   // A holder that has ended to stream what it can brake is stopped like any other.
   const bool has_to_stop = !now.holder->brakes_itself() || (is_late && now.is_late);
   now.is_late = is_late;

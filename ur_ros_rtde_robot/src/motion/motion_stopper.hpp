@@ -69,9 +69,9 @@ class MotionStopper {
     std::shared_ptr<Permit> holder;
     StopOptions options;
     Error why;
-    Clock::time_point begin_limit;  ///< by which it has to brake
-    Clock::time_point end_limit;    ///< by which it has to be at rest
-    bool is_late = false;           ///< at the last check
+    Clock::time_point begin_timeout;  ///< by which it has to brake
+    Clock::time_point end_limit;      ///< by which it has to be at rest
+    bool is_late = false;             ///< at the last check
   };
   /// One way to stop the arm.
   struct Means {

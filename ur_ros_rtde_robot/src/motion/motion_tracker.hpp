@@ -47,7 +47,7 @@ class MotionTracker {
     if (sample.sequence <= view_.sequence) {
       return;
     }
-    const bool ended = (view_.program_running && !sample.program_running()) || sample.link != view_.link;
+    const bool ended = (view_.program_running && !sample.is_program_running()) || sample.link != view_.link;
     const bool same_word = sample.async == view_.async;
     standstill_.add(sample);
     arrival_.add(sample, !ended && operation_ends(sample));
@@ -60,14 +60,14 @@ class MotionTracker {
     received_ = sample.received;
     view_ = {.at_rest = standstill_.at_rest() || arrival_.arrived(),
              .async = sample.async,
-             .program_running = sample.program_running(),
+             .program_running = sample.is_program_running(),
              .program = view_.program + (ended ? 1U : 0U),
              .sequence = sample.sequence,
              .controller_time = sample.controller_time,
              .link = sample.link,
              .gap = keeps_gap ? view_.gap : gap,
              .gap_time = keeps_gap ? view_.gap_time : sample.controller_time,
-             .async_is_stale = !sample.program_running() || ended || (view_.async_is_stale && same_word)};
+             .async_is_stale = !sample.is_program_running() || ended || (view_.async_is_stale && same_word)};
   }
   View view() const
   {

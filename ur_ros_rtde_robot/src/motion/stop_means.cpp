@@ -92,7 +92,7 @@ double deceleration_timeout(const Sample & sample, const StopOptions & options)
 /// The robot stops the arm without being told to.
 bool stops_by_itself(const Sample & sample, Activities started)
 {
-  return motion_blocker(sample) || (!sample.program_running() && !started.contains(Activity::script));
+  return motion_blocker(sample) || (!sample.is_program_running() && !started.contains(Activity::script));
 }
 
 }  // namespace
@@ -311,7 +311,7 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
   Status stopped = stop_program(options_.address);
   // The controller may still be compiling a script.
   while (stopped && activities_.now().contains(Activity::script) && !activities_.script_begun() &&
-         wait_for(compile_timeout, [](const Sample & sample) { return sample.program_running(); })) {
+         wait_for(compile_timeout, [](const Sample & sample) { return sample.is_program_running(); })) {
     stopped = stop_program(options_.address);
   }
   if (!stopped) {

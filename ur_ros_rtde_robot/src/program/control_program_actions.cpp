@@ -15,9 +15,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds program_begin_limit(500);
-constexpr milliseconds program_stop_limit(1000);
-constexpr milliseconds heartbeat_wait_limit(500);
+constexpr milliseconds program_begin_timeout(500);
+constexpr milliseconds program_end_timeout(1000);
+constexpr milliseconds heartbeat_wait_timeout(500);
 
 bool closes_interface(ProgramAction action)
 {
@@ -128,7 +128,7 @@ ControlProgramManager::Outcome ControlProgramManager::start_program()
     dispatch(rejected ? ProgramEvent::start_failed : ProgramEvent::start_aborted);
     return failed;
   }
-  if (!wait_for_program(ProgramActivity::playing, program_begin_limit)) {
+  if (!wait_for_program(ProgramActivity::playing, program_begin_timeout)) {
     interfaces_.close_control();
     next_start_ = Clock::now() + options_.retry_interval;
     dispatch(ProgramEvent::start_failed);
@@ -174,7 +174,7 @@ Status ControlProgramManager::end_program()
                                  sent.error().message));
     }
   }
-  if (!wait_for_program(ProgramActivity::stopped, program_stop_limit)) {
+  if (!wait_for_program(ProgramActivity::stopped, program_end_timeout)) {
     return failure(ErrorCode::program_stopped, "the robot does not stop its program: stop it on the pendant");
   }
   if (runtime == RuntimeState::playing) {
@@ -192,11 +192,11 @@ bool ControlProgramManager::follows_newest_link() const
   return connected && latest && latest->link == link_;
 }
 
-bool ControlProgramManager::wait_for_program(ProgramActivity program, milliseconds limit) const
+bool ControlProgramManager::wait_for_program(ProgramActivity program, milliseconds timeout) const
 {
   constexpr milliseconds link_check_interval(50);
   const auto stop = stop_.get_token();
-  const auto deadline = Clock::now() + limit;
+  const auto deadline = Clock::now() + timeout;
   const auto reached = [&] { return observation_.program == program; };
   while (Clock::now() < deadline && !stop.stop_requested() && follows_newest_link()) {
     std::unique_lock lock(mutex_);
@@ -209,7 +209,7 @@ bool ControlProgramManager::wait_for_program(ProgramActivity program, millisecon
 
 void ControlProgramManager::suspend_program()
 {
-  if (interfaces_.suspend_control() && wait_for_program(ProgramActivity::stopped, program_stop_limit)) {
+  if (interfaces_.suspend_control() && wait_for_program(ProgramActivity::stopped, program_end_timeout)) {
     dispatch(ProgramEvent::program_yielded);
     return;
   }
@@ -238,7 +238,7 @@ ControlProgramManager::Outcome ControlProgramManager::adopt_program()
   if (auto failed = connect_control()) {
     return failed;
   }
-  if (!interfaces_.pending_program_alive(heartbeat_wait_limit, stop_.get_token())) {
+  if (!interfaces_.pending_program_alive(heartbeat_wait_timeout, stop_.get_token())) {
     return program_stopped(fmt::format(
         "a program runs on the robot, but not the control program: {}",
         server_.fetched() == 0

@@ -14,10 +14,10 @@ std::uint64_t ControlProgramManager::request_cycle()
   return ++requests_;
 }
 
-Status ControlProgramManager::yield(milliseconds limit)
+Status ControlProgramManager::yield(milliseconds timeout)
 {
   const auto stop = stop_.get_token();
-  const auto deadline = Clock::now() + limit;
+  const auto deadline = Clock::now() + timeout;
   std::unique_lock lock(mutex_);
   // After an end of the control program the status is still ready for a moment.
   changed_.wait_until(lock, stop, deadline, [this] {
@@ -46,22 +46,22 @@ Status ControlProgramManager::yield(milliseconds limit)
                  "something else ended the control program: the script was not sent");
 }
 
-Status ControlProgramManager::resume(milliseconds limit)
+Status ControlProgramManager::resume(milliseconds timeout)
 {
-  return resume_by(ProgramEvent::resume_requested, limit);
+  return resume_by(ProgramEvent::resume_requested, timeout);
 }
 
-Status ControlProgramManager::resume_after_replacement(milliseconds limit)
+Status ControlProgramManager::resume_after_replacement(milliseconds timeout)
 {
-  return resume_by(ProgramEvent::script_replaced, limit);
+  return resume_by(ProgramEvent::script_replaced, timeout);
 }
 
-Status ControlProgramManager::resume_by(ProgramEvent event, milliseconds limit)
+Status ControlProgramManager::resume_by(ProgramEvent event, milliseconds timeout)
 {
   std::unique_lock lock(mutex_);
   process(event);
   const auto request = request_cycle();
-  if (!changed_.wait_for(lock, stop_.get_token(), limit, [&] { return handled_ >= request; })) {
+  if (!changed_.wait_for(lock, stop_.get_token(), timeout, [&] { return handled_ >= request; })) {
     return failure(ErrorCode::timeout, "the control program is still being started");
   }
   return status_.state == RobotState::ready ? Status() : failure(status_.cause, status_.message);

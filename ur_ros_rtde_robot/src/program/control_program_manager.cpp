@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds first_package_limit(100);
+constexpr milliseconds first_package_timeout(100);
 /// Stop, start and the check of the result take three passes.
 constexpr int passes_per_cycle = 8;
 
@@ -95,10 +95,10 @@ RobotStatus ControlProgramManager::status() const
   return status_;
 }
 
-Status ControlProgramManager::wait_until_ready(milliseconds limit, std::stop_token stop) const
+Status ControlProgramManager::wait_until_ready(milliseconds timeout, std::stop_token stop) const
 {
   std::unique_lock lock(mutex_);
-  if (changed_.wait_for(lock, stop, limit, [this] { return status_.state == RobotState::ready; })) {
+  if (changed_.wait_for(lock, stop, timeout, [this] { return status_.state == RobotState::ready; })) {
     return {};
   }
   return failure(stop.stop_requested() ? ErrorCode::canceled : status_.cause, status_.message);
@@ -133,8 +133,8 @@ void ControlProgramManager::on_sample(const Sample & sample)
 {
   const Processed now{sample.link, state_, program_activity(sample.runtime_state)};
   // A program that replaces another one leaves no trace in the runtime state.
-  const bool heartbeat_lost =
-      now.state == ProgramState::running && sample.program_running() && interfaces_.control_heartbeat_lost();
+  const bool heartbeat_lost = now.state == ProgramState::running && sample.is_program_running() &&
+                              interfaces_.control_heartbeat_lost();
   if (now != processed_ || heartbeat_lost) {
     const std::lock_guard lock(mutex_);
     if (sample.link == link_) {
@@ -274,7 +274,7 @@ tl::expected<Sample, RobotStatus> ControlProgramManager::follow_link()
   auto sample = receiver_.latest();
   // A new connection may not have delivered its first package: then the newest sample is of the lost one.
   if (link.connected && sample && sample->link == lost_link_ &&
-      !receiver_.wait_for_next(*sample, first_package_limit, stop_.get_token())) {
+      !receiver_.wait_for_next(*sample, first_package_timeout, stop_.get_token())) {
     return tl::unexpected(RobotStatus{RobotState::connecting, ErrorCode::link_lost,
                                       "nothing has come over the new connection yet"});
   }
@@ -326,7 +326,7 @@ ControlProgramManager::Outcome ControlProgramManager::follow_program(bool robot_
 
 ControlProgramManager::Outcome ControlProgramManager::check_robot(const std::optional<Error> & blocker)
 {
-  if (const auto version = receiver_.version(); version && version->polyscope_x()) {
+  if (const auto version = receiver_.version(); version && version->is_polyscope_x()) {
     return stopped_by(
         {ErrorCode::not_supported,
          fmt::format("the controller has PolyScope {}: PolyScope X has no dashboard server, which this "

@@ -45,7 +45,7 @@ class ControlProgramManager {
   void stop();
 
   RobotStatus status() const;
-  Status wait_until_ready(std::chrono::milliseconds limit, std::stop_token stop) const;
+  Status wait_until_ready(std::chrono::milliseconds timeout, std::stop_token stop) const;
   ControlOwner control_owner() const;
 
   /// To be called with each sample on the receiving thread.
@@ -55,11 +55,11 @@ class ControlProgramManager {
 
   /// Ends the control program so that a script can run in its place, until resume(). Fails unless the control
   /// program runs.
-  Status yield(std::chrono::milliseconds limit);
+  Status yield(std::chrono::milliseconds timeout);
   /// Starts the control program again after the script. Returns when it runs or cannot run.
-  Status resume(std::chrono::milliseconds limit);
+  Status resume(std::chrono::milliseconds timeout);
   /// The same, after a script that another program has replaced. That program is left alone.
-  Status resume_after_replacement(std::chrono::milliseconds limit);
+  Status resume_after_replacement(std::chrono::milliseconds timeout);
 
  private:
   /// What the receiving thread has processed last.
@@ -107,9 +107,9 @@ class ControlProgramManager {
   Status end_program();
   /// False if the connection was lost, even if there is a new one.
   bool follows_newest_link() const;
-  bool wait_for_program(ProgramActivity program, std::chrono::milliseconds limit) const;
+  bool wait_for_program(ProgramActivity program, std::chrono::milliseconds timeout) const;
 
-  Status resume_by(ProgramEvent event, std::chrono::milliseconds limit);
+  Status resume_by(ProgramEvent event, std::chrono::milliseconds timeout);
   /// Hold mutex_.
   std::uint64_t request_cycle();
   std::uint64_t begin_cycle();

@@ -42,7 +42,7 @@ enum class ProgramEvent : std::uint8_t {
   start_failed,     ///< the control program did not start or does not answer
   start_aborted,    ///< it was not started: a connection failed
   program_adopted,  ///< the program that the URCap started is the control program
-  inputs_in_use,    ///< the controller refused an interface: another client has its inputs
+  inputs_in_use,    ///< the controller rejected an interface: another client has its inputs
   yield_requested,
   yield_rejected,  ///< a condition of the robot prevents motion; nothing has been done
   yield_failed,    ///< the control program could not be ended

@@ -119,8 +119,8 @@ class ScriptServer::Service {
     return {};
   }
 
-  /// Waits for events up to `limit` and handles them.
-  void poll_once(std::chrono::milliseconds limit)
+  /// Waits for events up to `timeout` and handles them.
+  void poll_once(std::chrono::milliseconds timeout)
   {
     const bool accepts = Clock::now() >= accept_after_;
     std::vector<pollfd> waiting{{wake_.get(), POLLIN, 0}, {accepts ? listener_.get() : -1, POLLIN, 0}};
@@ -128,7 +128,7 @@ class ScriptServer::Service {
       waiting.push_back(
           {client.socket.get(), static_cast<short>(client.to_send.empty() ? POLLIN : POLLIN | POLLOUT), 0});
     }
-    const auto timeout = accepts ? limit : std::min(limit, accept_pause);
+    timeout = accepts ? timeout : std::min(timeout, accept_pause);
     if (::poll(waiting.data(), waiting.size(), static_cast<int>(timeout.count())) < 0) {
       return;
     }

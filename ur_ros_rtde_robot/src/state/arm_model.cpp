@@ -87,10 +87,10 @@ void ArmModel::report_undetected(const std::string & why)
                                     address_, why, consequence));
 }
 
-void ArmModel::detect(const ControllerVersion & version, std::chrono::milliseconds limit)
+void ArmModel::detect(const ControllerVersion & version, std::chrono::milliseconds timeout)
 {
-  auto primary = PrimaryConnection::connect(address_, limit);
-  const auto arm = primary ? primary->arm_data(limit) : Expected<ArmData>(tl::unexpected(primary.error()));
+  auto primary = PrimaryConnection::connect(address_, timeout);
+  const auto arm = primary ? primary->arm_data(timeout) : Expected<ArmData>(tl::unexpected(primary.error()));
   {
     const std::lock_guard lock(mutex_);
     calibration_ = arm ? arm->dh_rows : std::nullopt;

@@ -25,8 +25,8 @@ class ArmModel {
   /// unknown.
   ArmModel(std::string address, std::string stated, LogFunction log);
 
-  /// Queries the controller; `limit` applies to each step. Logs changes.
-  void detect(const ControllerVersion & version, std::chrono::milliseconds limit);
+  /// Queries the controller; `timeout` applies to each step. Logs changes.
+  void detect(const ControllerVersion & version, std::chrono::milliseconds timeout);
   /// Limits of the stated or else the detected model. If both are unknown: the limits that all models have in
   /// common.
   ArmLimits limits() const;

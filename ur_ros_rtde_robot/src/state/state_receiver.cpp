@@ -63,11 +63,12 @@ std::optional<Sample> StateReceiver::latest() const
   return impl_->latest_.sequence == 0 ? std::nullopt : std::optional(impl_->latest_);
 }
 
-bool StateReceiver::wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop) const
+bool StateReceiver::wait_for_next(Sample & last, std::chrono::milliseconds timeout,
+                                  std::stop_token stop) const
 {
   std::unique_lock lock(impl_->mutex_);
   const bool newer =
-      impl_->changed_.wait_for(lock, stop, limit, [&] { return impl_->latest_.sequence > last.sequence; });
+      impl_->changed_.wait_for(lock, stop, timeout, [&] { return impl_->latest_.sequence > last.sequence; });
   if (newer) {
     last = impl_->latest_;
   }

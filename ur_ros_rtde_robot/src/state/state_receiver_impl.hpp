@@ -59,8 +59,8 @@ class StateReceiver::Impl {
   Clock::time_point last_activity(ur_rtde::RobotState & state) const;
   void on_package(Sample & sample, const SampleReader & reader);
   void publish(Sample & sample, const SampleReader & reader);
-  /// Waits until `limit`, a stop request, the end of the connection or a failure of sample_function_.
-  void pause(const std::stop_token & stop, Clock::duration limit);
+  /// Waits until `timeout`, a stop request, the end of the connection or a failure of sample_function_.
+  void pause(const std::stop_token & stop, Clock::duration timeout);
   void set_ended(bool ended);
   void set_failure(const char * what);
   std::optional<std::string> take_failure();

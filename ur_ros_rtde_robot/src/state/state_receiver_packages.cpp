@@ -89,10 +89,10 @@ Error StateReceiver::Impl::monitor(const std::stop_token & stop, ur_rtde::RTDERe
   return {ErrorCode::shutdown, "shutting down"};
 }
 
-void StateReceiver::Impl::pause(const std::stop_token & stop, Clock::duration limit)
+void StateReceiver::Impl::pause(const std::stop_token & stop, Clock::duration timeout)
 {
   std::unique_lock lock(mutex_);
-  pause_.wait_for(lock, stop, limit, [this] { return ended_ || failure_; });
+  pause_.wait_for(lock, stop, timeout, [this] { return ended_ || failure_; });
 }
 
 void StateReceiver::Impl::set_failure(const char * what)
@@ -132,7 +132,7 @@ Error StateReceiver::Impl::receive_packages(const std::stop_token & stop)
   const Error end = monitor(stop, *interface);
   state->setPackageCallback({});
   set_ended(false);
-  take_failure();  // of a package that arrived meanwhile
+  take_failure();  // of a package that arrived in the meantime
   return end;
 }
 

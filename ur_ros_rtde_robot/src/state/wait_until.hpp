@@ -6,12 +6,12 @@
 
 namespace ur_ros_rtde {
 
-/// Waits until `condition(sample)` holds, starting with the newest sample. False after `limit` or if the
+/// Waits until `condition(sample)` holds, starting with the newest sample. False after `timeout` or if the
 /// connection is lost.
 template <class Condition>
-bool wait_until(const StateReceiver & state, std::chrono::milliseconds limit, Condition condition)
+bool wait_until(const StateReceiver & state, std::chrono::milliseconds timeout, Condition condition)
 {
-  const auto deadline = std::chrono::steady_clock::now() + limit;
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
   Sample sample = state.latest().value_or(Sample{});
   while (!condition(sample)) {
     if (!state.link().connected || std::chrono::steady_clock::now() > deadline) {

@@ -113,7 +113,7 @@ TEST(ControlScriptTest, ContainsSharedPreamblesOnce)
             "the extensions `a` and `b` define the preamble `gripper` differently");
 }
 
-TEST(ExtensionCompositionTest, RefusesInvalidExtensionsByName)
+TEST(ExtensionCompositionTest, RejectsInvalidExtensionsByName)
 {
   const auto of = [](const std::string & snippet) { return complaint(base(), {extension("x", snippet)}); };
   EXPECT_EQ(of("sync()\nif True:\n  sync()\n"), "extension `x`, line 2: the `if` has no `end`");
@@ -149,7 +149,7 @@ TEST(ExtensionCompositionTest, SharesRegistersUnlessOneIsExclusive)
   EXPECT_EQ(complaint(base(), {extension("a", "$out18i(1)"), b}), "none");
 }
 
-TEST(ExtensionCompositionTest, RefusesExtensionsWithoutAnAnchor)
+TEST(ExtensionCompositionTest, RejectsExtensionsWithoutAnAnchor)
 {
   std::string other = base();
   const std::string anchor = "            cmd = rtde_cmd()\n";

@@ -89,7 +89,7 @@ struct Wrong {
 
 class InvalidScriptTest : public testing::TestWithParam<Wrong> {};
 
-TEST_P(InvalidScriptTest, IsRefusedWithItsLine)
+TEST_P(InvalidScriptTest, IsRejectedWithItsLine)
 {
   const auto program = make_program(GetParam().script, marks());
   ASSERT_FALSE(program);
@@ -113,13 +113,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"def f():\nend\ndef g():\nend", "0: the script defines functions and calls none"},
                     Wrong{"def f:\n  sync()\nend", "1: a program begins with `def name():`"}));
 
-TEST(InvalidScriptTest, RefusesTheWrongKindOfProgram)
+TEST(InvalidScriptTest, RejectsTheWrongKindOfProgram)
 {
   EXPECT_EQ(made("def f():\n sync()\nend", marks(true)),
             "1: a secondary program begins with `sec`, not with `def`");
 }
 
-TEST(InvalidScriptTest, RefusesMoreThanOneMegabyte)
+TEST(InvalidScriptTest, RejectsMoreThanOneMegabyte)
 {
   EXPECT_NE(made(std::string(1'100'000, ' ')).find("1100000 bytes"), std::string::npos);
 }

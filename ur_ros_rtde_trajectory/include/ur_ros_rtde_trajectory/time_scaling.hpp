@@ -7,7 +7,7 @@ namespace ur_ros_rtde::trajectory {
 /// Time scaling of a plan that is sent to a controller setpoint by setpoint. The time of the plan advances
 /// with the controller's clock at a rate from 0 to 1. The rate changes smoothly if another rate is requested
 /// or the host was late. After a late setpoint, no part of the plan is skipped: the plan continues where it
-/// was, first slowed down by as much as the arm has slowed down meanwhile.
+/// was, first slowed down by as much as the arm has slowed down in the meantime.
 ///
 /// The plan keeps its limits at any constant rate. A change of the rate r adds q' r' to the accelerations and
 /// q' r'' to the jerks. It uses the remaining margin of the limits, and as much as the limits themselves, up

@@ -122,10 +122,10 @@ TEST(IdentifyArmTest, IgnoresTheCalibrationOfAnotherArm)
 TEST(IdentifyArmTest, RejectsUnknownModel)
 {
   const DhParameters stranger{0.3, -0.5, -0.45, 0.2, 0.1, 0.1};
-  const auto refused = identify_arm(home(), Arm(stranger).forward(home()), Pose::Identity());
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, ErrorCode::not_supported);
-  EXPECT_NE(refused.error().message.find("mm"), std::string::npos);
+  const auto rejected = identify_arm(home(), Arm(stranger).forward(home()), Pose::Identity());
+  ASSERT_FALSE(rejected);
+  EXPECT_EQ(rejected.error().code, ErrorCode::not_supported);
+  EXPECT_NE(rejected.error().message.find("mm"), std::string::npos);
 }
 
 TEST(PoseTest, ConvertsToRotationVectorAndBack)

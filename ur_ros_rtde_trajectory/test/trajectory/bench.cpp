@@ -94,7 +94,7 @@ void random_paths(unsigned first, unsigned count, bool jerk)
   }
   std::sort(totals.ms_per_waypoint.begin(), totals.ms_per_waypoint.end());
   std::printf(
-      "%s jerk limits: %d planned, %d refused, %d beyond a limit or tolerance; largest use: velocity %.5f, "
+      "%s jerk limits: %d planned, %d rejected, %d beyond a limit or tolerance; largest use: velocity %.5f, "
       "acceleration %.5f, jerk %.5f; miss beyond the tolerance %.2g rad; speed at the ends %.2g rad/s; "
       "processor time per waypoint: median %.3f ms, worst %.3f ms\n",
       jerk ? "with" : "without", totals.planned, totals.failed, totals.beyond, totals.use.velocity,

@@ -63,7 +63,7 @@ class GoalClient {
   }
 
   /// Sends the goal and waits for its result. After a signal or the limit, cancels the goal; the result then
-  /// arrives at standstill. Throws std::runtime_error if the goal is refused or the driver ends.
+  /// arrives at standstill. Throws std::runtime_error if the goal is rejected or the driver ends.
   Result send(const typename Action::Goal & goal, seconds limit, OnFeedback on_feedback = {})
   {
     cancel_on_signals();
@@ -75,7 +75,7 @@ class GoalClient {
         wait_for(node_, client_->async_send_goal(goal, options), seconds(10), "response to the goal");
     if (!handle) {
       throw std::runtime_error(
-          "refused: see the log of command_server or the topic goal_refusals for the reason");
+          "rejected: see the log of command_server or the topic goal_rejections for the reason");
     }
     const auto result = client_->async_get_result(handle);
     const auto end = steady_clock::now() + limit;
@@ -108,7 +108,7 @@ int report(const Result & wrapped)
 }
 
 /// Calls the example and prints its errors. The signal handlers of rclcpp are not installed: they would close
-/// the connection to the driver, and the goal could not be canceled any more.
+/// the connection to the driver, and the goal could not be canceled anymore.
 template <typename Example>
 int run(int argc, char ** argv, Example example)
 {

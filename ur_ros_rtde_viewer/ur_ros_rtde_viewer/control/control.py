@@ -23,7 +23,7 @@ STOP_STYLE = """<style>div:has(> .stop-style) + div button {height: 72px !import
 
 class Control:
     """Each browser tab has elements of its own: two tabs do not edit the same form, and a button that was held when the
-    connection broke does not exist any more when it is back."""
+    connection broke does not exist anymore when it is back."""
 
     def __init__(self, viewer: Any):
         self._server = viewer.server
@@ -79,7 +79,7 @@ class Control:
                        TargetPanel(client, target, robot)]
         with self._lock:
             self._tabs[client.client_id] = panels
-        if client.client_id not in self._server.get_clients():  # closed meanwhile
+        if client.client_id not in self._server.get_clients():  # closed in the meantime
             self._disconnect(client)
         self._show_actions()
 

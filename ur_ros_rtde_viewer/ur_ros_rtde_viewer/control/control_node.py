@@ -12,8 +12,8 @@ from rclpy.executors import ExternalShutdownException, ShutdownException, Single
 
 logger = logging.getLogger(__name__)
 
-WAIT_LIMIT = 1.0  # s
-JOIN_LIMIT = 5.0  # s
+WAIT_TIMEOUT = 1.0  # s
+JOIN_TIMEOUT = 5.0  # s
 
 
 class ControlNode:
@@ -34,7 +34,7 @@ class ControlNode:
     def _spin(self) -> None:
         while self._context.ok() and not self._ended.is_set():
             try:
-                self._executor.spin_once(timeout_sec=WAIT_LIMIT)
+                self._executor.spin_once(timeout_sec=WAIT_TIMEOUT)
             except (ExternalShutdownException, ShutdownException):
                 return
             except Exception:  # STOP has to work after a failed callback
@@ -48,6 +48,6 @@ class ControlNode:
     def close(self) -> None:
         self._ended.set()
         self._executor.wake()
-        self._thread.join(JOIN_LIMIT)
+        self._thread.join(JOIN_TIMEOUT)
         self._executor.shutdown()
         self.node.destroy_node()

@@ -1,4 +1,4 @@
-"""Sends goals of any action, and reports feedback, refusals and results."""
+"""Sends goals of any action, and reports feedback, rejections and results."""
 
 import threading
 from dataclasses import dataclass, field
@@ -10,13 +10,13 @@ from rclpy.action import ActionClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ur_ros_rtde_cli import actions
 
-from ur_ros_rtde_msgs.msg import GoalRefused
+from ur_ros_rtde_msgs.msg import GoalRejected
 
 from .control_node import ControlNode
 
-DISCOVERY_LIMIT = 3.0  # s, for the server of an action
-END_LIMIT = 5.0  # s, for the results of canceled goals
-REASON_LIMIT = 2.0  # s, for the reason of a refusal
+DISCOVERY_TIMEOUT = 3.0  # s, for the server of an action
+END_TIMEOUT = 5.0  # s, for the results of canceled goals
+REASON_TIMEOUT = 2.0  # s, for the reason of a rejection
 POLL_PERIOD = 0.02  # s, of the conditions above: changes of the ROS graph do not wake the executor
 
 
@@ -27,10 +27,10 @@ class Phase(Enum):
     SUCCEEDED = "succeeded"
     CANCELED = "canceled"
     FAILED = "failed"
-    REFUSED = "refused"
+    REJECTED = "rejected"
 
 
-ENDED = (Phase.SUCCEEDED, Phase.CANCELED, Phase.FAILED, Phase.REFUSED)
+ENDED = (Phase.SUCCEEDED, Phase.CANCELED, Phase.FAILED, Phase.REJECTED)
 _PHASES = {GoalStatus.STATUS_SUCCEEDED: Phase.SUCCEEDED, GoalStatus.STATUS_CANCELED: Phase.CANCELED}
 
 
@@ -41,7 +41,7 @@ class SentGoal:
     action: str  # full name, "/move_j"
     on_change: Callable[["SentGoal"], None]
     phase: Phase = Phase.SENT
-    message: str = ""  # of the result or the refusal
+    message: str = ""  # of the result or the rejection
     feedback: Any = None
     result: Any = None
     handle: Any = None
@@ -73,7 +73,7 @@ class Goals:
         self._clients: Dict[str, ActionClient] = {}
         self._reasons: Dict[bytes, str] = {}
         self._open: List[SentGoal] = []  # without a result
-        control.node.create_subscription(GoalRefused, self.full_name("goal_refusals"), self._on_refusal,
+        control.node.create_subscription(GoalRejected, self.full_name("goal_rejections"), self._on_rejection,
                                          QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
 
     def full_name(self, name: str) -> str:
@@ -105,7 +105,7 @@ class Goals:
         for sent in self._open:
             self.cancel(sent)
         for sent in self._open:
-            sent.ended.wait(END_LIMIT)
+            sent.ended.wait(END_TIMEOUT)
 
     def cancel_unaccepted(self) -> None:
         """Cancels the goals that wait for their server or its response: after STOP, none of them may start."""
@@ -113,12 +113,12 @@ class Goals:
 
     def _send_when_ready(self, name: str, action: Any, goal: Any, sent: SentGoal) -> None:
         client = self.client(name, action)
-        self._when(client.server_is_ready, DISCOVERY_LIMIT,
+        self._when(client.server_is_ready, DISCOVERY_TIMEOUT,
                    lambda: self._send(client, goal, sent),
                    lambda: self._give_up(sent))
 
     def _give_up(self, sent: SentGoal) -> None:
-        sent.change(Phase.REFUSED, f"no server of {sent.action} within {DISCOVERY_LIMIT:g} s. Does the driver run with this "
+        sent.change(Phase.REJECTED, f"no server of {sent.action} within {DISCOVERY_TIMEOUT:g} s. Does the driver run with this "
                                    "ROS_DOMAIN_ID?")
 
     def _send(self, client: ActionClient, goal: Any, sent: SentGoal) -> None:
@@ -136,9 +136,9 @@ class Goals:
     def _on_response(self, handle: Any, sent: SentGoal) -> None:
         if not handle.accepted:
             identifier = bytes(handle.goal_id.uuid)
-            self._when(lambda: identifier in self._reasons, REASON_LIMIT,
-                       lambda: sent.change(Phase.REFUSED, self._reasons.pop(identifier)),
-                       lambda: sent.change(Phase.REFUSED, "no reason was received on goal_refusals"))
+            self._when(lambda: identifier in self._reasons, REASON_TIMEOUT,
+                       lambda: sent.change(Phase.REJECTED, self._reasons.pop(identifier)),
+                       lambda: sent.change(Phase.REJECTED, "no reason was received on goal_rejections"))
             return
         sent.handle = handle
         handle.get_result_async().add_done_callback(lambda future: self._on_result(future.result(), sent))
@@ -160,9 +160,9 @@ class Goals:
         if sent.handle is not None:
             sent.handle.cancel_goal_async()
 
-    def _on_refusal(self, message: GoalRefused) -> None:
+    def _on_rejection(self, message: GoalRejected) -> None:
         self._reasons[bytes(message.goal_id.uuid)] = message.message
-        while len(self._reasons) > 100:  # refusals of other clients
+        while len(self._reasons) > 100:  # rejections of other clients
             del self._reasons[next(iter(self._reasons))]
 
     def _when(self, condition: Callable[[], bool], limit: float, then: Callable[[], None], otherwise: Callable[[], None]) -> None:

@@ -1,6 +1,6 @@
 """STOP: decelerates the arm, by the fastest way that the driver offers.
 
-The action `stop` is never refused because the arm is busy, ends the goal that moves the arm, and stops the robot program if the
+The action `stop` is never rejected because the arm is busy, ends the goal that moves the arm, and stops the robot program if the
 controller does not carry it out. If command_server does not accept the goal in time, or sends nothing more while the arm decelerates,
 dashboard_server stops the program.
 """
@@ -15,10 +15,10 @@ from ur_ros_rtde_msgs.action import DashboardCommand, Stop
 from .control_node import ControlNode
 from .goals import Goals
 
-ACCEPTANCE_LIMIT = 0.3  # s; the driver needs 2 ms
-SILENCE_LIMIT = 0.5  # s, until the next feedback or the result; the driver sends feedback at 20 Hz
-DASHBOARD_LIMIT = 3.0  # s; a controller needs up to 1 s
-CHECKS = 5  # for an answer, within a limit
+ACCEPTANCE_TIMEOUT = 0.3  # s; the driver needs 2 ms
+SILENCE_TIMEOUT = 0.5  # s, until the next feedback or the result; the driver sends feedback at 20 Hz
+DASHBOARD_TIMEOUT = 3.0  # s; a controller needs up to 1 s
+CHECKS = 5  # for an answer, within a timeout
 
 
 class Outcome(Enum):
@@ -43,13 +43,13 @@ class Stopper:
 
 
 class _Silence:
-    """Calls `on_silence` once if nothing is heard for `limit` s. Lives in the thread of the node, and counts only time in which
-    this thread could have taken an answer: a thread that was late by more than the limit finds the answer and its own timer together."""
+    """Calls `on_silence` once if nothing is heard for `timeout` s. Lives in the thread of the node, and counts only time in which
+    this thread could have taken an answer: a thread that was late by more than the timeout finds the answer and its own timer together."""
 
-    def __init__(self, node: Any, limit: float, on_silence: Callable[[], None]):
+    def __init__(self, node: Any, timeout: float, on_silence: Callable[[], None]):
         self._node, self._on_silence = node, on_silence
         self._missed = 0  # checks since an answer
-        self._timer = node.create_timer(limit / CHECKS, self._check)
+        self._timer = node.create_timer(timeout / CHECKS, self._check)
 
     def _check(self) -> None:
         self._missed += 1
@@ -76,18 +76,18 @@ class _Press:
         if not self._stop.server_is_ready():
             self._stop_program("command_server does not answer")
             return
-        self._expect_answer(ACCEPTANCE_LIMIT, lambda: self._stop_program("command_server did not accept the stop"))
+        self._expect_answer(ACCEPTANCE_TIMEOUT, lambda: self._stop_program("command_server did not accept the stop"))
         self._stop.send_goal_async(Stop.Goal(), feedback_callback=lambda message: self._on_feedback()).add_done_callback(
             lambda future: self._on_response(future.result()))
 
     def _on_response(self, handle: Any) -> None:
         if not handle.accepted:
-            self._stop_program("command_server refused the stop")
+            self._stop_program("command_server rejected the stop")
             return
         handle.get_result_async().add_done_callback(lambda future: self._on_result(future.result().result))
         if not self._fell_back:
             self._report(Outcome.STOPPING, "")
-            self._expect_answer(SILENCE_LIMIT, lambda: self._stop_program("command_server has not answered since it accepted the stop"))
+            self._expect_answer(SILENCE_TIMEOUT, lambda: self._stop_program("command_server has not answered since it accepted the stop"))
 
     def _on_feedback(self) -> None:
         if self._silence is not None and not self._fell_back:
@@ -100,10 +100,10 @@ class _Press:
         self._expect_nothing()
         self._report(Outcome.STOPPED, f"At rest after {result.time_to_standstill:.2f} s")
 
-    def _expect_answer(self, limit: float, on_silence: Callable[[], None]) -> None:
+    def _expect_answer(self, timeout: float, on_silence: Callable[[], None]) -> None:
         """`on_silence` ends the expectation."""
         self._expect_nothing()
-        self._silence = _Silence(self._node, limit, on_silence)
+        self._silence = _Silence(self._node, timeout, on_silence)
 
     def _expect_nothing(self) -> None:
         if self._silence is not None:
@@ -120,7 +120,7 @@ class _Press:
                                          "that the driver runs with this ROS_DOMAIN_ID")
             return
         self._report(Outcome.PROGRAM, reason)
-        self._expect_answer(DASHBOARD_LIMIT, lambda: self._report_failure(f"no answer within {DASHBOARD_LIMIT:g} s"))
+        self._expect_answer(DASHBOARD_TIMEOUT, lambda: self._report_failure(f"no answer within {DASHBOARD_TIMEOUT:g} s"))
         self._dashboard.send_goal_async(DashboardCommand.Goal()).add_done_callback(
             lambda future: self._on_dashboard_response(future.result()))
 
@@ -128,7 +128,7 @@ class _Press:
         if handle.accepted:
             handle.get_result_async().add_done_callback(lambda future: self._on_dashboard_result(future.result().result))
         else:
-            self._report_failure("refused")
+            self._report_failure("rejected")
 
     def _on_dashboard_result(self, result: Any) -> None:
         if not result.success:

@@ -1,4 +1,4 @@
-"""Refuses pages of other web sites. A browser lets any site connect to a server on this machine, and viser accepts all.
+"""Rejects pages of other web sites. A browser lets any site connect to a server on this machine, and viser accepts all.
 
 A request is accepted if its Host is an IP address, localhost or the name of this machine, and its Origin, if it has one, is that host.
 The first condition stops sites whose name was made to resolve to this machine (DNS rebinding).

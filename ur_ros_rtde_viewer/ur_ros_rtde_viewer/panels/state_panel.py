@@ -1,4 +1,4 @@
-"""Shows the state of robot and driver, the active goal, and refusals."""
+"""Shows the state of robot and driver, the active goal, and rejections."""
 
 import html
 import time
@@ -36,15 +36,15 @@ class StatePanel:
         with tab:
             self._table = gui.add_html("")
             self._progress = gui.add_progress_bar(0.0, visible=False)
-            self._refusals = gui.add_html("")
+            self._rejections = gui.add_html("")
         self._shown: Tuple[Any, ...] = ()
 
     def update(self, state: RobotState) -> None:
         shown = (_as_html(state_rows(state)), _as_html([
-            (time.strftime("%H:%M:%S", time.localtime(refusal.stamp)), f"{refusal.action} refused: {refusal.message}")
-            for refusal in reversed(state.refusals)]))
+            (time.strftime("%H:%M:%S", time.localtime(rejection.stamp)), f"{rejection.action} rejected: {rejection.message}")
+            for rejection in reversed(state.rejections)]))
         if shown != self._shown:
-            self._table.content, self._refusals.content = shown
+            self._table.content, self._rejections.content = shown
             self._shown = shown
         self._progress.visible = state.goal is not None and state.goal.progress > 0.0
         if state.goal is not None:

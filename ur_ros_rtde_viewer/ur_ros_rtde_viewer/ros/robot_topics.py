@@ -10,9 +10,9 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
 from ur_ros_rtde_description.models import JOINTS
 
-from ur_ros_rtde_msgs.msg import DriverState, GoalRefused, RobotMode, SafetyMode
+from ur_ros_rtde_msgs.msg import DriverState, GoalRejected, RobotMode, SafetyMode
 
-from ..state.robot_state import MAX_REFUSALS, DriverStatus, Joints, Pose, Refusal, RobotState
+from ..state.robot_state import MAX_REJECTIONS, DriverStatus, Joints, Pose, Rejection, RobotState
 from .latest_topic import LatestTopic
 from .nodes import Nodes
 
@@ -73,8 +73,8 @@ class RobotTopics:
         subscribe(Float64, "speed_scaling", lambda message: setattr(state, "speed_scaling", message.data))
         subscribe(DriverState, "driver_state", lambda message: setattr(
             state, "driver", DriverStatus(message.name, message.cause, message.message)))
-        subscribe(GoalRefused, "goal_refusals", lambda message: state.refusals.append(
-            Refusal(seconds(message.stamp), message.action, message.message)), depth=MAX_REFUSALS)
+        subscribe(GoalRejected, "goal_rejections", lambda message: state.rejections.append(
+            Rejection(seconds(message.stamp), message.action, message.message)), depth=MAX_REJECTIONS)
 
     def show_actual_joints(self, on: bool) -> None:
         """Subscribes to actual_joint_states, which the driver publishes only while there is a subscriber."""

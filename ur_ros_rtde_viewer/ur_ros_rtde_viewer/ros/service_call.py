@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, List, Optional
 
 from .nodes import Nodes
 
-LIMIT = 10.0  # s
+TIMEOUT = 10.0  # s
 OnEnd = Callable[[Any, str], None]  # (response, "") or (None, reason)
 
 
@@ -24,7 +24,7 @@ class _Call:
         """Why there is no response."""
         if self.future is None:
             return f"there is no service {self.name}. Does robot_state_receiver run with this ROS_DOMAIN_ID?"
-        return f"the service {self.name} did not answer within {LIMIT:g} s"
+        return f"the service {self.name} did not answer within {TIMEOUT:g} s"
 
 
 class ServiceCaller:
@@ -36,10 +36,10 @@ class ServiceCaller:
         self._calls: List[_Call] = []
 
     def call(self, kind: Any, name: str, on_end: OnEnd, **request: Any) -> None:
-        """Waits up to LIMIT for the service and its response."""
+        """Waits up to TIMEOUT for the service and its response."""
         if name not in self._clients:
             self._clients[name] = self._node.create_client(kind, self._name_of(name))
-        self._calls.append(_Call(self._name_of(name), self._clients[name], kind.Request(**request), on_end, time.monotonic() + LIMIT))
+        self._calls.append(_Call(self._name_of(name), self._clients[name], kind.Request(**request), on_end, time.monotonic() + TIMEOUT))
 
     def update(self) -> None:
         """Sends requests whose service has appeared, and ends calls. Called once per update."""

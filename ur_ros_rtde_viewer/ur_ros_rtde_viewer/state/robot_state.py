@@ -6,7 +6,7 @@ from typing import Deque, Optional
 
 import numpy as np
 
-MAX_REFUSALS = 20
+MAX_REJECTIONS = 20
 STOPPED_MODES = ("PROTECTIVE_STOP", "SAFEGUARD_STOP", "SYSTEM_EMERGENCY_STOP", "ROBOT_EMERGENCY_STOP", "VIOLATION", "FAULT")
 
 
@@ -41,7 +41,7 @@ class ActiveGoal:
 
 
 @dataclass(frozen=True)
-class Refusal:
+class Rejection:
     stamp: float  # s
     action: str
     message: str
@@ -62,7 +62,7 @@ class RobotState:
     speed_scaling: Optional[float] = None
     driver: Optional[DriverStatus] = None
     goal: Optional[ActiveGoal] = None
-    refusals: Deque[Refusal] = field(default_factory=lambda: deque(maxlen=MAX_REFUSALS))
+    rejections: Deque[Rejection] = field(default_factory=lambda: deque(maxlen=MAX_REJECTIONS))
     model: str = ""  # that the driver reports
     address: str = ""  # of the controller, that the driver reports
     age: float = float("inf")  # s, since the last joint state was received

@@ -18,7 +18,7 @@ _PROGRAM_VARIABLE = "UR_SIMULATOR_PROGRAM"
 
 
 class SimulatorError(RuntimeError):
-    """The simulator cannot be started, or refuses a request."""
+    """The simulator cannot be started, or rejects a request."""
 
 
 def program() -> pathlib.Path:

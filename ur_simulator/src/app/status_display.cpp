@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds update_period{200};
-constexpr std::chrono::seconds answer_limit{1};
+constexpr std::chrono::seconds answer_timeout{1};
 
 bool standard_output_is_terminal()
 {
@@ -78,7 +78,7 @@ void StatusDisplay::update(Shown & robot)
   auto answer = robot.controller->call([controller = robot.controller] {
     return std::pair(controller->state(), last_error_of(controller->log()));
   });
-  if (answer.wait_for(answer_limit) != std::future_status::ready) {
+  if (answer.wait_for(answer_timeout) != std::future_status::ready) {
     return;
   }
   auto [state, last_error] = answer.get();

@@ -11,7 +11,7 @@
 namespace ur_simulator::control_port {
 
 /// Executes a request whose fields have been checked. Returns the fields of the reply; throws if the command
-/// is refused in the present state.
+/// is rejected in the current state.
 using Action = std::function<nlohmann::json(ControlPortContext & context)>;
 
 /// A command of the control port.

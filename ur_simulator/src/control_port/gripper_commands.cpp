@@ -38,9 +38,10 @@ Action soft_gripper(RequestFields & fields)
     SoftGripper & gripper =
         installed(context.world.gripper(),
                   "there is no gripper: start the simulator with --urcap onrobot_soft_gripper");
-    gripper.set_stuck(stuck.value_or(gripper.stuck()));
+    gripper.set_stuck(stuck.value_or(gripper.is_stuck()));
     gripper.set_object(object);
-    return {{"width", gripper.width()}, {"busy", gripper.busy()}, {"holds_object", gripper.holds_object()}};
+    return {
+        {"width", gripper.width()}, {"busy", gripper.is_busy()}, {"holds_object", gripper.holds_object()}};
   };
 }
 
@@ -55,7 +56,7 @@ Action robotiq_gripper(RequestFields & fields)
     RobotiqGripper & gripper =
         installed(context.world.robotiq_gripper(),
                   "there is no Robotiq gripper: start the simulator with --urcap robotiq_gripper");
-    gripper.set_stuck(stuck.value_or(gripper.stuck()));
+    gripper.set_stuck(stuck.value_or(gripper.is_stuck()));
     gripper.set_object(object.value_or(gripper.object_width()), stiffness);
     if (activate) {
       gripper.set_active();

@@ -86,7 +86,7 @@ json gripper_to_json(const SoftGripper * gripper)
   if (gripper == nullptr) {
     return nullptr;
   }
-  return {{"width", gripper->width()}, {"target", gripper->target()}, {"busy", gripper->busy()}};
+  return {{"width", gripper->width()}, {"target", gripper->target()}, {"busy", gripper->is_busy()}};
 }
 
 json robotiq_gripper_to_json(const RobotiqGripper * gripper)
@@ -94,7 +94,7 @@ json robotiq_gripper_to_json(const RobotiqGripper * gripper)
   if (gripper == nullptr) {
     return nullptr;
   }
-  json result{{"width", gripper->width()}, {"powered", gripper->powered()}};
+  json result{{"width", gripper->width()}, {"powered", gripper->is_powered()}};
   for (const char * name : {"ACT", "GTO", "STA", "POS", "PRE", "OBJ", "FLT", "SPE", "FOR"}) {
     result[name] = *gripper->get(name);
   }

@@ -90,7 +90,7 @@ std::string load_installation(Pendant & pendant, std::string_view file)
 
 // ---- power and safety
 
-// These replies confirm the receipt of the command: the manual has no reply for a refusal. The log contains
+// These replies confirm the receipt of the command: the manual has no reply for a rejection. The log contains
 // it.
 
 std::string power_on(Pendant & pendant, std::string_view)

@@ -13,7 +13,7 @@ namespace ur_simulator::dashboard {
 struct Command {
   std::string_view name;  ///< case-insensitive; the rest of the line is the argument
   MinVersion min_version;
-  bool requires_remote_control;  ///< e-Series controllers refuse it in local control
+  bool requires_remote_control;  ///< e-Series controllers reject it in local control
   /// Executes the command and returns its reply.
   std::string (*execute)(Pendant & pendant, std::string_view argument);
   /// Set instead of `execute` for commands whose reply may take several control cycles.

@@ -9,7 +9,7 @@ PendingReply play(Pendant & pendant, std::string_view)
 {
   auto reply = std::make_shared<std::optional<std::string>>();
   if (pendant.in_manual_mode()) {
-    pendant.log().error("dashboard", "play was refused: the operational mode is MANUAL");
+    pendant.log().error("dashboard", "play was rejected: the operational mode is MANUAL");
     *reply = "Failed to execute: play";
   } else {
     pendant.play([reply](const Pendant::Result & result) {

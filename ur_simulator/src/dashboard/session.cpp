@@ -69,7 +69,7 @@ void Session::send_pending_reply()
   }
 }
 
-bool Session::is_refused(bool requires_remote_control) const
+bool Session::is_rejected(bool requires_remote_control) const
 {
   const bool local_control = !pendant_.remote_control() || !remote_control_at_connect_;
   return requires_remote_control && local_control && pendant_.options().version.is_e_series();
@@ -84,7 +84,7 @@ void Session::handle_line(std::string_view line)
     send(fmt::format("could not understand: '{}'", line));
     return;
   }
-  if (is_refused(command->requires_remote_control)) {
+  if (is_rejected(command->requires_remote_control)) {
     send(
         "Command is not allowed due to safety reasons, please switch robot to Remote Control mode and "
         "reconnect to port 29999");

@@ -21,7 +21,7 @@ class Session {
 
  private:
   void handle_line(std::string_view line);
-  bool is_refused(bool requires_remote_control) const;
+  bool is_rejected(bool requires_remote_control) const;
   void send(std::string_view reply);
   void send_pending_reply();
 

@@ -66,7 +66,7 @@ nlohmann::json SimulatedController::state()
 }
 
 bool SimulatedController::wait_until(const std::function<bool(const nlohmann::json &)> & condition,
-                                     std::chrono::milliseconds limit)
+                                     std::chrono::milliseconds timeout)
 {
   // Shared with the observer, which may outlive this call by one cycle.
   struct Wait {
@@ -97,11 +97,11 @@ bool SimulatedController::wait_until(const std::function<bool(const nlohmann::js
       controller.add_observer(observe);
     }
   });
-  if (reached.wait_for(limit) == std::future_status::ready) {
+  if (reached.wait_for(timeout) == std::future_status::ready) {
     reached.get();
     return true;
   }
-  // The observer does not use the condition and its references any more.
+  // The observer does not use the condition and its references anymore.
   impl_->call([&] { wait->timed_out = true; });
   const bool meanwhile = reached.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   if (meanwhile) {

@@ -35,7 +35,7 @@ struct MoveOptions {
 };
 
 /// Motion generator of the arm: executes one motion at a time, one control cycle at a time. A new motion
-/// takes over from the present one at its position and velocity. Targets that are unreachable, not finite or
+/// takes over from the current one at its position and velocity. Targets that are unreachable, not finite or
 /// beyond limits are rejected; nothing throws. The arm moves only in robot mode RUNNING and safety mode
 /// NORMAL, REDUCED or RECOVERY.
 ///
@@ -59,14 +59,14 @@ class Arm {
   StartResult move_linear_optimally(const Vector6 & tcp_pose, const MoveOptions & options);
   /// movep: constant tool speed, also in the blends with another movep, which are circular arcs.
   StartResult move_process(const Vector6 & tcp_pose, const MoveOptions & options);
-  /// movec: on the circle through the start (the present TCP, or the target of a motion in its blend), `via`
+  /// movec: on the circle through the start (the current TCP, or the target of a motion in its blend), `via`
   /// and the target.
   StartResult move_circular(const Vector6 & via, const Vector6 & tcp_pose, CircleMode mode,
                             const MoveOptions & options);
-  /// servoc: from the present velocity on the tangent circle to the target.
+  /// servoc: from the current velocity on the tangent circle to the target.
   StartResult servo_circular(const Vector6 & tcp_pose, const MoveOptions & options);
   /// servoj: the call lasts `time` s; `lookahead` 0.03..0.2 s, `gain` 100..2000. The arm follows the target
-  /// until another motion starts, also when the time is up.
+  /// until another motion starts, even when the time is up.
   StartResult servo_joint(const Vector6 & target, double time, double lookahead, double gain);
   /// speedj, speedl: without a following motion the arm decelerates after `time` s; 0: no time limit.
   StartResult speed_joint(const Vector6 & velocity, double acceleration, double time);
@@ -77,7 +77,7 @@ class Arm {
   /// force_mode(): superposes compliance on every motion of the program until end_force_mode() or
   /// end_program(). A further call changes the settings. Compliance is suspended while the arm stops.
   tl::expected<void, std::string> start_force_mode(const ForceModeSettings & settings);
-  /// The arm decelerates along the compliant axes. A motion of the program ends at the present position (a
+  /// The arm decelerates along the compliant axes. A motion of the program ends at the current position (a
   /// movel is restarted by its operation).
   void end_force_mode();
   bool in_force_mode() const;
@@ -88,7 +88,7 @@ class Arm {
   double force_mode_damping() const;
   /// freedrive_mode(): the arm is guided by hand along and about the free axes of the feature (a pose in the
   /// base frame) until end_freedrive(), the end of the program or a stop. Motions of the program are rejected
-  /// meanwhile.
+  /// in the meantime.
   StartResult start_freedrive(const std::array<bool, 6> & free_axes, const Vector6 & feature);
   void end_freedrive();
   /// direct_torque(): N m for the next cycle, gravity compensated. The scales (0..1) are the shares of the
@@ -97,7 +97,7 @@ class Arm {
                             const Vector6 & coulomb_scale);
   /// path_offset_…(): superposed on every motion of the program while it is enabled, except in force mode.
   PathOffset & path_offset();
-  /// The path of the program continues from the present position; a motion must be stopped afterwards.
+  /// The path of the program continues from the current position; a motion must be stopped afterwards.
   void disable_path_offset();
   /// Ends force mode, freedrive and path offset and resets their settings, as the end of a program does.
   void end_program();

@@ -26,7 +26,7 @@ class PathOffset {
   void set_filter(double alpha) { alpha_ = alpha; }
   /// Limits of each component, m and rad.
   void set_limits(double translation, double rotation);
-  /// The offset that is applied at present, in these axes.
+  /// The offset that is applied currently, in these axes.
   Vector6 get(Frame frame) const;
   /// Drops the offset, because the arm stops where it is.
   void restart();

@@ -33,7 +33,7 @@ std::string receive_failed_popup(const ProgramHost & host, const std::string & r
       host.address, host.port, reason);
 }
 
-tl::unexpected<std::string> refusal(std::string reason)
+tl::unexpected<std::string> rejection(std::string reason)
 {
   return tl::make_unexpected(std::move(reason));
 }
@@ -101,10 +101,10 @@ bool Pendant::load_installation(const std::string & name)
 Pendant::Result Pendant::check_can_run() const
 {
   if (state_.robot_mode != RobotMode::running) {
-    return refusal(fmt::format("robot mode is {}, a program needs RUNNING", to_string(state_.robot_mode)));
+    return rejection(fmt::format("robot mode is {}, a program needs RUNNING", to_string(state_.robot_mode)));
   }
   if (!allows_motion(state_.safety_mode)) {
-    return refusal(
+    return rejection(
         fmt::format("safety mode is {}, a program needs NORMAL or REDUCED", to_string(state_.safety_mode)));
   }
   return {};
@@ -114,14 +114,14 @@ Pendant::Result Pendant::start(std::string_view script)
 {
   auto program = runner_.compile(script);
   if (!program) {
-    return refusal(program.error().text());
+    return rejection(program.error().text());
   }
   return start(std::move(*program), script);
 }
 
 Pendant::Result Pendant::start(urscript::Program program, std::string_view script)
 {
-  const bool secondary = program.secondary();
+  const bool secondary = program.is_secondary();
   if (Result can_run = check_can_run(); !secondary && !can_run) {
     return can_run;
   }
@@ -137,18 +137,18 @@ Pendant::Result Pendant::run_script(std::string_view text)
   if (!remote_control_ && options_.version.is_e_series()) {
     log_.error(script_source, error_codes::read_only_interface,
                "script was not started: the robot is in local control: switch it to remote control");
-    return refusal("the robot is in local control");
+    return rejection("the robot is in local control");
   }
   if (const auto result = execute_controller_command(*this, text)) {
     return *result;
   }
   if (in_manual_mode()) {
-    return reject_script(refusal("the operational mode is MANUAL: set it to automatic"));
+    return reject_script(rejection("the operational mode is MANUAL: set it to automatic"));
   }
   auto program = runner_.compile(text);
   if (!program) {
     log_compile_error(program.error());
-    return refusal(program.error().text());
+    return rejection(program.error().text());
   }
   Result started = start(std::move(*program), text);
   return started ? started : reject_script(std::move(started));
@@ -179,18 +179,18 @@ void Pendant::play(const std::function<void(const Result &)> & done)
   const StoredProgram * loaded = find_program(loaded_program_);
   const bool external = loaded != nullptr && loaded->external_control;
   if (runner_.running() || !external || !request_program_ || !check_can_run()) {
-    done(log_refusal("play", resume_or_start_program()));
+    done(log_rejection("play", resume_or_start_program()));
     return;
   }
   if (program_requested_) {
-    done(refusal("the program has already been requested from its host"));
+    done(rejection("the program has already been requested from its host"));
     return;
   }
   program_requested_ = true;
   const ProgramHost host = *loaded->external_control;
   request_program_(host, [this, done, host](const ProgramText & text) {
     program_requested_ = false;
-    done(log_refusal("play", start_external_program(host, text)));
+    done(log_rejection("play", start_external_program(host, text)));
   });
 }
 
@@ -210,20 +210,20 @@ Pendant::Result Pendant::resume_or_start_program()
     return can_run;
   }
   if (runner_.running()) {
-    return runner_.resume() ? Result() : refusal("the program is running already");
+    return runner_.resume() ? Result() : rejection("the program is running already");
   }
   const std::string script = loaded_program_.empty() ? last_script_ : programs_.at(loaded_program_).script;
-  return script.empty() ? refusal("no program is loaded") : start(script);
+  return script.empty() ? rejection("no program is loaded") : start(script);
 }
 
 Pendant::Result Pendant::pause()
 {
-  return runner_.pause() ? Result() : refusal("no program is running");
+  return runner_.pause() ? Result() : rejection("no program is running");
 }
 
 Pendant::Result Pendant::resume()
 {
-  return runner_.resume() ? Result() : refusal("no program is paused");
+  return runner_.resume() ? Result() : rejection("no program is paused");
 }
 
 void Pendant::stop()
@@ -233,32 +233,32 @@ void Pendant::stop()
 
 // ---- power, safety and modes
 
-Pendant::Result Pendant::log_refusal(std::string_view action, Result result)
+Pendant::Result Pendant::log_rejection(std::string_view action, Result result)
 {
   if (!result) {
-    log_.error(pendant_source, fmt::format("{} was refused: {}", action, result.error()));
+    log_.error(pendant_source, fmt::format("{} was rejected: {}", action, result.error()));
   }
   return result;
 }
 
 Pendant::Result Pendant::power_on()
 {
-  return log_refusal("power on", safety_.power_on());
+  return log_rejection("power on", safety_.power_on());
 }
 
 Pendant::Result Pendant::power_off()
 {
-  return log_refusal("power off", safety_.power_off());
+  return log_rejection("power off", safety_.power_off());
 }
 
 Pendant::Result Pendant::release_brakes()
 {
-  return log_refusal("brake release", safety_.brake_release());
+  return log_rejection("brake release", safety_.brake_release());
 }
 
 Pendant::Result Pendant::unlock_protective_stop(UnlockDelay delay)
 {
-  Result result = log_refusal("unlock protective stop", safety_.unlock_protective_stop(delay));
+  Result result = log_rejection("unlock protective stop", safety_.unlock_protective_stop(delay));
   if (result) {
     safety_popup_.reset();
     safety_.write(state_);  // a program may follow before the next control cycle
@@ -268,13 +268,13 @@ Pendant::Result Pendant::unlock_protective_stop(UnlockDelay delay)
 
 Pendant::Result Pendant::restart_safety()
 {
-  return log_refusal("restart safety", safety_.restart_safety());
+  return log_rejection("restart safety", safety_.restart_safety());
 }
 
 Pendant::Result Pendant::set_remote_control(bool remote)
 {
   if (remote && in_manual_mode() && options_.version.is_polyscope_x()) {
-    return refusal("the operational mode is MANUAL: remote control needs automatic mode");
+    return rejection("the operational mode is MANUAL: remote control needs automatic mode");
   }
   remote_control_ = remote;
   log_.info(pendant_source, remote ? "remote control" : "local control");

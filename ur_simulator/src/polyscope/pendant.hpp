@@ -31,7 +31,7 @@ struct PendantOptions {
 /// the Robot API, the client interfaces and the control port use them.
 class Pendant {
  public:
-  /// Success, or the reason for the refusal.
+  /// Success, or the reason for the rejection.
   using Result = tl::expected<void, std::string>;
   enum class LoadError { not_found, does_not_compile };
 
@@ -91,7 +91,7 @@ class Pendant {
   /// Sets the speed slider, 0..1.
   void set_speed_slider(double fraction) { state_.speed_slider = fraction; }
   bool remote_control() const { return remote_control_; }
-  /// PolyScope X refuses remote control in manual mode.
+  /// PolyScope X rejects remote control in manual mode.
   Result set_remote_control(bool remote);
   /// Sets the operational mode: "MANUAL" or "AUTOMATIC"; nullopt: PolyScope 5 no longer controls it. With
   /// PolyScope X, manual mode ends remote control.
@@ -121,8 +121,8 @@ class Pendant {
   void log_compile_error(const urscript::CompileError & error);
   /// Logs why a script was not started.
   Result reject_script(Result reason);
-  /// Logs the reason if the action was refused.
-  Result log_refusal(std::string_view action, Result result);
+  /// Logs the reason if the action was rejected.
+  Result log_rejection(std::string_view action, Result result);
 
   const RobotModel & model_;
   PendantOptions options_;

@@ -40,7 +40,7 @@ void ProgramRunner::start(urscript::Program program)
   urscript::MachineOptions options;
   options.cycle_time = context_.cycle_time;
   auto machine = std::make_unique<urscript::Machine>(std::move(program), context_.library, *this, options);
-  if (machine->program().secondary()) {
+  if (machine->program().is_secondary()) {
     start_secondary(std::move(machine));
     return;
   }

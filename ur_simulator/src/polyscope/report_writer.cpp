@@ -65,7 +65,7 @@ PendingReply ReportWriter::start_report(double duration, std::function<std::stri
   // Whether a report is being generated depends on the simulated time only, because the client may disconnect
   // before the report is finished. A reboot resets the time and ends the report.
   const double now = state_.timestamp;
-  if (busy()) {
+  if (is_busy()) {
     return immediate_reply("Error: Another report is already being generated");
   }
   report_started_ = now;
@@ -95,7 +95,7 @@ std::string ReportWriter::finish_support_file(const std::string & folder)
   return failure ? *failure : fmt::format("Completed successfully: {}/{}", folder, name);
 }
 
-bool ReportWriter::busy() const
+bool ReportWriter::is_busy() const
 {
   return state_.timestamp >= report_started_ && state_.timestamp < report_finished_;
 }

@@ -34,7 +34,7 @@ class ReportWriter {
   /// Returns the dashboard reply.
   std::string save_log();
   /// Whether a report is being generated.
-  bool busy() const;
+  bool is_busy() const;
   /// Whether a reply reports a failure.
   static bool is_error(std::string_view reply) { return reply.starts_with("Error"); }
   /// A ZIP archive with all reports and logs; "" if there are none.

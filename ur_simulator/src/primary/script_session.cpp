@@ -39,7 +39,7 @@ void ScriptSession::receive(std::string_view bytes)
     if (const Pendant::Result result = run(*script)) {
       connection_->log().note("accepted");
     } else {
-      connection_->log().note("refused: {}", result.error());
+      connection_->log().note("rejected: {}", result.error());
     }
   }
 }

@@ -22,7 +22,7 @@ Reply program_state_reply(const Pendant & pendant, std::string_view action)
                           {"details", fmt::format("{} successful", action)}});
 }
 
-Reply refused_action(const std::string & reason)
+Reply rejected_action(const std::string & reason)
 {
   return error_reply(500, "Program state was not changed", reason);
 }
@@ -32,7 +32,7 @@ Answer play(const Call & call)
   // The program may have to be requested from a host.
   auto reply = std::make_shared<std::optional<Reply>>();
   call.pendant.play([reply, &pendant = call.pendant](const Pendant::Result & result) {
-    *reply = result ? program_state_reply(pendant, "Play") : refused_action(result.error());
+    *reply = result ? program_state_reply(pendant, "Play") : rejected_action(result.error());
   });
   return [reply] { return *reply; };
 }
@@ -40,7 +40,7 @@ Answer play(const Call & call)
 Answer pause(const Call & call)
 {
   if (const auto result = call.pendant.pause(); !result) {
-    return refused_action(result.error());
+    return rejected_action(result.error());
   }
   // The program may end before it pauses.
   return wait_for(
@@ -52,7 +52,7 @@ Answer pause(const Call & call)
 Answer resume(const Call & call)
 {
   const auto result = call.pendant.resume();
-  return result ? program_state_reply(call.pendant, "Resume") : refused_action(result.error());
+  return result ? program_state_reply(call.pendant, "Resume") : rejected_action(result.error());
 }
 
 Answer stop(const Call & call)

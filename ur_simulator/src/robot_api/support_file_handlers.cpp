@@ -5,7 +5,7 @@ namespace ur_simulator::robot_api {
 Answer generate_flight_report(const Call & call)
 {
   ReportWriter & reports = call.pendant.reports();
-  if (reports.busy()) {
+  if (reports.is_busy()) {
     return error_reply(429, "Too Many Requests", "another report is already being generated");
   }
   return [report = reports.start_flight_report("")]() -> std::optional<Reply> {

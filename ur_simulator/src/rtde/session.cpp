@@ -349,7 +349,7 @@ void Session::reply(PackageType type, std::string_view payload)
 
 void Session::reply_accepted(PackageType type, bool accepted)
 {
-  connection_->log().to_peer("{}", accepted ? "accepted" : "refused");
+  connection_->log().to_peer("{}", accepted ? "accepted" : "rejected");
   reply(type, std::string_view(accepted ? "\1" : "\0", 1));
 }
 

@@ -73,7 +73,7 @@ void log_recipe_reply(const PeerLog & log, unsigned recipe_id, std::string_view 
       reasons.push_back(fmt::format("{} {}", all_names[i], all_types[i]));
     }
   }
-  log.to_peer("refused: {}", fmt::join(reasons, ", "));
+  log.to_peer("rejected: {}", fmt::join(reasons, ", "));
 }
 
 }  // namespace ur_simulator::rtde

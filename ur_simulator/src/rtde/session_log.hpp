@@ -28,7 +28,7 @@ class DataPackageLog {
 };
 
 /// Logs the reply to a recipe: its number and the types of its fields, or if the number is 0 the fields
-/// because of which it is refused.
+/// because of which it is rejected.
 void log_recipe_reply(const PeerLog & log, unsigned recipe_id, std::string_view names,
                       std::string_view types);
 

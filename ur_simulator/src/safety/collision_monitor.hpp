@@ -40,7 +40,7 @@ class CollisionMonitor {
 
   /// Call once per cycle. Returns the first of the collisions that have begun in this cycle.
   std::optional<Collision> check(const World & world, const ControllerState & state);
-  /// Tolerates the present overlaps: call when the arm has been placed elsewhere.
+  /// Tolerates the current overlaps: call when the arm has been placed elsewhere.
   void reset();
 
  private:

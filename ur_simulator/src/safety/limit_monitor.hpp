@@ -25,7 +25,7 @@ class LimitMonitor {
   std::optional<ExceededLimit> check(const SafetyLimits & limits, const ControllerState & state);
   /// Tool force as a fraction of the one that check() would report, at the last check().
   double force_ratio() const { return force_ratio_; }
-  /// Tolerates the present tool force after a protective stop was unlocked, until the tool is free again or
+  /// Tolerates the current tool force after a protective stop was unlocked, until the tool is free again or
   /// the force grows.
   void tolerate_present_force();
 

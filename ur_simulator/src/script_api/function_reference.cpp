@@ -35,13 +35,13 @@ std::string function_reference(const urscript::Library & library)
 {
   NameTable groups;
   NameTable simplifications;
-  NameTable refusals;
+  NameTable rejections;
   for (std::uint32_t i = 0; i < library.size(); ++i) {
     const urscript::Builtin & builtin = library[i];
     if (builtin.support == urscript::Support::modelled) {
       add_name(groups, builtin.group, builtin.name);
     } else {
-      add_name(builtin.support == urscript::Support::simplified ? simplifications : refusals, builtin.note,
+      add_name(builtin.support == urscript::Support::simplified ? simplifications : rejections, builtin.note,
                builtin.name);
     }
   }
@@ -53,8 +53,8 @@ std::string function_reference(const urscript::Library & library)
   for (const auto & [note, names] : simplifications) {
     text += fmt::format("| {} | {} |\n", code_list(names), note);
   }
-  text += "\n| refused functions | reason |\n|---|---|\n";
-  for (const auto & [reason, names] : refusals) {
+  text += "\n| rejected functions | reason |\n|---|---|\n";
+  for (const auto & [reason, names] : rejections) {
     text += fmt::format("| {} | {} |\n", code_list(names), reason);
   }
   return text;

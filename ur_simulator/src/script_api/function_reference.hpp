@@ -6,7 +6,7 @@
 
 namespace ur_simulator {
 
-/// The builtins of a library as Markdown tables: by group, with their simplifications, and the refused ones
+/// The builtins of a library as Markdown tables: by group, with their simplifications, and the rejected ones
 /// with the reason.
 std::string function_reference(const urscript::Library & library);
 

@@ -29,7 +29,7 @@ struct RobotContext {
   Dynamics dynamics;
   /// The call that moves the arm. Only one thread of a program may move the arm at a time.
   MotionOperation * motion_owner = nullptr;
-  /// TCP pose of the target of the present motion, for get_target_waypoint().
+  /// TCP pose of the target of the current motion, for get_target_waypoint().
   Vector6 waypoint = Vector6::Zero();
 };
 
@@ -66,6 +66,6 @@ void add_encoder_builtins(Library & library, const RobotContextPtr & robot);
 void add_world_model_builtins(Library & library, const RobotContextPtr & robot);
 void add_setting_builtins(Library & library);
 void add_stored_setting_builtins(Library & library);
-void add_refused_builtins(Library & library);
+void add_rejected_builtins(Library & library);
 
 }  // namespace ur_simulator::script_api

@@ -62,7 +62,7 @@ std::shared_ptr<const urscript::Library> make_robot_library(const RobotAccess & 
   library->begin_group("settings");
   script_api::add_setting_builtins(*library);
   script_api::add_stored_setting_builtins(*library);
-  script_api::add_refused_builtins(*library);
+  script_api::add_rejected_builtins(*library);
   return library;
 }
 

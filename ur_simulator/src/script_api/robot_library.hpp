@@ -36,7 +36,7 @@ struct RobotAccess {
   Watchdog & watchdog;
   ScriptRequests requests;
   double cycle_time = 0.002;  ///< s
-  /// Recorded by the controller in each cycle after Arm::step(); if null, only the present position is known.
+  /// Recorded by the controller in each cycle after Arm::step(); if null, only the current position is known.
   const JointHistory * history = nullptr;
   /// The value of an RTDE output, or nothing if there is none of this name; null: no program can read them.
   std::function<std::optional<urscript::Value>(std::string_view name)> rtde_value = nullptr;

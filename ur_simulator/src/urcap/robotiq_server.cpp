@@ -35,7 +35,7 @@ std::string RobotiqServer::answer(std::string_view line)
   if (!value) {
     return not_understood;
   }
-  return gripper_.powered() ? fmt::format("{} {}\n", name, *value) : fmt::format("{} ?\n", name);
+  return gripper_.is_powered() ? fmt::format("{} {}\n", name, *value) : fmt::format("{} ?\n", name);
 }
 
 std::string RobotiqServer::set(std::string_view assignments)

@@ -18,12 +18,12 @@ void Library::add(Builtin builtin)
   }
 }
 
-void Library::add_refused(std::string name, std::vector<Parameter> parameters, std::size_t required,
-                          std::string reason)
+void Library::add_rejected(std::string name, std::vector<Parameter> parameters, std::size_t required,
+                           std::string reason)
 {
   Builtin builtin{std::move(name), std::move(parameters), required,
                   [reason](CallContext &, Arguments) { return Outcome(Failure{reason}); }};
-  builtin.support = Support::refused;
+  builtin.support = Support::rejected;
   builtin.note = std::move(reason);
   add(std::move(builtin));
 }

@@ -120,7 +120,7 @@ struct IndexedName {
 enum class Support : std::uint8_t {
   modelled,
   simplified,  ///< accepts the same calls; Builtin::note says what differs
-  refused,     ///< calls fail; Builtin::note says why
+  rejected,    ///< calls fail; Builtin::note says why
 };
 
 struct Builtin {
@@ -141,9 +141,9 @@ class Library {
   /// Replaces a builtin of the same name. The builtin belongs to the last begun group unless it names one.
   void add(Builtin builtin);
   /// Adds a builtin whose calls fail with this reason.
-  void add_refused(std::string name, std::vector<Parameter> parameters, std::size_t required,
-                   std::string reason);
-  /// Documents what the present builtin of this name simplifies. Throws std::out_of_range if there is none.
+  void add_rejected(std::string name, std::vector<Parameter> parameters, std::size_t required,
+                    std::string reason);
+  /// Documents what the current builtin of this name simplifies. Throws std::out_of_range if there is none.
   void simplify(std::string_view name, std::string note);
   /// Makes the builtin of this name unknown to programs. Throws std::out_of_range if there is none.
   void hide(std::string_view name);

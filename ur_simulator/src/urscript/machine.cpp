@@ -35,7 +35,7 @@ struct Machine::Impl final : ProgramExtension {
         original(program),
         library(std::move(functions)),
         options(settings),
-        context{to, settings.cycle_time, 0.0, 0, program.secondary(), next_program(), *this},
+        context{to, settings.cycle_time, 0.0, 0, program.is_secondary(), next_program(), *this},
         interpreter(program.code(), *library, options)
   {
     interpreter.start_thread(0, {});

@@ -58,7 +58,7 @@ class Machine {
   std::uint32_t instructions() const;
   /// The names of the global variables, in the order of their first appearance in the program.
   const std::vector<std::string> & global_names() const;
-  /// The present value of a global variable; null if it has none.
+  /// The current value of a global variable; null if it has none.
   const Value * global(const std::string & name) const;
 
  private:

@@ -39,7 +39,7 @@ class Program {
   const std::string & name() const;
   /// True for a secondary program (`sec`), which runs beside the primary program and may not take physical
   /// time.
-  bool secondary() const;
+  bool is_secondary() const;
   const Code & code() const { return *code_; }
 
  private:

@@ -25,7 +25,7 @@ class RobotiqGripper {
 
   /// Advances by one cycle. Without power, the gripper forgets its registers and does not answer.
   void step(double duration, bool powered);
-  bool powered() const { return powered_; }
+  bool is_powered() const { return powered_; }
 
   /// The value of a register; nothing if there is none with this name.
   std::optional<int> get(std::string_view name) const;
@@ -40,7 +40,7 @@ class RobotiqGripper {
   void set_object(double width, double stiffness = std::numeric_limits<double>::infinity());
   /// Stuck fingers do not move, which the gripper takes for a contact.
   void set_stuck(bool stuck) { stuck_ = stuck; }
-  bool stuck() const { return stuck_; }
+  bool is_stuck() const { return stuck_; }
   /// A fault code of the register FLT; 0: none. From 10 on, only a reset (ACT = 0) clears it.
   void set_fault(int code) { fault_ = code; }
   double width() const;

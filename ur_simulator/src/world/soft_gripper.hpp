@@ -19,11 +19,11 @@ class SoftGripper {
   void move_to(double width, bool gentle);
   double width() const { return width_; }
   double target() const { return target_; }
-  bool busy() const { return width_ != target_ || stuck_; }
+  bool is_busy() const { return width_ != target_ || stuck_; }
 
   /// A stuck gripper stops and stays busy, as without compressed air.
   void set_stuck(bool stuck) { stuck_ = stuck; }
-  bool stuck() const { return stuck_; }
+  bool is_stuck() const { return stuck_; }
   /// Width of an object between the fingers, mm, which limits closing; 0: no object.
   void set_object(double width) { object_ = width; }
   bool holds_object() const { return object_ > 0.0 && width_ == object_; }

@@ -21,7 +21,7 @@ class EventTimeline {
   }
 
   /// Call at the beginning of each cycle. Executes the events that are due. The log reports each of them, and
-  /// as an error those that are refused.
+  /// as an error those that are rejected.
   void cycle(control_port::ControlPortContext & context);
 
  private:

@@ -75,7 +75,7 @@ TEST_F(ClientInterfaceTest, ReportsRunTimeErrors)
   EXPECT_TRUE(wait_for_program_state(controller, "STOPPED"));
 }
 
-TEST_F(ClientInterfaceTest, RefusesProgramsWhilePoweredOff)
+TEST_F(ClientInterfaceTest, RejectsProgramsWhilePoweredOff)
 {
   controller.control({{"command", "power"}, {"to", "off"}});
   ASSERT_TRUE(wait_for_robot_mode(controller, "POWER_OFF", seconds(10)));

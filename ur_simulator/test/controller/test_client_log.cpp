@@ -88,14 +88,14 @@ TEST_F(ControllerClientLogTest, ShowsRtdeNegotiation)
   EXPECT_EQ(
       session,
       (Lines{"> requests RTDE protocol version 2", "< accepted",
-             "> requests outputs at 500 Hz: timestamp,no_such_output", "< refused: no_such_output NOT_FOUND",
+             "> requests outputs at 500 Hz: timestamp,no_such_output", "< rejected: no_such_output NOT_FOUND",
              "> requests outputs at 100 Hz: timestamp,actual_q", "< accepted as recipe 1: DOUBLE,VECTOR6D",
              "> requests inputs: input_int_register_0,input_double_register_0",
              "< accepted as recipe 1: INT32,DOUBLE", "> start", "< accepted", "< data packages of 60 bytes",
              "> pause", "< accepted", "x> closes the connection"}));
   EXPECT_EQ(after_connecting(session_of(lines, "RTDE client 2")),
             (Lines{"> requests inputs: input_int_register_0,no_such_input,input_int_register_1",
-                   "< refused: input_int_register_0 IN_USE, no_such_input NOT_FOUND",
+                   "< rejected: input_int_register_0 IN_USE, no_such_input NOT_FOUND",
                    "x> closes the connection", "data packages: 0 sent, 0 dropped, 0 received"}));
 }
 
@@ -162,14 +162,14 @@ TEST_F(ControllerClientLogTest, ShowsScriptsAndTheirPrograms)
   const Lines session = after_connecting(session_of(lines, "primary client 1"));
   const Lines expected{"> script of 3 lines, 38 bytes: def wrong():",
                        "< runtime exception message",
-                       "refused: " + error,
+                       "rejected: " + error,
                        "> script of 3 lines, 39 bytes: def right():",
                        "< key message PROGRAM_XXX_STARTED",
                        "accepted",
                        "< text message",
                        "< key message PROGRAM_XXX_STOPPED",
                        "> set speed 2",
-                       "refused: the speed is '2': give a fraction from 0 to 1",
+                       "rejected: the speed is '2': give a fraction from 0 to 1",
                        "> stop program",
                        "accepted"};
   ASSERT_GT(session.size(), expected.size());
@@ -180,8 +180,8 @@ TEST_F(ControllerClientLogTest, ShowsScriptsAndTheirPrograms)
              "Note over robot: program: program 'right' started",
              "Note over robot: program: program 'right' ended",
              "Note over robot: program: script was not started: it was sent to a read-only interface"}));
-  EXPECT_EQ(lines_with(session_of(lines, "secondary read only client 1"), "refused"),
-            Lines{"refused: it was sent to a read-only interface"});
+  EXPECT_EQ(lines_with(session_of(lines, "secondary read only client 1"), "rejected"),
+            Lines{"rejected: it was sent to a read-only interface"});
 }
 
 TEST_F(ControllerClientLogTest, ShowsStopsAndErrorCodes)
@@ -295,8 +295,8 @@ TEST_F(ControllerClientLogTest, ShowsRefusedConnections)
   for (int i = 0; i < 50; ++i) {
     clients.push_back(std::make_unique<DashboardClient>(address()));
   }
-  TcpClient refused(address(), 29999);
-  EXPECT_TRUE(refused.closed_by_peer());
+  TcpClient rejected(address(), 29999);
+  EXPECT_TRUE(rejected.closed_by_peer());
   EXPECT_EQ(lines_with(finish(), "too many"),
             Lines{"robot--xdashboard client 51: closes the connection: too many clients"});
 }

@@ -64,7 +64,7 @@ TEST_F(ControllerCommandTest, SetsSpeedSlider)
       controller.wait_until([](const json & state) { return state["speed_slider"] == 0.25; }, seconds(5)));
 }
 
-TEST_F(ControllerCommandTest, RefusesCommandsInLocalControl)
+TEST_F(ControllerCommandTest, RejectsCommandsInLocalControl)
 {
   controller.control({{"command", "remote_control"}, {"on", false}});
   client.send("power off\n");

@@ -143,8 +143,8 @@ TEST_F(DashboardTest, ConfirmsPowerCommandsThatHaveNoEffect)
   EXPECT_EQ(client.request("brake release"), "Brake releasing");
   EXPECT_EQ(client.request("restart safety"), "Restarting safety");
   EXPECT_EQ(client.request("robotmode"), "Robotmode: POWER_OFF");
-  EXPECT_TRUE(log_contains(controller, "power on was refused: cannot power on"));
-  EXPECT_TRUE(log_contains(controller, "restart safety was refused"));
+  EXPECT_TRUE(log_contains(controller, "power on was rejected: cannot power on"));
+  EXPECT_TRUE(log_contains(controller, "restart safety was rejected"));
 }
 
 TEST_F(DashboardTest, UnlocksProtectiveStopAfterFiveSecondsOnly)
@@ -173,7 +173,7 @@ TEST_F(DashboardTest, AddsMessagesToLog)
   EXPECT_TRUE(log_contains(controller, "shift begins"));
 }
 
-TEST_F(DashboardTest, RefusesCommandsInLocalControlUntilReconnected)
+TEST_F(DashboardTest, RejectsCommandsInLocalControlUntilReconnected)
 {
   controller.control({{"command", "remote_control"}, {"on", false}});
   EXPECT_EQ(client.request("power off").substr(0, 44), "Command is not allowed due to safety reasons");
@@ -204,7 +204,7 @@ TEST_F(DashboardTest, ShutdownSwitchesControllerOff)
 {
   EXPECT_EQ(client.request("shutdown"), "Shutting down");
   EXPECT_TRUE(client.socket().closed_by_peer());
-  const auto refused = [address = controller.address()] {
+  const auto rejected = [address = controller.address()] {
     try {
       TcpClient(address, 29999);
       return false;
@@ -214,7 +214,7 @@ TEST_F(DashboardTest, ShutdownSwitchesControllerOff)
   };
   // The ports are closed after the connections.
   EXPECT_TRUE(
-      controller.wait_until([&](const nlohmann::json &) { return refused(); }, std::chrono::seconds(5)));
+      controller.wait_until([&](const nlohmann::json &) { return rejected(); }, std::chrono::seconds(5)));
 }
 
 TEST(DashboardCb3Test, HasUserRolesButNoOperationalModes)

@@ -22,7 +22,7 @@ TEST_F(OperationalModeTest, IsSetQueriedAndCleared)
   EXPECT_EQ(client.request("get operational mode"), "NONE");
 }
 
-TEST_F(OperationalModeTest, ManualModeRefusesRemoteStart)
+TEST_F(OperationalModeTest, ManualModeRejectsRemoteStart)
 {
   controller.control({{"command", "store_program"},
                       {"name", "wait.urp"},

@@ -39,7 +39,7 @@ TEST_F(PolyscopeXInterfacesTest, HasOutputsOfItsController)
   EXPECT_EQ(older_rtde.setup_outputs(500.0, "target_gravity").substr(1), "NOT_FOUND");
 }
 
-TEST_F(PolyscopeXInterfacesTest, RefusesScriptsInLocalControl)
+TEST_F(PolyscopeXInterfacesTest, RejectsScriptsInLocalControl)
 {
   controller.control({{"command", "remote_control"}, {"on", false}});
   TcpClient script(controller.address(), 30003);
@@ -89,7 +89,7 @@ TEST(PolyscopeXVersionsTest, EarlierVersionsHaveNoRobotApi)
   EXPECT_EQ(polyscope_5.ports().robot_api, 0);
 }
 
-TEST(PolyscopeXVersionsTest, RefusesOtherVersionsAndModels)
+TEST(PolyscopeXVersionsTest, RejectsOtherVersionsAndModels)
 {
   const auto error = [](const std::string & model, const std::string & version) -> std::string {
     SimulatorOptions options = polyscope_x_options(version);

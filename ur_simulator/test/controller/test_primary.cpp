@@ -225,7 +225,7 @@ TEST_F(PrimaryInterfaceTest, LocalControlMakesItReadOnly)
   EXPECT_EQ(receive_error_code(client).code, 210u);
 }
 
-TEST_F(PrimaryInterfaceTest, ReadOnlyPortsSendTheSameDataAndRefuseScripts)
+TEST_F(PrimaryInterfaceTest, ReadOnlyPortsSendTheSameDataAndRejectScripts)
 {
   PrimaryClient primary(controller.address(), 30011);
   EXPECT_EQ(primary.receive_robot_state().size(), 11u);

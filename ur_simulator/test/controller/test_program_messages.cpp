@@ -144,7 +144,7 @@ TEST_F(ValueRequestTest, TheProgramReceivesTheAnswer)
   EXPECT_EQ(text(), "got part");
 }
 
-TEST_F(ValueRequestTest, RefusesAnAnswerOfAnotherType)
+TEST_F(ValueRequestTest, RejectsAnAnswerOfAnotherType)
 {
   request("integer");
   EXPECT_EQ(controller.state()["value_request"], "How many?");

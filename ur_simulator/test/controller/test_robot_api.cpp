@@ -54,9 +54,9 @@ TEST_F(RobotApiTest, ServesOthersWhileOneWaits)
 
 TEST_F(RobotApiTest, UnlocksProtectiveStop)
 {
-  const HttpReply refused = change_robot("UNLOCK_PROTECTIVE_STOP");
-  EXPECT_EQ(refused.status, 409);
-  EXPECT_EQ(refused.json()["message"], "Conflict");
+  const HttpReply rejected = change_robot("UNLOCK_PROTECTIVE_STOP");
+  EXPECT_EQ(rejected.status, 409);
+  EXPECT_EQ(rejected.json()["message"], "Conflict");
   controller.control({{"command", "protective_stop"}, {"reason", "a test"}});
   ASSERT_TRUE(wait_for_safety_mode(controller, "PROTECTIVE_STOP", seconds(10)));
   EXPECT_EQ(mode("/robotstate/v1/safetymode"), "PROTECTIVE_STOP");
@@ -90,7 +90,7 @@ TEST_F(RobotApiTest, LoadsPlaysPausesAndStopsProgram)
   EXPECT_EQ(change_program("pause").status, 500);
 }
 
-TEST_F(RobotApiTest, RefusesMissingAndInvalidPrograms)
+TEST_F(RobotApiTest, RejectsMissingAndInvalidPrograms)
 {
   store_program("broken", "def broken(:\n");
   EXPECT_EQ(client.put("/program/v1/loaded", {{"name", "missing"}}).status, 404);
@@ -104,9 +104,9 @@ TEST_F(RobotApiTest, RequiresRemoteControlForCommandsOnly)
   ASSERT_TRUE(controller.control({{"command", "remote_control"}, {"on", false}})["ok"]);
   EXPECT_EQ(mode("/system/v1/controlmode"), "LOCAL");
   EXPECT_EQ(client.get("/programs/v1/").status, 200);
-  const HttpReply refused = change_robot("POWER_OFF");
-  EXPECT_EQ(refused.status, 403);
-  EXPECT_EQ(refused.json()["message"], "Forbidden");
+  const HttpReply rejected = change_robot("POWER_OFF");
+  EXPECT_EQ(rejected.status, 403);
+  EXPECT_EQ(rejected.json()["message"], "Forbidden");
   EXPECT_EQ(change_program("play").status, 403);
   EXPECT_EQ(client.put("/program/v1/loaded", {{"name", "x"}}).status, 403);
   EXPECT_EQ(client.post("/popup/v1", {{"message", "x"}}).status, 403);

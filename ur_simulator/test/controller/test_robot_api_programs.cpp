@@ -72,7 +72,7 @@ TEST_F(RobotApi1012ProgramsTest, ReportsExistingProgramAsBadRequest)
   EXPECT_EQ(upload(urpx("pick", "sync()")).status, 400);
 }
 
-TEST_F(RobotApiProgramsTest, RefusesInvalidFiles)
+TEST_F(RobotApiProgramsTest, RejectsInvalidFiles)
 {
   for (const std::string & content : {std::string("no JSON"), std::string("[]"), std::string("{}"),
                                       std::string(R"({"program": {"programInformation": {"name": 3}}})")}) {

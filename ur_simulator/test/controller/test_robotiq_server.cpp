@@ -55,7 +55,7 @@ TEST_F(RobotiqServerTest, AnswersSeveralRequestsOfOneSegment)
   EXPECT_EQ(client.receive_line(), "FLT 0");
 }
 
-TEST_F(RobotiqServerTest, RefusesWhatItDoesNotKnow)
+TEST_F(RobotiqServerTest, RejectsWhatItDoesNotKnow)
 {
   for (const char * request :
        {"GET XYZ\n", "SET POS\n", "SET POS 256\n", "SET STA 3\n", "SET \n", "hello\n", "\n"}) {

@@ -83,7 +83,7 @@ TEST_F(WorldFileTest, TimeContinuesAfterReboot)
   EXPECT_EQ(controller.state()["robot_mode"], "POWER_OFF");
 }
 
-TEST_F(WorldFileTest, InvalidFilesAreRefused)
+TEST_F(WorldFileTest, InvalidFilesAreRejected)
 {
   try {
     SimulatedController controller(with_world("surfaces: [{z: deep}]\n"));

@@ -112,7 +112,7 @@ TEST_F(PortMapTest, AnalogValuesAreFractionsOfTheRangeOfTheirDomain)
   EXPECT_EQ(state.io.analog_io_types, 0b0100U);
 }
 
-TEST_F(PortMapTest, RefusesValuesThatASettingDoesNotHave)
+TEST_F(PortMapTest, RejectsValuesThatASettingDoesNotHave)
 {
   EXPECT_EQ(ports.check_register(5, 2), PortWrite::illegal_value);
   EXPECT_EQ(ports.check_register(20, 13), PortWrite::illegal_value);

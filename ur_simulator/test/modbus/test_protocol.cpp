@@ -53,14 +53,14 @@ TEST_F(ModbusProtocolTest, WritesSeveralValues)
   EXPECT_EQ(state.io.digital_outputs, 0x20081U);
 }
 
-TEST_F(ModbusProtocolTest, RefusesUnknownFunctions)
+TEST_F(ModbusProtocolTest, RejectsUnknownFunctions)
 {
   EXPECT_EQ(answer({43, 14, 1, 0}), bytes({0xab, 1}));
   EXPECT_EQ(answer({0}), bytes({0x80, 1}));
   EXPECT_EQ(answer({0x83, 0, 0, 0, 1}), bytes({0x83, 1}));
 }
 
-TEST_F(ModbusProtocolTest, RefusesAddressesOutsideTheMap)
+TEST_F(ModbusProtocolTest, RejectsAddressesOutsideTheMap)
 {
   EXPECT_EQ(answer({3, 8, 5, 0, 1}), bytes({3, 2, 0, 0}));
   EXPECT_EQ(answer({3, 8, 5, 0, 2}), bytes({0x83, 2}));
@@ -70,7 +70,7 @@ TEST_F(ModbusProtocolTest, RefusesAddressesOutsideTheMap)
   EXPECT_EQ(answer({5, 0, 0, 0xff, 0}), bytes({0x85, 2}));
 }
 
-TEST_F(ModbusProtocolTest, RefusesInvalidQuantitiesAndValues)
+TEST_F(ModbusProtocolTest, RejectsInvalidQuantitiesAndValues)
 {
   EXPECT_EQ(answer({3, 0, 128, 0, 0}), bytes({0x83, 3}));
   EXPECT_EQ(answer({3, 0, 128, 0, 126}), bytes({0x83, 3}));
@@ -80,13 +80,13 @@ TEST_F(ModbusProtocolTest, RefusesInvalidQuantitiesAndValues)
   EXPECT_EQ(answer({16, 0, 128, 0, 124, 248}), bytes({0x90, 3}));
 }
 
-TEST_F(ModbusProtocolTest, RefusesRequestsOfTheWrongLength)
+TEST_F(ModbusProtocolTest, RejectsRequestsOfTheWrongLength)
 {
   for (const int function : {1, 2, 3, 4, 5, 6, 15, 16}) {
-    const int refused = function | 0x80;
-    EXPECT_EQ(answer({function}), bytes({refused, 3}));
-    EXPECT_EQ(answer({function, 0, 128, 0}), bytes({refused, 3}));
-    EXPECT_EQ(answer({function, 0, 128, 0, 0, 0}), bytes({refused, 3}));
+    const int rejected = function | 0x80;
+    EXPECT_EQ(answer({function}), bytes({rejected, 3}));
+    EXPECT_EQ(answer({function, 0, 128, 0}), bytes({rejected, 3}));
+    EXPECT_EQ(answer({function, 0, 128, 0, 0, 0}), bytes({rejected, 3}));
   }
   EXPECT_EQ(answer({16, 0, 128, 0, 2, 4, 0, 1, 0}), bytes({0x90, 3}));
   EXPECT_EQ(answer({16, 0, 128, 0, 2, 3, 0, 1, 0, 2}), bytes({0x90, 3}));

@@ -108,9 +108,9 @@ TEST_F(FreedriveTest, StopsBeforeTheJointLimits)
 TEST_F(FreedriveTest, RejectsMotionsUntilItEnds)
 {
   guide();
-  const auto refused = fixture.arm.move_joint(fixture.state.target.position, {1.0, 1.0});
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().find("freedrive"), std::string::npos);
+  const auto rejected = fixture.arm.move_joint(fixture.state.target.position, {1.0, 1.0});
+  ASSERT_FALSE(rejected);
+  EXPECT_NE(rejected.error().find("freedrive"), std::string::npos);
   fixture.arm.end_freedrive();
   fixture.run(0.1);
   EXPECT_FALSE(fixture.state.freedrive);
@@ -187,9 +187,9 @@ TEST_F(DirectTorqueTest, EndsAtRestIfNoCallFollows)
 
 TEST_F(DirectTorqueTest, RejectsTorquesAboveTheJointLimit)
 {
-  const auto refused = fixture.arm.direct_torque(six(0.0, 0.0, 0.0, 0.0, 0.0, 1000.0), six(1.0), six(1.0));
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().find("torque[5]"), std::string::npos) << refused.error();
+  const auto rejected = fixture.arm.direct_torque(six(0.0, 0.0, 0.0, 0.0, 0.0, 1000.0), six(1.0), six(1.0));
+  ASSERT_FALSE(rejected);
+  EXPECT_NE(rejected.error().find("torque[5]"), std::string::npos) << rejected.error();
 }
 
 }  // namespace

@@ -208,14 +208,14 @@ TEST(MoveCTest, IsRejectedForCollinearPoints)
 {
   ArmFixture fixture;
   const Vector6 from = fixture.tcp();
-  const auto refused = [&](const Vector6 & via, const Vector6 & to) {
+  const auto rejected = [&](const Vector6 & via, const Vector6 & to) {
     const auto motion = fixture.arm.move_circular(via, to, CircleMode::unconstrained, {1.2, 0.2});
     return !motion && motion.error().find("must not lie on one line") != std::string::npos;
   };
-  EXPECT_TRUE(refused(moved(from, 0.0, 0.1, 0.0), moved(from, 0.0, 0.2, 0.0)));
-  EXPECT_TRUE(refused(from, moved(from, 0.0, 0.2, 0.0)));
-  EXPECT_TRUE(refused(moved(from, 0.0, 0.1, 0.1), from));
-  EXPECT_TRUE(refused(moved(from, 0.0, 0.2, 0.0), moved(from, 0.0, 0.2, 0.0)));
+  EXPECT_TRUE(rejected(moved(from, 0.0, 0.1, 0.0), moved(from, 0.0, 0.2, 0.0)));
+  EXPECT_TRUE(rejected(from, moved(from, 0.0, 0.2, 0.0)));
+  EXPECT_TRUE(rejected(moved(from, 0.0, 0.1, 0.1), from));
+  EXPECT_TRUE(rejected(moved(from, 0.0, 0.2, 0.0), moved(from, 0.0, 0.2, 0.0)));
   EXPECT_TRUE(fixture.arm.at_rest());
 }
 

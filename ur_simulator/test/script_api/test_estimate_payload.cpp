@@ -95,7 +95,7 @@ TEST_F(EstimatePayloadTest, WithoutLoadIsNothing)
   EXPECT_NEAR(fixture.state.payload.mass, 0.0, 1e-3);
 }
 
-TEST_F(EstimatePayloadTest, RefusesPosesThatAreTooFewOrTooSimilar)
+TEST_F(EstimatePayloadTest, RejectsPosesThatAreTooFewOrTooSimilar)
 {
   EXPECT_EQ(error_with_poses("[p[0, 0, 0, 0, 0, 0], p[0, 0, 0, 1, 0, 0], p[0, 0, 0, 0, 1, 0]]"),
             "estimate_payload: poses must have 4 to 100 elements, not 3");
@@ -105,14 +105,14 @@ TEST_F(EstimatePayloadTest, RefusesPosesThatAreTooFewOrTooSimilar)
             "least 0.393 rad");
 }
 
-TEST_F(EstimatePayloadTest, RefusesPosesWithOneDirectionOfGravity)
+TEST_F(EstimatePayloadTest, RejectsPosesWithOneDirectionOfGravity)
 {
   EXPECT_EQ(error_with_poses(
                 "[p[0, 0, 0, 0, 0, 0], p[0, 0, 0, 0, 0, 1], p[0, 0, 0, 0, 0, 2], p[0, 0, 0, 0, 0, 3]]"),
             "estimate_payload: the poses do not determine the payload: tilt the flange about two axes");
 }
 
-TEST_F(EstimatePayloadTest, RefusesWrongArguments)
+TEST_F(EstimatePayloadTest, RejectsWrongArguments)
 {
   const std::string poses = joint_positions;
   EXPECT_EQ(fixture.error_of("def test():\n  x = estimate_payload(" + poses + ", [[0, 0, 1, 0, 0, 0]])\nend"),

@@ -187,7 +187,7 @@ TEST(WaypointTest, IsTheTargetOfTheActiveMove)
   EXPECT_EQ(pose_text(pose), fixture.global("there"));
 }
 
-TEST(RefusedBuiltinTest, FailsWithItsReason)
+TEST(RejectedBuiltinTest, FailsWithItsReason)
 {
   ScriptFixture fixture;
   EXPECT_EQ(fixture.error_of("set_pos([0,0,0,0,0,0])"),

@@ -151,7 +151,7 @@ TEST(PathOffsetTest, TheEndOfTheProgramKeepsTheArmWhereItIs)
   EXPECT_FALSE(fixture.arm.path_offset().enabled());
 }
 
-TEST(PathOffsetTest, RefusesInvalidArguments)
+TEST(PathOffsetTest, RejectsInvalidArguments)
 {
   ScriptFixture fixture;
   EXPECT_NE(fixture.error_of("def t():\n path_offset_set([0,0,0,0,0,0], 5)\nend").find("type must be 1"),

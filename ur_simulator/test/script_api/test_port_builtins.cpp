@@ -37,7 +37,7 @@ TEST(PortBuiltinTest, WritingReadOnlyAddressesHasNoEffect)
   EXPECT_EQ(fixture.state.io.digital_inputs, 0U);
 }
 
-TEST(PortBuiltinTest, RefuseAddressesAndValuesOutOfRange)
+TEST(PortBuiltinTest, RejectAddressesAndValuesOutOfRange)
 {
   ScriptFixture fixture;
   EXPECT_EQ(fixture.error_of("read_port_register(2054)"),

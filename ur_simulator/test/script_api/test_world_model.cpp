@@ -70,7 +70,7 @@ TEST(WorldModelTest, ArmFollowsBaseUntilReset)
             "attach_frame: the frame 'a' is attached to 'base' already");
 }
 
-TEST(WorldModelTest, RefusesUnknownFixedAndCyclicFrames)
+TEST(WorldModelTest, RejectsUnknownFixedAndCyclicFrames)
 {
   ScriptFixture fixture;
   EXPECT_EQ(fixture.error_of("get_pose(\"x\", \"base\")"), "get_pose: the world model has no frame 'x'");

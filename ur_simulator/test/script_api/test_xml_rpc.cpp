@@ -104,7 +104,7 @@ TEST(XmlRpcTest, ALongListIsDecoded)
   EXPECT_EQ(value->list().back().integer(), 4999);
 }
 
-TEST(XmlRpcTest, DeepNestingIsRefused)
+TEST(XmlRpcTest, DeepNestingIsRejected)
 {
   std::string value = "<int>1</int>";
   for (int i = 0; i < 40; ++i) {

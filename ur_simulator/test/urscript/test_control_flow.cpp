@@ -112,8 +112,8 @@ TEST(ControlFlowTest, ProvidesNameAndKindOfAProgram)
 {
   const auto library = standard_library();
   EXPECT_EQ(compile("def first():\nend\n", *library)->name(), "first");
-  EXPECT_FALSE(compile("def first():\nend\n", *library)->secondary());
-  EXPECT_TRUE(compile("sec second():\n textmsg(1)\nend\n", *library)->secondary());
+  EXPECT_FALSE(compile("def first():\nend\n", *library)->is_secondary());
+  EXPECT_TRUE(compile("sec second():\n textmsg(1)\nend\n", *library)->is_secondary());
 }
 
 TEST(ControlFlowTest, HaltEndsTheWholeProgram)

@@ -104,12 +104,12 @@ TEST(MutationTest, NoMutationCrashesTheCompilerOrTheMachine)
   MachineOptions options;
   options.infinite_loop_after = 0.02;
   int compiled = 0;
-  int refused = 0;
+  int rejected = 0;
   for (int i = 0; i < 4000; ++i) {
     const std::string text = mutate(seed_program, random);
     const auto program = compile(text, *library);
     if (!program) {
-      ++refused;
+      ++rejected;
       EXPECT_FALSE(program.error().message.empty());
       EXPECT_GE(program.error().line, 1);
       continue;
@@ -122,7 +122,7 @@ TEST(MutationTest, NoMutationCrashesTheCompilerOrTheMachine)
     }
   }
   EXPECT_GT(compiled, 200);
-  EXPECT_GT(refused, 400);
+  EXPECT_GT(rejected, 400);
 }
 
 TEST(MutationTest, NoInputCrashesTheReader)

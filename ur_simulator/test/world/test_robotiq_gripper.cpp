@@ -136,12 +136,12 @@ TEST_F(RobotiqGripperTest, ForgetsItsRegistersWithoutPower)
 {
   activate();
   gripper.step(cycle, false);
-  EXPECT_FALSE(gripper.powered());
+  EXPECT_FALSE(gripper.is_powered());
   EXPECT_EQ(value("ACT"), 0);
   EXPECT_EQ(value("STA"), 0);
 }
 
-TEST_F(RobotiqGripperTest, RefusesUnknownRegistersAndValues)
+TEST_F(RobotiqGripperTest, RejectsUnknownRegistersAndValues)
 {
   EXPECT_FALSE(gripper.set("XYZ", 1));
   EXPECT_FALSE(gripper.set("POS", 256));

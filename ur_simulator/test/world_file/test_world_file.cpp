@@ -91,7 +91,7 @@ TEST(WorldFileTest, ErrorsOfTheStructureNameTheLine)
   EXPECT_TRUE(error_of("a: [1\nb: 2\n").starts_with(":2: no valid YAML: ")) << error_of("a: [1\nb: 2\n");
 }
 
-TEST(WorldFileTest, RefusesTextThatIsNotUtf8)
+TEST(WorldFileTest, RejectsTextThatIsNotUtf8)
 {
   const std::string message = ": the text is not UTF-8: save the file with this encoding";
   EXPECT_EQ(error_of("boxes: []\nsurfaces:\n  - {z: \xd1}\n"), ":3" + message);

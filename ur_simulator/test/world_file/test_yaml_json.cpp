@@ -42,7 +42,7 @@ TEST(YamlJsonTest, ConvertsMapsAndAliases)
   EXPECT_EQ(converted("a: &x {b: 1}\nc: *x\n"), json::parse(R"({"a": {"b": 1}, "c": {"b": 1}})"));
 }
 
-TEST(YamlJsonTest, RefusesKeysThatAreNoNamesOrOccurTwice)
+TEST(YamlJsonTest, RejectsKeysThatAreNoNamesOrOccurTwice)
 {
   EXPECT_EQ(conversion_error("a: 1\n[b]: 2\n"), "2: a name of a field is missing: give name: value");
   EXPECT_EQ(conversion_error("a: 1\nb: 2\na: 3\n"), "3: field 'a' is given twice: remove one of them");

@@ -27,7 +27,7 @@ struct CancelResponse {
 template <typename A>
 struct WrappedResult {
   GoalUUID goal_id;
-  /// succeeded, canceled or aborted; unknown if the server does not know the goal (any more).
+  /// succeeded, canceled or aborted; unknown if the server does not know the goal (anymore).
   GoalStatus status = GoalStatus::unknown;
   typename A::Result result;
 };
@@ -290,7 +290,7 @@ tl::expected<WrappedResult<A>, std::string> ActionClient<A>::send_goal_until(
   }
   const std::shared_ptr<Handle> handle = started.response.get();
   if (!handle) {
-    return tl::make_unexpected(get_action_name() + ": goal refused, see the server's log");
+    return tl::make_unexpected(get_action_name() + ": goal rejected, see the server's log");
   }
   if (!wait(handle->async_get_result(), deadline)) {
     abandon(started.id);

@@ -104,7 +104,7 @@ Outcome run_path(Run & run, const Waypoints & waypoints,
                  const std::function<void(std::uint32_t)> & on_waypoint, int arc_mode)
 {
   ScriptOptions options;
-  options.limit = max_path_duration;
+  options.timeout = max_path_duration;
   options.on_text = [&](const std::string & text) {
     std::uint32_t index = 0;
     if (text.starts_with(waypoint_marker) &&

@@ -7,7 +7,7 @@ namespace ur_ros_rtde {
 class IsProgramRunning : public QueryCommand<ur_ros_rtde_msgs::action::GetFlag> {
   Outcome run(const Goal &, Run & run) override
   {
-    run.result().value = run.state().program_running();
+    run.result().value = run.state().is_program_running();
     return Outcome::success();
   }
 };

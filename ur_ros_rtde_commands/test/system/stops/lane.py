@@ -167,11 +167,11 @@ class Lane:
             assert self.driver.running(), "the driver has exited"
             goal = self.client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
             if not goal.accepted:
-                refusal = self.client.refusal(goal)
-                if refusal.error_code == ErrorCode.BUSY:
-                    violations.append(f"the lease is not free: {refusal.message}")
+                rejection = self.client.rejection(goal)
+                if rejection.error_code == ErrorCode.BUSY:
+                    violations.append(f"the lease is not free: {rejection.message}")
                 elif accepts_at_once:
-                    violations.append(f"the next goal was rejected: {refusal.message}")
+                    violations.append(f"the next goal was rejected: {rejection.message}")
                 return time.sleep(RETRY_INTERVAL)
             self._accepted = self.now()
             _status, result = goal.wait_for_result()

@@ -26,8 +26,8 @@ class RunningGoal:
         self._goal = lane.client.send_goal(action, kind.action, messages.fill(action.Goal(), fields))
 
     def rejection(self):
-        """Returns the message on goal_refusals; None if the goal was accepted."""
-        return None if self._goal.accepted else self._lane.client.refusal(self._goal)
+        """Returns the message on goal_rejections; None if the goal was accepted."""
+        return None if self._goal.accepted else self._lane.client.rejection(self._goal)
 
     def cancel(self):
         """Returns when the request was sent, ns since the epoch."""
@@ -66,7 +66,7 @@ class ForeignGoal:
 
     def rejection(self):
         answer, goal_id = self._answer.split()
-        return None if answer == "goal" else self._lane.client.refusal_of(bytes.fromhex(goal_id))
+        return None if answer == "goal" else self._lane.client.rejection_of(bytes.fromhex(goal_id))
 
     def has_ended(self):
         return False

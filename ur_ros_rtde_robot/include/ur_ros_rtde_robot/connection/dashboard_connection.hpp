@@ -55,9 +55,9 @@ class DashboardConnection {
   /// after which the connection is re-established.
   Status call(const std::function<void(ur_rtde::DashboardClient &)> & function);
   /// Sends a line on a separate connection and returns the answer, so that requests which take long (loading
-  /// a program, a report) do not block others. Errors: link_lost; timeout after `limit`; canceled if a stop
+  /// a program, a report) do not block others. Errors: link_lost; timeout after `timeout`; canceled if a stop
   /// is requested.
-  Expected<std::string> request(const std::string & line, std::chrono::milliseconds limit,
+  Expected<std::string> request(const std::string & line, std::chrono::milliseconds timeout,
                                 const std::stop_token & stop = {}) const;
   /// Of the dashboard server.
   const std::string & address() const;

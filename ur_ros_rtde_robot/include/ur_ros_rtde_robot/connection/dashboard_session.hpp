@@ -18,9 +18,9 @@ class DashboardSession {
   explicit DashboardSession(std::string address) : address_(std::move(address)) {}
 
   /// Sends a line and returns the answer without the line end. Connects with the first request, after an
-  /// error, and if the robot has closed the connection. Errors: link_lost; timeout after `limit`; canceled if
-  /// a stop is requested.
-  Expected<std::string> request(const std::string & line, std::chrono::milliseconds limit,
+  /// error, and if the robot has closed the connection. Errors: link_lost; timeout after `timeout`; canceled
+  /// if a stop is requested.
+  Expected<std::string> request(const std::string & line, std::chrono::milliseconds timeout,
                                 const std::stop_token & stop = {});
 
  private:

@@ -25,7 +25,7 @@ struct ControllerVersion {
   unsigned build = 0;
 
   bool cb3() const { return major == 3; }
-  bool polyscope_x() const { return major >= 10; }
+  bool is_polyscope_x() const { return major >= 10; }
   /// Hz, rate of the control cycle, which is the highest RTDE rate.
   double frequency() const { return cb3() ? 125.0 : 500.0; }
 };

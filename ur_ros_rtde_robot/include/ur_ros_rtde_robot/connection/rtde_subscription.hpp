@@ -23,11 +23,11 @@ class RtdeSubscription {
     std::size_t size;  ///< number of values: 6 for "actual_q"
   };
 
-  /// `frequency`: Hz; 0 or a rate above the controller's maximum selects the maximum. `limit`: timeout of
+  /// `frequency`: Hz; 0 or a rate above the controller's maximum selects the maximum. `timeout`: timeout of
   /// each step of connecting. Errors: link_lost; not_supported, naming the fields that this controller lacks.
   static Expected<RtdeSubscription> open(const std::string & address, const std::vector<std::string> & fields,
                                          double frequency,
-                                         std::chrono::milliseconds limit = std::chrono::milliseconds(500));
+                                         std::chrono::milliseconds timeout = std::chrono::milliseconds(500));
   RtdeSubscription(RtdeSubscription &&) noexcept;
   RtdeSubscription & operator=(RtdeSubscription &&) noexcept;
   ~RtdeSubscription();

@@ -19,7 +19,7 @@ class TcpSocket {
   using Clock = std::chrono::steady_clock;
 
   static Expected<TcpSocket> connect(const std::string & address, std::uint16_t port,
-                                     std::chrono::milliseconds limit);
+                                     std::chrono::milliseconds timeout);
   TcpSocket(TcpSocket && other) noexcept;
   TcpSocket & operator=(TcpSocket && other) noexcept;
   TcpSocket(const TcpSocket &) = delete;

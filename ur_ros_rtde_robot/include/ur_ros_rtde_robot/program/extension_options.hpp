@@ -11,7 +11,7 @@ namespace ur_ros_rtde {
 /// Options of Robot::run_extension().
 struct ExtensionOptions {
   /// Time after which the extension is stopped.
-  std::chrono::milliseconds limit{10'000};
+  std::chrono::milliseconds timeout{10'000};
   /// Called every few milliseconds in the calling thread: the reason to stop the extension early, if there
   /// is one.
   std::function<std::optional<Error>()> stop_reason;

@@ -20,13 +20,13 @@ enum class ScriptKind {
 /// How a script ended.
 enum class ScriptEnd {
   finished,       ///< reached its end, or a `return` or `halt` of its own
-  refused,        ///< not sent; see the error
+  rejected,       ///< not sent; see the error
   compile_error,  ///< rejected by the controller's compiler; no part of it ran
   runtime_error,  ///< aborted by the controller because of an error in the script
   stopped,        ///< stopped on the pendant, by a dashboard command or by another program
   robot_stopped,  ///< protective, safeguard or emergency stop, or the arm was powered off
   interrupted,    ///< ScriptOptions::stop_reason returned a reason
-  timeout,        ///< ScriptOptions::limit was exceeded
+  timeout,        ///< ScriptOptions::timeout was exceeded
   link_lost,      ///< the connection was lost; the outcome is unknown
 };
 
@@ -35,7 +35,7 @@ const char * to_string(ScriptEnd end);
 struct ScriptOptions {
   ScriptKind kind = ScriptKind::program;
   /// Time from sending the script to its end: at least 1 ms; at most 10 s for a secondary program.
-  std::chrono::milliseconds limit = std::chrono::minutes(10);
+  std::chrono::milliseconds timeout = std::chrono::minutes(10);
   /// Called every few milliseconds in the calling thread: the reason to stop the script early, if there is
   /// one. In a command: `[&run] { return run.stop_reason(); }`.
   std::function<std::optional<Error>()> stop_reason;
@@ -44,7 +44,7 @@ struct ScriptOptions {
 };
 
 struct ScriptReport {
-  ScriptEnd end = ScriptEnd::refused;
+  ScriptEnd end = ScriptEnd::rejected;
   /// ErrorCode::none if the script finished. A compile or run-time error is rejected_by_robot, with line and
   /// text in the message.
   Error error;

@@ -129,10 +129,10 @@ struct Sample {
   std::array<double, 8> output_double_registers;     ///< 12-19 (+ register offset)
 
   SafetyBits safety() const;
-  bool power_on() const { return (robot_status_bits & 1U) != 0; }
+  bool is_powered_on() const { return (robot_status_bits & 1U) != 0; }
   /// See script_extension.hpp: 0 when no extension runs, its number when it has finished.
   double extension_acknowledgement() const { return output_double_registers[18 - 12]; }
-  bool program_running() const { return runtime_state == RuntimeState::playing; }
+  bool is_program_running() const { return runtime_state == RuntimeState::playing; }
 };
 
 static_assert(std::is_trivially_copyable_v<Sample>);

@@ -73,9 +73,9 @@ class StateReceiver {
 
   /// The newest sample, even if the connection has been lost; none before the first.
   std::optional<Sample> latest() const;
-  /// Waits for a sample newer than `last` (by its sequence) and writes it to `last`. False after `limit` or
+  /// Waits for a sample newer than `last` (by its sequence) and writes it to `last`. False after `timeout` or
   /// if a stop is requested.
-  bool wait_for_next(Sample & last, std::chrono::milliseconds limit, std::stop_token stop = {}) const;
+  bool wait_for_next(Sample & last, std::chrono::milliseconds timeout, std::stop_token stop = {}) const;
 
   /// ur_rtde's interface, for data that a Sample does not contain. Throws RobotError (link_lost) without a
   /// connection.

@@ -159,7 +159,7 @@ std::string ControlScripts::missing_urcaps_message() const
   }
   return parts.empty() ? std::string()
                        : fmt::format(
-                             "not installed on this robot: {}; goals for these commands are refused; "
+                             "not installed on this robot: {}; goals for these commands are rejected; "
                              "to use them, install it and start the driver again",
                              fmt::join(parts, "; "));
 }

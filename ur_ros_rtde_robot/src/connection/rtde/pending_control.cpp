@@ -33,11 +33,11 @@ Status RtdeInterfaces::connect_pending_control()
     pending_ = std::move(control);
     return {};
   } catch (const std::exception & error) {
-    return tl::unexpected(connection_error("the robot refuses the control interface", error));
+    return tl::unexpected(connection_error("the robot rejects the control interface", error));
   }
 }
 
-bool RtdeInterfaces::pending_program_alive(std::chrono::milliseconds limit,
+bool RtdeInterfaces::pending_program_alive(std::chrono::milliseconds timeout,
                                            const std::stop_token & stop) const
 {
   std::shared_ptr<RTDEControlInterface> control;
@@ -47,13 +47,13 @@ bool RtdeInterfaces::pending_program_alive(std::chrono::milliseconds limit,
   }
   // The first state that an interface receives counts as a heartbeat: only later ones are evidence.
   constexpr int ignored_states = 15;
-  constexpr std::chrono::milliseconds heartbeat_limit(50);
-  const auto deadline = Clock::now() + limit;
+  constexpr std::chrono::milliseconds heartbeat_timeout(50);
+  const auto deadline = Clock::now() + timeout;
   for (int states = 0; control && control->waitForNextState(); ++states) {
     if (states < ignored_states) {
       continue;
     }
-    if (control->isProgramRunning() && control->getTimeSinceHeartbeat() < heartbeat_limit) {
+    if (control->isProgramRunning() && control->getTimeSinceHeartbeat() < heartbeat_timeout) {
       return true;
     }
     if (stop.stop_requested() || Clock::now() > deadline) {

@@ -25,7 +25,7 @@ using ur_rtde::RTDEIOInterface;
 
 constexpr double controllers_frequency = -1.0;
 /// A running control program answers its first command within some cycles.
-constexpr std::chrono::seconds answer_limit(1);
+constexpr std::chrono::seconds answer_timeout(1);
 constexpr std::chrono::milliseconds suspend_timeout(500);
 constexpr std::chrono::milliseconds close_timeout(1000);
 
@@ -100,15 +100,15 @@ Status RtdeInterfaces::ensure_io()
     }
     return {};  // the previous interface is closed here
   } catch (const std::exception & error) {
-    return tl::unexpected(connection_error("the robot refuses the IO interface", error));
+    return tl::unexpected(connection_error("the robot rejects the IO interface", error));
   }
 }
 
 Status RtdeInterfaces::start_watchdog(RTDEControlInterface & control) const
 {
   // Other threads may have the interface already.
-  const HeldLock lock = acquire(*control_lock_, "control interface", answer_limit);
-  control.setCommandTimeout(answer_limit);
+  const HeldLock lock = acquire(*control_lock_, "control interface", answer_timeout);
+  control.setCommandTimeout(answer_timeout);
   const bool started = options_.watchdog_frequency == 0.0 || control.setWatchdog(options_.watchdog_frequency);
   control.setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
   if (!started) {
@@ -256,7 +256,7 @@ bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
   try {
     if (control && control->isConnected()) {
       // Other threads may have kept the interface.
-      const HeldLock lock = acquire(*control_lock_, "control interface", answer_limit);
+      const HeldLock lock = acquire(*control_lock_, "control interface", answer_timeout);
       works = control->reuploadScript();
     }
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
@@ -332,9 +332,9 @@ std::optional<Locked<RTDEIOInterface>> RtdeInterfaces::io() const
 
 bool RtdeInterfaces::control_heartbeat_lost() const
 {
-  constexpr std::chrono::milliseconds heartbeat_limit(50);
+  constexpr std::chrono::milliseconds heartbeat_timeout(50);
   const auto control = active_or_pending();
-  return control && control->getTimeSinceHeartbeat() > heartbeat_limit;
+  return control && control->getTimeSinceHeartbeat() > heartbeat_timeout;
 }
 
 void RtdeInterfaces::kick_watchdog()

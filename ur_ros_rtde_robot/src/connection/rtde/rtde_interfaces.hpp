@@ -53,8 +53,9 @@ class RtdeInterfaces {
   Status start_control(const ControllerVersion & version, const std::stop_token & stop);
   /// Opens a pending connection for a program that the URCap will start. Does nothing if there is one.
   Status connect_pending_control();
-  /// Whether the running program is the control program, judged by its heartbeat; waits for it up to `limit`.
-  bool pending_program_alive(std::chrono::milliseconds limit, const std::stop_token & stop) const;
+  /// Whether the running program is the control program, judged by its heartbeat; waits for it up to
+  /// `timeout`.
+  bool pending_program_alive(std::chrono::milliseconds timeout, const std::stop_token & stop) const;
   /// Starts the watchdog of the pending connection's program and makes the connection active.
   Status adopt_control();
   /// Ends the control program and makes its connection pending, until start_control(). False unless the

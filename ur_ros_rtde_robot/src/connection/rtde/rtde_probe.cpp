@@ -55,19 +55,19 @@ Expected<std::vector<std::byte>> reply(TcpSocket & socket, const std::string & a
 
 }  // namespace
 
-Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono::milliseconds limit)
+Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono::milliseconds timeout)
 {
-  auto socket = TcpSocket::connect(address, rtde_port, limit);
+  auto socket = TcpSocket::connect(address, rtde_port, timeout);
   if (!socket) {
     return tl::unexpected(socket.error());
   }
-  return probe_rtde(std::move(*socket), address, limit);
+  return probe_rtde(std::move(*socket), address, timeout);
 }
 
 Expected<ControllerVersion> probe_rtde(TcpSocket socket, const std::string & address,
-                                       std::chrono::milliseconds limit)
+                                       std::chrono::milliseconds timeout)
 {
-  const auto deadline = TcpSocket::Clock::now() + limit;
+  const auto deadline = TcpSocket::Clock::now() + timeout;
   constexpr std::array version_2{std::byte{0}, std::byte{5}, std::byte{request_protocol_version},
                                  std::byte{0}, std::byte{2}};
   if (const auto status = socket.write(version_2, deadline); !status) {
@@ -79,7 +79,7 @@ Expected<ControllerVersion> probe_rtde(TcpSocket socket, const std::string & add
   }
   if (accepted->size() != 1 || accepted->front() != std::byte{1}) {
     return tl::unexpected(
-        not_rtde(address, "it refuses protocol version 2, which PolyScope has had since 3.3"));
+        not_rtde(address, "it rejects protocol version 2, which PolyScope has had since 3.3"));
   }
   constexpr std::array version{std::byte{0}, std::byte{3}, std::byte{get_urcontrol_version}};
   if (const auto status = socket.write(version, deadline); !status) {
@@ -98,9 +98,9 @@ Expected<ControllerVersion> probe_rtde(TcpSocket socket, const std::string & add
   return ControllerVersion{number(0), number(1), number(2), number(3)};
 }
 
-Status probe_dashboard(TcpSocket socket, const std::string & address, std::chrono::milliseconds limit)
+Status probe_dashboard(TcpSocket socket, const std::string & address, std::chrono::milliseconds timeout)
 {
-  const auto greeting = socket.read_line(TcpSocket::Clock::now() + limit);
+  const auto greeting = socket.read_line(TcpSocket::Clock::now() + timeout);
   if (!greeting || greeting->find("Dashboard Server") == std::string::npos) {
     return failure(
         ErrorCode::link_lost,

@@ -9,15 +9,15 @@
 
 namespace ur_ros_rtde {
 
-/// Queries the version of the controller at `address` over RTDE protocol version 2, within `limit` for
+/// Queries the version of the controller at `address` over RTDE protocol version 2, within `timeout` for
 /// connecting and for the queries. Use this before ur_rtde's constructors, which wait without a limit and do
 /// not validate the answers.
-Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono::milliseconds limit);
+Expected<ControllerVersion> probe_rtde(const std::string & address, std::chrono::milliseconds timeout);
 /// The same over a new connection to `address`.
 Expected<ControllerVersion> probe_rtde(TcpSocket socket, const std::string & address,
-                                       std::chrono::milliseconds limit);
+                                       std::chrono::milliseconds timeout);
 
 /// Checks that a UR dashboard server answers on the new connection to `address`.
-Status probe_dashboard(TcpSocket socket, const std::string & address, std::chrono::milliseconds limit);
+Status probe_dashboard(TcpSocket socket, const std::string & address, std::chrono::milliseconds timeout);
 
 }  // namespace ur_ros_rtde

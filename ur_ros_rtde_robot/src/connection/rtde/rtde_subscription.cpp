@@ -102,7 +102,7 @@ class RtdeSubscription::Impl {
  public:
   Impl(TcpSocket socket, std::string name) : socket_(std::move(socket)), name_(std::move(name)) {}
 
-  Status set_up(const std::vector<std::string> & names, double frequency, std::chrono::milliseconds limit);
+  Status set_up(const std::vector<std::string> & names, double frequency, std::chrono::milliseconds timeout);
   Expected<bool> next(std::span<double> numbers, Clock::time_point deadline);
 
   std::vector<Field> fields_;
@@ -115,7 +115,7 @@ class RtdeSubscription::Impl {
     Bytes payload;  ///< valid until the next call of package()
   };
   Expected<std::optional<Package>> package(Clock::time_point deadline);
-  Expected<std::string> reply(char type, std::string_view payload, std::chrono::milliseconds limit);
+  Expected<std::string> reply(char type, std::string_view payload, std::chrono::milliseconds timeout);
   Status set_layout(const std::vector<std::string> & names, const std::vector<std::string> & types);
   tl::unexpected<Error> protocol_error(const std::string & what) const
   {
@@ -161,9 +161,9 @@ Expected<std::optional<RtdeSubscription::Impl::Package>> RtdeSubscription::Impl:
 
 /// Sends a request and waits for the reply, skipping text messages.
 Expected<std::string> RtdeSubscription::Impl::reply(char type, std::string_view payload,
-                                                    std::chrono::milliseconds limit)
+                                                    std::chrono::milliseconds timeout)
 {
-  const auto deadline = Clock::now() + limit;
+  const auto deadline = Clock::now() + timeout;
   if (const auto sent = socket_.write(request(type, payload), deadline); !sent) {
     return tl::unexpected(sent.error());
   }
@@ -208,20 +208,20 @@ Status RtdeSubscription::Impl::set_layout(const std::vector<std::string> & names
 }
 
 Status RtdeSubscription::Impl::set_up(const std::vector<std::string> & names, double frequency,
-                                      std::chrono::milliseconds limit)
+                                      std::chrono::milliseconds timeout)
 {
   frequency_ = frequency;
-  if (const auto answer = reply(protocol_version, std::string_view("\0\2", 2), limit); !answer) {
+  if (const auto answer = reply(protocol_version, std::string_view("\0\2", 2), timeout); !answer) {
     return tl::unexpected(answer.error());
   } else if (*answer != "\1") {
-    return protocol_error("it refuses protocol version 2, which PolyScope has had since 3.3");
+    return protocol_error("it rejects protocol version 2, which PolyScope has had since 3.3");
   }
   std::string recipe(8, '\0');
   const auto bits = std::bit_cast<std::uint64_t>(frequency);
   for (std::size_t i = 0; i < recipe.size(); ++i) {
     recipe[i] = static_cast<char>(bits >> (56U - 8U * i) & 0xFFU);
   }
-  const auto types = reply(setup_outputs, recipe + fmt::format("{}", fmt::join(names, ",")), limit);
+  const auto types = reply(setup_outputs, recipe + fmt::format("{}", fmt::join(names, ",")), timeout);
   if (!types) {
     return tl::unexpected(types.error());
   }
@@ -231,7 +231,7 @@ Status RtdeSubscription::Impl::set_up(const std::vector<std::string> & names, do
   if (Status layout_set = set_layout(names, split(std::string_view(*types).substr(1))); !layout_set) {
     return layout_set;
   }
-  const auto started = reply(start, {}, limit);
+  const auto started = reply(start, {}, timeout);
   if (!started) {
     return tl::unexpected(started.error());
   }
@@ -268,20 +268,20 @@ Expected<bool> RtdeSubscription::Impl::next(std::span<double> numbers, Clock::ti
 
 Expected<RtdeSubscription> RtdeSubscription::open(const std::string & address,
                                                   const std::vector<std::string> & fields, double frequency,
-                                                  std::chrono::milliseconds limit)
+                                                  std::chrono::milliseconds timeout)
 {
-  const auto version = probe_rtde(address, limit);
+  const auto version = probe_rtde(address, timeout);
   if (!version) {
     return tl::unexpected(version.error());
   }
-  auto socket = TcpSocket::connect(address, rtde_port, limit);
+  auto socket = TcpSocket::connect(address, rtde_port, timeout);
   if (!socket) {
     return tl::unexpected(socket.error());
   }
   auto impl = std::make_unique<Impl>(std::move(*socket), fmt::format("{}:{}", address, rtde_port));
   const double maximum = version->frequency();
   if (const auto ready =
-          impl->set_up(fields, frequency > 0.0 ? std::min(frequency, maximum) : maximum, limit);
+          impl->set_up(fields, frequency > 0.0 ? std::min(frequency, maximum) : maximum, timeout);
       !ready) {
     return tl::unexpected(ready.error());
   }

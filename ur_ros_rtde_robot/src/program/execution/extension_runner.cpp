@@ -14,9 +14,9 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds acknowledgement_limit(1000);
-constexpr milliseconds message_limit(300);  // from the end of the program to the error message
-constexpr int lines_before_extensions = 1;  // `def rtde_control():`
+constexpr milliseconds acknowledgement_timeout(1000);
+constexpr milliseconds message_timeout(300);  // from the end of the program to the error message
+constexpr int lines_before_extensions = 1;    // `def rtde_control():`
 
 }  // namespace
 
@@ -32,7 +32,7 @@ struct ExtensionRunner::Run {
 
 bool ExtensionRunner::wait_for_acknowledgement(double value) const
 {
-  return wait_until(state_, acknowledgement_limit, [value](const Sample & sample) {
+  return wait_until(state_, acknowledgement_timeout, [value](const Sample & sample) {
     return sample.sequence != 0 && sample.extension_acknowledgement() == value;
   });
 }
@@ -41,7 +41,7 @@ bool ExtensionRunner::wait_for_acknowledgement(double value) const
 Status ExtensionRunner::failure_of(Run & run) const
 {
   const auto version = state_.version().value_or(ControllerVersion{});
-  const auto deadline = Clock::now() + message_limit;
+  const auto deadline = Clock::now() + message_timeout;
   while (Clock::now() < deadline) {
     const auto message = run.primary.next(milliseconds(50));
     if (!message) {
@@ -83,9 +83,9 @@ std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions 
       return Status(tl::unexpected(*reason));
     }
   }
-  if (Clock::now() - run.begin > options.limit) {
+  if (Clock::now() - run.begin > options.timeout) {
     return failure(ErrorCode::timeout, fmt::format("the extension {} has not ended after {:.1f} s", run.name,
-                                                   std::chrono::duration<double>(options.limit).count()));
+                                                   std::chrono::duration<double>(options.timeout).count()));
   }
   return std::nullopt;
 }

@@ -23,7 +23,7 @@ class ExtensionRunner {
   {
   }
 
-  /// Starts the extension if `permission` succeeds when nothing can come in between any more. Returns when it
+  /// Starts the extension if `permission` succeeds when nothing can come in between anymore. Returns when it
   /// has finished, or was ended by the options, an error or a stop of the robot. If it fails, the caller
   /// stops the arm: the extension may still run.
   Status run(const std::string & name, const ExtensionOptions & options,

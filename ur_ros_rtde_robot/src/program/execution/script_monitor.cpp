@@ -16,8 +16,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::size_t max_lines = 1000;
-constexpr milliseconds send_limit(1000);
-constexpr milliseconds begin_limit(3000);  // from sending to the begin marker
+constexpr milliseconds send_timeout(1000);
+constexpr milliseconds script_begin_timeout(3000);  // from sending to the begin marker
 constexpr milliseconds message_wait(4);
 constexpr std::string_view control_program = "rtde_control";  ///< its name, given by ur_rtde
 
@@ -57,8 +57,8 @@ const char * to_string(ScriptEnd end)
   switch (end) {
     case ScriptEnd::finished:
       return "finished";
-    case ScriptEnd::refused:
-      return "refused";
+    case ScriptEnd::rejected:
+      return "rejected";
     case ScriptEnd::compile_error:
       return "compile error";
     case ScriptEnd::runtime_error:
@@ -105,14 +105,14 @@ void ScriptMonitor::run(const script::Program & program)
   sent_ = Clock::now();
   if (options_.stop_reason) {
     if (const auto reason = options_.stop_reason()) {
-      complete(ScriptEnd::refused, reason->code, reason->message);
+      complete(ScriptEnd::rejected, reason->code, reason->message);
       return;
     }
   }
   if (options_.kind == ScriptKind::program && replaced_before_begin()) {
     return;
   }
-  if (const auto sent = primary_.send(program.text.text(), send_limit); !sent) {
+  if (const auto sent = primary_.send(program.text.text(), send_timeout); !sent) {
     complete(ScriptEnd::link_lost, sent.error().code,
              "the script could not be sent: " + sent.error().message);
     return;
@@ -129,9 +129,9 @@ bool ScriptMonitor::replaced_before_begin()
     if (read_messages(milliseconds(0))) {
       return true;
     }
-  } while (messages_left_ && !replaced() && Clock::now() - sent_ < send_limit);
+  } while (messages_left_ && !replaced() && Clock::now() - sent_ < send_timeout);
   return replaced() &&
-         complete(ScriptEnd::refused, ErrorCode::program_stopped,
+         complete(ScriptEnd::rejected, ErrorCode::program_stopped,
                   fmt::format("another program, `{}`, began before the script was sent", replaced_by_));
 }
 
@@ -244,7 +244,7 @@ bool ScriptMonitor::has_ended()
   if (!begin_seen_ || !sample || sample->received <= *begin_seen_) {
     return false;
   }
-  has_played_ = has_played_ || sample->program_running();
+  has_played_ = has_played_ || sample->is_program_running();
   const bool stopped = sample->runtime_state == RuntimeState::stopped &&
                        (has_played_ || now - *begin_seen_ > (end_seen_ ? max_skew / 5 : max_skew));
   if (!stopped) {
@@ -304,11 +304,11 @@ bool ScriptMonitor::must_stop()
 bool ScriptMonitor::limit_exceeded()
 {
   const auto elapsed = Clock::now() - sent_;
-  if (elapsed > options_.limit) {
+  if (elapsed > options_.timeout) {
     return complete(ScriptEnd::timeout, ErrorCode::timeout,
                     fmt::format("the script had not ended after {:.1f} s", seconds(elapsed)));
   }
-  if (!begin_seen_ && elapsed > begin_limit) {
+  if (!begin_seen_ && elapsed > script_begin_timeout) {
     return complete(
         ScriptEnd::timeout, ErrorCode::timeout,
         fmt::format("the controller has not begun the script after {:.1f} s: is the robot in remote control?",

@@ -16,37 +16,37 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds yield_limit(5000);
-constexpr milliseconds resume_limit(5000);
-constexpr milliseconds standstill_limit(500);
+constexpr milliseconds yield_timeout(5000);
+constexpr milliseconds resume_timeout(5000);
+constexpr milliseconds standstill_timeout(500);
 constexpr milliseconds longest_secondary(10'000);
 
-ScriptReport refused(Error error)
+ScriptReport rejected(Error error)
 {
   ScriptReport report;
   report.error = std::move(error);
   return report;
 }
 
-ScriptReport refused(const script::Fault & fault)
+ScriptReport rejected(const script::Fault & fault)
 {
   ScriptReport report =
-      refused(Error{ErrorCode::invalid_goal,
-                    fault.line > 0 ? fmt::format("line {}: {}", fault.line, fault.message) : fault.message});
+      rejected(Error{ErrorCode::invalid_goal,
+                     fault.line > 0 ? fmt::format("line {}: {}", fault.line, fault.message) : fault.message});
   report.line = fault.line;
   return report;
 }
 
 std::optional<Error> check(const ScriptOptions & options)
 {
-  if (options.limit < milliseconds(1)) {
+  if (options.timeout < milliseconds(1)) {
     return Error{ErrorCode::invalid_goal,
-                 fmt::format("limit is {} ms: it must be 1 ms or more", options.limit.count())};
+                 fmt::format("timeout is {} ms: it must be 1 ms or more", options.timeout.count())};
   }
-  if (options.kind == ScriptKind::secondary && options.limit > longest_secondary) {
+  if (options.kind == ScriptKind::secondary && options.timeout > longest_secondary) {
     return Error{ErrorCode::invalid_goal,
-                 fmt::format("limit is {} ms: a secondary program must end within {} ms",
-                             options.limit.count(), longest_secondary.count())};
+                 fmt::format("timeout is {} ms: a secondary program must end within {} ms",
+                             options.timeout.count(), longest_secondary.count())};
   }
   return std::nullopt;
 }
@@ -66,8 +66,8 @@ class ResumeGuard {
   ~ResumeGuard()
   {
     // The status of the robot tells why the control program does not run, if it does not.
-    std::ignore =
-        monitor_.replaced() ? manager_.resume_after_replacement(resume_limit) : manager_.resume(resume_limit);
+    std::ignore = monitor_.replaced() ? manager_.resume_after_replacement(resume_timeout)
+                                      : manager_.resume(resume_timeout);
   }
   ResumeGuard(const ResumeGuard &) = delete;
   ResumeGuard & operator=(const ResumeGuard &) = delete;
@@ -107,17 +107,17 @@ std::string ScriptRunner::preamble() const
 ScriptReport ScriptRunner::run(Permit * holder, const std::string & script, const ScriptOptions & options)
 {
   if (auto error = check(options)) {
-    return refused(std::move(*error));
+    return rejected(std::move(*error));
   }
   const bool secondary = options.kind == ScriptKind::secondary;
   if (!secondary && holder == nullptr) {
-    return refused(Error{ErrorCode::exception, "a script of kind `program` needs Resource::script"});
+    return rejected(Error{ErrorCode::exception, "a script of kind `program` needs Resource::script"});
   }
   if (!secondary && options_.control_mode == ControlMode::control_urcap) {
-    return refused(Error{ErrorCode::not_supported,
-                         "not with control_mode control_urcap: the script would end the program of the "
-                         "robot, which only the operator can restart. Use control_mode upload, or "
-                         "a script of kind `sec`"});
+    return rejected(Error{ErrorCode::not_supported,
+                          "not with control_mode control_urcap: the script would end the program of the "
+                          "robot, which only the operator can restart. Use control_mode upload, or "
+                          "a script of kind `sec`"});
   }
   const auto id = next_id_++;
   const ScriptMonitor::Markers markers{fmt::format("ur_ros_rtde: script {:08x} begins", id),
@@ -125,11 +125,11 @@ ScriptReport ScriptRunner::run(Permit * holder, const std::string & script, cons
   const auto program =
       script::make_program(script, {secondary, markers.begin, markers.end, secondary ? "" : preamble()});
   if (!program) {
-    return refused(program.error());
+    return rejected(program.error());
   }
   auto primary = PrimaryConnection::connect(options_.address, options_.connect_timeout);
   if (!primary) {
-    return refused(primary.error());
+    return rejected(primary.error());
   }
   ScriptMonitor monitor(std::move(*primary), state_, markers, options);
   if (secondary) {
@@ -143,27 +143,27 @@ ScriptReport ScriptRunner::run_program(Permit & holder, const script::Program & 
                                        ScriptMonitor & monitor)
 {
   const bool at_rest =
-      wait_until(state_, standstill_limit, [this](const Sample &) { return tracker_.view().at_rest; });
+      wait_until(state_, standstill_timeout, [this](const Sample &) { return tracker_.view().at_rest; });
   if (!at_rest) {
-    return refused(Error{ErrorCode::busy, "the arm moves: a script begins when it is at rest"});
+    return rejected(Error{ErrorCode::busy, "the arm moves: a script begins when it is at rest"});
   }
   const Generation begin = holder.generation();
   if (generation_() != begin) {
-    return refused(program_ended());
+    return rejected(program_ended());
   }
-  if (const auto yielded = manager_.yield(yield_limit); !yielded) {
-    return refused(yielded.error());
+  if (const auto yielded = manager_.yield(yield_timeout); !yielded) {
+    return rejected(yielded.error());
   }
   const ResumeGuard resume(manager_, monitor);
   // The goal is that of one control program, which has yielded; not that of another one, which was started in
   // between.
   if (const Generation now = generation_(); now.link != begin.link || now.starts != begin.starts + 1) {
-    return refused(program_ended());
+    return rejected(program_ended());
   }
   StartedActivities::Script activity(activities_, [&monitor] { monitor.fence(); });
   monitor.on_begin = [&activity] { activity.set_begun(); };
   if (auto why = holder.revoked()) {  // a later stop finds the activity
-    return refused(*std::move(why));
+    return rejected(*std::move(why));
   }
   try {
     monitor.run(program);

@@ -43,7 +43,7 @@ class ForceMode {
 
   ForceMode(const RobotModel & model, double cycle_time, const ForceModeSettings & settings);
 
-  /// Changes the settings and keeps the present motion, as a further call of force_mode() does.
+  /// Changes the settings and keeps the current motion, as a further call of force_mode() does.
   void update(const ForceModeSettings & settings);
   const ForceModeSettings & settings() const { return settings_; }
   /// `program` is the setpoint of the program's motion, `commanded` the resulting setpoint. With

@@ -8,7 +8,7 @@
 
 namespace ur_simulator {
 
-/// Plans the paths of movej, movel, movep, movec and servoc from the present setpoint. Targets and options
+/// Plans the paths of movej, movel, movep, movec and servoc from the current setpoint. Targets and options
 /// must have been checked.
 class PathPlanner {
  public:
@@ -17,7 +17,7 @@ class PathPlanner {
   PathPlanner(const RobotModel & model, const TcpKinematics & kinematics, const Setpoint & setpoint,
               double cycle_time, const PathMotion * previous);
 
-  /// Start of the next path: the target of the previous path, or the present TCP pose.
+  /// Start of the next path: the target of the previous path, or the current TCP pose.
   Transform start() const;
   /// True if a path to this TCP pose with this blend radius (m) would begin or end inside the previous blend.
   bool overlaps(const Transform & target, double blend_radius) const;
@@ -71,7 +71,7 @@ class PathPlanner {
   double cycle_time_;
   const PathMotion * previous_;
   Vector6 previous_target_joints_ = Vector6::Zero();
-  double distance_to_waypoint_ = 0.0;  ///< m, from the present TCP to the target of the previous path
+  double distance_to_waypoint_ = 0.0;  ///< m, from the current TCP to the target of the previous path
 };
 
 }  // namespace ur_simulator

@@ -32,7 +32,7 @@ class ResidualMotion {
   double time_ = 0.0;
 };
 
-/// Decelerations for the present joint velocity: `preferred`, and more where a joint would otherwise exceed
+/// Decelerations for the current joint velocity: `preferred`, and more where a joint would otherwise exceed
 /// its position limit.
 Vector6 residual_deceleration(const RobotModel & model, const Setpoint & setpoint, double preferred);
 

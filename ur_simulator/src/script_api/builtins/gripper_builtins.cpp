@@ -13,7 +13,7 @@ class GripperOperation final : public urscript::Operation {
   explicit GripperOperation(const SoftGripper & gripper) : gripper_(gripper) {}
   tl::expected<std::optional<Value>, std::string> poll(CallContext &) override
   {
-    return gripper_.busy() ? std::optional<Value>() : Value(0);
+    return gripper_.is_busy() ? std::optional<Value>() : Value(0);
   }
 
  private:
@@ -103,7 +103,7 @@ void add_gripper_builtins(Library & library, const RobotContextPtr & robot)
                  }});
   }
   library.add({"sg_busy", {{"tool_index", Value(0)}}, 0, [gripper](CallContext &, Arguments) -> Outcome {
-                 return Value(gripper->busy());
+                 return Value(gripper->is_busy());
                }});
 }
 

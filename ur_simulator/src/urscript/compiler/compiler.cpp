@@ -248,7 +248,7 @@ const std::string & Program::name() const
   return code_->name;
 }
 
-bool Program::secondary() const
+bool Program::is_secondary() const
 {
   return code_->secondary;
 }

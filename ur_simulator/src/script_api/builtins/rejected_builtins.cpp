@@ -6,18 +6,18 @@ namespace ur_simulator::script_api {
 
 namespace {
 
-struct RefusedBuiltin {
+struct RejectedBuiltin {
   const char * name;
   std::vector<urscript::Parameter> parameters;
   std::size_t required;
 };
 
-struct RefusedGroup {
+struct RejectedGroup {
   const char * reason;
-  std::vector<RefusedBuiltin> builtins;
+  std::vector<RejectedBuiltin> builtins;
 };
 
-RefusedGroup conveyor_tracking()
+RejectedGroup conveyor_tracking()
 {
   return {
       "conveyor tracking is not modelled",
@@ -27,7 +27,7 @@ RefusedGroup conveyor_tracking()
       }};
 }
 
-RefusedGroup modbus_signals()
+RejectedGroup modbus_signals()
 {
   return {"no MODBUS device is connected",
           {
@@ -55,7 +55,7 @@ RefusedGroup modbus_signals()
           }};
 }
 
-RefusedGroup euromap()
+RejectedGroup euromap()
 {
   return {"no Euromap67 interface is installed",
           {
@@ -66,7 +66,7 @@ RefusedGroup euromap()
           }};
 }
 
-RefusedGroup sockets()
+RejectedGroup sockets()
 {
   return {"the library has no sockets",
           {
@@ -86,7 +86,7 @@ RefusedGroup sockets()
           }};
 }
 
-RefusedGroup frame_tracking()
+RejectedGroup frame_tracking()
 {
   return {"frames are not tracked",
           {
@@ -95,7 +95,7 @@ RefusedGroup frame_tracking()
           }};
 }
 
-RefusedGroup frame_masses()
+RejectedGroup frame_masses()
 {
   return {"frames have no mass",
           {
@@ -106,19 +106,19 @@ RefusedGroup frame_masses()
 
 }  // namespace
 
-void add_refused_builtins(Library & library)
+void add_rejected_builtins(Library & library)
 {
-  for (const RefusedGroup & group :
+  for (const RejectedGroup & group :
        {conveyor_tracking(), modbus_signals(), euromap(), sockets(), frame_tracking(), frame_masses()}) {
-    for (const RefusedBuiltin & builtin : group.builtins) {
-      library.add_refused(builtin.name, builtin.parameters, builtin.required, group.reason);
+    for (const RejectedBuiltin & builtin : group.builtins) {
+      library.add_rejected(builtin.name, builtin.parameters, builtin.required, group.reason);
     }
   }
   for (const char * name : {"eip_reader_factory", "eip_writer_factory"}) {
-    library.add_refused(name, {"connection", "size"}, 2, "no EtherNet/IP scanner is connected");
+    library.add_rejected(name, {"connection", "size"}, 2, "no EtherNet/IP scanner is connected");
   }
-  library.add_refused("rpc_factory", {"type", "url"}, 2, "the library has no connections");
-  library.add_refused("set_pos", {"q"}, 1, "only PolyScope's simulation mode places the arm");
+  library.add_rejected("rpc_factory", {"type", "url"}, 2, "the library has no connections");
+  library.add_rejected("set_pos", {"q"}, 1, "only PolyScope's simulation mode places the arm");
 }
 
 }  // namespace ur_simulator::script_api
