@@ -58,7 +58,7 @@ def test_package_lists_are_downloaded_once_where_the_machine_has_none(tmp_path, 
 
 
 def test_a_program_that_takes_too_long_is_reported(monkeypatch):
-    monkeypatch.setattr(browser, "LIMIT", 0.1)
+    monkeypatch.setattr(browser, "TIMEOUT", 0.1)
     with pytest.raises(console.Failure, match="took longer than 0.1 s"):
         browser._run(["sleep", "60"])
 
