@@ -36,6 +36,10 @@ def commands_in(text):
     return set(re.findall(r"^    (\w+)(?:  |$)", text, re.M))
 
 
+def test_both_show_the_version_without_a_build():
+    assert run_outside("--version").stdout == run_inside("--version").stdout == f"ur_ros_rtde {main._version()}\n"
+
+
 def test_the_help_lists_the_same_commands():
     expected = {*COMMANDS, *CHECKOUT_COMMANDS}
     for result, name in ((run_outside("--help"), "./ur"), (run_inside("--help"), "ur")):

@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 from typing import Any, Callable, List, Optional, Tuple
+from xml.etree import ElementTree
 
 from . import build as building
 from . import console, disk, doctor, fuzz, lint, new, simulation, testing, viewer
@@ -210,10 +211,15 @@ def _forwarded(options: argparse.Namespace) -> List[str]:
     return arguments[1:] if arguments[:1] == ["--"] else arguments
 
 
+def _version() -> str:
+    return ElementTree.parse(ROOT / "ur_ros_rtde" / "package.xml").findtext("version") or ""
+
+
 def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     """Returns the parser and the names of the commands."""
     parser = argparse.ArgumentParser(prog=PROGRAM, description=DESCRIPTION,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--version", action="version", version=f"ur_ros_rtde {_version()}", help="show the version of the driver")
     commands = parser.add_subparsers(dest="command", metavar="command")
 
     def add(name: str, function: Command, text: str, **more: Any) -> argparse.ArgumentParser:

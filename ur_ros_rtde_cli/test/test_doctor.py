@@ -129,6 +129,12 @@ def test_an_address_that_cannot_be_reached():
     assert finding.state is State.FAULT and "cannot be reached" in finding.text
 
 
+@pytest.mark.parametrize("name", ["nohost.invalid", "999.1.1.1", "a..b"])
+def test_a_name_that_cannot_be_resolved(name):
+    finding = the(check(name), "address")
+    assert finding.state is State.FAULT and f"{name} is neither an IPv4 address nor a host name" in finding.text
+
+
 @pytest.mark.parametrize("version, model, state, mentions", [
     ("5.99.0", "ur10e", State.WARNING, "is newer than 5.25"), ("3.15.8", "ur5", State.OK, "PolyScope 3.15.8"),
     ("3.3.0", "ur5", State.FAULT, "is older than 3.5"), ("5.5.0", "ur3e", State.OK, "PolyScope 5.5.0")])
@@ -180,9 +186,11 @@ def test_a_state_in_which_the_driver_cannot_work(simulator, command, fields, sub
     assert finding.state is state and finding.remedy
 
 
-def test_another_client_that_controls_the_robot(simulator):
+def test_another_client_that_controls_the_robot(simulator, capsys):
     with Rtde(ADDRESS, 5.0) as client:
         client.input_types(["input_int_register_0", "speed_slider_mask"])
+        assert main(["doctor", "--robot", ADDRESS, "--duration", "0.2"]) == 0
+        assert capsys.readouterr().out.splitlines()[-1].endswith("; the robot is in use.")
         findings = check()
         assert "input registers" not in findings
         assert "holds 2 inputs, among them speed_slider_mask" in the(findings, "clients").text

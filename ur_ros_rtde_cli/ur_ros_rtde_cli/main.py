@@ -7,7 +7,8 @@ import os
 import pathlib
 import signal
 import sys
-from typing import List, Optional
+from typing import Any, List, Optional
+from xml.etree import ElementTree
 
 from .errors import CliError
 from .interruptions import Interrupted
@@ -41,10 +42,22 @@ ur_ros_rtde, or with `ur` in its `./ur shell`.
 """
 
 
+class _ShowVersion(argparse.Action):
+    """Reads the version of the installed package only if it is asked for."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from ament_index_python import get_package_share_directory  # imported here because --help does not need ROS
+        description = pathlib.Path(get_package_share_directory("ur_ros_rtde_cli"), "package.xml").read_text()
+        distribution = f", ROS 2 {os.environ['ROS_DISTRO']}" if "ROS_DISTRO" in os.environ else ""
+        print(f"ur_ros_rtde {ElementTree.fromstring(description).findtext('version')}{distribution}")
+        parser.exit()
+
+
 def _make_parser() -> argparse.ArgumentParser:
     """Returns the parser for `ur --help`."""
     parser = argparse.ArgumentParser(prog="ur", description=DESCRIPTION, epilog=EPILOG,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--version", action=_ShowVersion, nargs=0, help="show the version of the driver")
     commands = parser.add_subparsers(metavar="command", required=True)
     for name, text in COMMANDS.items():
         commands.add_parser(name, help=text)

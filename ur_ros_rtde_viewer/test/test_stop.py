@@ -109,3 +109,22 @@ def test_an_answer_that_waits_for_a_late_viewer_is_no_silence_of_the_driver(runn
     running.viewer.control._robots[0]._stopper._control.post(lambda: time.sleep(2.0 * ACCEPTANCE_TIMEOUT))  # occupies the thread
     until(lambda: any(end in text() for end in ("At rest after", *THROUGH_THE_DASHBOARD)), "the end of the stop")
     assert "At rest after" in text()
+
+
+def seconds_to_rest(text):
+    return float(text().partition("At rest after ")[2].split()[0])
+
+
+def test_the_time_of_a_held_button_counts_from_its_first_press(running, nodes, simulator, client):
+    ready_to_stop(running, client)
+    assert client.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=2.0, acceleration=15.0).accepted
+    until(lambda: simulator.state()["actual"]["velocity"][0] > 1.9, "the speed from which the arm stops in 1 s")
+    text = press(running)
+    until(lambda: simulator.state()["actual"]["velocity"][0] < 1.0, "the middle of the deceleration")
+    press(running)
+    until(lambda: "At rest after" in text(), "the standstill")
+    assert seconds_to_rest(text) > 0.8
+    shown, ended = text(), nodes["command_server"].output().count("/stop: goal")
+    press(running)
+    until(lambda: nodes["command_server"].output().count("/stop: goal") > ended, "the end of the stop")
+    assert text() == shown

@@ -42,6 +42,7 @@ def judge(types: Dict[str, str]) -> List[Finding]:
                               "register_range:=upper"))
     if groups or upper or (lower and not fieldbus):
         held = [*groups, *upper, *([] if fieldbus else lower)]
-        findings.append(warning("clients", f"another RTDE client controls the robot: it holds {len(held)} inputs, among them {held[0]}",
-                                "a driver that starts now reports ROBOT_IN_USE; stop the other driver or client first"))
+        findings.append(warning("clients", "a driver or another RTDE client controls the robot: "
+                                f"it holds {len(held)} inputs, among them {held[0]}",
+                                "nothing, if it is yours; otherwise stop it first: a second driver reports ROBOT_IN_USE"))
     return findings or [ok("input registers", "free: no fieldbus and no other client holds them")]

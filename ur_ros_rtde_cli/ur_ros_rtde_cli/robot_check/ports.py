@@ -14,6 +14,7 @@ class Outcome(enum.Enum):
     REFUSED = "refused"
     SILENT = "no answer"
     UNREACHABLE = "unreachable"
+    UNKNOWN = "unknown name"
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,8 @@ def probe(address: str, port: int, limit: float) -> Outcome:
         return Outcome.SILENT
     except ConnectionRefusedError:
         return Outcome.REFUSED
+    except (socket.gaierror, UnicodeError):  # the codec of host names raises UnicodeError for a name that cannot be one
+        return Outcome.UNKNOWN
     except OSError as error:
         return Outcome.SILENT if error.errno == errno.ETIMEDOUT else Outcome.UNREACHABLE
 
@@ -49,8 +52,8 @@ def probe_all(address: str, limit: float) -> Dict[int, Outcome]:
     outcomes: Dict[int, Outcome] = {}
     for port in SERVICES:
         outcomes[port] = probe(address, port, limit)
-        if outcomes[port] is Outcome.UNREACHABLE:
-            return {port: Outcome.UNREACHABLE for port in SERVICES}
+        if outcomes[port] in (Outcome.UNREACHABLE, Outcome.UNKNOWN):
+            return {other: outcomes[port] for other in SERVICES}
     return outcomes
 
 
@@ -59,6 +62,9 @@ def judge(address: str, outcomes: Dict[int, Outcome]) -> List[Finding]:
     found = set(outcomes.values())
     if found == {Outcome.OPEN}:
         return [ok("ports", f"{', '.join(map(str, outcomes))} are open")]
+    if found == {Outcome.UNKNOWN}:
+        return [fault("address", f"{address} is neither an IPv4 address nor a host name that this host can resolve",
+                      "give the address that PolyScope shows under Settings > System > Network")]
     if found == {Outcome.UNREACHABLE}:
         return [fault("address", f"{address} cannot be reached from this host",
                       "give this host an address in the network of the robot, and check the cable (`ip addr`, `ip route`)")]

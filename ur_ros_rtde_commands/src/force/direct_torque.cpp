@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ur_ros_rtde_msgs/action/direct_torque.hpp>
 
-#include "check_result.hpp"
+#include "ur_ros_rtde/check_result.hpp"
 #include "ur_ros_rtde/command.hpp"
 #include "wait_for_duration.hpp"
 

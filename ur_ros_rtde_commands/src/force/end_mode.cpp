@@ -7,18 +7,18 @@ namespace ur_ros_rtde {
 /// Ends a mode that a previous goal has activated, and waits for standstill.
 class EndModeCommand : public Command<ur_ros_rtde_msgs::action::Trigger> {
  public:
-  EndModeCommand(EndFunction end, std::string mode) : end_(end), mode_(std::move(mode)) {}
+  EndModeCommand(Mode::EndFunction end, std::string mode) : end_(end), mode_(std::move(mode)) {}
 
  private:
   CommandTraits traits() const override { return {.leaves_mode_active = true}; }
   Outcome run(const Goal &, Run & run) override
   {
-    end_mode(run, end_, mode_);
+    Mode(run, end_, mode_).end();
     const auto stop_reason = run.until_standstill();
     return stop_reason ? Outcome(*stop_reason) : Outcome::success();
   }
 
-  const EndFunction end_;
+  const Mode::EndFunction end_;
   const std::string mode_;
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "check_result.hpp"
+#include "ur_ros_rtde/check_result.hpp"
 #include "ur_ros_rtde/command.hpp"
 #include "ur_ros_rtde/digital_output.hpp"
 

@@ -176,7 +176,7 @@ class Cell:
 
     def _reset_simulator(self):
         control = self.simulator.control
-        for command in ("clear_surfaces", "clear_pushes"):
+        for command in ("clear_surfaces", "clear_boxes", "clear_pushes"):
             control(command)
         control("speed_slider", fraction=1.0)
         control("set_sensor_noise", force=0.0)

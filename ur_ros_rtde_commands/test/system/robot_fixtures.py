@@ -90,6 +90,7 @@ def robot(simulator, driver, client):
     """A client of a driver that is ready, with the arm at home and no obstacles."""
     assert driver.running(), driver.output()
     simulator.control("clear_surfaces")
+    simulator.control("clear_boxes")
     simulator.control("clear_pushes")
     simulator.control("speed_slider", fraction=1.0)
     make_ready(client)

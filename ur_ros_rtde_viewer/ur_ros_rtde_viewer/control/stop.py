@@ -5,6 +5,7 @@ controller does not carry it out. If command_server does not accept the goal in 
 dashboard_server stops the program.
 """
 
+import time
 from enum import Enum
 from typing import Any, Callable, Optional
 
@@ -19,6 +20,7 @@ ACCEPTANCE_TIMEOUT = 0.3  # s; the driver needs 2 ms
 SILENCE_TIMEOUT = 0.5  # s, until the next feedback or the result; the driver sends feedback at 20 Hz
 DASHBOARD_TIMEOUT = 3.0  # s; a controller needs up to 1 s
 CHECKS = 5  # for an answer, within a timeout
+REPEAT_GAP = 1.0  # s; presses that follow each other faster are those of one button that is held
 
 
 class Outcome(Enum):
@@ -36,10 +38,25 @@ class Stopper:
         self._control = control
         self._stop = goals.client("stop", Stop)
         self._dashboard = goals.client("dashboard/stop", DashboardCommand)
+        self._hold = _Hold()
 
     def press(self, report: Report) -> None:
         """Stops the arm. `report` is called in the thread of the node. An answer that comes late is reported, too."""
-        self._control.post(lambda: _Press(self._control, self._stop, self._dashboard, report).start())
+        self._control.post(lambda: self._start(report))
+
+    def _start(self, report: Report) -> None:
+        if time.monotonic() - self._hold.last_press > REPEAT_GAP:
+            self._hold = _Hold()
+        self._hold.last_press = time.monotonic()
+        _Press(self._control, self._stop, self._dashboard, self._hold, report).start()
+
+
+class _Hold:
+    """The presses while the button is held: the time until standstill counts from the first one."""
+
+    def __init__(self) -> None:
+        self.begin = self.last_press = time.monotonic()
+        self.is_at_rest = False  # since a press
 
 
 class _Silence:
@@ -66,9 +83,9 @@ class _Silence:
 class _Press:
     """One press of the button. All methods run in the thread of the node."""
 
-    def __init__(self, control: ControlNode, stop: ActionClient, dashboard: ActionClient, report: Report):
+    def __init__(self, control: ControlNode, stop: ActionClient, dashboard: ActionClient, hold: _Hold, report: Report):
         self._node = control.node
-        self._stop, self._dashboard, self._report = stop, dashboard, report
+        self._stop, self._dashboard, self._hold, self._report = stop, dashboard, hold, report
         self._silence: Optional[_Silence] = None  # while an answer is expected
         self._fell_back = False  # to dashboard_server
 
@@ -86,7 +103,8 @@ class _Press:
             return
         handle.get_result_async().add_done_callback(lambda future: self._on_result(future.result().result))
         if not self._fell_back:
-            self._report(Outcome.STOPPING, "")
+            if not self._hold.is_at_rest:
+                self._report(Outcome.STOPPING, "")
             self._expect_answer(SILENCE_TIMEOUT, lambda: self._stop_program("command_server has not answered since it accepted the stop"))
 
     def _on_feedback(self) -> None:
@@ -98,7 +116,10 @@ class _Press:
             self._stop_program(result.message)
             return
         self._expect_nothing()
-        self._report(Outcome.STOPPED, f"At rest after {result.time_to_standstill:.2f} s")
+        if self._hold.is_at_rest and result.time_to_standstill == 0.0:
+            return  # it was at rest at an earlier press
+        self._hold.is_at_rest = True
+        self._report(Outcome.STOPPED, f"At rest after {time.monotonic() - self._hold.begin:.2f} s, at {time.strftime('%H:%M:%S')}.")
 
     def _expect_answer(self, timeout: float, on_silence: Callable[[], None]) -> None:
         """`on_silence` ends the expectation."""

@@ -7,7 +7,7 @@ class ForceMode : public Command<ur_ros_rtde_msgs::action::ForceMode> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    start_force_mode(goal, run);
+    Mode mode = start_force_mode(run, goal);
     const auto set_feedback = [&](const Sample & now) {
       const Vector6 & measured = now.actual_tcp_force;
       auto & wrench = run.feedback().wrench;
@@ -18,8 +18,7 @@ class ForceMode : public Command<ur_ros_rtde_msgs::action::ForceMode> {
       wrench.torque.y = measured[4];
       wrench.torque.z = measured[5];
     };
-    return end_mode_after(run, goal.duration, &ur_rtde::RTDEControlInterface::forceModeStop, "force mode",
-                          set_feedback);
+    return end_mode_after(run, goal.duration, mode, set_feedback);
   }
 };
 

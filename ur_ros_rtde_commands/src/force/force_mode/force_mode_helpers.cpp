@@ -29,18 +29,17 @@ void check_force_mode(const ur_ros_rtde_msgs::action::ForceMode::Goal & goal, bo
   check_duration(check, goal.duration, ends_with_goal);
 }
 
-void start_force_mode(const ur_ros_rtde_msgs::action::ForceMode::Goal & goal, Run & run)
+Mode start_force_mode(Run & run, const ur_ros_rtde_msgs::action::ForceMode::Goal & goal)
 {
-  using Control = ur_rtde::RTDEControlInterface;
-  check_modes_inactive(run, Control::MOTION_FREEDRIVE | Control::MOTION_TEACH, "force mode");
   const auto & force = goal.wrench.force;
   const auto & torque = goal.wrench.torque;
-  check_result(run.control()->forceModeSetDamping(goal.damping), "set the damping of force mode");
-  check_result(run.control()->forceModeSetGainScaling(goal.gain_scaling), "set the gain of force mode");
-  check_result(run.control()->forceMode(to_ur(goal.task_frame), to_int_flags(goal.compliant),
-                                        {force.x, force.y, force.z, torque.x, torque.y, torque.z}, goal.type,
-                                        {goal.limits.begin(), goal.limits.end()}),
-               "enter force mode");
+  return start_force_mode(run, {.task_frame = to_ur(goal.task_frame),
+                                .compliant = goal.compliant,
+                                .wrench = {force.x, force.y, force.z, torque.x, torque.y, torque.z},
+                                .type = goal.type,
+                                .limits = goal.limits,
+                                .damping = goal.damping,
+                                .gain_scaling = goal.gain_scaling});
 }
 
 }  // namespace ur_ros_rtde

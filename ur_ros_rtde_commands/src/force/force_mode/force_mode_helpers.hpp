@@ -11,6 +11,6 @@ void check_force_mode(const ur_ros_rtde_msgs::action::ForceMode::Goal & goal, bo
                       Check & check);
 
 /// Sets damping and gain, then activates force mode or changes its parameters.
-void start_force_mode(const ur_ros_rtde_msgs::action::ForceMode::Goal & goal, Run & run);
+Mode start_force_mode(Run & run, const ur_ros_rtde_msgs::action::ForceMode::Goal & goal);
 
 }  // namespace ur_ros_rtde

@@ -1,6 +1,7 @@
 #include <ur_ros_rtde_msgs/action/set_force_mode_parameter.hpp>
 
-#include "force/compliance.hpp"
+#include "ur_ros_rtde/check_result.hpp"
+#include "ur_ros_rtde/command.hpp"
 
 namespace ur_ros_rtde {
 

@@ -14,7 +14,7 @@ class ForceModeStart : public Command<ur_ros_rtde_msgs::action::ForceMode> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    start_force_mode(goal, run);
+    start_force_mode(run, goal).keep_on();
     return Outcome::success("force mode is on until force_mode_stop, stop, or a motion that fails");
   }
 };

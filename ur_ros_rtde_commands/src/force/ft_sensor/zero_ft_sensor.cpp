@@ -1,7 +1,8 @@
 #include <cmath>
 #include <ur_ros_rtde_msgs/action/zero_ft_sensor.hpp>
 
-#include "force/compliance.hpp"
+#include "ur_ros_rtde/check_result.hpp"
+#include "ur_ros_rtde/command.hpp"
 
 namespace ur_ros_rtde {
 namespace {

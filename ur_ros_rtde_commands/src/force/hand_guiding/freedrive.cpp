@@ -7,8 +7,8 @@ class Freedrive : public Command<ur_ros_rtde_msgs::action::Freedrive> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    start_freedrive(goal, run);
-    return end_mode_after(run, goal.duration, &ur_rtde::RTDEControlInterface::endFreedriveMode, "freedrive");
+    Mode mode = start_freedrive(run, goal);
+    return end_mode_after(run, goal.duration, mode);
   }
 };
 

@@ -9,7 +9,7 @@ class FreedriveStart : public Command<ur_ros_rtde_msgs::action::Freedrive> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    start_freedrive(goal, run);
+    start_freedrive(run, goal).keep_on();
     return Outcome::success("the arm can be moved by hand until freedrive_stop or stop");
   }
 };

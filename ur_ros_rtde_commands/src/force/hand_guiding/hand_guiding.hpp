@@ -10,8 +10,7 @@ namespace ur_ros_rtde {
 void check_freedrive(const ur_ros_rtde_msgs::action::Freedrive::Goal & goal, bool ends_with_goal,
                      Check & check);
 
-/// Allows the operator to move the arm by hand: in the axes of the goal, or in all axes (teach mode).
-void start_freedrive(const ur_ros_rtde_msgs::action::Freedrive::Goal & goal, Run & run);
-void start_teach_mode(Run & run);
+/// Allows the operator to move the arm by hand in the axes of the goal.
+Mode start_freedrive(Run & run, const ur_ros_rtde_msgs::action::Freedrive::Goal & goal);
 
 }  // namespace ur_ros_rtde

@@ -1,6 +1,6 @@
 #include <ur_ros_rtde_msgs/action/teach_mode.hpp>
 
-#include "force/hand_guiding/hand_guiding.hpp"
+#include "force/compliance.hpp"
 
 namespace ur_ros_rtde {
 
@@ -9,8 +9,8 @@ class TeachMode : public Command<ur_ros_rtde_msgs::action::TeachMode> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    start_teach_mode(run);
-    return end_mode_after(run, goal.duration, &ur_rtde::RTDEControlInterface::endTeachMode, "teach mode");
+    Mode mode = start_teach_mode(run);
+    return end_mode_after(run, goal.duration, mode);
   }
 };
 

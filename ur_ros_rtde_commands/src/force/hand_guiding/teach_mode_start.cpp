@@ -1,6 +1,6 @@
 #include <ur_ros_rtde_msgs/action/trigger.hpp>
 
-#include "force/hand_guiding/hand_guiding.hpp"
+#include "force/compliance.hpp"
 
 namespace ur_ros_rtde {
 
@@ -9,7 +9,7 @@ class TeachModeStart : public Command<ur_ros_rtde_msgs::action::Trigger> {
 
   Outcome run(const Goal &, Run & run) override
   {
-    start_teach_mode(run);
+    start_teach_mode(run).keep_on();
     return Outcome::success("the arm can be moved by hand until end_teach_mode or stop");
   }
 };
