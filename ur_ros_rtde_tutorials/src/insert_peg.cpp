@@ -87,7 +87,7 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
       return touched;
     }
     const Sample surface = run.state();
-    // Force mode ends when this function returns, whatever the reason.
+    // The motion and force mode end with the goal, whatever its outcome.
     const Mode pressing =
         ur_ros_rtde::start_force_mode(run, {.task_frame = to_vector(surface.actual_tcp_pose),
                                             .compliant = {false, false, true, false, false, false},

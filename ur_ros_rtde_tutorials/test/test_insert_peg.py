@@ -53,13 +53,13 @@ def test_fails_with_not_reached_without_a_hole(robot, simulator):
     place_plate(simulator, 0.02)
     status, result = insert(robot, radius=0.004).wait_for_result(60.0)
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.NOT_REACHED, result.message
-    assert "no hole within 0.004 m" in result.message
+    assert result.message == "no hole within 0.004 m: start closer to it, or increase radius"
     assert start[2] - position(simulator)[2] == pytest.approx(SURFACE, abs=0.003)
     assert ends_at_rest_without_force_mode(simulator)
 
 
 def test_fails_with_not_reached_if_the_hole_is_not_deep_enough(robot, simulator):
-    place_plate(simulator, 0.002)
+    place_plate(simulator, 0.005)
     simulator.control("place_surface", z=position(simulator)[2] - SURFACE - 0.005)
     result = insert(robot).result(60.0)
     assert result.error_code == ErrorCode.NOT_REACHED and "it is jammed, or the hole ends" in result.message, result.message

@@ -9,8 +9,9 @@
 
 namespace ur_ros_rtde {
 
-/// Force mode, freedrive or teach mode, on as long as this object exists. If the goal has to end before, the
-/// driver ends the mode while it stops the arm.
+/// Force mode, freedrive or teach mode, on as long as this object exists. The driver ends it together with
+/// the goal, after its motion, if the goal has to end before, or if a motion in this mode has not been ended
+/// (speedStop(), stopL()) when the object is destroyed.
 class [[nodiscard]] Mode {
  public:
   /// A function of ur_rtde that ends the mode.
@@ -20,13 +21,13 @@ class [[nodiscard]] Mode {
       : run_(run), function_(function), name_(std::move(name))
   {
   }
-  /// Ends the mode; a failure is a warning of the goal.
+  /// A failure to end the mode is a warning of the goal.
   ~Mode();
   Mode(const Mode &) = delete;
   Mode & operator=(const Mode &) = delete;
 
-  /// Ends the mode now. The arm decelerates: wait for its standstill before the next motion. Throws
-  /// RobotError (rejected_by_robot) if the control program did not end it.
+  /// Ends the mode now, after the motion in it has ended. The arm decelerates: wait for its standstill before
+  /// the next motion. Throws RobotError (rejected_by_robot) if the control program did not end it.
   void end();
   /// Leaves the mode on. For commands with CommandTraits::leaves_mode_active; after all others, the driver
   /// ends it.

@@ -9,6 +9,7 @@
 namespace ur_ros_rtde {
 namespace {
 using Control = ur_rtde::RTDEControlInterface;
+constexpr std::uint32_t all_modes = Control::MOTION_FORCE | Control::MOTION_FREEDRIVE | Control::MOTION_TEACH;
 
 /// Throws RobotError (busy) if one of ur_rtde's `modes` (Control::MOTION_…) is active, which excludes
 /// `requested_mode`.
@@ -33,7 +34,9 @@ std::vector<int> to_int_flags(const std::array<bool, 6> & flags)
 Mode::~Mode()
 {
   try {
-    end();
+    if (on_ && (run_.control()->getStartedMotions() & ~all_modes) == 0) {
+      end();
+    }
   } catch (const std::exception & error) {
     if (!run_.stop_reason()) {
       run_.warn(error.what());
@@ -62,16 +65,14 @@ Mode start_force_mode(Run & run, const ForceModeOptions & options)
 
 Mode start_freedrive(Run & run, const std::array<bool, 6> & free_axes, const std::vector<double> & feature)
 {
-  check_modes_inactive(run, Control::MOTION_FORCE | Control::MOTION_TEACH | Control::MOTION_FREEDRIVE,
-                       "freedrive");
+  check_modes_inactive(run, all_modes, "freedrive");
   check_result(run.control()->freedriveMode(to_int_flags(free_axes), feature), "enter freedrive");
   return {run, &Control::endFreedriveMode, "freedrive"};
 }
 
 Mode start_teach_mode(Run & run)
 {
-  check_modes_inactive(run, Control::MOTION_FORCE | Control::MOTION_TEACH | Control::MOTION_FREEDRIVE,
-                       "teach mode");
+  check_modes_inactive(run, all_modes, "teach mode");
   check_result(run.control()->teachMode(), "enter teach mode");
   return {run, &Control::endTeachMode, "teach mode"};
 }
