@@ -278,6 +278,11 @@ Expected<StopReport> Robot::stop_motion(const StopOptions & options, const Error
   return begin_stop(options, why).get();
 }
 
+std::shared_ptr<void> Robot::hold_program()
+{
+  return impl_->manager.hold();
+}
+
 std::shared_future<Expected<StopReport>> Robot::begin_stop(const StopOptions & options, const Error & why)
 {
   return impl_->stopper.begin(options, why);

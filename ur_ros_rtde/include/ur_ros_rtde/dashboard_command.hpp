@@ -92,7 +92,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
     const Status ready = check.ok() ? dashboard_ready(action(), command_.limits(), host_.connection())
                                     : tl::unexpected(*check.error());
     if (ready && command_.stops_program()) {
-      host_.end_script(stopped_through_dashboard(name()));
+      hold_ = host_.end_script(stopped_through_dashboard(name()));
     }
     return ready;
   }
@@ -100,6 +100,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   {
     run_.emplace(host_.connection(), shared_stop_request(),
                  [this](const void * feedback) { handle().publish_feedback(feedback); });
+    const auto hold = std::move(hold_);
     return guarded(stop_request(), [this] { return command_.run(message_, *run_); });
   }
   void send_result(const Outcome & outcome, bool abandoned) override
@@ -123,6 +124,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   DashboardCommand & command_;
   DashboardHost & host_;
   const typename A::Goal & message_;
+  std::shared_ptr<void> hold_;  ///< of the control program, until the program of the robot has been stopped
   std::optional<Run> run_;
 };
 

@@ -13,7 +13,7 @@ class CommandHost;
 class DashboardHost;
 
 /// Incremented when plugins that were built against older headers cannot work anymore.
-constexpr std::uint32_t plugin_abi_version = 4;
+constexpr std::uint32_t plugin_abi_version = 5;
 
 /// The interface of a plugin of command_server. Derive from Command<A> (command.hpp) unless the plugin needs
 /// an action server of its own kind.

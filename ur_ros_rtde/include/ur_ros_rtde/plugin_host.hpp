@@ -67,15 +67,16 @@ class CommandHost : public PluginHost {
 
 class DashboardHost : public PluginHost {
  public:
-  /// Ends the script that the command server of this process runs or is about to run.
-  using EndScript = std::function<void(const Error & why)>;
+  /// Ends the script that the command server of this process runs or is about to run. The control program is
+  /// not started in its place while the returned object exists.
+  using EndScript = std::function<std::shared_ptr<void>(const Error & why)>;
 
   DashboardHost(rcl_cxx::Node & node, DashboardConnection & connection, EndScript end_script)
       : PluginHost(node), connection_(connection), end_script_(std::move(end_script))
   {
   }
   DashboardConnection & connection() { return connection_; }
-  void end_script(const Error & why) const { end_script_(why); }
+  std::shared_ptr<void> end_script(const Error & why) const { return end_script_(why); }
 
  private:
   DashboardConnection & connection_;

@@ -15,12 +15,14 @@ Servers make_single(const rcl_cxx::Context::SharedPtr & context)
   return servers;
 }
 
-void end_script(Robot & robot, const Error & why)
+std::shared_ptr<void> end_script(Robot & robot, const Error & why)
 {
+  auto hold = robot.hold_program();
   const auto holder = robot.holder(Resource::mode);  // conflicts with a script
   if (holder && holder->resource == Resource::script) {
     robot.begin_stop({}, why);
   }
+  return hold;
 }
 
 }  // namespace
@@ -45,7 +47,7 @@ Servers make_driver(const rcl_cxx::Context::SharedPtr & context)
   auto commands = std::make_unique<CommandServer>(context);
   auto state = std::make_unique<SharedStateServer>(context, commands->robot());
   auto dashboard = std::make_unique<DashboardServer>(
-      context, [&robot = commands->robot()](const Error & why) { end_script(robot, why); });
+      context, [&robot = commands->robot()](const Error & why) { return end_script(robot, why); });
   Servers servers;
   servers.push_back(std::move(state));  // outlives the robot, which calls it
   servers.push_back(std::move(commands));

@@ -141,7 +141,10 @@ class Robot {
   /// is not confirmed.
   Expected<StopReport> stop_motion(const StopOptions & options = {},
                                    const Error & why = stopped_by_the_driver());
-  /// The same without waiting. Returns at once; the arm decelerates within 20 ms.
+  /// While the returned object exists, the control program is not started, at most for 1 s: something else is
+  /// about to stop the program of the robot.
+  [[nodiscard]] std::shared_ptr<void> hold_program();
+  /// The same as stop_motion() without waiting. Returns at once; the arm decelerates within 20 ms.
   std::shared_future<Expected<StopReport>> begin_stop(const StopOptions & options, const Error & why);
   /// Tells the holder of `lease` to end because of `why`: stops what it has started, unless it brakes by
   /// itself (Braking) within `braking_timeout`. Returns at once.

@@ -310,8 +310,11 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
   activities_.fence_script();
   Status stopped = stop_program(options_.address);
   // The controller may still be compiling a script.
-  while (stopped && activities_.now().contains(Activity::script) && !activities_.script_begun() &&
-         wait_for(compile_timeout, [](const Sample & sample) { return sample.is_program_running(); })) {
+  const auto has_script = [this] { return activities_.now().contains(Activity::script); };
+  while (stopped && has_script() && !activities_.script_begun() &&
+         wait_for(compile_timeout,
+                  [&](const Sample & sample) { return sample.is_program_running() || !has_script(); }) &&
+         has_script()) {
     stopped = stop_program(options_.address);
   }
   if (!stopped) {

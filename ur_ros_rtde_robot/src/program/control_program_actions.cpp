@@ -18,6 +18,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds program_begin_timeout(500);
 constexpr milliseconds program_end_timeout(1000);
 constexpr milliseconds heartbeat_wait_timeout(500);
+constexpr milliseconds hold_timeout(1000);
 
 bool closes_interface(ProgramAction action)
 {
@@ -111,6 +112,7 @@ RobotStatus ControlProgramManager::interface_failed(const Error & error)
 ControlProgramManager::Outcome ControlProgramManager::start_program()
 {
   wait_after_failed_start();
+  wait_while_held();
   if (!interfaces_.has_pending_control()) {
     set_status({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
   }
@@ -145,6 +147,12 @@ void ControlProgramManager::wait_after_failed_start()
   // A failed start changes the state of the robot's program, which would trigger the next one at once.
   std::unique_lock lock(mutex_);
   changed_.wait_until(lock, stop_.get_token(), next_start_, [] { return false; });
+}
+
+void ControlProgramManager::wait_while_held()
+{
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, stop_.get_token(), hold_timeout, [this] { return holds_ == 0; });
 }
 
 ControlProgramManager::Outcome ControlProgramManager::stop_program_on_robot()

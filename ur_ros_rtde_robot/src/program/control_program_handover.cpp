@@ -56,6 +56,21 @@ Status ControlProgramManager::resume_after_replacement(milliseconds timeout)
   return resume_by(ProgramEvent::script_replaced, timeout);
 }
 
+std::shared_ptr<void> ControlProgramManager::hold()
+{
+  {
+    const std::lock_guard lock(mutex_);
+    ++holds_;
+  }
+  return {nullptr, [this](void *) {
+            {
+              const std::lock_guard lock(mutex_);
+              --holds_;
+            }
+            changed_.notify_all();
+          }};
+}
+
 Status ControlProgramManager::resume_by(ProgramEvent event, milliseconds timeout)
 {
   std::unique_lock lock(mutex_);

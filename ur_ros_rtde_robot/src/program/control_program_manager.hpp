@@ -60,6 +60,8 @@ class ControlProgramManager {
   Status resume(std::chrono::milliseconds timeout);
   /// The same, after a script that another program has replaced. That program is left alone.
   Status resume_after_replacement(std::chrono::milliseconds timeout);
+  /// See Robot::hold_program().
+  std::shared_ptr<void> hold();
 
  private:
   /// What the receiving thread has processed last.
@@ -99,6 +101,7 @@ class ControlProgramManager {
   Outcome execute(ProgramAction action);
   Outcome start_program();
   void wait_after_failed_start();
+  void wait_while_held();
   Outcome stop_program_on_robot();
   Outcome connect_control();
   Outcome adopt_program();
@@ -134,7 +137,8 @@ class ControlProgramManager {
   RobotStatus status_;
   bool wake_ = false;
   std::uint64_t requests_ = 0;  ///< of yield() and resume()
-  std::uint64_t handled_ = 0;   ///< requests that a whole cycle has handled
+  int holds_ = 0;
+  std::uint64_t handled_ = 0;  ///< requests that a whole cycle has handled
 
   std::atomic<ProgramState> state_;  ///< machine_.state(), for the receiving thread
   // Receiving thread only.

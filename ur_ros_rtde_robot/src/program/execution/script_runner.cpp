@@ -160,6 +160,16 @@ ScriptReport ScriptRunner::run_program(Permit & holder, const script::Program & 
   if (const Generation now = generation_(); now.link != begin.link || now.starts != begin.starts + 1) {
     return rejected(program_ended());
   }
+  ScriptReport report = monitor_program(holder, program, monitor);
+  if (holder.revoked()) {  // the stop under way must not meet the control program
+    stopper_.end(holder, {}).wait();
+  }
+  return report;
+}
+
+ScriptReport ScriptRunner::monitor_program(Permit & holder, const script::Program & program,
+                                           ScriptMonitor & monitor)
+{
   StartedActivities::Script activity(activities_, [&monitor] { monitor.fence(); });
   monitor.on_begin = [&activity] { activity.set_begun(); };
   if (auto why = holder.revoked()) {  // a later stop finds the activity

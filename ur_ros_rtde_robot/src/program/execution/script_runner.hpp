@@ -26,6 +26,7 @@ class ScriptRunner {
 
  private:
   ScriptReport run_program(Permit & holder, const script::Program & program, ScriptMonitor & monitor);
+  ScriptReport monitor_program(Permit & holder, const script::Program & program, ScriptMonitor & monitor);
   std::string preamble() const;
 
   const RobotOptions options_;
