@@ -36,12 +36,13 @@ def run(options: argparse.Namespace) -> int:
     from .robot_check.checks import Options, RobotCheck
     checks = RobotCheck(Options(options.robot, options.ur_type, options.serial_number, options.kinematics_params_file, options.limit,
                                 options.duration))
-    states, subjects = [], set()
+    findings = []
     for finding in checks.findings():
         print(finding.line(), flush=True)
-        states.append(finding.state)
-        subjects.add(finding.subject)
+        findings.append(finding)
+    states = [finding.state for finding in findings]
     faults, warnings = states.count(State.FAULT), states.count(State.WARNING)
-    print(f"{faults} fault{'s' * (faults != 1)}, {warnings} warning{'s' * (warnings != 1)}"
-          + ("." if faults else "; the robot is in use." if "clients" in subjects else "; the driver can be started."))
+    in_use = any(finding.subject == "clients" for finding in findings)
+    conclusion = "." if faults else "; the robot is in use." if in_use else "; the driver can be started."
+    print(f"{faults} fault{'s' * (faults != 1)}, {warnings} warning{'s' * (warnings != 1)}{conclusion}")
     return 1 if faults else 0

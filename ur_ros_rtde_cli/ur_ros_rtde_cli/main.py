@@ -8,7 +8,6 @@ import pathlib
 import signal
 import sys
 from typing import Any, List, Optional
-from xml.etree import ElementTree
 
 from .errors import CliError
 from .interruptions import Interrupted
@@ -46,7 +45,9 @@ class _ShowVersion(argparse.Action):
     """Reads the version of the installed package only if it is asked for."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from ament_index_python import get_package_share_directory  # imported here because --help does not need ROS
+        from xml.etree import ElementTree  # imported here, like ROS, because nothing else needs it
+
+        from ament_index_python import get_package_share_directory
         description = pathlib.Path(get_package_share_directory("ur_ros_rtde_cli"), "package.xml").read_text()
         distribution = f", ROS 2 {os.environ['ROS_DISTRO']}" if "ROS_DISTRO" in os.environ else ""
         print(f"ur_ros_rtde {ElementTree.fromstring(description).findtext('version')}{distribution}")

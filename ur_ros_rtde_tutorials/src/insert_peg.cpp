@@ -25,15 +25,15 @@ using std::chrono_literals::operator""ms;
 namespace {
 constexpr double acceleration = 0.5;   // m/s^2
 constexpr double found_depth = 0.001;  // m, below the surface: the peg is in the hole
-constexpr double spare_time = 2.0;     // s, beyond what the way takes at the given speed
+constexpr double spare_time = 2.0;     // s, in addition to distance / speed
 
 std::vector<double> to_vector(const Vector6 & values)
 {
   return {values.begin(), values.end()};
 }
 
-/// The way of the TCP since `start`, in the frame that the TCP had there, in m.
-Vector3 way(const Sample & start, const Sample & now)
+/// Displacement of the TCP since `start`, in the frame that the TCP had there, in m.
+Vector3 displacement(const Sample & start, const Sample & now)
 {
   const Vector6 & from = start.actual_tcp_pose;
   const Vector6 & to = now.actual_tcp_pose;
@@ -87,7 +87,7 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
       return touched;
     }
     const Sample surface = run.state();
-    // The motion and force mode end with the goal, whatever its outcome.
+    // The motion and force mode end with the goal, for any outcome.
     const Mode pressing =
         ur_ros_rtde::start_force_mode(run, {.task_frame = to_vector(surface.actual_tcp_pose),
                                             .compliant = {false, false, true, false, false, false},
@@ -111,7 +111,7 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
       if (auto stop_reason = run.next(now)) {
         return *stop_reason;
       }
-      if (way(start, now)[2] > goal.distance ||
+      if (displacement(start, now)[2] > goal.distance ||
           now.controller_time - start.controller_time > goal.distance / goal.speed + spare_time) {
         return not_reached("no surface within {} m along the tool's Z axis", goal.distance);
       }
@@ -131,7 +131,7 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
       if (auto stop_reason = run.next(now)) {
         return *stop_reason;
       }
-      const Vector3 moved = way(surface, now);
+      const Vector3 moved = displacement(surface, now);
       run.feedback().depth = moved[2];
       run.progress(std::clamp(moved[2] / goal.depth, 0.0, 1.0));
       if (moved[2] >= goal.depth) {

@@ -52,9 +52,10 @@ struct ForceModeOptions {
   double gain_scaling = 0.5;  ///< 0 to 2
 };
 
-/// Makes axes compliant. Motions of the same goal follow their path in the other axes. Call it again to
-/// change the options, and keep the first object. These functions throw RobotError: busy if another mode
-/// excludes this one, rejected_by_robot if the control program did not switch it on.
+/// Makes axes compliant. Motions of the same goal follow their path in the other axes. To change
+/// the options, call it again, and keep_on() of what it returns: the first object ends the mode. These
+/// functions throw RobotError: busy if another mode excludes this one, rejected_by_robot if the control
+/// program did not switch it on.
 Mode start_force_mode(Run & run, const ForceModeOptions & options);
 /// Lets the arm be moved by hand along `free_axes` (x, y, z, rx, ry, rz) of `feature`, a UR pose in the base
 /// frame (m, rad).

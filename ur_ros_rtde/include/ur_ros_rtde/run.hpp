@@ -73,14 +73,14 @@ class Run {
   [[nodiscard]] std::optional<StopReason> next(Sample & sample);
 
   /// Waits until the asynchronous motion that the last call through control() has started has ended and the
-  /// arm stands still. Fails if the control program did not start it, or after `timeout`.
+  /// arm is at rest. Fails if the control program did not start it, or after `timeout`.
   [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds timeout = std::chrono::minutes(10));
   /// The same with progress, for a known target: fails (not_reached) if the motion ended elsewhere. Joint
   /// positions in rad; a UR pose: position (m) and rotation vector (rad).
   [[nodiscard]] Outcome until_joints_reached(const std::vector<double> & positions);
   [[nodiscard]] Outcome until_pose_reached(const std::vector<double> & pose);
-  /// Waits until the arm stands still at the target, with progress. For motions whose end the controller does
-  /// not report: servo control, scripts. Fails (not_reached) when the arm has stood still elsewhere for 2 s.
+  /// Waits until the arm is at rest at the target, with progress. For motions whose end the controller does
+  /// not report: servo control, scripts. Fails (not_reached) when the arm has been at rest elsewhere for 2 s.
   [[nodiscard]] Outcome until_at_joints(const std::vector<double> & positions);
   [[nodiscard]] Outcome until_at_pose(const std::vector<double> & pose);
   /// The last asynchronous motion has ended, or has not started within 1 s.

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -137,8 +138,8 @@ class ControlProgramManager {
   RobotStatus status_;
   bool wake_ = false;
   std::uint64_t requests_ = 0;  ///< of yield() and resume()
-  int holds_ = 0;
-  std::uint64_t handled_ = 0;  ///< requests that a whole cycle has handled
+  std::uint64_t handled_ = 0;   ///< requests that a whole cycle has handled
+  int holds_ = 0;               ///< objects of hold() that exist
 
   std::atomic<ProgramState> state_;  ///< machine_.state(), for the receiving thread
   // Receiving thread only.
