@@ -196,14 +196,22 @@ TEST_F(StateReceiverConnectionTest, GivesTheControllerTheWholeLimitAfterASuspens
 {
   controller.start();
   auto options = receiver_options();
-  options.silence_limit = 500ms;
-  const auto receiver = this->receiver(options);
-  ASSERT_TRUE(connected(*receiver));
-  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
-  ASSERT_EQ(std::system("kill -STOP $PPID; sleep 0.8; kill -CONT $PPID"), 0);
-  const auto resumed = Clock::now();
-  ASSERT_TRUE(eventually([&] { return !receiver->link().connected; }));
-  EXPECT_GT(Clock::now() - resumed, options.silence_limit / 2);
+  options.silence_limit = 1s;  // and less than ur_rtde's own timeout of 2.5 s together with the suspension
+  std::promise<Clock::time_point> lost;
+  StateReceiver receiver(options, log.function());
+  receiver.on_link([&, first = true](const LinkStatus & status) mutable {
+    if (!status.connected && std::exchange(first, false)) {
+      lost.set_value(Clock::now());
+    }
+  });
+  receiver.start();
+  ASSERT_TRUE(connected(receiver)) << log.text();
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}});  // not that of the next connection
+  const auto stalled = Clock::now();
+  ASSERT_EQ(std::system("kill -STOP $PPID; sleep 1.1; kill -CONT $PPID"), 0);
+  auto lost_at = lost.get_future();
+  ASSERT_EQ(lost_at.wait_for(15s), std::future_status::ready);
+  EXPECT_GT(lost_at.get() - stalled, 1100ms + options.silence_limit / 2) << log.text();
 }
 
 TEST_F(StateReceiverConnectionTest, ReconnectsAfterAnExceptionInACallback)

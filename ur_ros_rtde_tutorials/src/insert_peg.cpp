@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <ur_ros_rtde/check_result.hpp>
 #include <ur_ros_rtde/command.hpp>
 #include <ur_ros_rtde/mode.hpp>
 #include <ur_ros_rtde_robot/state/conversions.hpp>
@@ -15,9 +16,11 @@ namespace ur_ros_rtde_tutorials {
 
 using ur_ros_rtde::Check;
 using ur_ros_rtde::ErrorCode;
+using ur_ros_rtde::ForceModeOptions;
 using ur_ros_rtde::Mode;
 using ur_ros_rtde::Outcome;
 using ur_ros_rtde::Sample;
+using ur_ros_rtde::StopReason;
 using ur_ros_rtde::Vector3;
 using ur_ros_rtde::Vector6;
 using std::chrono_literals::operator""ms;
@@ -87,13 +90,19 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
       return touched;
     }
     const Sample surface = run.state();
+    ForceModeOptions options{.task_frame = to_vector(surface.actual_tcp_pose),
+                             .compliant = {false, false, true, false, false, false},
+                             .wrench = {0.0, 0.0, goal.force, 0.0, 0.0, 0.0},
+                             .limits = {0.1, 0.1, goal.speed, 0.5, 0.5, 0.5}};
     // The motion and force mode end with the goal, for any outcome.
-    const Mode pressing =
-        ur_ros_rtde::start_force_mode(run, {.task_frame = to_vector(surface.actual_tcp_pose),
-                                            .compliant = {false, false, true, false, false, false},
-                                            .wrench = {0.0, 0.0, goal.force, 0.0, 0.0, 0.0},
-                                            .limits = {0.1, 0.1, goal.speed, 0.5, 0.5, 0.5}});
-    return search(goal, run, surface);
+    const Mode pressing = ur_ros_rtde::start_force_mode(run, options);
+    if (Outcome found = search(goal, run, surface); !found) {
+      return found;
+    }
+    options.compliant = {true, true, true, false, false, false};  // the peg follows the hole
+    options.limits = {goal.speed, goal.speed, goal.speed, 0.5, 0.5, 0.5};
+    ur_ros_rtde::start_force_mode(run, options).keep_on();  // `pressing` ends it
+    return insert(goal, run, surface);
   }
 
   /// Moves the TCP with a velocity (m/s) in the frame that it had at `start`, until the next call.
@@ -121,37 +130,50 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
     return stop_reason ? Outcome(*stop_reason) : Outcome::success();
   }
 
-  /// Moves on a spiral until the peg is below the surface, then waits until it is deep enough.
+  /// Waits for the next package, and publishes the depth in it.
+  static std::optional<StopReason> next(const Goal & goal, Run & run, const Sample & surface, Sample & now)
+  {
+    auto stop_reason = run.next(now);
+    run.feedback().depth = displacement(surface, now)[2];
+    run.progress(std::clamp(run.feedback().depth / goal.depth, 0.0, 1.0));
+    return stop_reason;
+  }
+
+  /// Moves on a spiral until the peg is below the surface. Force mode goes on moving it along Z.
   static Outcome search(const Goal & goal, Run & run, const Sample & surface)
   {
     Spiral spiral{goal.pitch / (2.0 * std::numbers::pi), goal.speed};
-    std::optional<double> found;  // at this time, s
-    for (Sample now = surface;;) {
-      const double last = now.controller_time;
-      if (auto stop_reason = run.next(now)) {
+    double last = surface.controller_time;
+    for (Sample now = surface; run.feedback().depth < found_depth; last = now.controller_time) {
+      if (auto stop_reason = next(goal, run, surface, now)) {
         return *stop_reason;
       }
-      const Vector3 moved = displacement(surface, now);
-      run.feedback().depth = moved[2];
-      run.progress(std::clamp(moved[2] / goal.depth, 0.0, 1.0));
-      if (moved[2] >= goal.depth) {
-        run.result().offset = std::hypot(moved[0], moved[1]);
-        return Outcome::success(fmt::format("{:.4f} m from the start of the search", run.result().offset));
-      }
-      if (found) {
-        if (now.controller_time - *found > goal.depth / goal.speed + spare_time) {
-          return not_reached("the peg is {:.4f} m deep, not {} m: it is jammed, or the hole ends", moved[2],
-                             goal.depth);
-        }
-      } else if (moved[2] > found_depth) {
-        found = now.controller_time;
-        move(run, surface, {});
-      } else if (spiral.radius() > goal.radius) {
+      if (spiral.radius() > goal.radius) {
         return not_reached("no hole within {} m: start closer to it, or increase radius", goal.radius);
-      } else {
-        move(run, surface, spiral.advance(now.controller_time - last));
+      }
+      move(run, surface, spiral.advance(now.controller_time - last));
+    }
+    ur_ros_rtde::check_result(run.control()->speedStop(acceleration), "stop the search");
+    return Outcome::success();
+  }
+
+  /// Waits until the peg is deep enough.
+  static Outcome insert(const Goal & goal, Run & run, const Sample & surface)
+  {
+    Sample now = run.state();
+    const double found = now.controller_time;
+    while (run.feedback().depth < goal.depth) {
+      if (auto stop_reason = next(goal, run, surface, now)) {
+        return *stop_reason;
+      }
+      if (now.controller_time - found > goal.depth / goal.speed + spare_time) {
+        return not_reached("the peg is {:.4f} m deep, not {} m: it is jammed, or the hole ends",
+                           run.feedback().depth, goal.depth);
       }
     }
+    const Vector3 moved = displacement(surface, now);
+    run.result().offset = std::hypot(moved[0], moved[1]);
+    return Outcome::success(fmt::format("{:.4f} m from the start of the search", run.result().offset));
   }
 };
 
