@@ -57,6 +57,16 @@ TEST(ParameterOverrideTest, OfCommandLineReplacesDefault)
   EXPECT_EQ(node.declare_parameter("untouched", 3), 3);
 }
 
+TEST(ParameterOverrideTest, OfAnUndeclaredParameterIsListed)
+{
+  Node node(make_context({"--ros-args", "-p", "sped:=0.25", "-p", "host:=robot", "-p", "other:speed:=9.0"}),
+            "node");
+  node.declare_parameter("host", "localhost");
+  node.declare_parameter("speed", 1.0);
+  EXPECT_THAT(node.undeclared_overrides(), ElementsAre("sped"));
+  EXPECT_THAT(node.list_parameters(), testing::IsSupersetOf({"host", "speed"}));
+}
+
 TEST(ParameterOverrideTest, OfIntegerIsConvertedToDouble)
 {
   const auto context = make_context({"--ros-args", "-p", "speed:=1", "-p", "home:=[1, 2]"});

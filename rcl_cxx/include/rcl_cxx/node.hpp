@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "rcl_cxx/action_server.hpp"
 #include "rcl_cxx/callback_group.hpp"
@@ -122,6 +123,10 @@ class Node {
   {
     return get_parameter(parameter).template get<T>();
   }
+  /// Names of all declared parameters.
+  std::vector<std::string> list_parameters() const;
+  /// Names that the command line or a parameter file sets for this node, and that are not declared.
+  std::vector<std::string> undeclared_overrides() const;
   /// The error names the parameter and its limits.
   SetParametersResult set_parameter(const std::string & parameter, const ParameterValue & value);
 

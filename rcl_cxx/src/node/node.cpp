@@ -110,6 +110,20 @@ ParameterValue Node::get_parameter(const std::string & parameter) const
   return parameters_->get(parameter).value;
 }
 
+std::vector<std::string> Node::list_parameters() const
+{
+  std::vector<std::string> names;
+  for (const Parameter & parameter : parameters_->all()) {
+    names.push_back(parameter.name);
+  }
+  return names;
+}
+
+std::vector<std::string> Node::undeclared_overrides() const
+{
+  return parameters_->undeclared_overrides();
+}
+
 SetParametersResult Node::set_parameter(const std::string & parameter, const ParameterValue & value)
 {
   return parameters_->set({Parameter{parameter, value}});

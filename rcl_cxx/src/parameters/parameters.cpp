@@ -66,6 +66,18 @@ std::vector<Parameter> Parameters::all() const
   return list;
 }
 
+std::vector<std::string> Parameters::undeclared_overrides() const
+{
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> names;
+  for (const auto & [name, value] : overrides_) {
+    if (!entries_.contains(name)) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
 SetParametersResult Parameters::set(const std::vector<Parameter> & parameters)
 {
   const std::lock_guard lock(mutex_);

@@ -40,6 +40,7 @@ class Parameters {
   /// @throws ParameterError if not declared
   Entry get(const std::string & name) const;
   std::vector<Parameter> all() const;
+  std::vector<std::string> undeclared_overrides() const;
   /// Sets all parameters or none.
   SetParametersResult set(const std::vector<Parameter> & parameters);
 

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "nodes/similar_names.hpp"
 #include "ur_ros_rtde_robot/state/rtde_outputs.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 
@@ -120,10 +121,12 @@ std::string declare_robot_ip(rcl_cxx::Node & node)
   const auto address = node.declare_parameter(
       "robot_ip", "", read_only_descriptor("Address or host name of the robot's controller"));
   if (address.empty()) {
+    const auto similar = most_similar("robot_ip", node.undeclared_overrides());
     throw rcl_cxx::ParameterError(
         "robot_ip",
-        "parameter robot_ip is not set: set the address of the robot's controller, for example with "
-        "--ros-args -p robot_ip:=192.168.0.10");
+        fmt::format("parameter robot_ip is not set{}: set the address of the robot's controller, for example "
+                    "with --ros-args -p robot_ip:=192.168.0.10",
+                    similar ? fmt::format(", but {} is, which does not exist", *similar) : ""));
   }
   return address;
 }

@@ -20,6 +20,7 @@
 #include "process/duplicate_check.hpp"
 #include "process/fastdds_profile.hpp"
 #include "process/host_name_lock.hpp"
+#include "process/parameter_names.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -152,6 +153,7 @@ void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers,
   for (const auto & server : servers) {
     server->load_plugins();
   }
+  check_parameter_names(servers);
   const auto callback = context->add_pre_shutdown_callback([&servers] { close_servers(servers); });
   const auto start = begin + (taken ? Clock::duration(local_discovery_time) : discovery_time);
   if (const auto why = run_servers(context, servers, checks, start)) {

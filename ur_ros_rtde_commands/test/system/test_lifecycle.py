@@ -45,6 +45,24 @@ def test_an_invalid_parameter_is_reported_with_its_limits(name, parameter, what)
     assert what in process.output()
 
 
+@pytest.mark.parametrize("name, address, parameter, message", [
+    ("driver", "127.0.0.1", "on_busi:=preempt", "there is no parameter on_busi; did you mean on_busy?"),
+    ("driver", "127.0.0.1", "watchdog_frequncy:=50.0", "there is no parameter watchdog_frequncy; did you mean watchdog_frequency?"),
+    ("robot_state_receiver", "127.0.0.1", "rtde_frequenzy:=125.0", "did you mean rtde_frequency?"),
+    ("driver", "''", "robotip:=127.0.0.1", "parameter robot_ip is not set, but robotip is, which does not exist"),
+])
+def test_a_misspelled_parameter_prevents_the_start(name, address, parameter, message):
+    process = start_node(name, address, parameter)
+    assert process.wait(15.0) == 2
+    assert message in process.output()
+
+
+def test_a_parameter_that_no_node_has_is_a_warning(simulator, processes):
+    process = processes(start_node("driver", simulator.address, FEW_PLUGINS, "colour:=blue"))
+    process.wait_for_output("parameter colour is set, but no node of this process has it")
+    process.wait_for_output("the robot is ready")
+
+
 def threads_with_priority(pid, priority):
     found = []
     for thread in map(int, os.listdir(f"/proc/{pid}/task")):
