@@ -75,9 +75,14 @@ def check(options: argparse.Namespace) -> None:
     ports.check(options.address)
 
 
+def _name(model: str) -> str:
+    """Returns the name that UR gives to a model: UR10e."""
+    return model.upper().replace("E", "e")
+
+
 def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> None:
     env = run_environment(layout)
-    console.step(f"Starting the simulated controller of a {options.model.upper()} at {options.address}")
+    console.step(f"Starting the simulated controller of a {_name(options.model)} at {options.address}")
     simulation.start_simulator(programs, layout, env, options.address, options.model)
     console.step("Starting the nodes " + ", ".join(simulation.NODES))
     for node in simulation.NODES:
@@ -91,7 +96,7 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> N
 def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace) -> int:
     console.step("move_down_until_force")
     command = [layout.python, ROOT / "demo" / "force_experiment.py", "--address", options.address, "--model",
-               options.model.upper().replace("E", "e"), "--threshold", options.threshold, "--speed", options.speed,
+               _name(options.model), "--threshold", options.threshold, "--speed", options.speed,
                "--drop", options.drop, "--output", options.output]
     return programs.run([str(part) for part in command], run_environment(layout), limit=300.0)
 

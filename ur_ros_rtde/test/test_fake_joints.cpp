@@ -65,6 +65,8 @@ TEST(FakeJointsTest, IgnoreAnInvalidMessageAndNameTheCause)
   FakeJoints fake;
   fake.begin(real());
   const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(fake.set(message({"a"}, {6.29})).error().find("6.29 rad, it must be -6.28319 to 6.28319"),
+            std::string::npos);
   EXPECT_NE(fake.set(message({"a", "z"}, {5.0, 5.0})).error().find("\"z\""), std::string::npos);
   EXPECT_NE(fake.set(message({"a", "b"}, {5.0})).error().find("2 names and 1 positions"), std::string::npos);
   EXPECT_NE(fake.set(message({"a", "b"}, {5.0, nan})).error().find("nan"), std::string::npos);

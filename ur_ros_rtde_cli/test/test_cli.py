@@ -17,8 +17,10 @@ import pytest
 import yaml
 from rclpy.action import ActionServer
 from rclpy.task import Future
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool
 from support import HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
-from ur_ros_rtde_cli import view
+from ur_ros_rtde_cli import print_state, view
 from ur_ros_rtde_cli.errors import CliError
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
 
@@ -259,6 +261,14 @@ def test_a_second_signal_exits_without_the_result(unresponsive_server):
 def test_shows_the_state(running):
     code, output = ur("state")
     assert code == 0 and "elbow_joint" in output and "tcp position" in output, output
+
+
+def test_the_state_names_fake_joint_positions():
+    joints = JointState(name=["left_shoulder_lift_joint", "left_elbow_joint"], position=[1.0, 2.0], velocity=[0.0, 0.0])
+    warning, *rows = print_state._lines({"joint_states": joints, "joint_states_are_fake": Bool(data=True)})
+    assert warning == "joint_states has fake positions (digital twin); the robot's are on actual_joint_states:"
+    assert len(rows) == 2 and len({row.index(" rad ") for row in rows}) == 1, rows
+    assert len(list(print_state._lines({"joint_states": joints, "joint_states_are_fake": Bool()}))) == 2
 
 
 def test_a_missing_driver_is_reported_after_the_wait():

@@ -84,8 +84,24 @@ def test_the_arm_in_the_scene_follows_the_robot(tab, viewer, robot, simulator):
 
 def test_the_tabs_of_a_robot_are_in_one_row(tab):
     boxes = [tab.page.get_by_role("tab", name=name, exact=True).bounding_box()
-             for name in ("State", "Record", "Twin", "Commands", "Jog", "Target")]
+             for name in ("State", "Record", "Commands", "Jog", "Target", "Twin")]
     assert len({box["y"] for box in boxes}) == 1, boxes
+
+
+def test_the_digital_twin_ends_with_its_tab(browser, viewer, tab, simulator):
+    state = viewer[-1].viewer.robots[0].state
+    second = Tab(browser, viewer[-1].url)
+    second.open("Twin")
+    second.page.get_by_role("checkbox", name="Digital twin").locator("visible=true").check(force=True)
+    until(lambda: state.joint_states_are_fake, "the digital twin")
+    tab.wait_for_text("has fake positions (digital twin)")
+    number = second.field("shoulder_pan, rad").last
+    number.fill("99")
+    number.press("Enter")
+    until(lambda: state.joints.positions[0] == pytest.approx(6.28, abs=0.01), "the largest position")
+    second.close()
+    until(lambda: not state.joint_states_are_fake, "the end of the digital twin")
+    assert simulator.state()["actual"]["position"] == pytest.approx(HOME, abs=1e-3)
 
 
 def test_the_plots_show_curves_from_the_first_seconds_on(tab):

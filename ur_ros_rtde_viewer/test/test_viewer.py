@@ -7,10 +7,11 @@ import time
 import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool
 from support import HOME, JOINTS, TIMEOUT_FACTOR, Client, Simulator, start_node
+from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, Banner
-from ur_ros_rtde_viewer.panels.recording_panel import RecordingPanel
-from ur_ros_rtde_viewer.panels.twin_panel import TwinPanel
+from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
 from ur_ros_rtde_viewer.program import parse
 from ur_ros_rtde_viewer.ros.nodes import Nodes
 from ur_ros_rtde_viewer.viewer import Viewer
@@ -43,7 +44,7 @@ def client():
 
 @pytest.fixture(scope="module")
 def viewer(server, driver, tmp_path_factory):
-    options = parse(["--robot", "", "--robot", f"{RIGHT},model=ur5e,y=-1", "--recordings", str(tmp_path_factory.mktemp("recordings"))])
+    options = parse(["--control", "--robot", "", "--robot", f"{RIGHT},model=ur5e,y=-1", "--recordings", str(tmp_path_factory.mktemp("recordings"))])
     nodes = Nodes()
     created = Viewer(server, nodes, options)
     yield created
@@ -109,33 +110,47 @@ def test_a_protective_stop_has_a_red_banner_and_ends(viewer, robot, simulator):
 
 
 def test_the_digital_twin_moves_while_the_robot_stays(viewer, robot, simulator):
-    twin = panel(robot, TwinPanel)
+    twin, shown = viewer.control._robots[0].twin, []
     real = simulator.state()["actual"]["position"]
-    twin.switch(True)
-    update_until(viewer, lambda: twin.is_on, "the digital twin")
-    assert [slider.value for slider in twin._sliders] == pytest.approx(real, abs=0.01)
-    twin._sliders[0].value = real[0] - 0.7
-    twin.publish()
+    twin.begin("tab", lambda *text: shown.append(text))
+    update_until(viewer, lambda: shown == [(True, "")], "the digital twin")
+    twin.begin("other tab", lambda *text: shown.append(text))
+    assert shown.pop() == (False, "The digital twin is on in another tab of the browser.")
+    twin.publish("other tab", [0.0] * 6)
+    twin.publish("tab", [real[0] - 0.7, *real[1:]])
     update_until(viewer, lambda: near(robot.scene.arm, [real[0] - 0.7, *real[1:]]), "the fake position")
     update_until(viewer, lambda: near(robot.scene.ghost, real), "the real position as the ghost")
+    assert "/joint_states has fake positions" in panel(robot, Banner).shown[1]
     assert simulator.state()["actual"]["position"] == pytest.approx(real, abs=1e-3)
-    twin.switch(False)
-    update_until(viewer, lambda: not twin.is_on and near(robot.scene.arm, real), "the end of the digital twin")
+    twin.end("other tab")
+    twin.end("tab")
+    assert shown.pop() == (False, "")
+    update_until(viewer, lambda: near(robot.scene.arm, real) and not robot.state.joint_states_are_fake, "the end of the digital twin")
+
+
+def test_the_digital_twin_ends_if_another_program_ends_it(viewer, robot, client):
+    twin, shown = viewer.control._robots[0].twin, []
+    twin.begin("tab", lambda *text: shown.append(text))
+    update_until(viewer, lambda: shown and robot.state.joint_states_are_fake, "the digital twin")
+    viewer.step()
+    assert client.call(SetBool, "publish_fake_joint_states", data=False).success
+    update_until(viewer, lambda: len(shown) == 2, "the end of the digital twin")
+    assert shown[1] == (False, "The digital twin has ended: the driver or another program has ended it.")
 
 
 def test_records_and_replays(viewer, robot):
-    recording = panel(robot, RecordingPanel)
+    recording, replay = panel(robot, RecordingPanel), panel(robot, ReplayPanel)
     recording.toggle()
     update_until(viewer, lambda: recording.is_recording, "the start of the recording")
     file = pathlib.Path(recording._file)
     update_until(viewer, lambda: file.is_file() and file.stat().st_size > 10000, "rows in the file")
     recording.toggle()
     update_until(viewer, lambda: not recording.is_recording, "the end of the recording")
-    assert recording._download.visible and recording.player.playing
-    assert recording.player.arm.positions == pytest.approx(robot.scene.arm.positions, abs=0.01)
-    recording.replay("wrong.csv", b"a,b\n")
-    assert "wrong.csv has no columns actual_q_0" in recording._message.content
-    recording.player.remove()
+    assert recording._download.visible and replay.player.playing
+    assert replay.player.arm.positions == pytest.approx(robot.scene.arm.positions, abs=0.01)
+    replay.replay("wrong.csv", b"a,b\n")
+    assert "wrong.csv has no columns actual_q_0" in replay.message.content
+    replay.player.remove()
 
 
 def test_a_second_robot_is_independent_and_has_a_prefix(viewer, client):

@@ -51,6 +51,9 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
   get_io_state_ =
       serve<srv::GetIOState>("get_io_state", &StateMessages::io_state, &srv::GetIOState::Response::io_state);
 
+  joint_states_are_fake_ = node_.create_publisher<std_msgs::msg::Bool>("joint_states_are_fake",
+                                                                       rcl_cxx::QoS::transient_local());
+  joint_states_are_fake_->publish(std_msgs::msg::Bool());
   publish_fake_ = node_.create_service<std_srvs::srv::SetBool>(
       "publish_fake_joint_states",
       [this](const auto & request, auto & response) { enable_fake_joints(request, response); });
@@ -157,7 +160,10 @@ std::vector<Diagnosis> RobotStateReceiver::diagnose()
     sample = received_;
   }
   return {diagnose_link(source, options_.address), diagnose_packages(source, packages_.report()),
-          diagnose_robot(source, sample)};
+          diagnose_robot(source, sample)
+              .warn_if(fake_.active(),
+                       "joint_states has fake positions; those of the robot are on actual_joint_states")
+              .value("joint states are fake", fake_.active())};
 }
 
 void RobotStateReceiver::enable_fake_joints(const std_srvs::srv::SetBool::Request & request,
@@ -173,6 +179,9 @@ void RobotStateReceiver::enable_fake_joints(const std_srvs::srv::SetBool::Reques
     response.message = "joint_states has the positions of the robot again";
   }
   response.success = true;
+  std_msgs::msg::Bool fake;
+  fake.data = request.data;
+  joint_states_are_fake_->publish(fake);
   RCL_CXX_INFO(node_.get_logger(), "{}", response.message);
 }
 

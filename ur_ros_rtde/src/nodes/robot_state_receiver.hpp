@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <rcl_cxx/node.hpp>
+#include <std_msgs/msg/bool.hpp>
 #include <std_srvs/srv/set_bool.hpp>
 #include <string>
 #include <ur_ros_rtde_msgs/srv/get_io_state.hpp>
@@ -88,6 +89,7 @@ class RobotStateReceiver {
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetTcpPose>::SharedPtr get_tcp_pose_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetWrench>::SharedPtr get_wrench_;
   rcl_cxx::Service<ur_ros_rtde_msgs::srv::GetIOState>::SharedPtr get_io_state_;
+  rcl_cxx::Publisher<std_msgs::msg::Bool>::SharedPtr joint_states_are_fake_;
   rcl_cxx::Service<std_srvs::srv::SetBool>::SharedPtr publish_fake_;
   rcl_cxx::Subscription<sensor_msgs::msg::JointState>::SharedPtr fake_joint_states_;
   FieldTopics field_topics_;

@@ -5,8 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace ur_ros_rtde {
+namespace {
+/// Limit of the joints of all arms, rad.
+constexpr double max_position = 2.0 * std::numbers::pi;
+}  // namespace
 
 void FakeJoints::begin(const sensor_msgs::msg::JointState & real)
 {
@@ -48,9 +53,9 @@ tl::expected<void, std::string> FakeJoints::set(const sensor_msgs::msg::JointSta
       return tl::unexpected(fmt::format("there is no joint \"{}\", the joints are: {}", message.name[i],
                                         fmt::join(joints_.name, ", ")));
     }
-    if (!std::isfinite(message.position[i])) {
-      return tl::unexpected(
-          fmt::format("the position of {} is {}, it must be finite", message.name[i], message.position[i]));
+    if (!(std::abs(message.position[i]) <= max_position)) {
+      return tl::unexpected(fmt::format("the position of {} is {} rad, it must be {:.5f} to {:.5f} rad",
+                                        message.name[i], message.position[i], -max_position, max_position));
     }
     positions[static_cast<std::size_t>(found - joints_.name.begin())] = message.position[i];
   }

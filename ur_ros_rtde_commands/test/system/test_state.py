@@ -3,8 +3,10 @@
 import math
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 from support import FEW_PLUGINS, HOME, JOINTS, Client, Simulator, robot_seconds, seconds, start_node, wait_for
 
@@ -124,10 +126,16 @@ def test_services_return_the_newest_sample(receiver, client, service, name, fiel
 
 def test_fake_joint_states_replace_joint_states_but_not_the_services(receiver, client):
     shown = client.subscribe(JointState, "joint_states")
+    is_fake = client.subscribe(Bool, "joint_states_are_fake", transient_local=True)
+    reported = client.subscribe(DiagnosticArray, "/diagnostics")
     publisher = client.node.create_publisher(JointState, "fake_joint_states", 10)
     wait_for(lambda: publisher.get_subscription_count(), 10.0, "the subscription of fake_joint_states")
+    wait_for(lambda: is_fake and not is_fake[-1].data, 10.0, "real joint states")
     assert client.call(SetBool, "publish_fake_joint_states", data=True).success
     try:
+        wait_for(lambda: is_fake[-1].data, 10.0, "joint_states_are_fake")
+        wait_for(lambda: any("joint_states has fake positions" in status.message for array in list(reported)
+                             for status in array.status), 10.0, "the warning in /diagnostics")
         # A subset of the joints in another order.
         publisher.publish(JointState(name=["left_elbow_joint", "left_shoulder_pan_joint"], position=[0.25, -0.5]))
         wait_for(lambda: shown and shown[-1].position[2] == 0.25, 10.0, "the fake elbow position")
@@ -145,6 +153,7 @@ def test_fake_joint_states_replace_joint_states_but_not_the_services(receiver, c
     finally:
         assert client.call(SetBool, "publish_fake_joint_states", data=False).success
     wait_for(lambda: shown[-1].position[2] == pytest.approx(HOME[2], abs=0.01), 10.0, "the actual elbow position")
+    assert not is_fake[-1].data
 
 
 def test_actual_joint_states_are_published_along_with_fake_joint_states(receiver, client):

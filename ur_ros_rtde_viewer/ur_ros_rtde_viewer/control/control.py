@@ -1,4 +1,4 @@
-"""The control side of the page: STOP for all robots, and for each browser tab forms, jog buttons and a target pose."""
+"""The control side of the page: STOP for all robots, and for each browser tab forms, jog buttons, a target pose and the digital twin."""
 
 import functools
 import threading
@@ -11,6 +11,7 @@ from .jog_panel import JogPanel
 from .robot_control import RobotControl
 from .stop import Outcome
 from .target_panel import TargetPanel
+from .twin_panel import TwinPanel
 
 STOP_REPEAT = 2.0  # Hz, while the button is held
 STOP_WIDTH = 300  # pixels
@@ -26,10 +27,10 @@ class Control:
     connection broke does not exist anymore when it is back."""
 
     def __init__(self, viewer: Any):
-        self._server = viewer.server
+        self._server, self._post = viewer.server, viewer.post
         self._node = ControlNode(viewer.nodes.context)
-        self._robots = [RobotControl(self._node, view, self._show_actions) for view in viewer.robots]
-        self._containers = [[view.tabs.add_tab(name) for name in ("Commands", "Jog", "Target")] for view in viewer.robots]
+        self._robots = [RobotControl(self._node, view, viewer.nodes.node, self._show_actions) for view in viewer.robots]
+        self._containers = [[view.tabs.add_tab(name) for name in ("Commands", "Jog", "Target", "Twin")] for view in viewer.robots]
         self._tabs: Dict[int, List[Any]] = {}
         self._lock = threading.Lock()
         self._expanded = -float("inf")
@@ -74,9 +75,9 @@ class Control:
 
     def _connect(self, client: Any) -> None:
         panels: List[Any] = []
-        for robot, (commands, jog, target) in zip(self._robots, self._containers):
+        for robot, (commands, jog, target, twin) in zip(self._robots, self._containers):
             panels += [FormPanel(client.gui, commands, robot), JogPanel(client.gui, jog, robot, client.client_id),
-                       TargetPanel(client, target, robot)]
+                       TargetPanel(client, target, robot), TwinPanel(client.gui, twin, robot, client.client_id, self._post)]
         with self._lock:
             self._tabs[client.client_id] = panels
         if client.client_id not in self._server.get_clients():  # closed in the meantime

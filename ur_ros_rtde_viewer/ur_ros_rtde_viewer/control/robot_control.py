@@ -12,22 +12,26 @@ from .control_node import ControlNode
 from .goals import Goals
 from .jog import Jog
 from .stop import Report, Stopper
+from .twin import Twin
 
 ACTIONS_PERIOD = 1.0  # s, between looks at the ROS graph
 
 
 class RobotControl:
-    """`view` is the RobotView, whose newest state is read. `on_actions` is called when the driver serves other actions than before."""
+    """`view` is the RobotView, whose newest state is read, and `view_node` its node in the viewer's loop. `on_actions`
+    is called when the driver serves other actions than before."""
 
-    def __init__(self, control: ControlNode, view: Any, on_actions: Callable[[], None]):
+    def __init__(self, control: ControlNode, view: Any, view_node: Any, on_actions: Callable[[], None]):
         self.view = view
         self.goals = Goals(control, view.options.namespace)
         self.jog = Jog(control, self.goals)
+        self.twin = Twin(view, view_node)
         self.action_types: Dict[str, str] = {}
         self._on_actions, self._looked_at = on_actions, -float("inf")
         self._stopper = Stopper(control, self.goals)
 
-    def update(self, _state: RobotState) -> None:
+    def update(self, state: RobotState) -> None:
+        self.twin.update(state)
         now = time.monotonic()
         if now - self._looked_at < ACTIONS_PERIOD:
             return
@@ -39,6 +43,7 @@ class RobotControl:
 
     def close(self) -> None:
         self.goals.end()
+        self.twin.close()
 
     def stop(self, report: Report) -> None:
         self.jog.stop()

@@ -7,9 +7,8 @@ from ..playback.player import Player
 from .banner import Banner
 from .plan_panel import PlanPanel, load_plan
 from .plots_panel import PlotsPanel
-from .recording_panel import RecordingPanel
+from .replay_panel import ReplayPanel
 from .state_panel import StatePanel
-from .twin_panel import TwinPanel
 
 
 def _player(viewer: Any, robot: Any, container: Any) -> Player:
@@ -17,16 +16,19 @@ def _player(viewer: Any, robot: Any, container: Any) -> Player:
 
 
 def add_panels(viewer: Any, robot: Any) -> None:
-    """Adds the panels of a RobotView. Those that move it are added by control.Control."""
+    """Adds the panels of a RobotView that all tabs of the browser share. The others are added by control.Control."""
     server, tabs, post = viewer.server, robot.tabs, viewer.post
-    recordings = pathlib.Path(viewer.options.recordings).absolute()
-    state_tab, recording_tab, twin_tab = (tabs.add_tab(name) for name in ("State", "Record", "Twin"))
+    state_tab, replay_tab = tabs.add_tab("State"), tabs.add_tab("Record" if viewer.options.control else "Replay")
+    replay = ReplayPanel(replay_tab, server.gui, _player(viewer, robot, replay_tab), post)
     robot.panels += [
         Banner(viewer.layout.banner(robot.options), robot.options.name, robot.topics.name_of("joint_states"), robot.scene),
         StatePanel(state_tab, server.gui),
         PlotsPanel(viewer.layout.add_plots_tab(robot.options), server),
-        RecordingPanel(recording_tab, server, robot.services, _player(viewer, robot, recording_tab), recordings, post),
-        TwinPanel(twin_tab, server.gui, robot.topics, robot.services, viewer.nodes.node, post)]
+        replay]
+    if viewer.options.control:
+        from ..control.recording_panel import RecordingPanel  # without --control, the page changes nothing
+        folder = pathlib.Path(viewer.options.recordings).absolute()
+        robot.panels.append(RecordingPanel(replay_tab, server, robot.services, replay, folder, post))
 
 
 def add_plan_panel(viewer: Any, robot: Any) -> None:

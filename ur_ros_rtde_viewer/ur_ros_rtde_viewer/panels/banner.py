@@ -5,7 +5,6 @@ from typing import Any, Optional, Tuple
 
 from ..state.robot_state import RobotState
 
-SILENT = 1.0  # s without joint states
 RED, AMBER = "#c62828", "#b26a00"
 
 
@@ -17,8 +16,10 @@ def banner_text(state: RobotState, name: str, topic: str, has_model: bool, error
     if state.joints is None:
         return AMBER, (f"{name}: no messages on {topic}. Start the driver (`ros2 launch ur_ros_rtde driver.launch.py` or `./ur demo "
                        "--keep-running`) with the same ROS_DOMAIN_ID and namespace.")
-    if state.age > SILENT:
+    if state.is_silent:
         return AMBER, f"{name}: no messages on {topic} for {state.age:.0f} s. The driver has ended or has lost the robot."
+    if state.joint_states_are_fake:
+        return AMBER, f"{name}: {topic} has fake positions (digital twin). The blue ghost shows the robot."
     if not has_model:
         return AMBER, f"{name}: {error or 'the driver reports no model. State the model: --model ur10e'}"
     if state.driver is not None and state.driver.name == "STOPPED":

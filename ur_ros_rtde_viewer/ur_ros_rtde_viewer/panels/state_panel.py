@@ -6,8 +6,6 @@ from typing import Any, List, Tuple
 
 from ..state.robot_state import RobotState
 
-SILENT = 1.0  # s without joint states
-
 
 def state_rows(state: RobotState) -> List[Tuple[str, str]]:
     """Returns titles and texts."""

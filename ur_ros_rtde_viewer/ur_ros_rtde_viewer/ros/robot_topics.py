@@ -70,13 +70,14 @@ class RobotTopics:
         subscribe(RobotMode, "robot_mode", lambda message: setattr(state, "robot_mode", message.name))
         subscribe(SafetyMode, "safety_mode", lambda message: setattr(state, "safety_mode", message.name))
         subscribe(Bool, "program_running", lambda message: setattr(state, "program_running", message.data))
+        subscribe(Bool, "joint_states_are_fake", lambda message: setattr(state, "joint_states_are_fake", message.data))
         subscribe(Float64, "speed_scaling", lambda message: setattr(state, "speed_scaling", message.data))
         subscribe(DriverState, "driver_state", lambda message: setattr(
             state, "driver", DriverStatus(message.name, message.cause, message.message)))
         subscribe(GoalRejected, "goal_rejections", lambda message: state.rejections.append(
             Rejection(seconds(message.stamp), message.action, message.message)), depth=MAX_REJECTIONS)
 
-    def show_actual_joints(self, on: bool) -> None:
+    def _receive_actual_joints(self, on: bool) -> None:
         """Subscribes to actual_joint_states, which the driver publishes only while there is a subscriber."""
         if on and self._actual is None:
             self._actual = self._latest(JointState, "actual_joint_states")
@@ -89,6 +90,7 @@ class RobotTopics:
         state = self.state
         state.joints = self._read_joints(self._joints, state.joints)
         state.target_joints = self._read_joints(self._target, state.target_joints)
+        self._receive_actual_joints(state.joint_states_are_fake)
         if self._actual is not None:
             state.actual_joints = self._read_joints(self._actual, state.actual_joints)
         pose = self._tcp_pose.take()

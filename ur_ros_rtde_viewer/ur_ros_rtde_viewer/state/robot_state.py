@@ -7,6 +7,7 @@ from typing import Deque, Optional
 import numpy as np
 
 MAX_REJECTIONS = 20
+SILENT = 1.0  # s without joint states
 STOPPED_MODES = ("PROTECTIVE_STOP", "SAFEGUARD_STOP", "SYSTEM_EMERGENCY_STOP", "ROBOT_EMERGENCY_STOP", "VIOLATION", "FAULT")
 
 
@@ -52,7 +53,8 @@ class RobotState:
     """None and empty texts stand for values that were never received."""
 
     joints: Optional[Joints] = None  # joint_states: the real or the fake joints
-    actual_joints: Optional[Joints] = None  # actual_joint_states; received only while fake joint states are shown
+    joint_states_are_fake: bool = False
+    actual_joints: Optional[Joints] = None  # actual_joint_states; received only while joint_states are fake
     target_joints: Optional[Joints] = None
     tcp_pose: Optional[Pose] = None  # in base
     wrench: Optional[np.ndarray] = None  # N, N m, in the TCP frame
@@ -66,6 +68,11 @@ class RobotState:
     model: str = ""  # that the driver reports
     address: str = ""  # of the controller, that the driver reports
     age: float = float("inf")  # s, since the last joint state was received
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether no joint states have arrived for some time."""
+        return self.age > SILENT
 
     @property
     def is_stopped(self) -> bool:

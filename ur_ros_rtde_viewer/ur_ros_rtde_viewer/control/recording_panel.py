@@ -1,4 +1,4 @@
-"""Records RTDE outputs of the robot to a CSV file, offers it for download, and replays CSV files in the scene."""
+"""Records RTDE outputs of the robot to a CSV file, offers it for download, and replays it in the scene."""
 
 import pathlib
 import time
@@ -6,9 +6,7 @@ from typing import Any, Callable, Optional
 
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
-from ..errors import ViewerError
-from ..playback.motion import read_csv
-from ..playback.player import Player
+from ..panels.replay_panel import ReplayPanel
 from ..ros.service_call import ServiceCaller
 from ..state.robot_state import RobotState
 
@@ -18,9 +16,9 @@ DEFAULT_FIELDS = "timestamp actual_q actual_qd actual_TCP_pose actual_TCP_force"
 class RecordingPanel:
     """`folder`: where the driver writes its files. A file is offered for download if it is on this machine."""
 
-    def __init__(self, tab: Any, server: Any, services: ServiceCaller, player: Player, folder: pathlib.Path,
+    def __init__(self, tab: Any, server: Any, services: ServiceCaller, replay: ReplayPanel, folder: pathlib.Path,
                  post: Callable[..., None]):
-        self._server, self._services, self._folder, self._post = server, services, folder, post
+        self._services, self._replay, self._folder, self._post = services, replay, folder, post
         self._file: Optional[pathlib.Path] = None
         gui = server.gui
         with tab:
@@ -28,11 +26,8 @@ class RecordingPanel:
             self._button = gui.add_button("Record")
             self._message = gui.add_markdown("")
             self._download = gui.add_button("Download", visible=False)
-            self._upload = gui.add_upload_button("Replay a CSV file", mime_type=".csv,text/csv")
-        self.player = player
         self._button.on_click(lambda _event: post(self.toggle))
         self._download.on_click(lambda event: self._send(event.client))
-        self._upload.on_upload(lambda _event: post(self._replay_upload))
         self.is_recording = False
 
     def toggle(self) -> None:
@@ -60,7 +55,7 @@ class RecordingPanel:
         self._file = pathlib.Path(response.filename)
         self._download.visible = self._file.is_file()
         if self._download.visible:
-            self.replay(self._file.name, self._file.read_bytes())
+            self._replay.replay(self._file.name, self._file.read_bytes())
 
     def _show_state(self, recording: bool) -> None:
         self.is_recording = recording
@@ -80,21 +75,8 @@ class RecordingPanel:
             return
         client.send_file_download(file.name, content)
 
-    def _replay_upload(self) -> None:
-        self.replay(self._upload.value.name, self._upload.value.content)
-
-    def replay(self, name: str, content: bytes) -> None:
-        """Shows a recording in the scene, or why this is not possible."""
-        try:
-            motion = read_csv(name, content)
-            self.player.load(motion)
-        except ViewerError as error:
-            self._message.content = str(error)
-            return
-        self._message.content = f"`{name}`: {motion.duration:.1f} s, {len(motion.times)} rows"
-
-    def update(self, state: RobotState) -> None:
-        self.player.update(state)
+    def update(self, _state: RobotState) -> None:
+        pass
 
     def close(self) -> None:
         if self.is_recording:
