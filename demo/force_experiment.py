@@ -5,6 +5,7 @@ Requires a running simulator and the nodes (`./ur demo` starts both). Writes a C
 
 import argparse
 import math
+import signal
 import sys
 import time
 from pathlib import Path
@@ -128,8 +129,10 @@ class Experiment:
             row = self.recorder.rows[stops[0][0]]
             standstill = next((later["time"] for later in self.recorder.rows[stops[0][0]:]
                                if max(abs(later[joint]) for joint in JOINTS) < STANDSTILL), math.nan)
-            print(f"stop:       {row['force_z']:.1f} N along Z at t = {row['time']:.3f} s; "
-                  f"standstill {1000 * (standstill - row['time']):.0f} ms later")
+            peak = max((later["force_z"] for later in self.recorder.rows[stops[0][0]:]), key=abs)
+            print(f"stop:       {row['force_z']:.1f} N along Z at t = {row['time']:.3f} s, the first sample above the threshold of "
+                  f"{self.options.threshold:g} N")
+            print(f"standstill: {1000 * (standstill - row['time']):.0f} ms later; the force grew to {peak:.1f} N while the arm decelerated")
         print(f"distance:   {result.distance:.3f} m")
         print(f"result:     {'success' if result.success else 'failure'} ({result.error_code}): {result.message}")
 
@@ -162,6 +165,8 @@ def main():
                  f"MoveDownUntilForce on a simulated {options.model}: only a force along the flange Z axis stops it")
             print(f"written:    {csv_path} ({len(experiment.recorder.rows)} samples), {png_path}")
             return 0 if result.success and len(events) == 3 else 1
+    except KeyboardInterrupt:
+        return 128 + signal.SIGINT
     finally:
         node.destroy_node()
         rclpy.try_shutdown()

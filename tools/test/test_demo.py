@@ -43,13 +43,14 @@ def first_motions():
 
 
 def test_ignores_two_pushes_and_stops_on_contact(tmp_path):
+    folder = tmp_path / "new"
     result = demo("--address", os.environ.get("UR_TEST_ADDRESS", "127.0.1.201"), "--drop", "0.2", "--speed", "0.15",
-                  "--output", str(tmp_path))
+                  "--output", str(folder))
     assert result.returncode == 0, result.stdout + result.stderr
     assert result.stdout.count("ignored: ") == 2
-    assert "success (0)" in result.stdout and "standstill" in result.stdout
-    assert (tmp_path / "force_experiment.png").read_bytes().startswith(PNG)
-    with (tmp_path / "force_experiment.csv").open(newline="") as file:
+    assert "success (0)" in result.stdout and "while the arm decelerated" in result.stdout
+    assert (folder / "force_experiment.png").read_bytes().startswith(PNG)
+    with (folder / "force_experiment.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["event"] for row in rows if row["event"]] == ["ignored x", "ignored y", "stop z"]
     assert max(abs(float(rows[-1][joint])) for joint in ("shoulder_lift", "elbow", "wrist_1")) < 0.01

@@ -115,7 +115,7 @@ def test_ports_in_use_are_reported_before_the_build(listening, run_without_build
 
 
 def test_invalid_arguments_of_the_demo_are_rejected_before_the_build(run_without_build):
-    for arguments, expected, text in ((["--output", "/no/such/folder"], 1, "--output /no/such/folder: there is no such folder"),
+    for arguments, expected, text in ((["--output", "/proc/new"], 1, "--output /proc/new: the folder cannot be written"),
                                       (["--output", "/proc"], 1, "cannot be written"),
                                       (["--speed", "1"], 2, "--speed 1: must be from 0.01 to 0.25"),
                                       (["--threshold", "1000"], 2, "--threshold 1000: must be from 5 to 100"),

@@ -66,9 +66,8 @@ def packages(options: argparse.Namespace) -> List[str]:
 
 def check(options: argparse.Namespace) -> None:
     """Raises Failure if the output folder cannot be written or the address is in use."""
-    if not options.output.is_dir():
-        raise console.Failure(f"--output {options.output}: there is no such folder. Create it: `mkdir -p {options.output}`")
     try:
+        options.output.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=options.output).close()  # a permission check would miss a read-only or full disk
     except OSError as error:
         raise console.Failure(f"--output {options.output}: the folder cannot be written: {error.strerror}") from None

@@ -11,7 +11,8 @@ namespace ur_ros_rtde {
 namespace {
 /// Longest time for discovery. After that, this process is in use and must not exit.
 constexpr std::chrono::seconds start_phase{10};
-constexpr const char * remedy = "stop one of them, or use a different namespace (--ros-args -r __ns:=/…)";
+constexpr const char * remedy =
+    "stop one of them, or use a different namespace (--ros-args -r __ns:=/…) or ROS_DOMAIN_ID";
 
 std_msgs::msg::Header this_process()
 {
