@@ -13,7 +13,7 @@ from typing import Any
 
 import rclpy
 from control_port import ControlPort
-from force_figure import JOINTS, draw
+from force_figure import VELOCITIES, draw, force_column
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -124,15 +124,16 @@ class Experiment:
         stops = [event for event in events if event[1].startswith("stop")]
         for index, kind in ignored:
             row, axis = self.recorder.rows[index], kind[-1]
-            print(f"ignored:    {row[f'force_{axis}']:.1f} N along {axis.upper()} at t = {row['time']:.3f} s")
+            print(f"ignored:    {row[force_column(axis)]:.1f} N along {axis.upper()} at t = {row['timestamp']:.3f} s")
         if stops:
             row = self.recorder.rows[stops[0][0]]
-            standstill = next((later["time"] for later in self.recorder.rows[stops[0][0]:]
-                               if max(abs(later[joint]) for joint in JOINTS) < STANDSTILL), math.nan)
-            peak = max((later["force_z"] for later in self.recorder.rows[stops[0][0]:]), key=abs)
-            print(f"stop:       {row['force_z']:.1f} N along Z at t = {row['time']:.3f} s, the first sample above the threshold of "
+            standstill = next((later["timestamp"] for later in self.recorder.rows[stops[0][0]:]
+                               if max(abs(later[velocity]) for velocity in VELOCITIES) < STANDSTILL), math.nan)
+            peak = max((later[force_column("z")] for later in self.recorder.rows[stops[0][0]:]), key=abs)
+            print(f"stop:       {row[force_column('z')]:.1f} N along Z at t = {row['timestamp']:.3f} s, the first sample above the threshold of "
                   f"{self.options.threshold:g} N")
-            print(f"standstill: {1000 * (standstill - row['time']):.0f} ms later; the force grew to {peak:.1f} N while the arm decelerated")
+            print(f"standstill: {1000 * (standstill - row['timestamp']):.0f} ms later; the force grew to {peak:.1f} N while the arm "
+                  "decelerated")
         print(f"distance:   {result.distance:.3f} m")
         print(f"result:     {'success' if result.success else 'failure'} ({result.error_code}): {result.message}")
 

@@ -9,7 +9,7 @@ import matplotlib
 matplotlib.use("Agg")  # before pyplot is imported
 import matplotlib.pyplot as plt
 
-FORCES = {"force_x": ("X", "#7f7f7f"), "force_y": ("Y", "#2ca02c"), "force_z": ("Z (flange axis)", "#ff7f0e")}
+FORCES = {"force_0": ("X", "#7f7f7f"), "force_1": ("Y", "#2ca02c"), "force_2": ("Z (flange axis)", "#ff7f0e")}
 JOINTS = {
     "shoulder_pan": "#1f77b4",
     "shoulder_lift": "#ff7f0e",
@@ -18,6 +18,14 @@ JOINTS = {
     "wrist_2": "#9467bd",
     "wrist_3": "#17becf",
 }
+
+
+# Columns of the file; those of the joints are named as in a recording.
+POSITIONS, VELOCITIES = ([f"{output}_{index}" for index in range(len(JOINTS))] for output in ("actual_q", "actual_qd"))
+
+
+def force_column(axis):
+    return f"force_{'xyz'.index(axis)}"
 
 
 @dataclass
@@ -39,7 +47,7 @@ def read(path):
     for row in rows:
         if row["event"]:
             kind, axis = row["event"].split()
-            events.append(Event(float(row["time"]), kind, axis, float(row[f"force_{axis}"])))
+            events.append(Event(float(row["timestamp"]), kind, axis, float(row[force_column(axis)])))
     return columns, events
 
 
@@ -51,16 +59,16 @@ def _mark(axes, events, height_of):
 
 
 def _velocity_at(columns, time):
-    index = min(range(len(columns["time"])), key=lambda i: abs(columns["time"][i] - time))
-    return max((columns[joint][index] for joint in JOINTS), key=abs)
+    index = min(range(len(columns["timestamp"])), key=lambda i: abs(columns["timestamp"][i] - time))
+    return max((columns[velocity][index] for velocity in VELOCITIES), key=abs)
 
 
 def _draw_forces(axes, columns, events, threshold):
     for name, (label, colour) in FORCES.items():
-        axes.plot(columns["time"], columns[name], color=colour, linewidth=1.1, label=label)
+        axes.plot(columns["timestamp"], columns[name], color=colour, linewidth=1.1, label=label)
     for level in (threshold, -threshold):
         axes.axhline(level, color="0.35", linewidth=0.8, linestyle="--")
-    axes.annotate(f"threshold ±{threshold:g} N", (columns["time"][0], threshold), xytext=(2, 3), fontsize=8,
+    axes.annotate(f"threshold ±{threshold:g} N", (columns["timestamp"][0], threshold), xytext=(2, 3), fontsize=8,
                   textcoords="offset points", color="0.35")
     _mark(axes, events, lambda event: event.force)
     axes.set_ylabel("force at the flange [N]")
@@ -68,8 +76,8 @@ def _draw_forces(axes, columns, events, threshold):
 
 
 def _draw_velocities(axes, columns, events):
-    for name, colour in JOINTS.items():
-        axes.plot(columns["time"], columns[name], color=colour, linewidth=1.1, label=name)
+    for velocity, (name, colour) in zip(VELOCITIES, JOINTS.items()):
+        axes.plot(columns["timestamp"], columns[velocity], color=colour, linewidth=1.1, label=name)
     _mark(axes, events, lambda event: _velocity_at(columns, event.time))
     axes.set_ylabel("joint velocity [rad/s]")
     axes.set_xlabel("time since the goal was accepted [s]")

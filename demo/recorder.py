@@ -3,7 +3,7 @@
 import csv
 import math
 
-from force_figure import FORCES, JOINTS
+from force_figure import FORCES, JOINTS, POSITIONS, VELOCITIES, force_column
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
@@ -49,7 +49,9 @@ class Recorder:
     def _on_joints(self, message):
         names = [name.removesuffix("_joint") for name in message.name]
         self._stamp = _nanoseconds(message.header.stamp)
-        self._join(self._stamp, {joint: message.velocity[names.index(joint)] for joint in JOINTS})
+        order = [names.index(joint) for joint in JOINTS]
+        self._join(self._stamp, dict(zip((*POSITIONS, *VELOCITIES), [*(message.position[i] for i in order),
+                                                                     *(message.velocity[i] for i in order)])))
 
     def _on_wrench(self, message):
         force = message.wrench.force
@@ -65,8 +67,8 @@ class Recorder:
             return
         row = self._pending.setdefault(stamp, {})
         row.update(fields)
-        if len(row) == len(FORCES) + len(JOINTS) + 1:
-            self.rows.append({"time": (stamp - self._origin) * 1e-9, **self._pending.pop(stamp)})
+        if len(row) == len(FORCES) + len(POSITIONS) + len(VELOCITIES) + 1:
+            self.rows.append({"timestamp": (stamp - self._origin) * 1e-9, **self._pending.pop(stamp)})
 
 
 def mark_events(rows, pushes, threshold):
@@ -79,7 +81,7 @@ def mark_events(rows, pushes, threshold):
 
 def _first_above(rows, since, axis, threshold, event):
     for index, row in enumerate(rows):
-        if row["time"] >= since and abs(row[f"force_{axis}"]) > threshold:
+        if row["timestamp"] >= since and abs(row[force_column(axis)]) > threshold:
             return [(index, event)]
     return []
 
@@ -88,7 +90,7 @@ def write_csv(path, rows, events):
     marked = dict(events)
     with open(path, "w", newline="") as file:
         writer = csv.writer(file)
-        names = ["time", *FORCES, *JOINTS, "height"]
+        names = ["timestamp", *POSITIONS, *VELOCITIES, *FORCES, "height"]
         writer.writerow([*names, "event"])
         for index, row in enumerate(rows):
             writer.writerow([*(f"{row[name]:.6f}" for name in names), marked.get(index, "")])

@@ -32,6 +32,7 @@ only what changed. All files are written to .ur/; `./ur clean` removes them.
 CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0]}\"",
        "state": "show the state of the robot", "plugins": "list the installed plugins",
        "record": "record RTDE outputs of the robot to a CSV file",
+       "plot": "draw a recording: ur plot run.csv",
        "urdf": "print the URDF of an arm: ur urdf --model ur10e",
        "calibration": "save the calibration of an arm for its URDF: ur calibration --robot ADDRESS --output FILE"}
 FORWARDED = ("demo", "bench", "chaos", "plan", "sim", "view", "doctor", *CLI)  # to a program, with all options that are not ours

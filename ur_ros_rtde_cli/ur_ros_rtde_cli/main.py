@@ -16,12 +16,13 @@ COMMANDS = {"call": "send a goal, show its feedback and print its result",
             "state": "show the state of the robot, once or continuously",
             "plugins": "list the installed plugins with package and description",
             "record": "record RTDE outputs of the robot to a CSV file",
+            "plot": "draw a recording",
             "urdf": "print the URDF of an arm",
             "calibration": "save the calibration of an arm for its URDF",
             "doctor": "check a robot over the network: ur doctor --robot ADDRESS",
             "view": "show robots in the browser"}
 VIEW = "view"  # a program of another package, with options of its own
-WITHOUT_NODES = ("plugins", "urdf", "calibration", "doctor")  # commands that communicate with no node
+WITHOUT_NODES = ("plugins", "plot", "urdf", "calibration", "doctor")  # commands that communicate with no node
 
 # Commands of the script `ur` in a checkout. They are not installed.
 CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "fuzz", "shell", "new", "format", "lint", "doctor", "clean")
@@ -30,7 +31,7 @@ CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "
 CHECKOUT_VARIABLE = "UR_CHECKOUT"
 
 DESCRIPTION = """\
-Calls actions of ur_ros_rtde, shows and records the state of the robot, lists the plugins, prints URDFs,
+Calls actions of ur_ros_rtde, shows, records and draws the state of the robot, lists the plugins, prints URDFs,
 checks robots and reads their calibration.
 
 Exit code: 0 success, 1 failure, 2 goal rejected or wrong arguments, 128 plus the signal number after a signal.

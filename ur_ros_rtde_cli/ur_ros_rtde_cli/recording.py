@@ -1,0 +1,69 @@
+"""Reads recordings: CSV files with the columns timestamp, NAME or NAME_0 ... NAME_n for each RTDE output, and event."""
+
+import csv
+import pathlib
+import re
+from dataclasses import dataclass, replace
+from typing import Dict, List, Sequence, Tuple
+
+import numpy as np
+
+from .errors import CliError
+
+TIME, EVENT = "timestamp", "event"
+
+
+@dataclass(frozen=True)
+class Recording:
+    name: str
+    times: np.ndarray  # s, from 0
+    outputs: Dict[str, np.ndarray]  # one row per time, one column per element
+    events: List[Tuple[float, str]]  # s, text
+
+    @classmethod
+    def read(cls, path: pathlib.Path) -> "Recording":
+        try:
+            with path.open(newline="") as file:
+                rows = list(csv.reader(file))
+        except (OSError, UnicodeDecodeError) as error:
+            reason = error.strerror if isinstance(error, OSError) else "it is no text"
+            raise CliError(f"{path} cannot be read: {reason}") from None
+        header, rows = (rows[0], rows[1:]) if rows else ([], [])
+        if TIME not in header:
+            raise CliError(f"{path} has no column {TIME}: record with `ur record {path.name} {TIME} actual_q`")
+        if len(rows) < 2:
+            raise CliError(f"{path} has {len(rows)} rows: expected 2 or more")
+        events = header.index(EVENT) if EVENT in header else None
+        numbers = [index for index in range(len(header)) if index != events]
+        values = np.array([_numbers(path, line, row, numbers, len(header)) for line, row in enumerate(rows, start=2)])
+        columns = {header[index]: values[:, position] for position, index in enumerate(numbers)}
+        times = columns.pop(TIME)
+        times = times - times[0]
+        return cls(path.name, times, _outputs(columns), [] if events is None else
+                   [(float(time), row[events]) for time, row in zip(times, rows) if row[events]])
+
+    def select(self, names: Sequence[str]) -> "Recording":
+        """Returns the recording with these outputs only; all if there are no names."""
+        missing = [name for name in names if name not in self.outputs]
+        if missing:
+            raise CliError(f"{self.name} has no output {missing[0]}. It has: {', '.join(self.outputs)}")
+        return replace(self, outputs={name: self.outputs[name] for name in names or self.outputs})
+
+
+def _numbers(path: pathlib.Path, line: int, row: List[str], columns: Sequence[int], width: int) -> List[float]:
+    if len(row) != width:
+        raise CliError(f"{path}:{line} has {len(row)} values: expected {width}, as in the first line")
+    try:
+        return [float(row[column]) for column in columns]
+    except ValueError as error:
+        raise CliError(f"{path}:{line}: {error}") from None
+
+
+def _outputs(columns: Dict[str, np.ndarray]) -> Dict[str, np.ndarray]:
+    """Joins the elements of vectors: actual_q_0 ... actual_q_5 are actual_q."""
+    elements: Dict[str, List[np.ndarray]] = {}
+    for column, values in columns.items():
+        match = re.fullmatch(r"(.+)_(\d+)", column)
+        name = match[1] if match and int(match[2]) == len(elements.get(match[1], [])) else column
+        elements.setdefault(name, []).append(values)
+    return {name: np.stack(vectors, axis=1) for name, vectors in elements.items()}
