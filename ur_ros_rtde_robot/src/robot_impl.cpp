@@ -78,8 +78,8 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
 
 void Robot::Impl::add(const Sample & sample)
 {
-  feed_watchdog(sample);
   tracker.add(sample);
+  feed_watchdog(sample);
   manager.on_sample(sample);
   if (sample_function) {
     sample_function(sample);
@@ -171,6 +171,7 @@ Status Robot::Impl::motion_possible() const
     return {};
   }
   if (!sample->is_program_running()) {
+    tracker.add(*sample);  // the receiving thread may not have done so yet: the cause would be an earlier one
     return tl::unexpected(program_ended_error());
   }
   const auto control = interfaces.control_interface();

@@ -45,7 +45,7 @@ class Robot::Impl {
   const RobotOptions options;
   Arbiter arbiter;
   std::function<void(const Sample &)> sample_function;
-  MotionTracker tracker;
+  mutable MotionTracker tracker;  ///< thread-safe; any thread may add the newest sample
   StateReceiver state;
   DashboardConnection dashboard;
   ArmModel model;

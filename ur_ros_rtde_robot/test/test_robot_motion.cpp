@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <optional>
 #include <thread>
 
@@ -159,6 +160,31 @@ TEST_F(RobotMotionTest, EndsWithCauseAndRemedyInAnEmergencyStop)
   controller.control({{"command", "emergency_stop"}, {"pressed", false}});
   controller.control({{"command", "power"}, {"to", "running"}});
   EXPECT_TRUE(becomes_ready(20s));
+}
+
+TEST_F(RobotMotionTest, HasTheCauseOfItsOwnProgramsEndAtEveryMoment)
+{
+  make_both();
+  for (std::size_t ready = 1; ready < 8; ready += 2) {
+    ASSERT_TRUE(becomes_ready_again(ready));
+    controller.control({{"command", "emergency_stop"}});
+    ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::emergency_stop));
+    controller.control({{"command", "emergency_stop"}, {"pressed", false}});
+    controller.control({{"command", "power"}, {"to", "running"}});
+    ASSERT_TRUE(becomes_ready_again(ready + 1)) << log.text();
+    auto first = std::async(std::launch::async, [&] {
+      const auto deadline = std::chrono::steady_clock::now() + 15s;
+      Status possible = robot->motion_possible();
+      while (possible && std::chrono::steady_clock::now() < deadline) {
+        possible = robot->motion_possible();
+      }
+      return possible;
+    });
+    controller.control({{"command", "stop_program"}});
+    const Status possible = first.get();
+    ASSERT_FALSE(possible);
+    EXPECT_EQ(possible.error().code, ErrorCode::program_stopped) << possible.error().message;
+  }
 }
 
 TEST_F(RobotMotionTest, EndsInASafeguardStopAndIsNotResumed)
