@@ -183,10 +183,13 @@ def test_stop_decelerates_the_arm_within_100_ms(tab, viewer, robot, simulator, t
     assert min(delays) < 0.1  # a busy host delays some, but not all
 
 
-def test_escape_stops(tab, robot, simulator):
-    tab.open("State")
+@pytest.mark.parametrize("in_input", [False, True])
+def test_escape_stops(tab, robot, simulator, in_input):
+    tab.select_action("move_j") if in_input else tab.open("State")
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=0.3)
     until(lambda: is_moving(simulator), "the arm to move")
+    if in_input:
+        tab.field("speed [rad/s]").click()
     tab.page.keyboard.press("Escape")
     goal.wait_for_result()
     assert not goal.result().success
