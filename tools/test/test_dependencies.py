@@ -17,7 +17,7 @@ ANY = packages.DEPENDENCIES
 # Where a CMake package, target or Python module and the rosdep key have different names.
 KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "gtest", "GTest::gmock": "libgmock-dev",
         "Git": "git", "Python3": "python3", "nlohmann_json": "nlohmann-json-dev", "tl-expected": "libexpected-dev",
-        "numpy": "python3-numpy", "pytest": "python3-pytest", "yaml": "python3-yaml"}
+        "matplotlib": "python3-matplotlib", "numpy": "python3-numpy", "pytest": "python3-pytest", "yaml": "python3-yaml"}
 MODULES = {"ur_ros_rtde": "ur_ros_rtde_python", "ur_ros_rtde_launch": "ur_ros_rtde"}  # Python modules and their packages
 NOT_DECLARED = {"Threads",  # part of CMake
                 "copp_py", "toppra",  # solvers that oracle.py compares with

@@ -86,6 +86,28 @@ def test_later(started):
     assert (found.cases, attempts) == (runner.Cases(3, []), 2), found.output
 
 
+def test_a_stall_during_work_that_began_before_the_test_counts(tmp_path, monkeypatch):
+    found, attempts = run(tmp_path, monkeypatch, """import pytest
+
+begin = time.monotonic()
+
+
+def test_before():
+    stall_host()
+
+
+@pytest.fixture
+def outcome(request):
+    request.node.began = begin
+    return attempt()
+
+
+def test_late(outcome):
+    assert outcome > 1
+""")
+    assert (found.cases, attempts) == (runner.Cases(3, []), 2), found.output
+
+
 def test_a_test_that_always_stalls_fails(tmp_path, monkeypatch):
     found, attempts = run(tmp_path, monkeypatch, "def test_late():\n    attempt()\n    stall_host()\n    assert False\n")
     assert (found.cases, attempts) == (runner.Cases(1, ["test_stalls.test_late"]), 4), found.output

@@ -1,6 +1,7 @@
 """A pytest plugin that repeats a test that failed while the host stalled: the failure shows nothing about the software.
 
-A failure without a measured stall is never repeated. pytest-rerunfailures does the repetition.
+A failure without a measured stall is never repeated. pytest-rerunfailures does the repetition. A fixture whose work began before
+the test sets `request.node.began` to that time of time.monotonic().
 """
 
 import time
@@ -31,7 +32,8 @@ def _blame_host(item):
     try:
         return (yield)
     except (Exception, pytest.fail.Exception) as error:
-        stall = item.config.stash[_watch].longest_since(item.stash[_begin])
+        began = getattr(item, "began", None) or item.stash[_begin]
+        stall = item.config.stash[_watch].longest_since(began)
         if stall == 0.0:
             raise
         text = failure(stall, item.nodeid)

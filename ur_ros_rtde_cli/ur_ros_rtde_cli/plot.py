@@ -9,6 +9,7 @@ Reads the CSV files of `ur record`, of the viewer and of the demo. A column `eve
 import argparse
 import pathlib
 
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=pathlib.Path, help="CSV file")
     parser.add_argument("fields", nargs="*", help="outputs to draw (default: all)")

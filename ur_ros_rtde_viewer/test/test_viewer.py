@@ -44,7 +44,8 @@ def client():
 
 @pytest.fixture(scope="module")
 def viewer(server, driver, tmp_path_factory):
-    options = parse(["--control", "--robot", "", "--robot", f"{RIGHT},model=ur5e,y=-1", "--recordings", str(tmp_path_factory.mktemp("recordings"))])
+    recordings = str(tmp_path_factory.mktemp("recordings"))
+    options = parse(["--control", "--robot", "", "--robot", f"{RIGHT},model=ur5e,y=-1", "--recordings", recordings])
     nodes = Nodes()
     created = Viewer(server, nodes, options)
     yield created

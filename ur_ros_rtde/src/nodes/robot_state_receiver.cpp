@@ -51,8 +51,8 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
   get_io_state_ =
       serve<srv::GetIOState>("get_io_state", &StateMessages::io_state, &srv::GetIOState::Response::io_state);
 
-  joint_states_are_fake_ = node_.create_publisher<std_msgs::msg::Bool>("joint_states_are_fake",
-                                                                       rcl_cxx::QoS::transient_local());
+  joint_states_are_fake_ =
+      node_.create_publisher<std_msgs::msg::Bool>("joint_states_are_fake", rcl_cxx::QoS::transient_local());
   joint_states_are_fake_->publish(std_msgs::msg::Bool());
   publish_fake_ = node_.create_service<std_srvs::srv::SetBool>(
       "publish_fake_joint_states",

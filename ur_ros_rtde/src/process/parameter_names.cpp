@@ -29,11 +29,11 @@ void check_parameter_names(const Servers & servers)
       continue;  // of another node of this process
     }
     if (const auto meant = most_similar(name, known)) {
-      throw rcl_cxx::ParameterError(
-          name, fmt::format("there is no parameter {}; did you mean {}?", name, *meant));
+      throw rcl_cxx::ParameterError(name,
+                                    fmt::format("there is no parameter {}; did you mean {}?", name, *meant));
     }
-    RCL_CXX_WARN(servers.front()->node().get_logger(), "parameter {} is set, but no node of this process has it",
-                 name);
+    RCL_CXX_WARN(servers.front()->node().get_logger(),
+                 "parameter {} is set, but no node of this process has it", name);
   }
 }
 

@@ -1,6 +1,7 @@
 """Runs scenarios for many plugins in parallel in a pool of cells."""
 
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 
 from cell import Cell
@@ -18,13 +19,15 @@ class CellPool:
         self._changed = threading.Condition()
         self._pool = ThreadPoolExecutor(count)
 
-    def submit(self, scenario, *arguments):
-        return self._pool.submit(self._run, scenario, arguments)
+    def submit(self, scenario, *arguments, on_begin=lambda: None):
+        """Returns the future of `scenario(cell, *arguments)`. `on_begin` is called when a cell is free for it."""
+        return self._pool.submit(self._run, scenario, arguments, on_begin)
 
-    def _run(self, scenario, arguments):
+    def _run(self, scenario, arguments, on_begin):
         setup = getattr(arguments[0], "setup", Setup())
         slot = self._take(setup)
         try:
+            on_begin()
             slot = self._cell_for(setup, slot)
             outcome = self._run_scenario(scenario, slot, arguments)
             if hasattr(arguments[0], "action"):
@@ -85,9 +88,18 @@ class Outcomes:
     """The results of `scenario(cell, example)` for each example, by action name."""
 
     def __init__(self, pool, scenario, examples):
+        self._pool, self._scenario = pool, scenario
+        self._examples = {example.action: example for example in examples}
+        self.began = {}  # time.monotonic() at which the scenario began, by action name
         # Examples with the same setup follow each other, because another setup needs a new cell.
         ordered = sorted(examples, key=lambda example: (example.setup.controller, example.setup.parameters))
-        self._futures = {example.action: pool.submit(scenario, example) for example in ordered}
+        self._futures = {example.action: self._submit(example) for example in ordered}
+
+    def _submit(self, example):
+        return self._pool.submit(self._scenario, example, on_begin=lambda: self.began.update({example.action: time.monotonic()}))
+
+    def repeat(self, name):
+        self._futures[name] = self._submit(self._examples[name])
 
     def get(self, name, limit=600.0):
         """Returns the result of the scenario for this action, or raises its exception."""

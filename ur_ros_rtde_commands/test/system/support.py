@@ -322,7 +322,7 @@ class Client:
 
     def _wait_for_server(self, client, name):
         try:
-            wait_for(client.server_is_ready, 20.0, f"the action {name}")
+            wait_for(client.server_is_ready, 60.0, f"the action {name}")
         except AssertionError as error:
             topics = {topic: self.node.count_publishers(f"{name}/_action/{topic}") for topic in ("feedback", "status")}
             services = sorted(service for service, _ in self.node.get_service_names_and_types() if f"/{name}/_action/" in service)

@@ -186,14 +186,15 @@ def test_cancel_brakes_a_gentle_motion_within_its_limits(robot, simulator):
 
 def test_stop_after_cancel_stops_a_gentle_motion_at_once(robot, simulator):
     goal = start_gentle_motion(robot, simulator)
+    recorder = TargetRecorder(simulator)
     goal.cancel()
-    begin = simulator.state()
     robot.send(Stop, "stop").succeeded()
     at_rest = simulator.state()
-    assert at_rest["timestamp"] - begin["timestamp"] < 3.0, "it took as long as the gentle deceleration of the cancel, over 6 s"
-    assert abs(at_rest["target"]["velocity"][0]) == 0.0
-    _, result = goal.wait_for_result(5.0)
-    assert result.error_code in (ErrorCode.CANCELED, ErrorCode.PREEMPTED)
+    assert at_rest["target"]["velocity"][0] == pytest.approx(0.0, abs=1e-9)
+    _, result = goal.wait_for_result(15.0)
+    assert result.error_code in (ErrorCode.CANCELED, ErrorCode.PREEMPTED), result.message
+    deceleration = recorder.update().max_deceleration()
+    assert deceleration > 0.5, f"it brakes as gently as the cancel, at most at {deceleration:.2f} rad/s²"
     cycle = at_rest["cycle"]
     wait_for(lambda: simulator.state()["cycle"] > cycle + 250, 10.0, "half a second")
     assert simulator.state()["target"]["position"] == pytest.approx(at_rest["target"]["position"], abs=1e-6), "it creeps on"

@@ -73,6 +73,11 @@ class TargetRecorder:
     def max_joint_speed(self):
         return max(self.joint_speeds.values())
 
+    def max_deceleration(self, cycles=25):
+        """Returns the largest mean deceleration of the fastest joint during this number of cycles in rad/s²."""
+        speeds = list(self.joint_speeds.values())
+        return max(earlier - later for earlier, later in zip(speeds, speeds[cycles:])) * 500.0 / cycles
+
     def max_tcp_speed(self):
         return max(self.tcp_speeds.values())
 
