@@ -157,8 +157,10 @@ Error Robot::Impl::program_ended_error() const
 
 Status Robot::Impl::motion_possible() const
 {
+  const auto control = interfaces.control_interface();
+  const bool has_control = control && control->isConnected();
   const auto link = state.link();
-  const auto sample = state.latest();
+  const auto sample = state.latest();  // last, because the manager disconnects when a sample ends the program
   if (!link.connected || !sample) {
     return failure(ErrorCode::link_lost, link.connected
                                              ? "no package from the controller has been received yet"
@@ -174,7 +176,6 @@ Status Robot::Impl::motion_possible() const
     tracker.add(*sample);  // the receiving thread may not have done so yet: the cause would be an earlier one
     return tl::unexpected(program_ended_error());
   }
-  const auto control = interfaces.control_interface();
   if (!control) {
     auto why = unavailable_error();
     if (why.code == ErrorCode::not_ready) {  // the connection is being re-established
@@ -183,7 +184,7 @@ Status Robot::Impl::motion_possible() const
     }
     return tl::unexpected(std::move(why));
   }
-  if (!control->isConnected()) {
+  if (!has_control) {
     return failure(ErrorCode::link_lost,
                    "the robot closed the connection to the control program; it is being re-established");
   }

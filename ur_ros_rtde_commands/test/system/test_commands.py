@@ -264,6 +264,19 @@ def test_stopping_the_program_aborts_the_goal_without_resuming_it(robot, simulat
     assert is_at_rest(robot)
 
 
+def test_a_suspended_driver_names_the_watchdog_as_the_cause(robot, simulator, driver):
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
+    wait_until_moving(robot)
+    cycle = simulator.state()["cycle"]
+    driver.pause()
+    wait_for(lambda: simulator.state()["cycle"] > cycle + 800, 20.0, "1.6 s without the driver")
+    driver.resume()
+    status, result = goal.wait_for_result()
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PROGRAM_STOPPED, result.message
+    assert "this host sent no heartbeat" in result.message
+    wait_for(lambda: is_at_rest(robot), 15.0, "standstill")
+
+
 @pytest.mark.parametrize("clients", ["all", "receive", "control"])
 def test_a_lost_connection_aborts_the_goal_and_stops_the_arm(robot, simulator, clients):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.6)
