@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banner_text
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
-from ur_ros_rtde_viewer.panels.state_panel import StatePanel, state_rows
+from ur_ros_rtde_viewer.panels.state_panel import StatePanel, arm_rows, state_rows
 from ur_ros_rtde_viewer.state.history import History
-from ur_ros_rtde_viewer.state.robot_state import MAX_REJECTIONS, ActiveGoal, DriverStatus, Joints, Rejection, RobotState
+from ur_ros_rtde_viewer.state.robot_state import MAX_REJECTIONS, ActiveGoal, DriverStatus, Joints, Pose, Rejection, RobotState
 
 
 def moving(stamp=0.0, position=0.0):
@@ -46,6 +46,23 @@ def test_a_stopped_driver_shows_its_message():
     state = moving()
     state.driver = DriverStatus("STOPPED", 10, "press play on the pendant")
     assert banner(state) == (AMBER, "left: press play on the pendant")
+
+
+def test_an_active_mode_has_a_banner_and_a_row():
+    state = moving()
+    state.active_modes = ("freedrive",)
+    assert banner(state) == (AMBER, "left: freedrive active: forces move the arm. STOP ends it.")
+    assert dict(state_rows(state))["Active modes"] == "freedrive"
+
+
+def test_the_arm_is_shown_in_numbers():
+    state = moving(position=0.5)
+    state.tcp_pose, state.wrench = Pose(np.array((0.1, -0.2, 0.3)), np.array((1.0, 0.0, 0.0, 0.0))), np.arange(6.0)
+    rows = {title: text.split() for title, text in arm_rows(state)}
+    assert rows["Elbow"] == ["0.5000", "rad", "28.6°"] and len(rows) == 9
+    assert rows["TCP in base"] == ["0.1000", "-0.2000", "0.3000", "m"]
+    assert rows["Force, TCP frame"] == ["0.0", "1.0", "2.0", "N"] and rows["Torque, TCP frame"][-2:] == ["N", "m"]
+    assert arm_rows(RobotState()) == []
 
 
 def test_the_state_names_modes_driver_and_goal():

@@ -6,6 +6,7 @@
 #include "nodes/parameters.hpp"
 #include "nodes/server.hpp"
 #include "plugins/plugin_set.hpp"
+#include "state/active_modes.hpp"
 #include "state/description_check.hpp"
 #include "state/driver_state.hpp"
 #include "teleoperation/teleoperation.hpp"
@@ -36,6 +37,7 @@ class CommandServer : public Server {
   rcl_cxx::Node::SharedPtr node_;
   std::unique_ptr<DriverStateTopic> driver_state_;  // outlives the robot, which calls it
   std::unique_ptr<Robot> robot_;
+  std::unique_ptr<ActiveModesTopic> active_modes_;
   std::unique_ptr<CommandHost> host_;
   std::unique_ptr<Teleoperation> teleoperation_;
   std::unique_ptr<DescriptionCheck> description_check_;

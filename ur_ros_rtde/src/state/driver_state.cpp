@@ -1,6 +1,9 @@
 #include "state/driver_state.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "state/active_modes.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -82,6 +85,7 @@ std::vector<Diagnosis> diagnose_driver(Robot & robot)
       .value("state", name(status.state))
       .value("cause", to_string(status.cause))
       .value("model", robot.model().empty() ? "unknown" : robot.model())
+      .value("active modes", fmt::format("{}", fmt::join(mode_names(robot.activities()), ", ")))
       .value("motion goal", holder(robot, Resource::motion))
       .value("io goal", holder(robot, Resource::io))
       .value("script goal", holder(robot, Resource::script));

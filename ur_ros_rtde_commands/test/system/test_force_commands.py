@@ -23,7 +23,7 @@ from ur_ros_rtde_msgs.action import (
     Trigger,
     ZeroFtSensor,
 )
-from ur_ros_rtde_msgs.msg import ErrorCode
+from ur_ros_rtde_msgs.msg import ActiveModes, ErrorCode
 
 ALONG_Z = [False, False, True, False, False, False]
 
@@ -153,12 +153,15 @@ def test_the_arm_yields_to_a_push_in_freedrive_and_is_at_rest_afterwards(robot, 
 @pytest.mark.parametrize("start,stop,action", [("freedrive_start", "freedrive_stop", Freedrive),
                                                ("teach_mode_start", "end_teach_mode", Trigger)])
 def test_motions_are_rejected_in_freedrive(robot, simulator, start, stop, action):
+    modes = robot.subscribe(ActiveModes, "active_modes", transient_local=True)
     robot.send(action, start).succeeded()
     assert simulator.state()["freedrive"]
+    wait_for(lambda: modes and modes[-1].names == [stop.removesuffix("_stop").removeprefix("end_")], 10.0, "the mode on active_modes")
     rejected = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1))
     assert not rejected.accepted and robot.rejection(rejected).error_code == ErrorCode.BUSY
     robot.send(Trigger, stop).succeeded()
     assert not simulator.state()["freedrive"]
+    wait_for(lambda: not modes[-1].names, 10.0, "its end on active_modes")
     robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1)).succeeded()
 
 

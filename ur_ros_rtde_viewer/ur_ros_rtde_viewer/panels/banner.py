@@ -20,6 +20,8 @@ def banner_text(state: RobotState, name: str, topic: str, has_model: bool, error
         return AMBER, f"{name}: no messages on {topic} for {state.age:.0f} s. The driver has ended or has lost the robot."
     if state.joint_states_are_fake:
         return AMBER, f"{name}: {topic} has fake positions (digital twin). The blue ghost shows the robot."
+    if state.active_modes:
+        return AMBER, f"{name}: {' and '.join(state.active_modes).replace('_', ' ')} active: forces move the arm. STOP ends it."
     if not has_model:
         return AMBER, f"{name}: {error or 'the driver reports no model. State the model: --model ur10e'}"
     if state.driver is not None and state.driver.name == "STOPPED":

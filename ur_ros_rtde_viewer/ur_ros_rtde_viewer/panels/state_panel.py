@@ -1,10 +1,14 @@
-"""Shows the state of robot and driver, the active goal, and rejections."""
+"""Shows the state of robot and driver, the active goal, the arm in numbers, and rejections."""
 
 import html
+import math
 import time
 from typing import Any, List, Tuple
 
 from ..state.robot_state import RobotState
+
+ARM_PERIOD = 0.2  # s; each browser receives every change
+JOINTS = ("Shoulder pan", "Shoulder lift", "Elbow", "Wrist 1", "Wrist 2", "Wrist 3")
 
 
 def state_rows(state: RobotState) -> List[Tuple[str, str]]:
@@ -18,14 +22,34 @@ def state_rows(state: RobotState) -> List[Tuple[str, str]]:
         rows.append(("Driver", state.driver.name))
         if state.driver.message:
             rows.append(("Cause and remedy", state.driver.message))
+    if state.active_modes:
+        rows.append(("Active modes", ", ".join(state.active_modes)))
     if state.goal is not None:
         rows.append(("Goal", f"{state.goal.action}, {state.goal.elapsed:.1f} s"))
     return rows
 
 
+def arm_rows(state: RobotState) -> List[Tuple[str, str]]:
+    """Returns titles and texts of joints, TCP and force."""
+    rows = []
+    if state.joints is not None:
+        rows += [(joint, f"{position:8.4f} rad  {math.degrees(position):7.1f}°") for joint, position in zip(JOINTS, state.joints.positions)]
+    if state.tcp_pose is not None:
+        x, y, z = state.tcp_pose.position
+        rows.append(("TCP in base", f"{x:8.4f} {y:8.4f} {z:8.4f} m"))
+    if state.wrench is not None:
+        rows.append(("Force, TCP frame", " ".join(f"{value:7.1f}" for value in state.wrench[:3]) + " N"))
+        rows.append(("Torque, TCP frame", " ".join(f"{value:7.2f}" for value in state.wrench[3:]) + " N m"))
+    return rows
+
+
+TITLE = "padding:2px 12px 2px 0;opacity:.7;vertical-align:top"
+TEXT = "white-space:pre-wrap;font-variant-numeric:tabular-nums"
+
+
 def _as_html(rows: List[Tuple[str, str]]) -> str:
-    cells = "".join(f"<tr><td style='padding:2px 12px 2px 0;opacity:.7;vertical-align:top'>{html.escape(title)}</td>"
-                    f"<td>{html.escape(text)}</td></tr>" for title, text in rows)
+    cells = "".join(f"<tr><td style='{TITLE}'>{html.escape(title)}</td><td style='{TEXT}'>{html.escape(text)}</td></tr>"
+                    for title, text in rows)
     return f"<table style='font-size:13px;margin:8px 14px'>{cells}</table>"
 
 
@@ -34,8 +58,10 @@ class StatePanel:
         with tab:
             self._table = gui.add_html("")
             self._progress = gui.add_progress_bar(0.0, visible=False)
+            self._arm = gui.add_html("")
             self._rejections = gui.add_html("")
         self._shown: Tuple[Any, ...] = ()
+        self._arm_shown = -math.inf  # time.monotonic()
 
     def update(self, state: RobotState) -> None:
         shown = (_as_html(state_rows(state)), _as_html([
@@ -44,6 +70,9 @@ class StatePanel:
         if shown != self._shown:
             self._table.content, self._rejections.content = shown
             self._shown = shown
+        if time.monotonic() - self._arm_shown > ARM_PERIOD:
+            self._arm_shown = time.monotonic()
+            self._arm.content = _as_html(arm_rows(state))
         self._progress.visible = state.goal is not None and state.goal.progress > 0.0
         if state.goal is not None:
             self._progress.value = round(100.0 * state.goal.progress)

@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
 from ur_ros_rtde_description.models import JOINTS
 
-from ur_ros_rtde_msgs.msg import DriverState, GoalRejected, RobotMode, SafetyMode
+from ur_ros_rtde_msgs.msg import ActiveModes, DriverState, GoalRejected, RobotMode, SafetyMode
 
 from ..state.robot_state import MAX_REJECTIONS, DriverStatus, Joints, Pose, Rejection, RobotState
 from .latest_topic import LatestTopic
@@ -72,6 +72,7 @@ class RobotTopics:
         subscribe(Bool, "program_running", lambda message: setattr(state, "program_running", message.data))
         subscribe(Bool, "joint_states_are_fake", lambda message: setattr(state, "joint_states_are_fake", message.data))
         subscribe(Float64, "speed_scaling", lambda message: setattr(state, "speed_scaling", message.data))
+        subscribe(ActiveModes, "active_modes", lambda message: setattr(state, "active_modes", tuple(message.names)))
         subscribe(DriverState, "driver_state", lambda message: setattr(
             state, "driver", DriverStatus(message.name, message.cause, message.message)))
         subscribe(GoalRejected, "goal_rejections", lambda message: state.rejections.append(

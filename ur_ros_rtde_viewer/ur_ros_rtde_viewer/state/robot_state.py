@@ -2,7 +2,7 @@
 
 from collections import deque
 from dataclasses import dataclass, field
-from typing import Deque, Optional
+from typing import Deque, Optional, Tuple
 
 import numpy as np
 
@@ -63,6 +63,7 @@ class RobotState:
     program_running: Optional[bool] = None
     speed_scaling: Optional[float] = None
     driver: Optional[DriverStatus] = None
+    active_modes: Tuple[str, ...] = ()  # "freedrive", ...
     goal: Optional[ActiveGoal] = None
     rejections: Deque[Rejection] = field(default_factory=lambda: deque(maxlen=MAX_REJECTIONS))
     model: str = ""  # that the driver reports
