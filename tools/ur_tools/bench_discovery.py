@@ -10,7 +10,7 @@ from .layout import ROOT, Layout
 from .processes import Program, Programs
 
 CLIENTS = ROOT / "ur_ros_rtde_commands" / "test" / "system" / "discovery_clients.py"
-LISTS = ("]: commands: ", "]: dashboard commands: ")
+LISTS = ("]: all commands: ", "]: all dashboard commands: ")
 TIME_LIMIT = 600.0  # s
 
 
@@ -25,7 +25,7 @@ def measure(layout: Layout, address: str, killed: int, clients: int) -> Dict[str
     for variable in FASTDDS_PROFILES:
         env.pop(variable, None)
     with Programs(bench_session.log_folder(layout, address)) as programs:
-        driver = simulation.start_node(programs, layout, env, "driver", address)
+        driver = simulation.start_node(programs, layout, env, "driver", address, debugged=("command_server", "dashboard_server"))
         programs.wait_until(lambda: all(text in driver.output for text in LISTS), 20.0, "the driver's actions")
         command = [str(layout.python), str(CLIENTS), actions(driver), "--killed", str(killed), "--clients", str(clients)]
         result = subprocess.run(command, env=env, stdout=subprocess.PIPE, text=True, timeout=TIME_LIMIT)

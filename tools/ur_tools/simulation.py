@@ -2,7 +2,7 @@
 
 import argparse
 import sys
-from typing import Callable, Dict, List
+from typing import Callable, Dict, List, Sequence
 
 from . import console
 from .environment import program
@@ -31,8 +31,11 @@ def start_simulator(programs: Programs, layout: Layout, env: Dict[str, str], add
     return simulator
 
 
-def start_node(programs: Programs, layout: Layout, env: Dict[str, str], node: str, address: str, *parameters: str) -> Program:
+def start_node(programs: Programs, layout: Layout, env: Dict[str, str], node: str, address: str, *parameters: str,
+               debugged: Sequence[str] = ()) -> Program:
+    """`debugged`: nodes whose debug messages are logged."""
     arguments = [argument for parameter in (f"robot_ip:={address}", *parameters) for argument in ("-p", parameter)]
+    arguments += [argument for name in debugged for argument in ("--log-level", f"{name}:=debug")]
     return programs.start(node, [str(program(layout, "ur_ros_rtde", node)), "--ros-args", *arguments], env)
 
 

@@ -1,8 +1,5 @@
 #include "nodes/command_server.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "diagnostics/plugin_problems.hpp"
 #include "nodes/node_log.hpp"
 #include "plugins/plugin_selection.hpp"
@@ -17,6 +14,7 @@ CommandServer::CommandServer(const rcl_cxx::Context::SharedPtr & context)
   driver_state_ = std::make_unique<DriverStateTopic>(*node_);
   robot_ = std::make_unique<Robot>(parameters.robot, log_connection(*node_));
   robot_->on_status([this](const RobotStatus & status) { driver_state_->publish(status); });
+  active_modes_ = std::make_unique<ActiveModesTopic>(*node_, *robot_);
   description_check_ = std::make_unique<DescriptionCheck>(*node_, *robot_, parameters.tf_prefix);
   diagnostics_ =
       std::make_unique<Diagnostics>(*node_, parameters.robot.address, [this] { return diagnose(); });
@@ -52,7 +50,7 @@ void CommandServer::load_plugins()
 void CommandServer::create_actions()
 {
   plugins_.start(*host_, log_plugin_problems(node_));
-  RCL_CXX_INFO(node_->get_logger(), "commands: {}", fmt::join(plugins_.names(), ", "));
+  log_commands(node_->get_logger(), "commands", plugins_.names());
 }
 
 void CommandServer::add_extensions(const ReportProblem & report)

@@ -1,8 +1,5 @@
 #include "nodes/dashboard_server.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "diagnostics/plugin_problems.hpp"
 #include "nodes/node_log.hpp"
 #include "plugins/plugin_selection.hpp"
@@ -37,7 +34,7 @@ void DashboardServer::load_plugins()
 void DashboardServer::create_actions()
 {
   plugins_.start(*host_, log_plugin_problems(node_));
-  RCL_CXX_INFO(node_->get_logger(), "dashboard commands: {}", fmt::join(plugins_.names(), ", "));
+  log_commands(node_->get_logger(), "dashboard commands", plugins_.names());
 }
 
 std::vector<std::string> DashboardServer::close()

@@ -1,6 +1,12 @@
 #include "nodes/node_log.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace ur_ros_rtde {
+namespace {
+constexpr std::size_t most_listed_commands = 12;
+}  // namespace
 
 LogFunction log_connection(const rcl_cxx::Node & node)
 {
@@ -29,6 +35,18 @@ LogFunction log_to(const rcl_cxx::Logger & logger)
         break;
     }
   };
+}
+
+void log_commands(const rcl_cxx::Logger & logger, std::string_view what,
+                  const std::vector<std::string> & names)
+{
+  const std::string all = fmt::format("{}", fmt::join(names, ", "));
+  if (names.size() <= most_listed_commands) {
+    RCL_CXX_INFO(logger, "{}: {}", what, all);
+    return;
+  }
+  RCL_CXX_DEBUG(logger, "all {}: {}", what, all);
+  RCL_CXX_INFO(logger, "{}: {}, listed by `ur plugins`", what, names.size());
 }
 
 }  // namespace ur_ros_rtde

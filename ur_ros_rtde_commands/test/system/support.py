@@ -25,6 +25,8 @@ LONGEST_PAUSE = 0.02  # s, between two checks of a condition: a wait for a long 
 # Parameter of a driver that is started for a single test. With all plugins, the driver and the clients that discover its actions take
 # five times as much processor time (2 s).
 FEW_PLUGINS = "plugins:=[move_j,stop]"
+# Arguments of a driver that is to log the names of all commands.
+NAMES_COMMANDS = ("--log-level", "command_server:=debug", "--log-level", "dashboard_server:=debug")
 RECOVERY_TIME_FACTOR = 0.2  # scales the simulator's durations of power on, brake release, protective stop delay and safety restart
 HOME = [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]
 JOINTS = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]

@@ -11,7 +11,7 @@ import sys
 import time
 
 import pytest
-from support import TIMEOUT_FACTOR, start_node, wait_for
+from support import NAMES_COMMANDS, TIMEOUT_FACTOR, start_node, wait_for
 
 CLIENTS = pathlib.Path(__file__).parent / "discovery_clients.py"
 PROFILES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
@@ -29,12 +29,12 @@ def no_profile(monkeypatch):
 
 def actions(driver):
     """Returns the comma-separated actions of the driver, from its log."""
-    lists = [driver.wait_for_output(text).partition(text)[2] for text in ("]: commands: ", "]: dashboard commands: ")]
+    lists = [driver.wait_for_output(text).partition(text)[2] for text in ("]: all commands: ", "]: all dashboard commands: ")]
     return ",".join(lists).replace(" ", "")
 
 
 def test_new_clients_find_all_actions_after_others_were_killed(no_profile, addresses, processes):
-    driver = processes(start_node("driver", addresses[3]))
+    driver = processes(start_node("driver", addresses[3], arguments=NAMES_COMMANDS))
     command = [sys.executable, str(CLIENTS), actions(driver), "--clients", "10", "--killed", "5",
                "--limit", str(10.0 * TIMEOUT_FACTOR)]
     result = subprocess.run(command, stdout=subprocess.PIPE, timeout=200.0 * TIMEOUT_FACTOR, text=True, check=True)

@@ -1,7 +1,7 @@
 """Selection of plugins, and error messages for plugins that cannot be loaded."""
 
 from plugin_prefix import prepend_path
-from support import HOME, start_node, wait_for
+from support import HOME, NAMES_COMMANDS, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, SetDigitalOutput
 
@@ -25,18 +25,18 @@ def test_one_list_may_contain_plugins_of_both_servers(addresses, processes):
 
 
 def test_a_blacklisted_plugin_is_not_loaded(addresses, processes):
-    server = processes(start_node("command_server", addresses[3], "plugins_blacklist:=[move_j,move_l]"))
-    loaded = server.wait_for_output("commands:").split("commands: ")[1].split(", ")
+    server = processes(start_node("command_server", addresses[3], "plugins_blacklist:=[move_j,move_l]", arguments=NAMES_COMMANDS))
+    loaded = server.wait_for_output(" all commands: ").split(" commands: ")[1].split(", ")
     assert "stop" in loaded and "move_j" not in loaded and "move_l" not in loaded
 
 
 def test_a_broken_library_is_reported_and_other_plugins_are_loaded(addresses, client, processes, plugin_prefix):
     prefix = plugin_prefix("broken_plugins", '<library path="broken">' + CLASS.format(name="broken", type="Broken") + "</library>")
     (prefix / "lib" / "libbroken.so").write_bytes(b"\x7fELF this is no library")
-    server = processes(start_node("command_server", addresses[3], env=prepend_path("AMENT_PREFIX_PATH", prefix)))
+    server = processes(start_node("command_server", addresses[3], env=prepend_path("AMENT_PREFIX_PATH", prefix), arguments=NAMES_COMMANDS))
     line = server.wait_for_output("plugin broken of package broken_plugins is left out")
     assert "libbroken.so" in line
-    assert "move_j" in server.wait_for_output("commands:")
+    assert "move_j" in server.wait_for_output(" all commands:")
     assert not client.send(MoveJ, "move_j", joint_positions=HOME).accepted  # the server responds
 
 
@@ -46,23 +46,24 @@ def test_a_missing_library_and_a_malformed_description_are_reported(addresses, p
     (prefix / "share" / "malformed" / "plugins.xml").write_text("<library path='x'><class name=")
     index = prefix / "share" / "ament_index" / "resource_index" / "ur_ros_rtde__pluginlib__plugin" / "malformed"
     index.write_text("share/malformed/plugins.xml\n")
-    server = processes(start_node("command_server", addresses[3], env=prepend_path("AMENT_PREFIX_PATH", prefix)))
+    server = processes(start_node("command_server", addresses[3], env=prepend_path("AMENT_PREFIX_PATH", prefix), arguments=NAMES_COMMANDS))
     server.wait_for_output("libnowhere.so")
     server.wait_for_output("share/malformed/plugins.xml")
-    assert "move_j" in server.wait_for_output("commands:")
+    assert "move_j" in server.wait_for_output(" all commands:")
 
 
 def test_a_duplicate_action_name_is_reported(addresses, processes, plugin_prefix):
     prefix = plugin_prefix("zz_other", '<library path="other">' + CLASS.format(name="move_j", type="Other") + "</library>")
-    server = processes(start_node("command_server", addresses[3], env=prepend_path("AMENT_PREFIX_PATH", prefix)))
+    server = processes(start_node("command_server", addresses[3], env=prepend_path("AMENT_PREFIX_PATH", prefix), arguments=NAMES_COMMANDS))
     line = server.wait_for_output("plugin move_j of package zz_other")
     assert "package ur_ros_rtde_commands has one of that name already" in line
-    assert "move_j" in server.wait_for_output("commands:")
+    assert "move_j" in server.wait_for_output(" all commands:")
 
 
 def test_every_plugin_of_the_package_is_loaded(addresses, client, processes):
-    server = processes(start_node("driver", addresses[3]))
-    loaded = set(server.wait_for_output(" commands: ").split("commands: ")[1].split(", "))
+    server = processes(start_node("driver", addresses[3], arguments=NAMES_COMMANDS))
+    loaded = set(server.wait_for_output(" all commands: ").split(" commands: ")[1].split(", "))
+    assert server.wait_for_output("]: commands: ").endswith(f"]: commands: {len(loaded)}, listed by `ur plugins`")
     assert {"move_j", "move_l", "stop", "servo_j", "speed_l", "set_digital_output", "zero_ft_sensor", "set_payload",
             "set_speed_slider"} <= loaded
     server.wait_for_output("dashboard commands:")
