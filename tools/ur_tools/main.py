@@ -1,6 +1,7 @@
 """Command line of ./ur."""
 
 import argparse
+import contextlib
 import difflib
 import errno
 import importlib
@@ -28,11 +29,15 @@ only what changed. All files are written to .ur/; `./ur clean` removes them.
 """
 
 
+COMPLETION_VARIABLE = "_ARGCOMPLETE"  # set when a shell asks for completions
+
 # Commands that the program `ur` of ur_ros_rtde_cli runs.
 CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0]}\"",
        "state": "show the state of the robot", "plugins": "list the installed plugins",
        "record": "record RTDE outputs of the robot to a CSV file",
        "plot": "draw a recording: ur plot run.csv",
+       "compare": "compare two recordings: ur compare before.csv after.csv",
+       "completion": "print what lets a shell complete command lines: eval \"$(./ur completion bash)\"",
        "urdf": "print the URDF of an arm: ur urdf --model ur10e",
        "calibration": "save the calibration of an arm for its URDF: ur calibration --robot ADDRESS --output FILE"}
 FORWARDED = ("demo", "bench", "chaos", "plan", "sim", "view", "doctor", *CLI)  # to a program, with all options that are not ours
@@ -145,6 +150,15 @@ def command_cli(options: argparse.Namespace) -> int:
     except FileNotFoundError:
         command = program(_build(options), "ur_ros_rtde_cli", "ur")
     os.execve(command, [str(command), *arguments], workspace_environment(layout))
+
+
+def _complete() -> None:
+    """Lets the program `ur` of the build answer a shell that completes a command line. Without a build, there are no completions."""
+    layout = Layout.of_environment()
+    with contextlib.suppress(FileNotFoundError):
+        command = program(layout, "ur_ros_rtde_cli", "ur")
+        os.execve(command, [str(command)], workspace_environment(layout))
+    sys.exit(1)
 
 
 def command_view(options: argparse.Namespace) -> int:
@@ -350,6 +364,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
     arguments = sys.argv[1:] if arguments is None else arguments
+    if COMPLETION_VARIABLE in os.environ:
+        _complete()
     options = _parse(arguments)
     if options.command is None:
         _parser()[0].print_help()

@@ -3,6 +3,7 @@
 import contextlib
 import csv
 import fcntl
+import json
 import os
 import pty
 import re
@@ -125,42 +126,77 @@ def test_reads_a_goal_from_a_file(running, tmp_path):
 
 
 def feedback_lines(output):
-    """Returns time and feedback of each line."""
-    found = (re.fullmatch(r"(\d+\.\d) s  (\{.*\})", line) for line in output.splitlines())
-    return [(float(match.group(1)), yaml.safe_load(match.group(2))) for match in found if match]
+    """Returns time, percentage and joints of each line."""
+    found = (re.match(r" *(\d+\.\d) s  +(\d+) %  joints ((?: *-?\d+\.\d+){6}) rad", line) for line in output.splitlines())
+    return [(float(match.group(1)), int(match.group(2)), [*map(float, match.group(3).split())]) for match in found if match]
+
+
+def slow_trajectory():
+    points = [HOME, [HOME[0] + 0.4, *HOME[1:]]]
+    limits = {name: [value] * 6 for name, value in (("max_velocity", 0.1), ("max_acceleration", 1.0))}
+    return goal(waypoints=[{"positions": point} for point in points], **limits)
 
 
 def test_shows_feedback_once_per_second_without_a_terminal(at_home):
-    points = [HOME, [HOME[0] + 0.4, *HOME[1:]]]
-    limits = {name: [value] * 6 for name, value in (("max_velocity", 0.1), ("max_acceleration", 1.0))}
-    code, output = ur("call", "execute_trajectory", goal(waypoints=[{"positions": point} for point in points], **limits))
+    code, output = ur("call", "execute_trajectory", slow_trajectory())
     assert code == 0, output
     lines = feedback_lines(output)
-    times = [time for time, _ in lines]
+    times, progress, joints = zip(*lines)
     assert len(lines) >= 3 and all(after - before >= 0.9 for before, after in zip(times, times[1:])), output
-    assert all(set(fields) == set(ExecuteTrajectory.Feedback().get_fields_and_field_types()) for _, fields in lines), output
-    progress = [fields["motion"]["progress"] for _, fields in lines]
-    assert progress == sorted(progress) and progress[0] < progress[-1]
+    assert list(progress) == sorted(progress) and progress[0] < progress[-1]
+    assert HOME[0] - 0.01 < joints[0][0] < joints[-1][0] < HOME[0] + 0.41 and joints[0][1:] == pytest.approx(HOME[1:], abs=0.01)
 
 
-def test_shows_feedback_on_a_terminal(at_home):
+def test_json_has_all_feedback_and_the_result(at_home):
+    code, output = ur("call", "execute_trajectory", "--json", slow_trajectory())
+    *feedback, end = map(json.loads, output.splitlines())
+    assert code == 0 and end["status"] == "succeeded" and end["result"]["success"] is True, output
+    assert len(feedback) > 20 and all(set(line) == {"feedback"} for line in feedback)
+    assert set(feedback[0]["feedback"]) == set(ExecuteTrajectory.Feedback().get_fields_and_field_types())
+
+
+def test_json_of_a_rejected_goal_has_the_reason(running):
+    command = [find_program("ur_ros_rtde_cli", "ur"), "call", "move_j", "--json", f"{{joint_positions: {HOME}, speed: .nan}}"]
+    process = subprocess.run(command, capture_output=True, text=True)
+    reason = json.loads(process.stdout)["rejected"]
+    assert process.returncode == 2 and "speed is" in reason and reason in process.stderr
+
+
+def output_on_terminal(arguments, lines=40, until=None):
+    """Returns exit code and output of `ur` on a terminal of 100 columns. SIGINT ends it when it has printed `until`."""
     terminal, end = pty.openpty()
-    fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
-    turned = [HOME[0] + 0.2, *HOME[1:]]
-    command = [find_program("ur_ros_rtde_cli", "ur"), "call", "move_j", goal(joint_positions=turned, speed=0.5)]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=end)
+    fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", lines, 100, 0, 0))
+    process = subprocess.Popen([find_program("ur_ros_rtde_cli", "ur"), *arguments], stdout=end, stderr=end)
     os.close(end)
     shown = b""
     with contextlib.suppress(OSError):  # EIO: the other side of the terminal is closed
         while True:
             shown += os.read(terminal, 65536)
+            if until is not None and until in shown:
+                process.send_signal(signal.SIGINT)
+                until = None
     os.close(terminal)
-    assert process.wait(TIMEOUT_FACTOR * 20.0) == 0
-    text = shown.decode()
-    assert "###" in text and " % " in text and "\x1b[" in text
-    for field in ("motion:", "progress:", "elapsed:", "joint_positions:", "tcp_pose:"):
-        assert field in text
-    assert max(len(line) for line in re.sub(r"\x1b\[\d*[AJ]", "", text).replace("\r", "").split("\n")) < 100
+    return process.wait(TIMEOUT_FACTOR * 20.0), shown.decode()
+
+
+def test_shows_feedback_in_one_line_on_a_terminal(at_home):
+    turned = [HOME[0] + 0.2, *HOME[1:]]
+    code, text = output_on_terminal(["call", "move_j", goal(joint_positions=turned, speed=0.5)])
+    assert code == 0
+    feedback, _, result = text.rpartition("\r\x1b[K")
+    lines = feedback.split("\r\x1b[K")
+    assert len(lines) > 3 and "\n" not in feedback and all(len(line) < 100 for line in lines), text
+    assert re.fullmatch(r"\[#+\.+\] +\d+\.\d s +\d+ %  joints .*", lines[-2]), lines[-2]
+    assert result.startswith("success: true")
+
+
+def test_watches_the_state_on_the_whole_screen(running):
+    code, text = output_on_terminal(["state", "--watch"], lines=12, until=b"\x1b[Hrobot_mode")
+    assert code == 0
+    assert text.startswith("\x1b[?1049h") and text.rstrip().endswith("\x1b[?1049l"), "the screen is not restored"
+    assert "elbow_joint" in text and "Ctrl-C" in text
+    frames = text.split("\x1b[H")[1:]
+    assert all(frame.count("\n") < 12 for frame in frames), frames[0]
 
 
 def test_accepts_nested_fields_and_arrays_of_messages(running):

@@ -3,9 +3,12 @@
 The goal is YAML, given as an argument or with --file as a file. Fields that are not given keep their defaults. nan and inf are
 numbers. Fields and types are checked before `ur` waits for a server.
 
-Feedback is printed to stderr: in place on a terminal, otherwise one line per second. The result is printed to stdout. Ctrl-C,
-SIGTERM, SIGHUP and a closed output cancel the goal: the arm decelerates to standstill, the result is printed, and the exit code
-is 128 plus the number of the signal.
+Feedback is printed to stderr: one line in place on a terminal, otherwise one line per second. The result is printed to stdout. With
+--json, stdout has one JSON object per line: {"feedback": ...} for each message, then {"status": ..., "result": ...}, or
+{"rejected": ...}.
+
+Ctrl-C, SIGTERM, SIGHUP and a closed output cancel the goal: the arm decelerates to standstill, the result is printed, and the exit
+code is 128 plus the number of the signal.
 
     ur call move_j "{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0], speed: 0.5}"
     ur call execute_trajectory --file path.yaml
@@ -16,15 +19,18 @@ is 128 plus the number of the signal.
 import argparse
 import pathlib
 
+from . import completion
 from .errors import CliError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("action", help="name of the action, for example move_l or dashboard/power_on")
-    parser.add_argument("goal", nargs="?", help="fields of the goal in YAML (default: {})")
+    action = parser.add_argument("action", help="name of the action, for example move_l or dashboard/power_on")
+    goal = parser.add_argument("goal", nargs="?", help="fields of the goal in YAML (default: {})")
+    action.completer, goal.completer = completion.action_names, completion.goal  # type: ignore[attr-defined]
     parser.add_argument("--file", type=pathlib.Path, metavar="FILE", help="read the goal from a YAML file")
     parser.add_argument("--wait", type=float, default=5.0, metavar="S", help="time to wait for the action server (default: 5 s)")
     parser.add_argument("--show", action="store_true", help="show the fields of the goal and their values; do not send the goal")
+    parser.add_argument("--json", action="store_true", help="print feedback and result as JSON, one object per line")
     parser.add_argument("--quiet", action="store_true", help="do not show feedback")
 
 

@@ -1,16 +1,17 @@
-"""Prints the feedback of a goal to stderr: in place on a terminal, otherwise one line per second."""
+"""Prints the feedback of a goal to stderr: one line in place on a terminal, otherwise one line per second."""
 
 import contextlib
 import shutil
 import sys
 import time
-from typing import Any, List, Optional
+from typing import Any, Optional
 
 from . import fields
 
 LINE_PERIOD = 1.0  # s, without a terminal
 REFRESH_PERIOD = 0.1  # s, on a terminal
 BAR_WIDTH = 30
+START_OF_LINE = "\r\x1b[K"
 
 
 def write(text: str) -> None:
@@ -20,45 +21,44 @@ def write(text: str) -> None:
         sys.stderr.flush()
 
 
+def bar(fraction: float) -> str:
+    filled = round(BAR_WIDTH * min(max(fraction, 0.0), 1.0))
+    return f"[{'#' * filled}{'.' * (BAR_WIDTH - filled)}]"
+
+
+def describe(feedback: Any, elapsed: float) -> str:
+    """Returns one line: time, progress, joints, and the fields that not every motion has."""
+    motion = getattr(feedback, "motion", None)
+    parts = [f"{elapsed:5.1f} s"]
+    if motion is not None:
+        joints = " ".join(f"{position:6.3f}" for position in motion.state.joint_positions)
+        parts += [f"{100 * motion.progress:3.0f} %", f"joints {joints} rad"]
+    others = [name for name in feedback.get_fields_and_field_types() if name != "motion"]
+    parts += [f"{name}: {fields.to_yaml_line(getattr(feedback, name))}" for name in others]
+    return "  ".join(parts)
+
+
 class FeedbackDisplay:
-    def __init__(self, quiet: bool):
-        self._quiet = quiet
+    def __init__(self) -> None:
         self._terminal = sys.stderr.isatty()
         self._start = time.monotonic()
         self._shown_at: Optional[float] = None
-        self._shown_lines = 0
 
     def __call__(self, message: Any) -> None:
         """Feedback callback of an action client."""
         now = time.monotonic()
         period = REFRESH_PERIOD if self._terminal else LINE_PERIOD
-        if self._quiet or (self._shown_at is not None and now - self._shown_at < period):
+        if self._shown_at is not None and now - self._shown_at < period:
             return
         self._shown_at = now
-        if self._terminal:
-            self._rewrite(self._screen(message.feedback, now - self._start))
-        else:
-            write(f"{now - self._start:.1f} s  {fields.to_yaml_line(message.feedback)}\n")
+        text = describe(message.feedback, now - self._start)
+        if not self._terminal:
+            write(f"{text}\n")
+            return
+        motion = getattr(message.feedback, "motion", None)
+        text = f"{bar(motion.progress)} {text}" if motion is not None else text
+        write(START_OF_LINE + text[:shutil.get_terminal_size().columns - 1])
 
     def clear(self) -> None:
-        self._rewrite([])
-
-    def _rewrite(self, lines: List[str]) -> None:
-        start_of_block = f"\x1b[{self._shown_lines}A\r\x1b[J" if self._shown_lines else ""
-        if lines or start_of_block:
-            write(start_of_block + "".join(f"{line}\n" for line in lines))
-        self._shown_lines = len(lines)
-
-    @staticmethod
-    def _screen(feedback: Any, elapsed: float) -> List[str]:
-        """Returns the lines of the feedback, cut to the size of the terminal."""
-        size = shutil.get_terminal_size()
-        header = f"{elapsed:6.1f} s"
-        progress = getattr(getattr(feedback, "motion", None), "progress", None)
-        if progress is not None:
-            filled = round(BAR_WIDTH * min(max(progress, 0.0), 1.0))
-            header = f"[{'#' * filled}{'.' * (BAR_WIDTH - filled)}] {100 * progress:3.0f} % {header}"
-        lines = [header]
-        if feedback.get_fields_and_field_types():
-            lines += fields.to_yaml(feedback, width=size.columns).splitlines()
-        return [line[:size.columns - 1] for line in lines[:max(size.lines - 1, 1)]]
+        if self._terminal and self._shown_at is not None:
+            write(START_OF_LINE)

@@ -8,6 +8,8 @@ A goal file, as `ur call --file`, `./ur plan` and Python clients use it:
 import array
 import difflib
 import importlib
+import json
+import math
 import pathlib
 import re
 from typing import Any, Tuple, Union
@@ -264,6 +266,8 @@ def _convert_message(kind: Any, values: Any, path: Path) -> Any:
 
 def to_plain(value: Any) -> Any:
     """Converts a message to mappings, lists and scalars."""
+    if isinstance(value, dict):
+        return {name: to_plain(item) for name, item in value.items()}
     if hasattr(value, "get_fields_and_field_types"):
         return {name: to_plain(getattr(value, name)) for name in value.get_fields_and_field_types()}
     if isinstance(value, (list, tuple, numpy.ndarray, array.array)):
@@ -289,6 +293,22 @@ def to_yaml(message: Any, width: int = 120) -> str:
     return plain_to_yaml(to_plain(message), width, 6)
 
 
-def to_yaml_line(message: Any) -> str:
-    """Returns a message as YAML in one line with six decimals."""
-    return yaml.safe_dump(_rounded(to_plain(message)), sort_keys=False, default_flow_style=True, width=float("inf")).rstrip("\n")
+def to_yaml_line(value: Any) -> str:
+    """Returns a message, or a field of one, as YAML in one line with six decimals."""
+    text = yaml.safe_dump(_rounded(to_plain(value)), sort_keys=False, default_flow_style=True, width=float("inf"))
+    return text.removesuffix("\n").removesuffix("\n...")  # the end of a document that is a scalar
+
+
+def to_json(values: Any) -> str:
+    """Returns mappings, lists, scalars and messages as JSON in one line. JSON has no nan and no inf: they become null."""
+    return json.dumps(_finite(to_plain(values)))
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _finite(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    if isinstance(value, bytes):
+        return list(value)
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -17,15 +17,20 @@ COMMANDS = {"call": "send a goal, show its feedback and print its result",
             "plugins": "list the installed plugins with package and description",
             "record": "record RTDE outputs of the robot to a CSV file",
             "plot": "draw a recording",
+            "compare": "compare two recordings and draw both",
             "urdf": "print the URDF of an arm",
             "calibration": "save the calibration of an arm for its URDF",
             "doctor": "check a robot over the network: ur doctor --robot ADDRESS",
+            "completion": "print what lets bash or zsh complete command lines",
             "view": "show robots in the browser"}
 VIEW = "view"  # a program of another package, with options of its own
-WITHOUT_NODES = ("plugins", "plot", "urdf", "calibration", "doctor")  # commands that communicate with no node
+WITHOUT_NODES = ("plugins", "plot", "compare", "urdf", "calibration", "doctor", "completion")  # commands that communicate with no node
 
 # Commands of the script `ur` in a checkout. They are not installed.
 CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "fuzz", "shell", "new", "format", "lint", "doctor", "clean")
+
+# argcomplete sets it when a shell asks for completions.
+COMPLETION_VARIABLE = "_ARGCOMPLETE"
 
 # Environment variable with the folder of the checkout, set in its shell.
 CHECKOUT_VARIABLE = "UR_CHECKOUT"
@@ -66,16 +71,37 @@ def _make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _parse_arguments(command: str, arguments: List[str]) -> argparse.Namespace:
-    """Parses the arguments of a command. Imports only its module, because other modules would delay the start."""
+def _add_arguments(command: str, parser: argparse.ArgumentParser) -> None:
+    """Imports only the module of this command, because other modules would delay the start."""
     module = importlib.import_module(f"{__package__}.{command}")
-    parser = argparse.ArgumentParser(prog=f"ur {command}", description=module.__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.description, parser.formatter_class = module.__doc__, argparse.RawDescriptionHelpFormatter
     if command not in WITHOUT_NODES:
         parser.add_argument("--namespace", default="", metavar="NS", help="namespace of the nodes of the robot (default: none)")
     module.add_arguments(parser)
     parser.set_defaults(run=module.run)
+
+
+def _parse_arguments(command: str, arguments: List[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog=f"ur {command}")
+    _add_arguments(command, parser)
     return parser.parse_intermixed_args(arguments)
+
+
+def _complete() -> None:
+    """Answers a shell that completes a command line, and exits."""
+    from . import completion  # imported here, like argcomplete, because only shells need it
+    parser = argparse.ArgumentParser(prog="ur")
+    parser.add_argument("--version", action=_ShowVersion, nargs=0)
+    commands = parser.add_subparsers()
+    for name in COMMANDS:
+        command = commands.add_parser(name)
+        if name != VIEW:
+            _add_arguments(name, command)
+    if _checkout_script() is not None:
+        for name in CHECKOUT_COMMANDS:
+            if name not in COMMANDS:
+                commands.add_parser(name)
+    completion.complete(parser)
 
 
 def _unknown_command(command: str) -> CliError:
@@ -100,6 +126,8 @@ def _checkout_script() -> Optional[pathlib.Path]:
 
 def main(arguments: Optional[List[str]] = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
+    if COMPLETION_VARIABLE in os.environ:
+        _complete()
     command = arguments[0] if arguments else ""
     if _belongs_to_checkout(arguments) and _checkout_script() is not None:
         os.execv(str(_checkout_script()), [str(_checkout_script()), *arguments])

@@ -1,8 +1,11 @@
 """Prints the state of the robot to stdout."""
 
 import argparse
+import itertools
 import math
+import shutil
 import sys
+import time
 from typing import Any, Dict, Iterator
 
 from geometry_msgs.msg import PoseStamped, WrenchStamped
@@ -10,13 +13,19 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
 
-from ur_ros_rtde_msgs.msg import DriverState, RobotMode, SafetyMode
+from ur_ros_rtde_msgs.msg import ActiveModes, DriverState, RobotMode, SafetyMode
 
 from .errors import CliError
 from .interruptions import Interrupted
 from .session import Session
 
-TOPIC_COUNT = 8  # of _subscribe()
+LINE_PERIOD = 1.0  # s, without a terminal
+SCREEN_PERIOD = 0.1  # s, on a terminal
+# Control sequences of ECMA-48 and xterm: the alternate screen without a cursor leaves what is above it on the terminal as it was.
+ENTER_SCREEN, LEAVE_SCREEN = "\x1b[?1049h\x1b[?25l", "\x1b[?25h\x1b[?1049l"
+HOME, REST_OF_LINE, REST_OF_SCREEN = "\x1b[H", "\x1b[K", "\x1b[J"
+
+TOPIC_COUNT = 9  # of _subscribe()
 
 
 def _subscribe(session: Session) -> Dict[str, Any]:
@@ -27,7 +36,8 @@ def _subscribe(session: Session) -> Dict[str, Any]:
     for topic, kind, qos in (("joint_states", JointState, best_effort), ("tcp_pose", PoseStamped, best_effort),
                              ("wrench", WrenchStamped, best_effort), ("robot_mode", RobotMode, transient_local),
                              ("safety_mode", SafetyMode, transient_local), ("speed_scaling", Float64, transient_local),
-                             ("driver_state", DriverState, transient_local), ("joint_states_are_fake", Bool, transient_local)):
+                             ("driver_state", DriverState, transient_local), ("joint_states_are_fake", Bool, transient_local),
+                             ("active_modes", ActiveModes, transient_local)):
         session.node.create_subscription(kind, topic, lambda message, topic=topic: latest.__setitem__(topic, message), qos)
     return latest
 
@@ -39,6 +49,8 @@ def _lines(latest: Dict[str, Any]) -> Iterator[str]:
             yield f"{topic:14} {message.name}" + (f"  {message.message}" if getattr(message, "message", "") else "")
     if "speed_scaling" in latest:
         yield f"{'speed_scaling':14} {100 * latest['speed_scaling'].data:.0f} %"
+    if "active_modes" in latest and latest["active_modes"].names:
+        yield f"{'active_modes':14} {', '.join(latest['active_modes'].names)}"
     if "joint_states_are_fake" in latest and latest["joint_states_are_fake"].data:
         yield "joint_states has fake positions (digital twin); the robot's are on actual_joint_states:"
     joints = latest["joint_states"]
@@ -62,14 +74,30 @@ def print_state(session: Session, options: argparse.Namespace) -> int:
         raise CliError(f"no joint_states within {options.wait:g} s. Does robot_state_receiver run with this ROS_DOMAIN_ID? Is "
                        "the robot on?")
     session.wait(lambda: len(latest) == TOPIC_COUNT, 0.5)
-    shown = list(_lines(latest))
-    print("\n".join(shown))
+    if options.watch and sys.stdout.isatty():
+        _watch_on_screen(session, latest)
+        return 0
+    print("\n".join(_lines(latest)))
     try:
         while options.watch:
-            session.wait(lambda: None, 0.2)
-            sys.stdout.write(f"\x1b[{len(shown)}A\x1b[J" if sys.stdout.isatty() else "\n")
-            shown = list(_lines(latest))
-            print("\n".join(shown), flush=True)
+            session.wait(lambda: None, LINE_PERIOD)
+            print("\n" + "\n".join(_lines(latest)), flush=True)
     except Interrupted:
         pass
     return 0
+
+
+def _watch_on_screen(session: Session, latest: Dict[str, Any]) -> None:
+    sys.stdout.write(ENTER_SCREEN)
+    try:
+        while True:
+            size = shutil.get_terminal_size()
+            lines = [*itertools.islice(_lines(latest), max(size.lines - 3, 1)), "", f"{time.strftime('%H:%M:%S')}  Ctrl-C ends"]
+            sys.stdout.write(HOME + "\n".join(line[:size.columns - 1] + REST_OF_LINE for line in lines) + REST_OF_SCREEN)
+            sys.stdout.flush()
+            session.wait(lambda: None, SCREEN_PERIOD)
+    except Interrupted:
+        pass
+    finally:
+        sys.stdout.write(LEAVE_SCREEN)
+        sys.stdout.flush()

@@ -2,7 +2,7 @@
 
 import pathlib
 import re
-from typing import Any, Sequence, Tuple
+from typing import Any, Optional, Sequence, Tuple
 
 from .errors import CliError
 from .recording import Recording
@@ -37,8 +37,8 @@ def labels(name: str, count: int) -> Tuple[str, Sequence[str]]:
     return unit, names[:count] if count <= len(names) else [str(index) for index in range(count)]
 
 
-def draw(recording: Recording, path: pathlib.Path) -> pathlib.Path:
-    """Writes a figure and returns its path."""
+def draw(recording: Recording, path: pathlib.Path, other: Optional[Recording] = None) -> pathlib.Path:
+    """Writes a figure and returns its path. `other` has the same outputs, and is drawn dashed."""
     if path.suffix not in SUFFIXES:
         raise CliError(f"{path}: the name of a figure ends with {', '.join(SUFFIXES)}")
     pyplot = _pyplot()
@@ -49,6 +49,8 @@ def draw(recording: Recording, path: pathlib.Path) -> pathlib.Path:
         unit, names = labels(name, values.shape[1])
         for index, label in enumerate(names):
             axes.plot(recording.times, values[:, index], color=COLORS[index % len(COLORS)], linewidth=1.1, label=label)
+            if other is not None:
+                axes.plot(other.times, other.outputs[name][:, index], color=COLORS[index % len(COLORS)], linewidth=1.1, linestyle="--")
         axes.set_ylabel(f"{name} [{unit}]" if unit else name, fontsize=8)
         axes.grid(alpha=0.3)
         axes.margins(x=0.01)
@@ -60,7 +62,7 @@ def draw(recording: Recording, path: pathlib.Path) -> pathlib.Path:
         all_axes[0, 0].annotate(text, (time, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 3), textcoords="offset points",
                                 ha="center", va="bottom", fontsize=8, color="tab:red")
     all_axes[-1, 0].set_xlabel("time [s]")
-    figure.suptitle(recording.name, fontsize=10)
+    figure.suptitle(recording.name if other is None else f"{recording.name}, dashed: {other.name}", fontsize=10)
     try:
         figure.savefig(path, dpi=120)
     except OSError as error:

@@ -1,7 +1,6 @@
 """Sends one goal and waits for its result."""
 
 import argparse
-import sys
 from typing import Any, Optional, Tuple
 
 from action_msgs.msg import GoalStatus
@@ -12,7 +11,8 @@ from ur_ros_rtde_msgs.msg import GoalRejected
 
 from . import actions, fields
 from .errors import CliError
-from .feedback import FeedbackDisplay, write
+from .feedback import write
+from .goal_output import JsonOutput, TextOutput
 from .interruptions import Interrupted
 from .session import GRAPH_POLL_PERIOD, Session
 
@@ -87,8 +87,8 @@ class _CancelOnInterruption:
     the client has disappeared.
     """
 
-    def __init__(self, session: Session, display: Any):
-        self._session, self._display = session, display
+    def __init__(self, session: Session, output: Any):
+        self._session, self._output = session, output
         self._handle: Any = None
         self.reason: Optional[Interrupted] = None
 
@@ -101,7 +101,7 @@ class _CancelOnInterruption:
                 if self.reason:
                     raise
                 self.reason = interrupted
-                self._display.clear()
+                self._output.clear()
                 write(f"canceling ({interrupted}), interrupt again to quit without the result\n")
                 self._cancel()
             else:
@@ -139,15 +139,17 @@ def send_goal(session: Session, options: argparse.Namespace) -> int:
         print(fields.to_yaml(goal))
         return 0
     rejections = _Rejections(session)
-    display = FeedbackDisplay(options.quiet)
-    canceling = _CancelOnInterruption(session, display)
-    handle = canceling.wait(client.send_goal_async(goal, feedback_callback=display))
+    output = (JsonOutput if options.json else TextOutput)(options.quiet)
+    canceling = _CancelOnInterruption(session, output)
+    handle = canceling.wait(client.send_goal_async(goal, feedback_callback=output.feedback))
     if not handle.accepted:
-        raise CliError(f"rejected: {rejections.reason(bytes(handle.goal_id.uuid))}")
+        reason = rejections.reason(bytes(handle.goal_id.uuid))
+        output.rejected(reason)
+        raise CliError(f"rejected: {reason}")
     canceling.accepted(handle)
     response = canceling.wait(handle.get_result_async())
-    display.clear()
-    sys.stdout.write(f"{fields.to_yaml(response.result)}\n")  # one write: the reader may close the pipe
+    output.clear()
+    output.result(response)
     if canceling.reason:
         return canceling.reason.exit_code
     return 0 if response.status == GoalStatus.STATUS_SUCCEEDED else 1

@@ -1,0 +1,31 @@
+"""Compares two recordings: prints how far each output differs, and draws both (the second dashed).
+
+    ur compare before.csv after.csv                          writes before_after.png
+    ur compare before.csv after.csv actual_q --shift 0 --output joints.pdf
+
+The recordings begin at different times before the motion. The second one is therefore shifted so that the outputs fit best, or by
+the given time.
+"""
+
+import argparse
+import pathlib
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("first", type=pathlib.Path, help="CSV file")
+    parser.add_argument("second", type=pathlib.Path, help="CSV file")
+    parser.add_argument("fields", nargs="*", help="outputs to compare (default: all that both have)")
+    parser.add_argument("--shift", type=float, metavar="S",
+                        help="time by which the second recording is moved to later, in s (default: best fit)")
+    parser.add_argument("--output", type=pathlib.Path, metavar="FILE", help="figure to write: png, pdf or svg (default: FIRST_SECOND.png)")
+
+
+def run(options: argparse.Namespace) -> int:
+    from .recording import Recording  # imported here because --help does not need numpy
+    from .recording_comparison import compare, report
+    from .recording_figure import draw
+    comparison = compare(Recording.read(options.first), Recording.read(options.second), options.fields, options.shift)
+    print(report(comparison))
+    name = options.first.with_name(f"{options.first.stem}_{options.second.stem}.png")
+    print(draw(comparison.first, options.output or name, comparison.second))
+    return 0

@@ -1,0 +1,64 @@
+"""Prints the lines that let bash or zsh complete `ur`: commands, options, actions and the fields of a goal.
+
+    eval "$(ur completion bash)"      in ~/.bashrc or in the running shell
+    eval "$(ur completion zsh)"       in ~/.zshrc
+
+In a checkout, `./ur` is completed too.
+"""
+
+import argparse
+import importlib
+from typing import Any, Iterable, List
+
+from .errors import CliError
+
+SHELLS = ("bash", "zsh")
+PROGRAMS = ("ur", "./ur")
+FOR_ZSH = "autoload -U +X compinit && compinit\nautoload -U +X bashcompinit && bashcompinit\n"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("shell", choices=SHELLS)
+
+
+def run(options: argparse.Namespace) -> int:
+    code = _argcomplete().shellcode(list(PROGRAMS))
+    print((FOR_ZSH if options.shell == "zsh" else "") + code)
+    return 0
+
+
+def _argcomplete() -> Any:
+    try:
+        return importlib.import_module("argcomplete")
+    except ImportError:
+        raise CliError("completion needs argcomplete: sudo apt install python3-argcomplete, or pip install argcomplete") from None
+
+
+def complete(parser: argparse.ArgumentParser) -> None:
+    """Answers the shell and exits."""
+    _argcomplete().autocomplete(parser, always_complete_options=False)
+
+
+def action_names(**_: Any) -> List[str]:
+    from .actions import plugin_names  # imported here because other completions do not need the plugins
+    return plugin_names()
+
+
+def goal(prefix: str, parsed_args: argparse.Namespace, **_: Any) -> Iterable[str]:
+    """Completes the goal of the action: all fields with their defaults, or the name or the default of the last field."""
+    from . import actions, fields  # imported here because they need ROS
+    kind = actions.type_of_plugin(parsed_args.action)
+    if kind is None:
+        return []
+    message = actions.load(parsed_args.action, kind).Goal()
+    if not prefix.startswith("{"):
+        return [fields.to_yaml_line(message)]
+    last = max(prefix.rfind("{"), prefix.rfind(", "))
+    begin, text = prefix[:last + 1], prefix[last + 1:].lstrip()
+    begin += " " if begin.endswith(",") else ""
+    name, colon, value = text.partition(":")
+    names = [field for field in message.get_fields_and_field_types() if f"{field}:" not in begin]
+    if not colon:
+        return [f"{begin}{field}: " for field in names if field.startswith(name)]
+    default = fields.to_yaml_line(getattr(message, name)) if name in names else ""
+    return [f"{begin}{name}: {default}"] if default.startswith(value.strip()) else []
