@@ -166,7 +166,8 @@ def output_on_terminal(arguments, lines=40, until=None):
     """Returns exit code and output of `ur` on a terminal of 100 columns. SIGINT ends it when it has printed `until`."""
     terminal, end = pty.openpty()
     fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", lines, 100, 0, 0))
-    process = subprocess.Popen([find_program("ur_ros_rtde_cli", "ur"), *arguments], stdout=end, stderr=end)
+    # Not the environment of the process: pytest imports readline, which sets LINES and COLUMNS there.
+    process = subprocess.Popen([find_program("ur_ros_rtde_cli", "ur"), *arguments], stdout=end, stderr=end, env=dict(os.environ))
     os.close(end)
     shown = b""
     with contextlib.suppress(OSError):  # EIO: the other side of the terminal is closed
