@@ -304,7 +304,7 @@ class Lane:
             self.sleep_until(checks.hold["end"] + LATE_BEGIN)
         wait_for(lambda: self.simulator.state()["at_rest"], 20.0, "standstill")
         if case.event.ends_driver:
-            wait_for(lambda: not self.driver.running(), 10.0, "the end of the driver")
+            wait_for(lambda: not self.driver.running(), 60.0, "the end of the driver")
         self.sleep_until(self.now() + QUIET)
         before = self.simulator.state()["actual"]["position"]
         if case.event.recover is not None:
