@@ -68,6 +68,20 @@ def expected_tool(positions, frame="world"):
     return np.linalg.inv(poses[frame]) @ poses["tool0"]
 
 
+LABELS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(
+    plot => plot.chart.axes.map(axis => axis._values?.length ?? 0))"""
+
+
+def test_every_plot_has_labels_at_both_axes(tab):
+    tab.open("Plots")
+
+    def are_labeled():
+        plots = tab.page.evaluate(LABELS)
+        return len(plots) == len(PLOTS) and all(count > 1 for axes in plots for count in axes)
+
+    until(are_labeled, "the labels of the axes")
+
+
 def test_the_arm_in_the_scene_follows_the_robot(tab, viewer, robot, simulator):
     scene = viewer[-1].viewer.robots[0].scene
     path, root = scene.arm.link_path("tool0"), f"{scene.root}/arm"

@@ -18,6 +18,8 @@ COLORS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
 PLOTS = (("Joint positions, rad", JOINTS, 0, 0.1), ("Joint velocities, rad/s", JOINTS, 6, 0.1),
          ("Force at the TCP, N", ("x", "y", "z"), 12, 5.0))
 HEIGHT, PADDING = 190, (10, 16, 0, 0)  # pixels; top, right, bottom, left
+# viser creates a plot before its width is known. uPlot then draws no labels of an axis until its range, or the size of the plot, changes.
+NUDGE = 0.002  # pixels, of the height, at each drawing; a slow browser skips some
 COLUMNS = 1 + 6 + 6 + 3
 
 
@@ -42,7 +44,7 @@ class PlotsPanel:
     def __init__(self, tab: Any, server: Any):
         self._server = server
         self._history = History(COLUMNS, round(DURATION / SAMPLE_PERIOD) + 1)
-        self._last_stamp, self._drawn = -np.inf, -np.inf
+        self._last_stamp, self._drawn, self._drawings = -np.inf, -np.inf, 0
         with tab:
             self._pause = server.gui.add_checkbox("Pause", False)
             self._plots = [self._add(title, names, smallest) for title, names, _, smallest in PLOTS]
@@ -83,7 +85,9 @@ class PlotsPanel:
 
     def _draw(self) -> None:
         data = self.data
+        self._drawings += 1
         for plot, (_, names, first, _) in zip(self._plots, PLOTS):
+            plot.height = HEIGHT + NUDGE * (self._drawings % 8)
             plot.data = (data[0], *data[1 + first:1 + first + len(names)])
 
     def close(self) -> None:

@@ -213,8 +213,7 @@ class Lane:
         self.page.clear()
         self._stalls = self._measure_stalls()
         for action, kind, fields in case.kind.before:
-            message = messages.load(kind)
-            self.client.send_goal(message, action, messages.fill(message.Goal(), fields)).succeeded()
+            self._send_before(action, messages.load(kind), fields)
         fields = case.kind.fields(case_random(case), self.scene)
         self.fields = fields
         self.trace = Trace(self.simulator)
@@ -231,6 +230,18 @@ class Lane:
             self.running.close()
             self.simulator.control("clear_pushes")
         self._move_on(case, report)
+
+    def _send_before(self, action: str, kind, fields) -> None:
+        """A stall of the host between two cases may have ended the control program, which is then started again."""
+
+        def has_succeeded():
+            goal = self.client.send_goal(kind, action, messages.fill(kind.Goal(), fields))
+            if not goal.accepted:
+                return time.sleep(RETRY_INTERVAL)
+            goal.succeeded()
+            return True
+
+        wait_for(has_succeeded, READY_LIMIT, f"the driver to accept {action}")
 
     def _on_rejection(self, rejection, report: Report) -> None:
         """The robot was ready before. A stall of the host may have interrupted its connection."""
