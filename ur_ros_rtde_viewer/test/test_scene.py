@@ -12,7 +12,7 @@ from ur_ros_rtde_description.models import find_model
 from ur_ros_rtde_viewer.arguments import RobotOptions
 from ur_ros_rtde_viewer.scene import trail
 from ur_ros_rtde_viewer.scene.robot_scene import STOPPED_COLOR, RobotScene
-from ur_ros_rtde_viewer.scene.surfaces import LARGEST_OFFSET, THICKNESS, turn_z_to
+from ur_ros_rtde_viewer.scene.surfaces import LARGEST_OFFSET, LEAST_FROM_BASE, THICKNESS, turn_z_to
 from ur_ros_rtde_viewer.scene.urdf import read_description
 from ur_ros_rtde_viewer.state.robot_state import Joints, Pose, RobotState
 
@@ -175,6 +175,7 @@ def test_the_drawn_part_of_a_surface_stays_near_the_tcp(scene):
     assert center_with_tcp_at(0.5, 0.9) == pytest.approx((0.5, 0.2, top))
     assert center_with_tcp_at(0.5 + 0.9 * LARGEST_OFFSET, 0.1) == pytest.approx((0.5, 0.2, top))
     assert center_with_tcp_at(0.5 + 1.1 * LARGEST_OFFSET, 0.1) == pytest.approx((0.5 + 1.1 * LARGEST_OFFSET, 0.2, top))
+    assert np.hypot(*center_with_tcp_at(0.05, 0.9)[:2]) == pytest.approx(LEAST_FROM_BASE), "it cuts the base of the arm"
 
 
 def test_calibration_and_tool_are_part_of_the_scene(server, tmp_path):

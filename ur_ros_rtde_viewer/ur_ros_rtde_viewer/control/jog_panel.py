@@ -5,6 +5,7 @@ from typing import Any, Hashable
 from .jog import AXES, HOLD_RATE, MAX_ANGULAR, MAX_LINEAR, Frame, JogSpeed
 from .robot_control import RobotControl
 
+COLORS = ("pink", "green", "blue")  # of x, y and z, as in the scene; STOP is red
 FRAMES = {"base": Frame.BASE, "tool": Frame.TOOL}
 
 
@@ -23,7 +24,7 @@ class JogPanel:
                     self._add_button(axis, sign)
 
     def _add_button(self, axis: int, sign: float) -> None:
-        button = self._gui.add_button(f"{AXES[axis]} {'+' if sign > 0 else '−'}", color="blue" if axis < 3 else "indigo")
+        button = self._gui.add_button(f"{AXES[axis]} {'+' if sign > 0 else '−'}", color=COLORS[axis % 3])
 
         async def hold(_event: Any) -> None:  # coroutines are called in the order of the messages
             reason = self._jog.hold(self._tab, axis, sign, FRAMES[self._frame.value],

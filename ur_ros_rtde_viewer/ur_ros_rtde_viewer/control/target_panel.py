@@ -17,6 +17,7 @@ from .target_pose import Motion, Plan, Planner, PoseTarget
 GHOST_COLOR, GHOST_OPACITY = (60, 180, 90), 0.35
 PATH_COLOR = (60, 180, 90)
 GIZMO_SCALE = 0.25  # m
+NO_PLAN = "*Execute* needs a motion: drag the target."
 
 
 class TargetPanel:
@@ -31,7 +32,7 @@ class TargetPanel:
         self._closed = False
         gui = client.gui
         with container:
-            gui.add_markdown("Drag the target in the scene. The green arm shows where the motion ends.")
+            gui.add_markdown("Show the target and drag it in the scene. The green arm shows where the motion ends.")
             self._shown = gui.add_checkbox("Show the target", False)
             self._motion = gui.add_dropdown("Motion", tuple(motion.value for motion in Motion))
             self._speed = gui.add_slider("Speed [% of the default]", 10, 200, 10, 100)
@@ -72,10 +73,11 @@ class TargetPanel:
         self._gizmo = self._client.scene.add_transform_controls(f"{self._base}/target", scale=GIZMO_SCALE, position=tcp.position,
                                                                 wxyz=tcp.wxyz, depth_test=False)
         self._gizmo.on_update(lambda event: self._solve() if event.phase == "end" else None)
-        self._say("")
+        self._say(NO_PLAN)
 
     def _hide(self) -> None:
         self._forget_plan()
+        self._say("")
         for part in (self._arm, self._gizmo):
             if part is not None:
                 part.remove()
@@ -169,3 +171,4 @@ class TargetPanel:
     def _on_end(self, _goal: SentGoal) -> None:
         if not self._closed:
             self._forget_plan()
+            self._say(NO_PLAN)

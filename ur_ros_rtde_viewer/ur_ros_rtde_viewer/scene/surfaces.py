@@ -7,6 +7,7 @@ import viser
 
 SIZE = 0.7  # m, of the drawn part of a plane
 LARGEST_OFFSET = 0.3  # m, of the TCP from the center of this part, along the plane
+LEAST_FROM_BASE = 0.5 * SIZE + 0.1  # m, of the center
 THICKNESS = 0.006  # m
 COLOR, OPACITY = (190, 150, 105), 0.75
 
@@ -20,6 +21,13 @@ def turn_z_to(normal: Sequence[float]) -> np.ndarray:
         return np.array((0.0, 1.0, 0.0, 0.0))
     rotation = np.array((1.0 + z, -y, x, 0.0))
     return rotation / np.linalg.norm(rotation)
+
+
+def _center(point: np.ndarray, normal: np.ndarray, tcp: np.ndarray) -> np.ndarray:
+    """Returns the point of the plane next to the TCP, or one farther away from the base, so that the square does not cut the arm's base."""
+    below_base, center = (near - normal * float(normal @ (near - point)) for near in (np.zeros(3), tcp))
+    distance = float(np.linalg.norm(center - below_base))
+    return center if distance == 0.0 else below_base + (center - below_base) * max(1.0, LEAST_FROM_BASE / distance)
 
 
 class Surfaces:
@@ -41,8 +49,7 @@ class Surfaces:
             del self._centers[gone]
         for surface in surfaces:
             point, normal = (np.array(part) for part in surface)
-            near = np.zeros(3) if tcp is None else tcp
-            center = near - normal * float(normal @ (near - point))
+            center = _center(point, normal, np.zeros(3) if tcp is None else tcp)
             if surface not in self._drawn:
                 self._drawn[surface] = self._draw(surface, normal)
             elif np.linalg.norm(center - self._centers[surface]) < LARGEST_OFFSET:
