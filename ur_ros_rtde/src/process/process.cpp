@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "process/arguments.hpp"
 #include "process/duplicate_check.hpp"
 #include "process/fastdds_profile.hpp"
 #include "process/host_name_lock.hpp"
@@ -171,6 +172,11 @@ int run_process(int argc, char ** argv, const MakeServers & make)
   try {
     use_fastdds_profile();
     context = std::make_shared<rcl_cxx::Context>(argc, argv);
+    const auto help = help_asked_for(context->non_ros_arguments());
+    if (!help || !help->empty()) {
+      std::fprintf(help ? stdout : stderr, "%s\n", help ? help->c_str() : help.error().c_str());
+      return help ? 0 : wrong_arguments;
+    }
     Servers servers = make(context);
     report_fastdds_profile(servers.front()->node().get_logger());
     serve(context, servers, refused);

@@ -9,7 +9,7 @@ import time
 import pytest
 from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
-from support import FEW_PLUGINS, HOME, Client, Simulator, start_node, wait_for
+from support import FEW_PLUGINS, HOME, Client, Process, Simulator, find_program, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -55,6 +55,19 @@ def test_a_misspelled_parameter_prevents_the_start(name, address, parameter, mes
     process = start_node(name, address, parameter)
     assert process.wait(15.0) == 2
     assert message in process.output()
+
+
+@pytest.mark.parametrize("name", NODES)
+def test_help_shows_how_to_set_parameters(name):
+    process = Process([find_program("ur_ros_rtde", name), "--help"])
+    assert process.wait(15.0) == 0
+    assert f"usage: {name} --ros-args -p robot_ip:=ADDRESS" in process.output() and "driver.yaml" in process.output()
+
+
+def test_an_argument_that_does_not_exist_is_reported():
+    process = Process([find_program("ur_ros_rtde", "driver"), "robot_ip:=127.0.0.1"])
+    assert process.wait(15.0) == 2
+    assert 'there is no argument "robot_ip:=127.0.0.1": parameters follow --ros-args -p. driver --help shows how' in process.output()
 
 
 def test_a_parameter_that_no_node_has_is_a_warning(simulator, processes):
