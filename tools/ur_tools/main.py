@@ -15,7 +15,7 @@ from typing import Any, Callable, List, Optional, Tuple
 from xml.etree import ElementTree
 
 from . import build as building
-from . import console, disk, doctor, fuzz, lint, new, simulation, testing, viewer
+from . import console, disk, docs, doctor, fuzz, lint, new, simulation, testing, viewer
 from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
@@ -195,6 +195,10 @@ def _prepared(options: argparse.Namespace) -> Layout:
     return layout
 
 
+def command_docs(options: argparse.Namespace) -> int:
+    return docs.run(options)
+
+
 def command_doctor(options: argparse.Namespace) -> int:
     """Checks this machine, or a robot with `--robot`, which needs no build."""
     layout = _layout(options)
@@ -285,6 +289,10 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     sub.add_argument("--description", default="", metavar="TEXT", help="one sentence that `ur plugins` shows (default: an example)")
     sub.add_argument("--directory", type=pathlib.Path, default=pathlib.Path("."), metavar="DIR",
                      help="folder in which the package is created (default: the current folder)")
+
+    sub = add("docs", command_docs, "build the site of the documentation; dead links are errors")
+    sub.add_argument("--serve", action="store_true", help="show the site on this machine until Ctrl-C")
+    sub.add_argument("--port", type=int, default=8000, metavar="PORT", help="of --serve (default: 8000; 0: any)")
 
     for name, function, text in (("format", command_format, "format all C++ files"),
                                  ("lint", command_lint, "check formatting, Python and paths; with --tidy also run clang-tidy")):

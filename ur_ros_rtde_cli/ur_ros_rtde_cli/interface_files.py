@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass
 from typing import Dict, List, Optional
 
-_FIELD = re.compile(r"([\w/]+(?:<=\d+)?(?:\[[^\]]*\])?)\s+(\w+)\b(?!\s*=)[^#]*(?:#\s*(.*))?$")
+_FIELD = re.compile(r"([\w/]+(?:<=\d+)?(?:\[[^\]]*\])?)\s+(\w+)\b(?!\s*=)\s*([^#]*?)\s*(?:#\s*(.*))?$")
 _CONSTANT = re.compile(r"([\w/]+)\s+([A-Z]\w*)\s*=\s*([^#]*?)\s*(?:#\s*(.*))?$")
 
 
@@ -18,6 +18,7 @@ class Field:
     type: str  # "float64[]"
     name: str
     comment: str
+    default: str = ""
 
 
 @dataclass(frozen=True)
@@ -53,8 +54,8 @@ def parse(file: pathlib.Path) -> List[List[Field]]:
         if line.strip() == "---":
             parts.append([])
         elif found:
-            comment = " ".join(filter(None, [*above, (found.group(3) or "").strip()]))
-            parts[-1].append(Field(found.group(1), found.group(2), comment))
+            comment = " ".join(filter(None, [*above, (found.group(4) or "").strip()]))
+            parts[-1].append(Field(found.group(1), found.group(2), comment, found.group(3)))
         above = []
     return parts
 
@@ -73,18 +74,26 @@ def field(name: str, kind: str) -> Optional[Field]:
 
 
 def constants(name: str) -> Dict[str, Constant]:
-    """Returns the constants in the first section of an interface, in the order of the file. Empty if it is not installed."""
+    """Returns the constants of an interface. Empty if it is not installed."""
     try:
-        text = find(name).read_text().split("\n---")[0]
+        return constants_of(find(name))
     except FileNotFoundError:
         return {}
-    found = (Constant(match.group(2), match.group(3), match.group(4) or "") for match in map(_CONSTANT.match, text.splitlines())
-             if match)
-    return {constant.name: constant for constant in found}
+
+
+def constants_of(file: pathlib.Path) -> Dict[str, Constant]:
+    """Returns the constants in the first section of a file, in its order."""
+    found = map(_CONSTANT.match, file.read_text().split("\n---")[0].splitlines())
+    constants = (Constant(match.group(2), match.group(3), match.group(4) or "") for match in found if match)
+    return {constant.name: constant for constant in constants}
 
 
 def description(name: str) -> str:
+    return description_of(find(name))
+
+
+def description_of(file: pathlib.Path) -> str:
     """Returns the comment at the beginning of the file."""
-    lines = find(name).read_text().splitlines()
+    lines = file.read_text().splitlines()
     end = next((index for index, line in enumerate(lines) if not line.startswith("#")), len(lines))
     return " ".join(line.strip("# ") for line in lines[:end])

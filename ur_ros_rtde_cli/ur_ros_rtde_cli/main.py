@@ -27,7 +27,8 @@ VIEW = "view"  # a program of another package, with options of its own
 WITHOUT_NODES = ("plugins", "plot", "compare", "urdf", "calibration", "doctor", "completion")  # commands that communicate with no node
 
 # Commands of the script `ur` in a checkout. They are not installed.
-CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "fuzz", "shell", "new", "format", "lint", "doctor", "clean")
+CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "fuzz", "shell", "new", "docs", "format", "lint",
+                     "doctor", "clean")
 
 # argcomplete sets it when a shell asks for completions.
 COMPLETION_VARIABLE = "_ARGCOMPLETE"
