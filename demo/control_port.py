@@ -1,4 +1,4 @@
-"""Client of the simulator's control port: one JSON object per line, one answer per line (docs/simulator.md)."""
+"""Client of the simulator's control port: one JSON object per line, one answer per line (docs/use/simulator.md)."""
 
 import json
 import socket

@@ -2,7 +2,7 @@
 """Compiles our sources with another compiler, or against the headers of another ROS distribution.
 
 By default the ROS headers of the build are used. SOURCES is a folder with the ROS packages of another distribution
-(docs/testing.md lists them): their headers are used, and the interface headers are first generated with that
+(docs/internals/testing.md lists them): their headers are used, and the interface headers are first generated with that
 distribution's rosidl. Files are compiled with -fsyntax-only -Werror and the options of the build.
 """
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Builds a ROS 2 distribution from its release repositories, as far as this project needs it.
 
-The result is an installation like that of the distribution's packages, for machines where it has none: docs/testing.md.
+The result is an installation like that of the distribution's packages, for machines where it has none: docs/internals/testing.md.
 What is built are the packages of the distribution on which this project depends, rclpy and a middleware, and what they depend on,
 in the released versions. Only what has changed is built again.
 """

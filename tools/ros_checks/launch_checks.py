@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks the launch files and the `ros2` commands of the documentation with the launch and ros2cli of a ROS 2 installation.
-The packages of this repository must be built and sourced; see docs/testing.md.
+The packages of this repository must be built and sourced; see docs/internals/testing.md.
 
     tools/ros_checks/launch_checks.py                        # uses launch and ros2cli of the sourced ROS 2
     tools/ros_checks/launch_checks.py --prefix <folder>      # uses those of another prefix, as with the wheels

@@ -1,4 +1,4 @@
-"""./ur new. docs/writing_a_plugin.md, whose test builds the packages, explains it."""
+"""./ur new. docs/use/writing_a_plugin.md, whose test builds the packages, explains it."""
 
 import pathlib
 import re

@@ -85,7 +85,7 @@ def test_plans_and_draws_a_path(tmp_path):
 
 
 def test_plans_the_documented_file(tmp_path):
-    page = (ROOT / "docs" / "trajectory.md").read_text()
+    page = (ROOT / "docs" / "use" / "trajectory.md").read_text()
     text, = re.findall(r"```yaml\n(.*?)```", page, re.S)
     result = plan(tmp_path, text)
     assert result.returncode == 0 and "3 waypoints" in result.stdout, result.stdout

@@ -11,7 +11,7 @@ from ur_tools.environment import program
 from ur_tools.layout import ROOT, Layout
 
 BACKGROUND = True
-PAGES = {path: path.read_text() for path in (*ROOT.glob("*.md"), *ROOT.glob("*/*.md"), *ROOT.glob("docs/*/*.md"))}
+PAGES = {path: path.read_text() for path in (*ROOT.glob("*.md"), *ROOT.glob("*/*.md"), *ROOT.glob("docs/*/**/*.md"))}
 README = (ROOT / "README.md").read_text()
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text()
 LAUNCH_FILES = {"driver": DRIVER, "two_robots": (*TWO_ROBOTS, *DRIVER), "moveit": (*MOVEIT, *DRIVER)}
@@ -39,9 +39,9 @@ def test_every_link_refers_to_an_existing_file_and_heading():
 
 
 def test_every_patch_of_ur_rtde_is_listed_with_its_title():
-    page = (ROOT / "docs" / "ur_rtde_patches.md").read_text()
+    page = (ROOT / "docs" / "internals" / "ur_rtde_patches.md").read_text()
     patches = sorted((ROOT / "ur_rtde_vendor" / "patches").glob("*.patch"))
-    listed = re.findall(r"^\| \[\d{4}\]\(\.\./ur_rtde_vendor/patches/([\w.-]+)\) (.+?) \|", page, re.M)
+    listed = re.findall(r"^\| \[\d{4}\]\(\.\./\.\./ur_rtde_vendor/patches/([\w.-]+)\) (.+?) \|", page, re.M)
     assert listed == [(patch.name, patch.read_text().split("\n")[0]) for patch in patches]
 
 

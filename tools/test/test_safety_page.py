@@ -1,12 +1,12 @@
-"""docs/safety.md names tests that exist, and every action that does not only read."""
+"""docs/use/safety.md names tests that exist, and every action that does not only read."""
 
 import re
 
 from ur_tools.layout import ROOT
 
 BACKGROUND = True
-PAGE = (ROOT / "docs" / "safety.md").read_text()
-ACTIONS = (ROOT / "docs" / "commands" / "README.md").read_text().split("\nThe name of an action")[0]
+PAGE = (ROOT / "docs" / "use" / "safety.md").read_text()
+ACTIONS = (ROOT / "docs" / "use" / "commands" / "README.md").read_text().split("\nThe name of an action")[0]
 # They read, show something on the teach pendant, or write a log. Those of the group queries only read.
 HARMLESS = {"get_freedrive_status", "robotiq_get_status", "sg_get_width", *(f"dashboard/{name}" for name in (
     "power_on", "running", "program_state", "get_loaded_program", "is_program_saved", "close_safety_popup", "robot_mode",

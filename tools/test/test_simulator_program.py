@@ -99,7 +99,7 @@ def test_an_address_that_other_hosts_reach_is_announced():
 
 
 def documented_world_file():
-    section = (ROOT / "docs" / "simulator.md").read_text().split("## World files")[1]
+    section = (ROOT / "docs" / "use" / "simulator.md").read_text().split("## World files")[1]
     return re.search(r"```yaml\n(.*?)```", section, re.S).group(1)
 
 
@@ -144,7 +144,7 @@ def rtde_package(kind, payload=b""):
 
 
 def documented(heading, language):
-    section = (ROOT / "docs" / "simulator.md").read_text().split(f"\n## {heading}\n")[1]
+    section = (ROOT / "docs" / "use" / "simulator.md").read_text().split(f"\n## {heading}\n")[1]
     return re.search(rf"```{language}\n(.*?)```", section, re.S).group(1)
 
 

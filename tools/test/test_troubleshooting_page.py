@@ -1,4 +1,4 @@
-"""docs/troubleshooting.md contains every error code and every error text of the driver."""
+"""docs/use/troubleshooting.md contains every error code and every error text of the driver."""
 
 import re
 
@@ -6,7 +6,7 @@ from error_texts import error_texts
 from ur_tools.layout import ROOT
 
 BACKGROUND = True
-PAGE = (ROOT / "docs" / "troubleshooting.md").read_text()
+PAGE = (ROOT / "docs" / "use" / "troubleshooting.md").read_text()
 CODES = re.findall(r"^uint16 (\w+) = \d+", (ROOT / "ur_ros_rtde_msgs" / "msg" / "ErrorCode.msg").read_text(), re.M)
 
 

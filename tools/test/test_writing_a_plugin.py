@@ -1,4 +1,4 @@
-"""Follows docs/writing_a_plugin.md step by step in a temporary workspace. ur_tools.new writes the packages."""
+"""Follows docs/use/writing_a_plugin.md step by step in a temporary workspace. ur_tools.new writes the packages."""
 
 import os
 import re
@@ -9,7 +9,7 @@ import pytest
 from ur_tools.environment import workspace_environment
 from ur_tools.layout import ROOT, Layout
 
-PAGE = (ROOT / "docs" / "writing_a_plugin.md").read_text()
+PAGE = (ROOT / "docs" / "use" / "writing_a_plugin.md").read_text()
 BLOCKS = re.findall(r"```bash\n(.*?)```", PAGE, re.S)
 BUILD_LIMIT = 1100.0  # s, on two busy cores without a compiler cache: the builds get what other tests leave
 LOAD = 0.2  # cores, of everything but the builds

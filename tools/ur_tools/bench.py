@@ -1,6 +1,6 @@
 """./ur bench: measures latency, load and start-up of the driver on the simulated controller, and compares them with targets.
 
-A ratio below 1 is better than the target. Measure on an idle machine (docs/performance.md).
+A ratio below 1 is better than the target. Measure on an idle machine (docs/internals/performance.md).
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Measures how long new clients take to find all actions of the driver after other clients were killed (docs/discovery.md)."""
+"""Measures how long new clients take to find all actions of the driver after other clients were killed (docs/internals/discovery.md)."""
 
 import json
 import subprocess

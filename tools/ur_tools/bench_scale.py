@@ -1,6 +1,6 @@
 """./ur bench --scale: load, latency and memory with several robots, and memory over many goals.
 
-A driver process serves one robot. Several robots are several drivers, each with its own namespace (docs/performance.md).
+A driver process serves one robot. Several robots are several drivers, each with its own namespace (docs/internals/performance.md).
 """
 
 import argparse

@@ -79,5 +79,5 @@ def run(kind: str, name: str, package: str, folder: pathlib.Path, description: s
     for file in sorted(purposes, key=lambda path: (not purposes[path], path)):
         console.line(f"    {str(file.relative_to(folder)):{width}}  {purposes[file]}".rstrip())
     console.line("Change the files that have a remark. Then build the package with `colcon build` in the workspace (in `./ur shell` if ROS "
-                 "is not installed); docs/writing_a_plugin.md continues from there.")
+                 "is not installed); docs/use/writing_a_plugin.md continues from there.")
     return 0

@@ -352,7 +352,7 @@ def test_a_bad_link(link_options, expected):
 
 
 def test_the_page_explains_every_finding():
-    page = (FOLDER.parents[1] / "docs" / "doctor.md").read_text()
+    page = (FOLDER.parents[1] / "docs" / "use" / "doctor.md").read_text()
     sources = "".join(file.read_text() for file in (FOLDER.parent / "ur_ros_rtde_cli" / "robot_check").glob("*.py"))
     subjects = set(re.findall(r"\b(?:ok|warning|fault|report)\(\"([^\"]+)\"", sources))
     assert len(subjects) >= 20 and all(f"| `{subject}` |" in page for subject in subjects), sorted(subjects)

@@ -1,4 +1,4 @@
-"""Checks that `ur call` and `ros2 action send_goal` in docs/commands send the same goal, and that it fits the action."""
+"""Checks that `ur call` and `ros2 action send_goal` in docs/use/commands send the same goal, and that it fits the action."""
 
 import importlib.util
 import pathlib
@@ -10,7 +10,7 @@ import yaml
 from ur_ros_rtde_cli import fields
 
 BACKGROUND = True
-FOLDER = pathlib.Path(__file__).resolve().parents[2] / "docs" / "commands"
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "docs" / "use" / "commands"
 
 
 def examples():

@@ -1,4 +1,4 @@
-"""The commands and names in docs/description.md are valid."""
+"""The commands and names in docs/use/description.md are valid."""
 
 import argparse
 import pathlib
@@ -13,7 +13,7 @@ from ur_ros_rtde_description.models import find_model
 from ur_ros_rtde_description.program import describe
 
 BACKGROUND = True
-PAGE = (pathlib.Path(__file__).resolve().parents[2] / "docs" / "description.md").read_text()
+PAGE = (pathlib.Path(__file__).resolve().parents[2] / "docs" / "use" / "description.md").read_text()
 COMMANDS = re.findall(r"^(?:ur|ros2 run ur_ros_rtde_description) urdf (.*)$", PAGE, re.M) + re.findall(r"`ur urdf ([^`]+)`", PAGE)
 
 

@@ -1,10 +1,10 @@
-"""Runs the examples in docs/python.md, in their order, with one robot."""
+"""Runs the examples in docs/use/python.md, in their order, with one robot."""
 
 import pathlib
 import re
 import tempfile
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "python.md"
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "use" / "python.md"
 
 
 def test_the_examples_run(arm, simulator, capsys, tmp_path, monkeypatch):

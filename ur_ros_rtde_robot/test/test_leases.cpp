@@ -68,7 +68,7 @@ struct LeaseTest : RobotFixture {
   double begin_ = 0.0;
 };
 
-constexpr double stop_begins_within = 0.02;  // s, docs/safety.md
+constexpr double stop_begins_within = 0.02;  // s, docs/use/safety.md
 
 TEST_F(LeaseTest, EndsWithItsProgramEvenIfTheNextOneRunsAlready)
 {

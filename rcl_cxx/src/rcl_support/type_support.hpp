@@ -10,7 +10,7 @@ namespace rcl_cxx::detail {
 /// the introspection type support, and keeps a description of each type in memory for type propagation. And
 /// rcl finds no description of the type, of which it would keep a copy for the service
 /// ~/get_type_description, which this library does not provide. With 130 actions, this saves 9 MB and 7 MB
-/// (docs/discovery.md).
+/// (docs/internals/discovery.md).
 ///
 /// The copy is kept until the process ends, like the generated one: a participant of Fast DDS refers to the
 /// type support of a type that was registered once, even when the entity is gone and another one is created.

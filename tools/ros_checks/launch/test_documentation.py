@@ -10,8 +10,8 @@ from ur_ros_rtde_launch.launch_arguments import NODES
 
 README = ROOT / "README.md"
 # Dashboard commands power the robot off, so they come last.
-DOCUMENTS = [README, *sorted((ROOT / "docs").glob("*.md")),
-             *sorted((ROOT / "docs" / "commands").glob("*.md"), key=lambda file: file.name == "dashboard.md")]
+DOCUMENTS = [README, *sorted((ROOT / "docs").glob("*/*.md")),
+             *sorted((ROOT / "docs" / "use" / "commands").glob("*.md"), key=lambda file: file.name == "dashboard.md")]
 
 
 def lines(document, verb):

@@ -4,7 +4,7 @@
 
 namespace ur_ros_rtde {
 
-/// Makes Fast DDS use the profile of this package for nodes (docs/discovery.md) unless the user has chosen a
+/// Makes Fast DDS use the profile of this package for nodes (docs/internals/discovery.md) unless the user has chosen a
 /// profile. Call it before the first context is created. Other middlewares are not affected.
 void use_fastdds_profile();
 

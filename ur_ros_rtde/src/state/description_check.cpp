@@ -7,7 +7,7 @@
 namespace ur_ros_rtde {
 namespace {
 
-/// The calibration of an arm deviates less from its model (docs/description.md).
+/// The calibration of an arm deviates less from its model (docs/use/description.md).
 constexpr FlangeDeviation largest_calibration{0.015, 0.03};
 
 std::string describe(const FlangeDeviation & deviation, const std::string & address)

@@ -8,7 +8,7 @@ from typing import List
 from .finding import Finding, ok, warning
 
 ROOT = pathlib.Path("/")
-PAGE = "see docs/real_time.md"
+PAGE = "see docs/use/real_time.md"
 
 
 def _text(file: pathlib.Path) -> str:

@@ -24,7 +24,7 @@ def judge_version(version: Tuple[int, int, int, int]) -> Finding:
     major = version[0]
     if major >= POLYSCOPE_X:
         return fault("version", f"{text}: PolyScope X has no dashboard server, which this driver needs",
-                     "use a robot with PolyScope 5; docs/polyscope_x.md lists what is missing")
+                     "use a robot with PolyScope 5; docs/use/polyscope_x.md lists what is missing")
     if major not in TESTED:
         return fault("version", f"{text} is unknown", "use PolyScope 5, or 3 on a CB3")
     first, last = TESTED[major]

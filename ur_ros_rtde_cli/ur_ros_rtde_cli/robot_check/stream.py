@@ -171,5 +171,5 @@ def _host(stream: Stream) -> Finding:
     delays = stream.wake_up_delays()
     text = f"this host reads packages {1e3 * _p99(delays):.2f} ms (p99), {1e3 * max(delays):.2f} ms (max) after they arrive"
     if _p99(delays) > stream.cycle:
-        return warning("host", text, "close other programs, and set up this host as docs/real_time.md describes")
+        return warning("host", text, "close other programs, and set up this host as docs/use/real_time.md describes")
     return ok("host", text)

@@ -80,7 +80,7 @@ trajectory_msgs::msg::JointTrajectoryPoint to_point(const std::array<std::size_t
 
 }  // namespace
 
-/// Behaves like the joint trajectory controller of ros2_control, which MoveIt uses. docs/trajectory.md
+/// Behaves like the joint trajectory controller of ros2_control, which MoveIt uses. docs/use/trajectory.md
 /// describes the differences.
 class FollowJointTrajectory : public Command<Action> {
  public:

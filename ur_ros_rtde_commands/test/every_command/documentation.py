@@ -1,4 +1,4 @@
-"""Reads the documentation of the commands: docs/commands/*.md has a section with an example for each action."""
+"""Reads the documentation of the commands: docs/use/commands/*.md has a section with an example for each action."""
 
 import json
 import pathlib
@@ -10,7 +10,7 @@ from typing import List, Tuple
 import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-FOLDER = ROOT / "docs" / "commands"
+FOLDER = ROOT / "docs" / "use" / "commands"
 INDEX = FOLDER / "README.md"
 
 
@@ -86,7 +86,7 @@ def section(name):
     for candidate in sections():
         if candidate.name == name:
             return candidate
-    raise ValueError(f"{name} has no section `### {name}` in docs/commands/*.md")
+    raise ValueError(f"{name} has no section `### {name}` in docs/use/commands/*.md")
 
 
 def example(name):

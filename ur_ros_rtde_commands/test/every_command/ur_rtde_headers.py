@@ -1,4 +1,4 @@
-"""The public functions of ur_rtde's interfaces, and their rows in docs/commands/README.md.
+"""The public functions of ur_rtde's interfaces, and their rows in docs/use/commands/README.md.
 
 A function is covered by the action of the same name: moveJ_IK by move_j_ik, powerOn by power_on or dashboard/power_on. If the
 names differ, a row of the index contains the action in the first cell and the function in another one:

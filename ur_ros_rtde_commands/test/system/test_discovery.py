@@ -1,4 +1,4 @@
-"""New clients discover the actions, also after other clients were killed. See docs/discovery.md."""
+"""New clients discover the actions, also after other clients were killed. See docs/internals/discovery.md."""
 
 import contextlib
 import json

@@ -1,4 +1,4 @@
-"""Each name in the second columns of docs/migration.md exists in a running driver, as what its table says it is.
+"""Each name in the second columns of docs/use/migration.md exists in a running driver, as what its table says it is.
 
 The goals of the actions are tried by test_good_goals.py, which sends the documented example of each one.
 """
@@ -14,7 +14,7 @@ from ur_ros_rtde_launch.launch_arguments import DRIVER, MOVEIT
 
 from ur_ros_rtde_msgs.action import ServoJ
 
-PAGE = (pathlib.Path(__file__).resolve().parents[3] / "docs" / "migration.md").read_text()
+PAGE = (pathlib.Path(__file__).resolve().parents[3] / "docs" / "use" / "migration.md").read_text()
 NODES = ("command_server", "dashboard_server", "robot_state_receiver")
 LAUNCH_FILES = pathlib.Path(__file__).resolve().parents[3] / "ur_ros_rtde" / "launch"
 GOAL_FIELDS = {"gain", "lookahead_time"}  # "fields `gain` and `lookahead_time` of the goals"

@@ -1,4 +1,4 @@
-"""Times from an event to the standstill of the arm, in simulated time: the figures of docs/safety.md.
+"""Times from an event to the standstill of the arm, in simulated time: the figures of docs/use/safety.md.
 
 The simulated robot is slow, so that delays of a busy host are short in its time. The limits of driver and robot have their default values,
 in the robot's time.
@@ -18,7 +18,7 @@ from ur_ros_rtde_msgs.action import MoveJ, Stop
 SLOWNESS = 5.0  # s of the host for each s of the robot
 SPEED = 0.5  # rad/s, of joint 0
 AT_REST = 0.01  # rad/s
-PAGE = pathlib.Path(__file__).resolve().parents[3] / "docs" / "safety.md"
+PAGE = pathlib.Path(__file__).resolve().parents[3] / "docs" / "use" / "safety.md"
 
 
 class Recorder(threading.Thread):
@@ -119,7 +119,7 @@ EVENTS = {"cancel": lambda driver, client, simulator, goal: goal.cancel(),
 
 
 def limits():
-    """Returns the limit of each event in docs/safety.md, s."""
+    """Returns the limit of each event in docs/use/safety.md, s."""
     return {name: float(limit) for name, limit in re.findall(r"^\| ([\w ]+) \| [\d.]+ s \| ([\d.]+) s \|", PAGE.read_text(), re.M)}
 
 

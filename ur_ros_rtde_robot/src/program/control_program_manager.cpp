@@ -330,7 +330,7 @@ ControlProgramManager::Outcome ControlProgramManager::check_robot(const std::opt
     return stopped_by(
         {ErrorCode::not_supported,
          fmt::format("the controller has PolyScope {}: PolyScope X has no dashboard server, which this "
-                     "driver needs. Use a robot with PolyScope 5 or 3 (docs/polyscope_x.md)",
+                     "driver needs. Use a robot with PolyScope 5 or 3 (docs/use/polyscope_x.md)",
                      to_string(*version))});
   }
   if (const auto io = interfaces_.ensure_io(); !io) {

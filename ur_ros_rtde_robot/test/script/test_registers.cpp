@@ -1,4 +1,4 @@
-// Compares the table of registers in docs/writing_a_plugin.md with the code.
+// Compares the table of registers in docs/use/writing_a_plugin.md with the code.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -28,7 +28,7 @@ struct Ports {
   std::uint16_t robot_api = 80;   ///< HTTP, PolyScope X from 10.11 on
   std::uint16_t modbus = 502;     ///< MODBUS TCP
   std::uint16_t robotiq = 63352;  ///< socket server of the URCap "robotiq_gripper"
-  std::uint16_t control = 30099;  ///< control port of the simulator: JSON lines, see docs/simulator.md
+  std::uint16_t control = 30099;  ///< control port of the simulator: JSON lines, see docs/use/simulator.md
 };
 
 struct SimulatorOptions {
@@ -40,14 +40,14 @@ struct SimulatorOptions {
   Ports ports;
   /// Initial joint positions, rad. Default: tool pointing down in front of the robot.
   std::optional<std::array<double, 6>> initial_joints;
-  /// YAML file with the objects around the arm and a time line of events (docs/simulator.md). Empty: none.
+  /// YAML file with the objects around the arm and a time line of events (docs/use/simulator.md). Empty: none.
   std::string world_file;
   std::vector<std::string> urcaps;  ///< installed URCaps: "onrobot_soft_gripper", "robotiq_gripper"
   /// A pneumatic gripper at the digital outputs of the tool: "single" or "double" acting. Empty: none.
   std::string digital_gripper;
   /// Folder to which the reports and support files of the dashboard are also written. Empty: none.
   std::string reports_folder;
-  /// File for a Mermaid sequence diagram of what the clients and the robot do (docs/simulator.md, "Client
+  /// File for a Mermaid sequence diagram of what the clients and the robot do (docs/use/simulator.md, "Client
   /// log").
   /// "-": standard output. Empty: none.
   std::string client_log;

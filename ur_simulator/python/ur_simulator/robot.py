@@ -82,7 +82,7 @@ class SimulatedRobot:
         return reply
 
     def state(self) -> Dict[str, Any]:
-        """Returns the state of the robot: modes, joints, TCP, IO, program (docs/simulator.md)."""
+        """Returns the state of the robot: modes, joints, TCP, IO, program (docs/use/simulator.md)."""
         return self.control("state")["state"]
 
     def wait_for(self, condition: Callable[[Dict[str, Any]], bool], timeout: float = 10.0) -> Dict[str, Any]:

@@ -46,7 +46,7 @@ struct RobotAccess {
 };
 
 /// The standard builtins and the robot builtins of URScript. Builtins that the simulator does not model exist
-/// by name and fail with "… is not modelled by the simulator yet"; docs/urscript.md lists them.
+/// by name and fail with "… is not modelled by the simulator yet"; docs/use/urscript.md lists them.
 std::shared_ptr<const urscript::Library> make_robot_library(const RobotAccess & access);
 
 }  // namespace ur_simulator

@@ -14,7 +14,7 @@ struct WorldFileCommand {
   control_port::Action action;
 };
 
-/// Content of a world file: the objects around the arm, and events on a time line (docs/simulator.md).
+/// Content of a world file: the objects around the arm, and events on a time line (docs/use/simulator.md).
 struct WorldFile {
   std::vector<WorldFileCommand> objects;  ///< executed before the first cycle
   std::vector<WorldFileCommand> events;   ///< sorted by time

@@ -99,7 +99,7 @@ TEST(FunctionReferenceTest, EveryDifferenceFromTheRobotHasANote)
   }
 }
 
-// docs/urscript.md contains the texts between such lines. UPDATE_DOCS=1 writes them.
+// docs/use/urscript.md contains the texts between such lines. UPDATE_DOCS=1 writes them.
 void expect_documented(const std::string & title, const std::string & reference)
 {
   const std::string begin = "<!-- begin of the generated " + title + " -->\n\n";

@@ -16,7 +16,7 @@ struct RegisterRange {
   }
 };
 
-/// Registers available to extensions; docs/writing_a_plugin.md lists the users of all others. The float
+/// Registers available to extensions; docs/use/writing_a_plugin.md lists the users of all others. The float
 /// registers 18 are the trigger and its acknowledgement. ur_rtde's IO interface writes the inputs 18 to 22,
 /// its receive interface reads the outputs 12 to 19.
 inline constexpr int trigger_register = 18;          ///< input float register
