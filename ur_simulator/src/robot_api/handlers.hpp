@@ -4,7 +4,7 @@
 
 namespace ur_simulator::robot_api {
 
-// The operations of the Robot API (docs/use/simulator.md has the table and the sources).
+// The operations of the Robot API (docs/internals/simulator_protocols.md lists them with the sources).
 
 Answer change_robot_state(const Call & call);
 Answer get_robot_mode(const Call & call);
