@@ -97,7 +97,7 @@ void report_fastdds_profile(const rcl_cxx::Logger & logger)
   if (needed && profile && is_present(*profile) && !mentions(*profile, property)) {
     RCL_CXX_INFO(logger,
                  "the Fast DDS profile {} leaves {} enabled: after a client was killed, new clients may not "
-                 "discover the actions for a minute, see docs/internals/discovery.md",
+                 "discover the actions for a minute, see docs/use/networks.md",
                  profile->string(), property);
   }
 }
