@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Compiles our sources with another compiler, or against the headers of another ROS distribution.
 
-By default the ROS headers of the build are used. SOURCES is a folder with the ROS packages of another distribution
-(docs/internals/testing.md lists them): their headers are used, and the interface headers are first generated with that
-distribution's rosidl. Files are compiled with -fsyntax-only -Werror and the options of the build.
+By default the ROS headers of the build are used. SOURCES is a folder with the ROS packages of another distribution, one
+directory each (such as src/ of tools/ros_underlay.py): their headers are used, and the interface headers are first generated
+with that distribution's rosidl. Files are compiled with -fsyntax-only -Werror and the options of the build.
 """
 
 import argparse
