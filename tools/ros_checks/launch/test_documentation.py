@@ -34,7 +34,7 @@ def test_the_readme_moves_the_simulated_robot(driver):
     code, printed = ros2(*shlex.split(line)[1:])
     assert code == 0 and "Feedback:" in printed and "success: true" in printed and "SUCCEEDED" in printed, printed
     code, printed = ros2("topic", "echo", "--once", "/joint_states")
-    assert code == 0 and "position:\n- 0.2\n" in re.sub(r"- 0\.(19999|2000)\d*", "- 0.2", printed), printed
+    assert code == 0 and "position:\n- -0.2\n" in re.sub(r"- -0\.(19999|2000)\d*", "- -0.2", printed), printed
     run, = lines(README, "run")
     code, printed = ros2(*shlex.split(run)[1:])
     assert code == 0, printed
