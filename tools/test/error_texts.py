@@ -13,7 +13,7 @@ _LOG = re.compile(rf"LogLevel::(?:error|warn),\s*{_TEXT}")
 
 
 def normalized(text):
-    """Returns a text as in docs/use/troubleshooting.md: … for each value, one space between words, no quotes of code."""
+    """Returns a text as in docs/use/troubleshooting*.md: … for each value, one space between words, no quotes of code."""
     text = re.sub(r"\{[^{}]*\}", "…", text.replace('\\"', '"').replace("`", "'"))
     return re.sub(r"\s+", " ", text).strip()
 
