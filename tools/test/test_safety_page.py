@@ -40,9 +40,9 @@ def test_each_row_names_tests_that_exist():
 
 def test_each_action_that_does_not_only_read_is_listed():
     to_list = set()
-    for group, heading, cell in re.findall(r"^\| \[(\w+)\]\(\w+\.md\)([^|]*)\| (.*) \|$", ACTIONS, re.M):
+    for group, heading, names in re.findall(r"^- \[(\w+)\]\(\w+\.md\)([^:]*):(.*(?:\n  .*)*)", ACTIONS, re.M):
         prefix = "dashboard/" if "dashboard/" in heading else ""
-        to_list |= {prefix + name for name in re.findall(r"`(\w+)`", cell) if group != "queries"}
+        to_list |= {prefix + name for name in re.findall(r"`(\w+)`", names) if group != "queries"}
     cells = [row[1] for row in rows("What moves the arm") if "topics" not in row[1]]
     cells += [row[0] for row in rows("What changes how it moves")]
     cells += re.findall(r"^(`stop`.*?) end motions\.", PAGE, re.M | re.S)
