@@ -10,15 +10,15 @@ namespace ur_simulator {
 
 namespace {
 
-/// Names under a heading, in the order of their first appearance.
+/// Names with the same note, in the order of their first appearance.
 using NameTable = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
-void add_name(NameTable & table, const std::string & heading, const std::string & name)
+void add_name(NameTable & table, const std::string & note, const std::string & name)
 {
   const auto found =
-      std::find_if(table.begin(), table.end(), [&](const auto & row) { return row.first == heading; });
+      std::find_if(table.begin(), table.end(), [&](const auto & row) { return row.first == note; });
   if (found == table.end()) {
-    table.push_back({heading, {name}});
+    table.push_back({note, {name}});
   } else {
     found->second.push_back(name);
   }
@@ -33,23 +33,16 @@ std::string code_list(const std::vector<std::string> & names)
 
 std::string function_reference(const urscript::Library & library)
 {
-  NameTable groups;
   NameTable simplifications;
   NameTable rejections;
   for (std::uint32_t i = 0; i < library.size(); ++i) {
     const urscript::Builtin & builtin = library[i];
-    if (builtin.support == urscript::Support::modelled) {
-      add_name(groups, builtin.group, builtin.name);
-    } else {
+    if (builtin.support != urscript::Support::modelled) {
       add_name(builtin.support == urscript::Support::simplified ? simplifications : rejections, builtin.note,
                builtin.name);
     }
   }
-  std::string text = "| group | modelled functions |\n|---|---|\n";
-  for (const auto & [group, names] : groups) {
-    text += fmt::format("| {} | {} |\n", group, code_list(names));
-  }
-  text += "\n| simplified functions | simplification |\n|---|---|\n";
+  std::string text = "| simplified functions | simplification |\n|---|---|\n";
   for (const auto & [note, names] : simplifications) {
     text += fmt::format("| {} | {} |\n", code_list(names), note);
   }

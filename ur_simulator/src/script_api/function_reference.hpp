@@ -6,8 +6,8 @@
 
 namespace ur_simulator {
 
-/// The builtins of a library as Markdown tables: by group, with their simplifications, and the rejected ones
-/// with the reason.
+/// Markdown tables of the simplified builtins of a library with the difference, and of the rejected ones with
+/// the reason.
 std::string function_reference(const urscript::Library & library);
 
 }  // namespace ur_simulator

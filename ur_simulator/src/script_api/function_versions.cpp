@@ -15,62 +15,71 @@ constexpr PolyscopeVersion never = MinVersion::never;
 struct FunctionGroup {
   MinVersion since;
   const char * names;
-  const char * evidence;
 };
 
-// The manual for 3.15 is complete: what only manuals of PolyScope 5 list does not exist on CB3. Where the
-// first version is not known exactly, it is the earliest one that the evidence permits.
+// Each group with its evidence: UR's script manuals for 3.15.4, 5.11, 5.22 and 5.25; the version guards in
+// ur_rtde's control script and in the external control program of UR's client library; the lists of a
+// URScript extension for an editor. The manual for 3.15 is complete: what only manuals of PolyScope 5 list
+// does not exist on CB3. Where the first version is not known exactly, it is the earliest one that the
+// evidence permits. Functions that no manual lists (get_joint_positions, servoc, zero_ftsensor and
+// force_mode_set_gain_scaling on CB3) exist in every version, because public clients run on robots with
+// programs that name them.
 constexpr FunctionGroup version_groups[] = {
-    {{always, {3, 5}}, "force_mode_set_damping", "ur_rtde"},
-    {{always, {3, 6}}, "get_tcp_offset", "ur_rtde"},
-    {{always, {3, 8}}, "protective_stop", "ur_rtde"},
+    // ur_rtde
+    {{always, {3, 5}}, "force_mode_set_damping"},
+    // ur_rtde
+    {{always, {3, 6}}, "get_tcp_offset"},
+    // ur_rtde
+    {{always, {3, 8}}, "protective_stop"},
+    // manual for 3.15
     {{always, never},
      "end_screw_driving screw_driving modbus_request_update_now set_tool_communication "
-     "set_tool_digital_output_mode set_tool_output_mode",
-     "manual for 3.15"},
-    {{{5, 3}, always}, "get_target_waypoint", "ur_rtde; manual for 3.15"},
-    {{{5, 4}, always},
-     "get_actual_joint_positions_history tool_contact",
-     "ur_rtde; UR's external control program names them on CB3"},
+     "set_tool_digital_output_mode set_tool_output_mode"},
+    // ur_rtde; manual for 3.15
+    {{{5, 3}, always}, "get_target_waypoint"},
+    // ur_rtde; UR's external control program names them on CB3
+    {{{5, 4}, always}, "get_actual_joint_positions_history tool_contact"},
+    // UR, "Modify robot trajectory by overlaying custom motion"
     {{{5, 6}, never},
-     "path_offset_disable path_offset_enable path_offset_get path_offset_set path_offset_set_alpha_filter "
-     "path_offset_set_max_offset",
-     "UR, \"Modify robot trajectory by overlaying custom motion\""},
-    {{{5, 9, 1}, {3, 14, 1}}, "ft_rtde_input_enable", "UR's external control program"},
-    {{{5, 10}, never}, "clear_interpreter end_interpreter interpreter_mode", "UR, \"Interpreter mode\""},
-    {{{5, 10}, never},
-     "get_freedrive_status get_target_payload_inertia set_target_payload",
-     "ur_rtde, UR's external control program"},
+     "path_offset_disable path_offset_enable path_offset_get path_offset_set "
+     "path_offset_set_alpha_filter path_offset_set_max_offset"},
+    // UR's external control program
+    {{{5, 9, 1}, {3, 14, 1}}, "ft_rtde_input_enable"},
+    // UR, "Interpreter mode"
+    {{{5, 10}, never}, "clear_interpreter end_interpreter interpreter_mode"},
+    // ur_rtde, UR's external control program
+    {{{5, 10}, never}, "get_freedrive_status get_target_payload_inertia set_target_payload"},
+    // not in the manual for 5.11; in the editor's list of May 2022
     {{{5, 12}, never},
      "request_boolean_from_primary_client request_float_from_primary_client "
-     "request_integer_from_primary_client request_string_from_primary_client",
-     "not in the manual for 5.11; in the editor's list of May 2022"},
+     "request_integer_from_primary_client request_string_from_primary_client"},
+    // not in the manual for 5.11; in the editor's list for 5.15
     {{{5, 12}, never},
      "estimate_payload high_holding_torque_disable high_holding_torque_enable make_list "
-     "modbus_add_rw_signal modbus_get_error modbus_get_time_since_signal_invalid modbus_reset_connection "
-     "modbus_set_signal_watchdog set_base_acceleration set_baselight_iec set_baselight_off "
-     "set_baselight_solid",
-     "not in the manual for 5.11; in the editor's list for 5.15"},
-    {{{5, 12}, never}, "time", "not in the manual for 5.11; in the editor's list for 5.18"},
-    {{{5, 16}, never},
-     "get_base_acceleration get_gravity get_tool_temp",
-     "in the editor's list for 5.17, not in that for 5.15"},
-    {{{5, 18}, never},
-     "tool_wrench_limit_disable tool_wrench_limit_set",
-     "in the editor's list for 5.19, not in that for 5.17"},
+     "modbus_add_rw_signal modbus_get_error modbus_get_time_since_signal_invalid "
+     "modbus_reset_connection modbus_set_signal_watchdog set_base_acceleration set_baselight_iec "
+     "set_baselight_off set_baselight_solid"},
+    // not in the manual for 5.11; in the editor's list for 5.18
+    {{{5, 12}, never}, "time"},
+    // in the editor's list for 5.17, not in that for 5.15
+    {{{5, 16}, never}, "get_base_acceleration get_gravity get_tool_temp"},
+    // in the editor's list for 5.19, not in that for 5.17
+    {{{5, 18}, never}, "tool_wrench_limit_disable tool_wrench_limit_set"},
+    // in the manual for 5.25, not in the editor's list for 5.19
     {{{5, 20}, never},
      "add_frame attach_frame convert_pose delete_all_frames delete_frame frame_tracking_disable "
-     "frame_tracking_enable get_children get_frame_parent get_pose is_frame move_frame reset_world_model "
-     "set_mass_properties set_payload_from_attached_frames eip_reader_factory eip_writer_factory "
-     "force_mode_get_damping force_mode_get_gain_scaling get_actual_joint_accelerations get_rtde_value "
-     "jerk_gain_scaling_get jerk_gain_scaling_set",
-     "in the manual for 5.25, not in the editor's list for 5.19"},
-    {{{5, 21}, never}, "optimovej optimovel", "UR's external control program"},
-    {{{5, 22}, never}, "motion_version_get motion_version_set", "manual for 5.22"},
+     "frame_tracking_enable get_children get_frame_parent get_pose is_frame move_frame "
+     "reset_world_model set_mass_properties set_payload_from_attached_frames eip_reader_factory "
+     "eip_writer_factory force_mode_get_damping force_mode_get_gain_scaling "
+     "get_actual_joint_accelerations get_rtde_value jerk_gain_scaling_get jerk_gain_scaling_set"},
+    // UR's external control program
+    {{{5, 21}, never}, "optimovej optimovel"},
+    // manual for 5.22
+    {{{5, 22}, never}, "motion_version_get motion_version_set"},
+    // ur_rtde, UR's external control program
     {{{5, 23}, never},
      "direct_torque get_coriolis_and_centrifugal_torques get_jacobian get_jacobian_time_derivative "
-     "get_mass_matrix get_target_joint_accelerations",
-     "ur_rtde, UR's external control program"},
+     "get_mass_matrix get_target_joint_accelerations"},
 };
 
 std::string version_text(const PolyscopeVersion & version)
@@ -104,10 +113,10 @@ std::shared_ptr<const urscript::Library> with_functions_of(const PolyscopeVersio
 
 std::string function_version_reference()
 {
-  std::string text = "| e-Series from | CB3 from | functions | source |\n|---|---|---|---|\n";
+  std::string text = "| e-Series from | CB3 from | functions |\n|---|---|---|\n";
   for (const FunctionGroup & group : version_groups) {
-    text += fmt::format("| {} | {} | `{}` | {} |\n", version_text(group.since.e_series),
-                        version_text(group.since.cb3), group.names, group.evidence);
+    text += fmt::format("| {} | {} | `{}` |\n", version_text(group.since.e_series),
+                        version_text(group.since.cb3), group.names);
   }
   return text;
 }

@@ -12,7 +12,7 @@ namespace ur_simulator {
 std::shared_ptr<const urscript::Library> with_functions_of(const PolyscopeVersion & version,
                                                            const urscript::Library & library);
 
-/// A Markdown table of the functions that not every version has, with the evidence.
+/// A Markdown table of the functions that not every version has.
 std::string function_version_reference();
 
 }  // namespace ur_simulator
