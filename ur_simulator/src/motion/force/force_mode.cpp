@@ -10,7 +10,7 @@ namespace ur_simulator {
 namespace {
 
 // Admittance of the arm at scaling 1. Chosen so that contact settles without oscillation on surfaces of 2 to
-// 200 N/mm (docs/internals/simulator_physics.md); UR does not publish the values of the robot.
+// 200 N/mm; UR does not publish the values of the robot.
 constexpr double virtual_mass = 25.0;              // kg
 constexpr double virtual_inertia = 1.0;            // kg m^2
 constexpr double derivative_time = 0.1;            // s
