@@ -11,5 +11,6 @@ root_doc = "index"
 include_patterns = ["index.md", "CONTRIBUTING.md", "CHANGELOG.rst", "SECURITY.md", "CODE_OF_CONDUCT.md", "docs/**/*.md", "reference/*.md",
                     "ur_simulator/README.md"]
 myst_heading_anchors = 5
+suppress_warnings = ["myst.header"]  # the commands are headings of level 3, so that the pages of all groups look the same
 myst_fence_as_directive = ["mermaid"]
 highlight_language = "none"

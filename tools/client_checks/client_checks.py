@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Runs public clients of other authors, unmodified, against the simulator, and prints which pass on which version of PolyScope.
 
-docs/internals/testing.md says where the clients come from and how to build them. Clients that are not given are left out. Logs are kept in --logs.
+docs/internals/testing.md says where the clients come from and how to build them. Clients that are not given are left out. Logs are
+kept in --logs.
 """
 
 import argparse

@@ -22,7 +22,7 @@ SECTIONS = (("Use", "docs/use", "*.md"), ("Commands", "docs/use/commands", "*.md
             ("Internals", "docs/internals", "*.md"))
 
 
-def _ensure_sphinx() -> pathlib.Path:
+def ensure_sphinx() -> pathlib.Path:
     """Returns the Python of an environment of its own: Sphinx and the build tools need different versions of the same packages."""
     folder = FOLDER / "venv"
     python, stamp_file = folder / "bin" / "python", folder / "ur_stamp.txt"
@@ -72,15 +72,19 @@ def _stage(source: pathlib.Path) -> None:
     (source / "README.md").unlink()  # it is index.md
 
 
-def build(output: pathlib.Path) -> pathlib.Path:
-    """Returns the first page of the site. Raises Failure if a link is dead or a page is malformed."""
-    python, source = _ensure_sphinx(), FOLDER / "source"
-    console.step("Building the site (about 20 s)")
-    _stage(source)
+def run_sphinx(python: pathlib.Path, source: pathlib.Path, output: pathlib.Path) -> None:
     command = [str(python), "-m", "sphinx", "--quiet", "--fail-on-warning", "--keep-going", "--conf-dir", str(CONFIGURATION),
                "--doctree-dir", str(FOLDER / "doctrees"), str(source), str(output)]
     if subprocess.run(command).returncode != 0:
         raise console.Failure("The pages have the errors above; their paths are relative to the copy in .ur/docs/source")
+
+
+def build(output: pathlib.Path) -> pathlib.Path:
+    """Returns the first page of the site. Raises Failure if a link is dead or a page is malformed."""
+    python, source = ensure_sphinx(), FOLDER / "source"
+    console.step("Building the site (about 20 s)")
+    _stage(source)
+    run_sphinx(python, source, output)
     return output / "index.html"
 
 

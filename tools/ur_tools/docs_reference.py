@@ -1,6 +1,7 @@
 """Writes the pages of the site that follow from the sources: actions, messages, error codes, command lines, headers of the plugin API."""
 
 import importlib.util
+import os
 import pathlib
 import re
 import subprocess
@@ -88,7 +89,8 @@ def _messages(title: str, files: Sequence[pathlib.Path]) -> Page:
 
 
 def _help(arguments: Sequence[str]) -> str:
-    result = subprocess.run([str(ROOT / "ur"), *arguments, "--help"], stdout=subprocess.PIPE, text=True, check=True, env={"COLUMNS": "100"})
+    command = [sys.executable, str(ROOT / "ur"), *arguments, "--help"]
+    result = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True, env={**os.environ, "COLUMNS": "100"})
     return result.stdout.rstrip()
 
 
