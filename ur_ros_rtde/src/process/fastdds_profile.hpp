@@ -4,8 +4,8 @@
 
 namespace ur_ros_rtde {
 
-/// Makes Fast DDS use the profile of this package for nodes (docs/internals/discovery.md) unless the user has chosen a
-/// profile. Call it before the first context is created. Other middlewares are not affected.
+/// Makes Fast DDS use the profile of this package for nodes (docs/internals/discovery.md) unless the user has
+/// chosen a profile. Call it before the first context is created. Other middlewares are not affected.
 void use_fastdds_profile();
 
 /// Logs a message if the profile of the user leaves type propagation enabled.

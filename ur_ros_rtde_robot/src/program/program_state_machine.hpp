@@ -9,7 +9,8 @@
 
 namespace ur_ros_rtde {
 
-/// What is known about the program on the robot. docs/internals/control_program.md explains states and transitions.
+/// What is known about the program on the robot. docs/internals/control_program.md explains states and
+/// transitions.
 enum class ProgramState : std::uint8_t {
   disconnected,      ///< no RTDE connection
   program_lost,      ///< no RTDE connection; the control program ran when the connection was lost

@@ -40,7 +40,8 @@ struct SimulatorOptions {
   Ports ports;
   /// Initial joint positions, rad. Default: tool pointing down in front of the robot.
   std::optional<std::array<double, 6>> initial_joints;
-  /// YAML file with the objects around the arm and a time line of events (docs/use/simulator.md). Empty: none.
+  /// YAML file with the objects around the arm and a time line of events (docs/use/simulator.md). Empty:
+  /// none.
   std::string world_file;
   std::vector<std::string> urcaps;  ///< installed URCaps: "onrobot_soft_gripper", "robotiq_gripper"
   /// A pneumatic gripper at the digital outputs of the tool: "single" or "double" acting. Empty: none.

@@ -2,7 +2,8 @@
 
 namespace ur_simulator {
 
-/// Limits that the safety system monitors. docs/internals/simulator_physics.md gives the sources of the defaults.
+/// Limits that the safety system monitors. docs/internals/simulator_physics.md gives the sources of the
+/// defaults.
 struct SafetyLimits {
   double tool_speed = 5.0;              ///< m/s of the TCP
   double tool_force = 150.0;            ///< N at the TCP, sustained
