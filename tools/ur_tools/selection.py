@@ -226,11 +226,12 @@ class Affected:
 
     def _add_document(self, name: str) -> None:
         path = pathlib.PurePath(name)
-        if len(path.parts) > 2:
+        if len(path.parts) > 3:  # of a folder that tests read as a whole
             self._add_mentions(f'"{path.parts[-2]}"')
         self._add_mentions(f'ROOT / "{path.name}"' if len(path.parts) == 1 else f'"{path.name}"')
         if path.parts[0] == "docs":
-            self._add_mentions('"docs").rglob')
+            self._add_mentions('glob("docs/')
+            self._add_mentions("docs.build(")
 
     def _add_module(self, module: str) -> None:
         graph = {path.stem: _imports(path) for path in (self._root / "tools" / "ur_tools").glob("*.py")}
