@@ -12,7 +12,7 @@ import json
 import math
 import pathlib
 import re
-from typing import Any, Tuple, Union
+from typing import Any, Callable, Tuple, Union
 
 import numpy
 import yaml
@@ -275,12 +275,17 @@ def to_plain(value: Any) -> Any:
     return value.item() if isinstance(value, numpy.generic) else value
 
 
-def _rounded(value: Any, decimals: int = 6) -> Any:
+def _mapped(convert: Callable[[Any], Any], value: Any) -> Any:
+    """Returns what to_plain() returns with all its scalars converted."""
     if isinstance(value, dict):
-        return {name: _rounded(item, decimals) for name, item in value.items()}
+        return {name: _mapped(convert, item) for name, item in value.items()}
     if isinstance(value, list):
-        return [_rounded(item, decimals) for item in value]
-    return round(value, decimals) + 0.0 if isinstance(value, float) else value
+        return [_mapped(convert, item) for item in value]
+    return convert(value)
+
+
+def _rounded(values: Any, decimals: int = 6) -> Any:
+    return _mapped(lambda value: round(value, decimals) + 0.0 if isinstance(value, float) else value, values)
 
 
 def plain_to_yaml(values: Any, width: int, decimals: int) -> str:
@@ -301,14 +306,10 @@ def to_yaml_line(value: Any) -> str:
 
 def to_json(values: Any) -> str:
     """Returns mappings, lists, scalars and messages as JSON in one line. JSON has no nan and no inf: they become null."""
-    return json.dumps(_finite(to_plain(values)))
+    return json.dumps(_mapped(_json_scalar, to_plain(values)))
 
 
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {name: _finite(item) for name, item in value.items()}
-    if isinstance(value, list):
-        return [_finite(item) for item in value]
+def _json_scalar(value: Any) -> Any:
     if isinstance(value, bytes):
         return list(value)
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -208,7 +208,7 @@ Outcome Run::expect(const std::function<bool()> & condition, std::chrono::nanose
 
 std::optional<StopReason> Run::next(Sample & sample)
 {
-  // Counts waits, of which a suspension of this process is one: the packages that arrived meanwhile are next.
+  // Counts waits, of which a suspension of this process is one: its packages are read next.
   for (auto waits = package_timeout / max_sleep; waits > 0; --waits) {
     if (auto why = stop_reason()) {
       return why;
