@@ -129,10 +129,10 @@ class Tab:
         self.page.mouse.up()
 
     def plots(self):
-        """Returns for each plot its title, its time range, the oldest time in s, and for the last curve the fraction of the width in
-        which its color is drawn."""
+        """Returns for each plot its title, its legend, its time range, the oldest time in s, and for the last visible curve the
+        fraction of the width in which its color is drawn."""
         return self.page.evaluate("""() => Object.values(window.__viserTestpoints.uplots).map(({chart}) => {
-            const {left, top, width, height} = chart.bbox, color = chart.series.at(-1).stroke();
+            const {left, top, width, height} = chart.bbox, color = chart.series.at(-2).stroke();
             const wanted = [1, 3, 5].map(at => parseInt(color.slice(at, at + 2), 16));
             const {data} = chart.ctx.getImageData(left, top, width, height);
             const columns = new Set();
@@ -140,6 +140,7 @@ class Tab:
                 if (data[at + 3] > 128 && wanted.every((value, part) => Math.abs(value - data[at + part]) < 40))
                     columns.add(at / 4 % width);
             return {title: chart.root.querySelector(".u-title").textContent, oldest: chart.data[0][0],
+                    legend: [...chart.root.querySelectorAll(".u-label")].map(label => label.textContent),
                     range: [chart.scales.x.min, chart.scales.x.max], drawn: columns.size / width};
         })""")
 

