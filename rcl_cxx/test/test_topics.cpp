@@ -3,6 +3,9 @@
 
 #include <atomic>
 #include <future>
+#include <map>
+#include <mutex>
+#include <set>
 #include <std_msgs/msg/string.hpp>
 #include <std_srvs/srv/set_bool.hpp>
 #include <test_msgs/msg/basic_types.hpp>
@@ -132,6 +135,35 @@ TEST_F(TopicTest, PublishesWithoutAllocation)
     publisher->publish(message);
   }
   EXPECT_EQ(allocations_of_this_thread(), before);
+}
+
+TEST_F(TopicTest, TellsPublishersApart)
+{
+  std::mutex mutex;
+  std::map<std::string, std::set<rcl_cxx::PublisherId>> publishers;  // by text
+  const auto subscription =
+      node->create_subscription<String>("topic", rcl_cxx::QoS::reliable(10),
+                                        [&](const String & message, const rcl_cxx::PublisherId & publisher) {
+                                          const std::lock_guard lock(mutex);
+                                          publishers[message.data].insert(publisher);
+                                        });
+  const auto one = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
+  const auto other = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
+  ASSERT_TRUE(
+      eventually([&] { return one->get_subscription_count() == 1 && other->get_subscription_count() == 1; }));
+  for (int i = 0; i < 3; ++i) {
+    one->publish(text("one"));
+    other->publish(text("other"));
+  }
+  one->publish(text("end"));
+  ASSERT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return publishers.contains("end") && publishers.contains("other");
+  }));
+  EXPECT_EQ(publishers["one"].size(), 1u);
+  EXPECT_EQ(publishers["other"].size(), 1u);
+  EXPECT_EQ(publishers["one"], publishers["end"]);
+  EXPECT_NE(publishers["one"], publishers["other"]);
 }
 
 TEST_F(TopicTest, ReportsFailureAndContinues)

@@ -91,6 +91,34 @@ TEST(TwistTargetTest, HasTwoFramesAndMayBeZero)
   EXPECT_NE(why_not(twist_target(message)).find("camera"), std::string::npos);
 }
 
+TEST(TargetFollowerTest, KnowsWhichTwistsCommandAMotion)
+{
+  const auto follower = follow_twists({});
+  EXPECT_TRUE(follower->moves({{0.0, 0.01, 0.0, 0.0, 0.0, 0.0}}, nullptr, {}));
+  EXPECT_TRUE(follower->moves({{0.0, 0.0, 0.0, 0.0, 0.0, -0.01}}, nullptr, {}));
+  EXPECT_FALSE(follower->moves({{0.0, 0.0005, 0.0, 0.0, 0.0, 0.0}}, nullptr, {})) << "a stick at rest";
+}
+
+TEST(TargetFollowerTest, APositionCommandsNoMotionIfItIsThatOfTheArmAndOfTheMessageBefore)
+{
+  Sample sample{};
+  sample.actual_q = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
+  sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
+  const TeleopTarget far{{0.1, 0.1, 0.2, 0.3, 0.4, 0.5}}, near{{0.005, 0.1, 0.2, 0.3, 0.4, 0.5}};
+  const auto joints = follow_joints({});
+  EXPECT_FALSE(joints->moves(near, &near, sample));
+  EXPECT_TRUE(joints->moves(near, nullptr, sample));
+  EXPECT_TRUE(joints->moves(far, &far, sample));
+  const TeleopTarget next{{0.006, 0.1, 0.2, 0.3, 0.4, 0.5}};
+  EXPECT_TRUE(joints->moves(next, &near, sample)) << "a program that goes on";
+
+  const TeleopTarget pose{{0.405, 0.1, 0.3, 0.0, 3.1, 0.0}}, turned{{0.405, 0.1, 0.3, 0.0, 3.05, 0.0}};
+  const auto poses = follow_poses({});
+  EXPECT_FALSE(poses->moves(pose, &pose, sample));
+  EXPECT_TRUE(poses->moves(turned, &turned, sample));
+  EXPECT_TRUE(poses->moves(pose, &turned, sample));
+}
+
 TEST(TargetFollowerTest, RejectsTargetFarFromTheArm)
 {
   TeleoperationOptions options;

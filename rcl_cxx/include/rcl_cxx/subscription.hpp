@@ -1,6 +1,10 @@
 #pragma once
 
+#include <rmw/types.h>
+
+#include <array>
 #include <concepts>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <rosidl_typesupport_cpp/message_type_support.hpp>
@@ -10,6 +14,9 @@
 #include "rcl_cxx/qos.hpp"
 
 namespace rcl_cxx {
+/// Equal for all messages of one publisher, different for any other publisher.
+using PublisherId = std::array<std::uint8_t, RMW_GID_STORAGE_SIZE>;
+
 namespace detail {
 class NodeImpl;
 class SubscriptionImpl;
@@ -17,7 +24,7 @@ class SubscriptionImpl;
 struct ErasedSubscription {
   const rosidl_message_type_support_t * type_support;
   std::shared_ptr<void> (*make_message)();
-  std::function<void(const std::shared_ptr<void> &)> callback;
+  std::function<void(const std::shared_ptr<void> &, const PublisherId &)> callback;
 };
 }  // namespace detail
 
@@ -41,7 +48,8 @@ class SubscriptionBase {
 };
 
 /// Created by Node::create_subscription. The callback takes `const M &` (valid during the call; the message
-/// is reused) or `std::shared_ptr<const M>` (may be kept). It runs in the executor's thread.
+/// is reused), `const M &, const PublisherId &`, or `std::shared_ptr<const M>` (may be kept). It runs in the
+/// executor's thread.
 template <typename M>
 class Subscription : public SubscriptionBase {
  public:
@@ -64,16 +72,24 @@ class Subscription : public SubscriptionBase {
 
  private:
   template <typename F>
-  static std::function<void(const std::shared_ptr<void> &)> erase(F && callback)
+  static std::function<void(const std::shared_ptr<void> &, const PublisherId &)> erase(F && callback)
   {
-    if constexpr (std::invocable<std::decay_t<F> &, const M &>) {
-      return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message) mutable {
+    if constexpr (std::invocable<std::decay_t<F> &, const M &, const PublisherId &>) {
+      return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message,
+                                             const PublisherId & publisher) mutable {
+        f(*static_cast<const M *>(message.get()), publisher);
+      };
+    } else if constexpr (std::invocable<std::decay_t<F> &, const M &>) {
+      return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message,
+                                             const PublisherId &) mutable {
         f(*static_cast<const M *>(message.get()));
       };
     } else {
       static_assert(std::invocable<std::decay_t<F> &, std::shared_ptr<const M>>,
-                    "the callback takes const M & or std::shared_ptr<const M>");
-      return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message) mutable {
+                    "the callback takes const M &, const M & and const PublisherId &, or "
+                    "std::shared_ptr<const M>");
+      return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message,
+                                             const PublisherId &) mutable {
         f(std::static_pointer_cast<const M>(message));
       };
     }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <rcl/subscription.h>
 
+#include <algorithm>
+
 #include "executor/waitable.hpp"
 #include "node/node_impl.hpp"
 #include "rcl_support/rcl_error.hpp"
@@ -20,7 +22,7 @@ class SubscriptionImpl : public Waitable {
   const std::string & get_topic_name() const noexcept { return topic_; }
 
   /// Returns false if there is no message.
-  bool take(void * message);
+  bool take(void * message, PublisherId & publisher);
 
   void set_on_ready_callbacks() override;
 
@@ -91,12 +93,13 @@ void SubscriptionImpl::execute(std::size_t source)
   if (!message_ || message_.use_count() > 1) {
     message_ = erased_.make_message();
   }
-  if (take(message_.get())) {
-    erased_.callback(message_);
+  PublisherId publisher{};
+  if (take(message_.get(), publisher)) {
+    erased_.callback(message_, publisher);
   }
 }
 
-bool SubscriptionImpl::take(void * message)
+bool SubscriptionImpl::take(void * message, PublisherId & publisher)
 {
   rmw_message_info_t info = rmw_get_zero_initialized_message_info();
   const rcl_ret_t code = rcl_take(&subscription_, message, &info, nullptr);
@@ -105,6 +108,7 @@ bool SubscriptionImpl::take(void * message)
     return false;
   }
   check_rcl(code, label(), "cannot take a message");
+  std::copy(std::begin(info.publisher_gid.data), std::end(info.publisher_gid.data), publisher.begin());
   return true;
 }
 }  // namespace detail
@@ -120,7 +124,8 @@ SubscriptionBase::~SubscriptionBase()
 }
 bool SubscriptionBase::take(void * message)
 {
-  return impl_->take(message);
+  PublisherId publisher{};
+  return impl_->take(message, publisher);
 }
 const std::string & SubscriptionBase::get_topic_name() const noexcept
 {

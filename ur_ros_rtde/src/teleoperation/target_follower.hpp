@@ -19,6 +19,10 @@ struct TeleopTarget {
 class TargetFollower {
  public:
   virtual ~TargetFollower() = default;
+  /// Whether a message with `target` asks the arm to move: a twist that is not zero; a position away from the
+  /// arm, or not the one of the message before it (`before`, null if there is none). Any thread may call it.
+  virtual bool moves(const TeleopTarget & target, const TeleopTarget * before,
+                     const Sample & sample) const = 0;
   /// Starts at the current state. `cycle`: control period in s. `limits`: of the arm.
   virtual void begin(const Sample & sample, double cycle, const ArmLimits & limits) = 0;
   /// Sets the next target. `period`: s between messages. A failure ends the session.

@@ -11,12 +11,41 @@
 namespace ur_ros_rtde {
 namespace {
 constexpr double periods_ahead = 1.5;
+// Smaller values command no motion.
+constexpr double standstill_speed = 1e-3;       // m/s, rad/s, of a twist
+constexpr double standstill_step = 1e-4;        // m, rad, from one target to the next
+constexpr double standstill_distance = 1e-2;    // m, rad, of a target from the arm
 constexpr double highest_linear_speed = 3.0;    // m/s
 constexpr double highest_angular_speed = 3.14;  // rad/s
 
 std::vector<double> to_ur(const Vector6 & values)
 {
   return {values.begin(), values.end()};
+}
+
+double largest(const Vector6 & values)
+{
+  double result = 0.0;
+  for (const double value : values) {
+    result = std::max(result, std::abs(value));
+  }
+  return result;
+}
+
+/// Largest distance of a joint, rad.
+double joint_distance(const Vector6 & a, const Vector6 & b)
+{
+  double result = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    result = std::max(result, std::abs(a[i] - b[i]));
+  }
+  return result;
+}
+
+/// Largest component of the pose `b` in `a`, m or rad.
+double pose_distance(const Vector6 & a, const Vector6 & b)
+{
+  return largest(pose_trans(pose_inverse(a), b));
 }
 
 /// Progress along a straight line.
@@ -75,6 +104,12 @@ Status check_joint_velocities(const Sample & sample, const ArmLimits & limits)
 class JointFollower : public TargetFollower {
  public:
   explicit JointFollower(const TeleoperationOptions & options) : options_(options) {}
+
+  bool moves(const TeleopTarget & target, const TeleopTarget * before, const Sample & sample) const override
+  {
+    return before == nullptr || joint_distance(before->values, target.values) > standstill_step ||
+           joint_distance(sample.actual_q, target.values) > standstill_distance;
+  }
 
   void begin(const Sample & sample, double cycle, const ArmLimits & limits) override
   {
@@ -141,6 +176,12 @@ class PoseFollower : public TargetFollower {
  public:
   explicit PoseFollower(const TeleoperationOptions & options) : options_(options) {}
 
+  bool moves(const TeleopTarget & target, const TeleopTarget * before, const Sample & sample) const override
+  {
+    return before == nullptr || pose_distance(before->values, target.values) > standstill_step ||
+           pose_distance(sample.actual_tcp_pose, target.values) > standstill_distance;
+  }
+
   void begin(const Sample & sample, double cycle, const ArmLimits & limits) override
   {
     cycle_ = cycle;
@@ -203,6 +244,11 @@ class PoseFollower : public TargetFollower {
 class TwistFollower : public TargetFollower {
  public:
   explicit TwistFollower(const TeleoperationOptions & options) : options_(options) {}
+
+  bool moves(const TeleopTarget & target, const TeleopTarget *, const Sample &) const override
+  {
+    return largest(target.values) > standstill_speed;
+  }
 
   void begin(const Sample &, double, const ArmLimits & limits) override
   {

@@ -77,22 +77,46 @@ void TeleopTopic::close()
   }
 }
 
-void TeleopTopic::on_message(Expected<TeleopTarget> target)
+void TeleopTopic::on_message(Expected<TeleopTarget> target, const rcl_cxx::PublisherId & publisher)
 {
+  const auto sample = host_.robot().latest();
+  bool is_interrupted = false;
   {
     const std::lock_guard lock(mutex_);
-    const auto now = Clock::now();
-    const double interval = seconds(now - newest_.arrived);
-    const bool first = newest_.number == 0 || interval > options_.timeout;
-    // The period is unknown at the first message and uncertain at the second.
-    newest_.period =
-        first ? 0.5 * options_.timeout : newest_.period + period_weight * (interval - newest_.period);
-    newest_.session += first ? 1 : 0;
-    newest_.number += 1;
-    newest_.arrived = now;
-    newest_.target = std::move(target);
+    Message next = following(std::move(target), publisher, sample);
+    is_interrupted = next.session != newest_.session && !next.may_start;
+    newest_ = std::move(next);
   }
   changed_.notify_all();
+  if (is_interrupted) {
+    log_(LogLevel::warn,
+         fmt::format(
+             "{}: messages are ignored: there was none for more than {:.3g} s while they moved the arm; "
+             "teleoperation starts again with a message that commands no motion: a zero twist, or "
+             "twice the same target at the position of the arm",
+             topic_, options_.timeout));
+  }
+}
+
+TeleopTopic::Message TeleopTopic::following(Expected<TeleopTarget> target,
+                                            const rcl_cxx::PublisherId & publisher,
+                                            const std::optional<Sample> & sample) const
+{
+  Message next;
+  next.arrived = Clock::now();
+  next.number = newest_.number + 1;
+  next.publisher = publisher;
+  const double interval = seconds(next.arrived - newest_.arrived);
+  const bool first = newest_.number == 0 || interval > options_.timeout;
+  next.session = newest_.session + (first ? 1 : 0);
+  // The period is unknown at the first message and uncertain at the second.
+  next.period = first ? 0.5 * options_.timeout : newest_.period + period_weight * (interval - newest_.period);
+  const TeleopTarget * const before = newest_.target ? &*newest_.target : nullptr;
+  next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
+  const bool goes_on = target && newest_.moves && next.moves && publisher == newest_.publisher;
+  next.may_start = first ? !goes_on : newest_.may_start || !next.moves;
+  next.target = std::move(target);
+  return next;
 }
 
 TeleopTopic::Message TeleopTopic::newest() const
@@ -107,7 +131,8 @@ void TeleopTopic::serve(const std::stop_token & stop)
   while (true) {
     {
       std::unique_lock lock(mutex_);
-      if (!changed_.wait(lock, stop, [&] { return newest_.session != served; }) || closed_) {
+      const auto starts = [&] { return newest_.session != served && newest_.may_start; };
+      if (!changed_.wait(lock, stop, starts) || closed_) {
         return;
       }
       served = newest_.session;

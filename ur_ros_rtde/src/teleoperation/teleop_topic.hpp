@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <rcl_cxx/subscription.hpp>
 #include <string>
 #include <thread>
 
@@ -20,7 +21,9 @@ namespace ur_ros_rtde {
 /// pause of `timeout` and acquires Resource::motion; it is rejected if another goal or topic holds it. The
 /// session ends without messages for `timeout`, with an invalid message, when it is preempted, and when the
 /// robot stops. Then the arm decelerates to standstill, and messages are ignored until there has been a pause
-/// of `timeout`. The start and the end of each session are logged once.
+/// of `timeout`. A publisher whose last message before the pause commanded a motion was interrupted: a hung
+/// program that goes on must not move the arm. Its next session starts with a message that commands none
+/// (TargetFollower::moves). The start and the end of each session are logged once.
 class TeleopTopic {
  public:
   /// `topic` is the resolved name: "/servo_joint". `host` outlives this object.
@@ -32,7 +35,7 @@ class TeleopTopic {
   TeleopTopic & operator=(const TeleopTopic &) = delete;
 
   /// Called with the target of each message, or with the reason why it is invalid. Does not wait.
-  void on_message(Expected<TeleopTarget> target);
+  void on_message(Expected<TeleopTarget> target, const rcl_cxx::PublisherId & publisher);
   /// Tells the session to end, if there is one, and starts no other. Returns at once.
   void stop(const Error & why);
   /// Calls stop() and joins the thread.
@@ -47,6 +50,9 @@ class TeleopTopic {
     std::uint64_t number = 0;
     std::uint64_t session = 0;  ///< number of the session that the message belongs to
     double period = 0.0;        ///< s between messages, smoothed
+    rcl_cxx::PublisherId publisher{};
+    bool moves = false;      ///< commands a motion
+    bool may_start = false;  ///< its session, if it has not been started yet
   };
 
   /// Time from a message to its first command.
@@ -57,6 +63,9 @@ class TeleopTopic {
     Clock::duration sum{}, longest{};
   };
 
+  /// The message that follows the newest one.
+  Message following(Expected<TeleopTarget> target, const rcl_cxx::PublisherId & publisher,
+                    const std::optional<Sample> & sample) const;
   void serve(const std::stop_token & stop);
   Outcome run_session(std::uint64_t session, Latency & latency);
   /// Tells the session of `lease` to end; the arm stops without waiting for its thread.

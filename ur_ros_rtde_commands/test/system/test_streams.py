@@ -32,7 +32,8 @@ def driver(simulator):
 
 
 class Publisher(threading.Thread):
-    """Publishes `message(t)`, where t is the time since the start in s, at a fixed rate until `duration` has passed or stop()."""
+    """Publishes `message(t)`, where t is the time since the start in s, at a fixed rate until `duration` has passed or stop(). Publishes
+    nothing where it is None."""
 
     def __init__(self, client, kind, topic, message, rate=50.0, duration=60.0):
         super().__init__(daemon=True)
@@ -47,9 +48,10 @@ class Publisher(threading.Thread):
         begin = time.monotonic()
         number = 0
         while not self._stop_event.is_set() and (now := time.monotonic()) - begin < self._duration:
-            self._publisher.publish(self._message(now - begin))
-            self.times.append(time.time_ns())
             number += 1
+            if (message := self._message(now - begin)) is not None:
+                self._publisher.publish(message)
+                self.times.append(time.time_ns())
             self._stop_event.wait(max(0.0, begin + number * self._period - time.monotonic()))
 
     def stop(self):
@@ -253,6 +255,81 @@ def test_stop_ends_control_by_a_topic_until_there_has_been_a_pause(robot):
     pause()
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.05)):
         wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move again")
+
+
+class Operator:
+    """A publisher whose message the test changes: that of a person, or of a program that hangs and goes on."""
+
+    def __init__(self, robot, driver, kind, topic, message):
+        self._driver, self.topic, self.message = driver, topic, message
+        self._publisher = Publisher(robot, kind, topic, lambda t: self.message and self.message(t))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._publisher.stop()
+
+    def hangs_and_goes_on(self):
+        """Returns as soon as the driver has reported that it ignores the messages after the gap."""
+        message, self.message = self.message, None
+        lines = f"/{self.topic}: messages are ignored: there was none"
+        before = len(log_lines(self._driver, lines))
+        pause()
+        self.message = message
+        wait_for(lambda: len(log_lines(self._driver, lines)) > before, 10.0, "the warning")
+
+    def publishes(self, count):
+        """Waits for further messages."""
+        published = len(self._publisher.times)
+        wait_for(lambda: len(self._publisher.times) >= published + count, 10.0, "messages")
+
+
+def test_a_publisher_that_hung_during_a_motion_moves_the_arm_only_after_a_zero_twist(robot, driver, simulator):
+    with Operator(robot, driver, TwistStamped, "twist", lambda t: twist_message("base", -0.05)) as operator:
+        wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")
+        operator.hangs_and_goes_on()
+        recorder = TargetRecorder(simulator)
+        operator.publishes(25)
+        assert recorder.update().max_tcp_speed() == 0.0
+        operator.message = lambda t: twist_message("base")
+        operator.publishes(3)
+        operator.message = lambda t: twist_message("base", 0.05)
+        wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move again")
+
+
+def test_a_gap_in_the_messages_does_not_undo_a_stop(robot, driver, simulator):
+    with Operator(robot, driver, TwistStamped, "twist", lambda t: twist_message("base", -0.05)) as operator:
+        wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")
+        robot.send(Stop, "stop").succeeded()
+        operator.hangs_and_goes_on()
+        recorder = TargetRecorder(simulator)
+        operator.publishes(25)
+        assert recorder.update().max_tcp_speed() == 0.0
+
+
+def test_a_publisher_that_ended_its_motion_can_start_again_after_a_pause(robot, driver):
+    with Operator(robot, driver, TwistStamped, "twist", lambda t: twist_message("base", -0.05)) as operator:
+        wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")
+        operator.message = lambda t: twist_message("base")
+        operator.publishes(3)
+        operator.message = None
+        pause()
+        operator.message = lambda t: twist_message("base", 0.05)
+        wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move again")
+
+
+def test_a_publisher_that_hung_on_the_way_of_the_joints_starts_again_at_the_arm(robot, driver, simulator):
+    with Operator(robot, driver, JointState, "servo_joint", lambda t: joint_message(home_plus(0.02 * t))) as operator:
+        wait_for(lambda: get_joint_state(robot).position[0] > 0.01, 10.0, "the arm to move")
+        operator.hangs_and_goes_on()
+        recorder = TargetRecorder(simulator)
+        operator.publishes(25)
+        assert recorder.update().max_joint_speed() == 0.0
+        positions = list(get_joint_state(robot).position)
+        started = len(log_lines(driver, "/servo_joint: teleoperation started"))
+        operator.message = lambda t: joint_message(positions)
+        wait_for(lambda: len(log_lines(driver, "/servo_joint: teleoperation started")) > started, 10.0, "teleoperation to start")
 
 
 INVALID_MESSAGES = [

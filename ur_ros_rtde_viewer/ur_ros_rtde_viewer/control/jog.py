@@ -19,6 +19,7 @@ from .goals import Goals
 
 HOLD_RATE = 30.0  # Hz
 LONGEST_GAP = 0.25  # s without a message, after which a hold has ended
+LONGEST_PAUSE = 0.1  # s without a message, after which the driver may wait for a zero twist: the default of its `stream_timeout`
 # Messages that were delayed on their way arrive together. They are not signs of a held button.
 SHORTEST_GAP = 0.25 / HOLD_RATE  # s
 MAX_LINEAR, MAX_ANGULAR = 0.25, 1.0  # m/s, rad/s
@@ -36,12 +37,21 @@ class JogSpeed:
     angular: float = 0.2  # rad/s
 
 
+class Meaning(Enum):
+    """Of a message of a held button."""
+
+    NOTHING = "nothing"
+    START = "start"  # a zero twist: after a pause during a motion, the driver waits for one
+    MOVE = "move"
+
+
 class Hold:
-    """Decides which messages of a held button move the arm: those that follow another one after about one period."""
+    """Decides what the messages of a held button mean. The arm moves from the second one on, also in a slow browser."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic):
         self._clock = clock
         self._last = -float("inf")
+        self._moves = False
 
     @property
     def is_active(self) -> bool:
@@ -50,10 +60,13 @@ class Hold:
     def end(self) -> None:
         self._last = -float("inf")
 
-    def take(self) -> bool:
+    def take(self) -> Meaning:
         now = self._clock()
         gap, self._last = now - self._last, now
-        return SHORTEST_GAP <= gap < LONGEST_GAP
+        if gap < SHORTEST_GAP:
+            return Meaning.NOTHING
+        self._moves = gap < (LONGEST_PAUSE if self._moves else LONGEST_GAP)
+        return Meaning.MOVE if self._moves else Meaning.START
 
 
 class Jog:
@@ -83,10 +96,12 @@ class Jog:
             if self._hold.is_active and self._owner != tab:
                 return "the arm is being moved from another tab"
             self._owner = tab
-            moves = self._hold.take()
+            meaning = self._hold.take()
             if self._publisher.get_subscription_count() == 0:
                 return "no server of twist: does the driver run with this ROS_DOMAIN_ID?"
-            if moves:
+            if meaning is Meaning.START:
+                self._publish(frame, axis, 0.0)
+            elif meaning is Meaning.MOVE:
                 self._publish(frame, axis, sign * (speed.linear if axis < 3 else speed.angular))
         return None
 

@@ -16,6 +16,7 @@ from unique_identifier_msgs.msg import UUID
 RESULT_TIMEOUT = 25.0  # s; the properties are stricter
 STREAM_TIMEOUT = 100_000_000  # ns, the default of the parameter stream_timeout
 PERIOD = 0.02  # s, of messages
+STANDSTILL = 0.1  # s, of the targets at the start of a stream
 TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 
 
@@ -86,7 +87,8 @@ class ForeignGoal:
 
 
 class RunningTopic:
-    """Publishes at 50 Hz until it is closed. It has no result."""
+    """Publishes at 50 Hz until it is closed, at first a target at standstill, because the publisher has been used before. It has no
+    result."""
 
     def __init__(self, lane, kind, fields):
         self._lane, self._speed = lane, fields["speed"]
@@ -101,7 +103,7 @@ class RunningTopic:
         begin = time.monotonic()
         number = 0
         while not self._ended.is_set():
-            message = self._message(min(time.monotonic() - begin, 3.0))
+            message = self._message(min(max(0.0, time.monotonic() - begin - STANDSTILL), 3.0))
             self._last = time.time_ns()
             self._publisher.publish(message)
             number += 1
@@ -117,10 +119,10 @@ class RunningTopic:
         messages.fill(message.pose, pose)
         return message
 
-    def _twist(self, _seconds):
+    def _twist(self, seconds):
         message = TwistStamped()
         message.header.frame_id = "base"
-        message.twist.linear.y = 0.4 * self._speed
+        message.twist.linear.y = 0.4 * self._speed if seconds > 0.0 else 0.0
         return message
 
     def rejection(self):
