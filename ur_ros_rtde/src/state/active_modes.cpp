@@ -25,18 +25,16 @@ ActiveModesTopic::ActiveModesTopic(rcl_cxx::Node & node, const Robot & robot)
       publisher_(node.create_publisher<ur_ros_rtde_msgs::msg::ActiveModes>("active_modes",
                                                                            rcl_cxx::QoS::transient_local()))
 {
-  ur_ros_rtde_msgs::msg::ActiveModes none;
-  none.stamp = node_.now();
-  publisher_->publish(none);
-  timer_ = node.create_wall_timer(period, [this] { publish_changes(); });
+  publish({});
+  timer_ = node.create_wall_timer(period, [this] {
+    if (const Activities active = robot_.activities() & outlasting_modes; active != published_) {
+      publish(active);
+    }
+  });
 }
 
-void ActiveModesTopic::publish_changes()
+void ActiveModesTopic::publish(Activities active)
 {
-  const Activities active = robot_.activities() & outlasting_modes;
-  if (active == published_) {
-    return;
-  }
   published_ = active;
   ur_ros_rtde_msgs::msg::ActiveModes message;
   message.stamp = node_.now();

@@ -18,7 +18,7 @@ class ActiveModesTopic {
   ActiveModesTopic(rcl_cxx::Node & node, const Robot & robot);
 
  private:
-  void publish_changes();
+  void publish(Activities active);
 
   rcl_cxx::Node & node_;
   const Robot & robot_;

@@ -14,9 +14,9 @@ struct PathOptions {
   /// Largest distance of the path from a waypoint, in the joint that deviates most, in rad. 0: the path
   /// passes through every waypoint.
   double blend_tolerance = 0.0;
-  /// Only used if blend_tolerance is 0: a waypoint where the direction in joint space changes by more than
-  /// this angle is a corner, where the motion stops. A smooth spline passes through the other waypoints. In
-  /// rad, 0 to pi; 0: straight lines only.
+  /// A waypoint where the direction in joint space changes by more than this angle is a corner: it is rounded
+  /// within blend_tolerance; if that is 0, the motion stops there. A smooth spline passes through the other
+  /// waypoints. In rad, 0 to pi; 0: straight lines only.
   double corner_angle = 0.35;
   /// Scales the time-optimal motion: velocities by the fraction, accelerations by its square. 0 < fraction <=
   /// 1.

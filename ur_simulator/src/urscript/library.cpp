@@ -6,9 +6,6 @@ namespace ur_simulator::urscript {
 
 void Library::add(Builtin builtin)
 {
-  if (builtin.group.empty()) {
-    builtin.group = group_;
-  }
   const auto new_index = static_cast<std::uint32_t>(builtins_.size());
   const auto [entry, inserted] = index_.emplace(builtin.name, new_index);
   if (inserted) {

@@ -131,14 +131,13 @@ struct Builtin {
   bool variadic = false;    ///< accepts further positional arguments
   std::uint32_t cost = 15;  ///< of a call, in instructions of about 20 ns
   Support support = Support::modelled;
-  std::string note = {};   ///< what is simplified, or why calls fail
-  std::string group = {};  ///< of the reference
+  std::string note = {};  ///< what is simplified, or why calls fail
 };
 
 /// Builtin functions and constants by name. Immutable once it is shared.
 class Library {
  public:
-  /// Replaces a builtin of the same name. The builtin belongs to the last begun group unless it names one.
+  /// Replaces a builtin of the same name.
   void add(Builtin builtin);
   /// Adds a builtin whose calls fail with this reason.
   void add_rejected(std::string name, std::vector<Parameter> parameters, std::size_t required,
@@ -147,8 +146,6 @@ class Library {
   void simplify(std::string_view name, std::string note);
   /// Makes the builtin of this name unknown to programs. Throws std::out_of_range if there is none.
   void hide(std::string_view name);
-  /// Starts a group of the reference for the builtins that are added next.
-  void begin_group(std::string title) { group_ = std::move(title); }
   /// Adds a constant that programs can read, such as MATH_PI.
   void add_constant(std::string name, Value value);
 
@@ -168,7 +165,6 @@ class Library {
   std::uint32_t index_of(std::string_view name) const;
 
   std::vector<Builtin> builtins_;
-  std::string group_;
   std::unordered_map<std::string, std::uint32_t> index_;
   std::unordered_map<std::string, Value> constants_;
   std::unordered_map<std::string, IndexedName> indexed_names_;

@@ -95,7 +95,6 @@ TEST(FunctionReferenceTest, EveryDifferenceFromTheRobotHasANote)
   for (std::uint32_t i = 0; i < library->size(); ++i) {
     const urscript::Builtin & builtin = (*library)[i];
     EXPECT_EQ(builtin.support == urscript::Support::modelled, builtin.note.empty()) << builtin.name;
-    EXPECT_FALSE(builtin.group.empty()) << builtin.name;
   }
 }
 

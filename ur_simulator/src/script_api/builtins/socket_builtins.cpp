@@ -131,7 +131,6 @@ std::shared_ptr<const urscript::Library> with_sockets(const urscript::Library & 
                                                       OpenSocket open_socket)
 {
   auto extended = std::make_shared<urscript::Library>(library);
-  extended->begin_group("sockets");
   script_api::add_socket_builtins(*extended, std::move(open_socket));
   return extended;
 }

@@ -100,7 +100,6 @@ namespace ur_simulator {
 std::shared_ptr<const urscript::Library> with_xml_rpc(const urscript::Library & library, PostXml post)
 {
   auto extended = std::make_shared<urscript::Library>(library);
-  extended->begin_group("remote procedure calls");
   extended->add({"rpc_factory",
                  {"type", "url"},
                  2,

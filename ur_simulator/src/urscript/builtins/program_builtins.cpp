@@ -144,15 +144,10 @@ void add_program_builtins(Library & library)
 
 void add_standard_builtins(Library & library)
 {
-  library.begin_group("math");
   add_math_builtins(library);
-  library.begin_group("poses");
   add_pose_builtins(library);
-  library.begin_group("lists, matrices");
   add_list_builtins(library);  // after the poses: inv() also takes poses
-  library.begin_group("strings");
   add_string_builtins(library);
-  library.begin_group("program");
   add_program_builtins(library);
 }
 
