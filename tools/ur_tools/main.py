@@ -200,9 +200,11 @@ def command_docs(options: argparse.Namespace) -> int:
 
 
 def command_doctor(options: argparse.Namespace) -> int:
-    """Checks this machine, or a robot with `--robot`, which needs no build."""
+    """Checks this machine, or a robot with `--robot`, which needs no build. `--report` needs one: it asks the nodes."""
     layout = _layout(options)
     arguments = _forwarded(options)
+    if any(argument.startswith("--report") for argument in arguments):
+        return command_cli(options)
     if arguments:
         installed = layout.python  # has the modules that read calibrations
         _run_cli_from_sources(str(installed) if installed.exists() else sys.executable, ["doctor", *arguments])
@@ -311,7 +313,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
 
     add_forwarding("doctor", command_doctor, "check this machine, or with --robot ADDRESS a robot, and give advice; status 1 if it "
-                   "cannot work")
+                   "cannot work; --report FILE: write what a bug report needs")
 
     clean = add("clean", command_clean, "remove the build")
     clean.add_argument("--all", action="store_true", help="also remove the virtual environments and downloads")

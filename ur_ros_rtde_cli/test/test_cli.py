@@ -302,10 +302,10 @@ def test_shows_the_state(running):
 
 def test_the_state_names_fake_joint_positions():
     joints = JointState(name=["left_shoulder_lift_joint", "left_elbow_joint"], position=[1.0, 2.0], velocity=[0.0, 0.0])
-    warning, *rows = print_state._lines({"joint_states": joints, "joint_states_are_fake": Bool(data=True)})
+    warning, *rows = print_state.state_lines({"joint_states": joints, "joint_states_are_fake": Bool(data=True)})
     assert warning == "joint_states has fake positions (digital twin); the robot's are on actual_joint_states:"
     assert len(rows) == 2 and len({row.index(" rad ") for row in rows}) == 1, rows
-    assert len(list(print_state._lines({"joint_states": joints, "joint_states_are_fake": Bool()}))) == 2
+    assert len(list(print_state.state_lines({"joint_states": joints, "joint_states_are_fake": Bool()}))) == 2
 
 
 def test_a_missing_driver_is_reported_after_the_wait():

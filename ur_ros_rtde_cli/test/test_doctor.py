@@ -99,7 +99,13 @@ def test_the_exit_status_is_1_with_a_fault(simulator):
     assert process.wait(60.0) == 1 and process.lines[-1].startswith("1 fault, "), process.output()
 
 
-@pytest.mark.parametrize("arguments, mentions", [([], "--robot"), (["--robot", "x", "--duration", "nan"], "0.1 to 3600"),
+def test_without_an_address_it_says_what_can_be_given(monkeypatch, capsys):
+    monkeypatch.delenv("UR_CHECKOUT", raising=False)
+    assert main(["doctor"]) == 2
+    assert "--robot ADDRESS" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments, mentions", [(["--robot", "x", "--duration", "nan"], "0.1 to 3600"),
                                                  (["--robot", "x", "--limit", "0"], "0.1 to 3600")])
 def test_wrong_arguments_are_refused(arguments, mentions, monkeypatch, capsys):
     monkeypatch.delenv("UR_CHECKOUT", raising=False)

@@ -3,14 +3,21 @@
     ur doctor --robot 192.168.56.101
     ur doctor --robot 192.168.56.101 --ur-type ur5e --kinematics-params-file my_robot.yaml
 
-Without --robot, `./ur doctor` in a checkout checks whether this machine can build and run everything.
+    ur doctor --report report.md
 
-Exit code: 0 no fault, 1 at least one fault.
+With --report, it collects what a bug report needs: versions, parameters, state, diagnostics, the check of the robot, the last lines of the
+logs. Names, addresses and serial numbers are replaced. The report is shown before it is written.
+
+Without arguments, `./ur doctor` in a checkout checks whether this machine can build and run everything.
+
+Exit code: 0 no fault, 1 at least one fault, or a report that was not written.
 """
 
 import argparse
 import math
+import pathlib
 
+from .errors import CliError
 from .robot_check.finding import State
 
 
@@ -22,7 +29,10 @@ def _seconds(text: str) -> float:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--robot", required=True, metavar="ADDRESS", help="address of the controller")
+    parser.add_argument("--robot", default="", metavar="ADDRESS", help="address of the controller (--report: default of the driver)")
+    parser.add_argument("--report", type=pathlib.Path, metavar="FILE", help="write a report; needs the driver's ROS 2 environment")
+    parser.add_argument("--yes", action="store_true", help="write the report without a question")
+    parser.add_argument("--namespace", default="", metavar="NS", help="namespace of the nodes of the robot, for --report (default: none)")
     parser.add_argument("--ur-type", default="", metavar="MODEL", help="model that the arm must be, for example ur5e (default: any)")
     parser.add_argument("--serial-number", default="", metavar="NUMBER", help="serial number that the robot must have (default: any)")
     parser.add_argument("--kinematics-params-file", default="", metavar="FILE",
@@ -33,6 +43,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    if options.report is not None:
+        from . import report  # imported here because a check of the robot needs no ROS
+        return report.run(options.report, options.namespace, options.robot, options.yes)
+    if not options.robot:
+        raise CliError("give --robot ADDRESS to check a robot, or --report FILE to write a report")
+    return check_robot(options)
+
+
+def check_robot(options: argparse.Namespace) -> int:
     from .robot_check.checks import Options, RobotCheck
     checks = RobotCheck(Options(options.robot, options.ur_type, options.serial_number, options.kinematics_params_file, options.limit,
                                 options.duration))

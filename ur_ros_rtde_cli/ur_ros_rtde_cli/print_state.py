@@ -25,10 +25,10 @@ SCREEN_PERIOD = 0.1  # s, on a terminal
 ENTER_SCREEN, LEAVE_SCREEN = "\x1b[?1049h\x1b[?25l", "\x1b[?25h\x1b[?1049l"
 HOME, REST_OF_LINE, REST_OF_SCREEN = "\x1b[H", "\x1b[K", "\x1b[J"
 
-TOPIC_COUNT = 9  # of _subscribe()
+TOPIC_COUNT = 9  # of subscribe()
 
 
-def _subscribe(session: Session) -> Dict[str, Any]:
+def subscribe(session: Session) -> Dict[str, Any]:
     """Subscribes to all topics. Returns a dictionary that holds the latest message of each topic."""
     latest: Dict[str, Any] = {}
     best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -42,7 +42,7 @@ def _subscribe(session: Session) -> Dict[str, Any]:
     return latest
 
 
-def _lines(latest: Dict[str, Any]) -> Iterator[str]:
+def state_lines(latest: Dict[str, Any]) -> Iterator[str]:
     for topic in ("robot_mode", "safety_mode", "driver_state"):
         if topic in latest:
             message = latest[topic]
@@ -69,7 +69,7 @@ def _lines(latest: Dict[str, Any]) -> Iterator[str]:
 
 
 def print_state(session: Session, options: argparse.Namespace) -> int:
-    latest = _subscribe(session)
+    latest = subscribe(session)
     if not session.wait(lambda: "joint_states" in latest, options.wait):
         raise CliError(f"no joint_states within {options.wait:g} s. Does robot_state_receiver run with this ROS_DOMAIN_ID? Is "
                        "the robot on?")
@@ -77,11 +77,11 @@ def print_state(session: Session, options: argparse.Namespace) -> int:
     if options.watch and sys.stdout.isatty():
         _watch_on_screen(session, latest)
         return 0
-    print("\n".join(_lines(latest)))
+    print("\n".join(state_lines(latest)))
     try:
         while options.watch:
             session.wait(lambda: None, LINE_PERIOD)
-            print("\n" + "\n".join(_lines(latest)), flush=True)
+            print("\n" + "\n".join(state_lines(latest)), flush=True)
     except Interrupted:
         pass
     return 0
@@ -92,7 +92,7 @@ def _watch_on_screen(session: Session, latest: Dict[str, Any]) -> None:
     try:
         while True:
             size = shutil.get_terminal_size()
-            lines = [*itertools.islice(_lines(latest), max(size.lines - 3, 1)), "", f"{time.strftime('%H:%M:%S')}  Ctrl-C ends"]
+            lines = [*itertools.islice(state_lines(latest), max(size.lines - 3, 1)), "", f"{time.strftime('%H:%M:%S')}  Ctrl-C ends"]
             sys.stdout.write(HOME + "\n".join(line[:size.columns - 1] + REST_OF_LINE for line in lines) + REST_OF_SCREEN)
             sys.stdout.flush()
             session.wait(lambda: None, SCREEN_PERIOD)
