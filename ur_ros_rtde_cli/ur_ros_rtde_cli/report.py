@@ -31,8 +31,8 @@ def without_private_data(text: str) -> str:
         if len(name) > 2 and name != "root":
             text = re.sub(rf"\b{re.escape(name)}\b", word, text)
     for pattern, what in ((_IPV4, "address"), (_MAC, "MAC address"), (_SERIAL_NUMBER, "serial number")):
-        known: Dict[str, str] = {}
-        text = pattern.sub(lambda found, known=known, what=what: known.setdefault(found[0], f"<{what} {len(known) + 1}>"), text)
+        for number, value in enumerate(dict.fromkeys(pattern.findall(text)), 1):
+            text = re.sub(rf"(?<![\d.:]){re.escape(value)}(?![\d:]|\.\d)", f"<{what} {number}>", text)
     return text
 
 
