@@ -32,7 +32,7 @@ def without_private_data(text: str) -> str:
             text = re.sub(rf"\b{re.escape(name)}\b", word, text)
     for pattern, what in ((_IPV4, "address"), (_MAC, "MAC address"), (_SERIAL_NUMBER, "serial number")):
         for number, value in enumerate(dict.fromkeys(pattern.findall(text)), 1):
-            text = re.sub(rf"(?<![\d.:]){re.escape(value)}(?![\d:]|\.\d)", f"<{what} {number}>", text)
+            text = re.sub(rf"(?<![\d.]){re.escape(value)}(?!\d|\.\d)", f"<{what} {number}>", text)
     return text
 
 
