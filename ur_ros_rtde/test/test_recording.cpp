@@ -3,16 +3,21 @@
 
 #include <array>
 #include <cmath>
+#include <condition_variable>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <mutex>
 #include <sstream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "diagnostics/package_statistics.hpp"
 #include "recording/csv_file.hpp"
 #include "recording/row_queue.hpp"
+#include "recording/stop_recorder.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -141,6 +146,136 @@ TEST(PackageStatisticsTest, RestartWithANewConnection)
   const auto report = statistics.report();
   EXPECT_EQ(report.lost_total, 0U);
   EXPECT_EQ(report.longest, 0.0);
+}
+
+struct StopRecorderTest : CsvFileTest {
+  static constexpr double cycle = 0.002;  // s
+
+  std::filesystem::path records = std::filesystem::path(folder) / "log";
+  std::mutex mutex;
+  std::condition_variable logged;
+  std::vector<std::string> log;
+  StopRecorder recorder{records, "127.0.0.9", [this](LogLevel, const std::string & message) {
+                          const std::lock_guard lock(mutex);
+                          log.push_back(message);
+                          logged.notify_all();
+                        }};
+  double time = 100.0;
+
+  void run(double duration, SafetyMode mode, std::uint32_t link = 1)
+  {
+    for (const double end = time + duration - 0.5 * cycle; time < end; time += cycle) {
+      Sample sample{};
+      sample.link = link;
+      sample.controller_time = time;
+      sample.safety_mode = mode;
+      sample.actual_qd[1] = mode == SafetyMode::normal ? 0.5 : 0.0;
+      recorder.add(sample);
+    }
+  }
+
+  std::string message(std::size_t index)
+  {
+    std::unique_lock lock(mutex);
+    return logged.wait_for(lock, std::chrono::seconds(20), [&] { return log.size() > index; }) ? log[index]
+                                                                                               : "";
+  }
+
+  std::vector<std::filesystem::path> files() const
+  {
+    if (!std::filesystem::exists(records)) {
+      return {};
+    }
+    return {std::filesystem::directory_iterator(records), std::filesystem::directory_iterator()};
+  }
+
+  /// The values of a column.
+  static std::vector<double> column(const std::filesystem::path & path, const std::string & name)
+  {
+    std::istringstream lines(text(path.string()));
+    std::string line;
+    std::getline(lines, line);
+    std::istringstream header(line);
+    std::size_t index = 0;
+    for (std::string title; std::getline(header, title, ',') && title != name;) {
+      ++index;
+    }
+    std::vector<double> values;
+    while (std::getline(lines, line)) {
+      std::istringstream row(line);
+      std::string number;
+      for (std::size_t i = 0; i <= index; ++i) {
+        std::getline(row, number, ',');
+      }
+      values.push_back(std::stod(number));
+    }
+    return values;
+  }
+};
+
+TEST_F(StopRecorderTest, WritesTheTimeAroundAProtectiveStop)
+{
+  run(5.0, SafetyMode::normal);
+  const double stop = time;
+  run(0.5, SafetyMode::protective_stop);
+  EXPECT_NE(message(0).find("PROTECTIVE_STOP"), std::string::npos) << message(0);
+  ASSERT_EQ(files().size(), 1U);
+  const auto file = files().front();
+  EXPECT_NE(message(0).find(file.string()), std::string::npos);
+  EXPECT_TRUE(file.filename().string().ends_with("_127.0.0.9_PROTECTIVE_STOP.csv")) << file;
+  const auto times = column(file, "timestamp");
+  EXPECT_NEAR(times.front(), stop - StopRecorder::time_before, 2.0 * cycle);
+  EXPECT_NEAR(times.back(), stop + StopRecorder::time_after, 2.0 * cycle);
+  EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+  const auto speeds = column(file, "actual_qd_1");
+  EXPECT_EQ(speeds.front(), 0.5);
+  EXPECT_EQ(speeds.back(), 0.0);
+  EXPECT_EQ(column(file, "safety_mode").back(), 3.0);
+}
+
+TEST_F(StopRecorderTest, WritesOnlyWhatItHasSeen)
+{
+  run(0.5, SafetyMode::normal);
+  run(0.5, SafetyMode::fault);
+  EXPECT_NE(message(0).find("FAULT"), std::string::npos) << message(0);
+  const auto times = column(files().front(), "timestamp");
+  EXPECT_EQ(times.front(), 100.0);
+}
+
+TEST_F(StopRecorderTest, IgnoresAStopThatLastedAtTheStartOfTheConnectionAndStopsByPeople)
+{
+  run(0.5, SafetyMode::protective_stop);
+  run(0.5, SafetyMode::normal);
+  run(0.5, SafetyMode::safeguard_stop);
+  run(0.5, SafetyMode::normal);
+  run(0.5, SafetyMode::protective_stop, 2);
+  run(0.5, SafetyMode::normal, 2);
+  run(0.5, SafetyMode::violation, 2);
+  EXPECT_NE(message(0).find("VIOLATION"), std::string::npos) << message(0);
+  EXPECT_EQ(files().size(), 1U);
+}
+
+TEST_F(StopRecorderTest, KeepsTheNewestFiles)
+{
+  std::filesystem::create_directories(records);
+  for (std::size_t i = 0; i < StopRecorder::max_files; ++i) {
+    std::ofstream(records / ("ur_stop_20200101-0000" + std::to_string(10 + i) + "_127.0.0.9_FAULT.csv"));
+  }
+  std::ofstream(records / "other.csv");
+  run(0.5, SafetyMode::normal);
+  run(0.5, SafetyMode::protective_stop);
+  EXPECT_NE(message(0), "");
+  EXPECT_EQ(files().size(), StopRecorder::max_files + 1);
+  EXPECT_FALSE(std::filesystem::exists(records / "ur_stop_20200101-000010_127.0.0.9_FAULT.csv"));
+  EXPECT_TRUE(std::filesystem::exists(records / "other.csv"));
+}
+
+TEST_F(StopRecorderTest, ReportsAFolderThatCannotBeWritten)
+{
+  std::ofstream(records.string()) << "a file";
+  run(0.5, SafetyMode::normal);
+  run(0.5, SafetyMode::protective_stop);
+  EXPECT_NE(message(0).find("cannot be created"), std::string::npos) << message(0);
 }
 
 }  // namespace

@@ -102,8 +102,8 @@ def test_private_data_are_replaced_equal_ones_by_equal_words(monkeypatch):
     monkeypatch.setattr(report.socket, "gethostname", lambda: "workcell7")
     monkeypatch.setattr(report, "_user", lambda: "jane")
     home = pathlib.Path.home()
-    text = (f"{home}/run.csv on workcell7 by jane: 192.168.56.101 and 10.0.0.7, again 192.168.56.101:30004, 127.0.0.1, 00:1b:21:aa:bb:cc, "
-            "serial number 20235501234; 0.0.0.0; janet, version 5.25.1")
+    text = (f"{home}/run.csv on workcell7 by jane: 192.168.56.101 and 10.0.0.7, again 192.168.56.101:30004, "
+            "ur_stop_192.168.56.101_FAULT, 127.0.0.1, 00:1b:21:aa:bb:cc, serial number 20235501234; 0.0.0.0; janet, version 5.25.1")
     assert report.without_private_data(text) == (
-        "~/run.csv on <host> by <user>: <address 1> and <address 2>, again <address 1>:30004, 127.0.0.1, <MAC address 1>, "
-        "serial number <serial number 1>; 0.0.0.0; janet, version 5.25.1")
+        "~/run.csv on <host> by <user>: <address 1> and <address 2>, again <address 1>:30004, "
+        "ur_stop_<address 1>_FAULT, 127.0.0.1, <MAC address 1>, serial number <serial number 1>; 0.0.0.0; janet, version 5.25.1")

@@ -19,7 +19,7 @@ DISCOVERY = 2.0  # s
 DIAGNOSTICS = 1.5  # s; they are published once a second
 ANSWER = 2.0  # s
 
-_IPV4 = re.compile(r"\b(?!127\.|0\.0\.0\.0\b)(?:(?:25[0-5]|2[0-4]\d|1?\d?\d)\.){3}(?:25[0-5]|2[0-4]\d|1?\d?\d)\b(?!\.\d)")
+_IPV4 = re.compile(r"(?<![\d.])(?!127\.|0\.0\.0\.0\b)(?:(?:25[0-5]|2[0-4]\d|1?\d?\d)\.){3}(?:25[0-5]|2[0-4]\d|1?\d?\d)(?!\d|\.\d)")
 _MAC = re.compile(r"\b(?:[0-9a-f]{2}:){5}[0-9a-f]{2}\b", re.I)
 _SERIAL_NUMBER = re.compile(r"\b20\d{9}\b")  # of a robot: the year of its production, then nine digits
 
@@ -151,6 +151,8 @@ def _logs() -> Iterator[str]:
         yield from lines[-LOG_LINES:]
     if not found:
         yield f"no log of the driver in {folder}"
+    for stop in sorted(folder.glob("ur_stop_*.csv")):
+        yield f"states before a stop, to attach: {stop}"
 
 
 def collect(session: Any, robot: str, say: Callable[[str], None]) -> str:

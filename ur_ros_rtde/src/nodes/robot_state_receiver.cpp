@@ -27,6 +27,7 @@ RobotStateReceiver::RobotStateReceiver(rcl_cxx::Node & node, Options options, So
                     {options_.address, options_.tf_prefix, options_.qos, options_.frequency, options_.fields},
                     log_connection(node)),
       recording_(node, options_.address, log_to(node.get_logger())),
+      stop_recorder_(log_folder(), options_.address, log_to(node.get_logger())),
       diagnostics_(node, options_.address, [this] { return diagnose(); })
 {
   const rcl_cxx::QoS qos = rcl_cxx::QoS::from_name(options_.qos);
@@ -125,6 +126,7 @@ void RobotStateReceiver::publish(const Sample & sample)
   const bool due = is_due(sample);
   packages_.add(sample, agreed_frequency_);
   status_topics_.publish(sample);
+  stop_recorder_.add(sample);
   {
     const std::lock_guard lock(mutex_);
     newest_.fill(sample);

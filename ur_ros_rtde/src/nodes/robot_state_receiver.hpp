@@ -17,6 +17,7 @@
 
 #include "diagnostics/state_diagnostics.hpp"
 #include "recording/recording_services.hpp"
+#include "recording/stop_recorder.hpp"
 #include "state/fake_joints.hpp"
 #include "state/field_topics.hpp"
 #include "state/state_messages.hpp"
@@ -94,6 +95,7 @@ class RobotStateReceiver {
   rcl_cxx::Subscription<sensor_msgs::msg::JointState>::SharedPtr fake_joint_states_;
   FieldTopics field_topics_;
   RecordingServices recording_;
+  StopRecorder stop_recorder_;
   Diagnostics diagnostics_;
 };
 

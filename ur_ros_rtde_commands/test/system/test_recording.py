@@ -199,3 +199,25 @@ def test_a_full_disk_is_reported_and_leaves_complete_rows(simulator, processes, 
         assert start_when_connected(client, tmp_path / "next.csv", ["timestamp"]) == ["timestamp"]
     finally:
         client.close()
+
+
+def test_a_protective_stop_leaves_a_file_of_the_last_2_s(simulator, tmp_path):
+    receiver = start_node("robot_state_receiver", simulator.address, namespace="recorded", env={"ROS_LOG_DIR": str(tmp_path)})
+    try:
+        wait_for(lambda: any("connected to" in line for line in list(receiver.lines)), 15.0, "the connection")
+        simulator.control("power", to="running")
+        simulator.control("run_script", script=f"def go():\n  movej({[HOME[0] + 2.0, *HOME[1:]]}, a=2.0, v=0.3)\nend\n")
+        wait_for_simulated_time(simulator, 3.0)
+        simulator.control("protective_stop", reason="a test")
+        text = "before the PROTECTIVE_STOP are in "
+        line = wait_for(lambda: next((line for line in list(receiver.lines) if text in line), None), 15.0, "the file")
+        header, rows = read_csv(line.partition(text)[2].partition(": draw")[0])
+    finally:
+        receiver.stop()
+        wait_for(simulator.unlock_protective_stop, 20.0, "the protective stop to be unlocked")
+        print(receiver.output())
+    times, speeds, modes = ([row[header.index(name)] for row in rows] for name in ("timestamp", "actual_qd_0", "safety_mode"))
+    first = modes.index(3.0)
+    assert times[first] - times[0] == pytest.approx(2.0, abs=0.1) and times[-1] - times[first] == pytest.approx(0.2, abs=0.1)
+    assert speeds[0] == pytest.approx(0.3, abs=0.01) and abs(speeds[-1]) < 0.01
+    assert set(modes[first:]) == {3.0}

@@ -1,0 +1,207 @@
+#include "recording/stop_recorder.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace ur_ros_rtde {
+namespace {
+constexpr double max_frequency = 500.0;  // Hz
+constexpr auto rows =
+    static_cast<std::size_t>((StopRecorder::time_before + StopRecorder::time_after) * max_frequency) + 1;
+constexpr std::string_view prefix = "ur_stop_";
+
+struct VectorColumn {
+  const char * name;
+  Vector6 Sample::* values;
+};
+
+constexpr VectorColumn vectors[] = {
+    {"target_q", &Sample::target_q},
+    {"target_qd", &Sample::target_qd},
+    {"target_current", &Sample::target_current},
+    {"actual_q", &Sample::actual_q},
+    {"actual_qd", &Sample::actual_qd},
+    {"actual_current", &Sample::actual_current},
+    {"actual_TCP_pose", &Sample::actual_tcp_pose},
+    {"actual_TCP_force", &Sample::actual_tcp_force},
+};
+
+constexpr const char * numbers[] = {"robot_mode",    "safety_mode",   "safety_status_bits",
+                                    "runtime_state", "speed_scaling", "target_speed_fraction",
+                                    "payload"};
+
+bool is_recorded(SafetyMode mode)
+{
+  return mode == SafetyMode::protective_stop || mode == SafetyMode::violation || mode == SafetyMode::fault;
+}
+
+std::filesystem::path from_environment(const char * name)
+{
+  const char * value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+}  // namespace
+
+std::filesystem::path log_folder()
+{
+  const auto home = from_environment("HOME");
+  if (auto folder = from_environment("ROS_LOG_DIR"); !folder.empty()) {
+    return *folder.begin() == "~" ? home / folder.lexically_relative("~") : folder;
+  }
+  const auto ros_home = from_environment("ROS_HOME");
+  return (ros_home.empty() ? home / ".ros" : ros_home) / "log";
+}
+
+StopRecorder::StopRecorder(std::filesystem::path folder, std::string name, LogFunction log)
+    : folder_(std::move(folder)),
+      name_(std::move(name)),
+      log_(std::move(log)),
+      ring_(rows),
+      thread_([this](const std::stop_token & stop) { serve(stop); })
+{
+}
+
+StopRecorder::~StopRecorder() = default;
+
+std::vector<std::string> StopRecorder::column_names()
+{
+  std::vector<std::string> names{"timestamp"};
+  for (const auto & [name, values] : vectors) {
+    for (int i = 0; i < 6; ++i) {
+      names.push_back(fmt::format("{}_{}", name, i));
+    }
+  }
+  names.insert(names.end(), std::begin(numbers), std::end(numbers));
+  return names;
+}
+
+StopRecorder::Row StopRecorder::row_of(const Sample & sample)
+{
+  static_assert(columns == 1 + 6 * std::size(vectors) + std::size(numbers));
+  Row row;
+  auto next = row.begin();
+  *next++ = sample.controller_time;
+  for (const auto & [name, values] : vectors) {
+    next = std::copy((sample.*values).begin(), (sample.*values).end(), next);
+  }
+  for (const double value :
+       {static_cast<double>(sample.robot_mode), static_cast<double>(sample.safety_mode),
+        static_cast<double>(sample.safety_status_bits), static_cast<double>(sample.runtime_state),
+        sample.speed_scaling, sample.target_speed_fraction, sample.payload}) {
+    *next++ = value;
+  }
+  return row;
+}
+
+void StopRecorder::add(const Sample & sample)
+{
+  const std::lock_guard lock(mutex_);
+  ring_[next_] = row_of(sample);
+  next_ = (next_ + 1) % ring_.size();
+  const bool same_link = sample.link == std::exchange(last_link_, sample.link);
+  const SafetyMode before = std::exchange(last_mode_, sample.safety_mode);
+  if (!same_link) {
+    stop_.reset();
+  } else if (!stop_ && is_recorded(sample.safety_mode) && !is_recorded(before)) {
+    stop_ = Stop{sample.safety_mode, sample.controller_time};
+  }
+  if (stop_ && sample.controller_time >= stop_->time + time_after) {
+    complete_ = std::exchange(stop_, std::nullopt);
+    changed_.notify_all();
+  }
+}
+
+void StopRecorder::serve(const std::stop_token & stop)
+{
+  while (true) {
+    std::optional<Stop> next;
+    {
+      std::unique_lock lock(mutex_);
+      if (!changed_.wait(lock, stop, [&] { return complete_.has_value(); })) {
+        return;
+      }
+      next = std::exchange(complete_, std::nullopt);
+    }
+    try {
+      const auto path = write(*next);
+      log_(path ? LogLevel::info : LogLevel::warn,
+           path ? fmt::format("the {:g} s before the {} are in {}: draw them with `ur plot`", time_before,
+                              to_string(next->mode), *path)
+                : fmt::format("the {:g} s before the {} were not recorded: {}", time_before,
+                              to_string(next->mode), path.error().message));
+    } catch (const std::exception & error) {
+      log_(LogLevel::warn, fmt::format("a stop was not recorded: {}", error.what()));
+    }
+  }
+}
+
+std::vector<StopRecorder::Row> StopRecorder::rows_around(const Stop & stop) const
+{
+  std::vector<Row> all;
+  all.reserve(ring_.size());
+  {
+    const std::lock_guard lock(mutex_);
+    const auto oldest = ring_.begin() + static_cast<std::ptrdiff_t>(next_);
+    all.insert(all.end(), oldest, ring_.end());
+    all.insert(all.end(), ring_.begin(), oldest);
+  }
+  // Of the controller's current run: its time begins again when it restarts. Unused rows have the time 0.
+  const auto is_outside = [&](const Row & row) {
+    return !(row[0] > 0.0 && row[0] >= stop.time - time_before && row[0] <= stop.time + time_after);
+  };
+  std::erase_if(all, is_outside);
+  return all;
+}
+
+Expected<std::string> StopRecorder::write(const Stop & stop) const
+{
+  const std::vector<Row> around = rows_around(stop);
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) {
+    return failure(ErrorCode::exception,
+                   fmt::format("{} cannot be created: {}", folder_.string(), error.message()));
+  }
+  const std::tm now = fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()));
+  const auto path =
+      folder_ / fmt::format("{}{:%Y%m%d-%H%M%S}_{}_{}.csv", prefix, now, name_, to_string(stop.mode));
+  auto file = CsvFile::create(path.string(), column_names());
+  if (!file) {
+    return tl::unexpected(file.error());
+  }
+  for (const Row & row : around) {
+    file->append(row);
+  }
+  if (const Status closed = file->close(); !closed) {
+    return tl::unexpected(closed.error());
+  }
+  remove_old_files();
+  return path.string();
+}
+
+void StopRecorder::remove_old_files() const
+{
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (const auto & entry : std::filesystem::directory_iterator(folder_, error)) {
+    if (entry.path().filename().string().starts_with(prefix)) {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end(), std::greater<>());  // the names begin with the time
+  for (std::size_t i = max_files; i < files.size(); ++i) {
+    std::filesystem::remove(files[i], error);
+  }
+}
+
+}  // namespace ur_ros_rtde
