@@ -34,7 +34,7 @@ def test_the_exit_status_is_1_if_a_check_fails(monkeypatch, capsys):
     monkeypatch.setattr(doctor, "CYCLES", 2)
     assert doctor.run(Layout.of_environment()) == 1
     printed = capsys.readouterr().out
-    assert "FAILED  compiler         old\n" + 25 * " " + "Install a new one.\n" in printed
+    assert "fault   compiler         old\n" + 25 * " " + "Install a new one.\n" in printed
     assert printed.splitlines()[-1] == "1 problem must be solved first."
 
 

@@ -74,6 +74,11 @@ def test_an_unknown_command_is_explained():
             assert result.returncode == 2 and f"there is no command {command}" in result.stderr and mentions in result.stderr, result.stderr
 
 
+def test_an_unknown_program_for_the_shell_is_named():
+    result = run_inside("shell", "nosuchprogram")
+    assert result.returncode == 1 and "there is no program nosuchprogram" in result.stderr and "Errno" not in result.stderr
+
+
 def test_the_shell_keeps_its_build(monkeypatch):
     """In `./ur shell --debug`, commands use the debug build."""
     monkeypatch.setenv("UR_LAYOUT", "jazzy:debug")

@@ -14,7 +14,7 @@ from typing import Callable, List, Tuple
 from . import build, console, disk, ports, system_packages, venv
 from .layout import ROOT, STATE, Layout
 
-OK, NOTE, FAILED = "ok", "note", "FAILED"
+OK, NOTE, FAILED = "OK", "warning", "fault"  # as in `ur doctor --robot`
 DEMO_ADDRESS = "127.0.0.1"
 TEST_ADDRESSES = ("127.0.0.2", "127.0.1.1", "127.0.1.101")
 CYCLE = 0.002  # s, of a controller

@@ -89,6 +89,8 @@ def command_shell(options: argparse.Namespace) -> int:
     env = workspace_environment(layout)
     command = _forwarded(options)
     if command:
+        if shutil.which(command[0], path=env.get("PATH")) is None:
+            raise console.Failure(f"there is no program {command[0]} in the environment of the build")
         return subprocess.run(command, env=env).returncode
     shell = env.get("SHELL", "/bin/sh")
     console.line(f"This shell has {layout.title} and this project's packages; `exit` leaves it. `ur` has the commands of "

@@ -162,6 +162,7 @@ MOVEIT = (
              "model is used."),
     Argument("launch_rviz", True, "Starts RViz with the MoveIt display."),
 )
+OTHER_NAMES = {"model": "ur_type", "address": "robot_ip", "ip": "robot_ip", "prefix": "tf_prefix"}  # of other programs and drivers
 UNSUPPORTED_BY_MOVEIT = ("namespace", "tf_prefix")  # ur_moveit_config has neither of them
 
 
@@ -169,7 +170,7 @@ def check_name(name: str, known: Collection[str], launch_file: str) -> None:
     """Raises ArgumentError with the most similar known name if `name` is unknown."""
     if name in known:
         return
-    nearest = difflib.get_close_matches(name, known, 1, 0.0)
+    nearest = [OTHER_NAMES[name]] if OTHER_NAMES.get(name) in known else difflib.get_close_matches(name, known, 1)
     hint = f"did you mean {nearest[0]}? " if nearest else ""
     raise ArgumentError(f"{launch_file} has no launch argument {name}; {hint}"
                         f"`ros2 launch ur_ros_rtde {launch_file} --show-args` lists all arguments")

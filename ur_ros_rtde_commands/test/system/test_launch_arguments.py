@@ -172,6 +172,13 @@ def test_values_have_the_type_of_the_parameter():
         "rtde_frequency": 100.0, "urcap_port": 50007, "restart_program": False, "tf_prefix": "1", "plugins": ["move_j", "stop"]}
 
 
+@pytest.mark.parametrize("name, hint", [("model", "; did you mean ur_type?"), ("ip", "; did you mean robot_ip?"), ("speed", "; `ros2")])
+def test_names_of_other_programs_are_known_and_nothing_far_away_is_suggested(name, hint):
+    with pytest.raises(ArgumentError) as raised:
+        check_name(name, [argument.name for argument in DRIVER], "driver.launch.py")
+    assert f"has no launch argument {name}{hint}" in str(raised.value)
+
+
 def test_an_unknown_argument_is_rejected_with_a_suggestion():
     with pytest.raises(ArgumentError, match="has no launch argument realtime_prio; did you mean realtime_priority?"):
         check_name("realtime_prio", [argument.name for argument in DRIVER], "driver.launch.py")
