@@ -15,8 +15,9 @@ def generate_launch_description():
 def check(context, given):
     values = {**{argument.name: argument.default for argument in TWO_ROBOTS}, **given}
     for name in UNIQUE:
-        if values[f"left_{name}"] == values[f"right_{name}"]:
-            raise ArgumentError(f"left_{name} and right_{name} are both \"{values[f'left_{name}']}\", they must differ")
+        left, right = values[f"left_{name}"], values[f"right_{name}"]
+        if left == right and (left or name != "robot_ip"):  # without addresses, see below
+            raise ArgumentError(f"left_{name} and right_{name} are both \"{left}\", they must differ")
     others = context.launch_configurations
     if others.get("sim") != "true" and not others.get("params_file"):
         for side in SIDES:

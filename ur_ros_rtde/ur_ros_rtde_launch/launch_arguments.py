@@ -153,7 +153,7 @@ def _robot_arguments(side: str, number: int) -> Tuple[Argument, ...]:
 SIDES = ("left", "right")
 TWO_ROBOTS = (*_robot_arguments("left", 1), *_robot_arguments("right", 2))
 PER_ROBOT = tuple(argument.name[len("left_"):] for argument in _robot_arguments("left", 1))
-UNIQUE = ("namespace", "tf_prefix", "urcap_port", "sim_ip")  # must differ between the robots
+UNIQUE = ("namespace", "tf_prefix", "urcap_port", "robot_ip", "sim_ip")  # must differ between the robots
 
 # Arguments of moveit.launch.py. The other arguments of driver.launch.py are passed to the driver.
 MOVEIT = (

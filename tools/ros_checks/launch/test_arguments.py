@@ -57,11 +57,12 @@ def test_an_invalid_argument_is_rejected_with_one_message_before_any_process_sta
 @pytest.mark.parametrize("given, message", [
     ("robot_ip:=192.168.0.10", "two_robots.launch.py has no launch argument robot_ip; did you mean "),
     ("right_urcap_port:=50002", 'left_urcap_port and right_urcap_port are both "50002", they must differ'),
+    ("left_robot_ip:=192.168.0.10 right_robot_ip:=192.168.0.10", "are both \"192.168.0.10\", they must differ"),
     ("left_robot_ip:=192.168.0.10", "the address of the right robot is missing: set right_robot_ip:=<address>"),
     ("on_bussy:=preempt", "did you mean on_busy?"),
 ])
 def test_an_invalid_argument_of_two_robots_is_rejected_with_one_message(given, message):
-    code, printed = ros2("launch", "ur_ros_rtde", "two_robots.launch.py", given)
+    code, printed = ros2("launch", "ur_ros_rtde", "two_robots.launch.py", *given.split())
     assert code != 0
     assert len(errors(printed)) == 1 and message in errors(printed)[0], printed
 
