@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <functional>
 #include <string_view>
@@ -140,7 +140,7 @@ void StopRecorder::serve(const std::stop_token & stop)
                 : fmt::format("the {:g} s before the {} were not recorded: {}", time_before,
                               to_string(next->mode), path.error().message));
     } catch (const std::exception & error) {
-      log_(LogLevel::warn, fmt::format("a stop was not recorded: {}", error.what()));
+      log_(LogLevel::warn, fmt::format("the states before a stop were not written: {}", error.what()));
     }
   }
 }

@@ -165,7 +165,7 @@ def start_gentle_motion(robot, simulator):
     """Starts a motion of joint 0 that takes 6.3 s to brake within its limits; returns when it is fast."""
     make_ready(robot, joint_positions=[-2.8, *HOME[1:]])
     goal = send(robot, [[-2.8, *HOME[1:]], [2.8, *HOME[1:]]], **GENTLE)
-    goal.wait_until(lambda: simulator.state()["target"]["velocity"][0] > 0.45, 60.0, "a fast motion")
+    goal.wait_until(lambda: simulator.state()["target"]["velocity"][0] > 0.3, 60.0, "a fast motion")  # a busy host slows it down
     return goal
 
 
