@@ -9,7 +9,7 @@ import socket
 import sys
 import time
 
-from ur_ros_rtde import Robot
+from ur_ros_rtde import Rejected, Robot
 
 MOVE = """def move_down():
   pose = get_actual_tcp_pose()
@@ -33,18 +33,27 @@ def wait_for(condition, limit, what):
         time.sleep(CYCLE)
 
 
+def has_driver_back(arm):
+    """Each program has replaced that of the driver."""
+    try:
+        arm.reupload_script()
+    except Rejected:  # the second program has not ended yet
+        return False
+    return True
+
+
 def main():
     with Robot() as arm, socket.create_connection((sys.argv[1], SECONDARY_PORT), 5.0) as port:
         arm.zero_ft_sensor()
         port.sendall(MOVE.encode())
         try:
-            wait_for(lambda: abs(arm.state.wrench[2]) > 20.0, 10.0, "no force")
+            wait_for(lambda: abs(arm.state.wrench[2]) > 20.0, 10.0, "there was no force")
         finally:
             port.sendall(STOP.encode())
         force = arm.state.wrench[2]
         # No answer tells when a program has ended, or that it has failed.
-        wait_for(lambda: max(abs(arm.state.joint_velocities)) < 0.005, 10.0, "no standstill")
-        arm.reupload_script()  # each program has replaced that of the driver
+        wait_for(lambda: max(abs(arm.state.joint_velocities)) < 0.005, 10.0, "there was no standstill")
+        wait_for(lambda: has_driver_back(arm), 10.0, "the driver did not get the robot back")
         print(f"stopped at {force:.1f} N")
 
 

@@ -48,8 +48,10 @@ def record(robot, file, way, simulator):
     """Returns for each cycle the time in s, the force along Z in N and the speed of the fastest joint in rad/s; then the lost cycles."""
     fields = ["timestamp", "actual_TCP_force", "target_qd"]
     assert robot.call(StartRecording, "start_recording", filename=str(file), fields=fields).success
-    way(robot, simulator)
-    answer = robot.call(StopRecording, "stop_recording")
+    try:
+        way(robot, simulator)
+    finally:
+        answer = robot.call(StopRecording, "stop_recording")
     assert answer.success
     with file.open(newline="") as text:
         return [(float(row["timestamp"]), abs(float(row["actual_TCP_force_2"])),

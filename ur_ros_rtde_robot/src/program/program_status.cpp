@@ -24,7 +24,7 @@ RobotStatus upload_status(ProgramState state, const ProgramObservation & observa
     return program_stopped(
         fmt::format("another program {} on the robot and has replaced the control program: stop it "
                     "(dashboard/stop)",
-                    observation.program == ProgramActivity::playing ? "runs" : "is paused"));
+                    observation.program == ProgramActivity::playing ? "runs" : "is paused or ending"));
   }
   if (state == ProgramState::idle && !restart_program) {
     return program_stopped(

@@ -56,7 +56,7 @@ class _Hold:
 
     def __init__(self) -> None:
         self.begin = self.last_press = time.monotonic()
-        self.is_at_rest = False  # since a press
+        self.rest: Optional[float] = None  # time of the standstill after a press
 
 
 class _Silence:
@@ -88,6 +88,7 @@ class _Press:
         self._stop, self._dashboard, self._hold, self._report = stop, dashboard, hold, report
         self._silence: Optional[_Silence] = None  # while an answer is expected
         self._fell_back = False  # to dashboard_server
+        self._begin = time.monotonic()
 
     def start(self) -> None:
         if not self._stop.server_is_ready():
@@ -103,7 +104,7 @@ class _Press:
             return
         handle.get_result_async().add_done_callback(lambda future: self._on_result(future.result().result))
         if not self._fell_back:
-            if not self._hold.is_at_rest:
+            if self._hold.rest is None:
                 self._report(Outcome.STOPPING, "")
             self._expect_answer(SILENCE_TIMEOUT, lambda: self._stop_program("command_server has not answered since it accepted the stop"))
 
@@ -116,10 +117,10 @@ class _Press:
             self._stop_program(result.message)
             return
         self._expect_nothing()
-        if self._hold.is_at_rest and result.time_to_standstill == 0.0:
-            return  # it was at rest at an earlier press
-        self._hold.is_at_rest = True
-        self._report(Outcome.STOPPED, f"At rest after {time.monotonic() - self._hold.begin:.2f} s, at {time.strftime('%H:%M:%S')}.")
+        if self._hold.rest is not None and (result.time_to_standstill == 0.0 or self._begin < self._hold.rest):
+            return  # this standstill has been reported
+        self._hold.rest = time.monotonic()
+        self._report(Outcome.STOPPED, f"At rest after {self._hold.rest - self._hold.begin:.2f} s, at {time.strftime('%H:%M:%S')}.")
 
     def _expect_answer(self, timeout: float, on_silence: Callable[[], None]) -> None:
         """`on_silence` ends the expectation."""
