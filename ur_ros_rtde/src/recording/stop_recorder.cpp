@@ -106,10 +106,13 @@ StopRecorder::Row StopRecorder::row_of(const Sample & sample)
 void StopRecorder::add(const Sample & sample)
 {
   const std::lock_guard lock(mutex_);
-  ring_[next_] = row_of(sample);
-  next_ = (next_ + 1) % ring_.size();
   const bool same_link = sample.link == std::exchange(last_link_, sample.link);
   const SafetyMode before = std::exchange(last_mode_, sample.safety_mode);
+  if (complete_) {
+    return;  // the rows are kept until the thread has them
+  }
+  ring_[next_] = row_of(sample);
+  next_ = (next_ + 1) % ring_.size();
   if (!same_link) {
     stop_.reset();
   } else if (!stop_ && is_recorded(sample.safety_mode) && !is_recorded(before)) {
@@ -124,48 +127,48 @@ void StopRecorder::add(const Sample & sample)
 void StopRecorder::serve(const std::stop_token & stop)
 {
   while (true) {
-    std::optional<Stop> next;
     {
       std::unique_lock lock(mutex_);
       if (!changed_.wait(lock, stop, [&] { return complete_.has_value(); })) {
         return;
       }
-      next = std::exchange(complete_, std::nullopt);
     }
     try {
-      const auto path = write(*next);
-      log_(path ? LogLevel::info : LogLevel::warn,
-           path ? fmt::format("the {:g} s before the {} are in {}: draw them with `ur plot`", time_before,
-                              to_string(next->mode), *path)
-                : fmt::format("the {:g} s before the {} were not recorded: {}", time_before,
-                              to_string(next->mode), path.error().message));
+      write_complete();
     } catch (const std::exception & error) {
       log_(LogLevel::warn, fmt::format("the states before a stop were not written: {}", error.what()));
+      const std::lock_guard lock(mutex_);
+      complete_.reset();
     }
   }
 }
 
-std::vector<StopRecorder::Row> StopRecorder::rows_around(const Stop & stop) const
+void StopRecorder::write_complete()
 {
-  std::vector<Row> all;
-  all.reserve(ring_.size());
+  std::vector<Row> around;
+  around.reserve(ring_.size());
+  Stop stop{};
   {
     const std::lock_guard lock(mutex_);
     const auto oldest = ring_.begin() + static_cast<std::ptrdiff_t>(next_);
-    all.insert(all.end(), oldest, ring_.end());
-    all.insert(all.end(), ring_.begin(), oldest);
+    around.insert(around.end(), oldest, ring_.end());
+    around.insert(around.end(), ring_.begin(), oldest);
+    stop = *std::exchange(complete_, std::nullopt);
   }
-  // Of the controller's current run: its time begins again when it restarts. Unused rows have the time 0.
-  const auto is_outside = [&](const Row & row) {
+  // The controller's time begins again when it restarts. Unused rows have the time 0.
+  std::erase_if(around, [&](const Row & row) {
     return !(row[0] > 0.0 && row[0] >= stop.time - time_before && row[0] <= stop.time + time_after);
-  };
-  std::erase_if(all, is_outside);
-  return all;
+  });
+  const auto path = write(stop, around);
+  log_(path ? LogLevel::info : LogLevel::warn,
+       path ? fmt::format("the {:g} s before the {} are in {}: draw them with `ur plot`", time_before,
+                          to_string(stop.mode), *path)
+            : fmt::format("the {:g} s before the {} were not recorded: {}", time_before, to_string(stop.mode),
+                          path.error().message));
 }
 
-Expected<std::string> StopRecorder::write(const Stop & stop) const
+Expected<std::string> StopRecorder::write(const Stop & stop, const std::vector<Row> & around) const
 {
-  const std::vector<Row> around = rows_around(stop);
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) {

@@ -51,16 +51,16 @@ class StopRecorder {
   static std::vector<std::string> column_names();
   static Row row_of(const Sample & sample);
   void serve(const std::stop_token & stop);
-  /// Rows around the stop, oldest first.
-  std::vector<Row> rows_around(const Stop & stop) const;
-  Expected<std::string> write(const Stop & stop) const;
+  void write_complete();
+  /// Returns the path. `around`: the rows around the stop, oldest first.
+  Expected<std::string> write(const Stop & stop, const std::vector<Row> & around) const;
   void remove_old_files() const;
 
   const std::filesystem::path folder_;
   const std::string name_;
   const LogFunction log_;
 
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable_any changed_;
   std::vector<Row> ring_;
   std::size_t next_ = 0;
