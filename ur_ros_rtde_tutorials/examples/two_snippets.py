@@ -37,8 +37,10 @@ def has_driver_back(arm):
     """Each program has replaced that of the driver."""
     try:
         arm.reupload_script()
-    except Rejected:  # the second program has not ended yet
-        return False
+    except Rejected as rejected:
+        if rejected.name != "PROGRAM_STOPPED":  # a protective stop, because the second program came too late
+            raise
+        return False  # the second program has not ended yet
     return True
 
 
