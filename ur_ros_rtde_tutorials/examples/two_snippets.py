@@ -49,13 +49,13 @@ def main():
         arm.zero_ft_sensor()
         port.sendall(MOVE.encode())
         try:
-            wait_for(lambda: abs(arm.state.wrench[2]) > 20.0, 10.0, "there was no force")
+            wait_for(lambda: abs(arm.state.wrench[2]) > 20.0, 30.0, "there was no force")
         finally:
             port.sendall(STOP.encode())
         force = arm.state.wrench[2]
         # No answer tells when a program has ended, or that it has failed.
-        wait_for(lambda: max(abs(arm.state.joint_velocities)) < 0.005, 10.0, "there was no standstill")
-        wait_for(lambda: has_driver_back(arm), 10.0, "the driver did not get the robot back")
+        wait_for(lambda: max(abs(arm.state.joint_velocities)) < 0.005, 30.0, "there was no standstill")
+        wait_for(lambda: has_driver_back(arm), 30.0, "the driver did not get the robot back")
         print(f"stopped at {force:.1f} N")
 
 

@@ -27,7 +27,7 @@ end
 
 def main():
     with Robot() as arm:
-        arm.send_script(PROGRAM, timeout=20.0)
+        arm.send_script(PROGRAM, timeout=60.0)
         force, distance = (arm.get_output_double_register(index).value for index in (12, 13))
         if abs(force) <= 20.0:
             raise SystemExit("no force of 20 N within 0.3 m")
