@@ -6,10 +6,9 @@ import pty
 import subprocess
 
 import pytest
-from support import TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
+from support import TIMEOUT_FACTOR, Process, find_program, simulated_robot, wait_for
+from ur_program import EMPTY_DOMAIN
 from ur_ros_rtde_cli import report
-
-from ur_ros_rtde_msgs.msg import DriverState
 
 LIMIT = 60.0  # s
 
@@ -21,17 +20,8 @@ def logs(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def running(logs):
-    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", env={"ROS_LOG_DIR": str(logs)})
-    client = Client()
-    try:
-        states = client.subscribe(DriverState, "driver_state", transient_local=True)
-        wait_for(lambda: states and states[-1].name == "READY", 30.0, "the driver to be ready")
+    with simulated_robot("ur_type:=ur10e", env={"ROS_LOG_DIR": str(logs)}) as simulator:
         yield simulator
-    finally:
-        client.close()
-        driver.stop()
-        simulator.stop()
 
 
 def sections(text):
@@ -59,7 +49,7 @@ def test_the_report_has_versions_parameters_state_checks_and_logs(running, logs,
 
 def test_without_a_driver_the_report_says_so(tmp_path):
     file = tmp_path / "report.md"
-    env = {"ROS_LOG_DIR": str(tmp_path), "ROS_DOMAIN_ID": "102"}  # an unused domain: tests use domains below 102
+    env = {"ROS_LOG_DIR": str(tmp_path), "ROS_DOMAIN_ID": EMPTY_DOMAIN}
     process = Process([find_program("ur_ros_rtde_cli", "ur"), "doctor", "--report", str(file), "--yes"], env)
     assert process.wait(LIMIT) == 0, process.output()
     found = sections(file.read_text())
@@ -86,7 +76,8 @@ def test_on_a_terminal_the_user_decides_after_reading(running, tmp_path, answer,
 def test_without_a_terminal_nothing_is_written_without_yes(tmp_path):
     file = tmp_path / "report.md"
     result = subprocess.run([find_program("ur_ros_rtde_cli", "ur"), "doctor", "--report", str(file)], stdin=subprocess.DEVNULL,
-                            capture_output=True, text=True, timeout=TIMEOUT_FACTOR * LIMIT, env={**os.environ, "ROS_DOMAIN_ID": "102"})
+                            capture_output=True, text=True, timeout=TIMEOUT_FACTOR * LIMIT,
+                            env={**os.environ, "ROS_DOMAIN_ID": EMPTY_DOMAIN})
     assert result.returncode == 2 and "--yes" in result.stderr and not file.exists()
     assert "## Versions" in result.stdout
 

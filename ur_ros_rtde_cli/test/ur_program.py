@@ -11,9 +11,7 @@ import termios
 
 import pytest
 import yaml
-from support import HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
-
-from ur_ros_rtde_msgs.action import MoveJ
+from support import HOME, TIMEOUT_FACTOR, Process, find_program, simulated_robot, wait_for
 
 DISCOVERY = str(4.0 * TIMEOUT_FACTOR)  # s, time limit for the discovery of all actions
 EMPTY_DOMAIN = "102"  # an unused domain: tests use domains below 102
@@ -21,16 +19,8 @@ EMPTY_DOMAIN = "102"  # an unused domain: tests use domains below 102
 
 @pytest.fixture(scope="module")
 def running():
-    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e")
-    client = Client()
-    try:
-        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to accept a motion")
+    with simulated_robot("ur_type:=ur10e") as simulator:
         yield simulator
-    finally:
-        client.close()
-        driver.stop()
-        simulator.stop()
 
 
 @pytest.fixture

@@ -52,12 +52,8 @@ class _ShowVersion(argparse.Action):
     """Reads the version of the installed package only if it is asked for."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from xml.etree import ElementTree  # imported here, like ROS, because nothing else needs it
-
-        from ament_index_python import get_package_share_directory
-        description = pathlib.Path(get_package_share_directory("ur_ros_rtde_cli"), "package.xml").read_text()
-        distribution = f", ROS 2 {os.environ['ROS_DISTRO']}" if "ROS_DISTRO" in os.environ else ""
-        print(f"ur_ros_rtde {ElementTree.fromstring(description).findtext('version')}{distribution}")
+        from .version import version_line  # imported here because nothing else needs it
+        print(version_line())
         parser.exit()
 
 

@@ -11,6 +11,7 @@ import time
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple
 
 from .errors import CliError
+from .version import version_line
 
 NODES = ("driver", "robot_state_receiver", "command_server", "dashboard_server")  # and the programs with these names
 VARIABLES = ("ROS_", "RMW_", "FASTDDS_", "FASTRTPS_", "CYCLONEDDS_", "ZENOH_")
@@ -48,13 +49,8 @@ def _section(title: str, lines: Iterable[str]) -> str:
 
 
 def _versions() -> Iterator[str]:
-    from xml.etree import ElementTree
-
-    from ament_index_python import get_package_share_directory
     from rclpy.utilities import get_rmw_implementation_identifier
-    description = pathlib.Path(get_package_share_directory("ur_ros_rtde_cli"), "package.xml").read_text()
-    yield f"ur_ros_rtde {ElementTree.fromstring(description).findtext('version')}"
-    yield f"ROS 2 {os.environ.get('ROS_DISTRO', 'of an unknown distribution')}, {get_rmw_implementation_identifier()}"
+    yield f"{version_line()}, {get_rmw_implementation_identifier()}"
     yield f"Python {platform.python_version()}, {_operating_system()}, kernel {platform.release()} {platform.version()}"
     yield f"{platform.machine()}, {len(os.sched_getaffinity(0))} processors, load {' '.join(f'{load:.1f}' for load in os.getloadavg())}"
 
@@ -175,7 +171,7 @@ def _may_write(file: pathlib.Path, agreed: bool) -> bool:
     if agreed:
         return True
     if not sys.stdin.isatty():
-        raise CliError(f"{file} is not written: nobody can read the report before. Give --yes to write it without a question.")
+        raise CliError(f"{file} is not written: without a terminal, the report cannot be read first. Give --yes to write it anyway.")
     print(f"Write this to {file}? [y/N] ", end="", file=sys.stderr, flush=True)
     return sys.stdin.readline().strip().lower() in ("y", "yes")
 

@@ -1,14 +1,13 @@
 """Runs the examples."""
 
 import json
-import os
 import pathlib
 import signal
 import subprocess
 import sys
 
 import pytest
-from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, start_node, wait_for
+from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, simulated_robot, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -26,16 +25,8 @@ needs_rclcpp = pytest.mark.skipif(not has_program("c01_send_a_goal"), reason="rc
 
 @pytest.fixture(scope="module")
 def running():
-    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
-    driver = start_node("driver", simulator.address)
-    client = Client()
-    try:
-        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to accept a motion")
+    with simulated_robot() as simulator:
         yield simulator
-    finally:
-        client.close()
-        driver.stop()
-        simulator.stop()
 
 
 @pytest.mark.parametrize("name, limit, text", [

@@ -1,5 +1,6 @@
 """Shared by the system tests: processes with their logs, the simulator's control port, and a client of the nodes."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -15,6 +16,7 @@ from rclpy.action import ActionClient
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
+from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import GoalRejected
 from ur_ros_rtde_msgs.srv import GetJointState
 
@@ -372,3 +374,18 @@ def seconds(stamp):
 def robot_seconds(stamp):
     """Converts a stamp or duration of the host to seconds of the simulated robot's time."""
     return REAL_TIME_FACTOR * seconds(stamp)
+
+
+@contextlib.contextmanager
+def simulated_robot(*parameters, env=None):
+    """Yields a simulator whose driver, with these parameters, accepts motions."""
+    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
+    driver = start_node("driver", simulator.address, *parameters, env=env)
+    client = Client()
+    try:
+        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to accept a motion")
+        yield simulator
+    finally:
+        client.close()
+        driver.stop()
+        simulator.stop()
